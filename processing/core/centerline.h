@@ -1,0 +1,41 @@
+// The colon's centerline: the path that a reader flies along.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace haustra {
+
+/// One sample. Samples lie about 1 mm apart from the rectum (arc 0) to the cecum.
+struct CenterlinePoint {
+    glm::dvec3 positionMm{0.0};  ///< patient coordinates, LPS
+    double arcMm = 0.0;          ///< length along the path from the rectum
+    double radiusMm = 0.0;       ///< distance to the lumen's boundary here; 0 in a gap
+    bool gap = false;            ///< the path crosses from one segment of the colon to the next
+};
+
+struct Centerline {
+    std::vector<CenterlinePoint> points;
+    double lengthMm() const { return points.empty() ? 0.0 : points.back().arcMm; }
+};
+
+/// A place on the centerline with its direction of travel (unit, rectum to cecum).
+struct CenterlinePose {
+    CenterlinePoint point;
+    glm::dvec3 tangent{0.0, 0.0, 1.0};
+};
+
+/// Position by linear interpolation at `arcMm` (clamped to the ends); the tangent is the chord
+/// over `windowMm` to either side, so that a camera along it does not shake. Needs at least one
+/// point; O(log n).
+CenterlinePose poseAtArc(const Centerline& centerline, double arcMm, double windowMm = 4.0);
+
+/// Arc of the sample nearest to a patient point. Needs at least one point; O(n).
+double nearestArc(const Centerline& centerline, glm::dvec3 positionMm);
+
+/// An up vector at each sample, orthogonal to the tangent and carried along the path without
+/// twist (double-reflection method, Wang et al. 2008), starting as near to `preferredUp` as the
+/// first tangent allows. Same length as `centerline.points`.
+std::vector<glm::dvec3> rotationMinimizingUps(const Centerline& centerline, glm::dvec3 preferredUp);
+
+}  // namespace haustra

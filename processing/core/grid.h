@@ -1,0 +1,68 @@
+// Where voxels are: the size of a volume and its place in the patient.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+
+#include "core/result.h"
+
+namespace haustra {
+
+/// A regular grid of voxels in patient space (DICOM LPS, millimetres). Voxel (i, j, k) has its
+/// centre at patientFromVoxel · (i, j, k, 1). i runs fastest in memory.
+struct Grid {
+    glm::ivec3 size{0};
+    glm::dmat4 patientFromVoxel{1.0};
+
+    std::size_t voxelCount() const {
+        return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    }
+    std::size_t index(int i, int j, int k) const {
+        return std::size_t(i) + std::size_t(size.x) * (std::size_t(j) + std::size_t(size.y) * std::size_t(k));
+    }
+    std::size_t index(glm::ivec3 v) const { return index(v.x, v.y, v.z); }
+    glm::ivec3 voxelAt(std::size_t index) const {
+        const std::size_t row = index / std::size_t(size.x);
+        return {int(index % std::size_t(size.x)), int(row % std::size_t(size.y)), int(row / std::size_t(size.y))};
+    }
+    bool contains(glm::ivec3 v) const {
+        return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < size.x && v.y < size.y && v.z < size.z;
+    }
+
+    /// Distances between neighbouring voxel centres along i, j and k, mm.
+    glm::dvec3 spacingMm() const;
+    double voxelVolumeMm3() const;
+    /// Patient point (mm) of a voxel coordinate; fractions lie between centres.
+    glm::dvec3 patientFromVoxelPoint(glm::dvec3 voxel) const {
+        return glm::dvec3(patientFromVoxel * glm::dvec4(voxel, 1.0));
+    }
+    /// The inverse affine. Compute it once outside loops.
+    glm::dmat4 voxelFromPatient() const { return glm::inverse(patientFromVoxel); }
+    glm::dvec3 voxelFromPatientPoint(glm::dvec3 patientMm) const {
+        return glm::dvec3(voxelFromPatient() * glm::dvec4(patientMm, 1.0));
+    }
+};
+
+/// Axis-aligned grid: spacing in mm, centre of voxel (0,0,0) at originMm.
+Grid axisAlignedGrid(glm::ivec3 size, glm::dvec3 spacingMm, glm::dvec3 originMm = glm::dvec3(0.0));
+
+/// Same size and the same affine to within 1e-4 mm at the farthest corner.
+bool sameGrid(const Grid& a, const Grid& b);
+
+/// Fails unless every extent is 1…4096, there are at most 2^33 voxels, and the affine is finite
+/// and invertible with an affine last row. Everything that reads a grid from a file calls this.
+Result<void> checkGrid(const Grid& grid, const std::string& place);
+
+/// Which way is down: the patient's position on the table (DICOM Patient Position).
+enum class PatientPosition { unknown, supine, prone, leftDecubitus, rightDecubitus };
+
+/// Unit vector along gravity in LPS: supine +y (posterior), prone −y, lying on the left side +x,
+/// on the right −x. Zero where the position is unknown.
+glm::dvec3 gravityDirection(PatientPosition position);
+
+const char* toString(PatientPosition position);
+PatientPosition patientPositionFromString(const std::string& text);
+
+}  // namespace haustra

@@ -1,0 +1,24 @@
+// What the voxels of an abdominal CT are made of.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace haustra {
+
+/// Tissue classes told apart by HU. Bone and tagged material overlap and are one class.
+enum class Tissue : std::uint8_t { air = 0, fat = 1, soft = 2, taggedOrBone = 3 };
+inline constexpr int tissueCount = 4;
+
+/// A Gaussian mixture over HU: class means, standard deviations and weights, ordered as Tissue.
+struct TissueModel {
+    std::array<double, tissueCount> meanHu{};
+    std::array<double, tissueCount> sdHu{};
+    std::array<double, tissueCount> weight{};
+    /// HU where air ends (midway between air and soft tissue, where the half-filled voxel lies),
+    /// and where tagged material or bone begins (likewise midway from soft tissue).
+    double airBelowHu = 0.0;
+    double taggedAboveHu = 0.0;
+};
+
+}  // namespace haustra

@@ -1,0 +1,30 @@
+// Triangle meshes in patient space.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace haustra {
+
+/// Vertices in LPS millimetres; triangles index them, counter-clockwise seen from outside.
+struct TriMesh {
+    std::vector<glm::dvec3> vertices;
+    std::vector<glm::ivec3> triangles;
+};
+
+/// What the connectivity alone tells.
+struct MeshTopology {
+    long eulerCharacteristic = 0;  ///< V − E + F over the vertices that triangles use
+    long components = 0;
+    long boundaryEdges = 0;     ///< edges of one triangle
+    long nonManifoldEdges = 0;  ///< edges of three or more, or of two with the same direction
+    bool closed() const { return boundaryEdges == 0 && nonManifoldEdges == 0; }
+    /// Sum of the components' genera; meaningful for a closed manifold mesh.
+    long genus() const { return (2 * components - eulerCharacteristic) / 2; }
+};
+
+/// O(n log n) in the number of triangles. Every index must be within `vertices`.
+MeshTopology meshTopology(const TriMesh& mesh);
+
+}  // namespace haustra
