@@ -1,0 +1,135 @@
+// Laws of the core nouns: grids, volumes, meshes, loops over threads.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "core/grid.h"
+#include "core/parallel.h"
+#include "core/tri_mesh.h"
+#include "core/volume.h"
+
+namespace haustra {
+namespace {
+
+Grid obliqueGrid() {
+    Grid grid = axisAlignedGrid({5, 7, 3}, {0.7, 0.9, 2.0}, {-10, 20, -30});
+    const double a = 0.3;
+    const glm::dmat4 turn(std::cos(a), std::sin(a), 0, 0, -std::sin(a), std::cos(a), 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+    grid.patientFromVoxel = turn * grid.patientFromVoxel;
+    return grid;
+}
+
+TEST(Grid, IndexAndVoxelAreInverse) {
+    const Grid grid = obliqueGrid();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) EXPECT_EQ(grid.index(grid.voxelAt(n)), n);
+}
+
+TEST(Grid, PatientAndVoxelAreInverse) {
+    const Grid grid = obliqueGrid();
+    const glm::dvec3 voxel(1.25, 5.5, 0.75);
+    EXPECT_LT(glm::distance(grid.voxelFromPatientPoint(grid.patientFromVoxelPoint(voxel)), voxel), 1e-12);
+    EXPECT_NEAR(grid.voxelVolumeMm3(), 0.7 * 0.9 * 2.0, 1e-12);
+    EXPECT_LT(glm::distance(grid.spacingMm(), glm::dvec3(0.7, 0.9, 2.0)), 1e-12);
+}
+
+TEST(Grid, CheckRefusesWhatCannotBeAVolume) {
+    EXPECT_TRUE(checkGrid(obliqueGrid(), "x"));
+    Grid flat = obliqueGrid();
+    flat.patientFromVoxel[2] = flat.patientFromVoxel[1];
+    EXPECT_FALSE(checkGrid(flat, "x"));
+    Grid nan = obliqueGrid();
+    nan.patientFromVoxel[3][0] = std::nan("");
+    EXPECT_FALSE(checkGrid(nan, "x"));
+    Grid empty = obliqueGrid();
+    empty.size.y = 0;
+    EXPECT_FALSE(checkGrid(empty, "x"));
+}
+
+TEST(Grid, SameGridSeesAShiftOfATenthOfAMillimetre) {
+    Grid a = obliqueGrid(), b = a;
+    EXPECT_TRUE(sameGrid(a, b));
+    b.patientFromVoxel[3][2] += 0.1;
+    EXPECT_FALSE(sameGrid(a, b));
+}
+
+TEST(Volume, TrilinearIsExactOnALinearField) {
+    const Grid grid = axisAlignedGrid({6, 5, 4}, {1, 1, 1});
+    Volume<float> field(grid);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        field.writable()[n] = float(2 * v.x - 3 * v.y + 5 * v.z);
+    }
+    EXPECT_NEAR(trilinear(field, {1.25, 2.5, 0.75}), 2 * 1.25 - 3 * 2.5 + 5 * 0.75, 1e-9);
+    EXPECT_NEAR(trilinear(field, {-4, 0, 9}), 5 * 3, 1e-9);  // clamped to the edge
+}
+
+TEST(Volume, AViewOutlivesTheVolumeItCameFromAndCannotBeWritten) {
+    Volume<std::int16_t> view;
+    {
+        Volume<std::int16_t> owner(axisAlignedGrid({4, 4, 4}, {1, 1, 1}), 7);
+        view = owner.share();
+    }
+    EXPECT_EQ(view[63], 7);
+    EXPECT_TRUE(view.writable().empty());
+    EXPECT_EQ(view.clone().writable().size(), 64u);
+}
+
+TriMesh torus(int around, int along) {
+    TriMesh mesh;
+    for (int a = 0; a < along; ++a) {
+        for (int b = 0; b < around; ++b) {
+            const double u = 2 * M_PI * a / along, v = 2 * M_PI * b / around;
+            mesh.vertices.push_back({(3 + std::cos(v)) * std::cos(u), (3 + std::cos(v)) * std::sin(u), std::sin(v)});
+            const int p = a * around + b, q = a * around + (b + 1) % around;
+            const int r = (a + 1) % along * around + b, s = (a + 1) % along * around + (b + 1) % around;
+            mesh.triangles.push_back({p, r, q});
+            mesh.triangles.push_back({q, r, s});
+        }
+    }
+    return mesh;
+}
+
+TEST(TriMesh, TorusHasGenusOne) {
+    const MeshTopology topology = meshTopology(torus(7, 11));
+    EXPECT_TRUE(topology.closed());
+    EXPECT_EQ(topology.components, 1);
+    EXPECT_EQ(topology.eulerCharacteristic, 0);
+    EXPECT_EQ(topology.genus(), 1);
+}
+
+TEST(TriMesh, AMissingTriangleIsABoundaryOfThreeEdges) {
+    TriMesh mesh = torus(7, 11);
+    mesh.triangles.pop_back();
+    EXPECT_EQ(meshTopology(mesh).boundaryEdges, 3);
+    EXPECT_FALSE(meshTopology(mesh).closed());
+}
+
+TEST(TriMesh, AFlippedTriangleIsNotManifold) {
+    TriMesh mesh = torus(7, 11);
+    std::swap(mesh.triangles[0].x, mesh.triangles[0].y);
+    EXPECT_EQ(meshTopology(mesh).nonManifoldEdges, 3);
+}
+
+TEST(Parallel, CoversEachIndexOnce) {
+    for (int threads : {1, 2, 5}) {
+        std::vector<std::atomic<int>> hits(1003);
+        parallelFor(hits.size(), 10, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) ++hits[n];
+        });
+        for (const auto& hit : hits) EXPECT_EQ(hit, 1);
+    }
+}
+
+TEST(Parallel, AnExceptionReachesTheCaller) {
+    EXPECT_THROW(parallelFor(100, 1, 3, [](std::size_t begin, std::size_t) {
+                     if (begin == 50) throw std::runtime_error("50");
+                 }),
+                 std::runtime_error);
+}
+
+}  // namespace
+}  // namespace haustra

@@ -1,0 +1,152 @@
+// The dependency rules of the design, checked on every #include line of the tree, and on what the
+// programs link.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+fs::path source() {
+    const char* set = std::getenv("HAUSTRA_SOURCE");
+    return set ? set : ".";
+}
+
+// Folder -> the folders whose headers it may include. core is open to all.
+const std::map<std::string, Names>& allowed() {
+    static const std::map<std::string, Names> rules = {
+        {"processing/core", {}},
+        {"processing/dicom", {}},
+        {"processing/nifti", {}},
+        {"processing/phantom", {}},
+        {"processing/cleansing", {}},
+        {"processing/topology", {}},
+        {"processing/store", {}},
+        {"processing/pipeline", {"dicom", "nifti", "cleansing", "topology", "store"}},
+        {"protocol", {}},
+        {"shaders", {}},
+        {"server/gpu", {}},
+        {"server/render", {"gpu", "shaders"}},
+        {"server/encode", {"render", "protocol"}},
+        {"server/records", {}},
+        {"server/session", {"gpu", "render", "encode", "records", "store", "protocol"}},
+        {"server/net", {"gpu", "render", "encode", "records", "session", "store", "protocol"}},
+        {"server/cli", {"dicom", "nifti", "phantom", "store", "pipeline", "gpu", "render"}},
+        {"client", {"protocol", "link", "tiles", "panels", "window"}},
+        {"client/link", {"protocol"}},
+        {"client/tiles", {"protocol"}},
+        {"client/panels", {"protocol", "link", "tiles"}},
+        {"client/window", {"protocol", "link", "tiles", "panels"}},
+    };
+    return rules;
+}
+
+// Libraries that stay in the .cpp files of the folders that wrap them.
+struct Foreign {
+    std::regex header;
+    Names folders;
+};
+const std::vector<Foreign>& foreignHeaders() {
+    static const std::vector<Foreign> rules = [] {
+        auto of = [](const char* pattern, Names folders) { return Foreign{std::regex(pattern), std::move(folders)}; };
+        return std::vector<Foreign>{
+            of("^dcmtk/.*", {"processing/dicom"}),
+            of("^openjpeg.*", {"processing/dicom"}),
+            of("^nifti.*", {"processing/nifti"}),
+            of("^(Eigen|suitesparse|cholmod).*", {"processing/flatten", "processing/cleansing", "processing/topology"}),
+            of("^(CGAL|OpenMesh)/.*", {"processing/surface"}),
+            of("^opencv2/.*", {"processing/cad", "processing/coverage"}),
+            of("^sqlite3.h$", {"server/records"}),
+            of("^turbojpeg.h$", {"server/encode", "client/tiles"}),
+            of("^(EGL|GL|GLES.?|epoxy)/.*", {"server/gpu", "server/render", "client/window"}),
+            of("^SDL.*", {"client", "client/window"}),
+            of("^(asio|openssl)[./].*", {"server/net", "server/session", "client/link", "processing/store", "processing/pipeline"}),
+        };
+    }();
+    return rules;
+}
+
+struct Include {
+    fs::path file;
+    std::string folder;  // "processing/core"
+    std::string header;
+    bool quoted;
+};
+
+std::vector<Include> includesOfTheTree() {
+    static const std::regex line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
+    std::vector<Include> includes;
+    for (const char* top : {"processing", "protocol", "shaders", "server", "client"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(source() / top)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".h" && extension != ".cpp") continue;
+            const fs::path relative = fs::relative(entry.path(), source());
+            std::ifstream in(entry.path());
+            std::smatch match;
+            for (std::string text; std::getline(in, text);) {
+                if (!std::regex_match(text, match, line)) continue;
+                includes.push_back({relative, relative.parent_path().generic_string(), match[2], match[1] == "\""});
+            }
+        }
+    }
+    return includes;
+}
+
+TEST(IncludeRules, TheTreeIsSeen) { EXPECT_GT(includesOfTheTree().size(), 100u); }
+
+TEST(IncludeRules, FoldersIncludeOnlyWhatTheyMay) {
+    for (const Include& include : includesOfTheTree()) {
+        if (!include.quoted) continue;
+        const auto rule = allowed().find(include.folder);
+        ASSERT_NE(rule, allowed().end()) << include.folder << " has no rule";
+        const std::size_t slash = include.header.find('/');
+        ASSERT_NE(slash, std::string::npos) << include.file << " includes \"" << include.header << "\" without a folder";
+        const std::string target = include.header.substr(0, slash);
+        const std::string own = fs::path(include.folder).filename().string();
+        EXPECT_TRUE(target == "core" || target == own || rule->second.count(target))
+            << include.file << " must not include \"" << include.header << "\"";
+    }
+}
+
+TEST(IncludeRules, ForeignLibrariesStayInTheirFolders) {
+    for (const Include& include : includesOfTheTree()) {
+        if (include.quoted) continue;
+        for (const Foreign& foreign : foreignHeaders()) {
+            if (!std::regex_match(include.header, foreign.header)) continue;
+            EXPECT_TRUE(foreign.folders.count(include.folder)) << include.file << " must not include <" << include.header << ">";
+            const bool looseInHeaders = include.header.rfind("asio", 0) == 0 || include.header.rfind("epoxy", 0) == 0;
+            if (!looseInHeaders) {
+                EXPECT_EQ(include.file.extension(), ".cpp") << include.file << " shows <" << include.header << "> to its users";
+            }
+        }
+    }
+}
+
+// A hostile DICOM file, or an abort in a mesh library, must cost one preparation, never a session.
+TEST(IncludeRules, TheServerLinksNoImageOrMeshLibrary) {
+    const char* bin = std::getenv("HAUSTRA_BIN");
+    ASSERT_TRUE(bin);
+    const fs::path server = fs::path(bin) / "haustra-server";
+    ASSERT_TRUE(fs::exists(server)) << server << " is not built";
+    std::string linked;
+    FILE* pipe = popen(("ldd '" + server.string() + "'").c_str(), "r");
+    ASSERT_TRUE(pipe);
+    for (char buffer[512]; std::fgets(buffer, sizeof buffer, pipe);) linked += buffer;
+    ASSERT_EQ(pclose(pipe), 0);
+    EXPECT_NE(linked.find("libssl"), std::string::npos) << linked;
+    for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti"}) {
+        EXPECT_EQ(linked.find(library), std::string::npos) << "haustra-server links " << library;
+    }
+}
+
+}  // namespace
