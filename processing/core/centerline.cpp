@@ -79,4 +79,24 @@ std::vector<glm::dvec3> rotationMinimizingUps(const Centerline& centerline, glm:
     return ups;
 }
 
+CenterlineCamera cameraAtArc(const Centerline& centerline, const std::vector<glm::dvec3>& ups,
+                             double arcMm, FlightDirection direction) {
+    const CenterlinePose pose = poseAtArc(centerline, arcMm);
+    const auto& points = centerline.points;
+    const auto after = std::lower_bound(
+        points.begin(), points.end(), pose.point.arcMm,
+        [](const CenterlinePoint& p, double arc) { return p.arcMm < arc; });
+    std::size_t nearest = std::min<std::size_t>(after - points.begin(), points.size() - 1);
+    if (nearest > 0 && pose.point.arcMm - points[nearest - 1].arcMm < points[nearest].arcMm - pose.point.arcMm) {
+        --nearest;
+    }
+    CenterlineCamera camera;
+    camera.positionMm = pose.point.positionMm;
+    camera.forward = direction == FlightDirection::antegrade ? pose.tangent : -pose.tangent;
+    const glm::dvec3 up = nearest < ups.size() ? ups[nearest] : flightPreferredUp;
+    const glm::dvec3 upright = up - glm::dot(up, pose.tangent) * pose.tangent;
+    camera.up = glm::length(upright) > 1e-6 ? glm::normalize(upright) : anyNormal(pose.tangent);
+    return camera;
+}
+
 }  // namespace haustra

@@ -38,4 +38,25 @@ double nearestArc(const Centerline& centerline, glm::dvec3 positionMm);
 /// first tangent allows. Same length as `centerline.points`.
 std::vector<glm::dvec3> rotationMinimizingUps(const Centerline& centerline, glm::dvec3 preferredUp);
 
+/// Antegrade: from the rectum to the cecum, as the path runs; retrograde: back.
+enum class FlightDirection { antegrade, retrograde };
+
+/// Up of a fly-through camera where the path leaves it a choice: anterior, as a patient on the back
+/// sees the ceiling.
+inline constexpr glm::dvec3 flightPreferredUp{0.0, -1.0, 0.0};
+
+/// Where a camera on the centerline stands and looks. `forward` and `up` are unit and orthogonal.
+struct CenterlineCamera {
+    glm::dvec3 positionMm{0.0};
+    glm::dvec3 forward{0.0, 0.0, 1.0};
+    glm::dvec3 up{0.0, -1.0, 0.0};
+};
+
+/// The camera at `arcMm` (clamped to the ends): looks along the tangent of poseAtArc, or against
+/// it; up is that of the nearest sample in `ups`, made orthogonal to the tangent. `ups` is
+/// rotationMinimizingUps(centerline, flightPreferredUp); whoever draws a fly-through uses this one
+/// function, so equal arcs give equal pictures. Needs at least one point; O(log n).
+CenterlineCamera cameraAtArc(const Centerline& centerline, const std::vector<glm::dvec3>& ups,
+                             double arcMm, FlightDirection direction);
+
 }  // namespace haustra
