@@ -53,7 +53,7 @@ double nearestArc(const Centerline& centerline, glm::dvec3 positionMm) {
 std::vector<glm::dvec3> rotationMinimizingUps(const Centerline& centerline, glm::dvec3 preferredUp) {
     const auto& points = centerline.points;
     std::vector<glm::dvec3> ups(points.size());
-    glm::dvec3 tangent, up;
+    glm::dvec3 tangent(0.0), up(0.0);
     for (std::size_t n = 0; n < points.size(); ++n) {
         const glm::dvec3 next = poseAtArc(centerline, points[n].arcMm).tangent;
         if (n == 0) {

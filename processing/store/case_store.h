@@ -1,18 +1,32 @@
 // The case store: one folder a case, one file a product, published whole or not at all.
+//
+//   STORE/cases/NAME/case.json              names the file of each product
+//   STORE/cases/NAME/<product>-<key16>.hvol  a volume (layout: store/product_file.h)
+//   STORE/cases/NAME/<product>-<key16>.hline a centerline
+//   STORE/cases/NAME/.lock                  flocked by the one writer
+//   STORE/cases/NAME/.tmp-*                 being written, or left by a writer that was killed
+//
+// A product becomes visible when case.json names it, and case.json is replaced in one step after
+// the product's file is on the disk. A file never changes under its name's readers: what replaces
+// it is another file, and readers that have the old one mapped keep it.
 #pragma once
-
-#include <cstdint>
-#include <filesystem>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
 #include "core/result.h"
 
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace haustra::store {
+
+struct MappedProduct;
 
 /// Names a product's content: a hash of the stage's name and version, its options and the keys of
 /// its inputs. Equal keys mean equal bytes.
@@ -25,6 +39,9 @@ struct ProductKey {
 ProductKey makeKey(std::string_view stage, int version, std::string_view options,
                    const std::vector<ProductKey>& inputs);
 
+/// Free text stored with a product: patient position, series facts. Nothing of the patient's.
+using Attributes = std::map<std::string, std::string>;
+
 /// What `case.json` says of one product.
 struct ProductEntry {
     std::string product;  ///< "ct", "lumen", "distance", "centerline" …
@@ -32,46 +49,69 @@ struct ProductEntry {
     std::string file;  ///< name within the case folder
 };
 
-/// One case in a store. Reading is safe beside one writer, in any process: a product is a file
-/// that is complete under its name and never changes.
+/// One case in a store. Reading is safe beside one writer, in any process, and from any number of
+/// threads. A case from CaseStore::openCase only reads; one from CaseStore::createCase also
+/// publishes, from one thread, and holds the case's lock until its last copy is gone.
 class Case {
 public:
     const std::string& name() const { return name_; }
     std::filesystem::path folder() const { return folder_; }
 
-    /// The products now published, read afresh from disk.
+    /// The products now published, sorted by name, read afresh from disk.
     Result<std::vector<ProductEntry>> products() const;
     std::optional<ProductEntry> find(std::string_view product) const;
     bool has(std::string_view product, const ProductKey& key) const;
 
-    /// Volumes are memory-mapped; T must be the type that was published.
+    /// A view of the memory-mapped product; T (int16_t, uint8_t or float) must be the type that
+    /// was published. Reads the header alone: the values' pages come when they are touched.
     template <class T>
     Result<Volume<T>> readVolume(std::string_view product) const;
     Result<Centerline> readCenterline(std::string_view product = "centerline") const;
-    /// Free text stored with the case beside its products (patient position, series facts …).
-    Result<std::map<std::string, std::string>> attributes(std::string_view product) const;
+    Result<Attributes> attributes(std::string_view product) const;
+    /// Fails, naming the file, where a product is not byte for byte what was published. Reads all
+    /// of it, at the speed of SHA-256 on all cores.
+    Result<void> verify(std::string_view product) const;
 
-    /// Written under a temporary name, fsynced, renamed, and then named in case.json likewise.
+    /// Published durably under `key`: when this returns, the product survives a power cut, and
+    /// the file that it replaces is gone. The products named in `outdated`, which the old one went
+    /// into, leave case.json in the same step.
     template <class T>
-    Result<void> publishVolume(std::string_view product, const ProductKey& key, const Volume<T>& volume,
-                               const std::map<std::string, std::string>& attributes = {});
-    Result<void> publishCenterline(std::string_view product, const ProductKey& key, const Centerline& centerline,
-                                   const std::map<std::string, std::string>& attributes = {});
+    Result<void> publishVolume(std::string_view product, const ProductKey& key,
+                               const Volume<T>& volume, const Attributes& attributes = {},
+                               const std::vector<std::string>& outdated = {});
+    Result<void> publishCenterline(std::string_view product, const ProductKey& key,
+                                   const Centerline& centerline, const Attributes& attributes = {},
+                                   const std::vector<std::string>& outdated = {});
 
 private:
     friend class CaseStore;
+    Result<MappedProduct> map(std::string_view product) const;
+    Result<void> announce(const ProductEntry& entry, const std::vector<std::string>& outdated);
+    Result<void> checkWritable() const;
+    void sweep(const std::vector<ProductEntry>& kept) const;
+
     std::string name_;
     std::filesystem::path folder_;
+    std::shared_ptr<const void> lock_;  // of a writer only
 };
 
+/// True where `name` can name a case: 1…64 of letters, digits, '.', '_', '-', not starting with
+/// '.'.
+bool isCaseName(std::string_view name);
+
+/// A store of cases. Immutable: safe from any number of threads.
 class CaseStore {
 public:
     /// Opens a folder, making it where `create`.
     static Result<CaseStore> open(const std::filesystem::path& folder, bool create);
-    /// Names of the cases, sorted.
+    const std::filesystem::path& folder() const { return folder_; }
+
+    /// Names of the cases that have an index, sorted.
     Result<std::vector<std::string>> cases() const;
+    /// For reading. Fails (notFound) where there is no such case.
     Result<Case> openCase(const std::string& name) const;
-    /// Name: 1…64 of letters, digits, '.', '_', '-', not starting with '.'.
+    /// For writing, made where it does not exist. Fails at once where another writer, in this or
+    /// any process, holds the case. Sweeps what a killed writer left.
     Result<Case> createCase(const std::string& name) const;
 
 private:

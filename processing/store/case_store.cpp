@@ -1,0 +1,369 @@
+#include "store/case_store.h"
+
+#include "store/case_index.h"
+#include "store/durable_file.h"
+#include "store/product_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <set>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace haustra::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char lockName[] = ".lock";
+
+template <class T>
+constexpr Content contentOf();
+template <>
+constexpr Content contentOf<std::int16_t>() {
+    return Content::int16Volume;
+}
+template <>
+constexpr Content contentOf<std::uint8_t>() {
+    return Content::uint8Volume;
+}
+template <>
+constexpr Content contentOf<float>() {
+    return Content::floatVolume;
+}
+
+const char* describeContent(Content content) {
+    switch (content) {
+        case Content::int16Volume:
+            return "a volume of 16-bit integers";
+        case Content::uint8Volume:
+            return "a volume of bytes";
+        case Content::floatVolume:
+            return "a volume of floats";
+        case Content::centerline:
+            return "a centerline";
+    }
+    return "something unknown";
+}
+
+Digest digestOf(const ProductKey& key) {
+    Digest digest{};
+    for (std::size_t n = 0; n < digest.size() && 2 * n + 1 < key.hex.size(); ++n) {
+        const auto value = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+        digest[n] = std::uint8_t(value(key.hex[2 * n]) << 4 | value(key.hex[2 * n + 1]));
+    }
+    return digest;
+}
+
+std::string fileName(std::string_view product, const ProductKey& key, const char* extension) {
+    return std::string(product) + "-" + key.hex.substr(0, 16) + extension;
+}
+
+struct CenterlineSample {
+    double x, y, z, arc, radius, gap;
+};
+static_assert(sizeof(CenterlineSample) == centerlineSampleBytes);
+
+// Holds flock(2) on an open file; the kernel lets go when the process ends, however it ends.
+class FileLock {
+public:
+    explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+    ~FileLock() { ::close(descriptor_); }
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+private:
+    int descriptor_;
+};
+
+Result<std::shared_ptr<const void>> lockCase(const fs::path& folder, const std::string& name) {
+    const fs::path file = folder / lockName;
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+    if (descriptor < 0) {
+        return fail(ErrorKind::io, std::string("cannot open: ") + std::strerror(errno),
+                    file.string());
+    }
+    auto lock = std::make_shared<const FileLock>(descriptor);
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+        if (errno == EWOULDBLOCK) {
+            return fail(ErrorKind::io, "case " + name + " is being written by another process",
+                        folder.string());
+        }
+        return fail(ErrorKind::io, std::string("cannot lock: ") + std::strerror(errno),
+                    file.string());
+    }
+    return std::shared_ptr<const void>(std::move(lock));
+}
+
+}  // namespace
+
+ProductKey makeKey(std::string_view stage, int version, std::string_view options,
+                   const std::vector<ProductKey>& inputs) {
+    Sha256 hash;
+    hash.addWithLength(stage);
+    hash.addWithLength(std::to_string(version));
+    hash.addWithLength(options);
+    for (const ProductKey& input : inputs)
+        hash.addWithLength(input.hex);
+    return {toHex(hash.finish())};
+}
+
+Result<std::vector<ProductEntry>> Case::products() const {
+    return readCaseIndex(folder_);
+}
+
+std::optional<ProductEntry> Case::find(std::string_view product) const {
+    const auto entries = products();
+    if (!entries) return std::nullopt;
+    const auto found =
+        std::find_if(entries->begin(), entries->end(),
+                     [&](const ProductEntry& entry) { return entry.product == product; });
+    if (found == entries->end()) return std::nullopt;
+    return *found;
+}
+
+bool Case::has(std::string_view product, const ProductKey& key) const {
+    const auto entry = find(product);
+    return entry && entry->key == key;
+}
+
+Result<MappedProduct> Case::map(std::string_view product) const {
+    // Between reading case.json and opening the file a writer may publish a newer product and
+    // remove this one; the newer case.json then names another file.
+    std::string triedFile;
+    while (true) {
+        const auto entries = products();
+        if (!entries) return tl::make_unexpected(entries.error());
+        const auto entry = std::find_if(
+            entries->begin(), entries->end(),
+            [&](const ProductEntry& candidate) { return candidate.product == product; });
+        if (entry == entries->end()) {
+            return fail(ErrorKind::notFound,
+                        "case " + name_ + " has no product " + std::string(product),
+                        folder_.string());
+        }
+        const fs::path file = folder_ / entry->file;
+        auto mapped = mapProduct(file);
+        if (mapped && mapped->header.key != digestOf(entry->key)) {
+            return fail(ErrorKind::badInput,
+                        "the product is damaged: its key is not the one that case.json names",
+                        file.string());
+        }
+        if (mapped || mapped.error().kind != ErrorKind::notFound || entry->file == triedFile) {
+            return mapped;
+        }
+        triedFile = entry->file;
+    }
+}
+
+template <class T>
+Result<Volume<T>> Case::readVolume(std::string_view product) const {
+    auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    if (mapped->header.content != contentOf<T>()) {
+        return fail(ErrorKind::badInput,
+                    std::string(product) + " is " + describeContent(mapped->header.content) +
+                        ", not " + describeContent(contentOf<T>()),
+                    folder_.string());
+    }
+    // The values start on a page, so they are aligned for any T.
+    const T* voxels = reinterpret_cast<const T*>(mapped->values.data());
+    return Volume<T>::view(mapped->header.grid, voxels, mapped->mapping);
+}
+
+Result<Centerline> Case::readCenterline(std::string_view product) const {
+    const auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    if (mapped->header.content != Content::centerline) {
+        return fail(ErrorKind::badInput,
+                    std::string(product) + " is " + describeContent(mapped->header.content) +
+                        ", not a centerline",
+                    folder_.string());
+    }
+    Centerline centerline;
+    centerline.points.reserve(mapped->values.size() / sizeof(CenterlineSample));
+    for (std::size_t at = 0; at < mapped->values.size(); at += sizeof(CenterlineSample)) {
+        CenterlineSample s;
+        std::memcpy(&s, mapped->values.data() + at, sizeof s);
+        centerline.points.push_back({{s.x, s.y, s.z}, s.arc, s.radius, s.gap != 0.0});
+    }
+    return centerline;
+}
+
+Result<Attributes> Case::attributes(std::string_view product) const {
+    auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    return std::move(mapped->header.attributes);
+}
+
+Result<void> Case::verify(std::string_view product) const {
+    const auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    const auto entry = find(product);
+    return checkValues(*mapped, folder_ / (entry ? entry->file : std::string(product)));
+}
+
+Result<void> Case::checkWritable() const {
+    if (lock_) return {};
+    return fail(ErrorKind::io, "case " + name_ + " is open for reading only", folder_.string());
+}
+
+template <class T>
+Result<void> Case::publishVolume(std::string_view product, const ProductKey& key,
+                                 const Volume<T>& volume, const Attributes& attributes,
+                                 const std::vector<std::string>& outdated) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hvol")};
+    const fs::path file = folder_ / entry.file;
+    if (auto sound = checkGrid(volume.grid(), file.string()); !sound) return sound;
+    const ProductHeader header{contentOf<T>(), volume.grid(), digestOf(key), {}, attributes};
+    return writeProduct(folder_, entry.file, header, std::as_bytes(volume.voxels())).and_then([&] {
+        return announce(entry, outdated);
+    });
+}
+
+Result<void> Case::publishCenterline(std::string_view product, const ProductKey& key,
+                                     const Centerline& centerline, const Attributes& attributes,
+                                     const std::vector<std::string>& outdated) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    std::vector<CenterlineSample> samples;
+    samples.reserve(centerline.points.size());
+    for (const CenterlinePoint& p : centerline.points) {
+        samples.push_back({p.positionMm.x, p.positionMm.y, p.positionMm.z, p.arcMm, p.radiusMm,
+                           p.gap ? 1.0 : 0.0});
+    }
+    ProductHeader header{Content::centerline, {}, digestOf(key), {}, attributes};
+    header.grid.size = {int(samples.size()), 1, 1};
+    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hline")};
+    return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(samples)))
+        .and_then([&] { return announce(entry, outdated); });
+}
+
+Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::string>& outdated) {
+    auto entries = products();
+    if (!entries) return tl::make_unexpected(entries.error());
+    std::erase_if(*entries, [&](const ProductEntry& old) {
+        return old.product == entry.product ||
+               std::find(outdated.begin(), outdated.end(), old.product) != outdated.end();
+    });
+    entries->push_back(entry);
+    if (auto written = writeCaseIndex(folder_, *entries); !written) return written;
+    sweep(*entries);
+    return {};
+}
+
+// Removes what no index names: products that were replaced, and what a killed writer left. A file
+// that cannot be removed costs space only, so errors are ignored; the next writer tries again.
+void Case::sweep(const std::vector<ProductEntry>& kept) const {
+    std::set<std::string> names;
+    for (const ProductEntry& entry : kept)
+        names.insert(entry.file);
+    std::error_code ignored;
+    std::vector<fs::path> rubbish;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder_, ignored)) {
+        const std::string name = file.path().filename().string();
+        const std::string extension = file.path().extension().string();
+        const bool temporary = name.rfind(temporaryPrefix, 0) == 0;
+        const bool product = extension == ".hvol" || extension == ".hline";
+        if (temporary || (product && !names.count(name))) rubbish.push_back(file.path());
+    }
+    for (const fs::path& file : rubbish)
+        fs::remove(file, ignored);
+}
+
+template Result<Volume<std::int16_t>> Case::readVolume(std::string_view) const;
+template Result<Volume<std::uint8_t>> Case::readVolume(std::string_view) const;
+template Result<Volume<float>> Case::readVolume(std::string_view) const;
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const Volume<std::int16_t>&, const Attributes&,
+                                          const std::vector<std::string>&);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const Volume<std::uint8_t>&, const Attributes&,
+                                          const std::vector<std::string>&);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&, const Volume<float>&,
+                                          const Attributes&, const std::vector<std::string>&);
+
+bool isCaseName(std::string_view name) {
+    constexpr std::string_view allowed =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+    return !name.empty() && name.size() <= 64 && name[0] != '.' &&
+           name.find_first_not_of(allowed) == std::string_view::npos;
+}
+
+Result<CaseStore> CaseStore::open(const fs::path& folder, bool create) {
+    std::error_code error;
+    if (create) {
+        fs::create_directories(folder / "cases", error);
+        if (error)
+            return fail(ErrorKind::io, "cannot make the store: " + error.message(),
+                        folder.string());
+    }
+    if (!fs::is_directory(folder / "cases", error)) {
+        return fail(ErrorKind::notFound, "there is no case store", folder.string());
+    }
+    CaseStore store;
+    store.folder_ = folder;
+    return store;
+}
+
+Result<std::vector<std::string>> CaseStore::cases() const {
+    std::error_code error;
+    std::vector<std::string> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "cases", error)) {
+        const std::string name = entry.path().filename().string();
+        std::error_code ignored;
+        if (isCaseName(name) && fs::is_regular_file(entry.path() / caseIndexName, ignored)) {
+            names.push_back(name);
+        }
+    }
+    if (error)
+        return fail(ErrorKind::io, "cannot list the cases: " + error.message(), folder_.string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Result<Case> CaseStore::openCase(const std::string& name) const {
+    if (!isCaseName(name)) return fail(ErrorKind::badInput, "not a case name", name);
+    Case opened;
+    opened.name_ = name;
+    opened.folder_ = folder_ / "cases" / name;
+    std::error_code ignored;
+    if (!fs::is_regular_file(opened.folder_ / caseIndexName, ignored)) {
+        return fail(ErrorKind::notFound, "there is no case " + name, folder_.string());
+    }
+    return opened;
+}
+
+Result<Case> CaseStore::createCase(const std::string& name) const {
+    if (!isCaseName(name)) {
+        return fail(
+            ErrorKind::badInput,
+            "a case name is 1 to 64 letters, digits, '.', '_' or '-', not starting with '.'", name);
+    }
+    Case created;
+    created.name_ = name;
+    created.folder_ = folder_ / "cases" / name;
+    std::error_code error;
+    const bool made = fs::create_directories(created.folder_, error);
+    if (error) {
+        return fail(ErrorKind::io, "cannot make the case: " + error.message(),
+                    created.folder_.string());
+    }
+    if (made) {
+        if (auto synced = syncFolder(folder_ / "cases"); !synced)
+            return tl::make_unexpected(synced.error());
+    }
+    auto lock = lockCase(created.folder_, name);
+    if (!lock) return tl::make_unexpected(lock.error());
+    created.lock_ = std::move(*lock);
+    auto entries = created.products();
+    if (!entries) return tl::make_unexpected(entries.error());
+    created.sweep(*entries);
+    return created;
+}
+
+}  // namespace haustra::store

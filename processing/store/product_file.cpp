@@ -1,0 +1,211 @@
+#include "store/product_file.h"
+
+#include "store/durable_file.h"
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace haustra::store {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "product files are little endian");
+
+constexpr char magic[8] = {'H', 'A', 'U', 'S', 'T', 'R', 'A', '\n'};
+constexpr std::uint32_t layoutVersion = 1;
+constexpr std::size_t valuesAlignment = 4096;
+
+// The fixed part of the file, byte for byte.
+struct FixedHeader {
+    char magic[8];
+    std::uint32_t version;
+    std::uint32_t content;
+    std::uint32_t size[3];
+    std::uint32_t attributesBytes;
+    double patientFromVoxel[12];
+    std::uint64_t valuesOffset;
+    std::uint64_t valuesBytes;
+    Digest key;
+    Digest valuesDigest;
+    Digest headerDigest;
+};
+static_assert(sizeof(FixedHeader) == 240 && std::is_trivially_copyable_v<FixedHeader>);
+
+std::size_t bytesPerElement(Content content) {
+    switch (content) {
+        case Content::int16Volume:
+            return 2;
+        case Content::uint8Volume:
+            return 1;
+        case Content::floatVolume:
+            return 4;
+        case Content::centerline:
+            return centerlineSampleBytes;
+    }
+    return 0;
+}
+
+Digest headerDigest(const FixedHeader& fixed, std::string_view attributes) {
+    Sha256 hash;
+    hash.add(std::as_bytes(std::span(&fixed, 1)).first(offsetof(FixedHeader, headerDigest)));
+    hash.add(attributes);
+    return hash.finish();
+}
+
+std::size_t alignedOffset(std::size_t attributesBytes) {
+    const std::size_t end = sizeof(FixedHeader) + attributesBytes;
+    return (end + valuesAlignment - 1) / valuesAlignment * valuesAlignment;
+}
+
+tl::unexpected<Error> damaged(const std::string& what, const std::filesystem::path& file) {
+    return fail(ErrorKind::badInput, "the product is damaged: " + what, file.string());
+}
+
+struct Mapping {
+    Mapping(void* where, std::size_t length) : address(where), bytes(length) {}
+    ~Mapping() { ::munmap(address, bytes); }
+    Mapping(const Mapping&) = delete;
+    Mapping& operator=(const Mapping&) = delete;
+
+    void* address;
+    std::size_t bytes;
+};
+
+Result<std::shared_ptr<const Mapping>> mapWhole(const std::filesystem::path& file) {
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) {
+        const ErrorKind kind = errno == ENOENT ? ErrorKind::notFound : ErrorKind::io;
+        return fail(kind, std::string("cannot open: ") + std::strerror(errno), file.string());
+    }
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0 || std::size_t(status.st_size) < sizeof(FixedHeader)) {
+        ::close(descriptor);
+        return damaged("it is shorter than a header", file);
+    }
+    void* address =
+        ::mmap(nullptr, std::size_t(status.st_size), PROT_READ, MAP_SHARED, descriptor, 0);
+    const int error = errno;
+    ::close(descriptor);
+    if (address == MAP_FAILED) {
+        return fail(ErrorKind::io, std::string("cannot map: ") + std::strerror(error),
+                    file.string());
+    }
+    return std::make_shared<const Mapping>(address, std::size_t(status.st_size));
+}
+
+Result<std::map<std::string, std::string>> parseAttributes(std::string_view text,
+                                                           const std::filesystem::path& file) {
+    const auto json = nlohmann::json::parse(text, nullptr, false);
+    if (!json.is_object()) return damaged("its attributes are not JSON", file);
+    std::map<std::string, std::string> attributes;
+    for (const auto& [name, value] : json.items()) {
+        if (!value.is_string()) return damaged("its attribute " + name + " is not a text", file);
+        attributes[name] = value.get<std::string>();
+    }
+    return attributes;
+}
+
+}  // namespace
+
+Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
+    const auto mapping = mapWhole(file);
+    if (!mapping) return tl::make_unexpected(mapping.error());
+    const auto* bytes = static_cast<const std::byte*>((*mapping)->address);
+    const std::size_t length = (*mapping)->bytes;
+
+    FixedHeader fixed;
+    std::memcpy(&fixed, bytes, sizeof fixed);
+    if (std::memcmp(fixed.magic, magic, sizeof magic) != 0) {
+        return damaged("it does not start as a product does", file);
+    }
+    if (fixed.version != layoutVersion) {
+        return fail(ErrorKind::unsupported,
+                    "the product has layout " + std::to_string(fixed.version) + "; " +
+                        std::to_string(layoutVersion) + " is read",
+                    file.string());
+    }
+    if (fixed.attributesBytes > length - sizeof fixed) return damaged("it is cut short", file);
+    const std::string_view attributes(reinterpret_cast<const char*>(bytes) + sizeof fixed,
+                                      fixed.attributesBytes);
+    if (headerDigest(fixed, attributes) != fixed.headerDigest) {
+        return damaged("its header does not match its checksum", file);
+    }
+
+    MappedProduct product;
+    product.header.content = Content(fixed.content);
+    const std::size_t elementBytes = bytesPerElement(product.header.content);
+    if (elementBytes == 0) return damaged("it holds an unknown kind of content", file);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (fixed.size[axis] > (1u << 24)) return damaged("its size is absurd", file);
+        product.header.grid.size[axis] = int(fixed.size[axis]);
+    }
+    for (int n = 0; n < 12; ++n) {
+        product.header.grid.patientFromVoxel[n / 3][n % 3] = fixed.patientFromVoxel[n];
+    }
+    if (product.header.content == Content::centerline) {
+        if (fixed.size[1] != 1 || fixed.size[2] != 1) return damaged("its size is absurd", file);
+    } else if (auto sound = checkGrid(product.header.grid, file.string()); !sound) {
+        return tl::make_unexpected(sound.error());
+    }
+    if (fixed.valuesOffset != alignedOffset(fixed.attributesBytes) ||
+        fixed.valuesBytes != product.header.grid.voxelCount() * elementBytes) {
+        return damaged("its header contradicts itself", file);
+    }
+    if (length < fixed.valuesOffset || length - fixed.valuesOffset != fixed.valuesBytes) {
+        return damaged("it has " + std::to_string(length) + " bytes instead of " +
+                           std::to_string(fixed.valuesOffset + fixed.valuesBytes),
+                       file);
+    }
+    auto parsed = parseAttributes(attributes, file);
+    if (!parsed) return tl::make_unexpected(parsed.error());
+    product.header.attributes = std::move(*parsed);
+    product.header.key = fixed.key;
+    product.header.valuesDigest = fixed.valuesDigest;
+    product.values = {bytes + fixed.valuesOffset, std::size_t(fixed.valuesBytes)};
+    product.mapping = *mapping;
+    return product;
+}
+
+Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
+                          ProductHeader header, std::span<const std::byte> values) {
+    // Bytes that are not UTF-8 become U+FFFD: an attribute must not be able to stop a product.
+    const std::string attributes =
+        nlohmann::json(header.attributes)
+            .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    FixedHeader fixed{};
+    std::memcpy(fixed.magic, magic, sizeof magic);
+    fixed.version = layoutVersion;
+    fixed.content = std::uint32_t(header.content);
+    for (int axis = 0; axis < 3; ++axis)
+        fixed.size[axis] = std::uint32_t(header.grid.size[axis]);
+    for (int n = 0; n < 12; ++n) {
+        fixed.patientFromVoxel[n] = header.grid.patientFromVoxel[n / 3][n % 3];
+    }
+    fixed.attributesBytes = std::uint32_t(attributes.size());
+    fixed.valuesOffset = alignedOffset(attributes.size());
+    fixed.valuesBytes = values.size();
+    fixed.key = header.key;
+    fixed.valuesDigest = blockwiseDigest(values);
+    fixed.headerDigest = headerDigest(fixed, attributes);
+
+    const std::vector<std::byte> padding(fixed.valuesOffset - sizeof fixed - attributes.size());
+    return writeDurably(folder, name,
+                        {std::as_bytes(std::span(&fixed, 1)), std::as_bytes(std::span(attributes)),
+                         padding, values});
+}
+
+Result<void> checkValues(const MappedProduct& product, const std::filesystem::path& file) {
+    if (blockwiseDigest(product.values) != product.header.valuesDigest) {
+        return damaged("its values do not match their checksum", file);
+    }
+    return {};
+}
+
+}  // namespace haustra::store

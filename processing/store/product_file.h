@@ -1,0 +1,69 @@
+// The file of one product: a header, attributes as JSON, then the values as they lie in memory.
+//
+//   offset  bytes  field (all little endian)
+//        0      8  "HAUSTRA\n"
+//        8      4  version of this layout, 1
+//       12      4  content: 1 int16 volume, 2 uint8 volume, 3 float volume, 4 centerline
+//       16     12  size i, j, k (volume), or number of samples, 1, 1 (centerline)
+//       28      4  bytes of attributes, A
+//       32     96  patientFromVoxel, four columns of three doubles
+//      128      8  offset of the values, a multiple of 4096
+//      136      8  bytes of values
+//      144     32  product key
+//      176     32  blockwise SHA-256 of the values (4 MiB blocks)
+//      208     32  SHA-256 of bytes 0…207 and the attributes
+//      240      A  attributes, a JSON object of strings
+//
+// The values end the file. A reader believes no field before the file's length bears it out.
+#pragma once
+
+#include "core/grid.h"
+#include "core/result.h"
+#include "store/sha256.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace haustra::store {
+
+enum class Content : std::uint32_t {
+    int16Volume = 1,
+    uint8Volume = 2,
+    floatVolume = 3,
+    centerline = 4,  ///< six doubles a sample: x, y, z, arc, radius (mm), gap (0 or 1)
+};
+inline constexpr std::size_t centerlineSampleBytes = 6 * sizeof(double);
+
+/// Everything of a product file but its values.
+struct ProductHeader {
+    Content content = Content::int16Volume;
+    Grid grid;  ///< a centerline of n samples has size (n, 1, 1)
+    Digest key{};
+    Digest valuesDigest{};
+    std::map<std::string, std::string> attributes;
+};
+
+/// A product file, memory-mapped read-only; `mapping` keeps `values` alive even after the file has
+/// been replaced or removed.
+struct MappedProduct {
+    ProductHeader header;
+    std::span<const std::byte> values;
+    std::shared_ptr<const void> mapping;
+};
+
+/// Maps a product file. Fails, naming the file, where it is cut short, too long or inconsistent.
+/// Reads the header only, not the values.
+Result<MappedProduct> mapProduct(const std::filesystem::path& file);
+
+/// Publishes `folder`/`name` as writeDurably does. `header.valuesDigest` is computed here.
+Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
+                          ProductHeader header, std::span<const std::byte> values);
+
+/// Fails where the values are not those that were written. Reads all of them.
+Result<void> checkValues(const MappedProduct& product, const std::filesystem::path& file);
+
+}  // namespace haustra::store
