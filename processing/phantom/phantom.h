@@ -1,9 +1,7 @@
-// A synthetic abdominal CT colonography with exact truth.
+// A synthetic abdominal CT colonography with exact truth: an implicit model of the colon (axis,
+// sacculations between three taeniae, semilunar folds, growths, fluid levelled by gravity) in a
+// simple abdomen, sampled on a grid, then blurred and made noisy as a scanner does.
 #pragma once
-
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
@@ -11,9 +9,18 @@
 #include "core/parallel.h"
 #include "core/result.h"
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 namespace haustra::phantom {
 
+/// easy: little, even fluid; nothing opacified but the colon; other bowel keeps its distance.
+/// standard: more fluid, unevenly tagged, stool balls, opacified and gas-filled small bowel against
+/// the colon. hard: weak (200…400 HU), patchy tagging, untagged stool on the wall, twice the
+/// noise, and a collapsed stretch of colon.
 enum class Preset { easy, standard, hard };
+/// small: 256×256×200 voxels of 1.5×1.5×2.1 mm; full: 512×512×400 of 0.75×0.75×1.05 mm.
 enum class Size { small, full };
 
 struct PhantomOptions {
@@ -27,13 +34,20 @@ struct PhantomOptions {
 
 struct Phantom {
     CtScan scan;
-    Volume<std::int16_t> untaggedHu;  ///< the same scan and noise, with air where the tagging was
-    Volume<std::uint8_t> lumen;       ///< LumenLabel
+    /// The same scan and noise, with air where the colon's tagged fluid and stool were (what is
+    /// opacified in other bowel stays).
+    Volume<std::int16_t> untaggedHu;
+    /// LumenLabel from the implicit geometry at each voxel's centre. Tagged stool is lumen; folds,
+    /// polyps and untagged stool are not.
+    Volume<std::uint8_t> lumen;
+    /// The tube's axis; gaps where it is collapsed.
     Centerline centerline;
+    /// Polyps of 4…15 mm. Hyperplastic bumps (smaller, not denser inside) are not among them.
     Findings polyps;
 };
 
-/// Deterministic in the options, byte for byte, whatever the number of threads.
+/// Fails only for a position other than supine or prone. Deterministic in the options, byte for
+/// byte, whatever the number of threads.
 Result<Phantom> makePhantom(const PhantomOptions& options);
 
 }  // namespace haustra::phantom

@@ -1,0 +1,36 @@
+// Tagged fluid: pools that gravity has levelled.
+#pragma once
+
+#include "phantom/colon_field.h"
+
+#include <vector>
+
+namespace haustra::phantom {
+
+/// One stretch of the colon between two high points of its floor, filled up to a level below both.
+struct Pool {
+    double beginMm = 0.0, endMm = 0.0;  ///< arcs
+    double levelMm = -1e9;              ///< height of the surface: −gravity · p
+    double hu = 600.0;
+    double unevenness = 0.0;  ///< 0…1: how much the tagging varies within the pool
+    std::uint64_t seed = 0;
+
+    /// HU of the fluid at a point; denser toward the bottom.
+    double huAt(glm::dvec3 p, double heightMm) const;
+};
+
+struct Fluid {
+    glm::dvec3 up{0, -1, 0};
+    std::vector<Pool> pools;  ///< in order of arc, covering the whole colon
+
+    double heightMm(glm::dvec3 p) const { return glm::dot(up, p); }
+    const Pool& poolAt(double arcMm) const;
+};
+
+/// Finds the bays from the lumen's floor (the lowest lumen voxel at each millimetre of arc) and
+/// gives each a level. Each level is below the spill points at both ends of its bay, so no pool
+/// could flow into the next.
+Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t seed, Preset preset,
+                const BodyPlan& body);
+
+}  // namespace haustra::phantom

@@ -1,0 +1,194 @@
+#include "phantom/growths.h"
+
+#include "phantom/random.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace haustra::phantom {
+namespace {
+
+struct WallPlace {
+    glm::dvec3 at{0.0};
+    glm::dvec3 inward{0, 0, 1};
+    glm::dvec3 tangent{1, 0, 0};
+    double arcMm = 0.0;
+    double radiusMm = 0.0;
+};
+
+glm::dvec3 gradient(const ColonShape& shape, glm::dvec3 p) {
+    constexpr double h = 0.6;
+    glm::dvec3 g;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 step(0.0);
+        step[axis] = h;
+        g[axis] = shape.evaluate(p + step).lumenMm - shape.evaluate(p - step).lumenMm;
+    }
+    return g;
+}
+
+/// Walks from the axis along a direction across it to where the lumen ends: wall or fold.
+std::optional<WallPlace> castToWall(const ColonShape& shape, double arcMm, double angle) {
+    const PathSample s = shape.path().at(arcMm);
+    const glm::dvec3 direction = std::cos(angle) * s.normal + std::sin(angle) * s.binormal;
+    if (s.radiusMm < 8.0 || shape.evaluate(s.position).lumenMm > -3.0) return std::nullopt;
+    double lo = 0.0, hi = 0.0;
+    while (shape.evaluate(s.position + hi * direction).lumenMm < 0.0) {
+        lo = hi;
+        hi += 0.7;
+        if (hi > 45.0) return std::nullopt;
+    }
+    for (int round = 0; round < 12; ++round) {
+        const double middle = 0.5 * (lo + hi);
+        (shape.evaluate(s.position + middle * direction).lumenMm < 0.0 ? lo : hi) = middle;
+    }
+    WallPlace place;
+    place.at = s.position + lo * direction;
+    const glm::dvec3 g = gradient(shape, place.at);
+    if (glm::length(g) < 0.3) return std::nullopt;
+    place.inward = -glm::normalize(g);
+    const glm::dvec3 across = glm::cross(place.inward, direction);
+    place.tangent = glm::length(across) > 0.1
+                        ? glm::normalize(across)
+                        : glm::normalize(glm::cross(place.inward, s.binormal));
+    place.arcMm = arcMm;
+    place.radiusMm = s.radiusMm;
+    return place;
+}
+
+Growth polypAt(const WallPlace& place, Growth::Kind kind, double diameterMm, Random& random) {
+    Growth growth;
+    growth.kind = kind;
+    growth.inward = place.inward;
+    growth.tangent = place.tangent;
+    growth.seed = random.bits();
+    const double r = 0.5 * diameterMm;
+    if (kind == Growth::Kind::flat) {
+        const double height = std::min(2.8, 0.4 * diameterMm);
+        growth.semiAxes = {r, r * random.uniform(0.75, 0.95), height};
+        growth.centre = place.at;
+    } else if (kind == Growth::Kind::pedunculated) {
+        growth.semiAxes = {r, r * random.uniform(0.85, 1.0), r * random.uniform(0.8, 0.95)};
+        growth.stalkRadiusMm = std::clamp(0.18 * diameterMm, 1.2, 2.4);
+        growth.centre = place.at + place.inward * (growth.semiAxes.z + random.uniform(2.5, 5.0));
+        growth.root = place.at - 1.0 * place.inward;
+    } else {
+        growth.semiAxes = {r, r * random.uniform(0.85, 1.0), r * random.uniform(0.85, 1.0)};
+        growth.centre = place.at + place.inward * (growth.semiAxes.z * random.uniform(0.25, 0.5));
+    }
+    return growth;
+}
+
+class Placer {
+public:
+    Placer(ColonShape& shape, Random& random) : shape_(shape), random_(random) {}
+
+    /// A free place on the wall, or nothing after many tries. `downward` (unit, or zero) asks for
+    /// places that face up, where stool rests.
+    std::optional<WallPlace> place(double fromMm, double toMm, double apartMm,
+                                   double radiusAtLeastMm, glm::dvec3 downward = glm::dvec3(0.0)) {
+        for (int attempt = 0; attempt < 60; ++attempt) {
+            const double arc = random_.uniform(fromMm, toMm),
+                         angle = random_.uniform(0.0, 6.283185307179586);
+            const ColonPath& path = shape_.path();
+            if (path.collapseEndMm > path.collapseBeginMm && arc > path.collapseBeginMm - 30.0 &&
+                arc < path.collapseEndMm + 30.0) {
+                continue;
+            }
+            if (path.at(arc).radiusMm < radiusAtLeastMm) continue;
+            const auto found = castToWall(shape_, arc, angle);
+            if (!found || glm::dot(found->inward, downward) > -0.5 * glm::length(downward))
+                continue;
+            const bool near = std::any_of(
+                shape_.growths().begin(), shape_.growths().end(),
+                [&](const Growth& g) { return glm::distance(g.centre, found->at) < apartMm; });
+            if (!near) return found;
+        }
+        return std::nullopt;
+    }
+
+private:
+    ColonShape& shape_;
+    Random& random_;
+};
+
+}  // namespace
+
+void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const BodyPlan& body) {
+    Random random(seed, 3);
+    Placer placer(shape, random);
+    const double length = shape.path().lengthMm();
+    const glm::dvec3 gravity = gravityDirection(body.position);
+
+    // One of each kind and size class, spread over the colon; positions are the seed's.
+    using Kind = Growth::Kind;
+    const std::array<std::pair<Kind, double>, 9> wanted = {
+        {{Kind::sessile, random.uniform(4.0, 6.0)},
+         {Kind::sessile, random.uniform(6.0, 8.0)},
+         {Kind::sessile, random.uniform(8.0, 10.0)},
+         {Kind::sessile, random.uniform(10.0, 13.0)},
+         {Kind::pedunculated, random.uniform(6.0, 9.0)},
+         {Kind::pedunculated, random.uniform(9.0, 12.0)},
+         {Kind::pedunculated, random.uniform(12.0, 15.0)},
+         {Kind::flat, random.uniform(7.0, 10.0)},
+         {Kind::flat, random.uniform(10.0, 15.0)}}};
+    for (const auto& [kind, diameter] : wanted) {
+        const double across = kind == Kind::pedunculated ? diameter + 5.0
+                              : kind == Kind::flat       ? 3.0
+                                                         : 0.8 * diameter;
+        // Every other polyp is sought on the lower wall, where fluid may cover it.
+        const glm::dvec3 side = random.chance(0.4) ? gravity : glm::dvec3(0.0);
+        auto place = placer.place(45.0, length - 20.0, 25.0, std::max(12.0, across), side);
+        if (!place) place = placer.place(45.0, length - 20.0, 25.0, std::max(12.0, 0.8 * across));
+        if (place) shape.add(polypAt(*place, kind, diameter, random));
+    }
+    const int bumps = preset == Preset::easy ? 2 : 6;
+    for (int n = 0; n < bumps; ++n) {
+        const double diameter = random.uniform(2.5, 4.5);
+        if (const auto place = placer.place(45.0, length - 20.0, 15.0, 11.0)) {
+            Growth bump = polypAt(*place, Kind::sessile, diameter, random);
+            bump.kind = Kind::hyperplastic;
+            shape.add(bump);
+        }
+    }
+
+    const int tagged = preset == Preset::easy ? 5 : preset == Preset::standard ? 16 : 22;
+    const int untagged = preset == Preset::hard ? 9 : 0;
+    for (int n = 0; n < tagged + untagged; ++n) {
+        // Most stool rests on the lower wall; some sticks anywhere.
+        const glm::dvec3 down = random.chance(0.65) ? gravity : glm::dvec3(0.0);
+        const double r = random.uniform(1.5, 5.5);
+        const auto place = placer.place(60.0, length - 15.0, r + 10.0, 2.2 * r + 3.0, down);
+        if (!place) continue;
+        Growth stool;
+        stool.kind = n < tagged ? Kind::taggedStool : Kind::untaggedStool;
+        stool.inward = place->inward, stool.tangent = place->tangent;
+        stool.semiAxes = r * glm::dvec3(random.uniform(0.9, 1.4), random.uniform(0.8, 1.2),
+                                        random.uniform(0.7, 1.0));
+        stool.centre = place->at + place->inward * (0.75 * stool.semiAxes.z);
+        stool.seed = random.bits();
+        stool.hu = n >= tagged              ? random.uniform(5.0, 60.0)
+                   : preset == Preset::hard ? random.uniform(200.0, 400.0)
+                                            : random.uniform(350.0, 800.0);
+        shape.add(stool);
+    }
+}
+
+Findings polypsOf(const ColonShape& shape) {
+    Findings polyps;
+    for (const Growth& growth : shape.growths()) {
+        const char* kind = growth.kind == Growth::Kind::sessile        ? "sessile"
+                           : growth.kind == Growth::Kind::pedunculated ? "pedunculated"
+                           : growth.kind == Growth::Kind::flat         ? "flat"
+                                                                       : nullptr;
+        if (!kind) continue;
+        const double diameter =
+            2.0 * std::max({growth.semiAxes.x, growth.semiAxes.y, growth.semiAxes.z});
+        polyps.findings.push_back({growth.centre, diameter, 1.0, kind});
+    }
+    return polyps;
+}
+
+}  // namespace haustra::phantom

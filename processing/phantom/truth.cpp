@@ -1,0 +1,47 @@
+#include "phantom/truth.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::phantom {
+
+Centerline trueCenterline(const ColonShape& shape, const Volume<std::uint8_t>& lumen, int threads) {
+    const Grid& grid = lumen.grid();
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    const glm::dvec3 spacing = grid.spacingMm();
+    const ColonPath& path = shape.path();
+    Centerline line;
+    line.points.resize(path.samples.size());
+    parallelFor(line.points.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            CenterlinePoint& point = line.points[n];
+            point.positionMm = path.samples[n].position;
+            point.arcMm = path.stepMm * double(n);
+            const glm::dvec3 at(voxelFromPatient * glm::dvec4(point.positionMm, 1.0));
+            const glm::ivec3 centre(glm::round(at));
+            point.gap = !grid.contains(centre) || lumen.at(centre) == 0;
+            if (point.gap) continue;
+            // The axis is nowhere farther from the wall than the sacculated tube is wide.
+            const double farthest = 1.3 * std::max(path.samples[n].radiusMm, 5.0) + 4.0;
+            const glm::ivec3 reach(glm::ceil(farthest / spacing));
+            const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)),
+                             hi = glm::min(centre + reach, grid.size - 1);
+            double nearest = farthest * farthest;
+            for (int k = lo.z; k <= hi.z; ++k) {
+                for (int j = lo.y; j <= hi.y; ++j) {
+                    for (int i = lo.x; i <= hi.x; ++i) {
+                        if (lumen.at(i, j, k)) continue;
+                        const glm::dvec3 d = (glm::dvec3(i, j, k) - at) * spacing;
+                        nearest = std::min(nearest, glm::dot(d, d));
+                    }
+                }
+            }
+            point.radiusMm = std::sqrt(nearest);
+        }
+    });
+    return line;
+}
+
+}  // namespace haustra::phantom
