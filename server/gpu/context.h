@@ -1,10 +1,10 @@
 // An OpenGL 4.5 context without a display (METHODS §1).
 #pragma once
 
+#include "core/result.h"
+
 #include <memory>
 #include <string>
-
-#include "core/result.h"
 
 namespace haustra::gpu {
 
@@ -19,7 +19,9 @@ public:
     Context& operator=(const Context&) = delete;
 
     const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
-    const std::string& platform() const { return platform_; }  ///< "device", "surfaceless", "software device"
+    const std::string& platform() const {
+        return platform_;
+    }  ///< "device", "surfaceless", "software device"
     bool software() const { return software_; }
     /// GL errors that KHR_debug has reported since birth.
     int errorCount() const;

@@ -1,12 +1,14 @@
 // What a picture shows: cameras, slices, transfer functions. No GL here.
 #pragma once
 
+#include "core/grid.h"
+#include "core/result.h"
+
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include <glm/glm.hpp>
 
 namespace haustra::render {
 
@@ -16,7 +18,8 @@ struct Image {
     std::vector<std::uint8_t> rgb;
 };
 
-/// A perspective camera in patient space (LPS mm). The field of view is vertical.
+/// A perspective camera in patient space (LPS mm). The field of view is vertical. `forward` and
+/// `up` need not be unit or orthogonal, only finite and not parallel.
 struct Camera {
     glm::dvec3 positionMm{0.0};
     glm::dvec3 forward{0.0, 0.0, 1.0};
@@ -37,7 +40,8 @@ struct TransferFunctionPoint {
     double opacity = 0.0;
 };
 
-/// 1-D, post-classification. Points sorted by HU, at least two.
+/// 1-D, post-classification. Points sorted by HU, at least two. Below the first and above the last
+/// point these two go on. Two points at one HU make a step.
 struct TransferFunction {
     std::vector<TransferFunctionPoint> points;
 };
@@ -45,26 +49,53 @@ struct TransferFunction {
 /// Built-in transfer functions: "mucosa" (opaque wall), "translucent".
 const std::vector<std::string>& transferFunctionPresets();
 Result<TransferFunction> transferFunctionPreset(const std::string& name);
-/// Sorts nothing and mends nothing: says what is wrong.
+/// Sorts nothing and mends nothing: says what is wrong (2…256 points, HU −32768…32767 and not
+/// falling, colours and opacities 0…1).
 Result<void> checkTransferFunction(const TransferFunction& transferFunction);
 
 enum class View { endoscopic, axial, coronal, sagittal };
 Result<View> viewFromString(const std::string& text);
 const char* toString(View view);
 
+/// How rays are sampled. The defaults are what readers see; the rest serves measurements.
+struct MarchOptions {
+    double stepVoxels = 0.5;        ///< sampling distance, in the smallest voxel spacing; 0.05…4
+    bool emptySpaceLeaping = true;  ///< changes the time, never a pixel
+    bool shading = true;            ///< else the transfer function's colours, unlit
+};
+
 struct EndoscopicView {
     Camera camera;
     TransferFunction transferFunction;
+    MarchOptions march;
 };
+
+/// Says what is wrong with a camera: field of view 1…170°, directions finite and not parallel.
+Result<void> checkCamera(const Camera& camera);
 
 /// A slice through `positionMm`, radiological convention: axial seen from the feet (patient's
 /// left on the picture's right), coronal from the front, sagittal from the patient's left.
-/// At zoom 1 the whole slice fits the picture with square millimetres.
+/// At zoom 1 the whole slice fits the picture, centred, with square millimetres; zooming holds
+/// `positionMm` where it is in the picture.
 struct SliceView {
     View plane = View::axial;
     glm::dvec3 positionMm{0.0};
-    double zoom = 1.0;
+    double zoom = 1.0;  ///< 1…64
     WindowLevel window;
 };
+
+/// Where a slice's pixels lie: the centre of pixel (x, y) is topLeftMm + x·rightMm + y·downMm.
+struct SlicePlacement {
+    glm::dvec3 topLeftMm{0.0};
+    glm::dvec3 rightMm{1.0, 0.0, 0.0};
+    glm::dvec3 downMm{0.0, 1.0, 0.0};
+};
+
+/// Fails unless the plane is a slice, zoom and window are in range, and width and height positive.
+/// Slices are planes of patient space also where the grid is oblique.
+Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height);
+
+/// Grey 0…255 of a value, before rounding: the window's lower end is black, its upper end white.
+double windowed(double hu, const WindowLevel& window);
 
 }  // namespace haustra::render

@@ -1,0 +1,353 @@
+#include "render/case_renderer.h"
+
+#include "core/parallel.h"
+#include "gpu/buffer.h"
+#include "gpu/program.h"
+#include "gpu/texture.h"
+#include "render/leap_map.h"
+#include "render/lumen_as_air.h"
+#include "render/transfer_table.h"
+#include "shaders/shader_source.h"
+#include "shaders/uniforms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+using shaders::MarchUniforms;
+using shaders::shaderSource;
+using shaders::SliceUniforms;
+
+constexpr double terminationOpacity = 0.95;
+constexpr int coneTile = 8;  // pixels along a tile's side in the cone pass
+// Headlight: a lamp at the eye whose light halves at this depth; little gloss, as of a moist wall.
+constexpr double lampHalfMm = 110.0;
+constexpr double ambient = 0.12, diffuse = 0.88, specular = 0.10, shininess = 24.0;
+
+/// A stored value is HU + 32768, exact for every int16, as a fraction of 65535.
+constexpr double storedOffset = 32768.0, storedRange = 65535.0;
+double stored(double hu) {
+    return (hu + storedOffset) / storedRange;
+}
+
+Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
+                                  const char* what) {
+    const glm::ivec3 size = volume.grid().size;
+    Result<gpu::Texture> texture =
+        gpu::Texture::create(3, size, gpu::TexelFormat::r16, gpu::Filter::linear, what);
+    if (!texture) return texture;
+    // By slabs, so that the copy in the texture's encoding stays small.
+    const std::size_t slice = std::size_t(size.x) * std::size_t(size.y);
+    const int slab = std::max(1, int((std::size_t(16) << 20) / slice));
+    std::vector<std::uint16_t> encoded;
+    for (int z = 0; z < size.z; z += slab) {
+        const int count = std::min(slab, size.z - z);
+        encoded.resize(slice * std::size_t(count));
+        const std::int16_t* from = volume.voxels().data() + slice * std::size_t(z);
+        parallelFor(encoded.size(), 1 << 20, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                encoded[i] = std::uint16_t(int(from[i]) + 32768);
+        });
+        texture->uploadSlices(z, count, encoded.data());
+    }
+    return texture;
+}
+
+Result<void> checkPicture(int width, int height) {
+    if (width < 1 || height < 1 || width > maxPictureSide || height > maxPictureSide)
+        return fail(ErrorKind::badInput, "a picture of " + std::to_string(width) + "x" +
+                                             std::to_string(height) +
+                                             " pixels is not within 1x1 to 2048x2048");
+    return {};
+}
+
+bool same(const TransferFunction& a, const TransferFunction& b) {
+    return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                      [](const auto& p, const auto& q) {
+                          return p.hu == q.hu && p.color == q.color && p.opacity == q.opacity;
+                      });
+}
+
+}  // namespace
+
+struct CaseRenderer::Impl {
+    gpu::Context& context;
+    Grid grid;
+    int threads;
+    gpu::Texture ct;
+    std::optional<gpu::Texture> cleared;  // where there is tagged lumen
+    BlockRanges ranges;
+    gpu::Texture leap;
+    gpu::Texture table;
+    gpu::ComputeProgram coneStart, endoscopic, slice;
+    gpu::UniformBuffer marchBlock, sliceBlock;
+    std::optional<gpu::Texture> picture, firstStep;
+    int errorsBefore = 0;
+
+    // What the table and the leap map now hold.
+    TransferFunction loaded;
+    double loadedStepMm = 0.0;
+    bool loadedLeaping = false;
+    TransferTable tableNow;
+
+    double stepMm(const MarchOptions& march) const {
+        const glm::dvec3 spacing = grid.spacingMm();
+        return march.stepVoxels * std::min(spacing.x, std::min(spacing.y, spacing.z));
+    }
+
+    void load(const TransferFunction& transferFunction, double step, bool leaping) {
+        const bool newFunction = !same(transferFunction, loaded);
+        if (newFunction || step != loadedStepMm) {
+            tableNow = makeTransferTable(transferFunction, step);
+            table.upload(tableNow.rgba.data());
+        }
+        if (newFunction || leaping != loadedLeaping) {
+            const std::vector<std::uint8_t> distances =
+                leaping ? leapDistances(ranges, tableNow, threads)
+                        : std::vector<std::uint8_t>(ranges.lowHu.size(), 0);
+            leap.uploadSlices(0, ranges.size.z, distances.data());
+        }
+        loaded = transferFunction;
+        loadedStepMm = step;
+        loadedLeaping = leaping;
+    }
+
+    Result<void> makeTargets(glm::ivec2 size) {
+        if (picture && glm::ivec2(picture->size()) == size) return {};
+        using gpu::Filter, gpu::Texture, gpu::TexelFormat;
+        Result<Texture> made =
+            Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
+        if (!made) return tl::make_unexpected(made.error());
+        const glm::ivec2 tiles = (size + coneTile - 1) / coneTile;
+        Result<Texture> starts =
+            Texture::create(2, {tiles, 1}, TexelFormat::r32f, Filter::nearest, "cone pass");
+        if (!starts) return tl::make_unexpected(starts.error());
+        picture = std::move(*made);
+        firstStep = std::move(*starts);
+        return {};
+    }
+
+    MarchUniforms uniforms(const EndoscopicView& view, glm::ivec2 size) const {
+        const glm::dvec3 forward = glm::normalize(view.camera.forward);
+        const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+        const glm::dvec3 up = glm::cross(right, forward);
+        const double halfHeight = std::tan(glm::radians(0.5 * view.camera.fovDegrees));
+        const double halfWidth = halfHeight * size.x / size.y;
+        const glm::dvec3 voxels(grid.size);
+        const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+        const glm::dvec3 eye = (grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels;
+        const double step = stepMm(view.march);
+        // No ray inside the volume is longer than the way from the eye to the farthest corner.
+        double farthestMm = 0.0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
+            farthestMm = std::max(farthestMm,
+                                  glm::distance(view.camera.positionMm,
+                                                grid.patientFromVoxelPoint(side * voxels - 0.5)));
+        }
+        const auto row = [&](int r) {
+            return glm::vec4(voxelFromPatient[0][r], voxelFromPatient[1][r], voxelFromPatient[2][r],
+                             0.0) /
+                   float(grid.size[r]);
+        };
+        const double perHu = (TransferTable::entries - 1) / (tableNow.lastHu - tableNow.firstHu);
+        const auto limit = [](double hu) {
+            return std::isinf(hu) ? std::copysign(2.0, hu) : stored(hu);
+        };
+
+        MarchUniforms u{};
+        u.eyeTexture = glm::vec4(eye, 0.0);
+        u.forwardMm = glm::vec4(forward, 0.0);
+        u.rightMm = glm::vec4(right * halfWidth, 0.0);
+        u.downMm = glm::vec4(-up * halfHeight, 0.0);
+        u.textureRowX = row(0);
+        u.textureRowY = row(1);
+        u.textureRowZ = row(2);
+        u.voxelTexture = glm::vec4(1.0 / voxels, 0.0);
+        u.blocksPerUnit = glm::vec4(voxels / double(blockSide), -0.5 / blockSide);
+        u.visibleRange =
+            glm::vec4(limit(tableNow.visibleAboveHu), limit(tableNow.visibleBelowHu),
+                      storedRange * perHu / TransferTable::entries,
+                      ((-storedOffset - tableNow.firstHu) * perHu + 0.5) / TransferTable::entries);
+        u.stepping =
+            glm::vec4(step, terminationOpacity, std::ceil(farthestMm / step) + 1.0, lampHalfMm);
+        u.light = glm::vec4(ambient, diffuse, specular, shininess);
+        u.pictureSize = glm::ivec4(size, view.march.shading ? 1 : 0, 0);
+        u.lastBlock = glm::ivec4(ranges.size - 1, coneTile);
+        return u;
+    }
+
+    Result<Image> readPicture(glm::ivec2 size) {
+        const std::size_t pixels = std::size_t(size.x) * std::size_t(size.y);
+        std::vector<std::uint8_t> rgba(4 * pixels);
+        picture->read(rgba.data(), rgba.size());
+        if (context.errorCount() != std::exchange(errorsBefore, context.errorCount()))
+            return fail(ErrorKind::device, "the graphics driver reported an error", "render");
+        Image image{size.x, size.y, std::vector<std::uint8_t>(3 * pixels)};
+        for (std::size_t i = 0; i < pixels; ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                image.rgb[3 * i + c] = rgba[4 * i + c];
+        return image;
+    }
+};
+
+Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context,
+                                                           const Volume<std::int16_t>& ct,
+                                                           const Volume<std::uint8_t>& lumen,
+                                                           int threads) {
+    using gpu::ComputeProgram, gpu::Filter, gpu::Texture, gpu::TexelFormat, gpu::UniformBuffer;
+    const Grid& grid = ct.grid();
+    if (Result<void> sound = checkGrid(grid, "ct"); !sound)
+        return tl::make_unexpected(sound.error());
+    if (!lumen.empty() && !sameGrid(grid, lumen.grid()))
+        return fail(ErrorKind::badInput, "the lumen is not on the scan's grid", "render");
+    const int side = std::max(grid.size.x, std::max(grid.size.y, grid.size.z));
+    const int most = std::min(2048, gpu::maxTextureSide3d());
+    if (side > most)
+        return fail(ErrorKind::device,
+                    "a scan of " + std::to_string(grid.size.x) + "x" + std::to_string(grid.size.y) +
+                        "x" + std::to_string(grid.size.z) + " voxels has a side over " +
+                        std::to_string(most) + ", the longest that is drawn",
+                    "render");
+
+    const int errorsBefore = context.errorCount();
+    const auto voxels = lumen.voxels();
+    const bool tagged =
+        std::find(voxels.begin(), voxels.end(), std::uint8_t(LumenLabel::tagged)) != voxels.end();
+    Result<Texture> ctTexture = uploadVolume(ct, threads, "scan on the GPU");
+    if (!ctTexture) return tl::make_unexpected(ctTexture.error());
+    std::optional<Texture> clearedTexture;
+    BlockRanges ranges;
+    if (tagged) {
+        const Volume<std::int16_t> cleared = lumenAsAir(ct, lumen, threads);
+        Result<Texture> texture = uploadVolume(cleared, threads, "cleared scan on the GPU");
+        if (!texture) return tl::make_unexpected(texture.error());
+        clearedTexture = std::move(*texture);
+        ranges = blockRanges(cleared, threads);
+    } else {
+        ranges = blockRanges(ct, threads);
+    }
+    Result<Texture> leap =
+        Texture::create(3, ranges.size, TexelFormat::r8ui, Filter::nearest, "leap map");
+    if (!leap) return tl::make_unexpected(leap.error());
+    Result<Texture> table = Texture::create(1, {TransferTable::entries, 1, 1}, TexelFormat::rgba32f,
+                                            Filter::linear, "transfer function");
+    if (!table) return tl::make_unexpected(table.error());
+
+    const std::string_view structs = shaderSource("uniforms.h"), march = shaderSource("march.glsl");
+    Result<ComputeProgram> cone = ComputeProgram::create(
+        "cone_start.comp", {structs, march, shaderSource("cone_start.comp")});
+    if (!cone) return tl::make_unexpected(cone.error());
+    Result<ComputeProgram> endoscopic = ComputeProgram::create(
+        "endoscopic.comp", {structs, march, shaderSource("endoscopic.comp")});
+    if (!endoscopic) return tl::make_unexpected(endoscopic.error());
+    Result<ComputeProgram> slice =
+        ComputeProgram::create("slice.comp", {structs, shaderSource("slice.comp")});
+    if (!slice) return tl::make_unexpected(slice.error());
+    Result<UniformBuffer> marchBlock = UniformBuffer::create(sizeof(MarchUniforms));
+    if (!marchBlock) return tl::make_unexpected(marchBlock.error());
+    Result<UniformBuffer> sliceBlock = UniformBuffer::create(sizeof(SliceUniforms));
+    if (!sliceBlock) return tl::make_unexpected(sliceBlock.error());
+    if (context.errorCount() != errorsBefore)
+        return fail(ErrorKind::device, "the graphics driver reported an error", "render");
+
+    return std::unique_ptr<CaseRenderer>(
+        new CaseRenderer(std::unique_ptr<Impl>(new Impl{context,
+                                                        grid,
+                                                        threads,
+                                                        std::move(*ctTexture),
+                                                        std::move(clearedTexture),
+                                                        std::move(ranges),
+                                                        std::move(*leap),
+                                                        std::move(*table),
+                                                        std::move(*cone),
+                                                        std::move(*endoscopic),
+                                                        std::move(*slice),
+                                                        std::move(*marchBlock),
+                                                        std::move(*sliceBlock),
+                                                        {},
+                                                        {},
+                                                        errorsBefore,
+                                                        {},
+                                                        0.0,
+                                                        false,
+                                                        {}})));
+}
+
+CaseRenderer::CaseRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+CaseRenderer::~CaseRenderer() = default;
+
+Result<Image> CaseRenderer::render(const EndoscopicView& view, int width, int height) {
+    Impl& my = *impl_;
+    if (Result<void> sound = checkPicture(width, height); !sound)
+        return tl::make_unexpected(sound.error());
+    if (Result<void> sound = checkCamera(view.camera); !sound)
+        return tl::make_unexpected(sound.error());
+    if (Result<void> sound = checkTransferFunction(view.transferFunction); !sound)
+        return tl::make_unexpected(sound.error());
+    if (!(view.march.stepVoxels >= 0.05 && view.march.stepVoxels <= 4.0))
+        return fail(ErrorKind::badInput, "the sampling distance is not within 0.05 to 4 voxels");
+    const glm::ivec2 size(width, height);
+    if (Result<void> made = my.makeTargets(size); !made) return tl::make_unexpected(made.error());
+
+    my.load(view.transferFunction, my.stepMm(view.march), view.march.emptySpaceLeaping);
+    my.marchBlock.write(my.uniforms(view, size));
+    my.marchBlock.bind(shaders::uniformBinding);
+    (my.cleared ? *my.cleared : my.ct).bind(shaders::volumeUnit);
+    my.leap.bind(shaders::leapUnit);
+    my.table.bind(shaders::tableUnit);
+    my.firstStep->bindImage(shaders::startImage);
+    my.coneStart.dispatch((size + coneTile - 1) / coneTile);
+    my.firstStep->bind(shaders::startUnit);
+    my.picture->bindImage(shaders::pictureImage);
+    my.endoscopic.dispatch(size);
+    return my.readPicture(size);
+}
+
+Result<Image> CaseRenderer::render(const SliceView& view, int width, int height) {
+    Impl& my = *impl_;
+    if (Result<void> sound = checkPicture(width, height); !sound)
+        return tl::make_unexpected(sound.error());
+    const Result<SlicePlacement> placement = placeSlice(view, my.grid, width, height);
+    if (!placement) return tl::make_unexpected(placement.error());
+    const glm::ivec2 size(width, height);
+    if (Result<void> made = my.makeTargets(size); !made) return tl::make_unexpected(made.error());
+
+    const glm::dmat4 voxelFromPatient = my.grid.voxelFromPatient();
+    const glm::dvec3 voxels(my.grid.size);
+    const auto textureVector = [&](glm::dvec3 mm) {
+        return glm::dvec3(voxelFromPatient * glm::dvec4(mm, 0.0)) / voxels;
+    };
+    SliceUniforms u{};
+    u.originTexture = glm::vec4(
+        (glm::dvec3(voxelFromPatient * glm::dvec4(placement->topLeftMm, 1.0)) + 0.5) / voxels, 0.0);
+    u.rightTexture = glm::vec4(textureVector(placement->rightMm), 0.0);
+    u.downTexture = glm::vec4(textureVector(placement->downMm), 0.0);
+    const WindowLevel& window = view.window;
+    u.window = glm::vec4(storedRange / window.widthHu,
+                         0.5 - (storedOffset + window.centerHu) / window.widthHu, 0, 0);
+    u.pictureSize = glm::ivec4(size, 0, 0);
+    my.sliceBlock.write(u);
+    my.sliceBlock.bind(shaders::uniformBinding);
+    my.ct.bind(shaders::volumeUnit);
+    my.picture->bindImage(shaders::pictureImage);
+    my.slice.dispatch(size);
+    return my.readPicture(size);
+}
+
+std::size_t CaseRenderer::gpuBytes() const {
+    const Impl& my = *impl_;
+    const auto bytes = [](const std::optional<gpu::Texture>& texture) {
+        return texture ? texture->bytes() : 0;
+    };
+    return my.ct.bytes() + bytes(my.cleared) + my.leap.bytes() + my.table.bytes() +
+           bytes(my.picture) + bytes(my.firstStep);
+}
+
+}  // namespace haustra::render

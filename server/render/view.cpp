@@ -1,0 +1,172 @@
+#include "render/view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::render {
+
+namespace {
+
+bool finite(glm::dvec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+struct Box {
+    glm::dvec3 low, high;
+};
+
+/// Patient-space bounds of the grid's outer faces (half a voxel outside the centres).
+Box boundsMm(const Grid& grid) {
+    Box box{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
+        const glm::dvec3 mm = grid.patientFromVoxelPoint(side * glm::dvec3(grid.size) - 0.5);
+        box.low = glm::min(box.low, mm);
+        box.high = glm::max(box.high, mm);
+    }
+    return box;
+}
+
+struct Axes {
+    glm::dvec3 right, down;
+};
+
+Axes axesOf(View plane) {
+    switch (plane) {
+        case View::coronal:
+            return {{1, 0, 0}, {0, 0, -1}};  // seen from the front
+        case View::sagittal:
+            return {{0, 1, 0}, {0, 0, -1}};  // seen from the patient's left
+        default:
+            return {{1, 0, 0}, {0, 1, 0}};  // axial, seen from the feet
+    }
+}
+
+}  // namespace
+
+const std::vector<std::string>& transferFunctionPresets() {
+    static const std::vector<std::string> names = {"mucosa", "translucent"};
+    return names;
+}
+
+Result<TransferFunction> transferFunctionPreset(const std::string& name) {
+    // The mucosa's surface in a blurred scan lies midway between air and soft tissue; the ramp
+    // ends before, so that thin folds stay closed.
+    if (name == "mucosa") {
+        return TransferFunction{{
+            {-750.0, {0.86, 0.55, 0.47}, 0.0},
+            {-550.0, {0.90, 0.62, 0.53}, 0.97},
+            {-350.0, {0.93, 0.67, 0.57}, 0.9999},
+            {50.0, {0.88, 0.52, 0.45}, 0.9999},
+            {250.0, {0.96, 0.88, 0.76}, 0.9999},
+        }};
+    }
+    if (name == "translucent") {
+        return TransferFunction{{
+            {-800.0, {0.75, 0.60, 0.55}, 0.0},
+            {-600.0, {0.90, 0.65, 0.55}, 0.10},
+            {-250.0, {0.92, 0.60, 0.50}, 0.06},
+            {-50.0, {0.85, 0.70, 0.35}, 0.02},
+            {60.0, {0.80, 0.25, 0.22}, 0.25},
+            {250.0, {0.98, 0.95, 0.85}, 0.80},
+        }};
+    }
+    return fail(ErrorKind::badInput,
+                "no transfer function named '" + name + "' (mucosa, translucent)");
+}
+
+Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
+    const auto& points = transferFunction.points;
+    const auto bad = [](std::size_t at, const char* what) {
+        return fail(ErrorKind::badInput, "point " + std::to_string(at + 1) + " " + what,
+                    "transfer function");
+    };
+    if (points.size() < 2 || points.size() > 256)
+        return fail(ErrorKind::badInput,
+                    std::to_string(points.size()) + " points, where 2 to 256 are needed",
+                    "transfer function");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const TransferFunctionPoint& point = points[i];
+        if (!(point.hu >= -32768.0 && point.hu <= 32767.0))
+            return bad(i, "has HU outside -32768 to 32767");
+        if (!(point.opacity >= 0.0 && point.opacity <= 1.0))
+            return bad(i, "has an opacity outside 0 to 1");
+        if (!finite(point.color) || glm::any(glm::lessThan(point.color, glm::dvec3(0.0))) ||
+            glm::any(glm::greaterThan(point.color, glm::dvec3(1.0))))
+            return bad(i, "has a colour outside 0 to 1");
+        if (i > 0 && point.hu < points[i - 1].hu)
+            return bad(i, "has a lower HU than the point before");
+    }
+    if (!(points.back().hu > points.front().hu))
+        return fail(ErrorKind::badInput, "all points have the same HU", "transfer function");
+    return {};
+}
+
+Result<void> checkCamera(const Camera& camera) {
+    if (!finite(camera.positionMm) || !finite(camera.forward) || !finite(camera.up))
+        return fail(ErrorKind::badInput, "a coordinate is not a finite number", "camera");
+    if (!(camera.fovDegrees >= 1.0 && camera.fovDegrees <= 170.0))
+        return fail(ErrorKind::badInput, "the field of view is not within 1 to 170 degrees",
+                    "camera");
+    const double lengths = glm::length(camera.forward) * glm::length(camera.up);
+    if (!std::isfinite(lengths) ||
+        !(glm::length(glm::cross(camera.forward, camera.up)) > 1e-6 * lengths))
+        return fail(ErrorKind::badInput, "the forward and up directions are zero or parallel",
+                    "camera");
+    return {};
+}
+
+Result<View> viewFromString(const std::string& text) {
+    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
+        if (text == toString(view)) return view;
+    return fail(ErrorKind::badInput,
+                "no view named '" + text + "' (endoscopic, axial, coronal, sagittal)");
+}
+
+const char* toString(View view) {
+    switch (view) {
+        case View::endoscopic:
+            return "endoscopic";
+        case View::axial:
+            return "axial";
+        case View::coronal:
+            return "coronal";
+        case View::sagittal:
+            return "sagittal";
+    }
+    return "";
+}
+
+Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height) {
+    if (view.plane == View::endoscopic)
+        return fail(ErrorKind::badInput, "an endoscopic view is no slice", "slice");
+    if (!finite(view.positionMm))
+        return fail(ErrorKind::badInput, "the position is not finite", "slice");
+    if (!(view.zoom >= 1.0 && view.zoom <= 64.0))
+        return fail(ErrorKind::badInput, "the zoom is not within 1 to 64", "slice");
+    if (!(view.window.widthHu >= 1.0 && view.window.widthHu <= 65536.0) ||
+        !(std::abs(view.window.centerHu) <= 65536.0))
+        return fail(ErrorKind::badInput, "the window's centre or width is out of range", "slice");
+    if (width <= 0 || height <= 0)
+        return fail(ErrorKind::badInput, "the picture has no pixels", "slice");
+
+    const Box box = boundsMm(grid);
+    const auto [right, down] = axesOf(view.plane);
+    const glm::dvec3 middle = 0.5 * (box.low + box.high);
+    const glm::dvec3 extent = box.high - box.low;
+    const double wide = std::abs(glm::dot(extent, right)), high = std::abs(glm::dot(extent, down));
+    const double pixelMm = std::max(wide / width, high / height) / view.zoom;
+    const glm::dvec3 normal = glm::cross(right, down);
+    // The picture's centre moves towards the position as the zoom grows.
+    glm::dvec3 center = view.positionMm + (middle - view.positionMm) / view.zoom;
+    center += normal * glm::dot(view.positionMm - center, normal);
+    return SlicePlacement{
+        center - pixelMm * (0.5 * (width - 1) * right + 0.5 * (height - 1) * down), pixelMm * right,
+        pixelMm * down};
+}
+
+double windowed(double hu, const WindowLevel& window) {
+    return 255.0 * std::clamp((hu - window.centerHu) / window.widthHu + 0.5, 0.0, 1.0);
+}
+
+}  // namespace haustra::render

@@ -1,0 +1,12 @@
+// The shaders' text, built into the program so that it needs no files beside it.
+#pragma once
+
+#include <string_view>
+
+namespace haustra::shaders {
+
+/// Text of a file of this folder ("march.glsl"), whole. A name that is not there is a
+/// programming error and aborts. Any thread.
+std::string_view shaderSource(std::string_view file);
+
+}  // namespace haustra::shaders
