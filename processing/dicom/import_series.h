@@ -1,14 +1,14 @@
 // From a folder of DICOM files to one CT volume in Hounsfield units.
 #pragma once
 
+#include "core/ct_scan.h"
+#include "core/parallel.h"
+#include "core/result.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
-
-#include "core/ct_scan.h"
-#include "core/parallel.h"
-#include "core/result.h"
 
 namespace haustra::dicom {
 
@@ -22,7 +22,8 @@ struct SeriesSummary {
 };
 
 struct ImportOptions {
-    std::string seriesUid;  ///< empty: the only one; several without a choice is an error that lists them
+    std::string
+        seriesUid;  ///< empty: the only one; several without a choice is an error that lists them
     int threads = 0;
     Progress progress;
 };
@@ -38,6 +39,7 @@ struct ImportedSeries {
 Result<std::vector<SeriesSummary>> listSeries(const std::filesystem::path& path);
 
 /// Reads one series whole. See the .cpp for the order of the checks.
-Result<ImportedSeries> importSeries(const std::filesystem::path& path, const ImportOptions& options = {});
+Result<ImportedSeries> importSeries(const std::filesystem::path& path,
+                                    const ImportOptions& options = {});
 
 }  // namespace haustra::dicom

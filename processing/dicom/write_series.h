@@ -1,11 +1,11 @@
 // A CT volume as a DICOM series, one file a slice.
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "core/ct_scan.h"
 #include "core/result.h"
+
+#include <filesystem>
+#include <string>
 
 namespace haustra::dicom {
 
@@ -19,6 +19,7 @@ struct WriteOptions {
 
 /// Writes `directory`/0001.dcm … (explicit little endian, 16-bit signed, slope 1). The grid must be
 /// orthogonal.
-Result<void> writeSeries(const std::filesystem::path& directory, const CtScan& scan, const WriteOptions& options);
+Result<void> writeSeries(const std::filesystem::path& directory, const CtScan& scan,
+                         const WriteOptions& options);
 
 }  // namespace haustra::dicom

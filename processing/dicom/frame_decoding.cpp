@@ -1,0 +1,179 @@
+#include "dicom/frame_decoding.h"
+
+#include "dicom/dicom_library.h"
+#include "dicom/jpeg2000.h"
+
+#include <memory>
+#include <vector>
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcfcache.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dctk.h>
+
+namespace haustra::dicom {
+namespace {
+
+bool isJpeg2000(E_TransferSyntax syntax) {
+    return syntax == EXS_JPEG2000 || syntax == EXS_JPEG2000LosslessOnly;
+}
+
+/// One open file.
+class PixelReader {
+public:
+    PixelReader(const ImageHeader& image) : image_(image), place_(image.file.string()) {}
+
+    Result<void> open() {
+        const OFCondition condition = format_.loadFile(OFFilename(image_.file.c_str()));
+        if (condition.bad()) return damaged(condition.text());
+        dataset_ = format_.getDataset();
+        DcmElement* element = nullptr;
+        if (dataset_->findAndGetElement(DCM_PixelData, element).good())
+            pixelData_ = dynamic_cast<DcmPixelData*>(element);
+        if (!pixelData_) return fail(ErrorKind::badInput, "the CT image has no pixel data", place_);
+        const DcmRepresentationParameter* parameter = nullptr;
+        pixelData_->getOriginalRepresentationKey(syntax_, parameter);
+        Uint16 rows = 0, columns = 0, allocated = 0;
+        dataset_->findAndGetUint16(DCM_Rows, rows);
+        dataset_->findAndGetUint16(DCM_Columns, columns);
+        dataset_->findAndGetUint16(DCM_BitsAllocated, allocated);
+        if (image_.matrix != glm::ivec2(columns, rows) || image_.format.bitsAllocated != allocated)
+            return damaged("it changed while it was read");
+        if (DcmXfer(syntax_).isEncapsulated()) {
+            DcmPixelSequence* fragments = nullptr;
+            if (pixelData_->getEncapsulatedRepresentation(syntax_, parameter, fragments).bad() ||
+                !fragments) {
+                return damaged("its compressed pixels cannot be found");
+            }
+            fragments_ = fragments;
+            return {};
+        }
+        const std::size_t needed = pixels() * image_.frames.size() * cellBytes();
+        if (pixelData_->getLength() < needed) {
+            return damaged(("its pixel data holds " + std::to_string(pixelData_->getLength()) +
+                            " of " + std::to_string(needed) + " bytes")
+                               .c_str());
+        }
+        return {};
+    }
+
+    /// HU of one frame; the span is valid until the next call.
+    Result<std::span<const std::int16_t>> read(int frame) {
+        hu_.resize(pixels());
+        const FrameHeader& header = image_.frames[std::size_t(frame)];
+        if (fragments_ && isJpeg2000(syntax_)) {
+            if (auto done = readJpeg2000(frame, header.rescale); !done)
+                return tl::make_unexpected(done.error());
+            return std::span<const std::int16_t>(hu_);
+        }
+        Uint32 frameBytes = 0;
+        if (pixelData_->getUncompressedFrameSize(dataset_, frameBytes).bad() ||
+            frameBytes < pixels() * cellBytes() || frameBytes > pixels() * cellBytes() + 1) {
+            return damaged("its pixel data has no consistent size");
+        }
+        cells_.resize(pixels() + 1);
+        OFString colorModel;
+        const OFCondition condition = pixelData_->getUncompressedFrame(
+            dataset_, Uint32(frame), nextFragment_, cells_.data(),
+            Uint32(cells_.size() * sizeof(std::uint16_t)), colorModel, &cache_);
+        if (condition.bad()) return damaged(condition.text());
+        const HuTable& hu = table(image_.format, header.rescale);
+        if (cellBytes() == 1) {
+            const auto* bytes = reinterpret_cast<const std::uint8_t*>(cells_.data());
+            for (std::size_t n = 0; n < hu_.size(); ++n)
+                hu_[n] = hu[bytes[n]];
+        } else {
+            for (std::size_t n = 0; n < hu_.size(); ++n)
+                hu_[n] = hu[cells_[n]];
+        }
+        return std::span<const std::int16_t>(hu_);
+    }
+
+private:
+    std::size_t pixels() const {
+        return std::size_t(image_.matrix.x) * std::size_t(image_.matrix.y);
+    }
+    std::size_t cellBytes() const { return std::size_t(image_.format.bitsAllocated) / 8; }
+
+    tl::unexpected<Error> damaged(const char* why) const {
+        return fail(ErrorKind::badInput, std::string("the pixels cannot be read: ") + why, place_);
+    }
+
+    const HuTable& table(const StoredFormat& format, const Rescale& rescale) {
+        if (!table_ || !(table_->rescale() == rescale))
+            table_ = std::make_unique<HuTable>(format, rescale);
+        return *table_;
+    }
+
+    /// The bytes of one frame: its fragment, or for a single frame all fragments joined. The first
+    /// item is the offset table.
+    Result<std::vector<std::uint8_t>> frameBytes(int frame) {
+        const unsigned long items = fragments_->card();
+        const bool single = image_.frames.size() == 1;
+        if (items < 2 || (!single && items != image_.frames.size() + 1))
+            return damaged("its compressed frames cannot be told apart");
+        std::vector<std::uint8_t> bytes;
+        for (unsigned long n = single ? 1 : static_cast<unsigned long>(frame) + 1;
+             n < (single ? items : static_cast<unsigned long>(frame) + 2); ++n) {
+            DcmPixelItem* item = nullptr;
+            Uint8* data = nullptr;
+            if (fragments_->getItem(item, n).bad() || !item || item->getUint8Array(data).bad() ||
+                !data) {
+                return damaged("a compressed fragment is missing or truncated");
+            }
+            bytes.insert(bytes.end(), data, data + item->getLength());
+        }
+        return bytes;
+    }
+
+    Result<void> readJpeg2000(int frame, const Rescale& rescale) {
+        const auto bytes = frameBytes(frame);
+        if (!bytes) return tl::make_unexpected(bytes.error());
+        const auto decoded = decodeJpeg2000(*bytes, image_.matrix, place_);
+        if (!decoded) return tl::make_unexpected(decoded.error());
+        // The codestream's own precision rules: some writers' Bits Stored disagrees with it. Where
+        // the signs disagree, the values are the data set's, written as if of the other kind.
+        StoredFormat format = image_.format;
+        format.bitsAllocated = 16;
+        format.bitsStored = decoded->precision;
+        format.highBit = decoded->precision - 1;
+        const HuTable& hu = table(format, rescale);
+        for (std::size_t n = 0; n < hu_.size(); ++n)
+            hu_[n] = hu[decoded->cells[n]];
+        return {};
+    }
+
+    const ImageHeader& image_;
+    std::string place_;
+    DcmFileFormat format_;
+    DcmFileCache cache_;
+    DcmDataset* dataset_ = nullptr;
+    DcmPixelData* pixelData_ = nullptr;
+    DcmPixelSequence* fragments_ = nullptr;
+    E_TransferSyntax syntax_ = EXS_Unknown;
+    Uint32 nextFragment_ = 0;
+    std::unique_ptr<HuTable> table_;
+    std::vector<std::uint16_t> cells_;
+    std::vector<std::int16_t> hu_;
+};
+
+}  // namespace
+
+Result<void> decodeFrames(const ImageHeader& image, int first, int last,
+                          const FrameSink& sink) try {
+    prepareDicomLibrary();
+    PixelReader reader(image);
+    if (auto opened = reader.open(); !opened) return opened;
+    for (int frame = first; frame < last; ++frame) {
+        const auto hu = reader.read(frame);
+        if (!hu) return tl::make_unexpected(hu.error());
+        sink(frame, *hu);
+    }
+    return {};
+} catch (const std::exception& error) {
+    return fail(ErrorKind::badInput, std::string("the pixels cannot be read: ") + error.what(),
+                image.file.string());
+}
+
+}  // namespace haustra::dicom

@@ -1,0 +1,159 @@
+#include "dicom/series_selection.h"
+
+#include <algorithm>
+#include <map>
+#include <thread>
+
+namespace haustra::dicom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t mostFiles = 100'000;
+constexpr int fewestSlicesOfAVolume = 16;
+
+Result<std::vector<fs::path>> filesBelow(const fs::path& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status))
+        return fail(ErrorKind::notFound, "there is no such file or folder", path.string());
+    if (fs::is_regular_file(status)) return std::vector<fs::path>{path};
+    if (!fs::is_directory(status))
+        return fail(ErrorKind::badInput, "this is neither a file nor a folder", path.string());
+    std::vector<fs::path> files;
+    fs::recursive_directory_iterator walk(path, error), end;
+    for (; !error && walk != end; walk.increment(error)) {
+        std::error_code unknown;
+        if (!walk->is_regular_file(unknown)) continue;
+        if (files.size() == mostFiles) {
+            return fail(ErrorKind::unsupported,
+                        "the folder holds more than " + std::to_string(mostFiles) + " files",
+                        path.string());
+        }
+        files.push_back(walk->path());
+    }
+    if (error)
+        return fail(ErrorKind::io, "the folder cannot be read: " + error.message(), path.string());
+    std::sort(files.begin(), files.end());  // the order of the messages and of equal slices
+    return files;
+}
+
+std::string line(const SeriesSummary& series) {
+    return series.seriesUid + " (" + std::to_string(series.images) + " images of " +
+           std::to_string(series.matrix.x) + "x" + std::to_string(series.matrix.y) + ", " +
+           toString(series.position) +
+           (series.description.empty() ? "" : ", \"" + series.description + "\"") + ")";
+}
+
+/// Scout views leave a series that has other images.
+void dropLocalizers(Series& series) {
+    auto isScout = [](const ImageHeader& image) { return image.localizer; };
+    const auto scouts = std::count_if(series.images.begin(), series.images.end(), isScout);
+    series.localizers = int(scouts);
+    std::erase_if(series.images, isScout);
+}
+
+void summarise(Series& series) {
+    SeriesSummary& summary = series.summary;
+    summary.images = 0;
+    for (const ImageHeader& image : series.images)
+        summary.images += int(image.frames.size());
+    if (series.images.empty()) return;
+    const ImageHeader& first = series.images.front();
+    summary.description = first.description;
+    summary.matrix = first.matrix;
+    summary.position = first.position;
+}
+
+}  // namespace
+
+Result<FoundSeries> findSeries(const fs::path& path, int threads, const Progress& progress) {
+    const auto files = filesBelow(path);
+    if (!files) return tl::make_unexpected(files.error());
+    std::vector<DicomFile> read(files->size());
+    const std::thread::id caller = std::this_thread::get_id();
+    parallelFor(files->size(), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            read[n] = readHeader((*files)[n]);
+        if (progress && std::this_thread::get_id() == caller)
+            progress(double(end) / double(files->size()));
+    });
+
+    FoundSeries found;
+    std::map<std::string, Series> byUid;
+    for (DicomFile& file : read) {
+        const std::string& uid = file.image.seriesUid;
+        switch (file.kind) {
+            case DicomFile::Kind::ctImage:
+                byUid[uid].images.push_back(std::move(file.image));
+                break;
+            case DicomFile::Kind::damaged:
+                (uid.empty() ? found.damaged : byUid[uid].damaged)
+                    .push_back(std::move(file.reason));
+                break;
+            case DicomFile::Kind::otherObject:
+                found.others.push_back(std::move(file.reason));
+                break;
+            case DicomFile::Kind::notDicom:
+                if (files->size() == 1) found.others.push_back(std::move(file.reason));
+                break;
+        }
+    }
+    for (auto& [uid, series] : byUid) {
+        series.summary.seriesUid = uid;
+        dropLocalizers(series);
+        summarise(series);
+        found.series.push_back(std::move(series));
+    }
+    return found;
+}
+
+Result<Series> chooseSeries(FoundSeries found, const std::string& seriesUid, const fs::path& path) {
+    std::vector<Series*> candidates;
+    for (Series& series : found.series) {
+        const bool holds = !series.images.empty() || !series.damaged.empty();
+        if (seriesUid.empty() ? holds : series.summary.seriesUid == seriesUid)
+            candidates.push_back(&series);
+    }
+    const bool anyImage = std::any_of(candidates.begin(), candidates.end(),
+                                      [](Series* s) { return !s->images.empty(); });
+    if (anyImage) std::erase_if(candidates, [](Series* s) { return s->images.empty(); });
+    if (candidates.size() > 1) {
+        std::vector<Series*> volumes;
+        std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(volumes),
+                     [](Series* s) { return s->summary.images >= fewestSlicesOfAVolume; });
+        if (volumes.size() == 1) candidates = volumes;
+    }
+    if (candidates.size() > 1) {
+        std::string message = "there are " + std::to_string(candidates.size()) +
+                              " CT series here; choose one by its UID: ";
+        for (std::size_t n = 0; n < candidates.size(); ++n)
+            message += (n ? "; " : "") + line(candidates[n]->summary);
+        return fail(ErrorKind::badInput, std::move(message), path.string());
+    }
+    if (candidates.empty()) {
+        if (!found.damaged.empty()) return tl::make_unexpected(found.damaged.front());
+        if (!seriesUid.empty())
+            return fail(ErrorKind::notFound, "there is no CT series " + seriesUid, path.string());
+        if (!found.others.empty()) {
+            if (found.others.front().place == path.string())
+                return tl::make_unexpected(found.others.front());
+            return fail(ErrorKind::noResult,
+                        "there is no CT image here; " + describe(found.others.front()),
+                        path.string());
+        }
+        return fail(ErrorKind::noResult,
+                    found.series.empty() ? "there is no DICOM file here"
+                                         : "there are only scout views here",
+                    path.string());
+    }
+    Series& chosen = *candidates.front();
+    if (!chosen.damaged.empty()) return tl::make_unexpected(chosen.damaged.front());
+    // It may be a slice of this series: a volume that lacks its end must not pass unnoticed.
+    if (!found.damaged.empty()) return tl::make_unexpected(found.damaged.front());
+    if (chosen.images.empty())
+        return fail(ErrorKind::noResult, "the series holds only scout views", path.string());
+    return std::move(chosen);
+}
+
+}  // namespace haustra::dicom
