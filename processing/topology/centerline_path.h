@@ -1,14 +1,14 @@
 // The centerline through the lumen.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/centerline.h"
 #include "core/parallel.h"
 #include "core/result.h"
 #include "core/volume.h"
+
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace haustra::topology {
 
@@ -29,7 +29,8 @@ struct TracedCenterline {
 /// the boundary, from the rectum to the cecum, through all segments of the lumen worth visiting,
 /// smoothed by a B-spline and resampled at `stepMm`. `labels` is 0 outside the lumen; `distanceMm`
 /// is distanceToBoundaryMm(labels).
-Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels, const Volume<float>& distanceMm,
+Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
+                                         const Volume<float>& distanceMm,
                                          const CenterlineOptions& options = {});
 
 }  // namespace haustra::topology

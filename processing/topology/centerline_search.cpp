@@ -1,0 +1,247 @@
+#include "topology/centerline_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace haustra::topology {
+namespace {
+
+using Frontier = std::priority_queue<std::pair<double, std::int32_t>,
+                                     std::vector<std::pair<double, std::int32_t>>, std::greater<>>;
+
+// How far before its end, in radii, the colon's tip is looked for.
+constexpr float endReachInRadii = 4.0f;
+// The least part of the widest radius there that the last wide place has.
+constexpr float narrowingWidth = 0.4f, pouchWidth = 0.8f;
+// How far from the centre of the last wide place, in its radii, the tip may lie.
+constexpr double tipReachInRadii = 1.1;
+
+// The part of the inscribed balls that the line may pass.
+constexpr double innerPart = 0.8;
+
+/// The voxels near a route, numbered block by block.
+class Corridor {
+public:
+    Corridor(const BlockGraph& graph, const std::vector<std::int32_t>& route, int reach)
+        : graph_(graph), numberOf_(graph.nodes.size(), -1) {
+        for (const std::int32_t node : route) {
+            const glm::ivec3 centre = graph.blockOf(node);
+            const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0));
+            const glm::ivec3 hi = glm::min(centre + reach, graph.blocks - 1);
+            for (int z = lo.z; z <= hi.z; ++z) {
+                for (int y = lo.y; y <= hi.y; ++y) {
+                    for (int x = lo.x; x <= hi.x; ++x)
+                        add(graph.nodeAt[graph.blockIndex({x, y, z})]);
+                }
+            }
+        }
+    }
+    std::size_t size() const { return nodes_.size() * 8; }
+    /// −1 for a voxel that is outside the lumen or the corridor.
+    std::int32_t numberOf(glm::ivec3 voxel) const {
+        if (!graph_.grid.contains(voxel)) return -1;
+        const std::int32_t node = graph_.nodeAt[graph_.blockIndex(voxel / 2)];
+        if (node < 0 || numberOf_[std::size_t(node)] < 0) return -1;
+        const int child = (voxel.x & 1) | (voxel.y & 1) << 1 | (voxel.z & 1) << 2;
+        if (!(graph_.nodes[std::size_t(node)].inside >> child & 1)) return -1;
+        return numberOf_[std::size_t(node)] * 8 + child;
+    }
+    glm::ivec3 voxelOf(std::int32_t number) const {
+        const glm::ivec3 block = graph_.blockOf(nodes_[std::size_t(number / 8)]);
+        return 2 * block + glm::ivec3(number & 1, number >> 1 & 1, number >> 2 & 1);
+    }
+
+private:
+    void add(std::int32_t node) {
+        if (node < 0 || numberOf_[std::size_t(node)] >= 0) return;
+        numberOf_[std::size_t(node)] = std::int32_t(nodes_.size());
+        nodes_.push_back(node);
+    }
+    const BlockGraph& graph_;
+    std::vector<std::int32_t> numberOf_;
+    std::vector<std::int32_t> nodes_;
+};
+
+}  // namespace
+
+double costPerMm(double radiusMm, int exponent) {
+    const double closeness = 10.0 / std::max(radiusMm, 1e-3);
+    double cost = closeness;
+    for (int n = 1; n < exponent; ++n)
+        cost *= closeness;
+    return cost;
+}
+
+namespace {
+
+/// Dijkstra with cost(node) per mm over the nodes that allow(node).
+template <class Cost, class Allow>
+PathTree growTree(const BlockGraph& graph, std::int32_t source, const Cost& cost,
+                  const Allow& allow) {
+    const std::size_t count = graph.nodes.size();
+    PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f)};
+    std::vector<double> best(count, std::numeric_limits<double>::infinity());
+    std::vector<bool> done(count, false);
+    const glm::dvec3 spacing = graph.grid.spacingMm();
+    std::array<std::int32_t, 26> around;
+    Frontier frontier;
+    best[std::size_t(source)] = 0.0;
+    tree.lengthMm[std::size_t(source)] = 0.0f;
+    frontier.emplace(0.0, source);
+    while (!frontier.empty()) {
+        const std::int32_t at = frontier.top().second;
+        frontier.pop();
+        if (done[std::size_t(at)]) continue;
+        done[std::size_t(at)] = true;
+        const glm::ivec3 here = graph.voxelOf(at);
+        const double costHere = cost(at);
+        const int found = graph.neighbours(at, around);
+        for (int n = 0; n < found; ++n) {
+            const std::int32_t node = around[std::size_t(n)];
+            const auto next = std::size_t(node);
+            if (done[next] || !allow(node)) continue;
+            const double stepMm = glm::length(spacing * glm::dvec3(graph.voxelOf(node) - here));
+            const double through = best[std::size_t(at)] + 0.5 * stepMm * (costHere + cost(node));
+            if (through >= best[next]) continue;
+            best[next] = through;
+            tree.parent[next] = at;
+            tree.lengthMm[next] = tree.lengthMm[std::size_t(at)] + float(stepMm);
+            frontier.emplace(through, node);
+        }
+    }
+    return tree;
+}
+
+std::int32_t longest(const PathTree& tree) {
+    return std::int32_t(std::max_element(tree.lengthMm.begin(), tree.lengthMm.end()) -
+                        tree.lengthMm.begin());
+}
+
+}  // namespace
+
+PathTree growPathTree(const BlockGraph& graph, std::int32_t source) {
+    return growTree(
+        graph, source,
+        [&](std::int32_t node) {
+            return costPerMm(graph.nodes[std::size_t(node)].radiusMm, routeExponent);
+        },
+        [](std::int32_t) { return true; });
+}
+
+std::int32_t farthestTip(const BlockGraph& graph, const PathTree& tree, EndShape shape) {
+    const std::vector<std::int32_t> path = pathTo(tree, longest(tree));
+    const float lengthMm = tree.lengthMm[std::size_t(path.back())];
+    // Back from the tip until the path is past the colon's last few radii.
+    float widestMm = 0.0f;
+    std::size_t start = path.size() - 1;
+    for (; start > 0; --start) {
+        widestMm = std::max(widestMm, graph.nodes[std::size_t(path[start])].radiusMm);
+        if (lengthMm - tree.lengthMm[std::size_t(path[start])] >= endReachInRadii * widestMm) break;
+    }
+    const float fromMm = tree.lengthMm[std::size_t(path[start])];
+    const PathTree cap = growTree(
+        graph, path[start], [](std::int32_t) { return 1.0; },
+        [&](std::int32_t node) { return tree.lengthMm[std::size_t(node)] >= fromMm; });
+    const auto farthest = [&](const auto& eligible) {
+        std::int32_t best = path[start];
+        for (std::size_t n = 0; n < graph.nodes.size(); ++n) {
+            if (cap.lengthMm[n] > cap.lengthMm[std::size_t(best)] && eligible(std::int32_t(n)))
+                best = std::int32_t(n);
+        }
+        return best;
+    };
+    const float leastMm = (shape == EndShape::pouch ? pouchWidth : narrowingWidth) * widestMm;
+    const std::int32_t last =
+        farthest([&](std::int32_t n) { return graph.nodes[std::size_t(n)].radiusMm >= leastMm; });
+    const double reachMm = tipReachInRadii * double(graph.nodes[std::size_t(last)].radiusMm);
+    return farthest([&](std::int32_t n) {
+        return glm::distance(graph.positionMm(n), graph.positionMm(last)) <= reachMm;
+    });
+}
+
+std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target) {
+    std::vector<std::int32_t> path;
+    for (std::int32_t at = target; at >= 0; at = tree.parent[std::size_t(at)])
+        path.push_back(at);
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
+                                      const std::vector<std::int32_t>& route) {
+    const glm::dvec3 spacing = graph.grid.spacingMm();
+    std::vector<bool> within(graph.nodes.size(), false);
+    for (const std::int32_t node : route) {
+        within[std::size_t(node)] = true;
+        const glm::ivec3 centre = graph.voxelOf(node);
+        const double radiusMm = innerPart * double(graph.nodes[std::size_t(node)].radiusMm);
+        if (!std::isfinite(radiusMm)) continue;
+        const glm::ivec3 reach = glm::ivec3(radiusMm / (2.0 * spacing)) + 1;
+        const glm::ivec3 lo = glm::max(centre / 2 - reach, glm::ivec3(0));
+        const glm::ivec3 hi = glm::min(centre / 2 + reach, graph.blocks - 1);
+        for (int z = lo.z; z <= hi.z; ++z) {
+            for (int y = lo.y; y <= hi.y; ++y) {
+                for (int x = lo.x; x <= hi.x; ++x) {
+                    const std::int32_t other = graph.nodeAt[graph.blockIndex({x, y, z})];
+                    if (other < 0 || within[std::size_t(other)]) continue;
+                    const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
+                    if (glm::dot(away, away) <= radiusMm * radiusMm)
+                        within[std::size_t(other)] = true;
+                }
+            }
+        }
+    }
+    const PathTree tree = growTree(
+        graph, route.front(),
+        [&](std::int32_t node) {
+            return costPerMm(graph.nodes[std::size_t(node)].radiusMm, lineExponent);
+        },
+        [&](std::int32_t node) { return within[std::size_t(node)]; });
+    return pathTo(tree, route.back());
+}
+
+std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<float>& distanceMm,
+                                       const std::vector<std::int32_t>& route, int reach) {
+    const Corridor corridor(graph, route, reach);
+    const std::int32_t source = corridor.numberOf(graph.voxelOf(route.front()));
+    const std::int32_t target = corridor.numberOf(graph.voxelOf(route.back()));
+    const glm::dvec3 spacing = graph.grid.spacingMm();
+    std::vector<double> cost(corridor.size(), std::numeric_limits<double>::infinity());
+    std::vector<std::int32_t> parent(corridor.size(), -1);
+    std::vector<bool> done(corridor.size(), false);
+    Frontier frontier;
+    cost[std::size_t(source)] = 0.0;
+    frontier.emplace(0.0, source);
+    while (!frontier.empty() && !done[std::size_t(target)]) {
+        const std::int32_t at = frontier.top().second;
+        frontier.pop();
+        if (done[std::size_t(at)]) continue;
+        done[std::size_t(at)] = true;
+        const glm::ivec3 here = corridor.voxelOf(at);
+        const double costHere = costPerMm(distanceMm.at(here), lineExponent);
+        for (int n = 0; n < 27; ++n) {
+            const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            const std::int32_t next = corridor.numberOf(here + step);
+            if (next < 0 || done[std::size_t(next)]) continue;
+            const double through =
+                cost[std::size_t(at)] +
+                0.5 * glm::length(spacing * glm::dvec3(step)) *
+                    (costHere + costPerMm(distanceMm.at(here + step), lineExponent));
+            if (through >= cost[std::size_t(next)]) continue;
+            cost[std::size_t(next)] = through;
+            parent[std::size_t(next)] = at;
+            frontier.emplace(through, next);
+        }
+    }
+    std::vector<glm::ivec3> path;
+    for (std::int32_t at = target; at >= 0; at = parent[std::size_t(at)])
+        path.push_back(corridor.voxelOf(at));
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+}  // namespace haustra::topology
