@@ -2,43 +2,55 @@
 // order of the stages.
 #pragma once
 
+#include "core/result.h"
+#include "store/case_store.h"
+
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "store/case_store.h"
-
 namespace haustra::pipeline {
 
 struct PrepareOptions {
-    std::filesystem::path series;  ///< DICOM folder or NIfTI file
-    std::string seriesUid;
-    std::filesystem::path lumenMask;   ///< NIfTI; replaces the lumen stage
-    std::string until;                 ///< last stage to run; empty: all
-    std::vector<glm::dvec3> seedsMm, excludesMm;
-    int threads = 0;
+    /// DICOM folder or file, or a NIfTI file (whose patient position is unknown). May be empty
+    /// where `lumenMask` is not: the mask is then of the scan that the case holds already, or of
+    /// none.
+    std::filesystem::path series;
+    std::string seriesUid;  ///< which series of the folder; empty: its only one
+    std::filesystem::path
+        lumenMask;      ///< NIfTI; replaces the lumen stage; not 0 is lumen, 2 is tagged
+    std::string until;  ///< last stage to run; empty: all
+    std::vector<glm::dvec3> seedsMm, excludesMm;  ///< overrule the lumen stage (topology/lumen.h)
+    int threads = 0;                              ///< ≤ 0: all cores
+    /// How far a stage is, 0…1. Called from the thread that called prepare.
     std::function<void(const std::string& stage, double fraction)> progress;
+    /// One line for the log; nothing of the patient.
     std::function<void(const std::string& line)> log;
 };
 
 /// What one stage cost.
 struct StageReport {
     std::string stage;
-    bool reused = false;  ///< its products were in the store already
+    bool reused = false;  ///< its product was in the store already
     double wallSeconds = 0.0;
-    double peakMemoryMb = 0.0;
+    /// The most memory that the process held resident during the stage, MiB (mapped files count).
+    double peakMemoryMib = 0.0;
 };
 
 struct PrepareReport {
     std::vector<StageReport> stages;
-    std::vector<std::string> notes;
+    std::vector<std::string> notes;  ///< what the stages found worth telling, reused ones too
 };
 
-/// Stages in order, by the names that `until` takes.
+/// Stages in order, by the names that `until` takes: import, lumen, distance, centerline.
 const std::vector<std::string>& stageNames();
 
+/// Makes the products `ct`, `lumen`, `distance` and `centerline` of a case, each in its turn,
+/// skipping those that the store holds under the same key (stage version, options, input keys;
+/// the first input is the content of the source files) and whose bytes are sound. Killed at any
+/// moment it continues with the next call. Holds the case's lock while it runs. The products are
+/// the same bytes for any number of threads.
 Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& caseName,
                               const PrepareOptions& options);
 

@@ -246,8 +246,14 @@ Result<void> Case::publishCenterline(std::string_view product, const ProductKey&
 Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::string>& outdated) {
     auto entries = products();
     if (!entries) return tl::make_unexpected(entries.error());
+    // Made again under its key, after damage, it leaves what came from it as good as it was.
+    const bool unchanged =
+        std::any_of(entries->begin(), entries->end(), [&](const ProductEntry& old) {
+            return old.product == entry.product && old.key == entry.key;
+        });
     std::erase_if(*entries, [&](const ProductEntry& old) {
-        return old.product == entry.product ||
+        if (old.product == entry.product) return true;
+        return !unchanged &&
                std::find(outdated.begin(), outdated.end(), old.product) != outdated.end();
     });
     entries->push_back(entry);

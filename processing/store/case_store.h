@@ -73,8 +73,8 @@ public:
     Result<void> verify(std::string_view product) const;
 
     /// Published durably under `key`: when this returns, the product survives a power cut, and
-    /// the file that it replaces is gone. The products named in `outdated`, which the old one went
-    /// into, leave case.json in the same step.
+    /// the file that it replaces is gone. Unless the key is the one published before, the products
+    /// named in `outdated`, which the old one went into, leave case.json in the same step.
     template <class T>
     Result<void> publishVolume(std::string_view product, const ProductKey& key,
                                const Volume<T>& volume, const Attributes& attributes = {},

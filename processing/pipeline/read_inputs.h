@@ -1,0 +1,37 @@
+// What prepare takes in: a CT series, and a segmentation made elsewhere.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "core/parallel.h"
+#include "core/result.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace haustra::pipeline {
+
+/// True for names that end in .nii or .nii.gz, in any case of letters.
+bool isNiftiName(const std::filesystem::path& file);
+
+struct ScanInput {
+    CtScan scan;
+    int images = 0;  ///< slices in the files, or 1 NIfTI file
+    std::vector<std::string> notes;
+};
+
+/// A DICOM series (dicom/import_series.h), or a NIfTI file of unknown patient position.
+Result<ScanInput> readScan(const std::filesystem::path& series, const std::string& seriesUid,
+                           int threads, const Progress& progress);
+
+struct MaskInput {
+    Volume<std::uint8_t> labels;  ///< LumenLabel
+    std::vector<std::string> notes;
+};
+
+/// A segmentation of the lumen in NIfTI: 0 outside, 2 tagged, anything else air. `scanGrid`, where
+/// given, is the scan's grid; the mask must be on it to within a twentieth of a voxel, and gets it.
+Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid);
+
+}  // namespace haustra::pipeline
