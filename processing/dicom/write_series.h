@@ -15,10 +15,14 @@ struct WriteOptions {
     std::string seriesDescription;
     /// Seeds the UIDs, so that the same phantom is the same files byte for byte.
     std::string uidSeed;
+    int threads = 0;
 };
 
-/// Writes `directory`/0001.dcm … (explicit little endian, 16-bit signed, slope 1). The grid must be
-/// orthogonal.
+/// Writes `directory`/0001.dcm … (CT Image Storage, explicit VR little endian, 16-bit signed, slope
+/// 1, intercept 0), making the folder where it is missing and replacing files of these names. The
+/// grid's axes must be orthogonal. importSeries gives back the same voxels and, to the 16
+/// characters that DICOM has for a number, the same affine; a left-handed grid comes back with its
+/// slices in the opposite order, at the same places.
 Result<void> writeSeries(const std::filesystem::path& directory, const CtScan& scan,
                          const WriteOptions& options);
 

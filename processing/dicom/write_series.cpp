@@ -1,0 +1,203 @@
+#include "dicom/write_series.h"
+
+#include "core/parallel.h"
+#include "dicom/dicom_library.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <mutex>
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+
+namespace haustra::dicom {
+namespace {
+
+/// A UID under 2.25, where any 128-bit number is valid (PS3.5 B.2): the FNV-1a hash of `name`.
+std::string uidOf(const std::string& name) {
+    using Wide = unsigned __int128;
+    Wide hash = (Wide(0x6c62272e07bb0142) << 64) | 0x62b821756295c58d;
+    const Wide prime = (Wide(1) << 88) | 0x13b;
+    for (unsigned char c : name)
+        hash = (hash ^ c) * prime;
+    std::string digits;
+    for (; hash != 0; hash /= 10)
+        digits.insert(digits.begin(), char('0' + int(hash % 10)));
+    return "2.25." + (digits.empty() ? "0" : digits);
+}
+
+/// A decimal string with as many digits as DICOM's 16 characters hold.
+std::string decimal(double value) {
+    char text[40];
+    for (int digits = 17; digits > 0; --digits) {
+        if (std::snprintf(text, sizeof text, "%.*g", digits, value) <= 16) break;
+    }
+    return text;
+}
+
+std::string decimals(std::initializer_list<double> values) {
+    std::string text;
+    for (double value : values) {
+        if (!text.empty()) text += '\\';
+        text += decimal(value);
+    }
+    return text;
+}
+
+const char* patientPositionCode(PatientPosition position) {
+    switch (position) {
+        case PatientPosition::supine:
+            return "HFS";
+        case PatientPosition::prone:
+            return "HFP";
+        case PatientPosition::leftDecubitus:
+            return "HFDL";
+        case PatientPosition::rightDecubitus:
+            return "HFDR";
+        case PatientPosition::unknown:
+            break;
+    }
+    return "";
+}
+
+/// Collects the first failure of many insertions.
+class Attributes {
+public:
+    explicit Attributes(DcmItem& item) : item_(item) {}
+    void put(const DcmTagKey& tag, const std::string& value) {
+        keep(item_.putAndInsertString(tag, value.c_str()));
+    }
+    void put(const DcmTagKey& tag, int value) {
+        keep(item_.putAndInsertUint16(tag, Uint16(value)));
+    }
+    void putPixels(std::span<const std::int16_t> pixels) {
+        keep(item_.putAndInsertUint16Array(DCM_PixelData,
+                                           reinterpret_cast<const Uint16*>(pixels.data()),
+                                           static_cast<unsigned long>(pixels.size())));
+    }
+    const OFCondition& condition() const { return condition_; }
+
+private:
+    void keep(const OFCondition& condition) {
+        if (condition_.good()) condition_ = condition;
+    }
+    DcmItem& item_;
+    OFCondition condition_ = EC_Normal;
+};
+
+void putPatientAndStudy(Attributes& out, const WriteOptions& options) {
+    out.put(DCM_ImageType, "DERIVED\\PRIMARY\\AXIAL");
+    out.put(DCM_Modality, "CT");
+    out.put(DCM_Manufacturer, "Haustra");
+    out.put(DCM_SeriesDescription, options.seriesDescription);
+    out.put(DCM_PatientName, options.patientName);
+    out.put(DCM_PatientID, options.patientId);
+    out.put(DCM_StudyInstanceUID, uidOf(options.uidSeed + "/study"));
+    out.put(DCM_SeriesInstanceUID, uidOf(options.uidSeed + "/series"));
+    out.put(DCM_FrameOfReferenceUID, uidOf(options.uidSeed + "/frame of reference"));
+    out.put(DCM_StudyID, "1");
+    out.put(DCM_SeriesNumber, "1");
+    // Required to be there, allowed to be empty.
+    for (const DcmTagKey& tag : {DCM_StudyDate, DCM_StudyTime, DCM_AccessionNumber,
+                                 DCM_ReferringPhysicianName, DCM_PatientBirthDate, DCM_PatientSex,
+                                 DCM_KVP, DCM_AcquisitionNumber, DCM_PositionReferenceIndicator}) {
+        out.put(tag, "");
+    }
+}
+
+void putSlice(Attributes& out, const CtScan& scan, int k, const WriteOptions& options) {
+    const Grid& grid = scan.hu.grid();
+    const glm::dvec3 spacing = grid.spacingMm();
+    const glm::dvec3 row = glm::dvec3(grid.patientFromVoxel[0]) / spacing.x;
+    const glm::dvec3 column = glm::dvec3(grid.patientFromVoxel[1]) / spacing.y;
+    const glm::dvec3 position = grid.patientFromVoxelPoint({0, 0, k});
+    out.put(DCM_SOPClassUID, UID_CTImageStorage);
+    out.put(DCM_SOPInstanceUID, uidOf(options.uidSeed + "/slice " + std::to_string(k)));
+    out.put(DCM_PatientPosition, patientPositionCode(scan.position));
+    out.put(DCM_InstanceNumber, std::to_string(k + 1));
+    out.put(DCM_ImagePositionPatient, decimals({position.x, position.y, position.z}));
+    out.put(DCM_ImageOrientationPatient,
+            decimals({row.x, row.y, row.z, column.x, column.y, column.z}));
+    out.put(DCM_PixelSpacing, decimals({spacing.y, spacing.x}));
+    out.put(DCM_SliceThickness, decimal(spacing.z));
+    out.put(DCM_SamplesPerPixel, 1);
+    out.put(DCM_PhotometricInterpretation, "MONOCHROME2");
+    out.put(DCM_Rows, grid.size.y);
+    out.put(DCM_Columns, grid.size.x);
+    out.put(DCM_BitsAllocated, 16);
+    out.put(DCM_BitsStored, 16);
+    out.put(DCM_HighBit, 15);
+    out.put(DCM_PixelRepresentation, 1);
+    out.put(DCM_RescaleIntercept, "0");
+    out.put(DCM_RescaleSlope, "1");
+    out.put(DCM_RescaleType, "HU");
+    const std::size_t plane = std::size_t(grid.size.x) * std::size_t(grid.size.y);
+    out.putPixels(scan.hu.voxels().subspan(std::size_t(k) * plane, plane));
+}
+
+Result<void> writeSlice(const std::filesystem::path& file, const CtScan& scan, int k,
+                        const WriteOptions& options) {
+    DcmFileFormat format;
+    Attributes attributes(*format.getDataset());
+    putPatientAndStudy(attributes, options);
+    putSlice(attributes, scan, k, options);
+    OFCondition condition = attributes.condition();
+    if (condition.good()) {
+        condition = format.saveFile(OFFilename(file.c_str()), EXS_LittleEndianExplicit,
+                                    EET_ExplicitLength, EGL_recalcGL, EPD_withoutPadding);
+    }
+    if (condition.bad()) {
+        return fail(ErrorKind::io,
+                    std::string("the DICOM file cannot be written: ") + condition.text(),
+                    file.string());
+    }
+    return {};
+}
+
+Result<void> checkOrthogonal(const Grid& grid, const std::string& place) {
+    if (auto sound = checkGrid(grid, place); !sound) return sound;
+    const glm::dvec3 spacing = grid.spacingMm();
+    for (int a = 0; a < 3; ++a) {
+        const int b = (a + 1) % 3;
+        const double cosine = glm::dot(glm::dvec3(grid.patientFromVoxel[a]) / spacing[a],
+                                       glm::dvec3(grid.patientFromVoxel[b]) / spacing[b]);
+        if (std::abs(cosine) > 1e-3) {
+            return fail(ErrorKind::unsupported,
+                        "a DICOM series needs a volume whose axes are orthogonal", place);
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<void> writeSeries(const std::filesystem::path& directory, const CtScan& scan,
+                         const WriteOptions& options) try {
+    prepareDicomLibrary();
+    const Grid& grid = scan.hu.grid();
+    if (auto sound = checkOrthogonal(grid, directory.string()); !sound) return sound;
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error) {
+        return fail(ErrorKind::io, "the folder cannot be made: " + error.message(),
+                    directory.string());
+    }
+    std::mutex mutex;
+    Result<void> result;
+    parallelFor(std::size_t(grid.size.z), 1, options.threads, [&](std::size_t k, std::size_t) {
+        char name[16];
+        std::snprintf(name, sizeof name, "%04d.dcm", int(k) + 1);
+        if (auto written = writeSlice(directory / name, scan, int(k), options); !written) {
+            std::lock_guard lock(mutex);
+            if (result) result = written;
+        }
+    });
+    return result;
+} catch (const std::exception& error) {
+    return fail(ErrorKind::io, std::string("the series cannot be written: ") + error.what(),
+                directory.string());
+}
+
+}  // namespace haustra::dicom

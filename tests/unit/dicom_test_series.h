@@ -1,0 +1,75 @@
+// Small synthetic CT series for the DICOM tests.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "dicom/write_series.h"
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace haustra::tests {
+
+/// A folder of its own for one test, removed at the end.
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        std::string pattern =
+            (std::filesystem::temp_directory_path() / "haustra-test-XXXXXX").string();
+        if (const char* made = mkdtemp(pattern.data())) path_ = made;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// Every voxel differs from its neighbours, and the whole range of HU occurs.
+inline CtScan patternScan(const Grid& grid, PatientPosition position = PatientPosition::supine) {
+    CtScan scan{Volume<std::int16_t>(grid), position};
+    std::uint32_t state = 12345;
+    for (std::int16_t& hu : scan.hu.writable()) {
+        state = state * 1664525u + 1013904223u;
+        hu = std::int16_t(state >> 16);
+    }
+    return scan;
+}
+
+inline Grid smallGrid() {
+    return axisAlignedGrid({17, 12, 24}, {0.7, 0.8, 1.25}, {-30, 12.5, -71});
+}
+
+/// Rotation about the z, then the x axis.
+inline glm::dmat3 rotation(double aboutZ, double aboutX) {
+    const glm::dmat3 z(std::cos(aboutZ), std::sin(aboutZ), 0, -std::sin(aboutZ), std::cos(aboutZ),
+                       0, 0, 0, 1);
+    const glm::dmat3 x(1, 0, 0, 0, std::cos(aboutX), std::sin(aboutX), 0, -std::sin(aboutX),
+                       std::cos(aboutX));
+    return x * z;
+}
+
+inline Grid rotated(Grid grid, const glm::dmat3& by) {
+    grid.patientFromVoxel = glm::dmat4(by) * grid.patientFromVoxel;
+    return grid;
+}
+
+inline void write(const std::filesystem::path& folder, const CtScan& scan,
+                  const std::string& seed = "test") {
+    dicom::WriteOptions options;
+    options.uidSeed = seed;
+    options.seriesDescription = seed;
+    const auto written = dicom::writeSeries(folder, scan, options);
+    ASSERT_TRUE(written) << describe(written.error());
+}
+
+}  // namespace haustra::tests
