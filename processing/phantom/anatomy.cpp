@@ -135,6 +135,7 @@ void Builder::addOrgans() {
                 std::hypot(valueNoise(seed, p, 24.0), valueNoise(seed + 1, p, 24.0));
             return (vessel < 0.08 ? 48.0 : 64.0) + 5.0 * valueNoise(seed + 2, p, 9.0);
         });
+    addEllipsoid({14, -34, 436}, {58, 48, 48}, tissue(45, 4, next()));   // heart
     addEllipsoid({92, 48, 338}, {30, 24, 42}, tissue(52, 6, next()));    // spleen
     addEllipsoid({0, 2, 300}, {62, 12, 16}, tissue(38, 10, next(), 5));  // pancreas
     for (double side : {-1.0, 1.0}) {

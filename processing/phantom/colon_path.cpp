@@ -13,7 +13,7 @@ namespace {
 using Points = std::vector<glm::dvec3>;
 
 constexpr double kNodeStepMm = 6.0;
-constexpr double kWallRoomMm = 3.0;
+constexpr double kWallRoomMm = 3.4;
 
 /// Where the axis passes, and how the place moves in a longer colon.
 struct ControlPoint {
@@ -266,7 +266,7 @@ ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body)
         jitter.push_back(n < 2 ? glm::dvec3(0.0) : j);
     }
     const double targetMm = random.uniform(1260.0, 1630.0);
-    const double scale = random.uniform(0.93, 1.07);
+    const double scale = random.uniform(0.98, 1.15);
     const double turns = random.uniform(-0.7, 0.7), phase = random.uniform(0.0, 6.28);
 
     double lo = -0.2, hi = 1.5;

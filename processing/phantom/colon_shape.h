@@ -51,7 +51,7 @@ struct ColonPoint {
 class ColonShape {
 public:
     static constexpr double wallMm = 2.5;
-    static constexpr double septumMm = 2.8;  ///< least distance between the lumens of two loops
+    static constexpr double septumMm = 3.2;  ///< least distance between the lumens of two loops
     static constexpr double reachMm = 9.0;   ///< how far outside the wall `evaluate` is meaningful
 
     ColonShape(ColonPath path, std::uint64_t seed);

@@ -103,8 +103,8 @@ Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t 
         const bool easy = preset == Preset::easy, hard = preset == Preset::hard;
         pool.hu = hard ? random.uniform(220.0, 400.0) : random.uniform(450.0, 850.0);
         pool.unevenness = easy ? 0.05 : hard ? 1.0 : 0.4;
-        const double wantedMm = easy ? random.uniform(3.0, 12.0) : random.uniform(6.0, 40.0);
-        const bool empty = random.chance(easy ? 0.3 : 0.12);
+        const double wantedMm = easy ? random.uniform(3.0, 12.0) : random.uniform(12.0, 45.0);
+        const bool empty = random.chance(easy ? 0.3 : 0.08);
 
         double bottom = kNoFloor, top = -kNoFloor;
         for (int n = from; n <= to; ++n)

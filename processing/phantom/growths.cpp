@@ -81,35 +81,57 @@ Growth polypAt(const WallPlace& place, Growth::Kind kind, double diameterMm, Ran
     return growth;
 }
 
+/// What a place for a growth must be like.
+struct Wanted {
+    double fromMm = 45.0, beforeEndMm = 20.0;  ///< stretch of the colon
+    double apartMm = 25.0;                     ///< from the centres of other growths
+    double radiusAtLeastMm = 11.0;             ///< of the colon there
+    glm::dvec3 downward{0.0};  ///< unit: on the lower wall, facing up; zero: anywhere
+};
+
 class Placer {
 public:
     Placer(ColonShape& shape, Random& random) : shape_(shape), random_(random) {}
 
-    /// A free place on the wall, or nothing after many tries. `downward` (unit, or zero) asks for
-    /// places that face up, where stool rests.
-    std::optional<WallPlace> place(double fromMm, double toMm, double apartMm,
-                                   double radiusAtLeastMm, glm::dvec3 downward = glm::dvec3(0.0)) {
-        for (int attempt = 0; attempt < 60; ++attempt) {
-            const double arc = random_.uniform(fromMm, toMm),
-                         angle = random_.uniform(0.0, 6.283185307179586);
-            const ColonPath& path = shape_.path();
-            if (path.collapseEndMm > path.collapseBeginMm && arc > path.collapseBeginMm - 30.0 &&
-                arc < path.collapseEndMm + 30.0) {
+    /// Adds what `grow` makes of the first free place found; false after many tries.
+    template <class Grow>
+    bool add(const Wanted& wanted, const Grow& grow) {
+        const ColonPath& path = shape_.path();
+        for (int attempt = 0; attempt < 80; ++attempt) {
+            const double arc = random_.uniform(wanted.fromMm, path.lengthMm() - wanted.beforeEndMm);
+            const double angle = random_.uniform(0.0, 2.0 * 3.14159265358979);
+            const bool collapses = path.collapseEndMm > path.collapseBeginMm;
+            if (collapses && arc > path.collapseBeginMm - 30.0 && arc < path.collapseEndMm + 30.0)
                 continue;
-            }
-            if (path.at(arc).radiusMm < radiusAtLeastMm) continue;
-            const auto found = castToWall(shape_, arc, angle);
-            if (!found || glm::dot(found->inward, downward) > -0.5 * glm::length(downward))
+            if (path.at(arc).radiusMm < wanted.radiusAtLeastMm) continue;
+            const auto place = castToWall(shape_, arc, angle);
+            if (!place) continue;
+            if (glm::dot(place->inward, wanted.downward) > -0.5 * glm::length(wanted.downward))
                 continue;
-            const bool near = std::any_of(
-                shape_.growths().begin(), shape_.growths().end(),
-                [&](const Growth& g) { return glm::distance(g.centre, found->at) < apartMm; });
-            if (!near) return found;
+            if (crowded(place->at, wanted.apartMm)) continue;
+            const Growth growth = grow(*place);
+            if (blocksAxis(growth)) continue;
+            shape_.add(growth);
+            return true;
         }
-        return std::nullopt;
+        return false;
     }
 
 private:
+    bool crowded(glm::dvec3 at, double apartMm) const {
+        const auto& others = shape_.growths();
+        return std::any_of(others.begin(), others.end(),
+                           [&](const Growth& g) { return glm::distance(g.centre, at) < apartMm; });
+    }
+    /// The axis stays open, so that the true centerline runs through lumen.
+    bool blocksAxis(const Growth& growth) const {
+        const auto& samples = shape_.path().samples;
+        return std::any_of(samples.begin(), samples.end(), [&](const PathSample& s) {
+            return glm::distance(s.position, growth.centre) < growth.reachMm() + 3.0 &&
+                   growth.distance(s.position) < 2.5;
+        });
+    }
+
     ColonShape& shape_;
     Random& random_;
 };
@@ -119,7 +141,6 @@ private:
 void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const BodyPlan& body) {
     Random random(seed, 3);
     Placer placer(shape, random);
-    const double length = shape.path().lengthMm();
     const glm::dvec3 gravity = gravityDirection(body.position);
 
     // One of each kind and size class, spread over the colon; positions are the seed's.
@@ -134,45 +155,57 @@ void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const Body
          {Kind::pedunculated, random.uniform(12.0, 15.0)},
          {Kind::flat, random.uniform(7.0, 10.0)},
          {Kind::flat, random.uniform(10.0, 15.0)}}};
-    for (const auto& [kind, diameter] : wanted) {
-        const double across = kind == Kind::pedunculated ? diameter + 5.0
-                              : kind == Kind::flat       ? 3.0
-                                                         : 0.8 * diameter;
-        // Every other polyp is sought on the lower wall, where fluid may cover it.
-        const glm::dvec3 side = random.chance(0.4) ? gravity : glm::dvec3(0.0);
-        auto place = placer.place(45.0, length - 20.0, 25.0, std::max(12.0, across), side);
-        if (!place) place = placer.place(45.0, length - 20.0, 25.0, std::max(12.0, 0.8 * across));
-        if (place) shape.add(polypAt(*place, kind, diameter, random));
+    for (const auto& [kindOf, size] : wanted) {
+        const Kind kind = kindOf;
+        const double diameter = size;
+        Wanted where;
+        where.radiusAtLeastMm =
+            std::max(12.0, kind == Kind::pedunculated ? diameter + 5.0 : 0.8 * diameter);
+        // Some are sought on the lower wall, where fluid may cover them.
+        if (random.chance(0.4)) where.downward = gravity;
+        const auto grow = [&](const WallPlace& place) {
+            return polypAt(place, kind, diameter, random);
+        };
+        if (!placer.add(where, grow)) {
+            where.downward = glm::dvec3(0.0);
+            placer.add(where, grow);
+        }
     }
     const int bumps = preset == Preset::easy ? 2 : 6;
     for (int n = 0; n < bumps; ++n) {
-        const double diameter = random.uniform(2.5, 4.5);
-        if (const auto place = placer.place(45.0, length - 20.0, 15.0, 11.0)) {
-            Growth bump = polypAt(*place, Kind::sessile, diameter, random);
+        Wanted where;
+        where.apartMm = 15.0;
+        placer.add(where, [&](const WallPlace& place) {
+            Growth bump = polypAt(place, Kind::sessile, random.uniform(2.5, 4.5), random);
             bump.kind = Kind::hyperplastic;
-            shape.add(bump);
-        }
+            return bump;
+        });
     }
 
     const int tagged = preset == Preset::easy ? 5 : preset == Preset::standard ? 16 : 22;
     const int untagged = preset == Preset::hard ? 9 : 0;
     for (int n = 0; n < tagged + untagged; ++n) {
-        // Most stool rests on the lower wall; some sticks anywhere.
-        const glm::dvec3 down = random.chance(0.65) ? gravity : glm::dvec3(0.0);
         const double r = random.uniform(1.5, 5.5);
-        const auto place = placer.place(60.0, length - 15.0, r + 10.0, 2.2 * r + 3.0, down);
-        if (!place) continue;
-        Growth stool;
-        stool.kind = n < tagged ? Kind::taggedStool : Kind::untaggedStool;
-        stool.inward = place->inward, stool.tangent = place->tangent;
-        stool.semiAxes = r * glm::dvec3(random.uniform(0.9, 1.4), random.uniform(0.8, 1.2),
-                                        random.uniform(0.7, 1.0));
-        stool.centre = place->at + place->inward * (0.75 * stool.semiAxes.z);
-        stool.seed = random.bits();
-        stool.hu = n >= tagged              ? random.uniform(5.0, 60.0)
-                   : preset == Preset::hard ? random.uniform(200.0, 400.0)
-                                            : random.uniform(350.0, 800.0);
-        shape.add(stool);
+        Wanted where;
+        where.fromMm = 60.0, where.beforeEndMm = 15.0;
+        where.apartMm = r + 10.0;
+        where.radiusAtLeastMm = 2.2 * r + 3.0;
+        // Most stool rests on the lower wall; some sticks anywhere.
+        if (random.chance(0.65)) where.downward = gravity;
+        placer.add(where, [&](const WallPlace& place) {
+            Growth stool;
+            stool.kind = n < tagged ? Kind::taggedStool : Kind::untaggedStool;
+            stool.inward = place.inward, stool.tangent = place.tangent;
+            const double x = random.uniform(0.9, 1.4), y = random.uniform(0.8, 1.2),
+                         z = random.uniform(0.7, 1.0);
+            stool.semiAxes = r * glm::dvec3(x, y, z);
+            stool.centre = place.at + place.inward * (0.75 * stool.semiAxes.z);
+            stool.seed = random.bits();
+            stool.hu = n >= tagged              ? random.uniform(5.0, 60.0)
+                       : preset == Preset::hard ? random.uniform(200.0, 400.0)
+                                                : random.uniform(350.0, 800.0);
+            return stool;
+        });
     }
 }
 

@@ -62,21 +62,21 @@ std::vector<Solid> makeOtherBowel(std::uint64_t seed, Preset preset, const BodyP
     addStomach(solids, random, preset, up);
 
     const bool easy = preset == Preset::easy;
-    const int loops = easy ? 22 : 34;
+    const int loops = easy ? 60 : 110;
     for (int n = 0; n < loops; ++n) {
-        const double radius = random.uniform(8.0, 12.5);
+        const double radius = random.uniform(6.5, 11.5);
         Chain chain;
-        glm::dvec3 at{random.uniform(-70.0, 70.0), random.uniform(-58.0, 8.0),
-                      random.uniform(118.0, 285.0)};
+        glm::dvec3 at{random.uniform(-78.0, 78.0), random.uniform(-64.0, 8.0),
+                      random.uniform(112.0, 270.0)};
         glm::dvec3 heading = glm::normalize(random.normal3() + glm::dvec3(0.01));
         const int pieces = 3 + random.index(4);
         for (int k = 0; k <= pieces; ++k) {
             chain.push_back(at);
             heading = glm::normalize(heading + 0.75 * random.normal3());
             at += heading * random.uniform(9.0, 15.0);
-            at = glm::clamp(at, glm::dvec3(-82, -66, 105), glm::dvec3(82, 10, 292));
+            at = glm::clamp(at, glm::dvec3(-84, -68, 105), glm::dvec3(84, 8, 292));
         }
-        // A third hold gas over fluid; many are full of fluid, opacified where tagging reached.
+        // A sixth hold gas over fluid; many are full of fluid, opacified where tagging reached.
         Contents inside;
         const double kind = random.uniform();
         double top = -1e9, bottom = 1e9;
@@ -84,7 +84,7 @@ std::vector<Solid> makeOtherBowel(std::uint64_t seed, Preset preset, const BodyP
             top = std::max(top, glm::dot(up, p) + radius),
             bottom = std::min(bottom, glm::dot(up, p) - radius);
         }
-        if (kind < 0.28) inside.gasAboveMm = glm::mix(bottom, top, random.uniform(0.2, 0.8));
+        if (kind < 0.16) inside.gasAboveMm = glm::mix(bottom, top, random.uniform(0.2, 0.8));
         inside.fluidHu =
             !easy && random.chance(0.5) ? random.uniform(180.0, 520.0) : random.uniform(10.0, 40.0);
         glm::dvec3 low = chain[0], high = chain[0];
