@@ -2,21 +2,28 @@
 // rows of the affine change sign on the way in and out.
 #pragma once
 
+#include "core/volume.h"
+
 #include <cstdint>
 #include <filesystem>
 
-#include "core/volume.h"
-
 namespace haustra::nifti {
 
-/// Reads a 3-D image of any integer or float type, applying scl_slope/scl_inter; values outside
-/// T's range are clamped. Affine: sform, else qform, else the spacing alone. T is std::int16_t,
-/// std::uint8_t or float.
+/// Reads a 3-D image (further axes of one sample are allowed) of any integer or real type in either
+/// byte order, plain or gzip whatever its name, applying scl_slope and scl_inter. Values outside
+/// T's range are clamped, fractions rounded to nearest, NaN is 0 in an integer type. Affine: sform,
+/// else qform, else the spacing alone; micrometres and metres become millimetres. T is
+/// std::int16_t, std::uint8_t or float.
+///
+/// Fails, naming the file, where it is not NIfTI-1 in one file, is of another type (complex,
+/// colour), its grid fails checkGrid, or it is truncated or damaged. Memory: the volume and a few
+/// MB, taken only when the file is large enough to fill it. Thread-safe.
 template <class T>
 Result<Volume<T>> readNifti(const std::filesystem::path& file);
 
-/// Writes sform and qform; compressed where the name ends in .gz. Written under a temporary name
-/// and renamed.
+/// Writes sform and, where the axes are orthogonal, qform, in single precision as the format has
+/// it; compressed for speed on all cores where the name ends in .gz. Written under a temporary
+/// name beside `file` and renamed. The same volume gives the same bytes.
 template <class T>
 Result<void> writeNifti(const std::filesystem::path& file, const Volume<T>& volume);
 

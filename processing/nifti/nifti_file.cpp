@@ -1,0 +1,329 @@
+#include "nifti/nifti_file.h"
+
+#include "nifti/gzip_stream.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <new>
+#include <type_traits>
+#include <vector>
+
+#include <nifti1_io.h>
+#include <unistd.h>
+
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(nifti_1_header) == 348);
+
+namespace haustra::nifti {
+namespace {
+
+constexpr std::size_t dataOffset = 352;  // the header, and four bytes that say "no extensions"
+constexpr std::size_t voxelsAtOnce = 1 << 20;
+
+// ------------------------------------------------------------------------------------- geometry
+
+/// RAS to LPS, and back.
+glm::dmat4 flipped(const glm::dmat4& affine) {
+    const glm::dmat4 flip(-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+    return flip * affine;
+}
+
+double millimetresPerUnit(const nifti_1_header& header) {
+    switch (XYZT_TO_SPACE(header.xyzt_units)) {
+        case NIFTI_UNITS_METER:
+            return 1000.0;
+        case NIFTI_UNITS_MICRON:
+            return 0.001;
+        default:
+            return 1.0;  // millimetres, or not said
+    }
+}
+
+glm::dmat4 rasFromVoxel(const nifti_1_header& header) {
+    glm::dmat4 affine(1.0);
+    if (header.sform_code > 0) {
+        const float* rows[] = {header.srow_x, header.srow_y, header.srow_z};
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 4; ++column)
+                affine[column][row] = rows[row][column];
+        }
+    } else if (header.qform_code > 0) {
+        const mat44 m = nifti_quatern_to_mat44(header.quatern_b, header.quatern_c, header.quatern_d,
+                                               header.qoffset_x, header.qoffset_y, header.qoffset_z,
+                                               header.pixdim[1], header.pixdim[2], header.pixdim[3],
+                                               header.pixdim[0] < 0.0f ? -1.0f : 1.0f);
+        for (int row = 0; row < 3; ++row) {
+            for (int column = 0; column < 4; ++column)
+                affine[column][row] = m.m[row][column];
+        }
+    } else {
+        for (int axis = 0; axis < 3; ++axis)
+            affine[axis][axis] = header.pixdim[axis + 1];
+    }
+    const double scale = millimetresPerUnit(header);
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 3; ++row)
+            affine[column][row] *= scale;
+    }
+    return affine;
+}
+
+Result<Grid> gridOf(const nifti_1_header& header, const std::string& place) {
+    const int axes = header.dim[0];
+    if (axes < 1 || axes > 7)
+        return fail(ErrorKind::badInput, "the NIfTI header has no valid number of axes", place);
+    Grid grid;
+    grid.size = glm::ivec3(1);
+    for (int axis = 1; axis <= axes; ++axis) {
+        if (axis <= 3)
+            grid.size[axis - 1] = header.dim[axis];
+        else if (header.dim[axis] != 1)
+            return fail(ErrorKind::unsupported, "the NIfTI image has more than three axes", place);
+    }
+    grid.patientFromVoxel = flipped(rasFromVoxel(header));
+    if (auto sound = checkGrid(grid, place); !sound) return tl::make_unexpected(sound.error());
+    return grid;
+}
+
+bool orthogonal(const Grid& grid) {
+    const glm::dvec3 spacing = grid.spacingMm();
+    for (int a = 0; a < 3; ++a) {
+        const int b = (a + 1) % 3;
+        const double cosine = glm::dot(glm::dvec3(grid.patientFromVoxel[a]) / spacing[a],
+                                       glm::dvec3(grid.patientFromVoxel[b]) / spacing[b]);
+        if (std::abs(cosine) > 1e-6) return false;
+    }
+    return true;
+}
+
+void setGeometry(const Grid& grid, nifti_1_header& header) {
+    const glm::dmat4 affine = flipped(grid.patientFromVoxel);
+    const glm::dvec3 spacing = grid.spacingMm();
+    float* rows[] = {header.srow_x, header.srow_y, header.srow_z};
+    mat44 m{};
+    m.m[3][3] = 1.0f;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column)
+            m.m[row][column] = rows[row][column] = float(affine[column][row]);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        header.pixdim[axis + 1] = float(spacing[axis]);
+    header.pixdim[0] = 1.0f;
+    header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
+    if (orthogonal(grid)) {
+        header.qform_code = NIFTI_XFORM_SCANNER_ANAT;
+        nifti_mat44_to_quatern(m, &header.quatern_b, &header.quatern_c, &header.quatern_d,
+                               &header.qoffset_x, &header.qoffset_y, &header.qoffset_z, nullptr,
+                               nullptr, nullptr, &header.pixdim[0]);
+    }
+    header.xyzt_units = NIFTI_UNITS_MM;
+}
+
+// ----------------------------------------------------------------------------------- the header
+
+Result<nifti_1_header> readHeader(MaybeGzipFile& stream, bool& swapped, const std::string& place) {
+    nifti_1_header header;
+    auto notNifti = [&] { return fail(ErrorKind::badInput, "this is not a NIfTI-1 file", place); };
+    if (!stream.read(std::as_writable_bytes(std::span(&header, 1)))) return notNifti();
+    int size = header.sizeof_hdr;
+    swapped = size != int(sizeof header);
+    if (swapped) nifti_swap_4bytes(1, &size);
+    if (size == 540 || header.sizeof_hdr == 540)
+        return fail(ErrorKind::unsupported, "this is a NIfTI-2 file; NIfTI-1 is read", place);
+    if (size != int(sizeof header)) return notNifti();
+    if (swapped) swap_nifti_header(&header, 1);
+    const std::string_view magic(header.magic, 3);
+    if (magic == "ni1") {
+        return fail(ErrorKind::unsupported,
+                    "this is the header of a NIfTI pair; a single .nii file is read", place);
+    }
+    if (magic != "n+1") return notNifti();
+    return header;
+}
+
+Result<void> skipToData(MaybeGzipFile& stream, const nifti_1_header& header,
+                        const std::string& place) {
+    constexpr float farthest = 1 << 24;
+    if (!(header.vox_offset >= float(sizeof header) && header.vox_offset <= farthest))
+        return fail(ErrorKind::badInput, "the NIfTI header has no valid data offset", place);
+    std::vector<std::byte> extensions(std::size_t(header.vox_offset) - sizeof header);
+    return stream.read(extensions);
+}
+
+// ------------------------------------------------------------------------------------ the values
+
+template <class T>
+T converted(double value) {
+    if constexpr (std::is_floating_point_v<T>) {
+        return T(value);
+    } else {
+        if (std::isnan(value)) return T(0);
+        constexpr double low = std::numeric_limits<T>::min(), high = std::numeric_limits<T>::max();
+        return T(std::lround(std::min(std::max(value, low), high)));
+    }
+}
+
+struct Scaling {
+    double slope = 1.0, intercept = 0.0;
+    bool none() const { return slope == 1.0 && intercept == 0.0; }
+};
+
+Scaling scalingOf(const nifti_1_header& header) {
+    // A slope of zero means no scaling; so does what some writers leave there.
+    if (header.scl_slope == 0.0f || !std::isfinite(header.scl_slope) ||
+        !std::isfinite(header.scl_inter)) {
+        return {};
+    }
+    return {header.scl_slope, header.scl_inter};
+}
+
+template <class Stored, class T>
+Result<void> readValues(MaybeGzipFile& stream, bool swapped, const Scaling& scaling,
+                        std::span<T> values) {
+    std::vector<Stored> stored(std::min(voxelsAtOnce, values.size()));
+    for (std::size_t at = 0; at < values.size(); at += voxelsAtOnce) {
+        const std::size_t count = std::min(voxelsAtOnce, values.size() - at);
+        const bool direct =
+            std::is_same_v<Stored, T> && scaling.none() && (!swapped || sizeof(Stored) == 1);
+        if (direct) {
+            const auto read = stream.read(std::as_writable_bytes(values.subspan(at, count)));
+            if (!read) return read;
+            continue;
+        }
+        const auto read = stream.read(std::as_writable_bytes(std::span(stored).first(count)));
+        if (!read) return read;
+        if (swapped && sizeof(Stored) > 1) nifti_swap_Nbytes(count, sizeof(Stored), stored.data());
+        for (std::size_t n = 0; n < count; ++n)
+            values[at + n] = converted<T>(scaling.slope * double(stored[n]) + scaling.intercept);
+    }
+    return {};
+}
+
+template <class T>
+Result<void> readValuesOf(short datatype, MaybeGzipFile& stream, bool swapped,
+                          const Scaling& scaling, std::span<T> values, const std::string& place) {
+    auto as = [&]<class Stored>(Stored) {
+        return readValues<Stored>(stream, swapped, scaling, values);
+    };
+    switch (datatype) {
+        case NIFTI_TYPE_UINT8:
+            return as(std::uint8_t());
+        case NIFTI_TYPE_INT8:
+            return as(std::int8_t());
+        case NIFTI_TYPE_UINT16:
+            return as(std::uint16_t());
+        case NIFTI_TYPE_INT16:
+            return as(std::int16_t());
+        case NIFTI_TYPE_UINT32:
+            return as(std::uint32_t());
+        case NIFTI_TYPE_INT32:
+            return as(std::int32_t());
+        case NIFTI_TYPE_UINT64:
+            return as(std::uint64_t());
+        case NIFTI_TYPE_INT64:
+            return as(std::int64_t());
+        case NIFTI_TYPE_FLOAT32:
+            return as(float());
+        case NIFTI_TYPE_FLOAT64:
+            return as(double());
+        default:
+            break;
+    }
+    return fail(
+        ErrorKind::unsupported,
+        std::string("NIfTI images of type ") + nifti_datatype_string(datatype) + " are not read",
+        place);
+}
+
+template <class T>
+constexpr short datatypeOf() {
+    if constexpr (std::is_same_v<T, std::uint8_t>) return NIFTI_TYPE_UINT8;
+    if constexpr (std::is_same_v<T, std::int16_t>) return NIFTI_TYPE_INT16;
+    if constexpr (std::is_same_v<T, float>) return NIFTI_TYPE_FLOAT32;
+}
+
+}  // namespace
+
+template <class T>
+Result<Volume<T>> readNifti(const std::filesystem::path& file) try {
+    const std::string place = file.string();
+    auto stream = MaybeGzipFile::open(file);
+    if (!stream) return tl::make_unexpected(stream.error());
+    bool swapped = false;
+    const auto header = readHeader(*stream, swapped, place);
+    if (!header) return tl::make_unexpected(header.error());
+    const auto grid = gridOf(*header, place);
+    if (!grid) return tl::make_unexpected(grid.error());
+    if (auto skipped = skipToData(*stream, *header, place); !skipped)
+        return tl::make_unexpected(skipped.error());
+    int bytesPerVoxel = 0, swapSize = 0;
+    nifti_datatype_sizes(header->datatype, &bytesPerVoxel, &swapSize);
+    if (grid->voxelCount() * std::size_t(bytesPerVoxel) > stream->mostBytes())
+        return fail(ErrorKind::badInput, "the file is truncated", place);
+    Volume<T> volume(*grid);
+    if (auto read = readValuesOf<T>(header->datatype, *stream, swapped, scalingOf(*header),
+                                    volume.writable(), place);
+        !read) {
+        return tl::make_unexpected(read.error());
+    }
+    if (auto whole = stream->finish(); !whole) return tl::make_unexpected(whole.error());
+    return volume;
+} catch (const std::bad_alloc&) {
+    return fail(ErrorKind::io, "there is not enough memory for the volume", file.string());
+}
+
+template <class T>
+Result<void> writeNifti(const std::filesystem::path& file, const Volume<T>& volume) try {
+    const Grid& grid = volume.grid();
+    if (auto sound = checkGrid(grid, file.string()); !sound) return sound;
+    nifti_1_header header{};
+    header.sizeof_hdr = sizeof header;
+    header.regular = 'r';
+    header.dim[0] = 3;
+    for (int axis = 1; axis < 8; ++axis)
+        header.dim[axis] = axis <= 3 ? short(grid.size[axis - 1]) : short(1);
+    header.datatype = datatypeOf<T>();
+    header.bitpix = short(8 * sizeof(T));
+    header.vox_offset = float(dataOffset);
+    header.scl_slope = 1.0f;
+    setGeometry(grid, header);
+    std::copy_n("n+1", 4, header.magic);
+
+    std::array<std::byte, dataOffset> head{};
+    std::memcpy(head.data(), &header, sizeof header);
+    std::filesystem::path temporary = file;
+    temporary += '.';
+    temporary += std::to_string(getpid()) + ".tmp";
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    const auto body = std::as_bytes(volume.voxels());
+    if (file.extension() == ".gz") {
+        writeGzip(out, head, body, 0);
+    } else {
+        out.write(reinterpret_cast<const char*>(head.data()), std::streamsize(head.size()));
+        out.write(reinterpret_cast<const char*>(body.data()), std::streamsize(body.size()));
+    }
+    out.close();
+    std::error_code error;
+    if (out) {
+        std::filesystem::rename(temporary, file, error);
+        if (!error) return {};
+    }
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    return fail(ErrorKind::io, "the file cannot be written", file.string());
+} catch (const std::bad_alloc&) {
+    return fail(ErrorKind::io, "there is not enough memory to write the file", file.string());
+}
+
+template Result<Volume<std::uint8_t>> readNifti(const std::filesystem::path&);
+template Result<Volume<std::int16_t>> readNifti(const std::filesystem::path&);
+template Result<Volume<float>> readNifti(const std::filesystem::path&);
+template Result<void> writeNifti(const std::filesystem::path&, const Volume<std::uint8_t>&);
+template Result<void> writeNifti(const std::filesystem::path&, const Volume<std::int16_t>&);
+template Result<void> writeNifti(const std::filesystem::path&, const Volume<float>&);
+
+}  // namespace haustra::nifti
