@@ -1,0 +1,57 @@
+#include "cli/arguments.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+
+namespace haustra::cli {
+
+std::optional<std::vector<double>> parseNumbers(const std::string& text, char separator,
+                                                std::size_t count) {
+    std::vector<double> numbers;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (true) {
+        double number = 0.0;
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
+        numbers.push_back(number);
+        if (next == end) break;
+        if (*next != separator) return std::nullopt;
+        at = next + 1;
+    }
+    if (numbers.size() != count) return std::nullopt;
+    return numbers;
+}
+
+void addStoreOption(CLI::App& command, std::filesystem::path& store) {
+    command.add_option("--store", store, "The case store's folder")
+        ->type_name("DIR")
+        ->envname("HAUSTRA_STORE")
+        ->required();
+}
+
+void addThreadsOption(CLI::App& command, int& threads) {
+    command.add_option("--threads", threads, "Threads to use; 0 for all cores")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+}
+
+CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
+                             std::vector<glm::dvec3>& points, const std::string& description) {
+    const auto take = [&points, name](const std::vector<std::string>& texts) {
+        points.clear();
+        for (const std::string& text : texts) {
+            const auto numbers = parseNumbers(text, ',', 3);
+            if (!numbers) throw CLI::ValidationError(name, "\"" + text + "\" is not x,y,z");
+            points.emplace_back((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+        }
+    };
+    return command.add_option_function<std::vector<std::string>>(name, take, description)
+        ->type_name("X,Y,Z")
+        ->allow_extra_args(false);
+}
+
+}  // namespace haustra::cli

@@ -1,0 +1,33 @@
+// Options that several subcommands take, and values written as text.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace haustra::cli {
+
+/// `count` finite numbers with `separator` between them and nothing else.
+std::optional<std::vector<double>> parseNumbers(const std::string& text, char separator,
+                                                std::size_t count);
+
+/// --store DIR, or $HAUSTRA_STORE; wrong usage without either.
+void addStoreOption(CLI::App& command, std::filesystem::path& store);
+
+/// --threads N, 0 for all cores.
+void addThreadsOption(CLI::App& command, int& threads);
+
+/// --NAME x,y,z in patient millimetres, which may be given again and again; the first coordinate
+/// may be negative.
+CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
+                             std::vector<glm::dvec3>& points, const std::string& description);
+
+}  // namespace haustra::cli

@@ -1,0 +1,90 @@
+// haustra export: a product in a format that other programs read.
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/text_files.h"
+#include "nifti/nifti_file.h"
+#include "store/case_store.h"
+
+#include <map>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+namespace haustra::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Products and the ending of the files they are written to.
+const std::map<std::string, std::string>& formats() {
+    static const std::map<std::string, std::string> endings{
+        {"ct", ".nii.gz"}, {"lumen", ".nii.gz"}, {"distance", ".nii.gz"}, {"centerline", ".csv"}};
+    return endings;
+}
+
+std::vector<std::string> productNames() {
+    std::vector<std::string> names;
+    for (const auto& [product, ending] : formats())
+        names.push_back(product);
+    return names;
+}
+
+struct Arguments {
+    fs::path store, file;
+    std::string caseName, product;
+};
+
+bool endsIn(const std::string& text, const std::string& ending) {
+    return text.size() > ending.size() &&
+           text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+template <class T>
+Result<void> exportVolume(const store::Case& source, const Arguments& arguments) {
+    const auto volume = source.readVolume<T>(arguments.product);
+    if (!volume) return tl::make_unexpected(volume.error());
+    return nifti::writeNifti(arguments.file, *volume);
+}
+
+Result<void> runExport(const Arguments& arguments) {
+    const auto source = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
+        return s.openCase(arguments.caseName);
+    });
+    if (!source) return tl::make_unexpected(source.error());
+    // What leaves the store for other programs has been read whole and found sound.
+    if (auto sound = source->verify(arguments.product); !sound) return sound;
+    if (arguments.product == "ct") return exportVolume<std::int16_t>(*source, arguments);
+    if (arguments.product == "lumen") return exportVolume<std::uint8_t>(*source, arguments);
+    if (arguments.product == "distance") return exportVolume<float>(*source, arguments);
+    const auto centerline = source->readCenterline();
+    if (!centerline) return tl::make_unexpected(centerline.error());
+    return writeTextFile(arguments.file, centerlineCsv(*centerline));
+}
+
+}  // namespace
+
+Command addExport(CLI::App& program) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command = program.add_subcommand(
+        "export",
+        "Write a product to a file that other programs read: ct (int16, HU), lumen (uint8: 0 "
+        "outside, 1 air, 2 tagged) and distance (float, mm) as .nii.gz, centerline as .csv "
+        "(x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, rectum to cecum).");
+    command->add_option("CASE", arguments->caseName, "The case's name")->required();
+    command->add_option("PRODUCT", arguments->product, "What to write")
+        ->required()
+        ->check(CLI::IsMember(productNames()));
+    command->add_option("FILE", arguments->file, "Where to; replaced in one step")->required();
+    addStoreOption(*command, arguments->store);
+    command->callback([arguments] {
+        const std::string& ending = formats().at(arguments->product);
+        const std::string name = arguments->file.filename().string();
+        if (!endsIn(name, ending) && !(ending == ".nii.gz" && endsIn(name, ".nii"))) {
+            throw CLI::ValidationError("FILE", arguments->product + " is written as " + ending +
+                                                   ", not as \"" + name + "\"");
+        }
+    });
+    return {command, [arguments] { return runExport(*arguments); }};
+}
+
+}  // namespace haustra::cli

@@ -1,0 +1,53 @@
+// haustra: everything offline, from a phantom to pictures.
+#include "cli/commands.h"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace {
+
+constexpr int exitDone = 0, exitFailed = 1, exitUsage = 2;
+
+int failed(const std::string& what) {
+    std::fprintf(stderr, "haustra: %s\n", what.c_str());
+    return exitFailed;
+}
+
+int runProgram(int argc, char** argv) {
+    CLI::App program("Haustra: virtual colonoscopy on the command line.", "haustra");
+    program.set_version_flag("--version", HAUSTRA_VERSION);
+    program.require_subcommand(1);
+    program.set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
+    program.footer("Exit codes: 0 done, 1 failed, 2 wrong usage.");
+    const std::vector<haustra::cli::Command> commands{
+        haustra::cli::addPhantom(program), haustra::cli::addPrepare(program),
+        haustra::cli::addExport(program),  haustra::cli::addList(program),
+        haustra::cli::addRender(program),  haustra::cli::addEvaluate(program)};
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return program.exit(error) == 0 ? exitDone : exitUsage;
+    }
+    for (const auto& command : commands) {
+        if (!command.app->parsed()) continue;
+        const auto done = command.run();
+        return done ? exitDone : failed(haustra::describe(done.error()));
+    }
+    return exitUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return runProgram(argc, argv);
+    } catch (const std::bad_alloc&) {
+        return failed("there is not enough memory");
+    } catch (const std::exception& error) {
+        return failed(error.what());
+    }
+}

@@ -1,0 +1,135 @@
+// haustra prepare: from a series to the products that a reader needs.
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/progress_bar.h"
+#include "cli/text_files.h"
+#include "pipeline/prepare.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace haustra::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+    fs::path store, report;
+    std::string caseName;
+    pipeline::PrepareOptions options;
+};
+
+// The series' own name without .nii or .nii.gz, with '_' for what a case name cannot have.
+std::string defaultCaseName(const fs::path& source) {
+    std::error_code ignored;
+    fs::path path = fs::weakly_canonical(source, ignored).filename();
+    if (path.extension() == ".gz") path = path.stem();
+    if (path.extension() == ".nii" || path.extension() == ".dcm") path = path.stem();
+    std::string name = path.string().substr(0, 64);
+    for (char& c : name) {
+        if (!store::isCaseName(std::string("a") + c)) c = '_';
+    }
+    if (!name.empty() && name[0] == '.') name[0] = '_';
+    return name.empty() ? "case" : name;
+}
+
+std::string reportJson(const std::string& caseName, const pipeline::PrepareReport& report) {
+    auto stages = nlohmann::ordered_json::array();
+    double wallSeconds = 0.0, peakMemoryMib = 0.0;
+    for (const pipeline::StageReport& stage : report.stages) {
+        stages.push_back({{"stage", stage.stage},
+                          {"reused", stage.reused},
+                          {"wall_seconds", stage.wallSeconds},
+                          {"peak_memory_mib", stage.peakMemoryMib}});
+        wallSeconds += stage.wallSeconds;
+        peakMemoryMib = std::max(peakMemoryMib, stage.peakMemoryMib);
+    }
+    return nlohmann::ordered_json{{"case", caseName},
+                                  {"stages", stages},
+                                  {"wall_seconds", wallSeconds},
+                                  {"peak_memory_mib", peakMemoryMib},
+                                  {"notes", report.notes}}
+               .dump(2) +
+           "\n";
+}
+
+Result<void> runPrepare(Arguments arguments) {
+    const fs::path& source =
+        arguments.options.series.empty() ? arguments.options.lumenMask : arguments.options.series;
+    if (arguments.caseName.empty()) arguments.caseName = defaultCaseName(source);
+    const auto store = store::CaseStore::open(arguments.store, true);
+    if (!store) return tl::make_unexpected(store.error());
+
+    ProgressBar bar;
+    arguments.options.progress = [&](const std::string& stage, double fraction) {
+        bar.show(stage, fraction);
+    };
+    arguments.options.log = [&](const std::string& line) { bar.say(line); };
+    const auto report = pipeline::prepare(*store, arguments.caseName, arguments.options);
+    if (!report) return tl::make_unexpected(report.error());
+    for (const std::string& note : report->notes)
+        bar.say(note);
+    for (const pipeline::StageReport& stage : report->stages) {
+        fmt::print("{:<12} {:8.2f} s {:8.0f} MiB{}\n", stage.stage, stage.wallSeconds,
+                   stage.peakMemoryMib, stage.reused ? "  reused" : "");
+    }
+    fmt::print("case {} is prepared\n", arguments.caseName);
+    if (arguments.report.empty()) return {};
+    return writeTextFile(arguments.report, reportJson(arguments.caseName, *report));
+}
+
+}  // namespace
+
+Command addPrepare(CLI::App& program) {
+    auto arguments = std::make_shared<Arguments>();
+    pipeline::PrepareOptions& options = arguments->options;
+    CLI::App* command = program.add_subcommand(
+        "prepare",
+        "Make a case's products from a CT series: the scan in HU, the colon's lumen, the distance "
+        "to its boundary, its centerline. Work that the store holds already is not done again.");
+    command
+        ->add_option("SERIES", options.series,
+                     "DICOM folder (files in any order and depth) or file, or one NIfTI file")
+        ->check(CLI::ExistingPath);
+    addStoreOption(*command, arguments->store);
+    command
+        ->add_option("--case", arguments->caseName,
+                     "The case's name: letters, digits, '.', '_', '-' (default: the series' name)")
+        ->type_name("NAME")
+        ->check([](const std::string& name) {
+            return store::isCaseName(name) ? std::string() : "not a case name: \"" + name + "\"";
+        });
+    command->add_option("--until", options.until, "The last stage to run")
+        ->type_name("STAGE")
+        ->check(CLI::IsMember(pipeline::stageNames()));
+    command
+        ->add_option(
+            "--lumen", options.lumenMask,
+            "A segmentation of the lumen made elsewhere, on the series' grid: 0 outside, 2 "
+            "tagged, else air. Without SERIES it is the case's own scan's, or stands alone")
+        ->type_name("MASK.nii.gz")
+        ->check(CLI::ExistingFile);
+    command->add_option("--series", options.seriesUid, "Which series of the folder, by its UID")
+        ->type_name("UID");
+    addPointsOption(*command, "--seed", options.seedsMm,
+                    "The air or fluid at this point (LPS, mm) is colon; may be repeated");
+    addPointsOption(*command, "--exclude", options.excludesMm,
+                    "The air or fluid at this point (LPS, mm) is not colon; may be repeated");
+    command
+        ->add_option("--report", arguments->report,
+                     "Write wall seconds and peak memory of each stage, and notes, as JSON")
+        ->type_name("FILE.json");
+    addThreadsOption(*command, options.threads);
+    command->callback([arguments] {
+        if (arguments->options.series.empty() && arguments->options.lumenMask.empty()) {
+            throw CLI::RequiredError("SERIES or --lumen");
+        }
+    });
+    return {command, [arguments] { return runPrepare(*arguments); }};
+}
+
+}  // namespace haustra::cli

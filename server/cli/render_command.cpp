@@ -1,0 +1,181 @@
+// haustra render: one picture of a case, as the server draws it.
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "core/centerline.h"
+#include "gpu/context.h"
+#include "render/case_renderer.h"
+#include "render/png_file.h"
+#include "store/case_store.h"
+
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+namespace haustra::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+    fs::path store, out;
+    std::string caseName, view = "endoscopic", direction = "antegrade";
+    std::string preset = render::transferFunctionPresets().front();
+    std::optional<double> arcMm;
+    std::vector<glm::dvec3> positionMm;
+    double fovDegrees = render::Camera{}.fovDegrees, zoom = 1.0;
+    glm::ivec2 size{512, 512};
+    render::WindowLevel window;
+    int threads = 0;
+};
+
+Result<render::EndoscopicView> endoscopicView(const Arguments& arguments,
+                                              const Centerline& centerline) {
+    auto preset = render::transferFunctionPreset(arguments.preset);
+    if (!preset) return tl::make_unexpected(preset.error());
+    const CenterlineCamera onPath = cameraAtArc(
+        centerline, rotationMinimizingUps(centerline, flightPreferredUp), *arguments.arcMm,
+        arguments.direction == "antegrade" ? FlightDirection::antegrade
+                                           : FlightDirection::retrograde);
+    render::EndoscopicView view;
+    view.camera = {onPath.positionMm, onPath.forward, onPath.up, arguments.fovDegrees};
+    view.transferFunction = std::move(*preset);
+    return view;
+}
+
+Result<render::Image> draw(const Arguments& arguments, const store::Case& source) {
+    const auto plane = render::viewFromString(arguments.view);
+    if (!plane) return tl::make_unexpected(plane.error());
+    Centerline centerline;
+    if (arguments.arcMm) {
+        auto read = source.readCenterline();
+        if (!read) return tl::make_unexpected(read.error());
+        if (read->points.empty())
+            return fail(ErrorKind::noResult, "the centerline is empty", source.name());
+        centerline = std::move(*read);
+    }
+    const auto ct = source.readVolume<std::int16_t>("ct");
+    if (!ct) return tl::make_unexpected(ct.error());
+    Volume<std::uint8_t> lumen;
+    if (source.find("lumen")) {
+        auto read = source.readVolume<std::uint8_t>("lumen");
+        if (!read) return tl::make_unexpected(read.error());
+        lumen = std::move(*read);
+    }
+    auto context = gpu::Context::create();
+    if (!context) return tl::make_unexpected(context.error());
+    auto renderer = render::CaseRenderer::create(**context, *ct, lumen, arguments.threads);
+    if (!renderer) return tl::make_unexpected(renderer.error());
+
+    if (*plane == render::View::endoscopic) {
+        const auto view = endoscopicView(arguments, centerline);
+        if (!view) return tl::make_unexpected(view.error());
+        return (*renderer)->render(*view, arguments.size.x, arguments.size.y);
+    }
+    render::SliceView slice{*plane, {}, arguments.zoom, arguments.window};
+    slice.positionMm = arguments.positionMm.empty()
+                           ? poseAtArc(centerline, *arguments.arcMm).point.positionMm
+                           : arguments.positionMm.front();
+    return (*renderer)->render(slice, arguments.size.x, arguments.size.y);
+}
+
+Result<void> runRender(const Arguments& arguments) {
+    const auto source = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
+        return s.openCase(arguments.caseName);
+    });
+    if (!source) return tl::make_unexpected(source.error());
+    const auto image = draw(arguments, *source);
+    if (!image) return tl::make_unexpected(image.error());
+    return render::writePng(arguments.out, *image);
+}
+
+void addPictureOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
+    command
+        .add_option_function<std::string>(
+            "--size",
+            [arguments](const std::string& text) {
+                const auto sides = parseNumbers(text, 'x', 2);
+                for (int axis = 0; axis < 2; ++axis) {
+                    const double side = sides ? (*sides)[axis] : 0.0;
+                    if (!(side >= 1.0 && side <= render::maxPictureSide) || side != int(side)) {
+                        throw CLI::ValidationError(
+                            "--size", "\"" + text + "\" is not WxH with sides of 1 to " +
+                                          std::to_string(render::maxPictureSide));
+                    }
+                    arguments->size[axis] = int(side);
+                }
+            },
+            "Pixels")
+        ->type_name("WxH")
+        ->default_str("512x512");
+    command.add_option("--out", arguments->out, "The picture; replaced in one step")
+        ->type_name("FILE.png")
+        ->required();
+}
+
+void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
+    command.add_option("--view", arguments->view, "What to draw")
+        ->check(CLI::IsMember({"endoscopic", "axial", "coronal", "sagittal"}))
+        ->capture_default_str();
+    command
+        .add_option(
+            "--arc-mm", arguments->arcMm,
+            "Where on the centerline, from the rectum: the camera, or the point that a slice shows")
+        ->type_name("A");
+    addPointsOption(command, "--position", arguments->positionMm,
+                    "The point (LPS, mm) that a slice shows, in place of --arc-mm");
+    command.add_option("--direction", arguments->direction, "Which way the camera looks")
+        ->check(CLI::IsMember({"antegrade", "retrograde"}))
+        ->capture_default_str();
+    command.add_option("--fov", arguments->fovDegrees, "Vertical field of view of the camera")
+        ->type_name("DEGREES")
+        ->check(CLI::Range(1.0, 170.0))
+        ->capture_default_str();
+    command.add_option("--transfer-function", arguments->preset, "Colours of the endoscopic view")
+        ->check(CLI::IsMember(render::transferFunctionPresets()))
+        ->capture_default_str();
+    command
+        .add_option_function<std::string>(
+            "--window",
+            [arguments](const std::string& text) {
+                const auto numbers = parseNumbers(text, ',', 2);
+                if (!numbers || !((*numbers)[1] > 0.0)) {
+                    throw CLI::ValidationError("--window", "\"" + text + "\" is not CENTER,WIDTH");
+                }
+                arguments->window = {(*numbers)[0], (*numbers)[1]};
+            },
+            "Grey values of a slice, HU")
+        ->type_name("C,W")
+        ->default_str("0,2000");
+    command.add_option("--zoom", arguments->zoom, "Enlargement of a slice")
+        ->type_name("Z")
+        ->check(CLI::Range(1.0, 64.0))
+        ->capture_default_str();
+}
+
+}  // namespace
+
+Command addRender(CLI::App& program) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command = program.add_subcommand(
+        "render", "Draw one picture of a case: a camera in the colon, or a slice of the scan.");
+    command->add_option("CASE", arguments->caseName, "The case's name")->required();
+    addStoreOption(*command, arguments->store);
+    addViewOptions(*command, arguments);
+    addPictureOptions(*command, arguments);
+    addThreadsOption(*command, arguments->threads);
+    command->callback([arguments] {
+        const bool slice = arguments->view != "endoscopic";
+        if (!slice && !arguments->positionMm.empty()) {
+            throw CLI::ValidationError("--position", "the endoscopic view is placed by --arc-mm");
+        }
+        if (arguments->positionMm.size() > 1)
+            throw CLI::ValidationError("--position", "given more than once");
+        if (!arguments->arcMm && arguments->positionMm.empty()) {
+            throw CLI::RequiredError(slice ? "--arc-mm or --position" : "--arc-mm");
+        }
+    });
+    return {command, [arguments] { return runRender(*arguments); }};
+}
+
+}  // namespace haustra::cli

@@ -1,0 +1,60 @@
+#include "cli/text_files.h"
+
+#include "cli/arguments.h"
+#include "store/durable_file.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace haustra::cli {
+
+Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text) {
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    return store::writeDurably(folder, file.filename().string(), {std::as_bytes(std::span(text))});
+}
+
+std::string centerlineCsv(const Centerline& centerline) {
+    std::string csv = "x_mm,y_mm,z_mm,arc_mm,radius_mm,gap\n";
+    for (const CenterlinePoint& p : centerline.points) {
+        csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{}\n", p.positionMm.x,
+                           p.positionMm.y, p.positionMm.z, p.arcMm, p.radiusMm, p.gap ? 1 : 0);
+    }
+    return csv;
+}
+
+Result<Centerline> readCenterlineCsv(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in) return fail(ErrorKind::io, "cannot open", file.string());
+    std::string line;
+    std::getline(in, line);
+    const bool hasGap = line.find(",gap") != std::string::npos;
+    Centerline centerline;
+    for (int number = 2; std::getline(in, line); ++number) {
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        if (line.empty()) continue;
+        const auto values = parseNumbers(line, ',', hasGap ? 6 : 5);
+        if (!values) {
+            return fail(ErrorKind::badInput,
+                        "line " + std::to_string(number) + " is not a centerline sample",
+                        file.string());
+        }
+        const auto& v = *values;
+        centerline.points.push_back({{v[0], v[1], v[2]}, v[3], v[4], hasGap && v[5] != 0.0});
+    }
+    return centerline;
+}
+
+std::string findingsJson(const Findings& findings) {
+    auto list = nlohmann::ordered_json::array();
+    for (const Finding& f : findings.findings) {
+        list.push_back({{"position_mm", {f.positionMm.x, f.positionMm.y, f.positionMm.z}},
+                        {"diameter_mm", f.diameterMm},
+                        {"score", f.score},
+                        {"kind", f.kind}});
+    }
+    return nlohmann::ordered_json{{"findings", list}}.dump(2) + "\n";
+}
+
+}  // namespace haustra::cli

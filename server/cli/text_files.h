@@ -1,0 +1,26 @@
+// Centerlines, findings and reports as files that other programs read.
+#pragma once
+
+#include "core/centerline.h"
+#include "core/findings.h"
+#include "core/result.h"
+
+#include <filesystem>
+#include <string>
+
+namespace haustra::cli {
+
+/// Replaces `file` in one step: a reader sees the old content or the new.
+Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text);
+
+/// A line of names, `x_mm,y_mm,z_mm,arc_mm,radius_mm,gap`, then a line for each sample from the
+/// rectum to the cecum; gap is 0 or 1.
+std::string centerlineCsv(const Centerline& centerline);
+
+/// Reads what centerlineCsv writes; the gap column may be missing.
+Result<Centerline> readCenterlineCsv(const std::filesystem::path& file);
+
+/// `{"findings":[{"position_mm":[x,y,z],"diameter_mm":d,"score":s,"kind":k}, …]}`
+std::string findingsJson(const Findings& findings);
+
+}  // namespace haustra::cli
