@@ -65,7 +65,8 @@ Result<MaybeGzipFile> MaybeGzipFile::open(const std::filesystem::path& file) {
         std::shared_ptr<void>(opened, [](void* f) { gzclose(static_cast<gzFile>(f)); });
     result.place_ = file.string();
     gzbuffer(opened, 1 << 18);
-    result.mostBytes_ = gzdirect(opened) ? size : size * bestRatio;
+    result.compressed_ = !gzdirect(opened);
+    result.mostBytes_ = result.compressed_ ? size * bestRatio : size;
     return result;
 }
 

@@ -21,6 +21,7 @@ public:
     Result<void> read(std::span<std::byte> bytes);
     /// Reads on to the end of the compressed data, so that its checksum is verified.
     Result<void> finish();
+    bool compressed() const { return compressed_; }
     /// No file of this size holds more bytes than this once decompressed.
     std::uint64_t mostBytes() const { return mostBytes_; }
 
@@ -30,6 +31,7 @@ private:
 
     std::shared_ptr<void> stream_;
     std::string place_;
+    bool compressed_ = false;
     std::uint64_t mostBytes_ = 0;
 };
 

@@ -128,7 +128,8 @@ void setGeometry(const Grid& grid, nifti_1_header& header) {
 Result<nifti_1_header> readHeader(MaybeGzipFile& stream, bool& swapped, const std::string& place) {
     nifti_1_header header;
     auto notNifti = [&] { return fail(ErrorKind::badInput, "this is not a NIfTI-1 file", place); };
-    if (!stream.read(std::as_writable_bytes(std::span(&header, 1)))) return notNifti();
+    if (auto read = stream.read(std::as_writable_bytes(std::span(&header, 1))); !read)
+        return stream.compressed() ? tl::make_unexpected(read.error()) : notNifti();
     int size = header.sizeof_hdr;
     swapped = size != int(sizeof header);
     if (swapped) nifti_swap_4bytes(1, &size);
