@@ -4,6 +4,7 @@
 #include "topology/centerline_order.h"
 #include "topology/centerline_search.h"
 #include "topology/centerline_spline.h"
+#include "topology/centerline_tip.h"
 
 #include <algorithm>
 #include <array>
@@ -75,7 +76,7 @@ std::pair<std::int32_t, std::int32_t> endsOf(const BlockGraph& graph, std::int32
                                              std::optional<std::int32_t> first,
                                              std::optional<std::int32_t> last) {
     const auto tipFrom = [&](std::int32_t node) {
-        return farthestTip(graph, growPathTree(graph, node), EndShape::narrowing);
+        return farthestTip(graph, growWidestTree(graph, node), EndShape::narrowing);
     };
     if (!first)
         first = tipFrom(last ? *last : tipFrom(graph.components[std::size_t(component)].deepest));
@@ -205,7 +206,7 @@ Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
             std::swap(segment.first, segment.last);
             std::swap(segment.firstGiven, segment.lastGiven);
         }
-        const PathTree tree = growPathTree(graph, segment.first);
+        const PathTree tree = growWidestTree(graph, segment.first);
         if (n + 1 == order.size() && !segment.lastGiven)
             segment.last = farthestTip(graph, tree, EndShape::pouch);
         std::vector<glm::ivec3> path =

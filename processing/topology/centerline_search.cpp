@@ -10,15 +10,9 @@
 namespace haustra::topology {
 namespace {
 
-using Frontier = std::priority_queue<std::pair<double, std::int32_t>,
-                                     std::vector<std::pair<double, std::int32_t>>, std::greater<>>;
-
-// How far before its end, in radii, the colon's tip is looked for.
-constexpr float endReachInRadii = 4.0f;
-// The least part of the widest radius there that the last wide place has.
-constexpr float narrowingWidth = 0.4f, pouchWidth = 0.8f;
-// How far from the centre of the last wide place, in its radii, the tip may lie.
-constexpr double tipReachInRadii = 1.1;
+using CheapestFirst =
+    std::priority_queue<std::pair<double, std::int32_t>,
+                        std::vector<std::pair<double, std::int32_t>>, std::greater<>>;
 
 // The part of the inscribed balls that the line may pass.
 constexpr double innerPart = 0.8;
@@ -68,99 +62,85 @@ private:
 
 }  // namespace
 
-double costPerMm(double radiusMm, int exponent) {
-    const double closeness = 10.0 / std::max(radiusMm, 1e-3);
-    double cost = closeness;
-    for (int n = 1; n < exponent; ++n)
-        cost *= closeness;
-    return cost;
-}
-
 namespace {
 
-/// Dijkstra with cost(node) per mm over the nodes that allow(node).
-template <class Cost, class Allow>
-PathTree growTree(const BlockGraph& graph, std::int32_t source, const Cost& cost,
-                  const Allow& allow) {
+double costPerMm(float radiusMm) {
+    return 1.0 / std::max(double(radiusMm), 1e-3);
+}
+
+double stepMm(const BlockGraph& graph, std::int32_t a, std::int32_t b) {
+    return glm::length(graph.grid.spacingMm() * glm::dvec3(graph.voxelOf(a) - graph.voxelOf(b)));
+}
+
+}  // namespace
+
+PathTree growWidestTree(const BlockGraph& graph, std::int32_t source) {
     const std::size_t count = graph.nodes.size();
     PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f)};
-    std::vector<double> best(count, std::numeric_limits<double>::infinity());
-    std::vector<bool> done(count, false);
-    const glm::dvec3 spacing = graph.grid.spacingMm();
     std::array<std::int32_t, 26> around;
-    Frontier frontier;
-    best[std::size_t(source)] = 0.0;
+    // The deepest first; of equals, the first node.
+    std::priority_queue<std::pair<float, std::int32_t>> frontier;
     tree.lengthMm[std::size_t(source)] = 0.0f;
-    frontier.emplace(0.0, source);
+    frontier.emplace(graph.nodes[std::size_t(source)].radiusMm, -source);
     while (!frontier.empty()) {
-        const std::int32_t at = frontier.top().second;
+        const std::int32_t at = -frontier.top().second;
         frontier.pop();
-        if (done[std::size_t(at)]) continue;
-        done[std::size_t(at)] = true;
-        const glm::ivec3 here = graph.voxelOf(at);
-        const double costHere = cost(at);
         const int found = graph.neighbours(at, around);
         for (int n = 0; n < found; ++n) {
-            const std::int32_t node = around[std::size_t(n)];
-            const auto next = std::size_t(node);
-            if (done[next] || !allow(node)) continue;
-            const double stepMm = glm::length(spacing * glm::dvec3(graph.voxelOf(node) - here));
-            const double through = best[std::size_t(at)] + 0.5 * stepMm * (costHere + cost(node));
-            if (through >= best[next]) continue;
-            best[next] = through;
-            tree.parent[next] = at;
-            tree.lengthMm[next] = tree.lengthMm[std::size_t(at)] + float(stepMm);
-            frontier.emplace(through, node);
+            const std::int32_t next = around[std::size_t(n)];
+            if (tree.lengthMm[std::size_t(next)] >= 0.0f) continue;
+            tree.parent[std::size_t(next)] = at;
+            tree.lengthMm[std::size_t(next)] =
+                tree.lengthMm[std::size_t(at)] + float(stepMm(graph, at, next));
+            frontier.emplace(graph.nodes[std::size_t(next)].radiusMm, -next);
         }
     }
     return tree;
 }
 
-std::int32_t longest(const PathTree& tree) {
+PathTree growCheapestTree(const BlockGraph& graph, std::span<const std::int32_t> sources,
+                          StepCost cost, const std::vector<bool>& within, double longestMm) {
+    const std::size_t count = graph.nodes.size();
+    PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f)};
+    std::vector<double> best(count, std::numeric_limits<double>::infinity());
+    std::vector<bool> done(count, false);
+    std::array<std::int32_t, 26> around;
+    CheapestFirst frontier;
+    for (const std::int32_t source : sources) {
+        best[std::size_t(source)] = 0.0;
+        tree.lengthMm[std::size_t(source)] = 0.0f;
+        frontier.emplace(0.0, source);
+    }
+    const auto perMm = [&](std::int32_t node) {
+        return cost == StepCost::length ? 1.0 : costPerMm(graph.nodes[std::size_t(node)].radiusMm);
+    };
+    while (!frontier.empty()) {
+        const std::int32_t at = frontier.top().second;
+        frontier.pop();
+        if (done[std::size_t(at)]) continue;
+        done[std::size_t(at)] = true;
+        const double perMmHere = perMm(at);
+        const int found = graph.neighbours(at, around);
+        for (int n = 0; n < found; ++n) {
+            const std::int32_t next = around[std::size_t(n)];
+            if (done[std::size_t(next)] || (!within.empty() && !within[std::size_t(next)]))
+                continue;
+            const double step = stepMm(graph, at, next);
+            const double through = best[std::size_t(at)] + 0.5 * step * (perMmHere + perMm(next));
+            const double lengthMm = double(tree.lengthMm[std::size_t(at)]) + step;
+            if (through >= best[std::size_t(next)] || lengthMm > longestMm) continue;
+            best[std::size_t(next)] = through;
+            tree.parent[std::size_t(next)] = at;
+            tree.lengthMm[std::size_t(next)] = float(lengthMm);
+            frontier.emplace(through, next);
+        }
+    }
+    return tree;
+}
+
+std::int32_t longestPathEnd(const PathTree& tree) {
     return std::int32_t(std::max_element(tree.lengthMm.begin(), tree.lengthMm.end()) -
                         tree.lengthMm.begin());
-}
-
-}  // namespace
-
-PathTree growPathTree(const BlockGraph& graph, std::int32_t source) {
-    return growTree(
-        graph, source,
-        [&](std::int32_t node) {
-            return costPerMm(graph.nodes[std::size_t(node)].radiusMm, routeExponent);
-        },
-        [](std::int32_t) { return true; });
-}
-
-std::int32_t farthestTip(const BlockGraph& graph, const PathTree& tree, EndShape shape) {
-    const std::vector<std::int32_t> path = pathTo(tree, longest(tree));
-    const float lengthMm = tree.lengthMm[std::size_t(path.back())];
-    // Back from the tip until the path is past the colon's last few radii.
-    float widestMm = 0.0f;
-    std::size_t start = path.size() - 1;
-    for (; start > 0; --start) {
-        widestMm = std::max(widestMm, graph.nodes[std::size_t(path[start])].radiusMm);
-        if (lengthMm - tree.lengthMm[std::size_t(path[start])] >= endReachInRadii * widestMm) break;
-    }
-    const float fromMm = tree.lengthMm[std::size_t(path[start])];
-    const PathTree cap = growTree(
-        graph, path[start], [](std::int32_t) { return 1.0; },
-        [&](std::int32_t node) { return tree.lengthMm[std::size_t(node)] >= fromMm; });
-    const auto farthest = [&](const auto& eligible) {
-        std::int32_t best = path[start];
-        for (std::size_t n = 0; n < graph.nodes.size(); ++n) {
-            if (cap.lengthMm[n] > cap.lengthMm[std::size_t(best)] && eligible(std::int32_t(n)))
-                best = std::int32_t(n);
-        }
-        return best;
-    };
-    const float leastMm = (shape == EndShape::pouch ? pouchWidth : narrowingWidth) * widestMm;
-    const std::int32_t last =
-        farthest([&](std::int32_t n) { return graph.nodes[std::size_t(n)].radiusMm >= leastMm; });
-    const double reachMm = tipReachInRadii * double(graph.nodes[std::size_t(last)].radiusMm);
-    return farthest([&](std::int32_t n) {
-        return glm::distance(graph.positionMm(n), graph.positionMm(last)) <= reachMm;
-    });
 }
 
 std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target) {
@@ -195,12 +175,8 @@ std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
             }
         }
     }
-    const PathTree tree = growTree(
-        graph, route.front(),
-        [&](std::int32_t node) {
-            return costPerMm(graph.nodes[std::size_t(node)].radiusMm, lineExponent);
-        },
-        [&](std::int32_t node) { return within[std::size_t(node)]; });
+    const PathTree tree =
+        growCheapestTree(graph, std::span(route).first(1), StepCost::closeness, within);
     return pathTo(tree, route.back());
 }
 
@@ -213,7 +189,7 @@ std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<flo
     std::vector<double> cost(corridor.size(), std::numeric_limits<double>::infinity());
     std::vector<std::int32_t> parent(corridor.size(), -1);
     std::vector<bool> done(corridor.size(), false);
-    Frontier frontier;
+    CheapestFirst frontier;
     cost[std::size_t(source)] = 0.0;
     frontier.emplace(0.0, source);
     while (!frontier.empty() && !done[std::size_t(target)]) {
@@ -222,15 +198,14 @@ std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<flo
         if (done[std::size_t(at)]) continue;
         done[std::size_t(at)] = true;
         const glm::ivec3 here = corridor.voxelOf(at);
-        const double costHere = costPerMm(distanceMm.at(here), lineExponent);
+        const double costHere = costPerMm(distanceMm.at(here));
         for (int n = 0; n < 27; ++n) {
             const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
             const std::int32_t next = corridor.numberOf(here + step);
             if (next < 0 || done[std::size_t(next)]) continue;
             const double through =
-                cost[std::size_t(at)] +
-                0.5 * glm::length(spacing * glm::dvec3(step)) *
-                    (costHere + costPerMm(distanceMm.at(here + step), lineExponent));
+                cost[std::size_t(at)] + 0.5 * glm::length(spacing * glm::dvec3(step)) *
+                                            (costHere + costPerMm(distanceMm.at(here + step)));
             if (through >= cost[std::size_t(next)]) continue;
             cost[std::size_t(next)] = through;
             parent[std::size_t(next)] = at;

@@ -4,52 +4,49 @@
 #include "topology/centerline_graph.h"
 
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 namespace haustra::topology {
 
-/// What a way through the lumen costs, per mm, where the boundary is `radiusMm` away: a power of
-/// its inverse (Wan et al., IEEE TMI 21:1450, 2002; dissertation §1.2.1 [126]). The route through
-/// the colon is found with a steep cost, for which a narrow leak between two touching loops is
-/// dearer than the long way through an open colon; the line within the route with a gentle one,
-/// which does not swing into every haustrum.
-double costPerMm(double radiusMm, int exponent);
-inline constexpr int routeExponent = 3, lineExponent = 1;
-
-/// The minimum-cost tree of one component.
+/// Paths from one or several sources to the nodes of a graph.
 struct PathTree {
-    std::vector<std::int32_t>
-        parent;                   ///< towards the source; −1 at the source and where not reached
+    std::vector<std::int32_t> parent;  ///< towards the source; −1 at a source and where not reached
     std::vector<float> lengthMm;  ///< of the tree's path from the source; −1 where not reached
 };
 
-/// Dijkstra with the route's cost from `source` over the graph's nodes; of paths of equal cost the
-/// one that comes first in the order of nodes. O(n log n).
-PathTree growPathTree(const BlockGraph& graph, std::int32_t source);
+/// The tree of widest paths from one node through its component: of all ways to a node, the tree's
+/// narrowest place is the widest. So each handle of the lumen is cut at its narrowest place, which
+/// is the leak where two loops touch and not the colon, however long the way around.
+/// The minimum-cost spanning tree of Wan et al. (IEEE TMI 21:1450, 2002; dissertation §1.2.1
+/// [126]), by Prim's algorithm: the deepest node on the frontier is next, the first of equals.
+/// O(n log n).
+PathTree growWidestTree(const BlockGraph& graph, std::int32_t source);
 
-/// How an end of the lumen looks: an open colon that narrows towards the anus or a collapsed
-/// stretch, or the wide blind pouch of the cecum.
-enum class EndShape { narrowing, pouch };
+/// What a step costs: its length, or its length over the distance from the boundary.
+enum class StepCost { length, closeness };
 
-/// The tip of the colon farthest from the tree's source. The longest path of the tree finds the end
-/// of the colon, because leaks between loops do not shorten it. Over the last few radii plain
-/// geodesic distance decides, because a path that keeps to the ridge is longest into any deep
-/// haustrum, and only a place of about the colon's width there counts (two fifths of it; in a
-/// pouch, four fifths), because the terminal ileum or a catheter may lead on. The tip is the
-/// farthest point around that place.
-std::int32_t farthestTip(const BlockGraph& graph, const PathTree& tree, EndShape shape);
+/// Dijkstra from several sources at once, no farther than `longestMm` and, where `within` is not
+/// empty, over the nodes that it holds. O(n log n).
+PathTree growCheapestTree(const BlockGraph& graph, std::span<const std::int32_t> sources,
+                          StepCost cost, const std::vector<bool>& within = {},
+                          double longestMm = std::numeric_limits<double>::infinity());
+
+/// The node with the longest path; the first of several.
+std::int32_t longestPathEnd(const PathTree& tree);
 
 /// From the tree's source to `target`.
 std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target);
 
-/// The minimum-cost path, with the line's cost, from the route's first node to its last within the
-/// inner part of the balls inscribed along the route, where no leak leads out of the colon.
+/// The path that minimises ∫ ds / distance from the boundary, from the route's first node to its
+/// last, within the inner part of the balls inscribed along the route, where no leak leads out of
+/// the colon. Unlike the tree's path it does not swing into every haustrum.
 std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
                                       const std::vector<std::int32_t>& route);
 
-/// The exact minimum-cost path, with the line's cost, over single voxels (26-connected), from the
-/// deepest voxel of the route's first block to that of its last, within `reach` blocks of the
-/// route.
+/// The exact minimum of the same cost over single voxels (26-connected), from the deepest voxel of
+/// the route's first block to that of its last, within `reach` blocks of the route.
 std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<float>& distanceMm,
                                        const std::vector<std::int32_t>& route, int reach = 3);
 
