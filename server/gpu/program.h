@@ -15,8 +15,8 @@ namespace haustra::gpu {
 class ComputeProgram {
 public:
     /// Compiles the pieces in order as one shader, after "#version 450 core". Fails with the
-    /// compiler's log, whose line numbers read piece:line with pieces counted from 1; `what` names
-    /// the program there.
+    /// compiler's log, whose line numbers count from each piece's beginning; `what` names the
+    /// program there.
     static Result<ComputeProgram> create(const char* what,
                                          std::initializer_list<std::string_view> pieces);
     ~ComputeProgram();

@@ -24,11 +24,7 @@ using shaders::MarchUniforms;
 using shaders::shaderSource;
 using shaders::SliceUniforms;
 
-constexpr double terminationOpacity = 0.95;
 constexpr int coneTile = 8;  // pixels along a tile's side in the cone pass
-// Headlight: a lamp at the eye whose light halves at this depth; little gloss, as of a moist wall.
-constexpr double lampHalfMm = 110.0;
-constexpr double ambient = 0.12, diffuse = 0.88, specular = 0.10, shininess = 24.0;
 
 /// A stored value is HU + 32768, exact for every int16, as a fraction of 65535.
 constexpr double storedOffset = 32768.0, storedRange = 65535.0;
@@ -175,9 +171,10 @@ struct CaseRenderer::Impl {
             glm::vec4(limit(tableNow.visibleAboveHu), limit(tableNow.visibleBelowHu),
                       storedRange * perHu / TransferTable::entries,
                       ((-storedOffset - tableNow.firstHu) * perHu + 0.5) / TransferTable::entries);
-        u.stepping =
-            glm::vec4(step, terminationOpacity, std::ceil(farthestMm / step) + 1.0, lampHalfMm);
-        u.light = glm::vec4(ambient, diffuse, specular, shininess);
+        u.stepping = glm::vec4(step, terminationOpacity, std::ceil(farthestMm / step) + 1.0,
+                               headlight.halfDepthMm);
+        u.light = glm::vec4(headlight.ambient, headlight.diffuse, headlight.specular,
+                            headlight.shininess);
         u.pictureSize = glm::ivec4(size, view.march.shading ? 1 : 0, 0);
         u.lastBlock = glm::ivec4(ranges.size - 1, coneTile);
         return u;

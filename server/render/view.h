@@ -64,6 +64,19 @@ struct MarchOptions {
     bool shading = true;            ///< else the transfer function's colours, unlit
 };
 
+/// The lamp at the camera, in Blinn-Phong terms of linear light: at depth d mm a surface whose
+/// normal makes the angle a with the ray sends back
+/// (color·(ambient + diffuse·|cos a|) + specular·max(cos 2a, 0)^shininess) / (1 + (d /
+/// halfDepthMm)²).
+struct Headlight {
+    double halfDepthMm, ambient, diffuse, specular, shininess;
+};
+/// Mild fall-off, so that the far lumen stays readable; little gloss, as of a moist wall.
+inline constexpr Headlight headlight{65.0, 0.05, 0.95, 0.08, 20.0};
+
+/// A ray ends where its opacity has reached this, and then counts as opaque.
+inline constexpr double terminationOpacity = 0.95;
+
 struct EndoscopicView {
     Camera camera;
     TransferFunction transferFunction;

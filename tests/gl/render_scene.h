@@ -1,0 +1,105 @@
+// Small volumes, a context and renderers for the tests that draw.
+#pragma once
+
+#include "render/case_renderer.h"
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+namespace haustra::tests {
+
+/// A volume of value(patient point in mm), rounded to whole HU.
+inline Volume<std::int16_t> sampled(const Grid& grid,
+                                    const std::function<double(glm::dvec3)>& value) {
+    Volume<std::int16_t> volume(grid);
+    for (std::size_t i = 0; i < grid.voxelCount(); ++i)
+        volume.writable()[i] = std::int16_t(
+            std::lround(value(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(i))))));
+    return volume;
+}
+
+/// A grid whose axes are turned in the patient, with the given spacing, centred on the origin.
+inline Grid obliqueGrid(glm::ivec3 size, glm::dvec3 spacingMm) {
+    Grid grid{size, glm::dmat4(1.0)};
+    const glm::dmat4 turned =
+        glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1.0, 2.0, -0.5)));
+    grid.patientFromVoxel =
+        glm::translate(glm::scale(turned, spacingMm), -0.5 * glm::dvec3(size - 1));
+    return grid;
+}
+
+/// A tube along z with ring folds: air in it, soft tissue around, blurred as by a scanner.
+inline double foldedTube(glm::dvec3 p) {
+    const double radius =
+        12.0 + 3.0 * std::sin(0.6 * p.z) + 1.5 * std::sin(3.0 * std::atan2(p.y, p.x));
+    const double outside = std::hypot(p.x, p.y) - radius;
+    return -480.0 + 520.0 * std::tanh(outside / 1.2);
+}
+
+/// White, unlit, with `opacity` for each mm at every value.
+inline render::TransferFunction everywhere(double opacity) {
+    return {{{-2000.0, glm::dvec3(1.0), opacity}, {2000.0, glm::dvec3(1.0), opacity}}};
+}
+
+/// Opaque white above `hu`, nothing below.
+inline render::TransferFunction surfaceAt(double hu) {
+    return {{{hu - 1.0, glm::dvec3(1.0), 0.0},
+             {hu, glm::dvec3(1.0), 1.0},
+             {hu + 1000.0, glm::dvec3(1.0), 1.0}}};
+}
+
+/// sRGB's curve and its inverse; values 0…1.
+inline double displayedOf(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+inline double linearOf(double displayed) {
+    return displayed <= 0.04045 ? displayed / 12.92 : std::pow((displayed + 0.055) / 1.055, 2.4);
+}
+
+inline int pixel(const render::Image& image, int x, int y, int channel = 0) {
+    return image.rgb[3 * (std::size_t(y) * std::size_t(image.width) + std::size_t(x)) +
+                     std::size_t(channel)];
+}
+
+/// A test with a context; fails where anything that it drew made OpenGL complain.
+class Drawing : public testing::Test {
+protected:
+    void SetUp() override {
+        auto made = gpu::Context::create();
+        ASSERT_TRUE(made) << describe(made.error());
+        context = std::move(*made);
+    }
+    void TearDown() override {
+        if (context) {
+            EXPECT_EQ(context->errorCount(), 0);
+        }
+    }
+    std::unique_ptr<render::CaseRenderer> renderer(const Volume<std::int16_t>& ct,
+                                                   const Volume<std::uint8_t>& lumen = {},
+                                                   int threads = 0) {
+        auto made = render::CaseRenderer::create(*context, ct, lumen, threads);
+        if (!made) {
+            ADD_FAILURE() << describe(made.error());
+            return nullptr;
+        }
+        return std::move(*made);
+    }
+    template <class View>
+    static render::Image draw(render::CaseRenderer& renderer, const View& view, int width,
+                              int height) {
+        auto made = renderer.render(view, width, height);
+        if (!made) ADD_FAILURE() << describe(made.error());
+        return made ? std::move(*made)
+                    : render::Image{width, height, std::vector<std::uint8_t>(3u * width * height)};
+    }
+
+    std::unique_ptr<gpu::Context> context;
+};
+
+}  // namespace haustra::tests

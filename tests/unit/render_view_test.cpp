@@ -1,0 +1,120 @@
+// Cameras, transfer functions and slices, where no GL is needed.
+#include "render/png_file.h"
+#include "render/transfer_table.h"
+#include "render/view.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace haustra::render {
+namespace {
+
+TEST(TransferFunction, PresetsPassTheirOwnCheck) {
+    for (const std::string& name : transferFunctionPresets()) {
+        const auto preset = transferFunctionPreset(name);
+        ASSERT_TRUE(preset) << name;
+        EXPECT_TRUE(checkTransferFunction(*preset)) << name;
+    }
+    const auto unknown = transferFunctionPreset("bone");
+    ASSERT_FALSE(unknown);
+    EXPECT_NE(unknown.error().message.find("mucosa"), std::string::npos);
+}
+
+TEST(TransferTable, OpacityOfManyShortStepsIsThatOfOneLong) {
+    const TransferFunction function{
+        {{-100.0, {1, 1, 1}, 0.0}, {0.0, {1, 0, 0}, 0.3}, {200.0, {0, 0, 1}, 0.9}}};
+    const TransferTable whole = makeTransferTable(function, 1.0),
+                        quarter = makeTransferTable(function, 0.25);
+    for (std::size_t i = 0; i < whole.rgba.size(); i += 97)
+        EXPECT_NEAR(1.0 - std::pow(1.0 - quarter.rgba[i].a, 4.0), whole.rgba[i].a, 1e-5);
+}
+
+TEST(TransferTable, NothingOutsideTheVisibleRangeHasOpacity) {
+    const TransferFunction function{{{-1000.0, {1, 1, 1}, 0.0},
+                                     {-700.0, {1, 1, 1}, 0.0},
+                                     {-500.0, {1, 1, 1}, 0.5},
+                                     {300.0, {1, 1, 1}, 0.0}}};
+    const TransferTable table = makeTransferTable(function, 0.5);
+    const double entryHu = 1300.0 / (TransferTable::entries - 1);
+    EXPECT_NEAR(table.visibleAboveHu, -700.0, entryHu);
+    EXPECT_NEAR(table.visibleBelowHu, 300.0, entryHu);
+    EXPECT_FALSE(table.anyVisible(-1024.0, -702.0));
+    EXPECT_TRUE(table.anyVisible(-1024.0, -690.0));
+    EXPECT_TRUE(table.anyVisible(-600.0, -600.0));
+    EXPECT_FALSE(table.anyVisible(302.0, 3000.0));
+    EXPECT_TRUE(table.anyVisible(-2000.0, 3000.0));
+    const TransferFunction open{{{-100.0, {1, 1, 1}, 0.1}, {100.0, {1, 1, 1}, 0.1}}};
+    EXPECT_TRUE(std::isinf(makeTransferTable(open, 1.0).visibleAboveHu));
+    EXPECT_TRUE(makeTransferTable(open, 1.0).anyVisible(-5000.0, -4000.0));
+}
+
+TEST(View, NamesGoThereAndBack) {
+    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
+        EXPECT_EQ(*viewFromString(toString(view)), view);
+    EXPECT_FALSE(viewFromString("oblique"));
+}
+
+TEST(Camera, ChecksItsFieldOfViewAndDirections) {
+    EXPECT_TRUE(checkCamera({}));
+    EXPECT_FALSE(checkCamera({{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, 90.0}));
+    EXPECT_FALSE(checkCamera({{0, 0, 0}, {0, 2, 0}, {0, -1, 0}, 90.0}));
+    EXPECT_FALSE(checkCamera({{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 180.0}));
+    EXPECT_FALSE(checkCamera({{0, NAN, 0}, {0, 0, 1}, {0, 1, 0}, 90.0}));
+}
+
+class Placement : public testing::Test {
+protected:
+    const Grid grid = axisAlignedGrid({100, 80, 60}, {0.5, 0.5, 2.0}, {-10.0, 30.0, -50.0});
+    static glm::dvec3 at(const SlicePlacement& placement, double x, double y) {
+        return placement.topLeftMm + x * placement.rightMm + y * placement.downMm;
+    }
+};
+
+TEST_F(Placement, ZoomOneFitsTheSliceCentredWithSquareMillimetres) {
+    SliceView view;
+    view.plane = View::coronal;
+    view.positionMm = {5.0, 40.0, 3.0};
+    const SlicePlacement placement = *placeSlice(view, grid, 300, 200);
+    EXPECT_NEAR(glm::length(placement.rightMm), glm::length(placement.downMm), 1e-12);
+    // 120 mm high by 50 wide into 300 by 200: the height decides.
+    EXPECT_NEAR(glm::length(placement.downMm), 120.0 / 200, 1e-12);
+    const glm::dvec3 middle = at(placement, 149.5, 99.5);
+    EXPECT_NEAR(middle.x, -10.0 + 49.5 * 0.5, 1e-9);
+    EXPECT_NEAR(middle.y, 40.0, 1e-9);
+    EXPECT_NEAR(middle.z, -50.0 + 29.5 * 2.0, 1e-9);
+}
+
+TEST_F(Placement, ZoomingHoldsThePositionInThePicture) {
+    for (const View plane : {View::axial, View::coronal, View::sagittal}) {
+        SliceView view;
+        view.plane = plane;
+        view.positionMm = {3.0, 44.0, 11.0};
+        const auto pixelOfPosition = [&] {
+            const SlicePlacement p = *placeSlice(view, grid, 256, 256);
+            const glm::dvec3 d = view.positionMm - p.topLeftMm;
+            const double perPixel = glm::dot(p.rightMm, p.rightMm);
+            EXPECT_NEAR(glm::dot(d, glm::cross(p.rightMm, p.downMm)), 0.0, 1e-9);
+            return glm::dvec2(glm::dot(d, p.rightMm), glm::dot(d, p.downMm)) / perPixel;
+        };
+        const glm::dvec2 before = pixelOfPosition();
+        view.zoom = 5.0;
+        EXPECT_NEAR(glm::distance(pixelOfPosition(), before), 0.0, 1e-9) << toString(plane);
+    }
+}
+
+TEST(Window, EndsAreBlackAndWhite) {
+    const WindowLevel window{-50.0, 400.0};
+    EXPECT_EQ(windowed(-251.0, window), 0.0);
+    EXPECT_EQ(windowed(151.0, window), 255.0);
+    EXPECT_NEAR(windowed(-50.0, window), 127.5, 1e-9);
+}
+
+TEST(Png, RefusesWhatItCannotWrite) {
+    EXPECT_FALSE(writePng("/nonexistent/folder/a.png", {1, 1, {1, 2, 3}}));
+    EXPECT_FALSE(writePng(testing::TempDir() + "a.png", {2, 2, {1, 2, 3}}));
+    EXPECT_TRUE(writePng(testing::TempDir() + "a.png", {1, 1, {1, 2, 3}}));
+}
+
+}  // namespace
+}  // namespace haustra::render
