@@ -187,12 +187,14 @@ Result<StoredFormat> readFormat(DcmItem& dataset, const std::string& place) {
 
 Result<std::vector<FrameHeader>> readFrames(DcmItem& dataset, bool enhanced,
                                             const std::string& place) {
-    const double count = number(dataset, DCM_NumberOfFrames).value_or(1.0);
-    if (!(count >= 1 && count <= mostFrames)) {
-        return fail(ErrorKind::badInput,
-                    "the CT image claims " + std::to_string(std::int64_t(count)) +
-                        " frames; 1 to " + std::to_string(mostFrames) + " are read",
-                    place);
+    Sint32 count = 0;
+    if (dataset.findAndGetSint32(DCM_NumberOfFrames, count).bad())
+        count = dataset.tagExistsWithValue(DCM_NumberOfFrames) ? 0 : 1;
+    if (count < 1 || count > mostFrames) {
+        return fail(
+            ErrorKind::badInput,
+            "the CT image's number of frames is not between 1 and " + std::to_string(mostFrames),
+            place);
     }
     std::vector<FrameHeader> frames;
     if (!enhanced) {

@@ -34,7 +34,8 @@ struct Rescale {
 inline constexpr std::int16_t paddingHu = -1024;
 
 /// The HU of each 16-bit pattern that can lie in a cell, so that decoding a pixel is one lookup.
-/// Values beyond int16 are clamped.
+/// Values beyond int16 are clamped; in an image padded with values below air, so are values below
+/// −1024.
 class HuTable {
 public:
     /// `format` must be valid().
