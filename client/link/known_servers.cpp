@@ -1,0 +1,154 @@
+#include "link/known_servers.h"
+
+#include "link/fingerprint.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace haustra::link {
+namespace {
+
+struct Entry {
+    std::string line;    // as it stands in the file
+    std::string server;  // empty in a comment
+    std::string fingerprint;
+};
+
+Result<std::vector<Entry>> readEntries(const std::filesystem::path& file) {
+    std::vector<Entry> entries;
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return entries;
+    std::ifstream in(file);
+    if (!in) return fail(ErrorKind::io, "cannot read the known servers", file.string());
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        Entry entry{line, {}, {}};
+        std::istringstream words(line);
+        std::string extra;
+        words >> entry.server;
+        if (entry.server.empty() || entry.server[0] == '#') {
+            entry.server.clear();
+        } else {
+            words >> entry.fingerprint;
+            const auto normal = normalizeFingerprint(entry.fingerprint);
+            if (!normal || words >> extra)
+                return fail(ErrorKind::badInput, "not a line of \"host:port fingerprint\"",
+                            file.string() + ":" + std::to_string(number));
+            entry.fingerprint = *normal;
+        }
+        entries.push_back(std::move(entry));
+    }
+    if (in.bad()) return fail(ErrorKind::io, "cannot read the known servers", file.string());
+    return entries;
+}
+
+Result<void> writeAtomically(const std::filesystem::path& file, const std::string& text) {
+    const auto refuse = [&](const char* what) {
+        return fail(ErrorKind::io,
+                    std::string(what) + " the known servers: " + std::strerror(errno),
+                    file.string());
+    };
+    std::string temporary = file.string() + ".XXXXXX";
+    const int descriptor = ::mkstemp(temporary.data());
+    if (descriptor < 0) return refuse("cannot write");
+    std::size_t written = 0;
+    bool sound = true;
+    while (sound && written < text.size()) {
+        const ssize_t count = ::write(descriptor, text.data() + written, text.size() - written);
+        if (count > 0)
+            written += std::size_t(count);
+        else if (errno != EINTR)
+            sound = false;
+    }
+    sound = sound && ::fsync(descriptor) == 0;
+    sound = ::close(descriptor) == 0 && sound;
+    if (!sound || ::rename(temporary.c_str(), file.c_str()) != 0) {
+        const int reason = errno;
+        ::unlink(temporary.c_str());
+        errno = reason;
+        return refuse("cannot write");
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<std::filesystem::path> KnownServers::defaultFile() {
+    const auto variable = [](const char* name) {
+        const char* value = std::getenv(name);
+        return std::filesystem::path(value ? value : "");
+    };
+    if (const auto config = variable("XDG_CONFIG_HOME"); config.is_absolute())
+        return config / "haustra" / "known_servers";
+    if (const auto home = variable("HOME"); home.is_absolute())
+        return home / ".config" / "haustra" / "known_servers";
+    return fail(ErrorKind::notFound,
+                "no folder for the known servers: set HOME, or give --known-servers FILE");
+}
+
+Result<std::optional<std::string>> KnownServers::find(const std::string& server) const {
+    const auto entries = readEntries(file_);
+    if (!entries) return tl::make_unexpected(entries.error());
+    for (const Entry& entry : *entries)
+        if (entry.server == server) return entry.fingerprint;
+    return std::nullopt;
+}
+
+Result<void> KnownServers::pin(const std::string& server, const std::string& fingerprint) const {
+    const auto entries = readEntries(file_);
+    if (!entries) return tl::make_unexpected(entries.error());
+    std::string text;
+    for (const Entry& entry : *entries)
+        if (entry.server != server) text += entry.line + "\n";
+    text += server + " " + fingerprint + "\n";
+    if (const auto folder = file_.parent_path(); !folder.empty()) {
+        std::error_code error;
+        const bool made = std::filesystem::create_directories(folder, error);
+        if (error)
+            return fail(ErrorKind::io, "cannot make the folder: " + error.message(),
+                        folder.string());
+        if (made) std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+    }
+    return writeAtomically(file_, text);
+}
+
+Result<Trust> checkPin(const Pinning& pinning, const std::string& server,
+                       const std::string& fingerprint) {
+    const KnownServers known(pinning.knownServersFile);
+    if (pinning.expectedFingerprint) {
+        if (*pinning.expectedFingerprint != fingerprint)
+            return fail(ErrorKind::badInput,
+                        "the server's certificate has the fingerprint " + fingerprint + ", not " +
+                            *pinning.expectedFingerprint + " as given: refused",
+                        server);
+        if (auto pinned = known.pin(server, fingerprint); !pinned)
+            return tl::make_unexpected(pinned.error());
+        return Trust::known;
+    }
+    const auto pinned = known.find(server);
+    if (!pinned) return tl::make_unexpected(pinned.error());
+    if (!*pinned) {
+        if (auto written = known.pin(server, fingerprint); !written)
+            return tl::make_unexpected(written.error());
+        return Trust::firstUse;
+    }
+    if (**pinned == fingerprint) return Trust::known;
+    return fail(ErrorKind::badInput,
+                "the server's certificate CHANGED since it was first met (pinned " + **pinned +
+                    ", shown now " + fingerprint +
+                    "): refused. Somebody may be in between. If the certificate was replaced on "
+                    "purpose, check "
+                    "the new fingerprint with the server's administrator and give it with "
+                    "--fingerprint (pins: " +
+                    known.file().string() + ")",
+                server);
+}
+
+}  // namespace haustra::link

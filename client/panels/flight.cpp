@@ -1,0 +1,132 @@
+#include "panels/flight.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::panels {
+namespace {
+
+glm::dvec3 rightOf(const Camera& camera) {
+    return glm::cross(camera.forward, camera.up);
+}
+
+// Yaw about the camera's up, then pitch about its right; forward and up stay orthonormal.
+Camera turned(Camera camera, double yawDegrees, double pitchDegrees) {
+    if (yawDegrees == 0.0 && pitchDegrees == 0.0) return camera;
+    const double yaw = glm::radians(yawDegrees), pitch = glm::radians(pitchDegrees);
+    const glm::dvec3 level = std::cos(yaw) * camera.forward + std::sin(yaw) * rightOf(camera);
+    const glm::dvec3 up = camera.up;
+    camera.forward = glm::normalize(std::cos(pitch) * level + std::sin(pitch) * up);
+    camera.up = glm::normalize(std::cos(pitch) * up - std::sin(pitch) * level);
+    return camera;
+}
+
+}  // namespace
+
+const char* toString(FlightDirection direction) {
+    return direction == FlightDirection::antegrade ? "antegrade" : "retrograde";
+}
+
+Flight::Flight(Centerline centerline) : centerline_(std::move(centerline)) {
+    if (!centerline_.points.empty())
+        ups_ = rotationMinimizingUps(centerline_, flightPreferredUp);
+    else
+        free_ = true;
+}
+
+void Flight::goTo(double arcMm) {
+    if (centerline_.points.empty()) return;
+    arcMm_ = std::clamp(std::isfinite(arcMm) ? arcMm : 0.0, 0.0, centerline_.lengthMm());
+    free_ = false;
+}
+
+void Flight::advance(double seconds) {
+    if (free_ || motion_ == Motion::paused || !(seconds > 0.0)) return;
+    const double facing = direction_ == FlightDirection::antegrade ? 1.0 : -1.0;
+    const double going = motion_ == Motion::forward ? facing : -facing;
+    const double target = arcMm_ + going * speedMmPerS_ * seconds;
+    arcMm_ = std::clamp(target, 0.0, centerline_.lengthMm());
+    if (arcMm_ != target) motion_ = Motion::paused;
+}
+
+void Flight::setMotion(Motion motion) {
+    if (motion != Motion::paused && free_) returnToCenterline();
+    motion_ = motion;
+}
+
+void Flight::setSpeed(double mmPerS) {
+    speedMmPerS_ = std::clamp(mmPerS, minSpeedMmPerS, maxSpeedMmPerS);
+}
+
+void Flight::setFov(double degrees) {
+    fovDegrees_ = std::clamp(degrees, 10.0, 150.0);
+    freeCamera_.fovDegrees = fovDegrees_;
+}
+
+void Flight::look(double yawDegrees, double pitchDegrees) {
+    if (free_)
+        freeCamera_ = turned(freeCamera_, yawDegrees, pitchDegrees);
+    else
+        setLook(yawDegrees_ + yawDegrees, pitchDegrees_ + pitchDegrees);
+}
+
+void Flight::setLook(double yawDegrees, double pitchDegrees) {
+    yawDegrees_ = std::remainder(yawDegrees, 360.0);
+    pitchDegrees_ = std::clamp(pitchDegrees, -maxPitchDegrees, maxPitchDegrees);
+}
+
+void Flight::flyFreely() {
+    if (free_) return;
+    freeCamera_ = centerlineCamera();
+    motion_ = Motion::paused;
+    free_ = true;
+}
+
+void Flight::moveFreely(glm::dvec3 rightUpForwardMm) {
+    if (!free_) return;
+    freeCamera_.positionMm += rightUpForwardMm.x * rightOf(freeCamera_) +
+                              rightUpForwardMm.y * freeCamera_.up +
+                              rightUpForwardMm.z * freeCamera_.forward;
+}
+
+void Flight::returnToCenterline() {
+    if (!free_ || centerline_.points.empty()) return;
+    goTo(nearestArc(centerline_, freeCamera_.positionMm));
+    const double along = glm::dot(freeCamera_.forward, poseAtArc(centerline_, arcMm_).tangent);
+    direction_ = along < 0.0 ? FlightDirection::retrograde : FlightDirection::antegrade;
+    resetLook();
+}
+
+void Flight::goTo(const Camera& camera, double arcMm) {
+    motion_ = Motion::paused;
+    if (!centerline_.points.empty()) {
+        const CenterlinePose pose = poseAtArc(centerline_, arcMm);
+        if (glm::distance(pose.point.positionMm, camera.positionMm) < 0.5) {
+            goTo(arcMm);
+            direction_ = glm::dot(camera.forward, pose.tangent) < 0.0 ? FlightDirection::retrograde
+                                                                      : FlightDirection::antegrade;
+            const Camera straight = straightCamera();
+            const double right = glm::dot(camera.forward, rightOf(straight));
+            const double ahead = glm::dot(camera.forward, straight.forward);
+            const double above = std::clamp(glm::dot(camera.forward, straight.up), -1.0, 1.0);
+            setLook(glm::degrees(std::atan2(right, ahead)), glm::degrees(std::asin(above)));
+            return;
+        }
+        arcMm_ = nearestArc(centerline_, camera.positionMm);
+    }
+    freeCamera_ = camera;
+    freeCamera_.fovDegrees = fovDegrees_;
+    free_ = true;
+}
+
+// The camera that looks straight along the path.
+Camera Flight::straightCamera() const {
+    const CenterlineCamera camera = cameraAtArc(centerline_, ups_, arcMm_, direction_);
+    return {camera.positionMm, camera.forward, camera.up, fovDegrees_};
+}
+
+Camera Flight::centerlineCamera() const {
+    return turned(straightCamera(), yawDegrees_, pitchDegrees_);
+}
+
+}  // namespace haustra::panels

@@ -1,0 +1,190 @@
+#include "panels/messages.h"
+
+#include <cmath>
+
+namespace haustra::panels {
+namespace {
+
+void set(protocol::Vec3* out, glm::dvec3 v) {
+    out->set_x(v.x);
+    out->set_y(v.y);
+    out->set_z(v.z);
+}
+
+glm::dvec3 vectorFrom(const protocol::Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+protocol::View viewCode(View view) {
+    switch (view) {
+        case View::endoscopic:
+            return protocol::ENDOSCOPIC;
+        case View::axial:
+            return protocol::AXIAL;
+        case View::coronal:
+            return protocol::CORONAL;
+        case View::sagittal:
+            return protocol::SAGITTAL;
+    }
+    return protocol::VIEW_UNSPECIFIED;
+}
+
+Result<Centerline> centerlineFrom(const protocol::CaseOpened& message) {
+    const auto refuse = [](const char* what) {
+        return fail(ErrorKind::badInput, what, "case opened: centerline");
+    };
+    constexpr int perSample = 5;  // x, y, z, arc, radius
+    if (message.centerline_size() % perSample != 0)
+        return refuse("its numbers do not come in fives");
+    Centerline centerline;
+    centerline.points.resize(std::size_t(message.centerline_size() / perSample));
+    double arcBefore = 0.0;
+    for (std::size_t n = 0; n < centerline.points.size(); ++n) {
+        const double* sample = message.centerline().data() + n * perSample;
+        CenterlinePoint& point = centerline.points[n];
+        point.positionMm = {sample[0], sample[1], sample[2]};
+        point.arcMm = sample[3];
+        point.radiusMm = sample[4];
+        for (int k = 0; k < perSample; ++k)
+            if (!std::isfinite(sample[k])) return refuse("a number is not finite");
+        if (point.arcMm < arcBefore) return refuse("its arc does not grow");
+        arcBefore = point.arcMm;
+    }
+    for (const std::uint32_t n : message.gap_samples()) {
+        if (n >= centerline.points.size()) return refuse("a gap lies past its end");
+        centerline.points[n].gap = true;
+    }
+    return centerline;
+}
+
+}  // namespace
+
+const char* toString(View view) {
+    switch (view) {
+        case View::endoscopic:
+            return "endoscopic";
+        case View::axial:
+            return "axial";
+        case View::coronal:
+            return "coronal";
+        case View::sagittal:
+            return "sagittal";
+    }
+    return "";
+}
+
+std::optional<View> viewFromString(const std::string& text) {
+    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
+        if (text == toString(view)) return view;
+    return std::nullopt;
+}
+
+protocol::ClientMessage viewportMessage(std::uint64_t sequence, int viewport, View view, int width,
+                                        int height) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_viewport();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    body->set_view(viewCode(view));
+    body->set_width(std::uint32_t(width));
+    body->set_height(std::uint32_t(height));
+    return message;
+}
+
+protocol::ClientMessage cameraMessage(std::uint64_t sequence, int viewport, const Camera& camera,
+                                      bool moving) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_camera();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    set(body->mutable_position_mm(), camera.positionMm);
+    set(body->mutable_forward(), camera.forward);
+    set(body->mutable_up(), camera.up);
+    body->set_fov_degrees(camera.fovDegrees);
+    body->set_moving(moving);
+    return message;
+}
+
+protocol::ClientMessage sliceMessage(std::uint64_t sequence, int viewport, const Slice& slice,
+                                     bool moving) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_slice();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    set(body->mutable_position_mm(), slice.positionMm);
+    body->set_zoom(slice.zoom);
+    body->set_moving(moving);
+    return message;
+}
+
+protocol::ClientMessage windowMessage(std::uint64_t sequence, int viewport,
+                                      const WindowLevel& window) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_window_level();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    body->mutable_window()->set_center_hu(window.centerHu);
+    body->mutable_window()->set_width_hu(window.widthHu);
+    return message;
+}
+
+protocol::ClientMessage transferMessage(std::uint64_t sequence, int viewport,
+                                        const std::string& preset) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_transfer_function();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    body->set_preset(preset);
+    return message;
+}
+
+protocol::ClientMessage bookmarkMessage(std::uint64_t request, const Bookmark& bookmark) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_add_bookmark();
+    body->set_request(request);
+    set(body->mutable_position_mm(), bookmark.camera.positionMm);
+    set(body->mutable_forward(), bookmark.camera.forward);
+    set(body->mutable_up(), bookmark.camera.up);
+    body->set_arc_mm(bookmark.arcMm);
+    body->set_note(bookmark.note);
+    body->set_client_key(bookmark.clientKey);
+    return message;
+}
+
+Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
+    CaseInfo info;
+    info.name = message.name();
+    for (const std::uint32_t extent : {message.size_x(), message.size_y(), message.size_z()})
+        if (extent > 4096)
+            return fail(ErrorKind::badInput, "the volume is too large", "case opened: size");
+    info.grid.size = {int(message.size_x()), int(message.size_y()), int(message.size_z())};
+    if (message.patient_from_voxel_size() != 12)
+        return fail(ErrorKind::badInput, "not 12 numbers", "case opened: patient_from_voxel");
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            info.grid.patientFromVoxel[column][row] = message.patient_from_voxel(4 * row + column);
+    if (auto sound = checkGrid(info.grid, "case opened"); !sound)
+        return tl::make_unexpected(sound.error());
+    auto centerline = centerlineFrom(message);
+    if (!centerline) return tl::make_unexpected(centerline.error());
+    info.centerline = std::move(*centerline);
+    info.position = patientPositionFromString(message.patient_position());
+    info.transferFunctions.assign(message.transfer_functions().begin(),
+                                  message.transfer_functions().end());
+    return info;
+}
+
+Bookmark bookmarkFrom(const protocol::Bookmark& message) {
+    Bookmark bookmark;
+    bookmark.id = message.id();
+    bookmark.camera.positionMm = vectorFrom(message.position_mm());
+    bookmark.camera.forward = vectorFrom(message.forward());
+    bookmark.camera.up = vectorFrom(message.up());
+    bookmark.arcMm = message.arc_mm();
+    bookmark.note = message.note();
+    bookmark.createdUtc = message.created_utc();
+    bookmark.clientKey = message.client_key();
+    return bookmark;
+}
+
+}  // namespace haustra::panels

@@ -1,0 +1,97 @@
+// A reader at work: one case, a flight through it, four views that follow. The window draws this
+// and turns the hand's movements into its calls; it holds no window itself.
+#pragma once
+
+#include "panels/latency.h"
+#include "panels/pacing.h"
+#include "panels/session.h"
+
+#include <memory>
+
+namespace haustra::panels {
+
+inline constexpr int viewCount = 4;
+
+/// Belongs to one thread. Viewport numbers are those of View: 0 endoscopic, 1 axial, 2 coronal,
+/// 3 sagittal.
+class Reader {
+public:
+    Reader(link::ConnectionOptions options, std::string caseName);
+
+    /// One step of the loop: takes in what the server sent, moves the flight on by `seconds`, asks
+    /// for the views that changed. Never blocks.
+    void update(double seconds);
+
+    Session& session() { return session_; }
+    const Session& session() const { return session_; }
+    Flight& flight() { return flight_; }
+    const Flight& flight() const { return flight_; }
+    bool isOpen() const { return case_ != nullptr; }
+
+    /// The pane's size in pixels; the server draws at this size, at most 2048 a side.
+    void setPaneSize(View view, glm::ivec2 pixels);
+
+    /// The slice that is shown now. Slices follow the camera; scrolling leaves it until it moves.
+    Slice slice(View view) const;
+    void scrollSlice(View view, double mm);
+    void zoomSlices(double factor);
+    /// Flies to the point of the centerline nearest to `patientMm`.
+    void goNear(glm::dvec3 patientMm);
+
+    const WindowLevel& window() const { return window_; }
+    void setWindow(WindowLevel window);
+    const std::string& transferFunction() const { return transferFunction_; }
+    void setTransferFunction(const std::string& preset);
+
+    void addBookmark(std::string note);
+    void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
+    /// The next (or, with −1, previous) bookmark along the centerline, if any.
+    void goToBookmark(int step);
+
+    /// The newest picture of a view, and how many there were; nothing shown: count 0.
+    const tiles::Picture& picture(View view) const { return pictures_[std::size_t(view)]; }
+    std::uint64_t pictureCount(View view) const { return pictureCounts_[std::size_t(view)]; }
+    /// The slice that the newest picture of a slice view shows; it lags behind slice().
+    const Slice& shownSlice(View view) const { return shownSlices_[std::size_t(view)]; }
+
+    /// From camera message to decoded picture, of the last moving endoscopic pictures, ms.
+    Summary latencyMs() const { return latencies_.summary(); }
+    double picturesPerSecond() const;
+    /// Whether the picture will change soon by itself: draw at full rate.
+    bool restless() const;
+
+private:
+    struct Asked {
+        std::uint64_t sequence;
+        Clock::time_point at;
+        Slice slice;
+        bool moving;
+    };
+
+    void caseOpened();
+    void takePictures();
+    void askForViews(Clock::time_point now);
+    void openPane(View view, bool moving);
+
+    Session session_;
+    std::shared_ptr<const CaseInfo> case_;
+    Flight flight_{Centerline{}};
+    Camera lastCamera_;
+    glm::dvec3 sliceFocusMm_{0.0};
+    double sliceZoom_ = 1.0;
+    WindowLevel window_;
+    std::string transferFunction_;
+
+    std::array<glm::ivec2, viewCount> paneSizes_{};
+    std::array<glm::ivec2, viewCount> openSizes_{};
+    std::array<Slice, viewCount> askedSlices_{}, shownSlices_{};
+    std::array<ViewPacer, viewCount> pacers_;
+    std::array<std::deque<Asked>, viewCount> asked_;
+    std::array<tiles::Picture, viewCount> pictures_;
+    std::array<std::uint64_t, viewCount> pictureCounts_{};
+    MovingDetail detail_;
+    RecentTimes latencies_{40};
+    std::deque<Clock::time_point> pictureTimes_;
+};
+
+}  // namespace haustra::panels

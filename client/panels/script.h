@@ -1,0 +1,74 @@
+// Scripts of the headless client: one JSON object a line. client/SCRIPT.md describes the actions.
+#pragma once
+
+#include "panels/case_info.h"
+
+#include <istream>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace haustra::panels {
+
+struct ViewAction {
+    int viewport = 0;
+    View view = View::endoscopic;
+    int width = 512, height = 512;
+};
+struct GoAction {
+    std::optional<double> arcMm, fraction;  ///< at most one; neither: stay
+    std::optional<FlightDirection> direction;
+    std::optional<double> yawDegrees, pitchDegrees, fovDegrees;
+};
+struct FlyAction {
+    std::optional<double> fromMm, toMm;  ///< default: the whole centerline, in flight direction
+    int positions = 200;
+    int viewport = 0;
+    bool pipelined = false;
+};
+struct StillAction {
+    int viewport = 0;
+    std::string png;  ///< may be empty: only wait for the picture
+};
+struct SliceAction {
+    View view = View::axial;
+    std::optional<glm::dvec3> positionMm;  ///< default: where the camera is
+    double zoom = 1.0;
+    std::optional<int> viewport;  ///< default: 1 axial, 2 coronal, 3 sagittal
+    std::optional<glm::ivec2> size;
+    std::string png;
+};
+struct WindowAction {
+    int viewport = 1;
+    WindowLevel window;
+};
+struct TransferAction {
+    int viewport = 0;
+    std::string preset;
+};
+struct BookmarkAction {
+    std::string note;
+    int count = 1;  ///< added one after the other, each acknowledged before the next
+};
+struct BookmarksAction {
+    std::string json;  ///< file for the list; may be empty
+};
+struct WaitAction {
+    double ms = 0.0;
+};
+
+struct Action {
+    int line = 0;
+    std::string name;  ///< the value of "do"
+    std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, WindowAction,
+                 TransferAction, BookmarkAction, BookmarksAction, WaitAction>
+        body;
+};
+
+/// Reads a whole script. Blank lines and lines that start with '#' are skipped. Fails on the first
+/// line that is not understood: the place is `name` and the line's number, the message names the
+/// key. Output files must be plain names: a script writes only into its output folder.
+Result<std::vector<Action>> parseScript(std::istream& in, const std::string& name);
+
+}  // namespace haustra::panels

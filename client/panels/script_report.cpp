@@ -1,0 +1,74 @@
+#include "panels/script_report.h"
+
+#include "panels/latency.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace haustra::panels {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+double rounded(double value) {
+    return std::round(value * 1000.0) / 1000.0;
+}
+
+json jsonOf(const Summary& summary) {
+    return {{"count", summary.count},
+            {"mean", rounded(summary.mean)},
+            {"p50", rounded(summary.p50)},
+            {"p95", rounded(summary.p95)},
+            {"max", rounded(summary.max)}};
+}
+
+json jsonOf(const ActionReport& action) {
+    json out = {{"line", action.line}, {"do", action.name}, {"seconds", rounded(action.seconds)}};
+    if (!action.file.empty()) out["file"] = action.file;
+    if (action.positions > 0) {
+        out["positions"] = action.positions;
+        out["pipelined"] = action.pipelined;
+    }
+    if (!action.latencyMs.empty()) out["latency_ms"] = jsonOf(summarize(action.latencyMs));
+    if (!action.decodeMs.empty()) {
+        const std::size_t pictures = action.decodeMs.size();
+        out["pictures"] = pictures;
+        if (action.seconds > 0.0) out["fps"] = rounded(double(pictures) / action.seconds);
+        out["bytes"] = action.bytes;
+        out["bytes_per_picture"] = action.bytes / pictures;
+        out["decode_ms"] = jsonOf(summarize(action.decodeMs));
+        out["server_median_us"] = {{"queue", summarize(action.queueMicroseconds).p50},
+                                   {"render", summarize(action.renderMicroseconds).p50},
+                                   {"encode", summarize(action.encodeMicroseconds).p50}};
+        out["latencies_ms"] = json::array();
+        for (const double ms : action.latencyMs)
+            out["latencies_ms"].push_back(rounded(ms));
+    }
+    if (!action.acknowledged.empty()) {
+        out["acknowledged"] = json::array();
+        for (const Acknowledgement& a : action.acknowledged)
+            out["acknowledged"].push_back({{"id", a.id}, {"client_key", a.clientKey}});
+    }
+    if (action.bookmarks) out["bookmarks"] = *action.bookmarks;
+    return out;
+}
+
+}  // namespace
+
+std::string toJson(const PlayReport& report) {
+    json out = {{"client", report.clientSoftware},
+                {"server", report.serverSoftware},
+                {"renderer", report.renderer},
+                {"fingerprint", report.fingerprint},
+                {"case", report.caseName},
+                {"centerline_mm", rounded(report.centerlineMm)},
+                {"round_trip_ms", rounded(report.roundTripMs)}};
+    out["error"] = report.failure ? json(describe(*report.failure)) : json();
+    out["actions"] = json::array();
+    for (const ActionReport& action : report.actions)
+        out["actions"].push_back(jsonOf(action));
+    return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace haustra::panels

@@ -1,0 +1,265 @@
+#include "panels/session.h"
+
+#include "panels/messages.h"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+namespace haustra::panels {
+namespace {
+
+// 128 random bits: no two bookmarks of any client share a key.
+std::string newClientKey() {
+    std::random_device random;
+    static constexpr char digits[] = "0123456789abcdef";
+    std::string key;
+    for (int word = 0; word < 4; ++word)
+        for (std::uint32_t bits = random(), n = 0; n < 8; ++n, bits >>= 4)
+            key += digits[bits & 15];
+    return key;
+}
+
+// Cuts at a character's start: protobuf refuses broken UTF-8.
+std::string cutUtf8(std::string text, std::size_t maxBytes) {
+    if (text.size() <= maxBytes) return text;
+    while (maxBytes > 0 && (static_cast<unsigned char>(text[maxBytes]) & 0xC0) == 0x80)
+        --maxBytes;
+    text.resize(maxBytes);
+    return text;
+}
+
+}  // namespace
+
+Session::Session(link::ConnectionOptions options, std::string caseName)
+    : caseName_(std::move(caseName)), connection_(std::move(options)) {}
+
+void Session::poll(std::chrono::milliseconds patience) {
+    if (phase_ == Phase::failed) return;
+    // A bound on the events, so that a stream faster than the decoder cannot keep the caller here.
+    constexpr int maxEvents = 64;
+    auto event = connection_.next(patience);
+    for (int n = 1; event;
+         event = n++ < maxEvents ? connection_.next(std::chrono::milliseconds(0)) : std::nullopt) {
+        if (auto* up = std::get_if<link::LinkUp>(&event->body))
+            handle(std::move(*up));
+        else if (auto* down = std::get_if<link::LinkDown>(&event->body))
+            handle(*down);
+        else if (auto* tile = std::get_if<link::TilePayload>(&event->body))
+            handle(*tile, event->at);
+        else
+            handle(std::get<protocol::ServerMessage>(event->body));
+        if (phase_ == Phase::failed) return;
+    }
+}
+
+void Session::handle(link::LinkUp up) {
+    server_ = std::move(up);
+    phase_ = Phase::connecting;
+    for (auto& assembler : assemblers_)
+        assembler.reset();
+    askForCase();
+}
+
+void Session::handle(const link::LinkDown& down) {
+    failure_ = down.error;
+    phase_ = down.final ? Phase::failed : Phase::lost;
+}
+
+void Session::handle(const protocol::ServerMessage& message) {
+    switch (message.body_case()) {
+        case protocol::ServerMessage::kCaseList:
+            caseNames_.assign(message.case_list().names().begin(),
+                              message.case_list().names().end());
+            if (caseName_.empty()) phase_ = Phase::choosing;
+            break;
+        case protocol::ServerMessage::kCaseOpened:
+            opened(message.case_opened());
+            break;
+        case protocol::ServerMessage::kBookmarkAdded:
+            acknowledge(bookmarkFrom(message.bookmark_added().bookmark()));
+            break;
+        case protocol::ServerMessage::kBookmarkList: {
+            bookmarks_.clear();
+            for (const auto& bookmark : message.bookmark_list().bookmarks())
+                acknowledge(bookmarkFrom(bookmark));
+            ++bookmarkLists_;
+            break;
+        }
+        case protocol::ServerMessage::kError:
+            refused(message.error());
+            break;
+        default:
+            break;  // a newer server may say more than this client understands
+    }
+}
+
+void Session::opened(const protocol::CaseOpened& message) {
+    auto info = caseInfoFrom(message);
+    if (!info) return giveUp(info.error());
+    // After a reconnection the same case keeps its address, and the reader's flight with it.
+    const bool same = caseInfo_ && caseInfo_->name == info->name &&
+                      caseInfo_->centerline.points.size() == info->centerline.points.size() &&
+                      sameGrid(caseInfo_->grid, info->grid);
+    if (!same) caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
+    phase_ = Phase::open;
+    askAgain();
+}
+
+void Session::refused(const protocol::ErrorReport& report) {
+    const Error error{ErrorKind::badInput, "the server refused: " + report.message(), {}};
+    const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
+        return report.request() != 0 && o.request == report.request();
+    });
+    if (owed != owed_.end()) owed_.erase(owed);  // else it would be sent again for ever
+    refusals_.push_back(error);
+    if (phase_ == Phase::connecting) {
+        if (report.code() == protocol::ErrorReport::NO_SUCH_CASE || report.fatal()) giveUp(error);
+    }
+}
+
+void Session::handle(const link::TilePayload& payload, Clock::time_point at) {
+    auto tile = decoder_.decode(payload.bytes);
+    if (!tile) return giveUp(tile.error());
+    if (tile->header.viewport >= assemblers_.size())
+        return giveUp(
+            {ErrorKind::badInput, "the server sent a tile of a viewport that cannot be", "tile"});
+    auto& assembler = assemblers_[tile->header.viewport];
+    auto picture = assembler.add(*tile);
+    if (!picture) return giveUp(picture.error());
+    if (!*picture) return;
+    arrivals_.push_back({std::move(**picture), at, Clock::now()});
+    if (arrivals_.size() > 64) arrivals_.pop_front();
+}
+
+void Session::giveUp(Error error) {
+    failure_ = std::move(error);
+    phase_ = Phase::failed;
+}
+
+// ---- asking ---------------------------------------------------------------------------------
+
+void Session::askForCase() {
+    protocol::ClientMessage message;
+    if (caseName_.empty())
+        message.mutable_list_cases();
+    else
+        message.mutable_open_case()->set_name(caseName_);
+    connection_.send(message);
+}
+
+void Session::openCase(const std::string& name) {
+    caseName_ = name;
+    bookmarks_.clear();
+    viewports_.clear();
+    if (phase_ == Phase::failed || phase_ == Phase::lost) return;
+    phase_ = Phase::connecting;
+    askForCase();
+}
+
+// Everything that the server has to know of a session that it sees for the first time.
+void Session::askAgain() {
+    for (const auto& [id, state] : viewports_) {
+        if (state.width == 0) continue;  // spoken of before it was opened
+        connection_.send(viewportMessage(++sequence_, id, state.view, state.width, state.height));
+        if (state.window) connection_.send(windowMessage(++sequence_, id, *state.window));
+        if (state.transferFunction)
+            connection_.send(transferMessage(++sequence_, id, *state.transferFunction));
+        if (state.camera)
+            connection_.send(cameraMessage(++sequence_, id, *state.camera, state.moving));
+        if (state.slice)
+            connection_.send(sliceMessage(++sequence_, id, *state.slice, state.moving));
+    }
+    for (const Owed& owed : owed_)
+        if (owed.caseName == caseName_)
+            connection_.send(bookmarkMessage(owed.request, owed.bookmark));
+    requestBookmarks();
+}
+
+void Session::sendIfOpen(const protocol::ClientMessage& message) {
+    if (phase_ == Phase::open) connection_.send(message);
+}
+
+std::uint64_t Session::setViewport(int viewport, View view, int width, int height) {
+    ViewportState& state = viewports_[viewport];
+    if (state.view != view) state = {};
+    state.view = view;
+    state.width = width;
+    state.height = height;
+    sendIfOpen(viewportMessage(++sequence_, viewport, view, width, height));
+    if (width == 0 || height == 0) viewports_.erase(viewport);
+    return sequence_;
+}
+
+std::uint64_t Session::setCamera(int viewport, const Camera& camera, bool moving) {
+    ViewportState& state = viewports_[viewport];
+    state.camera = camera;
+    state.moving = moving;
+    sendIfOpen(cameraMessage(++sequence_, viewport, camera, moving));
+    return sequence_;
+}
+
+std::uint64_t Session::setSlice(int viewport, const Slice& slice, bool moving) {
+    ViewportState& state = viewports_[viewport];
+    state.slice = slice;
+    state.moving = moving;
+    sendIfOpen(sliceMessage(++sequence_, viewport, slice, moving));
+    return sequence_;
+}
+
+std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
+    viewports_[viewport].window = window;
+    sendIfOpen(windowMessage(++sequence_, viewport, window));
+    return sequence_;
+}
+
+std::uint64_t Session::setTransferFunction(int viewport, const std::string& preset) {
+    viewports_[viewport].transferFunction = preset;
+    sendIfOpen(transferMessage(++sequence_, viewport, preset));
+    return sequence_;
+}
+
+// ---- bookmarks ------------------------------------------------------------------------------
+
+std::string Session::addBookmark(const Camera& camera, double arcMm, std::string note) {
+    Bookmark bookmark;
+    bookmark.camera = camera;
+    bookmark.arcMm = arcMm;
+    bookmark.note = cutUtf8(std::move(note), maxNoteBytes);
+    bookmark.clientKey = newClientKey();
+    owed_.push_back({caseName_, ++request_, bookmark});
+    sendIfOpen(bookmarkMessage(request_, bookmark));
+    return bookmark.clientKey;
+}
+
+void Session::requestBookmarks() {
+    protocol::ClientMessage message;
+    message.mutable_list_bookmarks()->set_request(++request_);
+    sendIfOpen(message);
+}
+
+void Session::acknowledge(const Bookmark& bookmark) {
+    std::erase_if(owed_,
+                  [&](const Owed& owed) { return owed.bookmark.clientKey == bookmark.clientKey; });
+    const auto same = std::find_if(bookmarks_.begin(), bookmarks_.end(),
+                                   [&](const Bookmark& b) { return b.id == bookmark.id; });
+    if (same == bookmarks_.end())
+        bookmarks_.push_back(bookmark);
+    else
+        *same = bookmark;
+}
+
+std::vector<Bookmark> Session::bookmarks() const {
+    std::vector<Bookmark> all = bookmarks_;
+    for (const Owed& owed : owed_)
+        if (owed.caseName == caseName_) all.push_back(owed.bookmark);
+    return all;
+}
+
+const Bookmark* Session::acknowledgedBookmark(const std::string& clientKey) const {
+    const auto found = std::find_if(bookmarks_.begin(), bookmarks_.end(),
+                                    [&](const Bookmark& b) { return b.clientKey == clientKey; });
+    return found == bookmarks_.end() ? nullptr : &*found;
+}
+
+}  // namespace haustra::panels

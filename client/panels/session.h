@@ -1,0 +1,125 @@
+// The reader's session with a server: what is asked for, what has come, what is still owed.
+#pragma once
+
+#include "link/connection.h"
+#include "panels/case_info.h"
+#include "panels/latency.h"
+#include "protocol/framing.h"
+#include "tiles/picture_assembler.h"
+
+#include <array>
+#include <deque>
+#include <map>
+
+namespace haustra::panels {
+
+using link::Clock;
+
+enum class Phase {
+    connecting,  ///< no link yet, or the case is being opened
+    choosing,    ///< linked; no case was named: caseNames() tells what there is
+    open,        ///< pictures flow
+    lost,        ///< the link is down; it is tried again
+    failed,      ///< for good: failure() tells why
+};
+
+/// A picture that has been decoded, with when its last tile came and when decoding was done.
+struct Arrival {
+    tiles::Picture picture;
+    Clock::time_point receivedAt, decodedAt;
+};
+
+/// Owns the connection; belongs to one thread. The session remembers what each viewport is to
+/// show, so that after a lost link everything is asked for again, and bookmarks that the server
+/// has not acknowledged are sent again under the same key.
+class Session {
+public:
+    /// Opens `caseName` once linked; where it is empty, asks for the list of cases.
+    Session(link::ConnectionOptions options, std::string caseName);
+
+    /// Takes in what has arrived, waiting at most `patience` for the first event. Decodes tiles.
+    void poll(std::chrono::milliseconds patience);
+
+    Phase phase() const { return phase_; }
+    const Error& failure() const { return failure_; }  ///< of phases lost and failed
+    const link::LinkUp& server() const { return server_; }
+    double roundTripMs() const { return connection_.roundTripMs(); }
+    std::uint64_t receivedBytes() const { return connection_.receivedBytes(); }
+
+    const std::vector<std::string>& caseNames() const { return caseNames_; }
+    void openCase(const std::string& name);
+    /// The open case; empty before. Its address changes only when a case is opened.
+    const std::shared_ptr<const CaseInfo>& caseInfo() const { return caseInfo_; }
+
+    /// Each of these returns the sequence number that the answering picture will reach. They may
+    /// be called in any phase: what is asked for early is sent when the case is open.
+    std::uint64_t setViewport(int viewport, View view, int width, int height);
+    std::uint64_t setCamera(int viewport, const Camera& camera, bool moving);
+    std::uint64_t setSlice(int viewport, const Slice& slice, bool moving);
+    std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
+    std::uint64_t setTransferFunction(int viewport, const std::string& preset);
+
+    /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
+    std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
+    /// What the server refused since the last call; the session goes on.
+    std::vector<Error> takeRefusals() { return std::exchange(refusals_, {}); }
+
+    /// Returns the bookmark's client key. `note` is cut to maxNoteBytes.
+    std::string addBookmark(const Camera& camera, double arcMm, std::string note);
+    void requestBookmarks();
+    /// Acknowledged ones first, in the server's order, then those still owed.
+    std::vector<Bookmark> bookmarks() const;
+    const Bookmark* acknowledgedBookmark(const std::string& clientKey) const;
+    std::size_t owedBookmarks() const { return owed_.size(); }
+    std::uint64_t bookmarkListsReceived() const { return bookmarkLists_; }
+
+    static constexpr std::size_t maxNoteBytes = 1000;
+
+private:
+    struct ViewportState {
+        View view = View::endoscopic;
+        int width = 0, height = 0;
+        std::optional<Camera> camera;
+        std::optional<Slice> slice;
+        std::optional<WindowLevel> window;
+        std::optional<std::string> transferFunction;
+        bool moving = false;
+    };
+    struct Owed {
+        std::string caseName;
+        std::uint64_t request;
+        Bookmark bookmark;
+    };
+
+    void handle(link::LinkUp up);
+    void handle(const link::LinkDown& down);
+    void handle(const protocol::ServerMessage& message);
+    void handle(const link::TilePayload& tile, Clock::time_point at);
+    void opened(const protocol::CaseOpened& message);
+    void refused(const protocol::ErrorReport& report);
+    void acknowledge(const Bookmark& bookmark);
+    void askForCase();
+    void askAgain();
+    void giveUp(Error error);
+    void sendIfOpen(const protocol::ClientMessage& message);
+
+    Phase phase_ = Phase::connecting;
+    Error failure_;
+    link::LinkUp server_;
+    std::string caseName_;
+    std::vector<std::string> caseNames_;
+    std::shared_ptr<const CaseInfo> caseInfo_;
+
+    std::uint64_t sequence_ = 0, request_ = 0, bookmarkLists_ = 0;
+    std::map<int, ViewportState> viewports_;
+    tiles::TileDecoder decoder_;
+    std::array<tiles::PictureAssembler, protocol::maxViewports> assemblers_;
+    std::deque<Arrival> arrivals_;
+    std::vector<Error> refusals_;
+    std::vector<Bookmark> bookmarks_;
+    std::deque<Owed> owed_;
+
+    link::Connection connection_;  // last: its events must not outlive what they change
+};
+
+}  // namespace haustra::panels

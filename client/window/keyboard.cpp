@@ -1,0 +1,131 @@
+// What the keys do. The help page in overlays.cpp lists them.
+#include "window/ui.h"
+
+#include <algorithm>
+
+#include <SDL_scancode.h>
+
+namespace haustra::window {
+namespace {
+
+using panels::Flight;
+using panels::Motion;
+
+bool pressed(SDL_Scancode code) {
+    return ImGui::IsKeyPressed(code);
+}
+
+void toggle(Flight& flight, Motion motion) {
+    flight.setMotion(flight.motion() == motion ? Motion::paused : motion);
+}
+
+void stepAlong(Flight& flight, double mm) {
+    flight.setMotion(Motion::paused);
+    flight.goTo(flight.arcMm() + (flight.direction() == FlightDirection::antegrade ? mm : -mm));
+}
+
+void nextTransferFunction(panels::Reader& reader) {
+    const auto& names = reader.session().caseInfo()->transferFunctions;
+    if (names.empty()) return;
+    const auto now = std::find(names.begin(), names.end(), reader.transferFunction());
+    reader.setTransferFunction(now == names.end() || now + 1 == names.end() ? names.front()
+                                                                            : *(now + 1));
+}
+
+// Letters as the layout of the keyboard gives them.
+void handleLetter(Ui& ui, ImWchar letter) {
+    panels::Reader& reader = ui.reader;
+    Flight& flight = reader.flight();
+    switch (letter) {
+        case '?':
+            ui.showHelp = !ui.showHelp;
+            return;
+        case 'm':
+        case 'M':
+            ui.showBookmarks = !ui.showBookmarks;
+            return;
+        default:
+            break;
+    }
+    if (!reader.isOpen()) return;
+    switch (letter) {
+        case '+':
+        case '=':
+            flight.setSpeed(flight.speedMmPerS() * 1.25);
+            break;
+        case '-':
+        case '_':
+            flight.setSpeed(flight.speedMmPerS() / 1.25);
+            break;
+        case 'r':
+        case 'R':
+            flight.setDirection(flight.direction() == FlightDirection::antegrade
+                                    ? FlightDirection::retrograde
+                                    : FlightDirection::antegrade);
+            break;
+        case 'c':
+        case 'C':
+            flight.returnToCenterline(), flight.resetLook();
+            break;
+        case 'f':
+        case 'F':
+            flight.isFree() ? flight.returnToCenterline() : flight.flyFreely();
+            break;
+        case 'b':
+            reader.addBookmark("");
+            break;
+        case 'B':
+            ui.showBookmarks = ui.focusNote = true;
+            break;
+        case 'n':
+        case 'N':
+            reader.goToBookmark(+1);
+            break;
+        case 'p':
+        case 'P':
+            reader.goToBookmark(-1);
+            break;
+        case 't':
+        case 'T':
+            nextTransferFunction(reader);
+            break;
+        default:
+            break;
+    }
+}
+
+void moveFreely(Flight& flight, double seconds, bool fast) {
+    const auto held = [](SDL_Scancode code) { return ImGui::IsKeyDown(code) ? 1.0 : 0.0; };
+    const glm::dvec3 way(held(SDL_SCANCODE_D) - held(SDL_SCANCODE_A),
+                         held(SDL_SCANCODE_E) - held(SDL_SCANCODE_Q),
+                         held(SDL_SCANCODE_W) - held(SDL_SCANCODE_S));
+    flight.moveFreely(way * flight.speedMmPerS() * std::min(seconds, 0.1) * (fast ? 3.0 : 1.0));
+}
+
+}  // namespace
+
+bool handleKeys(Ui& ui, double seconds) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.KeyCtrl && pressed(SDL_SCANCODE_Q)) return false;
+    if (pressed(SDL_SCANCODE_F1)) ui.showHelp = !ui.showHelp;
+    if (pressed(SDL_SCANCODE_ESCAPE)) ui.showHelp = false;
+    if (io.WantTextInput || io.KeyCtrl || io.KeyAlt) return true;
+    for (const ImWchar letter : io.InputQueueCharacters)
+        handleLetter(ui, letter);
+    if (!ui.reader.isOpen()) return true;
+
+    Flight& flight = ui.reader.flight();
+    if (flight.isFree()) moveFreely(flight, seconds, io.KeyShift);
+    if (flight.centerline().points.empty()) return true;
+    const double stepMm = io.KeyShift ? 10.0 : 1.0;
+    if (pressed(SDL_SCANCODE_SPACE)) toggle(flight, Motion::forward);
+    if (pressed(SDL_SCANCODE_BACKSPACE)) toggle(flight, Motion::backward);
+    if (pressed(SDL_SCANCODE_RIGHT) || pressed(SDL_SCANCODE_UP)) stepAlong(flight, stepMm);
+    if (pressed(SDL_SCANCODE_LEFT) || pressed(SDL_SCANCODE_DOWN)) stepAlong(flight, -stepMm);
+    if (pressed(SDL_SCANCODE_HOME)) flight.setMotion(Motion::paused), flight.goTo(0.0);
+    if (pressed(SDL_SCANCODE_END))
+        flight.setMotion(Motion::paused), flight.goTo(flight.centerline().lengthMm());
+    return true;
+}
+
+}  // namespace haustra::window

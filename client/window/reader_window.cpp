@@ -1,0 +1,145 @@
+#include "window/reader_window.h"
+
+#include "window/gl_window.h"
+#include "window/ui.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace haustra::window {
+namespace {
+
+using panels::Clock;
+using panels::View;
+
+struct Layout {
+    Rect top, endoscopic, axial, coronal, sagittal, bookmarks, transport, middle;
+};
+
+// The endoscopic view takes what the others leave; the slices stand in a column of three.
+Layout layOut(const Ui& ui) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const float topHigh = ui.px(44), bottomHigh = ui.px(88), gap = ui.px(3);
+    const float panelWide = ui.showBookmarks ? ui.px(248) : 0.0f;
+    const float high = size.y - topHigh - bottomHigh;
+    const float sliceHigh = (high - 2 * gap) / 3;
+    const float sliceWide = std::clamp(sliceHigh * 1.25f, ui.px(200), size.x * 0.32f);
+    const float slicesRight = size.x - panelWide, slicesLeft = slicesRight - sliceWide;
+    Layout layout;
+    layout.top = {{0, 0}, {size.x, topHigh}};
+    layout.transport = {{0, size.y - bottomHigh}, size};
+    layout.middle = {{0, topHigh}, {size.x, size.y - bottomHigh}};
+    layout.endoscopic = {{0, topHigh}, {slicesLeft - gap, size.y - bottomHigh}};
+    Rect* slices[] = {&layout.axial, &layout.coronal, &layout.sagittal};
+    for (int n = 0; n < 3; ++n) {
+        const float y = topHigh + float(n) * (sliceHigh + gap);
+        *slices[n] = {{slicesLeft, y}, {slicesRight, y + sliceHigh}};
+    }
+    layout.bookmarks = {{slicesRight, topHigh}, {size.x, size.y - bottomHigh}};
+    return layout;
+}
+
+void drawEverything(Ui& ui) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::Begin("haustra", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::PopStyleVar();
+    const Layout layout = layOut(ui);
+    drawTopBar(ui, layout.top);
+    if (ui.reader.isOpen()) {
+        drawEndoscopicPane(ui, layout.endoscopic);
+        drawSlicePane(ui, View::axial, layout.axial);
+        drawSlicePane(ui, View::coronal, layout.coronal);
+        drawSlicePane(ui, View::sagittal, layout.sagittal);
+        if (ui.showBookmarks) drawBookmarkPanel(ui, layout.bookmarks);
+        drawTransportBar(ui, layout.transport);
+    } else {
+        drawStart(ui, {layout.middle.min, layout.transport.max});
+    }
+    drawNotices(ui, ui.reader.isOpen() ? layout.endoscopic : layout.middle);
+    if (ui.showHelp) drawHelp(ui, {{0, 0}, ImGui::GetIO().DisplaySize});
+    ImGui::End();
+}
+
+// Turns what happened in the session since the last frame into notices.
+class Watcher {
+public:
+    void look(Ui& ui) {
+        panels::Session& session = ui.reader.session();
+        for (const Error& refusal : session.takeRefusals())
+            ui.tell(describe(refusal), true);
+        if (session.server().firstUse && !toldFirstUse_) {
+            ui.tell("First meeting with this server: its certificate is now pinned (" +
+                    session.server().fingerprint.substr(0, 16) + "…)");
+            toldFirstUse_ = true;
+        }
+        if (owed_ > 0 && session.owedBookmarks() == 0) ui.tell("Bookmark saved");
+        owed_ = session.owedBookmarks();
+    }
+
+private:
+    bool toldFirstUse_ = false;
+    std::size_t owed_ = 0;
+};
+
+// Bookmarks on their way are waited for, but not for long.
+void finishBookmarks(panels::Session& session) {
+    const auto deadline = Clock::now() + std::chrono::seconds(2);
+    while (session.owedBookmarks() > 0 && session.phase() == panels::Phase::open &&
+           Clock::now() < deadline)
+        session.poll(std::chrono::milliseconds(50));
+}
+
+}  // namespace
+
+Result<void> run(WindowOptions options) {
+    auto made = GlWindow::create("Haustra", options.width, options.height, options.scale);
+    if (!made) return tl::make_unexpected(made.error());
+    GlWindow& window = **made;
+    options.connection.reconnect = true;
+    options.connection.onEvent = [&window] { window.wake(); };
+    panels::Reader reader(options.connection, options.caseName);
+    Ui ui{reader, window.fonts(), float(window.scale()),
+          link::toString(options.connection.address)};
+    Watcher watcher;
+
+    const auto start = Clock::now();
+    auto before = start;
+    int busyFrames = 3;  // ImGui settles in a few frames after each event
+    while (window.beginFrame(busyFrames > 0)) {
+        const auto now = Clock::now();
+        const double seconds = std::chrono::duration<double>(now - before).count();
+        before = now;
+        const bool wanted = handleKeys(ui, seconds);
+        // A frame that was long in coming must not throw the reader far along the colon.
+        reader.update(std::min(seconds, 0.1));
+        watcher.look(ui);
+        drawEverything(ui);
+        window.endFrame();
+        if (!wanted) break;
+        const ImGuiIO& io = ImGui::GetIO();
+        const bool handAtWork = io.MouseDelta.x != 0 || io.MouseDelta.y != 0 ||
+                                ImGui::IsAnyMouseDown() || reader.flight().isFree();
+        busyFrames = reader.restless() || handAtWork || !ui.notices.empty()
+                         ? 3
+                         : std::max(0, busyFrames - 1);
+        if (options.screenshot &&
+            now - start >= std::chrono::milliseconds(options.screenshotAfterMs)) {
+            if (auto written = window.writeScreenshot(*options.screenshot); !written)
+                return written;
+            if (reader.session().phase() == panels::Phase::failed)
+                return tl::make_unexpected(reader.session().failure());
+            break;
+        }
+    }
+    finishBookmarks(reader.session());
+    if (!reader.isOpen() && reader.session().phase() == panels::Phase::failed)
+        return tl::make_unexpected(reader.session().failure());
+    return {};
+}
+
+}  // namespace haustra::window

@@ -1,0 +1,178 @@
+// The bar along the bottom: the centerline from rectum to cecum, and the controls of the flight.
+#include "window/ui.h"
+#include "window/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::window {
+namespace {
+
+using panels::Flight;
+using panels::Motion;
+
+// The whole path as one track: gaps hatched, bookmarks as flags, the camera as a knob that shows
+// its direction. Press or drag to go there.
+void drawTrack(Ui& ui, Rect area) {
+    Flight& flight = ui.reader.flight();
+    const Centerline& path = flight.centerline();
+    const double length = std::max(path.lengthMm(), 1e-6);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float middle = (area.min.y + area.max.y) / 2, thick = ui.px(3);
+    const auto xOf = [&](double arcMm) {
+        return area.min.x + float(arcMm / length) * area.size().x;
+    };
+
+    ImGui::SetCursorScreenPos(area.min);
+    ImGui::InvisibleButton("track", area.size());
+    const float mouseX = ImGui::GetIO().MousePos.x;
+    const double mouseArc =
+        std::clamp(double(mouseX - area.min.x) / area.size().x, 0.0, 1.0) * length;
+    if (ImGui::IsItemActive()) {
+        flight.setMotion(Motion::paused);
+        flight.goTo(mouseArc);
+    }
+    const bool hovered = ImGui::IsItemHovered();
+
+    list->AddRectFilled({area.min.x, middle - thick}, {area.max.x, middle + thick}, color::raised,
+                        thick);
+    list->AddRectFilled({area.min.x, middle - thick}, {xOf(flight.arcMm()), middle + thick},
+                        color::accentDim, thick);
+    for (std::size_t n = 0; n < path.points.size(); ++n) {
+        if (!path.points[n].gap) continue;
+        std::size_t end = n;
+        while (end + 1 < path.points.size() && path.points[end + 1].gap)
+            ++end;
+        list->AddRectFilled({xOf(path.points[n].arcMm), middle - thick},
+                            {xOf(path.points[end].arcMm) + 1, middle + thick}, color::trouble);
+        n = end;
+    }
+    for (const panels::Bookmark& bookmark : ui.reader.session().bookmarks()) {
+        const float x = xOf(bookmark.arcMm);
+        list->AddLine({x, middle - ui.px(9)}, {x, middle + thick}, color::bookmark, ui.px(1.5f));
+        list->AddTriangleFilled({x, middle - ui.px(10)}, {x + ui.px(6), middle - ui.px(7.5f)},
+                                {x, middle - ui.px(5)}, color::bookmark);
+    }
+    const float knob = ui.px(8);
+    const ImVec2 center(xOf(flight.arcMm()), middle);
+    list->AddCircleFilled(center, knob, hovered ? IM_COL32_WHITE : color::accent, 24);
+    const bool antegrade = flight.direction() == FlightDirection::antegrade;
+    drawIcon(list, antegrade ? Icon::forward : Icon::backward, center, knob * 0.9f,
+             color::background);
+    if (hovered) tooltip(format("%.0f mm", mouseArc).c_str());
+}
+
+void sameRow(Ui& ui, float gap = 8) {
+    ImGui::SameLine(0, ui.px(gap));
+}
+
+void combo(Ui& ui, const char* id, const char* label, float width, const std::string& current,
+           const std::vector<std::string>& names, const auto& choose) {
+    const float row = ImGui::GetCursorPosY();
+    ImGui::PushFont(ui.fonts.small);
+    ImGui::SetCursorPosY(row + ui.px(8));
+    ImGui::TextDisabled("%s", label);
+    ImGui::PopFont();
+    sameRow(ui, 6);
+    ImGui::SetCursorPosY(row);
+    ImGui::SetNextItemWidth(ui.px(width));
+    if (!ImGui::BeginCombo(id, current.c_str())) return;
+    for (const std::string& name : names)
+        if (ImGui::Selectable(name.c_str(), name == current)) choose(name);
+    ImGui::EndCombo();
+}
+
+struct WindowPreset {
+    const char* name;
+    panels::WindowLevel window;
+};
+constexpr WindowPreset windowPresets[] = {{"colon", {0, 2000}},
+                                          {"soft tissue", {40, 400}},
+                                          {"lung", {-600, 1600}},
+                                          {"bone", {400, 1800}}};
+
+void drawControls(Ui& ui) {
+    panels::Reader& reader = ui.reader;
+    Flight& flight = reader.flight();
+    const float side = ui.px(32);
+    const Motion motion = flight.motion();
+
+    if (iconButton("rectum", Icon::toRectum, side, "To the rectum (Home)"))
+        flight.setMotion(Motion::paused), flight.goTo(0.0);
+    sameRow(ui, 4);
+    if (iconButton("back", Icon::backward, side, "Fly backward (Backspace)",
+                   motion == Motion::backward))
+        flight.setMotion(motion == Motion::backward ? Motion::paused : Motion::backward);
+    sameRow(ui, 4);
+    if (iconButton("pause", Icon::pause, side, "Pause (Space)", motion == Motion::paused))
+        flight.setMotion(Motion::paused);
+    sameRow(ui, 4);
+    if (iconButton("play", Icon::forward, side, "Fly forward (Space)", motion == Motion::forward))
+        flight.setMotion(motion == Motion::forward ? Motion::paused : Motion::forward);
+    sameRow(ui, 4);
+    if (iconButton("cecum", Icon::toCecum, side, "To the cecum (End)"))
+        flight.setMotion(Motion::paused), flight.goTo(flight.centerline().lengthMm());
+    sameRow(ui, 12);
+    if (iconButton("turn", Icon::turnRound, side, "Turn round (R)"))
+        flight.setDirection(flight.direction() == FlightDirection::antegrade
+                                ? FlightDirection::retrograde
+                                : FlightDirection::antegrade);
+    sameRow(ui, 4);
+    if (iconButton("center", Icon::center, side, "Back to the path, straight ahead (C)"))
+        flight.returnToCenterline(), flight.resetLook();
+    sameRow(ui, 4);
+    if (iconButton("bookmark", Icon::bookmark, side, "Bookmark this place (B)"))
+        reader.addBookmark("");
+
+    sameRow(ui, 20);
+    float speed = float(flight.speedMmPerS());
+    ImGui::SetNextItemWidth(ui.px(150));
+    if (ImGui::SliderFloat("##speed", &speed, float(Flight::minSpeedMmPerS),
+                           float(Flight::maxSpeedMmPerS), "%.0f mm/s",
+                           ImGuiSliderFlags_Logarithmic))
+        flight.setSpeed(speed);
+    tooltip("Speed (+ and −)");
+
+    const auto& info = *reader.session().caseInfo();
+    if (!info.transferFunctions.empty()) {
+        sameRow(ui, 20);
+        combo(ui, "##transfer", "wall", 130, reader.transferFunction(), info.transferFunctions,
+              [&](const std::string& name) { reader.setTransferFunction(name); });
+    }
+    sameRow(ui, 20);
+    std::vector<std::string> names;
+    std::string current = "own";
+    for (const WindowPreset& preset : windowPresets) {
+        names.push_back(preset.name);
+        if (preset.window == reader.window()) current = preset.name;
+    }
+    combo(ui, "##window", "slices", 130, current, names, [&](const std::string& name) {
+        for (const WindowPreset& preset : windowPresets)
+            if (name == preset.name) reader.setWindow(preset.window);
+    });
+}
+
+}  // namespace
+
+void drawTransportBar(Ui& ui, Rect area) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(area.min, area.max, color::bar);
+    list->AddLine(area.min, {area.max.x, area.min.y}, color::border);
+    const float margin = ui.px(16), trackHigh = ui.px(36), row = area.min.y + ui.px(6);
+    const ImVec2 rectum = textSize(ui.fonts.small, "rectum"),
+                 cecum = textSize(ui.fonts.small, "cecum");
+    const float textY = row + (trackHigh - rectum.y) / 2;
+    list->AddText(ui.fonts.small, ui.fonts.small->FontSize, {area.min.x + margin, textY},
+                  color::muted, "rectum");
+    list->AddText(ui.fonts.small, ui.fonts.small->FontSize, {area.max.x - margin - cecum.x, textY},
+                  color::muted, "cecum");
+    if (!ui.reader.flight().centerline().points.empty())
+        drawTrack(ui, {{area.min.x + margin + rectum.x + ui.px(16), row},
+                       {area.max.x - margin - cecum.x - ui.px(16), row + trackHigh}});
+    ImGui::SetCursorScreenPos({area.min.x + margin, row + trackHigh + ui.px(4)});
+    ImGui::BeginGroup();
+    drawControls(ui);
+    ImGui::EndGroup();
+}
+
+}  // namespace haustra::window

@@ -1,0 +1,58 @@
+// What the window's parts share while they draw, and the parts themselves. All of it lives on the
+// main thread.
+#pragma once
+
+#include "panels/reader.h"
+#include "window/picture_texture.h"
+#include "window/theme.h"
+
+#include <array>
+#include <deque>
+#include <string>
+
+namespace haustra::window {
+
+/// A message that fades: a refusal, a lost link, a bookmark saved.
+struct Notice {
+    std::string text;
+    double untilSeconds;
+    bool trouble;
+};
+
+struct Ui {
+    panels::Reader& reader;
+    Fonts fonts;
+    float scale = 1.0f;
+    std::string serverName;
+    std::array<PictureTexture, panels::viewCount> textures{};
+    std::deque<Notice> notices{};
+    bool showHelp = false, showBookmarks = true, focusNote = false;
+    std::array<char, 256> note{};
+    double drag = 0.0;  ///< pixels that the mouse moved since it was pressed on a pane
+
+    float px(float length) const { return length * scale; }
+    void tell(std::string text, bool trouble = false);
+};
+
+struct Rect {
+    ImVec2 min, max;
+    ImVec2 size() const { return {max.x - min.x, max.y - min.y}; }
+    bool empty() const { return max.x <= min.x || max.y <= min.y; }
+};
+
+/// Each draws one part within `area` (screen coordinates) and acts on what the hand does there.
+void drawTopBar(Ui& ui, Rect area);
+void drawEndoscopicPane(Ui& ui, Rect area);
+void drawSlicePane(Ui& ui, panels::View view, Rect area);
+void drawTransportBar(Ui& ui, Rect area);
+void drawBookmarkPanel(Ui& ui, Rect area);
+void drawNotices(Ui& ui, Rect area);
+/// The keys and what this program is; over everything.
+void drawHelp(Ui& ui, Rect area);
+/// The list of the server's cases, or the state of the link, where no case is open.
+void drawStart(Ui& ui, Rect area);
+
+/// Acts on the keyboard. False: the reader asked to quit.
+bool handleKeys(Ui& ui, double seconds);
+
+}  // namespace haustra::window

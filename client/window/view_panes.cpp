@@ -1,0 +1,227 @@
+// The endoscopic view and the slices: pictures, what is written on them, the mouse.
+#include "panels/slice_map.h"
+#include "window/ui.h"
+#include "window/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::window {
+namespace {
+
+using panels::View;
+
+// Uploads and draws the view's newest picture over `area`; a dim note where there is none yet.
+void drawPicture(Ui& ui, View view, Rect area, ImDrawList* list) {
+    PictureTexture& texture = ui.textures[std::size_t(view)];
+    texture.show(ui.reader.picture(view), ui.reader.pictureCount(view));
+    list->AddRectFilled(area.min, area.max, IM_COL32_BLACK);
+    if (!texture.empty()) {
+        list->AddImage(texture.id(), area.min, area.max);
+        return;
+    }
+    const std::string waiting = "waiting for the picture…";
+    const ImVec2 size = textSize(ui.fonts.small, waiting);
+    list->AddText(ui.fonts.small, ui.fonts.small->FontSize,
+                  {(area.min.x + area.max.x - size.x) / 2, (area.min.y + area.max.y - size.y) / 2},
+                  color::muted, waiting.c_str());
+}
+
+// An invisible button that takes the mouse over the pane.
+bool pane(Ui& ui, const char* id, Rect area) {
+    ImGui::SetCursorScreenPos(area.min);
+    ImGui::InvisibleButton(id, area.size());
+    if (ImGui::IsItemActivated()) ui.drag = 0.0;
+    const ImVec2 moved = ImGui::GetIO().MouseDelta;
+    if (ImGui::IsItemActive()) ui.drag += std::hypot(moved.x, moved.y);
+    return ImGui::IsItemHovered();
+}
+
+glm::ivec2 framebufferSize(Rect area) {
+    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+    return {std::max(1, int(area.size().x * scale.x)), std::max(1, int(area.size().y * scale.y))};
+}
+
+void drawEdgeLetters(Ui& ui, View view, Rect area, ImDrawList* list) {
+    const panels::EdgeLetters letters = panels::edgeLetters(view);
+    ImFont* font = ui.fonts.small;
+    const float middleX = (area.min.x + area.max.x) / 2, middleY = (area.min.y + area.max.y) / 2;
+    const float margin = ui.px(5), high = font->FontSize, wide = textSize(font, "R").x;
+    const ImU32 colour = IM_COL32(190, 200, 210, 220);
+    outlinedText(list, font, {area.min.x + margin, middleY - high / 2}, colour, letters.left);
+    outlinedText(list, font, {area.max.x - margin - wide, middleY - high / 2}, colour,
+                 letters.right);
+    outlinedText(list, font, {middleX - wide / 2, area.min.y + margin}, colour, letters.top);
+    outlinedText(list, font, {middleX - wide / 2, area.max.y - margin - high}, colour,
+                 letters.bottom);
+}
+
+// A cross with an open middle where the camera is, and an arrow along its gaze.
+void drawCrosshair(Ui& ui, const panels::SliceMap& map, double pixelsPerPicturePixel, Rect area,
+                   ImDrawList* list) {
+    const panels::Camera camera = ui.reader.flight().camera();
+    const glm::dvec2 pixel = map.pixelFromPatient(camera.positionMm);
+    const ImVec2 p(area.min.x + float((pixel.x + 0.5) * pixelsPerPicturePixel),
+                   area.min.y + float((pixel.y + 0.5) * pixelsPerPicturePixel));
+    const float gap = ui.px(9);
+    const ImU32 line = IM_COL32(72, 190, 199, 120);
+    list->AddLine({area.min.x, p.y}, {p.x - gap, p.y}, line);
+    list->AddLine({p.x + gap, p.y}, {area.max.x, p.y}, line);
+    list->AddLine({p.x, area.min.y}, {p.x, p.y - gap}, line);
+    list->AddLine({p.x, p.y + gap}, {p.x, area.max.y}, line);
+    const glm::dvec2 ahead =
+        map.pixelFromPatient(camera.positionMm + camera.forward * map.pixelMm()) - pixel;
+    const float length = float(glm::length(ahead));
+    list->AddCircleFilled(p, ui.px(2.5f), color::accent);
+    if (length < 0.15f) return;  // looking along the slice's normal
+    const ImVec2 along(float(ahead.x) / length, float(ahead.y) / length), across(-along.y, along.x);
+    const float tip = ui.px(4) + ui.px(16) * length, head = ui.px(4);
+    const ImVec2 end(p.x + along.x * tip, p.y + along.y * tip);
+    list->AddLine(p, end, color::accent, ui.px(1.5f));
+    list->AddTriangleFilled({end.x + along.x * head, end.y + along.y * head},
+                            {end.x + across.x * head * 0.8f, end.y + across.y * head * 0.8f},
+                            {end.x - across.x * head * 0.8f, end.y - across.y * head * 0.8f},
+                            color::accent);
+}
+
+const char* axisName(View view) {
+    return view == View::axial ? "z" : view == View::coronal ? "y" : "x";
+}
+const char* title(View view) {
+    return view == View::axial ? "Axial" : view == View::coronal ? "Coronal" : "Sagittal";
+}
+
+void handleSliceMouse(Ui& ui, View view, const panels::SliceMap& map, double pixelsPerPicturePixel,
+                      Rect area, bool hovered) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemActive() && ui.drag > ui.px(3)) {
+        panels::WindowLevel window = ui.reader.window();
+        const double stepHu = std::max(1.0, window.widthHu / 400.0);
+        window.widthHu += io.MouseDelta.x * stepHu;
+        window.centerHu += io.MouseDelta.y * stepHu;
+        ui.reader.setWindow(window);
+    }
+    if (!hovered) return;
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+        const glm::dvec2 pixel((io.MousePos.x - area.min.x) / pixelsPerPicturePixel - 0.5,
+                               (io.MousePos.y - area.min.y) / pixelsPerPicturePixel - 0.5);
+        ui.reader.goNear(map.patientFromPixel(pixel));
+    }
+    if (io.MouseWheel == 0.0f) return;
+    if (io.KeyCtrl) {
+        ui.reader.zoomSlices(std::pow(1.2, io.MouseWheel));
+    } else {
+        const glm::dvec3 spacing = ui.reader.session().caseInfo()->grid.spacingMm();
+        const double step = view == View::axial     ? spacing.z
+                            : view == View::coronal ? spacing.y
+                                                    : spacing.x;
+        ui.reader.scrollSlice(view, io.MouseWheel * step * (io.KeyShift ? 10.0 : 1.0));
+    }
+}
+
+}  // namespace
+
+void drawEndoscopicPane(Ui& ui, Rect area) {
+    panels::Reader& reader = ui.reader;
+    panels::Flight& flight = reader.flight();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    reader.setPaneSize(View::endoscopic, framebufferSize(area));
+    drawPicture(ui, View::endoscopic, area, list);
+
+    const bool hovered = pane(ui, "endoscopic", area);
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
+        // A drag across the pane's height turns by the field of view: the wall follows the hand.
+        const double degreesPerPixel = flight.camera().fovDegrees / area.size().y;
+        flight.look(io.MouseDelta.x * degreesPerPixel, -io.MouseDelta.y * degreesPerPixel);
+    }
+    if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) flight.resetLook();
+    if (hovered && io.MouseWheel != 0.0f) {
+        const double stepMm = io.MouseWheel * (io.KeyShift ? 10.0 : 3.0);
+        if (flight.isFree())
+            flight.moveFreely({0, 0, stepMm});
+        else
+            flight.goTo(flight.arcMm() +
+                        (flight.direction() == FlightDirection::antegrade ? stepMm : -stepMm));
+    }
+
+    const float margin = ui.px(12);
+    const double length = flight.centerline().lengthMm();
+    const bool antegrade = flight.direction() == FlightDirection::antegrade;
+    outlinedText(list, ui.fonts.large, {area.min.x + margin, area.min.y + margin}, color::text,
+                 flight.isFree() ? std::string("Free flight") : format("%.0f mm", flight.arcMm()));
+    outlinedText(list, ui.fonts.small,
+                 {area.min.x + margin, area.min.y + margin + ui.fonts.large->FontSize + ui.px(4)},
+                 IM_COL32(200, 208, 216, 255),
+                 flight.isFree() ? std::string("W A S D move, drag to look, C returns to the path")
+                                 : format("of %.0f mm, %s", length,
+                                          antegrade ? "towards the cecum" : "towards the rectum"));
+    const CenterlinePose pose = flight.centerline().points.empty()
+                                    ? CenterlinePose{}
+                                    : poseAtArc(flight.centerline(), flight.arcMm());
+    if (!flight.isFree() && pose.point.gap)
+        outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin + ui.px(46)},
+                     color::bookmark, "gap: the colon is collapsed or filled here");
+    if (flight.yawDegrees() != 0.0 || flight.pitchDegrees() != 0.0) {
+        const std::string look = format("look %+.0f°  %+.0f°   double-click: straight ahead",
+                                        flight.yawDegrees(), flight.pitchDegrees());
+        outlinedText(list, ui.fonts.small,
+                     {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
+                     IM_COL32(200, 208, 216, 255), look);
+    }
+    const bool exact = reader.picture(View::endoscopic).exact;
+    const std::string badge = exact ? "exact" : "moving";
+    const ImVec2 size = textSize(ui.fonts.small, badge);
+    const float dot = ui.px(4);
+    const ImVec2 corner(area.max.x - margin - size.x, area.max.y - margin - size.y);
+    if (reader.pictureCount(View::endoscopic) > 0) {
+        list->AddCircleFilled({corner.x - 2.2f * dot, corner.y + size.y / 2}, dot,
+                              exact ? color::accent : color::bookmark);
+        outlinedText(list, ui.fonts.small, corner, IM_COL32(200, 208, 216, 255), badge);
+    }
+}
+
+void drawSlicePane(Ui& ui, View view, Rect area) {
+    panels::Reader& reader = ui.reader;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const glm::ivec2 size = framebufferSize(area);
+    reader.setPaneSize(view, size);
+    drawPicture(ui, view, area, list);
+    const bool hovered = pane(ui, title(view), area);
+
+    const panels::Slice shown =
+        reader.pictureCount(view) > 0 ? reader.shownSlice(view) : reader.slice(view);
+    const double pixels = area.size().x / size.x;
+    const panels::SliceMap map(view, shown, reader.session().caseInfo()->grid, size.x, size.y);
+    handleSliceMouse(ui, view, map, pixels, area, hovered);
+
+    list->PushClipRect(area.min, area.max, true);
+    drawCrosshair(ui, map, pixels, area, list);
+    drawEdgeLetters(ui, view, area, list);
+    const float margin = ui.px(8);
+    const double coordinate = glm::dot(shown.positionMm, panels::sliceNormal(view));
+    outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin}, color::text,
+                 title(view));
+    const std::string place = format("%s %.1f mm", axisName(view), coordinate);
+    outlinedText(list, ui.fonts.small,
+                 {area.max.x - margin - textSize(ui.fonts.small, place).x, area.min.y + margin},
+                 IM_COL32(200, 208, 216, 255), place);
+    if (view == View::axial) {
+        const panels::WindowLevel& window = reader.window();
+        outlinedText(list, ui.fonts.small,
+                     {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
+                     IM_COL32(200, 208, 216, 255),
+                     format("C %.0f  W %.0f HU", window.centerHu, window.widthHu));
+    }
+    if (shown.zoom > 1.001) {
+        const std::string zoom = format("×%.1f", shown.zoom);
+        outlinedText(list, ui.fonts.small,
+                     {area.max.x - margin - textSize(ui.fonts.small, zoom).x,
+                      area.max.y - margin - ui.fonts.small->FontSize},
+                     IM_COL32(200, 208, 216, 255), zoom);
+    }
+    list->PopClipRect();
+    list->AddRect(area.min, area.max, hovered ? color::muted : color::border);
+}
+
+}  // namespace haustra::window

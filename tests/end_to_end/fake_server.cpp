@@ -1,0 +1,404 @@
+#include "end_to_end/fake_server.h"
+
+#include "link/fingerprint.h"
+#include "protocol/framing.h"
+#include "protocol/haustra.pb.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <asio.hpp>
+#include <asio/ssl.hpp>
+#include <openssl/evp.h>
+#include <openssl/rsa.h>
+#include <openssl/ssl.h>
+#include <openssl/x509.h>
+#include <turbojpeg.h>
+
+namespace haustra::tests {
+namespace {
+
+using asio::ip::tcp;
+using Stream = asio::ssl::stream<tcp::socket>;
+using protocol::ClientMessage;
+using protocol::ServerMessage;
+
+struct Identity {
+    std::shared_ptr<EVP_PKEY> key;
+    std::shared_ptr<X509> certificate;
+    std::string fingerprint;
+};
+
+Identity makeIdentity() {
+    Identity identity;
+    identity.key.reset(EVP_EC_gen("P-256"), EVP_PKEY_free);
+    identity.certificate.reset(X509_new(), X509_free);
+    X509* certificate = identity.certificate.get();
+    X509_set_version(certificate, 2);
+    ASN1_INTEGER_set(X509_get_serialNumber(certificate), long(std::random_device{}() >> 1));
+    X509_gmtime_adj(X509_getm_notBefore(certificate), 0);
+    X509_gmtime_adj(X509_getm_notAfter(certificate), 24 * 3600);
+    X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate), "CN", MBSTRING_ASC,
+                               reinterpret_cast<const unsigned char*>("test"), -1, -1, 0);
+    X509_set_issuer_name(certificate, X509_get_subject_name(certificate));
+    X509_set_pubkey(certificate, identity.key.get());
+    X509_sign(certificate, identity.key.get(), EVP_sha256());
+    unsigned char* der = nullptr;
+    const int bytes = i2d_X509(certificate, &der);
+    identity.fingerprint = link::fingerprintOf({der, std::size_t(bytes)});
+    OPENSSL_free(der);
+    return identity;
+}
+
+std::vector<std::uint8_t> encodeJpeg(const std::vector<std::uint8_t>& rgb, int width, int height) {
+    tjhandle handle = tjInitCompress();
+    unsigned char* bytes = nullptr;
+    unsigned long size = 0;
+    tjCompress2(handle, rgb.data(), width, width * 3, height, TJPF_RGB, &bytes, &size, TJSAMP_420,
+                80, 0);
+    std::vector<std::uint8_t> jpeg(bytes, bytes + size);
+    tjFree(bytes);
+    tjDestroy(handle);
+    return jpeg;
+}
+
+struct Viewport {
+    protocol::View view = protocol::VIEW_UNSPECIFIED;
+    int width = 0, height = 0;
+    double centerHu = 0.0;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> syntheticPicture(int width, int height, glm::dvec3 positionMm,
+                                           double centerHu) {
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(std::size_t(width) * std::size_t(height) * 3);
+    const double shift = positionMm.x + positionMm.y + positionMm.z;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            rgb.push_back(std::uint8_t(128 + 100 * std::sin(0.02 * (x + shift))));
+            rgb.push_back(std::uint8_t(128 + 100 * std::sin(0.03 * (y - shift))));
+            rgb.push_back(std::uint8_t(128 + 100 * std::sin(0.01 * (x + y) + 0.01 * centerHu)));
+        }
+    }
+    return rgb;
+}
+
+struct FakeServer::Impl {
+    Misbehaviour misbehaviour;
+    Identity identity = makeIdentity();
+    asio::io_context io;
+    asio::ssl::context tls{asio::ssl::context::tls_server};
+    tcp::acceptor acceptor;
+    std::atomic<bool> stopping{false};
+    std::atomic<int> connections{0}, bookmarkMessages{0};
+    mutable std::mutex mutex;
+    std::vector<protocol::Bookmark> bookmarks;  // guarded by mutex
+    std::set<std::shared_ptr<Stream>> streams;  // guarded by mutex
+    std::vector<std::thread> conversations;
+    std::thread listener;
+
+    Impl(Misbehaviour wrong, std::uint16_t port)
+        : misbehaviour(wrong), acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), port)) {
+        SSL_CTX_set_min_proto_version(tls.native_handle(), TLS1_3_VERSION);
+        SSL_CTX_use_certificate(tls.native_handle(), identity.certificate.get());
+        SSL_CTX_use_PrivateKey(tls.native_handle(), identity.key.get());
+        listener = std::thread([this] { listen(); });
+    }
+    ~Impl() {
+        stopping = true;
+        asio::error_code ignored;
+        // A blocked accept() does not see its socket closed: knock instead.
+        tcp::socket knock(io);
+        knock.connect(acceptor.local_endpoint(), ignored);
+        listener.join();
+        {
+            const std::lock_guard lock(mutex);
+            for (const auto& stream : streams)
+                stream->lowest_layer().shutdown(tcp::socket::shutdown_both, ignored);
+        }
+        for (std::thread& conversation : conversations)
+            conversation.join();
+    }
+
+    void listen() {
+        while (!stopping) {
+            auto stream = std::make_shared<Stream>(io, tls);
+            asio::error_code error;
+            acceptor.accept(stream->lowest_layer(), error);
+            if (stopping || error) continue;
+            {
+                const std::lock_guard lock(mutex);
+                streams.insert(stream);
+            }
+            conversations.emplace_back([this, stream] {
+                try {
+                    stream->lowest_layer().set_option(tcp::no_delay(true));
+                    stream->handshake(Stream::server);
+                    ++connections;
+                    converse(*stream);
+                } catch (const std::exception&) {
+                    // The client went away, which is how every conversation ends.
+                }
+                const std::lock_guard lock(mutex);
+                streams.erase(stream);
+                asio::error_code ignored;
+                stream->lowest_layer().close(ignored);
+            });
+        }
+    }
+
+    static ClientMessage read(Stream& stream) {
+        std::array<std::uint8_t, protocol::frameHeaderBytes> head;
+        asio::read(stream, asio::buffer(head));
+        const auto header = protocol::parseFrameHeader(head, protocol::serverReceives);
+        if (!header) throw std::runtime_error("bad frame");
+        std::vector<std::uint8_t> payload(header->payloadBytes);
+        asio::read(stream, asio::buffer(payload));
+        ClientMessage message;
+        if (!message.ParseFromArray(payload.data(), int(payload.size())))
+            throw std::runtime_error("bad message");
+        return message;
+    }
+    static void write(Stream& stream, const ServerMessage& message) {
+        const std::string body = message.SerializeAsString();
+        std::vector<std::uint8_t> frame;
+        protocol::appendFrameHeader(frame,
+                                    {std::uint32_t(body.size()), protocol::FrameType::control});
+        frame.insert(frame.end(), body.begin(), body.end());
+        asio::write(stream, asio::buffer(frame));
+    }
+
+    void sendPicture(Stream& stream, std::uint32_t number, std::uint64_t sequence, int id,
+                     const Viewport& viewport, glm::dvec3 positionMm, bool exact) {
+        const auto rgb =
+            syntheticPicture(viewport.width, viewport.height, positionMm, viewport.centerHu);
+        constexpr int side = 128;
+        std::vector<std::uint8_t> out;
+        for (int y = 0; y < viewport.height; y += side) {
+            for (int x = 0; x < viewport.width; x += side) {
+                const int w = std::min(side, viewport.width - x),
+                          h = std::min(side, viewport.height - y);
+                std::vector<std::uint8_t> tile;
+                for (int row = y; row < y + h; ++row) {
+                    const auto start = rgb.begin() + (row * viewport.width + x) * 3;
+                    tile.insert(tile.end(), start, start + w * 3);
+                }
+                std::vector<std::uint8_t> bytes =
+                    exact ? protocol::encodeLossless(tile, w, h) : encodeJpeg(tile, w, h);
+                if (misbehaviour.garbageTiles)
+                    for (std::size_t n = 0; n < bytes.size(); ++n)
+                        bytes[n] = std::uint8_t(n * 37 + 11);
+                protocol::TileHeader header;
+                header.viewport = std::uint8_t(id);
+                header.codec = exact ? protocol::TileCodec::lossless : protocol::TileCodec::jpeg;
+                header.last = x + side >= viewport.width && y + side >= viewport.height;
+                header.exact = exact;
+                header.picture = number;
+                header.sequence = sequence;
+                header.pictureWidth = std::uint16_t(viewport.width);
+                header.pictureHeight = std::uint16_t(viewport.height);
+                header.x = std::uint16_t(x);
+                header.y = std::uint16_t(y);
+                header.width = std::uint16_t(w);
+                header.height = std::uint16_t(h);
+                header.renderMicroseconds = 1000;
+                header.encodeMicroseconds = 200;
+                header.queueMicroseconds = 30;
+                std::vector<std::uint8_t> payload;
+                protocol::appendTileHeader(payload, header);
+                payload.insert(payload.end(), bytes.begin(), bytes.end());
+                protocol::appendFrameHeader(
+                    out, {std::uint32_t(payload.size()), protocol::FrameType::tile});
+                out.insert(out.end(), payload.begin(), payload.end());
+            }
+        }
+        asio::write(stream, asio::buffer(out));
+    }
+
+    static ServerMessage caseOpened(const std::string& name) {
+        ServerMessage message;
+        auto* opened = message.mutable_case_opened();
+        opened->set_name(name);
+        opened->set_size_x(256);
+        opened->set_size_y(256);
+        opened->set_size_z(200);
+        for (const double number :
+             {0.7, 0.0, 0.0, -90.0, 0.0, 0.7, 0.0, -90.0, 0.0, 0.0, 1.0, -20.0})
+            opened->add_patient_from_voxel(number);
+        for (const CenterlinePoint& point : centerline().points)
+            for (const double number : {point.positionMm.x, point.positionMm.y, point.positionMm.z,
+                                        point.arcMm, point.radiusMm})
+                opened->add_centerline(number);
+        for (std::uint32_t n = 200; n < 220; ++n)
+            opened->add_gap_samples(n);
+        opened->set_patient_position("supine");
+        opened->add_transfer_functions("mucosa");
+        opened->add_transfer_functions("translucent");
+        return message;
+    }
+
+    // False: the socket is to be closed.
+    bool addBookmark(Stream& stream, const protocol::AddBookmark& add) {
+        ++bookmarkMessages;
+        ServerMessage answer;
+        bool drop = false;
+        {
+            const std::lock_guard lock(mutex);
+            protocol::Bookmark* stored = nullptr;
+            for (auto& bookmark : bookmarks)
+                if (bookmark.client_key() == add.client_key()) stored = &bookmark;
+            if (!stored) {
+                stored = &bookmarks.emplace_back();
+                stored->set_id(bookmarks.size());
+                *stored->mutable_position_mm() = add.position_mm();
+                *stored->mutable_forward() = add.forward();
+                *stored->mutable_up() = add.up();
+                stored->set_arc_mm(add.arc_mm());
+                stored->set_note(add.note());
+                stored->set_client_key(add.client_key());
+                stored->set_created_utc("2020-02-20T20:20:20Z");
+            }
+            drop = misbehaviour.dropAfterBookmarks > 0 &&
+                   int(bookmarks.size()) == misbehaviour.dropAfterBookmarks;
+            if (drop) misbehaviour.dropAfterBookmarks = 0;
+            answer.mutable_bookmark_added()->set_request(add.request());
+            *answer.mutable_bookmark_added()->mutable_bookmark() = *stored;
+        }
+        if (!drop) write(stream, answer);
+        return !drop;
+    }
+
+    void converse(Stream& stream) {
+        std::map<int, Viewport> viewports;
+        std::uint32_t pictures = 0;
+        if (!read(stream).has_hello()) return;
+        ServerMessage welcome;
+        welcome.mutable_welcome()->set_protocol_version(misbehaviour.protocolVersion);
+        welcome.mutable_welcome()->set_software("fake-server 1");
+        welcome.mutable_welcome()->set_renderer("none");
+        if (misbehaviour.truncateWelcome) {
+            std::vector<std::uint8_t> frame;
+            protocol::appendFrameHeader(frame, {3, protocol::FrameType::control});
+            frame.insert(frame.end(), {0x0a, 0x7f, 0x00});
+            asio::write(stream, asio::buffer(frame));
+            return;
+        }
+        write(stream, welcome);
+        while (!stopping) {
+            const ClientMessage message = read(stream);
+            ServerMessage answer;
+            switch (message.body_case()) {
+                case ClientMessage::kListCases:
+                    answer.mutable_case_list()->add_names("phantom");
+                    write(stream, answer);
+                    break;
+                case ClientMessage::kOpenCase:
+                    if (message.open_case().name() != "phantom") {
+                        answer.mutable_error()->set_code(protocol::ErrorReport::NO_SUCH_CASE);
+                        answer.mutable_error()->set_message("there is no such case");
+                        write(stream, answer);
+                    } else {
+                        write(stream, caseOpened("phantom"));
+                    }
+                    break;
+                case ClientMessage::kSetViewport: {
+                    const auto& set = message.set_viewport();
+                    viewports[int(set.viewport())] = {set.view(), int(set.width()),
+                                                      int(set.height()), 0.0};
+                    break;
+                }
+                case ClientMessage::kSetWindowLevel:
+                    viewports[int(message.set_window_level().viewport())].centerHu =
+                        message.set_window_level().window().center_hu();
+                    break;
+                case ClientMessage::kSetCamera: {
+                    const auto& set = message.set_camera();
+                    if (!set.moving() && misbehaviour.noStills) break;
+                    const auto& p = set.position_mm();
+                    sendPicture(stream, ++pictures, set.sequence(), int(set.viewport()),
+                                viewports[int(set.viewport())], {p.x(), p.y(), p.z()},
+                                !set.moving());
+                    break;
+                }
+                case ClientMessage::kSetSlice: {
+                    const auto& set = message.set_slice();
+                    const auto& p = set.position_mm();
+                    sendPicture(stream, ++pictures, set.sequence(), int(set.viewport()),
+                                viewports[int(set.viewport())], {p.x(), p.y(), p.z()},
+                                !set.moving());
+                    break;
+                }
+                case ClientMessage::kSetTransferFunction:
+                    if (message.set_transfer_function().preset() != "mucosa" &&
+                        message.set_transfer_function().preset() != "translucent") {
+                        answer.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);
+                        answer.mutable_error()->set_message("no such transfer function");
+                        write(stream, answer);
+                    }
+                    break;
+                case ClientMessage::kAddBookmark:
+                    if (!addBookmark(stream, message.add_bookmark())) return;
+                    break;
+                case ClientMessage::kListBookmarks: {
+                    const std::lock_guard lock(mutex);
+                    answer.mutable_bookmark_list()->set_request(message.list_bookmarks().request());
+                    for (const auto& bookmark : bookmarks)
+                        *answer.mutable_bookmark_list()->add_bookmarks() = bookmark;
+                    write(stream, answer);
+                    break;
+                }
+                case ClientMessage::kPing:
+                    answer.mutable_pong()->set_request(message.ping().request());
+                    write(stream, answer);
+                    break;
+                default:
+                    return;
+            }
+        }
+    }
+};
+
+FakeServer::FakeServer(Misbehaviour misbehaviour, std::uint16_t port)
+    : impl_(std::make_unique<Impl>(misbehaviour, port)) {}
+FakeServer::~FakeServer() = default;
+std::uint16_t FakeServer::port() const {
+    return impl_->acceptor.local_endpoint().port();
+}
+std::string FakeServer::fingerprint() const {
+    return impl_->identity.fingerprint;
+}
+int FakeServer::connections() const {
+    return impl_->connections;
+}
+int FakeServer::bookmarkMessages() const {
+    return impl_->bookmarkMessages;
+}
+
+std::vector<std::string> FakeServer::storedBookmarkKeys() const {
+    const std::lock_guard lock(impl_->mutex);
+    std::vector<std::string> keys;
+    for (const auto& bookmark : impl_->bookmarks)
+        keys.push_back(bookmark.client_key());
+    return keys;
+}
+
+Centerline FakeServer::centerline() {
+    Centerline path;
+    for (int n = 0; n <= 600; ++n) {
+        const double t = n / 600.0 * 9.0;
+        CenterlinePoint point;
+        point.positionMm = {60 * std::cos(t), 60 * std::sin(t), 18 * t};
+        point.radiusMm = 15;
+        if (n > 0)
+            point.arcMm = path.points.back().arcMm +
+                          glm::distance(point.positionMm, path.points.back().positionMm);
+        path.points.push_back(point);
+    }
+    return path;
+}
+
+}  // namespace haustra::tests

@@ -1,0 +1,50 @@
+// A server for tests of the client: speaks the protocol over TLS on the loopback, with synthetic
+// pictures whose pixels can be computed, and misbehaves on request.
+#pragma once
+
+#include "core/centerline.h"
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace haustra::tests {
+
+/// Colour of pixel (x, y) of the synthetic picture of a camera or slice at `positionMm`.
+std::vector<std::uint8_t> syntheticPicture(int width, int height, glm::dvec3 positionMm,
+                                           double centerHu);
+
+/// What the fake server does wrong.
+struct Misbehaviour {
+    std::uint32_t protocolVersion = 1;
+    bool garbageTiles = false;   ///< tiles whose JPEG or lossless bytes are noise
+    bool noStills = false;       ///< never answers a camera at rest
+    int dropAfterBookmarks = 0;  ///< stores so many, then closes the socket before acknowledging
+    bool truncateWelcome = false;
+};
+
+class FakeServer {
+public:
+    /// Listens on 127.0.0.1 with a port chosen by the system and a certificate made now.
+    explicit FakeServer(Misbehaviour misbehaviour = {}, std::uint16_t port = 0);
+    ~FakeServer();
+
+    std::uint16_t port() const;
+    std::string fingerprint() const;
+    std::vector<std::string> storedBookmarkKeys() const;  ///< in order of storing, each key once
+    int connections() const;
+    int bookmarkMessages() const;
+    static Centerline centerline();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace haustra::tests

@@ -1,0 +1,233 @@
+// Scripts of the headless client, and the statistics it reports.
+#include "panels/latency.h"
+#include "panels/pacing.h"
+#include "panels/script.h"
+#include "panels/script_report.h"
+#include "panels/slice_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+namespace haustra::panels {
+namespace {
+
+Result<std::vector<Action>> parse(const std::string& text) {
+    std::istringstream in(text);
+    return parseScript(in, "tour.jsonl");
+}
+
+TEST(Script, ReadsEveryActionWithItsLine) {
+    const auto actions = parse(
+        "# a tour\n"
+        "\n"
+        R"({"do":"view","viewport":2,"view":"coronal","size":[640,480]})"
+        "\n"
+        R"({"do":"go","arc_mm":120,"direction":"retrograde","yaw_deg":-15})"
+        "\n"
+        R"({"do":"fly","from_mm":0,"to_mm":1500,"positions":200,"pipelined":true})"
+        "\n"
+        R"({"do":"still","png":"rectum.png"})"
+        "\n"
+        R"({"do":"slice","view":"axial","position_mm":[1,-2,3.5],"zoom":2,"png":"a.png"})"
+        "\n"
+        R"({"do":"window","viewport":1,"center_hu":40,"width_hu":400})"
+        "\r\n"
+        R"({"do":"transfer","preset":"translucent"})"
+        "\n"
+        R"({"do":"bookmark","note":"sessile, 8 mm"})"
+        "\n"
+        R"({"do":"bookmarks","json":"all.json"})"
+        "\n"
+        R"({"do":"wait","ms":12.5})");
+    ASSERT_TRUE(actions) << describe(actions.error());
+    ASSERT_EQ(actions->size(), 10u);
+    EXPECT_EQ((*actions)[0].line, 3);
+    const auto& view = std::get<ViewAction>((*actions)[0].body);
+    EXPECT_EQ(view.viewport, 2);
+    EXPECT_EQ(view.view, View::coronal);
+    EXPECT_EQ(view.width, 640);
+    const auto& go = std::get<GoAction>((*actions)[1].body);
+    EXPECT_EQ(go.arcMm, 120.0);
+    EXPECT_EQ(go.direction, FlightDirection::retrograde);
+    EXPECT_EQ(go.yawDegrees, -15.0);
+    EXPECT_FALSE(go.pitchDegrees);
+    EXPECT_TRUE(std::get<FlyAction>((*actions)[2].body).pipelined);
+    EXPECT_EQ(std::get<StillAction>((*actions)[3].body).png, "rectum.png");
+    EXPECT_EQ(std::get<SliceAction>((*actions)[4].body).positionMm, glm::dvec3(1, -2, 3.5));
+    EXPECT_EQ(std::get<WindowAction>((*actions)[5].body).window.widthHu, 400.0);
+    EXPECT_EQ(std::get<BookmarkAction>((*actions)[7].body).note, "sessile, 8 mm");
+    EXPECT_EQ((*actions)[9].line, 12);
+    EXPECT_EQ(std::get<WaitAction>((*actions)[9].body).ms, 12.5);
+}
+
+TEST(Script, ErrorsNameTheLineAndTheKey) {
+    const struct {
+        const char* line;
+        const char* says;
+    } cases[] = {
+        {"{\"do\":\"go\",", "not a JSON object"},
+        {"[1,2]", "not a JSON object"},
+        {"{\"arc_mm\":3}", "\"do\" is missing"},
+        {"{\"do\":\"dance\"}", "no such action: \"dance\""},
+        {"{\"do\":\"go\",\"arc\":3}", "\"arc\" is not a key of this action"},
+        {"{\"do\":\"go\",\"arc_mm\":\"3\"}", "\"arc_mm\" must be a number"},
+        {"{\"do\":\"go\",\"arc_mm\":-1}", "\"arc_mm\" must lie in 0…100000"},
+        {"{\"do\":\"go\",\"arc_mm\":1,\"fraction\":0.5}", "exclude each other"},
+        {"{\"do\":\"fly\",\"positions\":1.5}", "\"positions\" must be a whole number"},
+        {"{\"do\":\"view\",\"view\":\"upside\"}",
+         "\"view\" must be endoscopic, axial, coronal or sagittal"},
+        {"{\"do\":\"view\",\"view\":\"axial\",\"viewport\":8}", "\"viewport\" must lie in 0…7"},
+        {"{\"do\":\"view\",\"view\":\"axial\",\"size\":[4096,4]}",
+         "\"size\" must hold numbers in 1…2048"},
+        {"{\"do\":\"still\",\"png\":\"../x.png\"}",
+         "\"png\" must be a plain file name ending in .png"},
+        {"{\"do\":\"still\",\"png\":\"x.jpg\"}",
+         "\"png\" must be a plain file name ending in .png"},
+        {"{\"do\":\"slice\",\"view\":\"endoscopic\"}",
+         "\"view\" must be axial, coronal or sagittal"},
+        {"{\"do\":\"window\",\"center_hu\":40}", "\"width_hu\" is missing"},
+        {"{\"do\":\"bookmark\",\"note\":\"\xff\"}", "not a JSON object"},
+    };
+    for (const auto& one : cases) {
+        const auto actions =
+            parse(std::string("# first\n{\"do\":\"wait\",\"ms\":1}\n") + one.line + "\n");
+        ASSERT_FALSE(actions) << one.line;
+        EXPECT_EQ(actions.error().place, "tour.jsonl:3") << one.line;
+        EXPECT_NE(actions.error().message.find(one.says), std::string::npos)
+            << actions.error().message;
+    }
+}
+
+// The definition itself: the smallest value that at least p % of the values do not exceed.
+double percentileByCounting(const std::vector<double>& values, double percent) {
+    double best = INFINITY;
+    for (const double candidate : values) {
+        const auto below =
+            std::count_if(values.begin(), values.end(), [&](double v) { return v <= candidate; });
+        if (double(below) >= percent / 100.0 * double(values.size()))
+            best = std::min(best, candidate);
+    }
+    return best;
+}
+
+TEST(Latency, PercentilesAgreeWithTheirDefinition) {
+    std::mt19937 random(3);
+    for (int count = 1; count <= 60; ++count) {
+        std::vector<double> values;
+        for (int n = 0; n < count; ++n)
+            values.push_back(double(random() % 50));
+        const Summary summary = summarize(values);
+        EXPECT_EQ(summary.count, values.size());
+        EXPECT_EQ(summary.p50, percentileByCounting(values, 50.0));
+        EXPECT_EQ(summary.p95, percentileByCounting(values, 95.0));
+        EXPECT_EQ(summary.max, *std::max_element(values.begin(), values.end()));
+    }
+    EXPECT_EQ(summarize(std::vector<double>{}).count, 0u);
+    EXPECT_DOUBLE_EQ(summarize(std::vector<double>{1, 2, 6}).mean, 3.0);
+}
+
+TEST(Latency, RecentTimesForgetTheOldest) {
+    RecentTimes times(3);
+    for (const double ms : {100.0, 1.0, 2.0, 3.0})
+        times.add(ms);
+    EXPECT_EQ(times.summary().max, 3.0);
+    EXPECT_EQ(times.summary().count, 3u);
+}
+
+TEST(ScriptReport, HoldsTheStatisticsAndTheError) {
+    PlayReport report;
+    report.caseName = "phantom";
+    report.failure = Error{ErrorKind::device, "too late", "tour.jsonl:3: fly"};
+    ActionReport fly;
+    fly.line = 3;
+    fly.name = "fly";
+    fly.seconds = 2.0;
+    fly.positions = 4;
+    fly.latencyMs = {10, 20, 30, 40};
+    fly.decodeMs = {1, 1, 1, 1};
+    fly.renderMicroseconds = fly.encodeMicroseconds = fly.queueMicroseconds = {7, 8, 9, 10};
+    fly.bytes = 4000;
+    report.actions.push_back(fly);
+    const std::string text = toJson(report);
+    for (const char* part :
+         {"\"fps\": 2.0", "\"p50\": 20.0", "\"p95\": 40.0", "\"bytes_per_picture\": 1000",
+          "\"error\": \"tour.jsonl:3: fly: too late\"", "\"render\": 8.0"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+}
+
+TEST(ViewPacer, AsksAsMovingWhileMovingAndOnceForTheStill) {
+    using std::chrono::milliseconds;
+    ViewPacer pacer(milliseconds(20), milliseconds(100));
+    const ViewPacer::Time start = ViewPacer::Time{} + std::chrono::hours(1);
+    int moving = 0, still = 0;
+    for (int ms = 0; ms < 1000; ++ms) {
+        const auto ask = pacer.next(ms < 500, start + milliseconds(ms));
+        moving += ask == ViewPacer::Ask::moving;
+        still += ask == ViewPacer::Ask::still;
+        if (ask == ViewPacer::Ask::still) {
+            EXPECT_GE(ms, 599);
+        }
+    }
+    EXPECT_EQ(still, 1);
+    EXPECT_NEAR(moving, 25, 1);
+    EXPECT_FALSE(pacer.owes());
+    pacer.touch();
+    EXPECT_TRUE(pacer.owes());
+}
+
+TEST(MovingDetail, GivesWayToASlowServerAndComesBack) {
+    MovingDetail detail;
+    detail.add(500.0);  // a hiccup is no slow server
+    EXPECT_EQ(detail.scale(), 1.0);
+    for (int n = 0; n < 100; ++n)
+        detail.add(200.0);
+    const double lowest = detail.scale();
+    EXPECT_LT(lowest, 0.5);
+    for (int n = 0; n < 100; ++n)
+        detail.add(60.0);
+    EXPECT_EQ(detail.scale(), lowest);
+    for (int n = 0; n < 1000; ++n)
+        detail.add(10.0);
+    EXPECT_EQ(detail.scale(), 1.0);
+}
+
+TEST(SliceMap, PixelsAndPatientPointsAreInverseAndThePositionLiesOnTheSlice) {
+    const Grid grid = axisAlignedGrid({512, 512, 430}, {0.7, 0.7, 0.8}, {-180, -160, -900});
+    const Slice slice{{20, 30, -700}, 3.0};
+    for (const View view : {View::axial, View::coronal, View::sagittal}) {
+        const SliceMap map(view, slice, grid, 640, 480);
+        const glm::dvec2 pixel(123.25, 77.5);
+        const glm::dvec3 point = map.patientFromPixel(pixel);
+        EXPECT_LT(glm::distance(map.pixelFromPatient(point), pixel), 1e-9);
+        EXPECT_NEAR(glm::dot(point - slice.positionMm, map.normal()), 0.0, 1e-9);
+    }
+}
+
+TEST(SliceMap, TheWholeScanFitsAtZoomOneAndZoomingHoldsThePosition) {
+    const Grid grid = axisAlignedGrid({512, 512, 430}, {0.7, 0.7, 0.8}, {-180, -160, -900});
+    for (const View view : {View::axial, View::coronal, View::sagittal}) {
+        Slice slice{{20, 30, -700}, 1.0};
+        const SliceMap whole(view, slice, grid, 640, 480);
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
+            const glm::dvec2 pixel = whole.pixelFromPatient(
+                grid.patientFromVoxelPoint(side * glm::dvec3(grid.size) - 0.5));
+            EXPECT_GE(pixel.x, -0.5 - 1e-9);
+            EXPECT_GE(pixel.y, -0.5 - 1e-9);
+            EXPECT_LE(pixel.x, 639.5 + 1e-9);
+            EXPECT_LE(pixel.y, 479.5 + 1e-9);
+        }
+        const glm::dvec2 before = whole.pixelFromPatient(slice.positionMm);
+        slice.zoom = 5.0;
+        const SliceMap near(view, slice, grid, 640, 480);
+        EXPECT_LT(glm::distance(near.pixelFromPatient(slice.positionMm), before), 1e-6);
+        EXPECT_NEAR(near.pixelMm() * 5.0, whole.pixelMm(), 1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace haustra::panels

@@ -1,0 +1,244 @@
+// Tiles: decoding, assembly in any order, hostile bytes, PNG files.
+#include "tiles/picture_assembler.h"
+#include "tiles/png_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <turbojpeg.h>
+#include <unistd.h>
+
+namespace haustra::tiles {
+namespace {
+
+using protocol::TileCodec;
+using protocol::TileHeader;
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes smoothPicture(int width, int height, double phase) {
+    Bytes rgb;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c)
+                rgb.push_back(std::uint8_t(128 + 90 * std::sin(0.05 * x + 0.03 * y + c + phase)));
+    return rgb;
+}
+
+Bytes cut(const Bytes& rgb, int pictureWidth, int x, int y, int width, int height) {
+    Bytes tile;
+    for (int row = y; row < y + height; ++row) {
+        const auto start = rgb.begin() + (row * pictureWidth + x) * 3;
+        tile.insert(tile.end(), start, start + width * 3);
+    }
+    return tile;
+}
+
+Bytes encodeJpeg(const Bytes& rgb, int width, int height) {
+    tjhandle handle = tjInitCompress();
+    unsigned char* bytes = nullptr;
+    unsigned long size = 0;
+    tjCompress2(handle, rgb.data(), width, width * 3, height, TJPF_RGB, &bytes, &size, TJSAMP_444,
+                90, 0);
+    Bytes jpeg(bytes, bytes + size);
+    tjFree(bytes);
+    tjDestroy(handle);
+    return jpeg;
+}
+
+Bytes payload(const TileHeader& header, const Bytes& codecBytes) {
+    Bytes bytes;
+    protocol::appendTileHeader(bytes, header);
+    bytes.insert(bytes.end(), codecBytes.begin(), codecBytes.end());
+    return bytes;
+}
+
+// The payloads of a lossless picture in tiles of 64 pixels, the last one flagged.
+std::vector<Bytes> losslessTiles(const Bytes& rgb, int width, int height, std::uint32_t number,
+                                 std::uint64_t sequence) {
+    std::vector<Bytes> tiles;
+    for (int y = 0; y < height; y += 64) {
+        for (int x = 0; x < width; x += 64) {
+            TileHeader header;
+            header.codec = TileCodec::lossless;
+            header.exact = true;
+            header.picture = number;
+            header.sequence = sequence;
+            header.pictureWidth = std::uint16_t(width);
+            header.pictureHeight = std::uint16_t(height);
+            header.x = std::uint16_t(x);
+            header.y = std::uint16_t(y);
+            header.width = std::uint16_t(std::min(64, width - x));
+            header.height = std::uint16_t(std::min(64, height - y));
+            header.last = x + 64 >= width && y + 64 >= height;
+            const Bytes tile = cut(rgb, width, x, y, header.width, header.height);
+            tiles.push_back(
+                payload(header, protocol::encodeLossless(tile, header.width, header.height)));
+        }
+    }
+    return tiles;
+}
+
+std::optional<Picture> feed(PictureAssembler& assembler, TileDecoder& decoder, const Bytes& bytes) {
+    const auto tile = decoder.decode(bytes);
+    EXPECT_TRUE(tile) << describe(tile.error());
+    auto picture = assembler.add(*tile);
+    EXPECT_TRUE(picture) << describe(picture.error());
+    return std::move(*picture);
+}
+
+TEST(PictureAssembler, TilesInAnyOrderGiveTheSamePicture) {
+    const Bytes rgb = smoothPicture(200, 150, 0.0);
+    TileDecoder decoder;
+    std::mt19937 random(5);
+    PictureAssembler assembler;
+    for (std::uint32_t number = 1; number <= 20; ++number) {
+        auto tiles = losslessTiles(rgb, 200, 150, number, number * 10);
+        std::shuffle(tiles.begin(), tiles.end(), random);
+        for (std::size_t n = 0; n < tiles.size(); ++n) {
+            const auto picture = feed(assembler, decoder, tiles[n]);
+            ASSERT_EQ(picture.has_value(), n + 1 == tiles.size());
+            if (!picture) continue;
+            EXPECT_EQ(picture->rgb, rgb);
+            EXPECT_EQ(picture->number, number);
+            EXPECT_EQ(picture->sequence, number * 10);
+            EXPECT_TRUE(picture->exact);
+        }
+    }
+}
+
+TEST(PictureAssembler, StaleTilesAreIgnoredAndANewerPictureWins) {
+    const Bytes older = smoothPicture(128, 64, 0.0), newer = smoothPicture(128, 64, 2.0);
+    const auto a = losslessTiles(older, 128, 64, 4, 40), b = losslessTiles(newer, 128, 64, 5, 50);
+    TileDecoder decoder;
+    PictureAssembler assembler;
+    EXPECT_FALSE(feed(assembler, decoder, a[0]));
+    EXPECT_FALSE(feed(assembler, decoder, b[0]));  // abandons picture 4
+    EXPECT_FALSE(feed(assembler, decoder, a[1]));  // would have finished it
+    const auto picture = feed(assembler, decoder, b[1]);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->rgb, newer);
+    EXPECT_FALSE(feed(assembler, decoder, b[1]));  // already finished
+    assembler.reset();
+    EXPECT_FALSE(feed(assembler, decoder, losslessTiles(older, 128, 64, 1, 60)[0]));
+    EXPECT_TRUE(feed(assembler, decoder, losslessTiles(older, 128, 64, 1, 60)[1]));
+}
+
+TEST(PictureAssembler, WithoutTheLastFlagOrWithAHoleNothingIsFinished) {
+    const auto tiles = losslessTiles(smoothPicture(192, 64, 0.0), 192, 64, 1, 1);
+    TileDecoder decoder;
+    PictureAssembler hole;
+    EXPECT_FALSE(feed(hole, decoder, tiles[0]));
+    EXPECT_FALSE(feed(hole, decoder, tiles[0]));
+    EXPECT_FALSE(feed(hole, decoder, tiles[2]));
+    EXPECT_TRUE(feed(hole, decoder, tiles[1]));
+}
+
+TEST(PictureAssembler, ATileThatContradictsItsPictureIsRefused) {
+    TileDecoder decoder;
+    for (int what = 0; what < 3; ++what) {
+        PictureAssembler assembler;
+        const auto tiles = losslessTiles(smoothPicture(128, 64, 0.0), 128, 64, 1, 1);
+        ASSERT_FALSE(feed(assembler, decoder, tiles[0]));
+        auto second = *decoder.decode(tiles[1]);
+        if (what == 0) second.header.pictureHeight = 65;
+        if (what == 1) second.header.sequence = 2;
+        if (what == 2) second.header.exact = false;
+        EXPECT_FALSE(assembler.add(second));
+    }
+}
+
+TEST(TileDecoder, JpegComesBackNearlyAndLosslessExactly) {
+    const Bytes rgb = smoothPicture(120, 90, 1.0);
+    TileHeader header;
+    header.picture = 1;
+    header.pictureWidth = header.width = 120;
+    header.pictureHeight = header.height = 90;
+    header.last = true;
+    TileDecoder decoder;
+    const auto jpeg = decoder.decode(payload(header, encodeJpeg(rgb, 120, 90)));
+    ASSERT_TRUE(jpeg) << describe(jpeg.error());
+    double error = 0.0;
+    for (std::size_t n = 0; n < rgb.size(); ++n)
+        error += std::pow(double(rgb[n]) - jpeg->rgb[n], 2);
+    EXPECT_GT(10 * std::log10(255.0 * 255.0 * double(rgb.size()) / error), 40.0);
+    header.codec = TileCodec::lossless;
+    const auto exact = decoder.decode(payload(header, protocol::encodeLossless(rgb, 120, 90)));
+    ASSERT_TRUE(exact) << describe(exact.error());
+    EXPECT_EQ(exact->rgb, rgb);
+}
+
+TEST(TileDecoder, RefusesAJpegOfAnotherSizeThanItsHeaderSays) {
+    TileHeader header;
+    header.picture = 1;
+    header.pictureWidth = header.width = 16;
+    header.pictureHeight = header.height = 16;
+    TileDecoder decoder;
+    const auto tile =
+        decoder.decode(payload(header, encodeJpeg(smoothPicture(400, 300, 0), 400, 300)));
+    ASSERT_FALSE(tile);
+    EXPECT_NE(tile.error().message.find("400x300"), std::string::npos) << tile.error().message;
+}
+
+TEST(TileDecoder, SurvivesAnyBytes) {
+    const Bytes rgb = smoothPicture(64, 48, 0.5);
+    std::vector<Bytes> sound;
+    for (const TileCodec codec : {TileCodec::jpeg, TileCodec::lossless}) {
+        TileHeader header;
+        header.codec = codec;
+        header.picture = 1;
+        header.pictureWidth = header.width = 64;
+        header.pictureHeight = header.height = 48;
+        header.last = true;
+        sound.push_back(payload(header, codec == TileCodec::jpeg
+                                            ? encodeJpeg(rgb, 64, 48)
+                                            : protocol::encodeLossless(rgb, 64, 48)));
+    }
+    TileDecoder decoder;
+    std::mt19937 random(2);
+    int refused = 0;
+    for (int n = 0; n < 6000; ++n) {
+        Bytes bytes = sound[std::size_t(n % 2)];
+        const int damage = n / 2 % 3;
+        if (damage == 0) {
+            for (int k = 0; k < 1 + n % 8; ++k)
+                bytes[random() % bytes.size()] = std::uint8_t(random());
+        } else if (damage == 1) {
+            bytes.resize(random() % bytes.size());
+        } else {
+            bytes.resize(random() % 200);
+            for (auto& byte : bytes)
+                byte = std::uint8_t(random());
+        }
+        PictureAssembler assembler;
+        const auto tile = decoder.decode(bytes);
+        refused += !tile;
+        if (!tile) continue;
+        ASSERT_EQ(tile->rgb.size(), std::size_t(tile->header.width) * tile->header.height * 3);
+        (void)assembler.add(*tile);
+    }
+    EXPECT_GT(refused, 3000);
+}
+
+TEST(PngFile, ReadsBackThePixelsAndRefusesAFolderThatIsNotThere) {
+    const Bytes rgb = smoothPicture(37, 21, 0.3);
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("haustra-png-" + std::to_string(::getpid()) + ".png");
+    ASSERT_TRUE(writePng(file, rgb, 37, 21));
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    ASSERT_TRUE(png_image_begin_read_from_file(&image, file.c_str()));
+    image.format = PNG_FORMAT_RGB;
+    Bytes read(PNG_IMAGE_SIZE(image));
+    ASSERT_TRUE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr));
+    EXPECT_EQ(read, rgb);
+    std::filesystem::remove(file);
+    EXPECT_FALSE(writePng(file / "no" / "folder.png", rgb, 37, 21));
+    EXPECT_FALSE(writePng(file, rgb, 38, 21));
+}
+
+}  // namespace
+}  // namespace haustra::tiles
