@@ -289,10 +289,16 @@ DicomFile readHeader(const std::filesystem::path& file) try {
             "the DICOM file cannot be read: " +
                 (condition.bad() ? std::string(condition.text()) : std::string("it is empty")),
             file);
-        if (dataset) damaged.image.seriesUid = printable(text(*dataset, DCM_SeriesInstanceUID));
+        // The last element read may be cut off: a UID there would name no series.
+        DcmElement* last =
+            dataset && !dataset->isEmpty() ? dataset->getElement(dataset->card() - 1) : nullptr;
+        if (last && last->getTag() != DCM_SeriesInstanceUID)
+            damaged.image.seriesUid = printable(text(*dataset, DCM_SeriesInstanceUID));
         return damaged;
     }
-    const std::string sopClass = text(*dataset, DCM_SOPClassUID);
+    std::string sopClass = text(*dataset, DCM_SOPClassUID);
+    if (sopClass.empty() && format.getMetaInfo())  // cut off early, it is still what it was
+        sopClass = text(*format.getMetaInfo(), DCM_MediaStorageSOPClassUID);
     const bool enhanced = sopClass == UID_EnhancedCTImageStorage ||
                           sopClass == UID_LegacyConvertedEnhancedCTImageStorage;
     if (!enhanced && sopClass != UID_CTImageStorage) {
