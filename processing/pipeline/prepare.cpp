@@ -14,6 +14,7 @@
 #include <new>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 namespace haustra::pipeline {
 namespace {
@@ -319,6 +320,12 @@ Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& 
     }
     if (options.series.empty() && options.lumenMask.empty()) {
         return fail(ErrorKind::badInput, "there is neither a series nor a mask to prepare");
+    }
+    for (const std::filesystem::path& source : {options.series, options.lumenMask}) {
+        std::error_code ignored;
+        if (!source.empty() && !std::filesystem::exists(source, ignored)) {
+            return fail(ErrorKind::notFound, "there is no such file or folder", source.string());
+        }
     }
     auto target = store.createCase(caseName);
     if (!target) return tl::make_unexpected(target.error());

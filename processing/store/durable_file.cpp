@@ -29,11 +29,12 @@ bool writeAll(int descriptor, std::span<const std::byte> bytes) {
 }  // namespace
 
 Result<void> writeDurably(const std::filesystem::path& folder, const std::string& name,
-                          const std::vector<std::span<const std::byte>>& parts) {
+                          const std::vector<std::span<const std::byte>>& parts,
+                          unsigned permissions) {
     const std::filesystem::path temporary =
         folder / (temporaryPrefix + name + "-" + std::to_string(::getpid()));
     const int descriptor =
-        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
+        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, permissions);
     if (descriptor < 0) return systemError("create", temporary);
 
     const bool written = std::all_of(parts.begin(), parts.end(),

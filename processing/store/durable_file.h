@@ -16,9 +16,10 @@ inline constexpr char temporaryPrefix[] = ".tmp-";
 
 /// Writes the parts one after the other to a temporary file in `folder`, fsyncs it, renames it to
 /// `name` and fsyncs the folder. When this returns without an error the file survives a power
-/// cut; at no moment is a part of it visible as `name`.
+/// cut; at no moment is a part of it visible as `name`. `permissions` are subject to the umask.
 Result<void> writeDurably(const std::filesystem::path& folder, const std::string& name,
-                          const std::vector<std::span<const std::byte>>& parts);
+                          const std::vector<std::span<const std::byte>>& parts,
+                          unsigned permissions = 0640);
 
 /// fsyncs a folder, so that the names in it survive a power cut.
 Result<void> syncFolder(const std::filesystem::path& folder);

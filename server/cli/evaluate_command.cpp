@@ -79,8 +79,7 @@ Command addEvaluate(CLI::App& program) {
     addStoreOption(*command, arguments->store);
     command->add_option("--truth", arguments->truth, "The phantom's truth folder")
         ->type_name("DIR")
-        ->required()
-        ->check(CLI::ExistingDirectory);
+        ->required();
     command->add_option("--report", arguments->report, "Write the scores as JSON")
         ->type_name("FILE.json");
     return {command, [arguments] { return runEvaluate(*arguments); }};

@@ -22,6 +22,12 @@ int runProgram(int argc, char** argv) {
     program.set_version_flag("--version", HAUSTRA_VERSION);
     program.require_subcommand(1);
     program.set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
+    program.failure_message([](const CLI::App* app, const CLI::Error& error) {
+        std::string command = app->get_name();
+        for (const CLI::App* used : app->get_subcommands())
+            command += " " + used->get_name();
+        return "haustra: " + std::string(error.what()) + " (see " + command + " --help)\n";
+    });
     program.footer("Exit codes: 0 done, 1 failed, 2 wrong usage.");
     const std::vector<haustra::cli::Command> commands{
         haustra::cli::addPhantom(program), haustra::cli::addPrepare(program),

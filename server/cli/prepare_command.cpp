@@ -94,7 +94,7 @@ Command addPrepare(CLI::App& program) {
     command
         ->add_option("SERIES", options.series,
                      "DICOM folder (files in any order and depth) or file, or one NIfTI file")
-        ->check(CLI::ExistingPath);
+        ->type_name("PATH");
     addStoreOption(*command, arguments->store);
     command
         ->add_option("--case", arguments->caseName,
@@ -111,8 +111,7 @@ Command addPrepare(CLI::App& program) {
             "--lumen", options.lumenMask,
             "A segmentation of the lumen made elsewhere, on the series' grid: 0 outside, 2 "
             "tagged, else air. Without SERIES it is the case's own scan's, or stands alone")
-        ->type_name("MASK.nii.gz")
-        ->check(CLI::ExistingFile);
+        ->type_name("MASK.nii.gz");
     command->add_option("--series", options.seriesUid, "Which series of the folder, by its UID")
         ->type_name("UID");
     addPointsOption(*command, "--seed", options.seedsMm,

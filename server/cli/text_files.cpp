@@ -12,7 +12,8 @@ namespace haustra::cli {
 
 Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text) {
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    return store::writeDurably(folder, file.filename().string(), {std::as_bytes(std::span(text))});
+    return store::writeDurably(folder, file.filename().string(), {std::as_bytes(std::span(text))},
+                               0666);
 }
 
 std::string centerlineCsv(const Centerline& centerline) {

@@ -1,0 +1,250 @@
+// The command line as scripts meet it: exit codes, files, formats.
+#include "core/centerline.h"
+#include "end_to_end/run_program.h"
+#include "nifti/nifti_file.h"
+#include "store/case_store.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace haustra {
+namespace {
+
+namespace fs = std::filesystem;
+using Arguments = std::vector<std::string>;
+
+tests::Outcome haustra(const Arguments& arguments) {
+    return tests::runProgram("haustra", arguments);
+}
+
+std::size_t lineCount(const std::string& text) {
+    return std::size_t(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
+    for (const Arguments& wrong : std::vector<Arguments>{
+             {},
+             {"bogus"},
+             {"prepare", "--store", "s"},
+             {"prepare", "x"},
+             {"prepare", "x", "--store", "s", "--until", "never"},
+             {"prepare", "x", "--store", "s", "--case", "../up"},
+             {"prepare", "x", "--store", "s", "--seed", "1,2"},
+             {"prepare", "x", "--store", "s", "--seed", "1,2,nan"},
+             {"prepare", "x", "--store", "s", "--threads", "many"},
+             {"export", "c", "ct", "file.csv", "--store", "s"},
+             {"export", "c", "centerline", "file.nii.gz", "--store", "s"},
+             {"export", "c", "lungs", "file.nii.gz", "--store", "s"},
+             {"render", "c", "--store", "s", "--out", "x.png"},
+             {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--size", "0x7"},
+             {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--size", "7"},
+             {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--view", "top"},
+             {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--window", "40"},
+             {"phantom"},
+             {"phantom", "x", "--preset", "weird"},
+             {"evaluate", "c", "--store", "s"}}) {
+        const auto outcome = haustra(wrong);
+        std::string line;
+        for (const std::string& argument : wrong)
+            line += argument + " ";
+        EXPECT_EQ(outcome.exitCode, 2) << line << outcome.err;
+        EXPECT_EQ(lineCount(outcome.err), 1u) << line << outcome.err;
+        EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+    }
+}
+
+TEST(CommandLine, HelpIsThereForEverySubcommand) {
+    EXPECT_EQ(haustra({"--help"}).exitCode, 0);
+    EXPECT_EQ(haustra({"--version"}).exitCode, 0);
+    for (const char* command : {"phantom", "prepare", "export", "list", "render", "evaluate"}) {
+        const auto outcome = haustra({command, "--help"});
+        EXPECT_EQ(outcome.exitCode, 0);
+        EXPECT_NE(outcome.out.find("Usage: haustra " + std::string(command)), std::string::npos)
+            << outcome.out;
+    }
+}
+
+TEST(CommandLine, FailuresEndWithOneAndOneLineThatNamesThePlace) {
+    const tests::TemporaryFolder folder;
+    const std::string store = folder.path() / "store", nothing = folder.path() / "nothing";
+    fs::create_directories(folder.path() / "empty");
+    fs::create_directories(folder.path() / "store" / "cases");
+    for (const Arguments& bad : std::vector<Arguments>{
+             {"prepare", nothing, "--store", store},
+             {"prepare", "--lumen", nothing, "--store", store},
+             {"prepare", folder.path() / "empty", "--store", store},
+             {"list", "--store", nothing},
+             {"export", "nobody", "ct", folder.path() / "x.nii.gz", "--store", store},
+             {"render", "nobody", "--arc-mm", "1", "--out", folder.path() / "x.png", "--store",
+              store},
+             {"evaluate", "nobody", "--truth", nothing, "--store", store}}) {
+        const auto outcome = haustra(bad);
+        EXPECT_EQ(outcome.exitCode, 1) << bad[0] << outcome.err;
+        const std::size_t last = outcome.err.rfind("haustra: ");
+        ASSERT_NE(last, std::string::npos) << outcome.err;
+        EXPECT_EQ(lineCount(outcome.err.substr(last)), 1u) << outcome.err;
+        EXPECT_NE(outcome.err.find(folder.path().string(), last), std::string::npos) << outcome.err;
+    }
+}
+
+// One prepared case that the tests below look at.
+class PreparedPhantom : public testing::Test {
+protected:
+    void SetUp() override {
+        ASSERT_TRUE(fs::exists(series())) << "run by ctest, which makes the phantom";
+        const auto outcome =
+            haustra({"prepare", series(), "--lumen", mask(), "--store", store(), "--case", "p",
+                     "--report", file("report.json"), "--seed", "-10,20.5,-300"});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    }
+    std::string series() const { return tests::phantomFolder() / "series"; }
+    std::string truth() const { return tests::phantomFolder() / "truth"; }
+    std::string mask() const { return tests::phantomFolder() / "truth" / "lumen.nii.gz"; }
+    std::string store() const { return folder_.path() / "store"; }
+    std::string file(const std::string& name) const { return folder_.path() / name; }
+    store::Case opened() const {
+        return store::CaseStore::open(store(), false).value().openCase("p").value();
+    }
+
+    template <class T>
+    void expectExportEqualsProduct(const std::string& product) {
+        const std::string exported = file(product + ".nii.gz");
+        const auto outcome = haustra({"export", "p", product, exported, "--store", store()});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        const auto back = nifti::readNifti<T>(exported);
+        ASSERT_TRUE(back) << describe(back.error());
+        const auto stored = opened().readVolume<T>(product).value();
+        EXPECT_TRUE(sameGrid(back->grid(), stored.grid()));
+        EXPECT_TRUE(std::equal(back->voxels().begin(), back->voxels().end(),
+                               stored.voxels().begin(), stored.voxels().end()));
+    }
+
+    tests::TemporaryFolder folder_;
+};
+
+TEST_F(PreparedPhantom, ExportedVolumesEqualTheProducts) {
+    expectExportEqualsProduct<std::int16_t>("ct");
+    expectExportEqualsProduct<std::uint8_t>("lumen");
+    expectExportEqualsProduct<float>("distance");
+}
+
+TEST_F(PreparedPhantom, TheExportedCenterlineHasALineForEachSample) {
+    ASSERT_EQ(haustra({"export", "p", "centerline", file("c.csv"), "--store", store()}).exitCode,
+              0);
+    const Centerline stored = opened().readCenterline().value();
+    std::istringstream csv(tests::fileContent(file("c.csv")));
+    std::string line;
+    std::getline(csv, line);
+    EXPECT_EQ(line, "x_mm,y_mm,z_mm,arc_mm,radius_mm,gap");
+    for (const CenterlinePoint& p : stored.points) {
+        ASSERT_TRUE(std::getline(csv, line));
+        double x, y, z, arc, radius;
+        int gap;
+        ASSERT_EQ(
+            std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%d", &x, &y, &z, &arc, &radius, &gap),
+            6);
+        EXPECT_LT(glm::distance(glm::dvec3(x, y, z), p.positionMm), 2e-6);
+        EXPECT_NEAR(arc, p.arcMm, 2e-6);
+        EXPECT_NEAR(radius, p.radiusMm, 2e-6);
+        EXPECT_EQ(gap != 0, p.gap);
+    }
+    EXPECT_FALSE(std::getline(csv, line));
+}
+
+TEST_F(PreparedPhantom, TheReportHasTimeAndMemoryOfEachStage) {
+    const auto report = nlohmann::json::parse(tests::fileContent(file("report.json")));
+    EXPECT_EQ(report["case"], "p");
+    std::vector<std::string> names;
+    for (const auto& stage : report["stages"]) {
+        names.push_back(stage["stage"]);
+        EXPECT_FALSE(stage["reused"].get<bool>());
+        EXPECT_GT(stage["wall_seconds"].get<double>(), 0.0);
+        EXPECT_GT(stage["peak_memory_mib"].get<double>(), 1.0);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"import", "lumen", "distance", "centerline"}));
+
+    ASSERT_EQ(haustra({"prepare", series(), "--lumen", mask(), "--store", store(), "--case", "p",
+                       "--report", file("again.json")})
+                  .exitCode,
+              0);
+    const auto again = nlohmann::json::parse(tests::fileContent(file("again.json")));
+    for (const auto& stage : again["stages"])
+        EXPECT_TRUE(stage["reused"].get<bool>()) << stage;
+}
+
+TEST_F(PreparedPhantom, TheListNamesCasesProductsAndSizes) {
+    const auto outcome = haustra({"list", "--store", store()});
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_EQ(lineCount(outcome.out), 5u) << outcome.out;
+    for (const char* word : {"p\n", "ct", "lumen", "distance", "centerline", " MB"}) {
+        EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+    }
+}
+
+TEST_F(PreparedPhantom, TheTruthScoresAsTheTruth) {
+    const auto outcome = haustra(
+        {"evaluate", "p", "--truth", truth(), "--store", store(), "--report", file("e.json")});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto scores = nlohmann::json::parse(tests::fileContent(file("e.json")));
+    EXPECT_EQ(scores["dice"], 1.0);
+    EXPECT_EQ(scores["missed_ml"], 0.0);
+    EXPECT_EQ(scores["false_ml"], 0.0);
+    EXPECT_LT(scores["centerline_mean_error_mm"].get<double>(), 10.0);
+}
+
+TEST_F(PreparedPhantom, APictureIsAPngOfItsSizeAndTheSameEachTime) {
+    const Arguments draw{"render", "p",       "--arc-mm", "300",  "--size",
+                         "96x64",  "--store", store(),    "--out"};
+    const auto drawn = [&](const std::string& name, const Arguments& more) {
+        Arguments all = draw;
+        all.push_back(file(name));
+        all.insert(all.end(), more.begin(), more.end());
+        const auto outcome = haustra(all);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        return tests::fileContent(file(name));
+    };
+    const std::string picture = drawn("a.png", {});
+    ASSERT_GT(picture.size(), 1000u);
+    EXPECT_EQ(picture.substr(1, 3), "PNG");
+    EXPECT_EQ(picture.substr(16, 8), std::string("\0\0\0\x60\0\0\0\x40", 8));
+    EXPECT_EQ(drawn("b.png", {}), picture);
+    EXPECT_NE(drawn("c.png", {"--direction", "retrograde"}), picture);
+    for (const char* plane : {"axial", "coronal", "sagittal"})
+        EXPECT_GT(drawn("s.png", {"--view", plane}).size(), 1000u);
+}
+
+TEST_F(PreparedPhantom, ACaseThatIsBeingWrittenIsRefused) {
+    const auto held = store::CaseStore::open(store(), false).value().createCase("p");
+    ASSERT_TRUE(held);
+    const auto outcome = haustra({"prepare", series(), "--store", store(), "--case", "p"});
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_NE(outcome.err.find("being written"), std::string::npos) << outcome.err;
+}
+
+TEST_F(PreparedPhantom, APhantomDoesNotOverwriteAFolderUnlessTold) {
+    fs::create_directories(file("full"));
+    { std::ofstream(file("full/mine.txt")) << "keep"; }
+    const Arguments make{"phantom", file("full"), "--size", "small", "--preset", "easy"};
+    const auto refused = haustra(make);
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_NE(refused.err.find("not empty"), std::string::npos);
+    EXPECT_FALSE(fs::exists(file("full/series")));
+
+    Arguments forced = make;
+    forced.push_back("--force");
+    EXPECT_EQ(haustra(forced).exitCode, 0);
+    EXPECT_EQ(tests::fileContent(file("full/mine.txt")), "keep");
+    for (const char* name :
+         {"lumen.nii.gz", "untagged.nii.gz", "centerline.csv", "polyps.json", "phantom.json"}) {
+        EXPECT_GT(fs::file_size(fs::path(file("full/truth")) / name), 0u) << name;
+    }
+    for (const auto& left : fs::directory_iterator(folder_.path())) {
+        EXPECT_NE(left.path().filename().string().rfind(".tmp-", 0), 0u) << left.path();
+    }
+}
+
+}  // namespace
+}  // namespace haustra

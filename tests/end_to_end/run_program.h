@@ -1,0 +1,90 @@
+// Runs one of the project's programs as a user does, and looks at what comes out.
+#pragma once
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace haustra::tests {
+
+struct Outcome {
+    int exitCode = -1;  ///< −1 where a signal ended it
+    std::string out, err;
+};
+
+inline std::string fileContent(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline std::filesystem::path programPath(const std::string& program) {
+    const char* bin = std::getenv("HAUSTRA_BIN");
+    return std::filesystem::path(bin ? bin : ".") / program;
+}
+
+/// A new empty folder, removed with its content at the end.
+class TemporaryFolder {
+public:
+    TemporaryFolder() {
+        std::string name =
+            (std::filesystem::temp_directory_path() / "haustra-test-XXXXXX").string();
+        if (::mkdtemp(name.data())) path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// Runs a program to its end, or kills it (SIGKILL) after `killAfter`.
+inline Outcome runProgram(const std::string& program, const std::vector<std::string>& arguments,
+                          std::optional<std::chrono::microseconds> killAfter = std::nullopt) {
+    const TemporaryFolder folder;
+    const std::string outFile = folder.path() / "out", errFile = folder.path() / "err";
+    const std::string path = programPath(program);
+    std::vector<char*> argv{const_cast<char*>(path.c_str())};
+    for (const std::string& argument : arguments)
+        argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(::open(outFile.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
+        ::dup2(::open(errFile.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+        ::execv(path.c_str(), argv.data());
+        ::_exit(127);
+    }
+    if (killAfter) {
+        std::this_thread::sleep_for(*killAfter);
+        ::kill(child, SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, fileContent(outFile),
+            fileContent(errFile)};
+}
+
+/// The small phantom that CTest makes before the tests that ask for it (FIXTURES phantom).
+inline std::filesystem::path phantomFolder() {
+    const char* set = std::getenv("HAUSTRA_PHANTOM");
+    return set ? set : "";
+}
+
+}  // namespace haustra::tests
