@@ -76,7 +76,7 @@ std::pair<std::int32_t, std::int32_t> endsOf(const BlockGraph& graph, std::int32
                                              std::optional<std::int32_t> first,
                                              std::optional<std::int32_t> last) {
     const auto tipFrom = [&](std::int32_t node) {
-        return farthestTip(graph, growWidestTree(graph, node), EndShape::narrowing);
+        return farthestTip(graph, growWidestTree(graph, node), EndShape::any);
     };
     if (!first)
         first = tipFrom(last ? *last : tipFrom(graph.components[std::size_t(component)].deepest));

@@ -9,10 +9,12 @@ namespace {
 constexpr float stretchInRadii = 4.0f;
 // How far the lumen may lie from the path and still belong to it, in the same radii.
 constexpr float aroundInRadii = 3.0f;
-// The last wide place has at least this part of the stretch's greatest radius.
-constexpr float narrowingWidth = 0.2f, pouchWidth = 0.8f;
-// How far the tip may lie from that place's centre, in its own radii.
-constexpr double narrowingReach = 1.25, pouchReach = 0.9;
+// The last wide and the last narrow place have at least these parts of the stretch's greatest
+// radius; the tip may lie so far from their centres, in their own radii.
+constexpr float wideWidth = 0.8f, narrowWidth = 0.2f;
+constexpr double wideReach = 0.9, narrowReach = 1.25;
+// A narrow place no farther from the last wide place's centre, in its radii, is a corner of it.
+constexpr double bluntReach = 1.5;
 
 /// The end of a path from which on the colon's end is looked for.
 struct LastStretch {
@@ -94,7 +96,6 @@ glm::dvec3 arrival(const BlockGraph& graph, const PathTree& tree, std::int32_t n
 }  // namespace
 
 std::int32_t farthestTip(const BlockGraph& graph, const PathTree& widest, EndShape shape) {
-    const bool pouch = shape == EndShape::pouch;
     const std::vector<std::int32_t> path = pathTo(widest, longestPathEnd(widest));
     const LastStretch stretch = lastStretch(graph, widest, path);
     const std::int32_t start = path[stretch.start];
@@ -105,24 +106,30 @@ std::int32_t farthestTip(const BlockGraph& graph, const PathTree& widest, EndSha
         return double(cap.lengthMm[std::size_t(node)]);
     };
 
-    const float leastMm = (pouch ? pouchWidth : narrowingWidth) * stretch.widestMm;
-    const std::int32_t last = greatest(
-        graph, start,
-        [&](std::int32_t node) {
-            return reached(node) && graph.nodes[std::size_t(node)].radiusMm >= leastMm;
-        },
-        lengthMm);
-    const glm::dvec3 centreMm = graph.positionMm(last);
-    const double reachMm =
-        (pouch ? pouchReach : narrowingReach) * double(graph.nodes[std::size_t(last)].radiusMm);
-    const auto near = [&](std::int32_t node) {
-        return reached(node) && glm::distance(graph.positionMm(node), centreMm) <= reachMm;
+    const auto lastPlace = [&](float width) {
+        return greatest(
+            graph, start,
+            [&](std::int32_t node) {
+                return reached(node) &&
+                       graph.nodes[std::size_t(node)].radiusMm >= width * stretch.widestMm;
+            },
+            lengthMm);
     };
-    if (!pouch) return greatest(graph, last, near, lengthMm);
-    const glm::dvec3 onward = arrival(graph, cap, last);
-    return greatest(graph, last, near, [&](std::int32_t node) {
-        return glm::dot(graph.positionMm(node) - centreMm, onward);
-    });
+    const auto near = [&](std::int32_t place, double reach) {
+        return [&, place, reachMm = reach * double(graph.nodes[std::size_t(place)].radiusMm)](
+                   std::int32_t node) {
+            return reached(node) &&
+                   glm::distance(graph.positionMm(node), graph.positionMm(place)) <= reachMm;
+        };
+    };
+    const std::int32_t wide = lastPlace(wideWidth);
+    if (const std::int32_t narrow = lastPlace(narrowWidth);
+        shape == EndShape::any && !near(wide, bluntReach)(narrow)) {
+        return greatest(graph, narrow, near(narrow, narrowReach), lengthMm);
+    }
+    const glm::dvec3 onward = arrival(graph, cap, wide);
+    return greatest(graph, wide, near(wide, wideReach),
+                    [&](std::int32_t node) { return glm::dot(graph.positionMm(node), onward); });
 }
 
 }  // namespace haustra::topology

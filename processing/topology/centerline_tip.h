@@ -5,18 +5,18 @@
 
 namespace haustra::topology {
 
-/// How an end of the lumen looks: an open colon that narrows towards the anus or a collapsed
-/// stretch, or the wide blind pouch of the cecum.
-enum class EndShape { narrowing, pouch };
+/// How an end of the lumen looks: any way, blunt or narrowing towards the anus or a collapsed
+/// stretch; or the wide blind pouch of the cecum, where nothing narrow belongs to the colon.
+enum class EndShape { any, pouch };
 
 /// The tip of the colon farthest from the source of a widest tree.
 ///
 /// The tree's longest path tells where the colon ends, because leaks between loops do not shorten
 /// it, but not its very end: it is longest into some deep haustrum, and the terminal ileum or a
 /// catheter may lead on. So in the part of the lumen around the path's last few radii, the last
-/// place wide enough counts, by plain geodesic distance: a fifth of the greatest radius there
-/// where the colon narrows, four fifths in a pouch. The tip is the farthest point near that place
-/// or, in a pouch, the point of the ball inscribed there that lies straight on.
+/// wide place counts, by plain geodesic distance (four fifths of the greatest radius there), and
+/// the tip is the point of the ball inscribed there that lies straight on. Where the colon goes on
+/// narrowing past that place, the tip is the farthest point around its last narrow one (a fifth).
 std::int32_t farthestTip(const BlockGraph& graph, const PathTree& widest, EndShape shape);
 
 }  // namespace haustra::topology
