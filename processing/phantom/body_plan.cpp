@@ -8,14 +8,13 @@
 namespace haustra::phantom {
 namespace {
 
-/// First-order distance to a rounded rectangle x²/a² + y²/b² − c x²y²/(a²b²) = 1.
+/// Approximate signed distance to the rounded rectangle x²/a² + y²/b² − c x²y²/(a²b²) = 1, in the
+/// manner of the ellipsoid's; with c > 0 only as far as about the corners.
 double squircle(double x, double y, double a, double b, double c) {
     const double u = x / a, v = y / b;
-    const double f = u * u + v * v - c * u * u * v * v;
-    const double gx = 2.0 * u * (1.0 - c * v * v) / a, gy = 2.0 * v * (1.0 - c * u * u) / b;
-    const double g = std::sqrt(gx * gx + gy * gy);
-    // Near the middle the gradient vanishes; the distance is then that to the shorter side.
-    return (f - 1.0) / std::max(g, 1.2 / std::min(a, b));
+    const double k0 = std::sqrt(std::max(0.0, u * u + v * v - c * u * u * v * v));
+    const double k1 = std::hypot(u * (1.0 - c * v * v) / a, v * (1.0 - c * u * u) / b);
+    return k0 < 0.1 || k1 < 1e-9 ? -0.9 * std::min(a, b) : k0 * (k0 - 1.0) / k1;
 }
 
 /// Piecewise linear, with smooth corners by smoothstep in between.
@@ -58,7 +57,7 @@ double BodyPlan::spineColumn(glm::dvec3 p) {
     const double half = through<5>({{{20, 10}, {60, 14}, {110, 40}, {165, 36}, {190, 25}}}, p.z);
     const double deep = through<4>({{{20, 5}, {110, 11}, {165, 18}, {420, 18}}}, p.z);
     const double behind = std::max(std::abs(p.x) - half, y - p.y);
-    return std::min(squircle(p.x, p.y - y, half, deep, 0.3), behind);
+    return std::min(squircle(p.x, p.y - y, half, deep, 0.0), behind);
 }
 
 double BodyPlan::iliacWing(glm::dvec3 p) {

@@ -13,7 +13,7 @@ namespace {
 using Points = std::vector<glm::dvec3>;
 
 constexpr double kNodeStepMm = 6.0;
-constexpr double kWallRoomMm = 3.4;
+constexpr double kWallRoomMm = 0.5;
 
 /// Where the axis passes, and how the place moves in a longer colon.
 struct ControlPoint {
@@ -48,10 +48,10 @@ constexpr std::array kControl = {
     ControlPoint{{88, 0, 336}, {-6, 0, 12}},
     ControlPoint{{92, -30, 318}, {8, 0, 4}},
     ControlPoint{{86, -52, 290}, {14, -2, -20}},
-    ControlPoint{{58, -64, 268}, {4, 0, -50}},
-    ControlPoint{{24, -68, 252}, {0, 0, -62}},
-    ControlPoint{{-12, -68, 246}, {0, 0, -60}},
-    ControlPoint{{-46, -62, 256}, {-2, 0, -50}},
+    ControlPoint{{58, -64, 268}, {4, 0, -34}},
+    ControlPoint{{24, -68, 252}, {0, 0, -44}},
+    ControlPoint{{-12, -68, 246}, {0, 0, -42}},
+    ControlPoint{{-46, -62, 256}, {-2, 0, -34}},
     ControlPoint{{-78, -50, 274}, {-10, 0, -20}},
     // hepatic flexure, ascending colon
     ControlPoint{{-82, -20, 298}, {8, 0, 10}},
@@ -147,27 +147,67 @@ struct Skeleton {
     std::vector<double> control;  ///< each node's place among the control points
 };
 
+/// Pushes on each node by the loops that come too near.
+Points loopPushes(const Points& p, const std::vector<double>& radius) {
+    Points push(p.size(), glm::dvec3(0.0));
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        for (std::size_t j = i + 1; j < p.size(); ++j) {
+            const double room = radius[i] + radius[j] + kWallRoomMm;
+            const glm::dvec3 apart = p[j] - p[i];
+            const double d2 = glm::dot(apart, apart);
+            if (d2 >= room * room || d2 < 1e-18) continue;
+            if (double(j - i) * kNodeStepMm < loopSeparationMm(radius[i], radius[j])) continue;
+            const double d = std::sqrt(d2);
+            const glm::dvec3 move = apart * (0.2 * (room - d) / d);
+            push[i] -= move, push[j] += move;
+        }
+    }
+    return push;
+}
+
+/// Rounds bends that are tighter than the tube is wide, which would fold its wall into itself.
+void roundBends(Points& p, const std::vector<double>& radius) {
+    const Points old = p;
+    const int count = int(p.size());
+    for (int n = 2; n + 2 < count; ++n) {
+        const glm::dvec3 a = old[n] - old[n - 2], b = old[n + 2] - old[n];
+        const double chord = 0.5 * (glm::length(a) + glm::length(b));
+        const double turn = glm::length(b - a) / std::max(1e-9, chord);  // about the angle, rad
+        const double bendRadius = chord / std::max(1e-9, turn);
+        const double wanted = radius[n] + 1.0;
+        if (bendRadius < wanted) {
+            p[n] += std::min(0.5, 1.0 - bendRadius / wanted) *
+                    (0.5 * (old[n - 1] + old[n + 1]) - old[n]);
+        }
+    }
+}
+
+/// Spreads the nodes evenly again.
+void respace(Skeleton& path) {
+    std::vector<double> place;
+    path.nodes = resample(path.nodes, kNodeStepMm, &place);
+    std::vector<double> control;
+    for (double u : place) {
+        const std::size_t n = std::min(std::size_t(u), path.control.size() - 2);
+        control.push_back(glm::mix(path.control[n], path.control[n + 1], u - double(n)));
+    }
+    path.control = control;
+}
+
 /// Drives loops, bones and walls apart while keeping the curve smooth.
 void relax(Skeleton& path, double scale, const BodyPlan& body) {
-    Points& p = path.nodes;
-    const int count = int(p.size());
-    std::vector<double> radius(count);
-    for (int n = 0; n < count; ++n)
-        radius[n] = scale * radiusAtControl(path.control[n]);
-    for (int round = 0; round < 160; ++round) {
-        Points push(count, glm::dvec3(0.0));
-        for (int i = 0; i < count; ++i) {
-            for (int j = i + 1; j < count; ++j) {
-                if ((j - i) * kNodeStepMm < loopSeparationMm(radius[i], radius[j])) continue;
-                const double room = radius[i] + radius[j] + kWallRoomMm;
-                const glm::dvec3 apart = p[j] - p[i];
-                const double d = glm::length(apart);
-                if (d >= room || d < 1e-9) continue;
-                const glm::dvec3 move = apart * (0.2 * (room - d) / d);
-                push[i] -= move, push[j] += move;
-            }
+    std::vector<double> radius;
+    for (int round = 0; round < 180; ++round) {
+        if (round % 10 == 0) {
+            respace(path);
+            radius.clear();
+            for (double c : path.control)
+                radius.push_back(scale * radiusAtControl(c));
         }
-        for (int n = 2; n < count; ++n) {
+        Points& p = path.nodes;
+        const std::size_t count = p.size();
+        const Points push = loopPushes(p, radius);
+        for (std::size_t n = 2; n < count; ++n) {
             const double size = glm::length(push[n]);
             p[n] += size > 3.0 ? push[n] * (3.0 / size) : push[n];
             p[n] = keepAway(p[n], radius[n] + 5.0, 0.5, BodyPlan::iliacWing);
@@ -181,27 +221,61 @@ void relax(Skeleton& path, double scale, const BodyPlan& body) {
         // Taubin's pair of steps smooths without shrinking the loops.
         for (double weight : {0.45, -0.46}) {
             const Points old = p;
-            for (int n = 2; n + 1 < count; ++n)
+            for (std::size_t n = 2; n + 1 < count; ++n) {
                 p[n] += weight * (0.5 * (old[n - 1] + old[n + 1]) - old[n]);
+            }
         }
+        roundBends(p, radius);
     }
+    respace(path);
 }
 
-Skeleton layOut(const Points& jitter, double redundancy, double scale, const BodyPlan& body) {
-    Points control;
+/// What makes one patient's path differ from another's of the same length.
+struct Variation {
+    Points jitter;                           ///< of the control points
+    double sigmoid = 1.0, transverse = 1.0;  ///< shares of the extra length
+    double scale = 1.0;                      ///< of the radii
+    std::uint64_t waves = 0;                 ///< seed of the axis's meanders
+};
+
+Variation drawVariation(Random& random) {
+    Variation vary;
     for (std::size_t n = 0; n < kControl.size(); ++n) {
-        control.push_back(kControl[n].at + redundancy * kControl[n].longer + jitter[n]);
+        const glm::dvec3 j = 5.0 * random.normal3();
+        vary.jitter.push_back(n < 2 ? glm::dvec3(0.0) : j);
+    }
+    vary.scale = random.uniform(0.98, 1.13);
+    vary.sigmoid = random.uniform(0.4, 1.4), vary.transverse = random.uniform(0.4, 1.4);
+    vary.waves = random.bits();
+    return vary;
+}
+
+Skeleton layOut(const Variation& vary, double redundancy, const BodyPlan& body) {
+    Points control;
+    for (int n = 0; n < int(kControl.size()); ++n) {
+        const double share = n <= kSigmoidEnd      ? vary.sigmoid
+                             : n <= kTransverseEnd ? vary.transverse
+                                                   : 1.0;
+        control.push_back(kControl[n].at + redundancy * share * kControl[n].longer +
+                          vary.jitter[n]);
     }
     Points fine;
     constexpr int perSpan = 24;
     const int spans = int(control.size()) - 1;
-    for (int k = 0; k <= spans * perSpan; ++k)
-        fine.push_back(catmullRom(control, double(k) / perSpan));
+    for (int k = 0; k <= spans * perSpan; ++k) {
+        const double u = double(k) / perSpan;
+        const double reach =
+            (4.0 + 12.0 * redundancy) * smoothstep(4.0, 7.0, u) * (1.0 - smoothstep(31.0, 34.0, u));
+        glm::dvec3 wave;
+        for (int axis = 0; axis < 3; ++axis)
+            wave[axis] = valueNoise(vary.waves + axis, {u, 0.5, 0.5}, 1.3);
+        fine.push_back(catmullRom(control, u) + reach * wave);
+    }
     Skeleton path;
     path.nodes = resample(fine, kNodeStepMm, &path.control);
     for (double& c : path.control)
         c /= perSpan;
-    relax(path, scale, body);
+    relax(path, vary.scale, body);
     return path;
 }
 
@@ -260,21 +334,24 @@ PathSample ColonPath::at(double arcMm) const {
 
 ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body) {
     Random random(seed, 1);
-    Points jitter;
-    for (std::size_t n = 0; n < kControl.size(); ++n) {
-        const glm::dvec3 j = 4.5 * random.normal3();
-        jitter.push_back(n < 2 ? glm::dvec3(0.0) : j);
-    }
-    const double targetMm = random.uniform(1260.0, 1630.0);
-    const double scale = random.uniform(0.98, 1.15);
+    const double targetMm = random.uniform(1270.0, 1620.0);
     const double turns = random.uniform(-0.7, 0.7), phase = random.uniform(0.0, 6.28);
-
-    double lo = -0.2, hi = 1.5;
+    // Crowded loops may not reach every length; then another variation does.
+    Variation vary;
     Skeleton skeleton;
-    for (int round = 0; round < 9; ++round) {
-        const double redundancy = 0.5 * (lo + hi);
-        skeleton = layOut(jitter, redundancy, scale, body);
-        (lengthOf(skeleton.nodes) < targetMm ? lo : hi) = redundancy;
+    double error = 1e9;
+    for (int attempt = 0; attempt < 6 && error > 40.0; ++attempt) {
+        const Variation other = drawVariation(random);
+        double lo = -0.2, hi = 2.0;
+        for (int round = 0; round < 8; ++round) {
+            const double redundancy = 0.5 * (lo + hi);
+            Skeleton candidate = layOut(other, redundancy, body);
+            const double length = lengthOf(candidate.nodes);
+            (length < targetMm ? lo : hi) = redundancy;
+            if (std::abs(length - targetMm) >= error) continue;
+            error = std::abs(length - targetMm);
+            skeleton = std::move(candidate), vary = other;
+        }
     }
 
     // Fine samples: the nodes' spline, smoothed over about the node distance, 1 mm apart.
@@ -284,7 +361,7 @@ ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body)
     }
     std::vector<double> place;
     Points even = resample(fine, 1.0, &place);
-    for (int round = 0; round < 40; ++round) {
+    for (int round = 0; round < 60; ++round) {
         const Points old = even;
         for (std::size_t n = 1; n + 1 < even.size(); ++n) {
             even[n] = 0.25 * old[n - 1] + 0.5 * old[n] + 0.25 * old[n + 1];
@@ -323,7 +400,7 @@ ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body)
         PathSample& s = path.samples[n];
         const double arc = path.stepMm * double(n), left = path.lengthMm() - arc;
         s.position = even[n];
-        s.radiusMm = scale * radiusAtControl(control[n]) *
+        s.radiusMm = vary.scale * radiusAtControl(control[n]) *
                      (1.0 + 0.09 * valueNoise(widthNoise, {arc, 0, 0}, 70.0));
         // The cecum ends as a ball: the axis runs on to near its pole.
         const double ball = s.radiusMm;

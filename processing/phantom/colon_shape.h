@@ -68,7 +68,7 @@ public:
     };
     void findNearby(glm::dvec3 centre, double radiusMm, Nearby& nearby) const;
 
-    /// Geometry at p, exact for any `nearby` found for a ball that contains p. Thread-safe.
+    /// Geometry at p with any `nearby` found for a ball that contains p. Thread-safe.
     ColonPoint evaluate(glm::dvec3 p, const Nearby& nearby) const;
     /// The same for a single point; slow.
     ColonPoint evaluate(glm::dvec3 p) const;

@@ -99,7 +99,7 @@ private:
         }
         if (growth.kind == Growth::Kind::hyperplastic) return kWallHu + 3.0;
         // Adenomas are a little denser inside, unevenly.
-        const double core = smoothstep(-0.5, -2.0, growth.distance(p));
+        const double core = 1.0 - smoothstep(-2.0, -0.5, growth.distance(p));
         return kWallHu + core * (22.0 + 18.0 * valueNoise(growth.seed + 9, p, 3.5));
     }
 
