@@ -10,8 +10,14 @@ vec3 displayed(vec3 linear) {
     return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
 }
 
+// Eight neighbouring lanes, a vector unit's width in software, take four pixels by two: rays that
+// stay together share their loops.
+ivec2 pixelOfLane(uint lane) {
+    return ivec2((lane & 3u) | ((lane >> 1) & 4u), ((lane >> 2) & 1u) | ((lane >> 3) & 6u));
+}
+
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy) + pixelOfLane(gl_LocalInvocationIndex);
     Ray ray = rayThrough(vec2(pixel) + 0.5);
     vec2 inside = insideRange(ray);
     float tileStart = texelFetch(firstStep, pixel / u.lastBlock.w, 0).r;

@@ -93,21 +93,21 @@ vec4 march(Ray ray, float begin, float end) {
     float n = begin;
     while (n <= end && sum.a < u.stepping.y) {
         vec3 position;
-        float stored;
+        float stored = 0.0;
         bool searching;
         do {
             position = ray.origin + n * ray.step;
             ivec3 block = blockAt(position);
-            uint distance = texelFetch(leapDistance, block, 0).r;
-            while (distance > 0u && n <= end) {
-                n += stepsToLeave(position, block, float(distance), inverseBlockStep);
-                position = ray.origin + n * ray.step;
-                block = blockAt(position);
-                distance = texelFetch(leapDistance, block, 0).r;
+            float distance = float(texelFetch(leapDistance, block, 0).r);
+            float advance = 1.0;
+            searching = n <= end;
+            if (distance > 0.0) {
+                advance = stepsToLeave(position, block, distance, inverseBlockStep);
+            } else {
+                stored = textureLod(volume, position, 0.0).r;
+                searching = searching && !(stored > u.visibleRange.x && stored < u.visibleRange.y);
             }
-            stored = textureLod(volume, position, 0.0).r;
-            searching = !(stored > u.visibleRange.x && stored < u.visibleRange.y) && n <= end;
-            n += searching ? 1.0 : 0.0;
+            n += searching ? advance : 0.0;
         } while (searching);
         vec4 here = textureLod(transferTable, stored * u.visibleRange.z + u.visibleRange.w, 0.0);
         vec3 gradient = vec3(textureLod(volume, position + dx, 0.0).r - textureLod(volume, position - dx, 0.0).r,

@@ -5,6 +5,7 @@
 #include "store/case_store.h"
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -214,6 +215,24 @@ TEST_F(PreparedPhantom, APictureIsAPngOfItsSizeAndTheSameEachTime) {
     EXPECT_NE(drawn("c.png", {"--direction", "retrograde"}), picture);
     for (const char* plane : {"axial", "coronal", "sagittal"})
         EXPECT_GT(drawn("s.png", {"--view", plane}).size(), 1000u);
+}
+
+// From the DICOM files on, with the lumen found in the scan.
+TEST_F(PreparedPhantom, ProductsDoNotDependOnTheNumberOfThreads) {
+    std::map<std::string, std::string> first;
+    for (const char* threads : {"1", "2", "3"}) {
+        const auto outcome = haustra({"prepare", series(), "--store", store(), "--case",
+                                      std::string("threads-") + threads, "--threads", threads});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        std::map<std::string, std::string> files;
+        const fs::path made = fs::path(store()) / "cases" / (std::string("threads-") + threads);
+        for (const auto& file : fs::directory_iterator(made)) {
+            files[file.path().filename().string()] = tests::fileContent(file.path());
+        }
+        EXPECT_EQ(files.size(), 6u);  // four products, the index, the lock
+        if (first.empty()) first = files;
+        EXPECT_TRUE(files == first) << threads;
+    }
 }
 
 TEST_F(PreparedPhantom, ACaseThatIsBeingWrittenIsRefused) {

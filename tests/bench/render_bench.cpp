@@ -1,0 +1,83 @@
+// Times the endoscopic picture of a prepared case along its centerline.
+// usage: render_bench STORE CASE [PRESET]
+#include "core/centerline.h"
+#include "render/case_renderer.h"
+#include "store/case_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace haustra;
+
+constexpr int places = 25;
+
+double milliseconds() {
+    return std::chrono::duration<double, std::milli>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+Result<void> bench(const std::string& store, const std::string& name, const std::string& preset) {
+    const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
+        return s.openCase(name);
+    });
+    if (!source) return tl::make_unexpected(source.error());
+    const auto ct = source->readVolume<std::int16_t>("ct");
+    if (!ct) return tl::make_unexpected(ct.error());
+    const auto lumen = source->readVolume<std::uint8_t>("lumen");
+    if (!lumen) return tl::make_unexpected(lumen.error());
+    const auto centerline = source->readCenterline();
+    if (!centerline) return tl::make_unexpected(centerline.error());
+    const auto function = render::transferFunctionPreset(preset);
+    if (!function) return tl::make_unexpected(function.error());
+
+    const auto context = gpu::Context::create();
+    if (!context) return tl::make_unexpected(context.error());
+    const double before = milliseconds();
+    const auto renderer = render::CaseRenderer::create(**context, *ct, *lumen);
+    if (!renderer) return tl::make_unexpected(renderer.error());
+    std::printf("%s (%s); case on the GPU in %.0f ms, %zu MiB\n", (*context)->renderer().c_str(),
+                (*context)->platform().c_str(), milliseconds() - before,
+                (*renderer)->gpuBytes() >> 20);
+
+    const auto ups = rotationMinimizingUps(*centerline, flightPreferredUp);
+    for (const int size : {256, 512, 1024}) {
+        std::vector<double> times;
+        // The first picture loads the transfer function and the driver's code: it is not counted.
+        for (int i = -1; i < places; ++i) {
+            const double arcMm = centerline->lengthMm() * (std::max(i, 0) + 0.5) / places;
+            const CenterlineCamera at =
+                cameraAtArc(*centerline, ups, arcMm, FlightDirection::antegrade);
+            render::EndoscopicView view;
+            view.camera = {at.positionMm, at.forward, at.up, 90.0};
+            view.transferFunction = *function;
+            const double start = milliseconds();
+            if (const auto image = (*renderer)->render(view, size, size); !image)
+                return tl::make_unexpected(image.error());
+            if (i >= 0) times.push_back(milliseconds() - start);
+        }
+        std::sort(times.begin(), times.end());
+        std::printf("%4d x %-4d  median %6.1f ms   p95 %6.1f ms   worst %6.1f ms\n", size, size,
+                    times[places / 2], times[places * 95 / 100], times.back());
+    }
+    return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 3 || argc > 4) {
+        std::fprintf(stderr, "usage: render_bench STORE CASE [PRESET]\n");
+        return 2;
+    }
+    if (const auto done = bench(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa"); !done) {
+        std::fprintf(stderr, "render_bench: %s\n", haustra::describe(done.error()).c_str());
+        return 1;
+    }
+    return 0;
+}
