@@ -91,8 +91,10 @@ void declare(CLI::App& app, Arguments& a) {
                                       "write a picture of the window as PNG, and quit")
                            ->type_name("FILE.png")
                            ->group("Window");
-    app.add_option("--screenshot-after-ms", a.screenshotAfterMs,
-                   "when to take it, from the start (default 3000)")
+    app.add_option(
+           "--screenshot-after-ms", a.screenshotAfterMs,
+           "when to take it, from the start (default 3000); up to 20 s later where pictures "
+           "are still on their way")
         ->type_name("N")
         ->check(CLI::Range(0, 600'000))
         ->needs(screenshot)

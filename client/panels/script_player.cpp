@@ -63,6 +63,7 @@ private:
     Status awaitStill(int viewport, std::uint64_t sequence, Clock::time_point askedAt,
                       const std::string& png, ActionReport& report);
     Result<Arrival> awaitPicture(int viewport, std::uint64_t sequence, bool exact);
+    Status awaitBookmarkList();
     Status awaitThat(const std::function<bool()>& done, const std::string& what);
 
     Session& session_;
@@ -76,23 +77,33 @@ private:
 
 Status Player::awaitThat(const std::function<bool()>& done, const std::string& what) {
     const auto deadline = Clock::now() + options_.patience;
-    while (!done()) {
-        if (session_.phase() == Phase::failed) return tl::make_unexpected(session_.failure());
+    for (;;) {
+        // Before the success: a refusal may arrive together with the picture that follows it.
         if (const auto refusals = session_.takeRefusals(); !refusals.empty())
             return tl::make_unexpected(refusals.front());
+        if (done()) return {};
+        if (session_.phase() == Phase::failed) return tl::make_unexpected(session_.failure());
         const auto now = Clock::now();
-        if (now >= deadline)
-            return fail(
-                ErrorKind::device,
-                what + " did not come within " + std::to_string(options_.patience.count() / 1000) +
-                    " s" +
-                    (session_.phase() == Phase::lost ? " (" + describe(session_.failure()) + ")"
-                                                     : std::string()));
+        if (now >= deadline) {
+            const bool lost = session_.phase() == Phase::lost;
+            return fail(ErrorKind::device,
+                        what + " did not come within " +
+                            std::to_string(options_.patience.count() / 1000) + " s" +
+                            (lost ? " (" + describe(session_.failure()) + ")" : ""));
+        }
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - now);
         session_.poll(
             std::min(left + std::chrono::milliseconds(1), std::chrono::milliseconds(100)));
     }
-    return {};
+}
+
+// The list's answer tells that the server has taken in all that was said before, so that a refusal
+// names the line that caused it.
+Status Player::awaitBookmarkList() {
+    const auto before = session_.bookmarkListsReceived();
+    session_.requestBookmarks();
+    return awaitThat([&] { return session_.bookmarkListsReceived() > before; },
+                     "the list of bookmarks");
 }
 
 Status Player::awaitCase() {
@@ -269,13 +280,13 @@ Status Player::run(const SliceAction& action, ActionReport& report) {
 Status Player::run(const WindowAction& action, ActionReport&) {
     if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
     session_.setWindowLevel(action.viewport, action.window);
-    return {};
+    return awaitBookmarkList();
 }
 
 Status Player::run(const TransferAction& action, ActionReport&) {
     if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
     session_.setTransferFunction(action.viewport, action.preset);
-    return {};
+    return awaitBookmarkList();
 }
 
 Status Player::run(const BookmarkAction& action, ActionReport& report) {
@@ -297,12 +308,7 @@ Status Player::run(const BookmarkAction& action, ActionReport& report) {
 }
 
 Status Player::run(const BookmarksAction& action, ActionReport& report) {
-    const auto before = session_.bookmarkListsReceived();
-    session_.requestBookmarks();
-    if (auto came = awaitThat([&] { return session_.bookmarkListsReceived() > before; },
-                              "the list of bookmarks");
-        !came)
-        return came;
+    if (auto came = awaitBookmarkList(); !came) return came;
     const auto bookmarks = session_.bookmarks();
     report.bookmarks = bookmarks.size();
     if (action.json.empty()) return {};

@@ -68,19 +68,21 @@ void drawNotices(Ui& ui, Rect area) {
     const panels::Session& session = ui.reader.session();
     std::erase_if(ui.notices,
                   [](const Notice& notice) { return notice.untilSeconds < ImGui::GetTime(); });
-    float y = area.min.y + ui.px(14);
+    float bottom = area.max.y - ui.px(16);
     const float middle = (area.min.x + area.max.x) / 2;
+    const float wrap = std::min(area.size().x - ui.px(80), ui.px(640));
     const auto draw = [&](const std::string& text, bool trouble) {
-        const ImVec2 size = textSize(ui.fonts.normal, text);
+        ImFont* font = ui.fonts.normal;
+        const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6f, wrap, text.c_str());
         const ImVec2 pad(ui.px(14), ui.px(8));
-        const ImVec2 min(middle - size.x / 2 - pad.x, y),
-            max(middle + size.x / 2 + pad.x, y + size.y + 2 * pad.y);
+        const ImVec2 min(middle - size.x / 2 - pad.x, bottom - size.y - 2 * pad.y),
+            max(middle + size.x / 2 + pad.x, bottom);
         list->AddRectFilled(min, max, IM_COL32(21, 25, 31, 240), ui.px(6));
         list->AddRect(min, max, trouble ? color::trouble : color::accentDim, ui.px(6), 0,
                       ui.px(1.2f));
-        list->AddText(ui.fonts.normal, ui.fonts.normal->FontSize, {min.x + pad.x, min.y + pad.y},
-                      trouble ? color::trouble : color::text, text.c_str());
-        y = max.y + ui.px(8);
+        list->AddText(font, font->FontSize, {min.x + pad.x, min.y + pad.y},
+                      trouble ? color::trouble : color::text, text.c_str(), nullptr, wrap);
+        bottom = min.y - ui.px(8);
     };
     if (ui.reader.isOpen() &&
         (session.phase() == panels::Phase::lost || session.phase() == panels::Phase::failed)) {

@@ -86,6 +86,19 @@ private:
     std::size_t owed_ = 0;
 };
 
+// When the time has come; where pictures are still on their way, up to 20 s later.
+bool readyForScreenshot(const panels::Reader& reader, const WindowOptions& options,
+                        Clock::duration elapsed) {
+    const auto due = std::chrono::milliseconds(options.screenshotAfterMs);
+    if (elapsed < due) return false;
+    const panels::Phase phase = reader.session().phase();
+    bool waiting = phase == panels::Phase::connecting;
+    if (phase == panels::Phase::open && reader.flight().motion() == panels::Motion::paused)
+        for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
+            waiting = waiting || !reader.picture(view).exact;
+    return !waiting || elapsed > due + std::chrono::seconds(20);
+}
+
 // Bookmarks on their way are waited for, but not for long.
 void finishBookmarks(panels::Session& session) {
     const auto deadline = Clock::now() + std::chrono::seconds(2);
@@ -127,8 +140,7 @@ Result<void> run(WindowOptions options) {
         busyFrames = reader.restless() || handAtWork || !ui.notices.empty()
                          ? 3
                          : std::max(0, busyFrames - 1);
-        if (options.screenshot &&
-            now - start >= std::chrono::milliseconds(options.screenshotAfterMs)) {
+        if (options.screenshot && readyForScreenshot(reader, options, now - start)) {
             if (auto written = window.writeScreenshot(*options.screenshot); !written)
                 return written;
             if (reader.session().phase() == panels::Phase::failed)

@@ -11,6 +11,8 @@ namespace {
 using panels::Flight;
 using panels::Motion;
 
+constexpr float controlSide = 32;  // height of all controls
+
 // The whole path as one track: gaps hatched, bookmarks as flags, the camera as a knob that shows
 // its direction. Press or drag to go there.
 void drawTrack(Ui& ui, Rect area) {
@@ -66,15 +68,20 @@ void sameRow(Ui& ui, float gap = 8) {
     ImGui::SameLine(0, ui.px(gap));
 }
 
-void combo(Ui& ui, const char* id, const char* label, float width, const std::string& current,
+// A small grey label, centred on the row of controls.
+void label(Ui& ui, const char* text) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const ImVec2 size = textSize(ui.fonts.small, text);
+    ImGui::GetWindowDrawList()->AddText(
+        ui.fonts.small, ui.fonts.small->FontSize,
+        {corner.x, corner.y + (ImGui::GetFrameHeight() - size.y) / 2}, color::muted, text);
+    ImGui::Dummy({size.x, ImGui::GetFrameHeight()});
+    sameRow(ui);
+}
+
+void combo(Ui& ui, const char* id, const char* title, float width, const std::string& current,
            const std::vector<std::string>& names, const auto& choose) {
-    const float row = ImGui::GetCursorPosY();
-    ImGui::PushFont(ui.fonts.small);
-    ImGui::SetCursorPosY(row + ui.px(8));
-    ImGui::TextDisabled("%s", label);
-    ImGui::PopFont();
-    sameRow(ui, 6);
-    ImGui::SetCursorPosY(row);
+    label(ui, title);
     ImGui::SetNextItemWidth(ui.px(width));
     if (!ImGui::BeginCombo(id, current.c_str())) return;
     for (const std::string& name : names)
@@ -94,7 +101,7 @@ constexpr WindowPreset windowPresets[] = {{"colon", {0, 2000}},
 void drawControls(Ui& ui) {
     panels::Reader& reader = ui.reader;
     Flight& flight = reader.flight();
-    const float side = ui.px(32);
+    const float side = ui.px(controlSide);
     const Motion motion = flight.motion();
 
     if (iconButton("rectum", Icon::toRectum, side, "To the rectum (Home)"))
@@ -125,13 +132,15 @@ void drawControls(Ui& ui) {
         reader.addBookmark("");
 
     sameRow(ui, 20);
+    label(ui, "speed");
     float speed = float(flight.speedMmPerS());
-    ImGui::SetNextItemWidth(ui.px(150));
+    ImGui::SetNextItemWidth(ui.px(130));
     if (ImGui::SliderFloat("##speed", &speed, float(Flight::minSpeedMmPerS),
-                           float(Flight::maxSpeedMmPerS), "%.0f mm/s",
-                           ImGuiSliderFlags_Logarithmic))
+                           float(Flight::maxSpeedMmPerS), "", ImGuiSliderFlags_Logarithmic))
         flight.setSpeed(speed);
     tooltip("Speed (+ and −)");
+    sameRow(ui);
+    label(ui, format("%.0f mm/s", flight.speedMmPerS()).c_str());
 
     const auto& info = *reader.session().caseInfo();
     if (!info.transferFunctions.empty()) {
@@ -170,9 +179,12 @@ void drawTransportBar(Ui& ui, Rect area) {
         drawTrack(ui, {{area.min.x + margin + rectum.x + ui.px(16), row},
                        {area.max.x - margin - cecum.x - ui.px(16), row + trackHigh}});
     ImGui::SetCursorScreenPos({area.min.x + margin, row + trackHigh + ui.px(4)});
+    const float padding = (ui.px(controlSide) - ImGui::GetFontSize()) / 2;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ui.px(10), padding});
     ImGui::BeginGroup();
     drawControls(ui);
     ImGui::EndGroup();
+    ImGui::PopStyleVar();
 }
 
 }  // namespace haustra::window

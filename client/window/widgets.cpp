@@ -67,14 +67,11 @@ void drawIcon(ImDrawList* list, Icon icon, ImVec2 c, float side, ImU32 colour) {
             list->AddLine(at(-0.8f, 0.45f), at(0.5f, 0.45f), colour, line);
             list->AddTriangleFilled(at(0.9f, 0.45f), at(0.35f, 0.0f), at(0.35f, 0.9f), colour);
             break;
-        case Icon::bookmark: {
-            const ImVec2 shape[] = {at(-0.55f, -0.85f), at(0.55f, -0.85f), at(0.55f, 0.85f),
-                                    at(0, 0.35f)};
-            const ImVec2 rest[] = {at(-0.55f, -0.85f), at(0, 0.35f), at(-0.55f, 0.85f)};
-            list->AddConvexPolyFilled(shape, 4, colour);
-            list->AddConvexPolyFilled(rest, 3, colour);
+        case Icon::bookmark:  // a ribbon with a notch, of a rectangle and two triangles
+            list->AddRectFilled(at(-0.55f, -0.85f), at(0.55f, 0.3f), colour, side * 0.06f);
+            list->AddTriangleFilled(at(-0.55f, 0.2f), at(0.05f, 0.25f), at(-0.55f, 0.9f), colour);
+            list->AddTriangleFilled(at(0.55f, 0.2f), at(0.55f, 0.9f), at(-0.05f, 0.25f), colour);
             break;
-        }
         case Icon::help: {
             const ImVec2 size = ImGui::CalcTextSize("?");
             list->AddText({c.x - size.x * 0.5f, c.y - size.y * 0.5f}, colour, "?");
