@@ -9,9 +9,10 @@
 
 namespace haustra::topology {
 
-/// One segment of the lumen, by the ends of its path in patient mm (LPS).
+/// One segment of the lumen: the ends of its path in patient mm (LPS), and the path's length.
 struct SegmentEnds {
     glm::dvec3 firstMm{0.0}, lastMm{0.0};
+    double lengthMm = 0.0;
 };
 
 /// One segment in the order of travel; `reversed` means that it is entered by its last end.
@@ -25,10 +26,12 @@ struct SegmentVisit {
 /// midline, for which the middle of the lumen stands (the colon frames the abdomen).
 double rectumPenaltyMm(glm::dvec3 endMm, glm::dvec3 lumenMiddleMm);
 
-/// The order from rectum to cecum that crosses the shortest gaps (Held and Karp's dynamic
-/// programme, exact), starting at the end with the lowest rectumPenaltyMm; among nearly equal
-/// orders the one whose far end lies to the patient's right, as the cecum does. `rectum` and
-/// `cecum` fix the first or last visit. At most 12 segments; O(2ⁿ n²).
+/// The order from rectum to cecum. Of all orders of all subsets of the segments it has the
+/// greatest length of segments less length of gaps between them, less rectumPenaltyMm where it
+/// begins, less a little for a far end to the patient's left, as the cecum lies to the right. So a
+/// segment that lies farther off the way than it is long, such as gas in the small bowel, is left
+/// out. `rectum` and `cecum` fix the first or last visit; where they contradict each other the
+/// result is empty. At most 12 segments; Held and Karp's dynamic programme, O(2ⁿ n²).
 std::vector<SegmentVisit> orderSegments(const std::vector<SegmentEnds>& segments,
                                         glm::dvec3 lumenMiddleMm,
                                         std::optional<SegmentVisit> rectum = {},

@@ -10,24 +10,30 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <tuple>
+#include <numeric>
 #include <utility>
 
 namespace haustra::topology {
 namespace {
 
 constexpr double smallestSegmentMl = 2.0;
-constexpr double shortestSegmentMm = 25.0;
 constexpr std::size_t mostSegments = 12;
 // A path ends where this ball still fits; beyond lie a catheter, a tip between folds, the wall.
 constexpr double endRadiusMm = 3.0;
 // A point given by a person may be this far from the lumen.
 constexpr double farthestPointMm = 10.0;
 
-/// One segment of the lumen, by the nodes at its ends; a given end is a person's choice.
+using Route = std::vector<std::int32_t>;  // nodes of the block graph
+
+/// One segment of the lumen with the route along it; a given end is a person's choice.
 struct Segment {
-    std::int32_t first = 0, last = 0;
+    Route route;
     bool firstGiven = false, lastGiven = false;
+};
+
+/// The ends that a person chose, as nodes.
+struct GivenEnds {
+    std::optional<std::int32_t> rectum, cecum;
 };
 
 /// A point of the whole curve before resampling.
@@ -70,18 +76,22 @@ void trimEnds(std::vector<glm::ivec3>& path, const Volume<float>& distanceMm, bo
     if (front) path.erase(path.begin(), std::find_if(path.begin(), path.end(), wideEnough));
 }
 
-/// The ends of the path along one component: `first` and `last` where given; one that is not is
-/// the tip farthest from the other, sought from the deepest place where neither is.
-std::pair<std::int32_t, std::int32_t> endsOf(const BlockGraph& graph, std::int32_t component,
-                                             std::optional<std::int32_t> first,
-                                             std::optional<std::int32_t> last) {
-    const auto tipFrom = [&](std::int32_t node) {
-        return farthestTip(graph, growWidestTree(graph, node), EndShape::any);
+/// The route along one component from `first` to `last`. An end that is not given is the tip
+/// farthest from the other one, which is sought from the deepest place where neither is given.
+Route routeAlong(const BlockGraph& graph, std::int32_t component, std::optional<std::int32_t> first,
+                 std::optional<std::int32_t> last) {
+    const auto towards = [&](const PathTree& tree, std::optional<std::int32_t> end) {
+        return pathTo(tree, end ? *end : farthestTip(graph, tree, EndShape::any));
     };
-    if (!first)
-        first = tipFrom(last ? *last : tipFrom(graph.components[std::size_t(component)].deepest));
-    if (!last) last = tipFrom(*first);
-    return {*first, *last};
+    if (first) return towards(growWidestTree(graph, *first), last);
+    if (!last) {
+        const std::int32_t deepest = graph.components[std::size_t(component)].deepest;
+        const std::int32_t oneEnd = longestPathEnd(growWidestTree(graph, deepest));
+        last = farthestTip(graph, growWidestTree(graph, oneEnd), EndShape::any);
+    }
+    Route route = towards(growWidestTree(graph, *last), first);
+    std::reverse(route.begin(), route.end());
+    return route;
 }
 
 glm::dvec3 middleOf(const BlockGraph& graph) {
@@ -91,6 +101,72 @@ glm::dvec3 middleOf(const BlockGraph& graph) {
         hi = glm::max(hi, graph.positionMm(std::int32_t(n)));
     }
     return 0.5 * (lo + hi);
+}
+
+/// The segments worth a visit, largest first, with their ends; what is left out goes to `notes`.
+std::vector<Segment> findSegments(const BlockGraph& graph, const GivenEnds& given,
+                                  std::vector<std::string>& notes) {
+    const auto componentOf = [&](const std::optional<std::int32_t>& node) {
+        return node ? graph.nodes[std::size_t(*node)].component : -1;
+    };
+    const std::int32_t rectum = componentOf(given.rectum), cecum = componentOf(given.cecum);
+    const bool onlyGiven = given.rectum && rectum == cecum;
+    std::vector<std::int32_t> bySize(graph.components.size());
+    std::iota(bySize.begin(), bySize.end(), 0);
+    std::stable_sort(bySize.begin(), bySize.end(), [&](std::int32_t a, std::int32_t b) {
+        return graph.components[std::size_t(a)].voxels > graph.components[std::size_t(b)].voxels;
+    });
+    std::vector<Segment> segments;
+    double leftOutMl = 0.0;
+    int leftOut = 0;
+    for (const std::int32_t c : bySize) {
+        const BlockGraph::Component& component = graph.components[std::size_t(c)];
+        const double volumeMl = double(component.voxels) * graph.grid.voxelVolumeMm3() / 1000.0;
+        const bool isGiven = c == rectum || c == cecum;
+        const bool large = volumeMl >= smallestSegmentMl || c == bySize.front();
+        if (isGiven || (large && !onlyGiven && segments.size() < mostSegments)) {
+            Segment segment{{}, c == rectum, c == cecum};
+            segment.route = routeAlong(graph, c, segment.firstGiven ? given.rectum : std::nullopt,
+                                       segment.lastGiven ? given.cecum : std::nullopt);
+            segments.push_back(std::move(segment));
+        } else {
+            leftOutMl += volumeMl;
+            ++leftOut;
+        }
+    }
+    if (leftOut > 0) {
+        notes.push_back(format("%.0f small pieces of the lumen left out, %.1f ml in all",
+                               double(leftOut), leftOutMl));
+    }
+    return segments;
+}
+
+/// orderSegments for these; the segments that it leaves out go to `notes`.
+std::vector<SegmentVisit> orderOf(const std::vector<Segment>& segments, const BlockGraph& graph,
+                                  std::vector<std::string>& notes) {
+    std::vector<SegmentEnds> ends;
+    std::optional<SegmentVisit> rectum, cecum;
+    for (std::size_t n = 0; n < segments.size(); ++n) {
+        const Route& route = segments[n].route;
+        ends.push_back({graph.positionMm(route.front()), graph.positionMm(route.back()), 0.0});
+        for (std::size_t p = 1; p < route.size(); ++p) {
+            ends.back().lengthMm +=
+                glm::distance(graph.positionMm(route[p]), graph.positionMm(route[p - 1]));
+        }
+        if (segments[n].firstGiven) rectum = {n, false};
+        if (segments[n].lastGiven) cecum = {n, false};
+    }
+    const std::vector<SegmentVisit> order = orderSegments(ends, middleOf(graph), rectum, cecum);
+    for (std::size_t n = 0; n < segments.size(); ++n) {
+        if (std::any_of(order.begin(), order.end(),
+                        [&](const SegmentVisit& v) { return v.segment == n; }))
+            continue;
+        const glm::dvec3 at = 0.5 * (ends[n].firstMm + ends[n].lastMm);
+        notes.push_back(format(
+            "a segment of %.0f mm at (%.0f, %.0f, %.0f) mm lies too far off the way to be visited",
+            ends[n].lengthMm, at.x, at.y, at.z));
+    }
+    return order;
 }
 
 /// Samples at equal arcs of about `stepMm`, both ends included.
@@ -149,68 +225,24 @@ Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
     if (!rectum) return tl::make_unexpected(rectum.error());
     const auto cecum = nodeNear(graph, options.cecumMm, "cecum");
     if (!cecum) return tl::make_unexpected(cecum.error());
-    const auto componentOf = [&](const std::optional<std::int32_t>& node) {
-        return node ? graph.nodes[std::size_t(*node)].component : -1;
-    };
-    const std::int32_t rectumComponent = componentOf(*rectum), cecumComponent = componentOf(*cecum);
 
-    // The components worth visiting, largest first.
     TracedCenterline traced;
-    std::vector<std::int32_t> candidates;
-    for (std::size_t c = 0; c < graph.components.size(); ++c)
-        candidates.push_back(std::int32_t(c));
-    std::stable_sort(candidates.begin(), candidates.end(), [&](std::int32_t a, std::int32_t b) {
-        return graph.components[std::size_t(a)].voxels > graph.components[std::size_t(b)].voxels;
-    });
-    std::vector<Segment> segments;
-    std::vector<SegmentEnds> ends;
-    std::optional<SegmentVisit> rectumVisit, cecumVisit;
-    double leftOutMl = 0.0;
-    std::size_t leftOut = 0;
-    for (std::size_t n = 0; n < candidates.size(); ++n) {
-        const std::int32_t c = candidates[n];
-        const double volumeMl = double(graph.components[std::size_t(c)].voxels) *
-                                labels.grid().voxelVolumeMm3() / 1000.0;
-        const bool asked = c == rectumComponent || c == cecumComponent;
-        const bool onlyAsked = rectumComponent >= 0 && rectumComponent == cecumComponent;
-        bool visit = asked || (!onlyAsked && segments.size() < mostSegments &&
-                               (n == 0 || volumeMl >= smallestSegmentMl));
-        if (visit) {
-            Segment segment{0, 0, c == rectumComponent, c == cecumComponent};
-            std::tie(segment.first, segment.last) =
-                endsOf(graph, c, segment.firstGiven ? *rectum : std::nullopt,
-                       segment.lastGiven ? *cecum : std::nullopt);
-            const SegmentEnds end{graph.positionMm(segment.first), graph.positionMm(segment.last)};
-            visit = asked || n == 0 || glm::distance(end.firstMm, end.lastMm) >= shortestSegmentMm;
-            if (visit) {
-                if (segment.firstGiven) rectumVisit = {segments.size(), false};
-                if (segment.lastGiven) cecumVisit = {segments.size(), false};
-                segments.push_back(segment);
-                ends.push_back(end);
-            }
-        }
-        if (!visit) ++leftOut, leftOutMl += volumeMl;
-        progress(0.1 + 0.5 * double(n + 1) / double(candidates.size()));
-    }
-    if (leftOut > 0) {
-        traced.notes.push_back(format("%.0f small pieces of the lumen left out, %.1f ml in all",
-                                      double(leftOut), leftOutMl));
-    }
-
+    std::vector<Segment> segments = findSegments(graph, {*rectum, *cecum}, traced.notes);
+    const std::vector<SegmentVisit> order = orderOf(segments, graph, traced.notes);
+    progress(0.6);
     std::vector<CurvePoint> curve;
-    const std::vector<SegmentVisit> order =
-        orderSegments(ends, middleOf(graph), rectumVisit, cecumVisit);
     for (std::size_t n = 0; n < order.size(); ++n) {
-        Segment segment = segments[order[n].segment];
+        Segment& segment = segments[order[n].segment];
         if (order[n].reversed) {
-            std::swap(segment.first, segment.last);
+            std::reverse(segment.route.begin(), segment.route.end());
             std::swap(segment.firstGiven, segment.lastGiven);
         }
-        const PathTree tree = growWidestTree(graph, segment.first);
-        if (n + 1 == order.size() && !segment.lastGiven)
-            segment.last = farthestTip(graph, tree, EndShape::pouch);
+        if (n + 1 == order.size() && !segment.lastGiven) {
+            const PathTree tree = growWidestTree(graph, segment.route.front());
+            segment.route = pathTo(tree, farthestTip(graph, tree, EndShape::pouch));
+        }
         std::vector<glm::ivec3> path =
-            refineToVoxels(graph, distanceMm, centreRoute(graph, pathTo(tree, segment.last)));
+            refineToVoxels(graph, distanceMm, centreRoute(graph, segment.route));
         trimEnds(path, distanceMm, !segment.firstGiven, !segment.lastGiven);
         if (path.size() < 2) continue;
         const std::vector<glm::dvec3> smooth = smoothInsideLumen(path, labels, distanceMm);

@@ -11,7 +11,7 @@ constexpr float stretchInRadii = 4.0f;
 constexpr float aroundInRadii = 3.0f;
 // The last wide and the last narrow place have at least these parts of the stretch's greatest
 // radius; the tip may lie so far from their centres, in their own radii.
-constexpr float wideWidth = 0.8f, narrowWidth = 0.2f;
+constexpr float wideWidth = 0.6f, narrowWidth = 0.2f;
 constexpr double wideReach = 0.9, narrowReach = 1.25;
 // A narrow place no farther from the last wide place's centre, in its radii, is a corner of it.
 constexpr double bluntReach = 1.5;
