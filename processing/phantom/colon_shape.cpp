@@ -179,7 +179,9 @@ ColonPoint ColonShape::evaluate(glm::dvec3 p, const Nearby& nearby) const {
     point.arcMm = path_.stepMm * (bestSegment + bestT);
 
     double d = tube(p, s, point.arcMm);
-    if (d < 2.0 && d > -12.0) d += 0.35 * valueNoise(roughness_, p, 7.0);
+    // Wrinkles of the mucosa.
+    if (d > -6.0)
+        d += 0.35 * valueNoise(roughness_, p, 6.0) + 0.6 * valueNoise(roughness_ + 1, p, 14.0);
     double outer = d - wallMm;
     if (s.radiusMm < kCollapsedRadiusMm) {
         outer = std::min(outer, glm::distance(p, s.position) - kCollapsedRadiusMm);
