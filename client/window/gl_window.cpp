@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <SDL.h>
@@ -21,6 +22,8 @@ struct GlWindow::Impl {
     bool imgui = false;
     double scale = 1.0;
     Fonts fonts;
+    std::vector<KeyPress> keyPresses;
+    std::vector<SDL_Event> heldBack;  // releases that wait for the next frame
 
     ~Impl() {
         if (imgui) {
@@ -66,6 +69,9 @@ GlWindow::~GlWindow() = default;
 const Fonts& GlWindow::fonts() const {
     return impl_->fonts;
 }
+const std::vector<KeyPress>& GlWindow::keyPresses() const {
+    return impl_->keyPresses;
+}
 double GlWindow::scale() const {
     return impl_->scale;
 }
@@ -102,12 +108,27 @@ Result<std::unique_ptr<GlWindow>> GlWindow::create(const std::string& title, int
     return std::unique_ptr<GlWindow>(new GlWindow(std::move(impl)));
 }
 
+// ImGui sees keys only as they stand when a frame begins: the release of a key that went down since
+// the last frame is held back, so that no press is lost.
 bool GlWindow::beginFrame(bool busy) {
+    impl_->keyPresses.clear();
+    for (const SDL_Event& release : std::exchange(impl_->heldBack, {}))
+        ImGui_ImplSDL2_ProcessEvent(&release);
     SDL_Event event;
     bool has = busy ? SDL_PollEvent(&event) : SDL_WaitEventTimeout(&event, 250);
     for (; has; has = SDL_PollEvent(&event)) {
         if (event.type == SDL_QUIT) return false;
         if (event.type == impl_->wakeEvent) continue;
+        const auto& key = event.key.keysym;
+        if (event.type == SDL_KEYDOWN) {
+            impl_->keyPresses.push_back({key.scancode, (key.mod & KMOD_SHIFT) != 0,
+                                         (key.mod & KMOD_CTRL) != 0, (key.mod & KMOD_ALT) != 0});
+        } else if (event.type == SDL_KEYUP &&
+                   std::any_of(impl_->keyPresses.begin(), impl_->keyPresses.end(),
+                               [&](const KeyPress& p) { return p.scancode == key.scancode; })) {
+            impl_->heldBack.push_back(event);
+            continue;
+        }
         ImGui_ImplSDL2_ProcessEvent(&event);
     }
     ImGui_ImplOpenGL3_NewFrame();

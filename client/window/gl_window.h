@@ -9,8 +9,16 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace haustra::window {
+
+/// A key that went down (or repeated) since the last frame. ImGui loses presses that are shorter
+/// than a frame.
+struct KeyPress {
+    int scancode;  ///< SDL_Scancode
+    bool shift, ctrl, alt;
+};
 
 /// One per program, on the main thread. Destroying it closes the window.
 class GlWindow {
@@ -26,6 +34,8 @@ public:
     /// Handles what the hand did and begins a frame. Where `busy` is false it first sleeps until
     /// something happens, at most a quarter of a second. False: the user closed the window.
     bool beginFrame(bool busy);
+    /// Keys pressed between the last two frames, in order.
+    const std::vector<KeyPress>& keyPresses() const;
     /// Draws and shows the frame.
     void endFrame();
     /// The last drawn frame as a PNG file.

@@ -11,10 +11,6 @@ namespace {
 using panels::Flight;
 using panels::Motion;
 
-bool pressed(SDL_Scancode code) {
-    return ImGui::IsKeyPressed(code);
-}
-
 void toggle(Flight& flight, Motion motion) {
     flight.setMotion(flight.motion() == motion ? Motion::paused : motion);
 }
@@ -102,29 +98,54 @@ void moveFreely(Flight& flight, double seconds, bool fast) {
     flight.moveFreely(way * flight.speedMmPerS() * std::min(seconds, 0.1) * (fast ? 3.0 : 1.0));
 }
 
+void handleFlightKey(Flight& flight, const KeyPress& key) {
+    const double stepMm = key.shift ? 10.0 : 1.0;
+    switch (key.scancode) {
+        case SDL_SCANCODE_SPACE:
+            toggle(flight, Motion::forward);
+            break;
+        case SDL_SCANCODE_BACKSPACE:
+            toggle(flight, Motion::backward);
+            break;
+        case SDL_SCANCODE_RIGHT:
+        case SDL_SCANCODE_UP:
+            stepAlong(flight, stepMm);
+            break;
+        case SDL_SCANCODE_LEFT:
+        case SDL_SCANCODE_DOWN:
+            stepAlong(flight, -stepMm);
+            break;
+        case SDL_SCANCODE_HOME:
+            flight.setMotion(Motion::paused);
+            flight.goTo(0.0);
+            break;
+        case SDL_SCANCODE_END:
+            flight.setMotion(Motion::paused);
+            flight.goTo(flight.centerline().lengthMm());
+            break;
+        default:
+            break;
+    }
+}
+
 }  // namespace
 
-bool handleKeys(Ui& ui, double seconds) {
+bool handleKeys(Ui& ui, const std::vector<KeyPress>& presses, double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.KeyCtrl && pressed(SDL_SCANCODE_Q)) return false;
-    if (pressed(SDL_SCANCODE_F1)) ui.showHelp = !ui.showHelp;
-    if (pressed(SDL_SCANCODE_ESCAPE)) ui.showHelp = false;
-    if (io.WantTextInput || io.KeyCtrl || io.KeyAlt) return true;
+    for (const KeyPress& key : presses) {
+        if (key.ctrl && key.scancode == SDL_SCANCODE_Q) return false;
+        if (key.scancode == SDL_SCANCODE_F1) ui.showHelp = !ui.showHelp;
+        if (key.scancode == SDL_SCANCODE_ESCAPE) ui.showHelp = false;
+    }
+    if (io.WantTextInput) return true;
     for (const ImWchar letter : io.InputQueueCharacters)
         handleLetter(ui, letter);
     if (!ui.reader.isOpen()) return true;
-
     Flight& flight = ui.reader.flight();
     if (flight.isFree()) moveFreely(flight, seconds, io.KeyShift);
     if (flight.centerline().points.empty()) return true;
-    const double stepMm = io.KeyShift ? 10.0 : 1.0;
-    if (pressed(SDL_SCANCODE_SPACE)) toggle(flight, Motion::forward);
-    if (pressed(SDL_SCANCODE_BACKSPACE)) toggle(flight, Motion::backward);
-    if (pressed(SDL_SCANCODE_RIGHT) || pressed(SDL_SCANCODE_UP)) stepAlong(flight, stepMm);
-    if (pressed(SDL_SCANCODE_LEFT) || pressed(SDL_SCANCODE_DOWN)) stepAlong(flight, -stepMm);
-    if (pressed(SDL_SCANCODE_HOME)) flight.setMotion(Motion::paused), flight.goTo(0.0);
-    if (pressed(SDL_SCANCODE_END))
-        flight.setMotion(Motion::paused), flight.goTo(flight.centerline().lengthMm());
+    for (const KeyPress& key : presses)
+        if (!key.ctrl && !key.alt) handleFlightKey(flight, key);
     return true;
 }
 

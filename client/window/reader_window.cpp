@@ -127,7 +127,7 @@ Result<void> run(WindowOptions options) {
         const auto now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - before).count();
         before = now;
-        const bool wanted = handleKeys(ui, seconds);
+        const bool wanted = handleKeys(ui, window.keyPresses(), seconds);
         // A frame that was long in coming must not throw the reader far along the colon.
         reader.update(std::min(seconds, 0.1));
         watcher.look(ui);

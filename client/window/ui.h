@@ -3,6 +3,7 @@
 #pragma once
 
 #include "panels/reader.h"
+#include "window/gl_window.h"
 #include "window/picture_texture.h"
 #include "window/theme.h"
 
@@ -53,6 +54,6 @@ void drawHelp(Ui& ui, Rect area);
 void drawStart(Ui& ui, Rect area);
 
 /// Acts on the keyboard. False: the reader asked to quit.
-bool handleKeys(Ui& ui, double seconds);
+bool handleKeys(Ui& ui, const std::vector<KeyPress>& presses, double seconds);
 
 }  // namespace haustra::window
