@@ -4,9 +4,11 @@
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
+#include "render/classification.h"
 #include "render/leap_map.h"
 #include "render/lumen_as_air.h"
-#include "render/transfer_table.h"
+#include "render/ray_setup.h"
+#include "render/stored_value.h"
 #include "shaders/shader_source.h"
 #include "shaders/uniforms.h"
 
@@ -24,13 +26,8 @@ using shaders::MarchUniforms;
 using shaders::shaderSource;
 using shaders::SliceUniforms;
 
-constexpr int coneTile = 8;  // pixels along a tile's side in the cone pass
-
-/// A stored value is HU + 32768, exact for every int16, as a fraction of 65535.
-constexpr double storedOffset = 32768.0, storedRange = 65535.0;
-double stored(double hu) {
-    return (hu + storedOffset) / storedRange;
-}
+// Each holds a leap map, a byte for eight voxels.
+constexpr std::size_t classificationsKept = 4;
 
 Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
                                   const char* what) {
@@ -48,7 +45,7 @@ Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int thread
         const std::int16_t* from = volume.voxels().data() + slice * std::size_t(z);
         parallelFor(encoded.size(), 1 << 20, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                encoded[i] = std::uint16_t(int(from[i]) + 32768);
+                encoded[i] = encodeHu(from[i]);
         });
         texture->uploadSlices(z, count, encoded.data());
     }
@@ -63,13 +60,6 @@ Result<void> checkPicture(int width, int height) {
     return {};
 }
 
-bool same(const TransferFunction& a, const TransferFunction& b) {
-    return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
-                      [](const auto& p, const auto& q) {
-                          return p.hu == q.hu && p.color == q.color && p.opacity == q.opacity;
-                      });
-}
-
 }  // namespace
 
 struct CaseRenderer::Impl {
@@ -79,39 +69,28 @@ struct CaseRenderer::Impl {
     gpu::Texture ct;
     std::optional<gpu::Texture> cleared;  // where there is tagged lumen
     BlockRanges ranges;
-    gpu::Texture leap;
-    gpu::Texture table;
     gpu::ComputeProgram coneStart, endoscopic, slice;
     gpu::UniformBuffer marchBlock, sliceBlock;
     std::optional<gpu::Texture> picture, firstStep;
-    int errorsBefore = 0;
+    std::vector<Classification> recent;  // the latest used last
 
-    // What the table and the leap map now hold.
-    TransferFunction loaded;
-    double loadedStepMm = 0.0;
-    bool loadedLeaping = false;
-    TransferTable tableNow;
-
-    double stepMm(const MarchOptions& march) const {
-        const glm::dvec3 spacing = grid.spacingMm();
-        return march.stepVoxels * std::min(spacing.x, std::min(spacing.y, spacing.z));
-    }
-
-    void load(const TransferFunction& transferFunction, double step, bool leaping) {
-        const bool newFunction = !same(transferFunction, loaded);
-        if (newFunction || step != loadedStepMm) {
-            tableNow = makeTransferTable(transferFunction, step);
-            table.upload(tableNow.rgba.data());
+    /// Made, or found among those lately used: readers of one case may differ in their colours.
+    Result<const Classification*> classification(const EndoscopicView& view) {
+        const double step = stepMm(view.march, grid);
+        const auto wanted = [&](const Classification& one) {
+            return one.isFor(view.transferFunction, step, view.march.emptySpaceLeaping);
+        };
+        if (const auto found = std::find_if(recent.begin(), recent.end(), wanted);
+            found != recent.end()) {
+            std::rotate(found, found + 1, recent.end());
+            return &recent.back();
         }
-        if (newFunction || leaping != loadedLeaping) {
-            const std::vector<std::uint8_t> distances =
-                leaping ? leapDistances(ranges, tableNow, threads)
-                        : std::vector<std::uint8_t>(ranges.lowHu.size(), 0);
-            leap.uploadSlices(0, ranges.size.z, distances.data());
-        }
-        loaded = transferFunction;
-        loadedStepMm = step;
-        loadedLeaping = leaping;
+        if (recent.size() == classificationsKept) recent.erase(recent.begin());
+        Result<Classification> made = Classification::create(
+            view.transferFunction, step, view.march.emptySpaceLeaping, ranges, threads);
+        if (!made) return tl::make_unexpected(made.error());
+        recent.push_back(std::move(*made));
+        return &recent.back();
     }
 
     Result<void> makeTargets(glm::ivec2 size) {
@@ -129,62 +108,11 @@ struct CaseRenderer::Impl {
         return {};
     }
 
-    MarchUniforms uniforms(const EndoscopicView& view, glm::ivec2 size) const {
-        const glm::dvec3 forward = glm::normalize(view.camera.forward);
-        const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
-        const glm::dvec3 up = glm::cross(right, forward);
-        const double halfHeight = std::tan(glm::radians(0.5 * view.camera.fovDegrees));
-        const double halfWidth = halfHeight * size.x / size.y;
-        const glm::dvec3 voxels(grid.size);
-        const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
-        const glm::dvec3 eye = (grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels;
-        const double step = stepMm(view.march);
-        // No ray inside the volume is longer than the way from the eye to the farthest corner.
-        double farthestMm = 0.0;
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
-            farthestMm = std::max(farthestMm,
-                                  glm::distance(view.camera.positionMm,
-                                                grid.patientFromVoxelPoint(side * voxels - 0.5)));
-        }
-        const auto row = [&](int r) {
-            return glm::vec4(voxelFromPatient[0][r], voxelFromPatient[1][r], voxelFromPatient[2][r],
-                             0.0) /
-                   float(grid.size[r]);
-        };
-        const double perHu = (TransferTable::entries - 1) / (tableNow.lastHu - tableNow.firstHu);
-        const auto limit = [](double hu) {
-            return std::isinf(hu) ? std::copysign(2.0, hu) : stored(hu);
-        };
-
-        MarchUniforms u{};
-        u.eyeTexture = glm::vec4(eye, 0.0);
-        u.forwardMm = glm::vec4(forward, 0.0);
-        u.rightMm = glm::vec4(right * halfWidth, 0.0);
-        u.downMm = glm::vec4(-up * halfHeight, 0.0);
-        u.textureRowX = row(0);
-        u.textureRowY = row(1);
-        u.textureRowZ = row(2);
-        u.voxelTexture = glm::vec4(1.0 / voxels, 0.0);
-        u.blocksPerUnit = glm::vec4(voxels / double(blockSide), -0.5 / blockSide);
-        u.visibleRange =
-            glm::vec4(limit(tableNow.visibleAboveHu), limit(tableNow.visibleBelowHu),
-                      storedRange * perHu / TransferTable::entries,
-                      ((-storedOffset - tableNow.firstHu) * perHu + 0.5) / TransferTable::entries);
-        u.stepping = glm::vec4(step, terminationOpacity, std::ceil(farthestMm / step) + 1.0,
-                               headlight.halfDepthMm);
-        u.light = glm::vec4(headlight.ambient, headlight.diffuse, headlight.specular,
-                            headlight.shininess);
-        u.pictureSize = glm::ivec4(size, view.march.shading ? 1 : 0, 0);
-        u.lastBlock = glm::ivec4(ranges.size - 1, coneTile);
-        return u;
-    }
-
-    Result<Image> readPicture(glm::ivec2 size) {
+    Result<Image> readPicture(glm::ivec2 size, int errorsBefore) {
         const std::size_t pixels = std::size_t(size.x) * std::size_t(size.y);
         std::vector<std::uint8_t> rgba(4 * pixels);
         picture->read(rgba.data(), rgba.size());
-        if (context.errorCount() != std::exchange(errorsBefore, context.errorCount()))
+        if (context.errorCount() != errorsBefore)
             return fail(ErrorKind::device, "the graphics driver reported an error", "render");
         Image image{size.x, size.y, std::vector<std::uint8_t>(3 * pixels)};
         for (std::size_t i = 0; i < pixels; ++i)
@@ -230,13 +158,6 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context
     } else {
         ranges = blockRanges(ct, threads);
     }
-    Result<Texture> leap =
-        Texture::create(3, ranges.size, TexelFormat::r8ui, Filter::nearest, "leap map");
-    if (!leap) return tl::make_unexpected(leap.error());
-    Result<Texture> table = Texture::create(1, {TransferTable::entries, 1, 1}, TexelFormat::rgba32f,
-                                            Filter::linear, "transfer function");
-    if (!table) return tl::make_unexpected(table.error());
-
     const std::string_view structs = shaderSource("uniforms.h"), march = shaderSource("march.glsl");
     Result<ComputeProgram> cone = ComputeProgram::create(
         "cone_start.comp", {structs, march, shaderSource("cone_start.comp")});
@@ -261,8 +182,6 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context
                                                         std::move(*ctTexture),
                                                         std::move(clearedTexture),
                                                         std::move(ranges),
-                                                        std::move(*leap),
-                                                        std::move(*table),
                                                         std::move(*cone),
                                                         std::move(*endoscopic),
                                                         std::move(*slice),
@@ -270,10 +189,6 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context
                                                         std::move(*sliceBlock),
                                                         {},
                                                         {},
-                                                        errorsBefore,
-                                                        {},
-                                                        0.0,
-                                                        false,
                                                         {}})));
 }
 
@@ -282,6 +197,7 @@ CaseRenderer::~CaseRenderer() = default;
 
 Result<Image> CaseRenderer::render(const EndoscopicView& view, int width, int height) {
     Impl& my = *impl_;
+    const int errorsBefore = my.context.errorCount();
     if (Result<void> sound = checkPicture(width, height); !sound)
         return tl::make_unexpected(sound.error());
     if (Result<void> sound = checkCamera(view.camera); !sound)
@@ -293,22 +209,23 @@ Result<Image> CaseRenderer::render(const EndoscopicView& view, int width, int he
     const glm::ivec2 size(width, height);
     if (Result<void> made = my.makeTargets(size); !made) return tl::make_unexpected(made.error());
 
-    my.load(view.transferFunction, my.stepMm(view.march), view.march.emptySpaceLeaping);
-    my.marchBlock.write(my.uniforms(view, size));
+    const Result<const Classification*> classified = my.classification(view);
+    if (!classified) return tl::make_unexpected(classified.error());
+    my.marchBlock.write(marchUniforms(view, my.grid, (*classified)->table(), my.ranges.size, size));
     my.marchBlock.bind(shaders::uniformBinding);
     (my.cleared ? *my.cleared : my.ct).bind(shaders::volumeUnit);
-    my.leap.bind(shaders::leapUnit);
-    my.table.bind(shaders::tableUnit);
+    (*classified)->bind();
     my.firstStep->bindImage(shaders::startImage);
     my.coneStart.dispatch((size + coneTile - 1) / coneTile);
     my.firstStep->bind(shaders::startUnit);
     my.picture->bindImage(shaders::pictureImage);
     my.endoscopic.dispatch(size);
-    return my.readPicture(size);
+    return my.readPicture(size, errorsBefore);
 }
 
 Result<Image> CaseRenderer::render(const SliceView& view, int width, int height) {
     Impl& my = *impl_;
+    const int errorsBefore = my.context.errorCount();
     if (Result<void> sound = checkPicture(width, height); !sound)
         return tl::make_unexpected(sound.error());
     const Result<SlicePlacement> placement = placeSlice(view, my.grid, width, height);
@@ -335,16 +252,17 @@ Result<Image> CaseRenderer::render(const SliceView& view, int width, int height)
     my.ct.bind(shaders::volumeUnit);
     my.picture->bindImage(shaders::pictureImage);
     my.slice.dispatch(size);
-    return my.readPicture(size);
+    return my.readPicture(size, errorsBefore);
 }
 
 std::size_t CaseRenderer::gpuBytes() const {
     const Impl& my = *impl_;
-    const auto bytes = [](const std::optional<gpu::Texture>& texture) {
-        return texture ? texture->bytes() : 0;
-    };
-    return my.ct.bytes() + bytes(my.cleared) + my.leap.bytes() + my.table.bytes() +
-           bytes(my.picture) + bytes(my.firstStep);
+    std::size_t bytes = my.ct.bytes();
+    for (const std::optional<gpu::Texture>* texture : {&my.cleared, &my.picture, &my.firstStep})
+        if (*texture) bytes += (*texture)->bytes();
+    for (const Classification& one : my.recent)
+        bytes += one.gpuBytes();
+    return bytes;
 }
 
 }  // namespace haustra::render

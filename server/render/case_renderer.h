@@ -30,7 +30,8 @@ public:
     CaseRenderer& operator=(const CaseRenderer&) = delete;
 
     /// Ray-cast picture, sRGB, over black. A new transfer function costs some 0.1 s for the leap
-    /// map of a 512³ scan. Fails on a bad view (badInput) or where the driver reports an error
+    /// map of a 512³ scan; the last four are kept, so that readers with different ones do not
+    /// disturb each other. Fails on a bad view (badInput) or where the driver reports an error
     /// (device).
     Result<Image> render(const EndoscopicView& view, int width, int height);
     /// Slice of the true CT, linearly interpolated; black outside the scan.

@@ -1,0 +1,56 @@
+#include "render/classification.h"
+
+#include "shaders/uniforms.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haustra::render {
+
+Result<Classification> Classification::create(const TransferFunction& transferFunction,
+                                              double stepMm, bool leaping,
+                                              const BlockRanges& ranges, int threads) {
+    using gpu::Filter, gpu::Texture, gpu::TexelFormat;
+    TransferTable table = makeTransferTable(transferFunction, stepMm);
+    Result<Texture> tableTexture =
+        Texture::create(1, {TransferTable::entries, 1, 1}, TexelFormat::rgba32f, Filter::linear,
+                        "transfer function");
+    if (!tableTexture) return tl::make_unexpected(tableTexture.error());
+    tableTexture->upload(table.rgba.data());
+    Result<Texture> leapTexture =
+        Texture::create(3, ranges.size, TexelFormat::r8ui, Filter::nearest, "leap map");
+    if (!leapTexture) return tl::make_unexpected(leapTexture.error());
+    const std::vector<std::uint8_t> distances =
+        leaping ? leapDistances(ranges, table, threads)
+                : std::vector<std::uint8_t>(ranges.lowHu.size(), 0);
+    leapTexture->uploadSlices(0, ranges.size.z, distances.data());
+    return Classification(transferFunction, stepMm, leaping, std::move(table),
+                          std::move(*tableTexture), std::move(*leapTexture));
+}
+
+Classification::Classification(TransferFunction transferFunction, double stepMm, bool leaping,
+                               TransferTable table, gpu::Texture tableTexture,
+                               gpu::Texture leapTexture)
+    : transferFunction_(std::move(transferFunction)),
+      stepMm_(stepMm),
+      leaping_(leaping),
+      table_(std::move(table)),
+      tableTexture_(std::move(tableTexture)),
+      leapTexture_(std::move(leapTexture)) {}
+
+bool Classification::isFor(const TransferFunction& transferFunction, double stepMm,
+                           bool leaping) const {
+    const auto samePoint = [](const TransferFunctionPoint& a, const TransferFunctionPoint& b) {
+        return a.hu == b.hu && a.color == b.color && a.opacity == b.opacity;
+    };
+    const auto &mine = transferFunction_.points, &other = transferFunction.points;
+    return stepMm == stepMm_ && leaping == leaping_ &&
+           std::equal(mine.begin(), mine.end(), other.begin(), other.end(), samePoint);
+}
+
+void Classification::bind() const {
+    tableTexture_.bind(shaders::tableUnit);
+    leapTexture_.bind(shaders::leapUnit);
+}
+
+}  // namespace haustra::render

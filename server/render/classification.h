@@ -1,0 +1,34 @@
+// A volume as one transfer function shows it, on the GPU.
+#pragma once
+
+#include "gpu/texture.h"
+#include "render/leap_map.h"
+#include "render/transfer_table.h"
+
+namespace haustra::render {
+
+/// The transfer function's table for one step length, and the leap map that follows from it.
+/// Belongs to the thread of the context.
+class Classification {
+public:
+    /// Where `leaping` is false the map lets no ray leap. Cost: leapDistances and an upload.
+    static Result<Classification> create(const TransferFunction& transferFunction, double stepMm,
+                                         bool leaping, const BlockRanges& ranges, int threads);
+
+    bool isFor(const TransferFunction& transferFunction, double stepMm, bool leaping) const;
+    void bind() const;  ///< to the units of shaders/uniforms.h
+
+    const TransferTable& table() const { return table_; }
+    std::size_t gpuBytes() const { return tableTexture_.bytes() + leapTexture_.bytes(); }
+
+private:
+    Classification(TransferFunction transferFunction, double stepMm, bool leaping,
+                   TransferTable table, gpu::Texture tableTexture, gpu::Texture leapTexture);
+    TransferFunction transferFunction_;
+    double stepMm_;
+    bool leaping_;
+    TransferTable table_;
+    gpu::Texture tableTexture_, leapTexture_;
+};
+
+}  // namespace haustra::render

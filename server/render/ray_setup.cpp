@@ -1,0 +1,69 @@
+#include "render/ray_setup.h"
+
+#include "render/leap_map.h"
+#include "render/stored_value.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::render {
+
+double stepMm(const MarchOptions& march, const Grid& grid) {
+    const glm::dvec3 spacing = grid.spacingMm();
+    return march.stepVoxels * std::min(spacing.x, std::min(spacing.y, spacing.z));
+}
+
+shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& grid,
+                                     const TransferTable& table, glm::ivec3 blocks,
+                                     glm::ivec2 size) {
+    const glm::dvec3 forward = glm::normalize(view.camera.forward);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+    const glm::dvec3 up = glm::cross(right, forward);
+    const double halfHeight = std::tan(glm::radians(0.5 * view.camera.fovDegrees));
+    const double halfWidth = halfHeight * size.x / size.y;
+    const glm::dvec3 voxels(grid.size);
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    const glm::dvec3 eye = (grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels;
+    const double step = stepMm(view.march, grid);
+    // No ray inside the volume is longer than the way from the eye to the farthest corner.
+    double farthestMm = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
+        farthestMm = std::max(
+            farthestMm,
+            glm::distance(view.camera.positionMm, grid.patientFromVoxelPoint(side * voxels - 0.5)));
+    }
+    const auto row = [&](int r) {
+        return glm::vec4(voxelFromPatient[0][r], voxelFromPatient[1][r], voxelFromPatient[2][r],
+                         0.0) /
+               float(grid.size[r]);
+    };
+    const double perHu = (TransferTable::entries - 1) / (table.lastHu - table.firstHu);
+    const auto limit = [](double hu) {
+        return std::isinf(hu) ? std::copysign(2.0, hu) : storedFraction(hu);
+    };
+
+    shaders::MarchUniforms u{};
+    u.eyeTexture = glm::vec4(eye, 0.0);
+    u.forwardMm = glm::vec4(forward, 0.0);
+    u.rightMm = glm::vec4(right * halfWidth, 0.0);
+    u.downMm = glm::vec4(-up * halfHeight, 0.0);
+    u.textureRowX = row(0);
+    u.textureRowY = row(1);
+    u.textureRowZ = row(2);
+    u.voxelTexture = glm::vec4(1.0 / voxels, 0.0);
+    u.blocksPerUnit = glm::vec4(voxels / double(blockSide), -0.5 / blockSide);
+    u.visibleRange =
+        glm::vec4(limit(table.visibleAboveHu), limit(table.visibleBelowHu),
+                  storedRange * perHu / TransferTable::entries,
+                  ((-storedOffset - table.firstHu) * perHu + 0.5) / TransferTable::entries);
+    u.stepping = glm::vec4(step, terminationOpacity, std::ceil(farthestMm / step) + 1.0,
+                           headlight.halfDepthMm);
+    u.light =
+        glm::vec4(headlight.ambient, headlight.diffuse, headlight.specular, headlight.shininess);
+    u.pictureSize = glm::ivec4(size, view.march.shading ? 1 : 0, 0);
+    u.lastBlock = glm::ivec4(blocks - 1, coneTile);
+    return u;
+}
+
+}  // namespace haustra::render

@@ -1,0 +1,23 @@
+// From a view to what the ray caster's shader is told.
+#pragma once
+
+#include "core/grid.h"
+#include "render/transfer_table.h"
+#include "render/view.h"
+#include "shaders/uniforms.h"
+
+namespace haustra::render {
+
+/// Pixels along a tile's side in the cone pass, whose rays share the way through empty space.
+inline constexpr int coneTile = 8;
+
+/// Millimetres between samples on this grid.
+double stepMm(const MarchOptions& march, const Grid& grid);
+
+/// The uniform block of march.glsl for a picture of `size` pixels. `blocks` is the leap map's size.
+/// The view must have passed its checks; `table` is made for its transfer function and step.
+shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& grid,
+                                     const TransferTable& table, glm::ivec3 blocks,
+                                     glm::ivec2 size);
+
+}  // namespace haustra::render
