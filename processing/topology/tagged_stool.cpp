@@ -1,0 +1,110 @@
+#include "topology/tagged_stool.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+namespace haustra::topology {
+namespace {
+
+constexpr double largestMl = 30.0;
+constexpr double smallestContactShare = 0.25;
+constexpr int contactVoxels = 2;  // of partial volume between air and stool
+
+}  // namespace
+
+void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu, const TissueModel& tissue) {
+    const Grid& grid = labels.grid();
+    const glm::ivec3 size = grid.size;
+    const auto out = labels.writable();
+    const std::size_t strides[3] = {1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
+    const std::size_t largest = std::size_t(largestMl * 1000.0 / grid.voxelVolumeMm3());
+    const double above = tissue.taggedAboveHu;
+    auto isStool = [&](std::size_t index) { return out[index] == 0 && hu[index] > above; };
+
+    // Steps from a voxel along ± each axis, up to contactVoxels of neither, to the first voxel for
+    // which `hit` holds.
+    auto reaches = [&](std::size_t index, auto&& hit, auto&& visit) {
+        const glm::ivec3 v = grid.voxelAt(index);
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int sign : {-1, 1}) {
+                std::size_t at = index;
+                for (int step = 1; step <= contactVoxels + 1; ++step) {
+                    const int n = v[axis] + sign * step;
+                    if (n < 0 || n >= size[axis]) break;
+                    at = sign > 0 ? at + strides[axis] : at - strides[axis];
+                    if (hit(at)) {
+                        visit(axis, sign, step, at);
+                        break;
+                    }
+                }
+            }
+        }
+    };
+
+    // Candidates: stool voxels that lumen air reaches.
+    std::vector<std::uint32_t> seeds;
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        if (out[n] != std::uint8_t(LumenLabel::air)) continue;
+        const glm::ivec3 v = grid.voxelAt(n);
+        bool surface = false;
+        for (int axis = 0; axis < 3 && !surface; ++axis) {
+            surface = (v[axis] > 0 && out[n - strides[axis]] == 0) || (v[axis] + 1 < size[axis] && out[n + strides[axis]] == 0);
+        }
+        if (!surface) continue;
+        reaches(n, isStool, [&](int, int, int, std::size_t at) { seeds.push_back(std::uint32_t(at)); });
+    }
+    std::sort(seeds.begin(), seeds.end());
+    seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
+
+    std::unordered_set<std::uint32_t> seen;
+    for (std::uint32_t seed : seeds) {
+        if (seen.count(seed) || !isStool(seed)) continue;
+        std::vector<std::uint32_t> body{seed};
+        seen.insert(seed);
+        bool tooLarge = false;
+        for (std::size_t head = 0; head < body.size(); ++head) {
+            const glm::ivec3 v = grid.voxelAt(body[head]);
+            for (int axis = 0; axis < 3; ++axis) {
+                for (int sign : {-1, 1}) {
+                    if (v[axis] + sign < 0 || v[axis] + sign >= size[axis]) continue;
+                    const std::uint32_t next = std::uint32_t(sign > 0 ? body[head] + strides[axis] : body[head] - strides[axis]);
+                    if (!isStool(next) || seen.count(next)) continue;
+                    seen.insert(next);
+                    body.push_back(next);
+                }
+            }
+            if (body.size() > largest) {
+                tooLarge = true;  // bone, or another loop: what was seen stays seen
+                break;
+            }
+        }
+        if (tooLarge || body.size() < 8) continue;
+        std::size_t faces = 0, contacts = 0;
+        for (std::uint32_t index : body) {
+            const glm::ivec3 v = grid.voxelAt(index);
+            for (int axis = 0; axis < 3; ++axis) {
+                faces += v[axis] > 0 && !isStool(index - strides[axis]);
+                faces += v[axis] + 1 < size[axis] && !isStool(index + strides[axis]);
+            }
+            reaches(index, [&](std::size_t at) { return out[at] != 0 || isStool(at); },
+                    [&](int, int, int, std::size_t at) { contacts += out[at] != 0; });
+        }
+        if (double(contacts) < smallestContactShare * double(faces)) continue;
+        for (std::uint32_t index : body) {
+            // The partial volume on the way to the air goes with the stool.
+            reaches(index, [&](std::size_t at) { return out[at] == std::uint8_t(LumenLabel::air); },
+                    [&](int axis, int sign, int step, std::size_t) {
+                        std::size_t at = index;
+                        for (int n = 1; n < step; ++n) {
+                            at = sign > 0 ? at + strides[axis] : at - strides[axis];
+                            if (out[at] == 0) out[at] = std::uint8_t(LumenLabel::tagged);
+                        }
+                    });
+            out[index] = std::uint8_t(LumenLabel::tagged);
+        }
+    }
+}
+
+}  // namespace haustra::topology

@@ -1,0 +1,15 @@
+// Tagged stool that lies in the colon's air without a level of its own.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "core/tissue.h"
+
+namespace haustra::topology {
+
+/// Labels as tagged the bodies of tagged material that touch labelled lumen over a good part of
+/// their surface, and the partial volume between them and it. Bone or opacified bowel behind the
+/// wall shows the lumen only a small part of its surface through the wall, and is left alone.
+/// `labels` must own its memory.
+void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu, const TissueModel& tissue);
+
+}  // namespace haustra::topology
