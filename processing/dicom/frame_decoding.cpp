@@ -19,6 +19,25 @@ bool isJpeg2000(E_TransferSyntax syntax) {
     return syntax == EXS_JPEG2000 || syntax == EXS_JPEG2000LosslessOnly;
 }
 
+/// An RLE frame starts with 16 numbers: how many segments, and where each begins (PS3.5 G.5).
+/// DCMTK's decoder reads out of bounds where they point beyond the frame.
+bool rleHeaderIsSound(std::span<const std::uint8_t> frame, std::size_t segments) {
+    constexpr std::size_t headerBytes = 64;
+    if (frame.size() < headerBytes) return false;
+    auto number = [&](std::size_t n) {
+        const std::uint8_t* at = frame.data() + 4 * n;
+        return std::size_t(at[0]) | std::size_t(at[1]) << 8 | std::size_t(at[2]) << 16 |
+               std::size_t(at[3]) << 24;
+    };
+    if (number(0) != segments) return false;
+    std::size_t least = headerBytes;
+    for (std::size_t n = 1; n <= segments; ++n) {
+        if (number(n) < least || number(n) > frame.size()) return false;
+        least = number(n);
+    }
+    return true;
+}
+
 /// One open file.
 class PixelReader {
 public:
@@ -67,10 +86,17 @@ public:
                 return tl::make_unexpected(done.error());
             return std::span<const std::int16_t>(hu_);
         }
-        Uint32 frameBytes = 0;
-        if (pixelData_->getUncompressedFrameSize(dataset_, frameBytes).bad() ||
-            frameBytes < pixels() * cellBytes() || frameBytes > pixels() * cellBytes() + 1) {
+        Uint32 size = 0;
+        if (pixelData_->getUncompressedFrameSize(dataset_, size).bad() ||
+            size < pixels() * cellBytes() || size > pixels() * cellBytes() + 1) {
             return damaged("its pixel data has no consistent size");
+        }
+        if (fragments_ && syntax_ == EXS_RLELossless) {
+            const auto bytes = frameBytes(frame);
+            if (!bytes) return tl::make_unexpected(bytes.error());
+            if (!rleHeaderIsSound(*bytes, cellBytes()))
+                return damaged("its run-length segments lie outside the frame");
+            nextFragment_ = Uint32(frame) + 1;
         }
         cells_.resize(pixels() + 1);
         OFString colorModel;
@@ -106,12 +132,12 @@ private:
         return *table_;
     }
 
-    /// The bytes of one frame: its fragment, or for a single frame all fragments joined. The first
-    /// item is the offset table.
+    /// The bytes of one compressed frame: its fragment, or of a single JPEG 2000 image all
+    /// fragments joined (an RLE frame is always one). The first item is the offset table.
     Result<std::vector<std::uint8_t>> frameBytes(int frame) {
         const unsigned long items = fragments_->card();
-        const bool single = image_.frames.size() == 1;
-        if (items < 2 || (!single && items != image_.frames.size() + 1))
+        const bool single = image_.frames.size() == 1 && isJpeg2000(syntax_);
+        if (single ? items < 2 : items != image_.frames.size() + 1)
             return damaged("its compressed frames cannot be told apart");
         std::vector<std::uint8_t> bytes;
         for (unsigned long n = single ? 1 : static_cast<unsigned long>(frame) + 1;

@@ -35,10 +35,26 @@ struct ImportedSeries {
     std::vector<std::string> notes;
 };
 
-/// Series in `path` (a folder, searched to any depth, or one file), by SeriesInstanceUID.
+/// CT series in `path` (a folder, searched to any depth, or one file), by SeriesInstanceUID. Reads
+/// headers only. Fails where the path cannot be read; files that are not CT images are passed over.
 Result<std::vector<SeriesSummary>> listSeries(const std::filesystem::path& path);
 
-/// Reads one series whole. See the .cpp for the order of the checks.
+/// Reads one CT series whole: classic or enhanced multi-frame, any transfer syntax that DICOM has
+/// for still images but JPEG XL and HTJ2K; files in any order, any folder, under any name.
+///
+/// The volume is in HU; pixels outside the field of view are −1024. Its third axis runs along the
+/// slices' normal (row × column), so that the affine is right-handed. A gantry tilt is sheared
+/// back, which widens the slices to hold every one; spacing that varies is resampled; both are
+/// noted.
+///
+/// Fails, naming the file and the reason, rather than give a volume that is wrong: a slice missing,
+/// two at one place, orientation, matrix or spacing that differ, damaged or truncated files of the
+/// series (or of a series that cannot be told), no CT image, several series without a choice. Scout
+/// views are left out.
+///
+/// Peak memory: the volume and a few slices; twice the volume where the spacing varies. Time: one
+/// read of the files, decoded on `threads` threads; the result does not depend on their number.
+/// Thread-safe.
 Result<ImportedSeries> importSeries(const std::filesystem::path& path,
                                     const ImportOptions& options = {});
 

@@ -26,8 +26,9 @@ std::string placeAlong(const glm::dvec3& normal, double depthMm) {
     return millimetres(depthMm) + " along the slice normal";
 }
 
+/// The middle value, of an even number the lower of the two.
 double median(std::vector<double> values) {
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    const auto middle = values.begin() + std::ptrdiff_t((values.size() - 1) / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
@@ -93,28 +94,40 @@ Result<Column> sortAlongNormal(const std::vector<Slice>& slices) {
     return column;
 }
 
-/// A gap wider than 1.5 times the usual one is a hole, unless it is one of three or more such in a
-/// row: then the scan's spacing changes there.
+/// How many gaps from k on, in a row, exceed `widest`.
+std::size_t runOfWideGaps(const std::vector<double>& gaps, std::size_t k, double widest) {
+    std::size_t end = k;
+    while (end < gaps.size() && gaps[end] > widest)
+        ++end;
+    return end - k;
+}
+
+/// A gap 1.5 times as wide as both its neighbours is a hole. So is one 1.5 times as wide as the
+/// usual gap, unless it is one of three or more such in a row: then the scan's spacing changes.
 Result<void> checkHoles(const std::vector<Slice>& slices, const Column& column) {
     if (column.gaps() == 0) return {};
     std::vector<double> gaps(column.gaps());
     for (std::size_t k = 0; k < gaps.size(); ++k)
         gaps[k] = column.gap(k);
     const double usual = median(gaps);
-    for (std::size_t k = 0; k < gaps.size();) {
-        std::size_t end = k;
-        while (end < gaps.size() && gaps[end] > 1.5 * usual)
-            ++end;
+    std::size_t run = 0;  // of wide gaps, as long as k is inside one
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+        const bool continues = k > 0 && gaps[k - 1] > 1.5 * usual;
+        if (!continues) run = runOfWideGaps(gaps, k, 1.5 * usual);
+        const bool amongNarrower =
+            k > 0 && k + 1 < gaps.size() && gaps[k] > 1.5 * std::max(gaps[k - 1], gaps[k + 1]);
+        const bool fewWide = gaps[k] > 1.5 * usual && run < 3;
         const std::string& below = slices[column.order[k]].name;
-        const std::string& above = slices[column.order[std::min(k + 1, gaps.size())]].name;
-        if (end > k && end - k < 3) {
-            const int missing = std::max(1, int(std::lround(gaps[k] / usual)) - 1);
+        const std::string& above = slices[column.order[k + 1]].name;
+        if (amongNarrower || fewWide) {
+            const double step = amongNarrower ? std::max(gaps[k - 1], gaps[k + 1]) : usual;
+            const int missing = std::max(1, int(std::lround(gaps[k] / step)) - 1);
             const double first = column.depthMm[k] + gaps[k] / (missing + 1);
             return fail(ErrorKind::badInput,
                         (missing == 1 ? std::string("a slice is missing at ")
                                       : std::to_string(missing) + " slices are missing from ") +
                             placeAlong(column.normal, first) + ", before " + above +
-                            " (slices are " + millimetres(usual) + " apart)",
+                            " (slices are " + millimetres(step) + " apart)",
                         below);
         }
         if (gaps[k] > widestGapMm) {
@@ -123,7 +136,6 @@ Result<void> checkHoles(const std::vector<Slice>& slices, const Column& column) 
                             " away; at most " + millimetres(widestGapMm) + " is read",
                         below);
         }
-        k = std::max(k + 1, end);
     }
     return {};
 }

@@ -98,6 +98,21 @@ TEST(SliceStack, NamesAMissingSlice) {
     expectRefused(slicesAt(depths), "slice4", "3 slices are missing from z = 5.00 mm");
 }
 
+TEST(SliceStack, NamesAMissingSliceWhereTheSpacingVaries) {
+    // Coarse for the most part: in the fine part a hole is no wider than the usual gap.
+    std::vector<double> depths = evenly(20, 2.0);
+    for (int k = 0; k < 10; ++k)
+        depths.push_back(depths.back() + 1.0);
+    ASSERT_TRUE(stackSlices(slicesAt(depths)));
+    depths.erase(depths.begin() + 24);
+    expectRefused(slicesAt(depths), "slice23", "a slice is missing at z = 43.00 mm");
+    expectRefused(slicesAt({0.0, 1.0, 6.0}), "slice1", "4 slices are missing from z = 2.00 mm");
+    depths = evenly(9, 5.0);
+    for (int k = 0; k < 5; ++k)
+        depths.push_back(depths.back() + 20.0);
+    expectRefused(slicesAt(depths), "slice8", "20.00 mm away");
+}
+
 TEST(SliceStack, RefusesWhatCannotBeOneVolume) {
     std::vector<Slice> slices = slicesAt(evenly(20, 1.0));
     slices[7].positionMm.z = slices[12].positionMm.z;

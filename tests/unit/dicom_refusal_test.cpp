@@ -169,6 +169,26 @@ TEST(DicomRefusal, PixelsThatAreNotWhatTheHeaderSays) {
         "8 of 408 bytes");
 }
 
+TEST(DicomRefusal, RunLengthSegmentsOutsideTheFrame) {
+    const TemporaryFolder folder;
+    tests::write(folder.path(), patternScan(axisAlignedGrid({8, 8, 1}, {1, 1, 1})));
+    const fs::path file = folder / "0001.dcm";
+    tests::rewrite(file, EXS_RLELossless);
+    ASSERT_TRUE(importSeries(file));
+    std::ifstream in(file, std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(in), {}};
+    // Two segments, the first at byte 64.
+    const std::size_t header = whole.find(std::string("\2\0\0\0\x40\0\0\0", 8));
+    ASSERT_NE(header, std::string::npos);
+    for (const std::string& second :
+         {std::string("\x88\0\xfb\0", 4), std::string("\xff\xff\xff\xff", 4),
+          std::string("\0\0\0\0", 4)}) {
+        std::ofstream(file, std::ios::binary | std::ios::trunc)
+            << std::string(whole).replace(header + 8, 4, second);
+        expectRefused(file, "0001.dcm", "run-length segments");
+    }
+}
+
 TEST(DicomRefusal, TruncatedAnywhere) {
     const TemporaryFolder folder;
     tests::write(folder / "series", patternScan(smallGrid()));
