@@ -26,6 +26,7 @@ std::size_t lineCount(const std::string& text) {
 }
 
 TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
+    ::unsetenv("HAUSTRA_STORE");
     for (const Arguments& wrong : std::vector<Arguments>{
              {},
              {"bogus"},
@@ -89,6 +90,16 @@ TEST(CommandLine, FailuresEndWithOneAndOneLineThatNamesThePlace) {
         EXPECT_EQ(lineCount(outcome.err.substr(last)), 1u) << outcome.err;
         EXPECT_NE(outcome.err.find(folder.path().string(), last), std::string::npos) << outcome.err;
     }
+}
+
+TEST(CommandLine, TheStoreMayComeFromTheEnvironment) {
+    const tests::TemporaryFolder folder;
+    fs::create_directories(folder.path() / "cases");
+    ::setenv("HAUSTRA_STORE", folder.path().c_str(), 1);
+    const auto outcome = haustra({"list"});
+    ::unsetenv("HAUSTRA_STORE");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty());
 }
 
 // One prepared case that the tests below look at.
