@@ -49,6 +49,17 @@ TEST(ColonPath, LengthFramesAndRoomForManySeeds) {
     }
 }
 
+TEST(ColonPath, AnotherSeedIsAnotherPatient) {
+    const ColonPath a = makeColonPath(1, Preset::standard, BodyPlan{}),
+                    b = makeColonPath(2, Preset::standard, BodyPlan{});
+    double apart = 0.0;
+    for (double share = 0.1; share < 1.0; share += 0.05) {
+        apart = std::max(apart, glm::distance(a.at(share * a.lengthMm()).position,
+                                              b.at(share * b.lengthMm()).position));
+    }
+    EXPECT_GT(apart, 15.0);
+}
+
 TEST(ColonShape, LoopsTouchButNeverMerge) {
     const Grid grid = axisAlignedGrid({256, 256, 200}, {1.5, 1.5, 2.1}, {-191.25, -191.25, 1.05});
     std::size_t touching = 0;
