@@ -145,6 +145,7 @@ struct Connection::Impl {
             }
             ending.wasUp = true;
             open = true;
+            expectWithin(options.silencePatience);
             push(std::move(up), 0);
             asio::co_spawn(io, ping(link), asio::detached);
             for (;;) {

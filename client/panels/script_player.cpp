@@ -100,9 +100,8 @@ Status Player::awaitThat(const std::function<bool()>& done, const std::string& w
 // The list's answer tells that the server has taken in all that was said before, so that a refusal
 // names the line that caused it.
 Status Player::awaitBookmarkList() {
-    const auto before = session_.bookmarkListsReceived();
-    session_.requestBookmarks();
-    return awaitThat([&] { return session_.bookmarkListsReceived() > before; },
+    const auto request = session_.requestBookmarks();
+    return awaitThat([&] { return session_.answeredBookmarkRequest() >= request; },
                      "the list of bookmarks");
 }
 

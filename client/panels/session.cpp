@@ -83,7 +83,7 @@ void Session::handle(const protocol::ServerMessage& message) {
             bookmarks_.clear();
             for (const auto& bookmark : message.bookmark_list().bookmarks())
                 acknowledge(bookmarkFrom(bookmark));
-            ++bookmarkLists_;
+            answeredList_ = std::max(answeredList_, message.bookmark_list().request());
             break;
         }
         case protocol::ServerMessage::kError:
@@ -232,10 +232,11 @@ std::string Session::addBookmark(const Camera& camera, double arcMm, std::string
     return bookmark.clientKey;
 }
 
-void Session::requestBookmarks() {
+std::uint64_t Session::requestBookmarks() {
     protocol::ClientMessage message;
     message.mutable_list_bookmarks()->set_request(++request_);
     sendIfOpen(message);
+    return request_;
 }
 
 void Session::acknowledge(const Bookmark& bookmark) {

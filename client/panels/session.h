@@ -66,12 +66,14 @@ public:
 
     /// Returns the bookmark's client key. `note` is cut to maxNoteBytes.
     std::string addBookmark(const Camera& camera, double arcMm, std::string note);
-    void requestBookmarks();
+    /// Returns the request's number; after a reconnection the list is asked for anew.
+    std::uint64_t requestBookmarks();
     /// Acknowledged ones first, in the server's order, then those still owed.
     std::vector<Bookmark> bookmarks() const;
     const Bookmark* acknowledgedBookmark(const std::string& clientKey) const;
     std::size_t owedBookmarks() const { return owed_.size(); }
-    std::uint64_t bookmarkListsReceived() const { return bookmarkLists_; }
+    /// Number of the newest requestBookmarks that was answered.
+    std::uint64_t answeredBookmarkRequest() const { return answeredList_; }
 
     static constexpr std::size_t maxNoteBytes = 1000;
 
@@ -110,7 +112,7 @@ private:
     std::vector<std::string> caseNames_;
     std::shared_ptr<const CaseInfo> caseInfo_;
 
-    std::uint64_t sequence_ = 0, request_ = 0, bookmarkLists_ = 0;
+    std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0;
     std::map<int, ViewportState> viewports_;
     tiles::TileDecoder decoder_;
     std::array<tiles::PictureAssembler, protocol::maxViewports> assemblers_;

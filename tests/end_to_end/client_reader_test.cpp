@@ -1,0 +1,162 @@
+// The reader behind the window, against a server on the loopback: four views that follow the
+// flight, exact when it rests, and alive again after a lost link.
+#include "end_to_end/fake_server.h"
+#include "panels/reader.h"
+
+#include <filesystem>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace haustra::panels {
+namespace {
+
+using tests::FakeServer;
+using tests::Misbehaviour;
+
+constexpr View views[] = {View::endoscopic, View::axial, View::coronal, View::sagittal};
+
+class ClientReader : public ::testing::Test {
+protected:
+    explicit ClientReader(Misbehaviour misbehaviour = {}) : server_(misbehaviour) {}
+
+    void SetUp() override {
+        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("haustra-reader-" + std::string(info->name()) + std::to_string(::getpid()));
+        link::ConnectionOptions options;
+        options.address = {"127.0.0.1", server_.port()};
+        options.pinning.knownServersFile = folder_ / "known_servers";
+        options.reconnect = true;
+        reader_ = std::make_unique<Reader>(options, "phantom");
+        reader_->setPaneSize(View::endoscopic, {240, 160});
+        for (const View view : {View::axial, View::coronal, View::sagittal})
+            reader_->setPaneSize(view, {100, 90});
+    }
+    void TearDown() override {
+        reader_.reset();
+        std::filesystem::remove_all(folder_);
+    }
+
+    // Steps the reader, as a window does, until `done`; false when it takes absurdly long.
+    template <class Done>
+    bool runUntil(Done done) {
+        const auto deadline = Clock::now() + std::chrono::seconds(30);
+        while (!done()) {
+            if (Clock::now() > deadline) return false;
+            reader_->update(0.01);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        return true;
+    }
+    bool allAtRest() const {
+        if (!reader_->isOpen() || reader_->restless()) return false;
+        for (const View view : views)
+            if (!reader_->picture(view).exact) return false;
+        return true;
+    }
+    void expectPicturesOf(glm::dvec3 positionMm) const {
+        EXPECT_EQ(reader_->picture(View::endoscopic).rgb,
+                  tests::syntheticPicture(240, 160, positionMm, 0.0));
+        for (const View view : {View::axial, View::coronal, View::sagittal}) {
+            EXPECT_EQ(reader_->picture(view).rgb,
+                      tests::syntheticPicture(100, 90, positionMm, reader_->window().centerHu));
+            EXPECT_EQ(reader_->shownSlice(view).positionMm, positionMm);
+        }
+    }
+
+    FakeServer server_;
+    std::filesystem::path folder_;
+    std::unique_ptr<Reader> reader_;
+};
+
+class ClientReaderWithALossyLink : public ClientReader {
+protected:
+    static Misbehaviour dropping() {
+        Misbehaviour misbehaviour;
+        misbehaviour.dropAfterBookmarks = 2;
+        return misbehaviour;
+    }
+    ClientReaderWithALossyLink() : ClientReader(dropping()) {}
+};
+
+TEST_F(ClientReader, AtRestAllViewsAreExactAndShowTheCamerasPlace) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    expectPicturesOf(reader_->flight().camera().positionMm);
+    reader_->setWindow({40, 400});
+    reader_->flight().goTo(300.0);
+    ASSERT_TRUE(runUntil([&] {
+        return allAtRest() &&
+               reader_->shownSlice(View::axial).positionMm == reader_->flight().camera().positionMm;
+    }));
+    expectPicturesOf(reader_->flight().camera().positionMm);
+}
+
+TEST_F(ClientReader, InFlightPicturesMoveAndAfterwardsTheyAreExact) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    const auto before = reader_->pictureCount(View::endoscopic);
+    reader_->flight().setMotion(Motion::forward);
+    ASSERT_TRUE(runUntil([&] { return reader_->pictureCount(View::endoscopic) > before + 10; }));
+    EXPECT_TRUE(reader_->restless());
+    EXPECT_FALSE(reader_->picture(View::endoscopic).exact);
+    EXPECT_GT(reader_->latencyMs().count, 5u);
+    reader_->flight().setMotion(Motion::paused);
+    EXPECT_GT(reader_->flight().arcMm(), 0.0);
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    expectPicturesOf(reader_->flight().camera().positionMm);
+}
+
+TEST_F(ClientReader, ScrollingASliceLeavesTheCameraAndStaysWithinTheScan) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    const glm::dvec3 camera = reader_->flight().camera().positionMm;
+    reader_->scrollSlice(View::axial, 15.0);
+    EXPECT_EQ(reader_->slice(View::axial).positionMm, camera + glm::dvec3(0, 0, 15));
+    EXPECT_EQ(reader_->flight().camera().positionMm, camera);
+    reader_->scrollSlice(View::axial, 1e6);
+    const Grid& grid = reader_->session().caseInfo()->grid;
+    EXPECT_NEAR(reader_->slice(View::axial).positionMm.z,
+                grid.patientFromVoxelPoint(grid.size - 1).z, 1e-9);
+    reader_->flight().goTo(50.0);
+    reader_->update(0.0);
+    EXPECT_EQ(reader_->slice(View::axial).positionMm, reader_->flight().camera().positionMm);
+}
+
+TEST_F(ClientReader, BookmarksLeadAlongTheColon) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    Flight& flight = reader_->flight();
+    for (const double arc : {400.0, 100.0, 250.0}) {
+        flight.goTo(arc);
+        reader_->addBookmark("at " + std::to_string(int(arc)));
+    }
+    ASSERT_TRUE(runUntil([&] { return reader_->session().owedBookmarks() == 0; }));
+    EXPECT_EQ(reader_->session().bookmarks().size(), 3u);
+    flight.goTo(0.0);
+    for (const double arc : {100.0, 250.0, 400.0, 400.0}) {
+        reader_->goToBookmark(+1);
+        EXPECT_NEAR(flight.arcMm(), arc, 1e-9);
+    }
+    reader_->goToBookmark(-1);
+    EXPECT_NEAR(flight.arcMm(), 250.0, 1e-9);
+}
+
+TEST_F(ClientReaderWithALossyLink, ALostLinkComesBackWithViewsFlightAndBookmarks) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    reader_->flight().goTo(123.0);
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    const auto before = reader_->pictureCount(View::endoscopic);
+    reader_->addBookmark("first");
+    reader_->addBookmark("second: stored, but the link breaks before its acknowledgement");
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::lost; }));
+    EXPECT_FALSE(reader_->session().failure().message.empty());
+    reader_->addBookmark("third: made while the link is down");
+    EXPECT_EQ(reader_->session().owedBookmarks(), 2u);
+    ASSERT_TRUE(runUntil([&] { return reader_->session().owedBookmarks() == 0 && allAtRest(); }));
+    EXPECT_EQ(server_.storedBookmarkKeys().size(), 3u);
+    EXPECT_EQ(reader_->flight().arcMm(), 123.0);
+    ASSERT_TRUE(runUntil([&] { return reader_->pictureCount(View::endoscopic) > before; }));
+    expectPicturesOf(reader_->flight().camera().positionMm);
+}
+
+}  // namespace
+}  // namespace haustra::panels
