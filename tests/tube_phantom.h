@@ -14,7 +14,7 @@ namespace haustra::tests {
 
 /// `count` points of curve(t), t from 0 to 1.
 inline std::vector<glm::dvec3> sampleCurve(const std::function<glm::dvec3(double)>& curve,
-                                           int count = 2000) {
+                                           int count = 600) {
     std::vector<glm::dvec3> points;
     for (int n = 0; n < count; ++n)
         points.push_back(curve(double(n) / double(count - 1)));

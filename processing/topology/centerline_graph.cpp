@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 
+#include <bit>
 #include <limits>
 
 namespace haustra::topology {
@@ -51,7 +52,7 @@ std::vector<BlockGraph::Node> layerNodes(const Volume<std::uint8_t>& labels,
     std::vector<BlockGraph::Node> nodes;
     for (int by = 0; by < blocks.y; ++by) {
         for (int bx = 0; bx < blocks.x; ++bx) {
-            BlockGraph::Node node{glm::ivec3(0), -1.0f, -1, 0};
+            BlockGraph::Node node{glm::ivec3(0), -1.0f, -1, 0, 0};
             for (int child = 0; child < 8; ++child) {
                 const glm::ivec3 v(2 * bx + (child & 1), 2 * by + (child >> 1 & 1),
                                    2 * layer + (child >> 2));
@@ -70,6 +71,23 @@ std::vector<BlockGraph::Node> layerNodes(const Volume<std::uint8_t>& labels,
     return nodes;
 }
 
+std::uint32_t neighbourBits(const BlockGraph& graph, const BlockGraph::Node& node) {
+    std::uint32_t bits = 0;
+    for (std::size_t n = 0; n < 26; ++n) {
+        const Neighbour& neighbour = neighbourSteps()[n];
+        if (!(node.inside & neighbour.ownSide)) continue;
+        const glm::ivec3 b = node.voxel / 2 + neighbour.step;
+        if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= graph.blocks.x || b.y >= graph.blocks.y ||
+            b.z >= graph.blocks.z) {
+            continue;
+        }
+        const std::int32_t other = graph.nodeAt[graph.blockIndex(b)];
+        if (other >= 0 && (graph.nodes[std::size_t(other)].inside & neighbour.itsSide))
+            bits |= 1u << n;
+    }
+    return bits;
+}
+
 void labelComponents(BlockGraph& graph) {
     std::array<std::int32_t, 26> around;
     std::vector<std::int32_t> front;
@@ -83,7 +101,7 @@ void labelComponents(BlockGraph& graph) {
             const std::int32_t at = front.back();
             front.pop_back();
             const BlockGraph::Node& node = graph.nodes[std::size_t(at)];
-            component.voxels += std::size_t(__builtin_popcount(node.inside));
+            component.voxels += std::size_t(std::popcount(node.inside));
             const float deepest = graph.nodes[std::size_t(component.deepest)].radiusMm;
             if (node.radiusMm > deepest || (node.radiusMm == deepest && at < component.deepest)) {
                 component.deepest = at;
@@ -103,17 +121,10 @@ void labelComponents(BlockGraph& graph) {
 }  // namespace
 
 int BlockGraph::neighbours(std::int32_t node, std::array<std::int32_t, 26>& found) const {
-    const glm::ivec3 block = blockOf(node);
-    const std::uint8_t own = nodes[std::size_t(node)].inside;
+    const std::int32_t* here = nodeAt.data() + blockIndex(blockOf(node));
     int count = 0;
-    for (const Neighbour& neighbour : neighbourSteps()) {
-        if (!(own & neighbour.ownSide)) continue;
-        const glm::ivec3 b = block + neighbour.step;
-        if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= blocks.x || b.y >= blocks.y || b.z >= blocks.z)
-            continue;
-        const std::int32_t other = nodeAt[blockIndex(b)];
-        if (other >= 0 && (nodes[std::size_t(other)].inside & neighbour.itsSide))
-            found[std::size_t(count++)] = other;
+    for (std::uint32_t bits = nodes[std::size_t(node)].neighbours; bits; bits &= bits - 1) {
+        found[std::size_t(count++)] = here[offsets[std::size_t(std::countr_zero(bits))]];
     }
     return count;
 }
@@ -132,6 +143,7 @@ BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float
                           int threads) {
     BlockGraph graph;
     graph.grid = labels.grid();
+    graph.spacingMm = graph.grid.spacingMm();
     graph.blocks = (graph.grid.size + 1) / 2;
     std::vector<std::vector<BlockGraph::Node>> layers(std::size_t(graph.blocks.z));
     parallelFor(layers.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
@@ -148,6 +160,15 @@ BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float
         }
         layer = {};
     }
+    for (std::size_t n = 0; n < 26; ++n) {
+        const glm::ivec3 step = neighbourSteps()[n].step;
+        graph.offsets[n] = step.x + std::ptrdiff_t(graph.blocks.x) *
+                                        (step.y + std::ptrdiff_t(graph.blocks.y) * step.z);
+    }
+    parallelFor(graph.nodes.size(), 1 << 14, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            graph.nodes[n].neighbours = neighbourBits(graph, graph.nodes[n]);
+    });
     labelComponents(graph);
     return graph;
 }

@@ -4,6 +4,7 @@
 #include "core/volume.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct BlockGraph {
         glm::ivec3 voxel;  ///< the block's deepest voxel; the first of several
         float radiusMm;    ///< distance to the boundary there
         std::int32_t component;
-        std::uint8_t inside;  ///< bit x + 2y + 4z: that voxel of the block is inside
+        std::uint8_t inside;       ///< bit x + 2y + 4z: that voxel of the block is inside
+        std::uint32_t neighbours;  ///< bit n: joined to the node of the n-th of 26 blocks around
     };
     struct Component {
         std::int32_t deepest;  ///< node with the greatest radius; the first of several
@@ -25,10 +27,13 @@ struct BlockGraph {
     };
 
     Grid grid;
+    glm::dvec3 spacingMm{0.0};
     glm::ivec3 blocks{0};              ///< extent of the block grid
     std::vector<std::int32_t> nodeAt;  ///< by block, x fastest; −1: none
     std::vector<Node> nodes;           ///< by block, in memory order
     std::vector<Component> components;
+    std::array<std::ptrdiff_t, 26>
+        offsets{};  ///< from a block's place in nodeAt to those around it
 
     std::size_t blockIndex(glm::ivec3 b) const {
         return std::size_t(b.x) + std::size_t(blocks.x) *

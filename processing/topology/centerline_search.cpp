@@ -69,7 +69,7 @@ double costPerMm(float radiusMm) {
 }
 
 double stepMm(const BlockGraph& graph, std::int32_t a, std::int32_t b) {
-    return glm::length(graph.grid.spacingMm() * glm::dvec3(graph.voxelOf(a) - graph.voxelOf(b)));
+    return glm::length(graph.spacingMm * glm::dvec3(graph.voxelOf(a) - graph.voxelOf(b)));
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target) {
 
 std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
                                       const std::vector<std::int32_t>& route) {
-    const glm::dvec3 spacing = graph.grid.spacingMm();
+    const glm::dvec3 spacing = graph.spacingMm;
     std::vector<bool> within(graph.nodes.size(), false);
     for (const std::int32_t node : route) {
         within[std::size_t(node)] = true;
@@ -185,7 +185,7 @@ std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<flo
     const Corridor corridor(graph, route, reach);
     const std::int32_t source = corridor.numberOf(graph.voxelOf(route.front()));
     const std::int32_t target = corridor.numberOf(graph.voxelOf(route.back()));
-    const glm::dvec3 spacing = graph.grid.spacingMm();
+    const glm::dvec3 spacing = graph.spacingMm;
     std::vector<double> cost(corridor.size(), std::numeric_limits<double>::infinity());
     std::vector<std::int32_t> parent(corridor.size(), -1);
     std::vector<bool> done(corridor.size(), false);

@@ -115,11 +115,35 @@ TEST(CenterlinePath, DoesNotTakeTheShortCutThroughALeak) {
     const std::vector<glm::dvec3> truth = hairpin(120.0, 10.0);
     Volume<std::uint8_t> mask(gridAround(truth, 14.0, spacing), std::uint8_t(0));
     fillTube(mask, truth, 10.0);
-    fillTube(mask, {{-1.0, 0.0, 30.0}, {0.0, 0.0, 30.0}, {1.0, 0.0, 30.0}}, 2.0);
+    // Two leaks, nearly half as wide as the tube.
+    for (const double z : {15.0, 60.0}) {
+        fillTube(mask,
+                 {{-2.0, 0.0, z}, {-1.0, 0.0, z}, {0.0, 0.0, z}, {1.0, 0.0, z}, {2.0, 0.0, z}},
+                 4.0);
+    }
     const Centerline line = trace(mask);
     expectSound(line, mask);
     EXPECT_GT(line.lengthMm(), lengthMm(truth));
     EXPECT_LT(meanErrorMm(line, truth, 15.0), 0.8);  // the bend is as tight as the tube allows
+}
+
+TEST(CenterlinePath, IsNotLedAstrayByACatheterOrTheIleum) {
+    const auto truth =
+        sampleCurve([](double t) { return glm::dvec3(40.0 * std::sin(pi * t), 0.0, 160.0 * t); });
+    const auto catheter =
+        sampleCurve([](double t) { return glm::dvec3(0.0, -20.0 * t, -40.0 * t); });
+    const auto ileum =
+        sampleCurve([](double t) { return glm::dvec3(-60.0 * t, 0.0, 150.0 + 20.0 * t); });
+    Volume<std::uint8_t> mask(axisAlignedGrid({190, 90, 300}, spacing, {-75.0, -40.0, -60.0}),
+                              std::uint8_t(0));
+    fillTube(mask, truth, 14.0);
+    fillTube(mask, catheter, 2.5);
+    fillTube(mask, ileum, 5.0);
+    const Centerline line = trace(mask);
+    expectSound(line, mask);
+    EXPECT_LT(glm::distance(line.points.front().positionMm, truth.front()), 16.0);
+    EXPECT_LT(glm::distance(line.points.back().positionMm, truth.back()), 16.0);
+    EXPECT_LT(meanErrorMm(line, truth, 20.0), 0.8);
 }
 
 TEST(CenterlinePath, ContinuesAcrossAGapAndMarksIt) {
