@@ -4,6 +4,7 @@
 #include "dicom/jpeg2000.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <dcmtk/config/osconfig.h>
@@ -19,16 +20,17 @@ bool isJpeg2000(E_TransferSyntax syntax) {
     return syntax == EXS_JPEG2000 || syntax == EXS_JPEG2000LosslessOnly;
 }
 
+std::size_t littleEndian32(const std::uint8_t* at) {
+    return std::size_t(at[0]) | std::size_t(at[1]) << 8 | std::size_t(at[2]) << 16 |
+           std::size_t(at[3]) << 24;
+}
+
 /// An RLE frame starts with 16 numbers: how many segments, and where each begins (PS3.5 G.5).
 /// DCMTK's decoder reads out of bounds where they point beyond the frame.
 bool rleHeaderIsSound(std::span<const std::uint8_t> frame, std::size_t segments) {
     constexpr std::size_t headerBytes = 64;
     if (frame.size() < headerBytes) return false;
-    auto number = [&](std::size_t n) {
-        const std::uint8_t* at = frame.data() + 4 * n;
-        return std::size_t(at[0]) | std::size_t(at[1]) << 8 | std::size_t(at[2]) << 16 |
-               std::size_t(at[3]) << 24;
-    };
+    auto number = [&](std::size_t n) { return littleEndian32(frame.data() + 4 * n); };
     if (number(0) != segments) return false;
     std::size_t least = headerBytes;
     for (std::size_t n = 1; n <= segments; ++n) {
@@ -92,11 +94,15 @@ public:
             return damaged("its pixel data has no consistent size");
         }
         if (fragments_ && syntax_ == EXS_RLELossless) {
+            // A run-length frame is always one fragment, so DCMTK reads what is checked here.
+            const auto range = fragmentsOf(frame);
+            if (!range || range->last - range->first != 1)
+                return damaged("its compressed frames cannot be told apart");
             const auto bytes = frameBytes(frame);
             if (!bytes) return tl::make_unexpected(bytes.error());
             if (!rleHeaderIsSound(*bytes, cellBytes()))
                 return damaged("its run-length segments lie outside the frame");
-            nextFragment_ = Uint32(frame) + 1;
+            nextFragment_ = Uint32(range->first);
         }
         cells_.resize(pixels() + 1);
         OFString colorModel;
@@ -132,16 +138,46 @@ private:
         return *table_;
     }
 
-    /// The bytes of one compressed frame: its fragment, or of a single JPEG 2000 image all
-    /// fragments joined (an RLE frame is always one). The first item is the offset table.
-    Result<std::vector<std::uint8_t>> frameBytes(int frame) {
+    struct FragmentRange {
+        unsigned long first = 0, last = 0;  ///< items [first, last) of the sequence
+    };
+
+    /// The fragments of one frame: all of a single frame's, one each where there are as many as
+    /// frames, else from where the offset table (item 0, PS3.5 A.4) says up to the next frame's.
+    std::optional<FragmentRange> fragmentsOf(int frame) {
         const unsigned long items = fragments_->card();
-        const bool single = image_.frames.size() == 1 && isJpeg2000(syntax_);
-        if (single ? items < 2 : items != image_.frames.size() + 1)
-            return damaged("its compressed frames cannot be told apart");
+        const std::size_t frames = image_.frames.size();
+        if (items < 2) return std::nullopt;
+        if (frames == 1) return FragmentRange{1, items};
+        const auto n = static_cast<unsigned long>(frame);
+        if (items == frames + 1) return FragmentRange{n + 1, n + 2};
+        DcmPixelItem* table = nullptr;
+        Uint8* bytes = nullptr;
+        if (fragments_->getItem(table, 0).bad() || !table || table->getLength() != 4 * frames ||
+            table->getUint8Array(bytes).bad() || !bytes) {
+            return std::nullopt;
+        }
+        FragmentRange range;
+        const std::uint64_t begin = littleEndian32(bytes + 4 * n);
+        const std::uint64_t end =
+            n + 1 < frames ? littleEndian32(bytes + 4 * (n + 1)) : ~std::uint64_t(0);
+        std::uint64_t at = 0;
+        for (unsigned long item = 1; item < items && at < end; ++item) {
+            if (at == begin) range.first = item;
+            range.last = item + 1;
+            DcmPixelItem* fragment = nullptr;
+            if (fragments_->getItem(fragment, item).bad() || !fragment) return std::nullopt;
+            at += 8 + fragment->getLength();  // each item has eight bytes of tag and length
+        }
+        return range.first > 0 ? std::optional(range) : std::nullopt;
+    }
+
+    /// The compressed bytes of one frame, its fragments joined.
+    Result<std::vector<std::uint8_t>> frameBytes(int frame) {
+        const auto range = fragmentsOf(frame);
+        if (!range) return damaged("its compressed frames cannot be told apart");
         std::vector<std::uint8_t> bytes;
-        for (unsigned long n = single ? 1 : static_cast<unsigned long>(frame) + 1;
-             n < (single ? items : static_cast<unsigned long>(frame) + 2); ++n) {
+        for (unsigned long n = range->first; n < range->last; ++n) {
             DcmPixelItem* item = nullptr;
             Uint8* data = nullptr;
             if (fragments_->getItem(item, n).bad() || !item || item->getUint8Array(data).bad() ||

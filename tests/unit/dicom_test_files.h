@@ -11,6 +11,8 @@
 #include <vector>
 
 #include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
 #include <dcmtk/dcmdata/dcrleerg.h>
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/dcmjpeg/djencode.h>
@@ -116,6 +118,68 @@ inline void writeEnhanced(const std::filesystem::path& file, const CtScan& scan)
     dataset.putAndInsertUint16Array(DCM_PixelData, pixels.data(),
                                     static_cast<unsigned long>(pixels.size()));
     ASSERT_TRUE(format.saveFile(OFFilename(file.c_str()), EXS_LittleEndianExplicit).good());
+}
+
+/// The bytes of one frame, in one or more fragments.
+using Fragments = std::vector<std::vector<Uint8>>;
+
+/// Replaces a file's pixels by JPEG 2000 codestreams, one a frame, behind an offset table.
+inline void wrapJpeg2000(const std::filesystem::path& file, const std::vector<Fragments>& frames) {
+    DcmFileFormat format;
+    ASSERT_TRUE(format.loadFile(OFFilename(file.c_str())).good()) << file;
+    ASSERT_TRUE(format.loadAllDataIntoMemory().good());
+    DcmDataset& dataset = *format.getDataset();
+    auto* sequence = new DcmPixelSequence(DCM_PixelSequenceTag);
+    auto* table = new DcmPixelItem(DCM_PixelItemTag);
+    sequence->insert(table);
+    std::vector<Uint8> offsets;
+    Uint32 at = 0;
+    for (const Fragments& fragments : frames) {
+        for (int shift = 0; shift < 32; shift += 8)
+            offsets.push_back(Uint8(at >> shift));
+        for (const std::vector<Uint8>& fragment : fragments) {
+            auto* item = new DcmPixelItem(DCM_PixelItemTag);
+            item->putUint8Array(fragment.data(), static_cast<unsigned long>(fragment.size()));
+            sequence->insert(item);
+            at += Uint32(item->getLength()) + 8;
+        }
+    }
+    table->putUint8Array(offsets.data(), static_cast<unsigned long>(offsets.size()));
+    delete dataset.remove(DCM_PixelData);
+    auto* pixels = new DcmPixelData(DCM_PixelData);
+    pixels->putOriginalRepresentation(EXS_JPEG2000LosslessOnly, nullptr, sequence);
+    ASSERT_TRUE(dataset.insert(pixels, OFTrue).good());
+    ASSERT_TRUE(format.saveFile(OFFilename(file.c_str()), EXS_JPEG2000LosslessOnly).good());
+}
+
+/// The fragments of a compressed single-frame file.
+inline Fragments fragmentsOf(const std::filesystem::path& file) {
+    DcmFileFormat format;
+    EXPECT_TRUE(format.loadFile(OFFilename(file.c_str())).good()) << file;
+    DcmElement* element = nullptr;
+    format.getDataset()->findAndGetElement(DCM_PixelData, element);
+    auto* pixels = dynamic_cast<DcmPixelData*>(element);
+    E_TransferSyntax syntax = EXS_Unknown;
+    const DcmRepresentationParameter* parameter = nullptr;
+    DcmPixelSequence* sequence = nullptr;
+    if (!pixels) return {};
+    pixels->getOriginalRepresentationKey(syntax, parameter);
+    pixels->getEncapsulatedRepresentation(syntax, parameter, sequence);
+    Fragments fragments;
+    for (unsigned long n = 1; sequence && n < sequence->card(); ++n) {
+        DcmPixelItem* item = nullptr;
+        Uint8* bytes = nullptr;
+        if (sequence->getItem(item, n).bad() || item->getUint8Array(bytes).bad()) return {};
+        fragments.emplace_back(bytes, bytes + item->getLength());
+    }
+    return fragments;
+}
+
+inline std::vector<Uint8> joined(const Fragments& fragments) {
+    std::vector<Uint8> bytes;
+    for (const std::vector<Uint8>& fragment : fragments)
+        bytes.insert(bytes.end(), fragment.begin(), fragment.end());
+    return bytes;
 }
 
 }  // namespace haustra::tests

@@ -122,5 +122,72 @@ TEST(DicomTransferSyntax, Wg04EqualsTheReference) {
     }
 }
 
+TEST(DicomTransferSyntax, EnhancedMultiFrameInJpeg2000) {
+    HAUSTRA_REAL_DATA(wg04, "dicom/wg04");
+    const auto first = importSeries(wg04 / "REF/CT1_UNC"),
+               second = importSeries(wg04 / "REF/CT2_UNC");
+    ASSERT_TRUE(first && second);
+    const TemporaryFolder folder;
+    const fs::path file = folder / "enhanced.dcm";
+    CtScan scan{Volume<std::int16_t>(axisAlignedGrid({512, 512, 20}, {1, 1, 1}), 0),
+                PatientPosition::supine};
+    tests::writeEnhanced(file, scan);
+    // One frame of three fragments, one of one; the others of two.
+    const tests::Fragments a = tests::fragmentsOf(wg04 / "J2KR/CT1_J2KR"),
+                           b = tests::fragmentsOf(wg04 / "J2KR/CT2_J2KR");
+    ASSERT_EQ(a.size(), 3u);
+    ASSERT_EQ(b.size(), 2u);
+    std::vector<tests::Fragments> frames(20, b);
+    frames[0] = a;
+    frames[17] = {tests::joined(a)};
+    tests::wrapJpeg2000(file, frames);
+    const auto imported = importSeries(file);
+    ASSERT_TRUE(imported) << describe(imported.error());
+    // Frames are told apart by their place: the shuffled frames 0 and 17 lie at two known slices.
+    const std::size_t plane = 512 * 512;
+    int firsts = 0;
+    for (std::size_t k = 0; k < 20; ++k) {
+        const auto slice = imported->scan.hu.voxels().subspan(k * plane, plane);
+        // writeEnhanced gives slice k the intercept −10 k; CT1's own is −1024, CT2's is 0.
+        const int shift = int(10 * k);
+        const int centre = int(256 * 512 + 256);
+        const int stored = slice[std::size_t(centre)] + shift;
+        if (stored == first->scan.hu[std::size_t(centre)] + 1024) {
+            ++firsts;
+            continue;
+        }
+        for (std::size_t n = 0; n < plane; ++n)
+            ASSERT_EQ(slice[n] + shift, second->scan.hu[n]) << k << ' ' << n;
+    }
+    EXPECT_EQ(firsts, 2);
+    frames.pop_back();
+    tests::wrapJpeg2000(file, frames);
+    EXPECT_FALSE(importSeries(file)) << "a frame is missing";
+}
+
+TEST(DicomTransferSyntax, DamagedJpeg2000IsRefused) {
+    HAUSTRA_REAL_DATA(wg04, "dicom/wg04");
+    const TemporaryFolder folder;
+    const fs::path file = folder / "damaged.dcm";
+    const std::vector<Uint8> whole = tests::joined(tests::fragmentsOf(wg04 / "J2KR/CT2_J2KR"));
+    auto expectRefused = [&](const std::vector<Uint8>& codestream, const std::string& reason) {
+        fs::remove(file);
+        fs::copy_file(wg04 / "REF/CT2_UNC", file);
+        fs::permissions(file, fs::perms::owner_write, fs::perm_options::add);
+        tests::wrapJpeg2000(file, {{codestream}});
+        const auto imported = importSeries(file);
+        ASSERT_FALSE(imported);
+        EXPECT_EQ(imported.error().place, file.string());
+        EXPECT_NE(imported.error().message.find(reason), std::string::npos)
+            << imported.error().message;
+    };
+    expectRefused({whole.begin(), whole.begin() + std::ptrdiff_t(whole.size() / 3)}, "damaged");
+    expectRefused({whole.begin(), whole.begin() + 40}, "damaged");
+    expectRefused(std::vector<Uint8>(400, 0), "damaged");
+    std::vector<Uint8> larger = whole;
+    larger[8] = 0x7f;  // the width, from 512 to two thousand million
+    expectRefused(larger, "JPEG 2000");
+}
+
 }  // namespace
 }  // namespace haustra
