@@ -13,6 +13,9 @@
 
 namespace haustra::panels {
 
+/// Shortest side of a picture that a server draws.
+inline constexpr int minViewportPixels = 16;
+
 enum class View { endoscopic, axial, coronal, sagittal };
 const char* toString(View view);
 std::optional<View> viewFromString(const std::string& text);

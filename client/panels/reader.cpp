@@ -18,7 +18,8 @@ constexpr std::size_t at(View view) {
 }
 
 glm::ivec2 scaled(glm::ivec2 size, double scale) {
-    return glm::max(glm::ivec2(glm::round(glm::dvec2(size) * scale)), glm::ivec2(1));
+    return glm::max(glm::ivec2(glm::round(glm::dvec2(size) * scale)),
+                    glm::ivec2(minViewportPixels));
 }
 
 }  // namespace
@@ -26,11 +27,12 @@ glm::ivec2 scaled(glm::ivec2 size, double scale) {
 Reader::Reader(link::ConnectionOptions options, std::string caseName)
     : session_(std::move(options), std::move(caseName)),
       // Slices change less than the eye follows in flight: a few a second leave the server's time
-      // to the endoscopic view.
-      pacers_{ViewPacer(milliseconds(15), milliseconds(180)),
-              ViewPacer(milliseconds(120), milliseconds(250)),
-              ViewPacer(milliseconds(120), milliseconds(280)),
-              ViewPacer(milliseconds(120), milliseconds(310))} {}
+      // to the endoscopic view. The still is asked for before the server, which waits for 150 ms,
+      // makes one of its own at the size of moving pictures.
+      pacers_{ViewPacer(milliseconds(15), milliseconds(110)),
+              ViewPacer(milliseconds(115), milliseconds(125)),
+              ViewPacer(milliseconds(115), milliseconds(130)),
+              ViewPacer(milliseconds(115), milliseconds(135))} {}
 
 void Reader::update(double seconds) {
     session_.poll(milliseconds(0));
@@ -60,6 +62,8 @@ void Reader::caseOpened() {
         asked.clear();
     latencies_.clear();
     transferFunction_ = case_->transferFunctions.empty() ? "" : case_->transferFunctions.front();
+    for (const View view : {View::axial, View::coronal, View::sagittal})
+        session_.setWindowLevel(int(view), window_);
     for (ViewPacer& pacer : pacers_)
         pacer.touch();
 }
@@ -106,14 +110,8 @@ void Reader::openPane(View view, bool moving) {
     const glm::ivec2 size =
         scaled(paneSizes_[at(view)], moving && view == View::endoscopic ? detail_.scale() : 1.0);
     if (size == openSizes_[at(view)]) return;
-    const bool first = openSizes_[at(view)] == glm::ivec2(0);
     openSizes_[at(view)] = size;
     session_.setViewport(int(view), view, size.x, size.y);
-    if (!first) return;
-    if (view != View::endoscopic)
-        session_.setWindowLevel(int(view), window_);
-    else if (!transferFunction_.empty())
-        session_.setTransferFunction(int(view), transferFunction_);
 }
 
 void Reader::askForViews(Clock::time_point now) {

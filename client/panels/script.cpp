@@ -68,7 +68,7 @@ public:
         return values;
     }
     glm::ivec2 size(const char* key) {
-        const auto values = numbers(key, 2, 1, protocol::maxViewportPixels);
+        const auto values = numbers(key, 2, minViewportPixels, protocol::maxViewportPixels);
         return {int(values[0]), int(values[1])};
     }
     View view(const char* key) {
@@ -173,7 +173,7 @@ SliceAction readSlice(Fields& in) {
         const auto p = in.numbers("position_mm", 3, -maxPositionMm, maxPositionMm);
         action.positionMm = glm::dvec3(p[0], p[1], p[2]);
     }
-    if (in.has("zoom")) action.zoom = in.number("zoom", 0.1, 100.0);
+    if (in.has("zoom")) action.zoom = in.number("zoom", 1.0, 64.0);
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
     if (in.has("png")) action.png = in.fileName("png", ".png");

@@ -162,18 +162,17 @@ void Session::askAgain() {
     for (const auto& [id, state] : viewports_) {
         if (state.width == 0) continue;  // spoken of before it was opened
         connection_.send(viewportMessage(++sequence_, id, state.view, state.width, state.height));
-        if (state.window) connection_.send(windowMessage(++sequence_, id, *state.window));
-        if (state.transferFunction)
-            connection_.send(transferMessage(++sequence_, id, *state.transferFunction));
-        if (state.camera)
-            connection_.send(cameraMessage(++sequence_, id, *state.camera, state.moving));
-        if (state.slice)
-            connection_.send(sliceMessage(++sequence_, id, *state.slice, state.moving));
+        sayWhatWaited(id, state);
     }
     for (const Owed& owed : owed_)
         if (owed.caseName == caseName_)
             connection_.send(bookmarkMessage(owed.request, owed.bookmark));
     requestBookmarks();
+}
+
+// What is said of a viewport before it is open waits in its state.
+void Session::sendInput(const ViewportState& state, const protocol::ClientMessage& message) {
+    if (state.width > 0) sendIfOpen(message);
 }
 
 void Session::sendIfOpen(const protocol::ClientMessage& message) {
@@ -182,20 +181,32 @@ void Session::sendIfOpen(const protocol::ClientMessage& message) {
 
 std::uint64_t Session::setViewport(int viewport, View view, int width, int height) {
     ViewportState& state = viewports_[viewport];
-    if (state.view != view) state = {};
+    const bool wasOpen = state.width > 0;
+    if (wasOpen && state.view != view) state = {};
     state.view = view;
     state.width = width;
     state.height = height;
     sendIfOpen(viewportMessage(++sequence_, viewport, view, width, height));
+    if (!wasOpen && phase_ == Phase::open) sayWhatWaited(viewport, state);
     if (width == 0 || height == 0) viewports_.erase(viewport);
     return sequence_;
+}
+
+void Session::sayWhatWaited(int viewport, const ViewportState& state) {
+    if (state.window) connection_.send(windowMessage(++sequence_, viewport, *state.window));
+    if (state.transferFunction)
+        connection_.send(transferMessage(++sequence_, viewport, *state.transferFunction));
+    if (state.camera)
+        connection_.send(cameraMessage(++sequence_, viewport, *state.camera, state.moving));
+    if (state.slice)
+        connection_.send(sliceMessage(++sequence_, viewport, *state.slice, state.moving));
 }
 
 std::uint64_t Session::setCamera(int viewport, const Camera& camera, bool moving) {
     ViewportState& state = viewports_[viewport];
     state.camera = camera;
     state.moving = moving;
-    sendIfOpen(cameraMessage(++sequence_, viewport, camera, moving));
+    sendInput(state, cameraMessage(++sequence_, viewport, camera, moving));
     return sequence_;
 }
 
@@ -203,19 +214,21 @@ std::uint64_t Session::setSlice(int viewport, const Slice& slice, bool moving) {
     ViewportState& state = viewports_[viewport];
     state.slice = slice;
     state.moving = moving;
-    sendIfOpen(sliceMessage(++sequence_, viewport, slice, moving));
+    sendInput(state, sliceMessage(++sequence_, viewport, slice, moving));
     return sequence_;
 }
 
 std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
-    viewports_[viewport].window = window;
-    sendIfOpen(windowMessage(++sequence_, viewport, window));
+    ViewportState& state = viewports_[viewport];
+    state.window = window;
+    sendInput(state, windowMessage(++sequence_, viewport, window));
     return sequence_;
 }
 
 std::uint64_t Session::setTransferFunction(int viewport, const std::string& preset) {
-    viewports_[viewport].transferFunction = preset;
-    sendIfOpen(transferMessage(++sequence_, viewport, preset));
+    ViewportState& state = viewports_[viewport];
+    state.transferFunction = preset;
+    sendInput(state, transferMessage(++sequence_, viewport, preset));
     return sequence_;
 }
 

@@ -103,6 +103,8 @@ private:
     void askForCase();
     void askAgain();
     void giveUp(Error error);
+    void sayWhatWaited(int viewport, const ViewportState& state);
+    void sendInput(const ViewportState& state, const protocol::ClientMessage& message);
     void sendIfOpen(const protocol::ClientMessage& message);
 
     Phase phase_ = Phase::connecting;

@@ -82,7 +82,7 @@ TEST(Script, ErrorsNameTheLineAndTheKey) {
          "\"view\" must be endoscopic, axial, coronal or sagittal"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"viewport\":8}", "\"viewport\" must lie in 0…7"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"size\":[4096,4]}",
-         "\"size\" must hold numbers in 1…2048"},
+         "\"size\" must hold numbers in 16…2048"},
         {"{\"do\":\"still\",\"png\":\"../x.png\"}",
          "\"png\" must be a plain file name ending in .png"},
         {"{\"do\":\"still\",\"png\":\"x.jpg\"}",
