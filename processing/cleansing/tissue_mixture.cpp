@@ -1,12 +1,12 @@
 #include "cleansing/tissue_mixture.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <numeric>
 #include <vector>
-
-#include "core/parallel.h"
 
 namespace haustra::cleansing {
 namespace {
@@ -19,19 +19,22 @@ Histogram histogramOf(const CtScan& scan, int threads) {
     Histogram histogram(binCount, 0.0);
     std::mutex mutex;
     const auto voxels = scan.hu.voxels();
-    parallelFor(voxels.size(), std::size_t(1) << 22, threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t> counts(binCount, 0);
-        for (std::size_t n = begin; n < end; ++n) {
-            if (voxels[n] > lowestHu) ++counts[std::min<int>(voxels[n], highestHu) - lowestHu];
-        }
-        const std::lock_guard lock(mutex);  // sums of integers: the order does not matter
-        for (int bin = 0; bin < binCount; ++bin) histogram[bin] += counts[bin];
-    });
+    parallelFor(
+        voxels.size(), std::size_t(1) << 22, threads, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::uint32_t> counts(binCount, 0);
+            for (std::size_t n = begin; n < end; ++n) {
+                if (voxels[n] > lowestHu) ++counts[std::min<int>(voxels[n], highestHu) - lowestHu];
+            }
+            const std::lock_guard lock(mutex);  // sums of integers: the order does not matter
+            for (int bin = 0; bin < binCount; ++bin)
+                histogram[bin] += counts[bin];
+        });
     return histogram;
 }
 
 double countIn(const Histogram& histogram, int fromHu, int toHu) {
-    return std::accumulate(histogram.begin() + (fromHu - lowestHu), histogram.begin() + (toHu - lowestHu), 0.0);
+    return std::accumulate(histogram.begin() + (fromHu - lowestHu),
+                           histogram.begin() + (toHu - lowestHu), 0.0);
 }
 
 // Where each class can lie; the mode within is the start of its mean. The bounds overlap what any
@@ -39,13 +42,15 @@ double countIn(const Histogram& histogram, int fromHu, int toHu) {
 struct Range {
     int fromHu, toHu;
 };
-constexpr std::array<Range, tissueCount> meanRange = {{{-1024, -850}, {-160, -40}, {-10, 110}, {180, 1600}}};
+constexpr std::array<Range, tissueCount> meanRange = {
+    {{-1024, -850}, {-160, -40}, {-10, 110}, {180, 1600}}};
 
 double startingMean(const Histogram& histogram, Range range) {
     // The mode of a histogram smoothed over ±20 HU, so that quantised scans have one too.
     double best = -1.0, mode = 0.5 * (range.fromHu + range.toHu);
     for (int hu = range.fromHu; hu < range.toHu; ++hu) {
-        const double count = countIn(histogram, std::max(lowestHu, hu - 20), std::min(highestHu, hu + 20));
+        const double count =
+            countIn(histogram, std::max(lowestHu, hu - 20), std::min(highestHu, hu + 20));
         if (count > best) best = count, mode = hu;
     }
     return mode;
@@ -89,7 +94,8 @@ void fit(const Histogram& histogram, TissueModel& model) {
                 const double mean = sum[t] / mass[t];
                 const double variance = square[t] / mass[t] - mean * mean;
                 model.meanHu[t] = std::clamp<double>(mean, meanRange[t].fromHu, meanRange[t].toHu);
-                model.sdHu[t] = std::clamp(std::sqrt(std::max(variance, 0.0)), smallestSd, largestSd[t]);
+                model.sdHu[t] =
+                    std::clamp(std::sqrt(std::max(variance, 0.0)), smallestSd, largestSd[t]);
             }
             model.weight[t] = std::max(mass[t] / total, 1e-9);
             change = std::max(change, std::abs(model.meanHu[t] - previous[t]));
@@ -106,12 +112,15 @@ Result<TissueModel> fitTissueModel(const CtScan& scan, int threads) {
     const Histogram histogram = histogramOf(scan, threads);
     const double all = countIn(histogram, lowestHu, highestHu);
     const double air = countIn(histogram, lowestHu, -850), soft = countIn(histogram, -10, 110);
-    // Padding (−1024 and less) is not counted; a scan padded with exactly −1024 still shows bowel gas.
+    // Padding (−1024 and less) is not counted; a scan padded with exactly −1024 still shows bowel
+    // gas.
     if (air < 1e-4 * std::max(all, 1.0)) {
-        return fail(ErrorKind::noResult, "the scan holds no air (nothing below -850 HU)", "tissue model");
+        return fail(ErrorKind::noResult, "the scan holds no air (nothing below -850 HU)",
+                    "tissue model");
     }
     if (soft < 1e-3 * std::max(all, 1.0)) {
-        return fail(ErrorKind::noResult, "the scan holds no soft tissue (nothing from -10 to 110 HU)", "tissue model");
+        return fail(ErrorKind::noResult,
+                    "the scan holds no soft tissue (nothing from -10 to 110 HU)", "tissue model");
     }
     TissueModel model;
     for (int t = 0; t < tissueCount; ++t) {

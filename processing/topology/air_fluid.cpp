@@ -1,5 +1,7 @@
 #include "topology/air_fluid.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,23 +9,24 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/parallel.h"
-
 namespace haustra::topology {
 namespace {
 
 constexpr double thickestInterfaceMm = 2.6;  // of partial volume between air and fluid
 constexpr int thinnestLayer = 2;             // voxels of air above, and of fluid below
 constexpr double smallestLevelMm2 = 20.0;
-constexpr std::uint16_t nobodys = std::numeric_limits<std::uint16_t>::max();  // owned, but open to no other pool
-constexpr int deepestSample = 6;             // voxels below the surface that tell the fluid's HU
+constexpr std::uint16_t nobodys =
+    std::numeric_limits<std::uint16_t>::max();  // owned, but open to no other pool
+constexpr int deepestSample = 6;                // voxels below the surface that tell the fluid's HU
 
-double softHu(const TissueModel& tissue) { return tissue.meanHu[int(Tissue::soft)]; }
+double softHu(const TissueModel& tissue) {
+    return tissue.meanHu[int(Tissue::soft)];
+}
 
 // Columns of one slice across the third axis, found by walking down each line of the gravity axis.
 std::vector<LevelColumn> columnsOfSlice(const Volume<std::int16_t>& hu, const TissueModel& tissue,
-                                        const RunComponents& air, const std::vector<char>& bowelAir, GravityAxis down,
-                                        int k) {
+                                        const RunComponents& air, const std::vector<char>& bowelAir,
+                                        GravityAxis down, int k) {
     const Grid& grid = hu.grid();
     const int across = 1 - down.axis;
     const int length = grid.size[down.axis], width = grid.size[across];
@@ -68,10 +71,12 @@ std::vector<LevelColumn> columnsOfSlice(const Volume<std::int16_t>& hu, const Ti
 
 // The columns of one patch that lie at its commonest height, if they are most of it: a level.
 // A curved wall between gas and an opacified neighbour has no such height.
-void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t>& hu, double taggedAboveHu,
-                GravityAxis down, double columnMm2, std::vector<Level>& levels) {
+void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t>& hu,
+                double taggedAboveHu, GravityAxis down, double columnMm2,
+                std::vector<Level>& levels) {
     std::unordered_map<int, int> heights;
-    for (const LevelColumn& c : patch) ++heights[c.below[down.axis]];
+    for (const LevelColumn& c : patch)
+        ++heights[c.below[down.axis]];
     int mode = 0, most = 0;
     for (const auto& [height, count] : heights) {
         const int around = count + (heights.count(height - 1) ? heights.at(height - 1) : 0) +
@@ -87,13 +92,13 @@ void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t
         level.columns.push_back(c);
         glm::ivec3 v = c.below;
         for (int depth = 0; depth < deepestSample; ++depth, v[down.axis] += down.sign) {
-            if (depth >= 2 && hu.grid().contains(v)) samples.push_back(hu.at(v));
+            if (!hu.grid().contains(v) || hu.at(v) <= taggedAboveHu) break;
+            if (depth > 0) samples.push_back(hu.at(v));
         }
     }
     if (samples.empty()) return;
     std::nth_element(samples.begin(), samples.begin() + samples.size() / 2, samples.end());
     level.fluidHu = samples[samples.size() / 2];
-    if (level.fluidHu < taggedAboveHu) return;  // a bright skin over soft tissue, not a fluid
     level.areaMm2 = double(level.columns.size()) * columnMm2;
     levels.push_back(std::move(level));
 }
@@ -104,22 +109,25 @@ std::size_t placeOf(const Grid& grid, GravityAxis down, glm::ivec3 v) {
     return std::size_t(v[across]) + std::size_t(grid.size[across]) * std::size_t(v.z);
 }
 
-std::unordered_map<std::size_t, int> surfaceOf(const Pool& pool, const std::vector<Level>& levels, const Grid& grid,
-                                               GravityAxis down) {
+std::unordered_map<std::size_t, int> surfaceOf(const Pool& pool, const std::vector<Level>& levels,
+                                               const Grid& grid, GravityAxis down) {
     std::unordered_map<std::size_t, int> surface;
     for (int l : pool.levels) {
-        for (const LevelColumn& c : levels[l].columns) surface[placeOf(grid, down, c.below)] = c.below[down.axis];
+        for (const LevelColumn& c : levels[l].columns)
+            surface[placeOf(grid, down, c.below)] = c.below[down.axis];
     }
     return surface;
 }
 
 // A pool fills a bay of the bowel: a fair part of it lies straight below its own surface. What has
 // run through a thin wall into opacified bowel or bone does not.
-bool standsUnder(const Pool& pool, const std::vector<Level>& levels, const Grid& grid, GravityAxis down) {
+bool standsUnder(const Pool& pool, const std::vector<Level>& levels, const Grid& grid,
+                 GravityAxis down) {
     constexpr double smallestShare = 0.12;
     const auto surface = surfaceOf(pool, levels, grid, down);
     std::unordered_set<std::size_t> footprint;
-    for (std::uint32_t index : pool.voxels) footprint.insert(placeOf(grid, down, grid.voxelAt(index)));
+    for (std::uint32_t index : pool.voxels)
+        footprint.insert(placeOf(grid, down, grid.voxelAt(index)));
     return double(surface.size()) >= smallestShare * double(footprint.size());
 }
 
@@ -138,16 +146,19 @@ void keepBelow(Pool& pool, const std::vector<Level>& levels, const Grid& grid, G
             kept.push_back(index);
         }
     }
-    for (std::uint32_t index : pool.voxels) owner[index] = 0;
-    for (std::uint32_t index : kept) owner[index] = nobodys;
+    for (std::uint32_t index : pool.voxels)
+        owner[index] = 0;
+    for (std::uint32_t index : kept)
+        owner[index] = nobodys;
     pool.voxels = std::move(kept);
     pool.touches.clear();
 }
 
 }  // namespace
 
-std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue, const RunComponents& air,
-                              const std::vector<char>& bowelAir, GravityAxis down, int threads) {
+std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                              const RunComponents& air, const std::vector<char>& bowelAir,
+                              GravityAxis down, int threads) {
     const Grid& grid = hu.grid();
     std::vector<std::vector<LevelColumn>> slices(static_cast<std::size_t>(grid.size.z));
     parallelFor(slices.size(), 1, threads, [&](std::size_t first, std::size_t last) {
@@ -156,14 +167,16 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
         }
     });
     std::vector<LevelColumn> columns;
-    for (const auto& slice : slices) columns.insert(columns.end(), slice.begin(), slice.end());
+    for (const auto& slice : slices)
+        columns.insert(columns.end(), slice.begin(), slice.end());
 
     // Patches: neighbours in the horizontal plane (8 of them) whose heights differ by at most one.
     const int across = 1 - down.axis;
     const std::size_t width = std::size_t(grid.size[across]);
     std::unordered_map<std::size_t, std::vector<int>> atPlace;
     for (std::size_t n = 0; n < columns.size(); ++n) {
-        atPlace[std::size_t(columns[n].below[across]) + width * std::size_t(columns[n].below.z)].push_back(int(n));
+        atPlace[std::size_t(columns[n].below[across]) + width * std::size_t(columns[n].below.z)]
+            .push_back(int(n));
     }
     const glm::dvec3 spacing = grid.spacingMm();
     std::vector<char> visited(columns.size(), 0);
@@ -183,7 +196,9 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
                     const auto found = atPlace.find(std::size_t(n) + width * std::size_t(z));
                     if (found == atPlace.end()) continue;
                     for (int other : found->second) {
-                        if (visited[other] || std::abs(columns[other].below[down.axis] - c.below[down.axis]) > 1) continue;
+                        if (visited[other] ||
+                            std::abs(columns[other].below[down.axis] - c.below[down.axis]) > 1)
+                            continue;
                         visited[other] = 1;
                         queue.push_back(other);
                     }
@@ -206,14 +221,16 @@ std::vector<Pool> floodPools(const Volume<std::int16_t>& hu, const TissueModel& 
     constexpr int edgeVoxels = 2;
     const Grid& grid = hu.grid();
     const glm::ivec3 size = grid.size;
-    const std::size_t strides[3] = {1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
+    const std::size_t strides[3] = {1, std::size_t(size.x),
+                                    std::size_t(size.x) * std::size_t(size.y)};
     std::vector<std::uint16_t> owner(grid.voxelCount(), 0);  // pool number + 1
     const double soft = softHu(tissue);
 
     // Bright fluid first, so that a weakly tagged neighbour cannot claim it.
     std::vector<int> order(levels.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return levels[a].fluidHu > levels[b].fluidHu; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return levels[a].fluidHu > levels[b].fluidHu; });
 
     std::vector<Pool> pools;
     std::vector<double> cores;  // of each pool, the HU that it was grown through
@@ -226,7 +243,10 @@ std::vector<Pool> floodPools(const Volume<std::int16_t>& hu, const TissueModel& 
     };
     for (int n : order) {
         const Level& level = levels[n];
-        const double core = soft + coreShare * (level.fluidHu - soft), edge = soft + edgeShare * (level.fluidHu - soft);
+        const double core =
+            std::max(tissue.taggedAboveHu, soft + coreShare * (level.fluidHu - soft));
+        const double edge = std::max(0.5 * (soft + tissue.taggedAboveHu),
+                                     soft + edgeShare * (level.fluidHu - soft));
         // A level may stand on fluid that another level has claimed already.
         std::unordered_map<std::uint16_t, int> claimed;
         std::vector<std::uint32_t> queue;
@@ -241,8 +261,10 @@ std::vector<Pool> floodPools(const Volume<std::int16_t>& hu, const TissueModel& 
                 v[down.axis] += depth * down.sign;
                 if (!grid.contains(v)) break;
                 const std::uint32_t index = std::uint32_t(grid.index(v));
-                if (owner[index] != 0 && owner[index] != mine && owner[index] != nobodys) ++claimed[owner[index]];
-                if (owner[index] == 0 && hu[index] > core) owner[index] = mine, queue.push_back(index);
+                if (owner[index] != 0 && owner[index] != mine && owner[index] != nobodys)
+                    ++claimed[owner[index]];
+                if (owner[index] == 0 && hu[index] > core)
+                    owner[index] = mine, queue.push_back(index);
             }
         }
         if (!claimed.empty()) {
@@ -267,7 +289,8 @@ std::vector<Pool> floodPools(const Volume<std::int16_t>& hu, const TissueModel& 
                     // One body of fluid only where neither would see a wall between them.
                     const double stricter = std::max(core, cores[owner[next] - 1]);
                     if (hu[next] < stricter || hu[queue[head]] < stricter) return;
-                    if (touches.empty() || touches.back() != owner[next] - 1) touches.push_back(owner[next] - 1);
+                    if (touches.empty() || touches.back() != owner[next] - 1)
+                        touches.push_back(owner[next] - 1);
                     return;
                 }
                 if (!notAbove(next)) return;
@@ -300,7 +323,8 @@ std::vector<Pool> floodPools(const Volume<std::int16_t>& hu, const TissueModel& 
     for (Pool& pool : pools) {
         std::sort(pool.voxels.begin(), pool.voxels.end());
         double sum = 0.0;
-        for (std::uint32_t index : pool.voxels) sum += hu[index];
+        for (std::uint32_t index : pool.voxels)
+            sum += hu[index];
         pool.meanHu = pool.voxels.empty() ? 0.0 : sum / double(pool.voxels.size());
     }
     return pools;

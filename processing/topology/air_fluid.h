@@ -1,12 +1,12 @@
 // Air–fluid levels: where tagged fluid stands under air, and which fluid that is.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "core/tissue.h"
 #include "core/volume.h"
 #include "topology/run_components.h"
+
+#include <cstdint>
+#include <vector>
 
 namespace haustra::topology {
 
@@ -27,14 +27,15 @@ struct LevelColumn {
 struct Level {
     std::vector<LevelColumn> columns;
     double areaMm2 = 0.0;
-    int height = 0;       ///< voxel coordinate of the fluid's surface along the gravity axis
-    double fluidHu = 0.0; ///< median HU just below the surface
+    int height = 0;        ///< voxel coordinate of the fluid's surface along the gravity axis
+    double fluidHu = 0.0;  ///< median HU just below the surface
 };
 
 /// Flat levels for one direction of gravity (dissertation §3.2: below their air and above their
 /// fluid). Only air whose entry in `bowelAir` is set counts.
-std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue, const RunComponents& air,
-                              const std::vector<char>& bowelAir, GravityAxis down, int threads);
+std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                              const RunComponents& air, const std::vector<char>& bowelAir,
+                              GravityAxis down, int threads);
 
 /// Total area of levels, mm²: how a direction of gravity shows in the data.
 double totalAreaMm2(const std::vector<Level>& levels);
@@ -42,7 +43,7 @@ double totalAreaMm2(const std::vector<Level>& levels);
 /// A body of tagged material: its voxels' indices, sorted.
 struct Pool {
     std::vector<std::uint32_t> voxels;
-    std::vector<int> levels;  ///< indices of the levels that stand on it
+    std::vector<int> levels;   ///< indices of the levels that stand on it
     std::vector<int> touches;  ///< earlier pools that are one body of fluid with this one
     double meanHu = 0.0;
 };

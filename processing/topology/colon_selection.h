@@ -1,13 +1,13 @@
 // Which of the bowel's gas and fluid is colon.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <vector>
-
 #include "core/volume.h"
 #include "topology/air_fluid.h"
 #include "topology/run_components.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
 
 namespace haustra::topology {
 
@@ -29,7 +29,8 @@ struct BowelPiece {
 
 /// Joins the air components that `bowelAir` marks through the pools, and measures each piece.
 std::vector<BowelPiece> bowelPieces(const Volume<std::int16_t>& hu, const RunComponents& air,
-                                    const std::vector<char>& bowelAir, const std::vector<Level>& levels,
+                                    const std::vector<char>& bowelAir,
+                                    const std::vector<Level>& levels,
                                     const std::vector<Pool>& pools, double smallestMl);
 
 /// Indices of the pieces that are colon. `chosen` are pieces that a person named. The colon is the

@@ -1,21 +1,23 @@
 #include "topology/lumen.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
 #include "topology/air_fluid.h"
 #include "topology/colon_selection.h"
 #include "topology/run_components.h"
 #include "topology/tagged_stool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
 
 namespace haustra::topology {
 namespace {
 
 constexpr double smallestPieceMl = 1.0;
 
-tl::unexpected<Error> nothing(std::string message) { return fail(ErrorKind::noResult, std::move(message), "lumen"); }
+tl::unexpected<Error> nothing(std::string message) {
+    return fail(ErrorKind::noResult, std::move(message), "lumen");
+}
 
 std::string text(const char* format, double a, double b = 0.0) {
     char line[200];
@@ -24,7 +26,8 @@ std::string text(const char* format, double a, double b = 0.0) {
 }
 
 // Median HU of large components, in bins of 8 HU; small ones are mostly partial volume and keep −∞.
-std::vector<double> medianHu(const Volume<std::int16_t>& hu, const RunComponents& air, std::uint64_t atLeast) {
+std::vector<double> medianHu(const Volume<std::int16_t>& hu, const RunComponents& air,
+                             std::uint64_t atLeast) {
     constexpr int bins = 256, binHu = 8, lowest = -1536;
     const auto& components = air.components();
     std::vector<int> slot(components.size(), -1);
@@ -39,7 +42,8 @@ std::vector<double> medianHu(const Volume<std::int16_t>& hu, const RunComponents
                 if (slot[run.component] < 0) continue;
                 std::uint64_t* h = &histogram[std::size_t(slot[run.component]) * bins];
                 const std::int16_t* row = &hu.voxels()[hu.grid().index(0, j, k)];
-                for (int i = run.begin; i < run.end; ++i) ++h[std::clamp((row[i] - lowest) / binHu, 0, bins - 1)];
+                for (int i = run.begin; i < run.end; ++i)
+                    ++h[std::clamp((row[i] - lowest) / binHu, 0, bins - 1)];
             }
         }
     }
@@ -48,14 +52,17 @@ std::vector<double> medianHu(const Volume<std::int16_t>& hu, const RunComponents
         if (slot[c] < 0) continue;
         std::uint64_t below = 0;
         int bin = 0;
-        while (bin < bins && 2 * (below += histogram[std::size_t(slot[c]) * bins + bin]) < components[c].voxels) ++bin;
+        while (bin < bins &&
+               2 * (below += histogram[std::size_t(slot[c]) * bins + bin]) < components[c].voxels)
+            ++bin;
         median[c] = lowest + (bin + 0.5) * binHu;
     }
     return median;
 }
 
 // Air inside the body that is gas: not the room, not the lungs, not what runs through every slice.
-std::vector<char> bowelAirOf(const Volume<std::int16_t>& hu, const TissueModel& tissue, const RunComponents& air) {
+std::vector<char> bowelAirOf(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                             const RunComponents& air) {
     constexpr double lungMl = 12.0, lungAboveAirHu = 60.0;
     const glm::ivec3 size = hu.grid().size;
     const double voxelMl = hu.grid().voxelVolumeMm3() / 1000.0;
@@ -65,7 +72,8 @@ std::vector<char> bowelAirOf(const Volume<std::int16_t>& hu, const TissueModel& 
         const RunComponent& component = air.components()[c];
         const bool side = component.touches(0, false, size) || component.touches(0, true, size) ||
                           component.touches(1, false, size) || component.touches(1, true, size);
-        const bool throughout = size.z > 1 && component.touches(2, false, size) && component.touches(2, true, size);
+        const bool throughout =
+            size.z > 1 && component.touches(2, false, size) && component.touches(2, true, size);
         const bool lung = median[c] > tissue.meanHu[int(Tissue::air)] + lungAboveAirHu;
         if (side || throughout || lung) bowel[c] = 0;
     }
@@ -77,7 +85,8 @@ GravityAxis axisOf(const Grid& grid, glm::dvec3 gravity) {
     GravityAxis down;
     double best = -1.0;
     for (int axis = 0; axis < 2; ++axis) {
-        const double along = glm::dot(glm::normalize(glm::dvec3(grid.patientFromVoxel[axis])), gravity);
+        const double along =
+            glm::dot(glm::normalize(glm::dvec3(grid.patientFromVoxel[axis])), gravity);
         if (std::abs(along) > best) best = std::abs(along), down = {axis, along < 0.0 ? -1 : 1};
     }
     return down;
@@ -92,33 +101,41 @@ struct Gravity {
 // The patient position says which way is down; the levels must agree, and overrule it where they
 // clearly do not.
 Gravity findGravity(const CtScan& scan, const TissueModel& tissue, const RunComponents& air,
-                    const std::vector<char>& bowelAir, int threads, std::vector<std::string>& notes) {
+                    const std::vector<char>& bowelAir, int threads,
+                    std::vector<std::string>& notes) {
     constexpr double clearMm2 = 400.0, clearRatio = 3.0;
     const glm::dvec3 told = gravityDirection(scan.position);
     const bool known = glm::length(told) > 0.0;
     std::vector<glm::dvec3> directions;
-    if (known) directions = {told, -told};
-    else directions = {{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}};
+    if (known)
+        directions = {told, -told};
+    else
+        directions = {{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}};
     std::vector<Gravity> tried;
     std::size_t best = 0;
     for (const glm::dvec3& direction : directions) {
         const GravityAxis down = axisOf(scan.hu.grid(), direction);
-        tried.push_back({direction, down, findLevels(scan.hu, tissue, air, bowelAir, down, threads)});
-        if (totalAreaMm2(tried.back().levels) > totalAreaMm2(tried[best].levels)) best = tried.size() - 1;
+        tried.push_back(
+            {direction, down, findLevels(scan.hu, tissue, air, bowelAir, down, threads)});
+        if (totalAreaMm2(tried.back().levels) > totalAreaMm2(tried[best].levels))
+            best = tried.size() - 1;
     }
     const double bestArea = totalAreaMm2(tried[best].levels);
     if (known && best != 0) {
         const double toldArea = totalAreaMm2(tried[0].levels);
         if (bestArea > clearMm2 && bestArea > clearRatio * toldArea) {
-            notes.push_back(std::string("the air-fluid levels show that the patient did not lie ") + toString(scan.position) +
+            notes.push_back(std::string("the air-fluid levels show that the patient did not lie ") +
+                            toString(scan.position) +
                             ", as the series says, but turned over; the levels are believed");
         } else {
             best = 0;
         }
     }
     if (!known && bestArea > 0.0) {
-        notes.push_back(text("patient position unknown; gravity taken from the air-fluid levels (%.0f, %.0f in x, y)",
-                             tried[best].direction.x, tried[best].direction.y));
+        notes.push_back(
+            text("patient position unknown; gravity taken from the air-fluid levels (%.0f, %.0f in "
+                 "x, y)",
+                 tried[best].direction.x, tried[best].direction.y));
     }
     return std::move(tried[best]);
 }
@@ -128,8 +145,8 @@ bool poolHolds(const Pool& pool, std::size_t index) {
 }
 
 // The air component or pool at a patient point, or within 3 mm of it.
-Result<void> partAt(const CtScan& scan, const RunComponents& air, const std::vector<Pool>& pools, glm::dvec3 pointMm,
-                    int& airPart, int& poolPart) {
+Result<void> partAt(const CtScan& scan, const RunComponents& air, const std::vector<Pool>& pools,
+                    glm::dvec3 pointMm, int& airPart, int& poolPart) {
     constexpr double reachMm = 3.0;
     const Grid& grid = scan.hu.grid();
     const glm::ivec3 centre(glm::round(grid.voxelFromPatientPoint(pointMm)));
@@ -148,7 +165,8 @@ Result<void> partAt(const CtScan& scan, const RunComponents& air, const std::vec
                     continue;
                 }
                 for (std::size_t p = 0; p < pools.size(); ++p) {
-                    if (poolHolds(pools[p], grid.index(v))) nearest = d, airPart = -1, poolPart = int(p);
+                    if (poolHolds(pools[p], grid.index(v)))
+                        nearest = d, airPart = -1, poolPart = int(p);
                 }
             }
         }
@@ -156,7 +174,8 @@ Result<void> partAt(const CtScan& scan, const RunComponents& air, const std::vec
     if (airPart < 0 && poolPart < 0) {
         char where[100];
         std::snprintf(where, sizeof where, "%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z);
-        return fail(ErrorKind::badInput, "there is no air or tagged fluid within 3 mm of this point", where);
+        return fail(ErrorKind::badInput,
+                    "there is no air or tagged fluid within 3 mm of this point", where);
     }
     return {};
 }
@@ -195,7 +214,8 @@ void fillInterfaces(Volume<std::uint8_t>& labels, GravityAxis down) {
 
 }  // namespace
 
-Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue, const LumenOptions& options) {
+Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
+                        const LumenOptions& options) {
     const Grid& grid = scan.hu.grid();
     auto progress = [&](double fraction) {
         if (options.progress) options.progress(fraction);
@@ -215,30 +235,47 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue, const Lum
     std::vector<Pool> pools = floodPools(scan.hu, tissue, gravity.levels, gravity.down);
     progress(0.7);
 
-    for (const glm::dvec3& point : options.excludesMm) {
-        int airPart, poolPart;
-        if (auto found = partAt(scan, air, pools, point, airPart, poolPart); !found) return tl::make_unexpected(found.error());
-        if (airPart >= 0) bowelAir[airPart] = 0;
-        if (poolPart >= 0) {
-            pools[poolPart].voxels.clear(), pools[poolPart].levels.clear(), pools[poolPart].touches.clear();
-            for (Pool& pool : pools) pool.touches.erase(std::remove(pool.touches.begin(), pool.touches.end(), poolPart), pool.touches.end());
+    // All points are looked up before anything is taken away: two may lie in one pool.
+    std::vector<int> seedAir, seedPools, excludedAir, excludedPools;
+    auto lookUp = [&](const std::vector<glm::dvec3>& points, std::vector<int>& airParts,
+                      std::vector<int>& poolParts) -> Result<void> {
+        for (const glm::dvec3& point : points) {
+            int airPart, poolPart;
+            if (auto found = partAt(scan, air, pools, point, airPart, poolPart); !found)
+                return found;
+            if (airPart >= 0) airParts.push_back(airPart);
+            if (poolPart >= 0) poolParts.push_back(poolPart);
         }
-    }
-    std::vector<int> seedAir, seedPools;
-    for (const glm::dvec3& point : options.seedsMm) {
-        int airPart, poolPart;
-        if (auto found = partAt(scan, air, pools, point, airPart, poolPart); !found) return tl::make_unexpected(found.error());
-        if (airPart >= 0) bowelAir[airPart] = 1, seedAir.push_back(airPart);
-        if (poolPart >= 0) seedPools.push_back(poolPart);
+        return {};
+    };
+    if (auto found = lookUp(options.excludesMm, excludedAir, excludedPools); !found)
+        return tl::make_unexpected(found.error());
+    if (auto found = lookUp(options.seedsMm, seedAir, seedPools); !found)
+        return tl::make_unexpected(found.error());
+    for (int component : excludedAir)
+        bowelAir[component] = 0;
+    for (int component : seedAir)
+        bowelAir[component] = 1;
+    for (int excluded : excludedPools) {
+        pools[excluded].voxels.clear(), pools[excluded].levels.clear(),
+            pools[excluded].touches.clear();
+        for (Pool& pool : pools)
+            pool.touches.erase(std::remove(pool.touches.begin(), pool.touches.end(), excluded),
+                               pool.touches.end());
     }
 
     const std::vector<BowelPiece> pieces =
-        bowelPieces(scan.hu, air, bowelAir, gravity.levels, pools, options.seedsMm.empty() ? smallestPieceMl : 0.02);
+        bowelPieces(scan.hu, air, bowelAir, gravity.levels, pools,
+                    options.seedsMm.empty() ? smallestPieceMl : 0.02);
     std::vector<int> chosen;
     for (std::size_t n = 0; n < pieces.size(); ++n) {
-        const auto holds = [](const std::vector<int>& all, int one) { return std::find(all.begin(), all.end(), one) != all.end(); };
-        const bool named = std::any_of(seedAir.begin(), seedAir.end(), [&](int c) { return holds(pieces[n].air, c); }) ||
-                           std::any_of(seedPools.begin(), seedPools.end(), [&](int p) { return holds(pieces[n].pools, p); });
+        const auto holds = [](const std::vector<int>& all, int one) {
+            return std::find(all.begin(), all.end(), one) != all.end();
+        };
+        const bool named = std::any_of(seedAir.begin(), seedAir.end(),
+                                       [&](int c) { return holds(pieces[n].air, c); }) ||
+                           std::any_of(seedPools.begin(), seedPools.end(),
+                                       [&](int p) { return holds(pieces[n].pools, p); });
         if (named) chosen.push_back(int(n));
     }
     const std::vector<int> selected = selectColon(pieces, chosen);
@@ -249,9 +286,11 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue, const Lum
     const auto labels = lumen.labels.writable();
     std::vector<char> colonAir(air.components().size(), 0);
     for (int n : selected) {
-        for (int component : pieces[n].air) colonAir[component] = 1;
+        for (int component : pieces[n].air)
+            colonAir[component] = 1;
         for (int pool : pieces[n].pools) {
-            for (std::uint32_t index : pools[pool].voxels) labels[index] = std::uint8_t(LumenLabel::tagged);
+            for (std::uint32_t index : pools[pool].voxels)
+                labels[index] = std::uint8_t(LumenLabel::tagged);
         }
         lumen.segments.push_back({pieces[n].airMl, pieces[n].taggedMl, pieces[n].centroidMm});
     }
@@ -259,7 +298,8 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue, const Lum
         for (int j = 0; j < grid.size.y; ++j) {
             for (const Run& run : air.row(j, k)) {
                 if (!colonAir[run.component]) continue;
-                std::fill(&labels[grid.index(run.begin, j, k)], &labels[grid.index(run.begin, j, k)] + (run.end - run.begin),
+                std::fill(&labels[grid.index(run.begin, j, k)],
+                          &labels[grid.index(run.begin, j, k)] + (run.end - run.begin),
                           std::uint8_t(LumenLabel::air));
             }
         }

@@ -1,14 +1,14 @@
 // Finding the colon's lumen in a CT scan.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/ct_scan.h"
 #include "core/parallel.h"
 #include "core/result.h"
 #include "core/tissue.h"
+
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace haustra::topology {
 
@@ -30,11 +30,12 @@ struct Lumen {
     Volume<std::uint8_t> labels;         ///< LumenLabel
     std::vector<LumenSegment> segments;  ///< largest first
     glm::dvec3 gravity{0.0};             ///< unit, LPS: as the air–fluid levels show it
-    std::vector<std::string> notes;      ///< for the log: disagreement with the patient position …
+    std::vector<std::string> notes;  ///< for the log: disagreement with the patient position …
 };
 
 /// The colon's air and, through flat air–fluid interfaces, the tagged fluid beneath. Air that
 /// reaches the body's outside, lungs, stomach and small-bowel gas are left out.
-Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue, const LumenOptions& options = {});
+Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
+                        const LumenOptions& options = {});
 
 }  // namespace haustra::topology

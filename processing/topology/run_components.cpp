@@ -1,15 +1,16 @@
 #include "topology/run_components.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <numeric>
-
-#include "core/parallel.h"
 
 namespace haustra::topology {
 namespace {
 
 std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t run) {
-    while (parent[run] != run) run = parent[run] = parent[parent[run]];
+    while (parent[run] != run)
+        run = parent[run] = parent[parent[run]];
     return run;
 }
 
@@ -33,12 +34,15 @@ RunComponents::RunComponents(const Volume<std::int16_t>& volume, double below, i
                 const std::int16_t* row = voxels + volume.grid().index(0, j, int(k));
                 const std::size_t before = slices[k].size();
                 for (int i = 0; i < size_.x;) {
-                    while (i < size_.x && !(row[i] < below)) ++i;
+                    while (i < size_.x && !(row[i] < below))
+                        ++i;
                     const int begin = i;
-                    while (i < size_.x && row[i] < below) ++i;
+                    while (i < size_.x && row[i] < below)
+                        ++i;
                     if (i > begin) slices[k].push_back({begin, i, 0});
                 }
-                rowBegin_[std::size_t(j) + std::size_t(size_.y) * k + 1] = slices[k].size() - before;
+                rowBegin_[std::size_t(j) + std::size_t(size_.y) * k + 1] =
+                    slices[k].size() - before;
             }
         }
     });
@@ -87,7 +91,8 @@ RunComponents::RunComponents(const Volume<std::int16_t>& volume, double below, i
             c.centroid += double(length) * glm::dvec3(0.5 * (run.begin + run.end - 1), j, k);
         }
     }
-    for (RunComponent& c : components_) c.centroid /= double(c.voxels);
+    for (RunComponent& c : components_)
+        c.centroid /= double(c.voxels);
 }
 
 int RunComponents::at(glm::ivec3 voxel) const {

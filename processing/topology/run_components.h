@@ -1,11 +1,11 @@
 // Connected components of a threshold, kept as runs along i: small, exact, fast to build.
 #pragma once
 
+#include "core/volume.h"
+
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "core/volume.h"
 
 namespace haustra::topology {
 

@@ -14,11 +14,13 @@ constexpr int contactVoxels = 2;  // of partial volume between air and stool
 
 }  // namespace
 
-void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu, const TissueModel& tissue) {
+void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
+                    const TissueModel& tissue) {
     const Grid& grid = labels.grid();
     const glm::ivec3 size = grid.size;
     const auto out = labels.writable();
-    const std::size_t strides[3] = {1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
+    const std::size_t strides[3] = {1, std::size_t(size.x),
+                                    std::size_t(size.x) * std::size_t(size.y)};
     const std::size_t largest = std::size_t(largestMl * 1000.0 / grid.voxelVolumeMm3());
     const double above = tissue.taggedAboveHu;
     auto isStool = [&](std::size_t index) { return out[index] == 0 && hu[index] > above; };
@@ -50,10 +52,12 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
         const glm::ivec3 v = grid.voxelAt(n);
         bool surface = false;
         for (int axis = 0; axis < 3 && !surface; ++axis) {
-            surface = (v[axis] > 0 && out[n - strides[axis]] == 0) || (v[axis] + 1 < size[axis] && out[n + strides[axis]] == 0);
+            surface = (v[axis] > 0 && out[n - strides[axis]] == 0) ||
+                      (v[axis] + 1 < size[axis] && out[n + strides[axis]] == 0);
         }
         if (!surface) continue;
-        reaches(n, isStool, [&](int, int, int, std::size_t at) { seeds.push_back(std::uint32_t(at)); });
+        reaches(n, isStool,
+                [&](int, int, int, std::size_t at) { seeds.push_back(std::uint32_t(at)); });
     }
     std::sort(seeds.begin(), seeds.end());
     seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
@@ -69,7 +73,8 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
             for (int axis = 0; axis < 3; ++axis) {
                 for (int sign : {-1, 1}) {
                     if (v[axis] + sign < 0 || v[axis] + sign >= size[axis]) continue;
-                    const std::uint32_t next = std::uint32_t(sign > 0 ? body[head] + strides[axis] : body[head] - strides[axis]);
+                    const std::uint32_t next = std::uint32_t(sign > 0 ? body[head] + strides[axis]
+                                                                      : body[head] - strides[axis]);
                     if (!isStool(next) || seen.count(next)) continue;
                     seen.insert(next);
                     body.push_back(next);
@@ -88,20 +93,22 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
                 faces += v[axis] > 0 && !isStool(index - strides[axis]);
                 faces += v[axis] + 1 < size[axis] && !isStool(index + strides[axis]);
             }
-            reaches(index, [&](std::size_t at) { return out[at] != 0 || isStool(at); },
-                    [&](int, int, int, std::size_t at) { contacts += out[at] != 0; });
+            reaches(
+                index, [&](std::size_t at) { return out[at] != 0 || isStool(at); },
+                [&](int, int, int, std::size_t at) { contacts += out[at] != 0; });
         }
         if (double(contacts) < smallestContactShare * double(faces)) continue;
         for (std::uint32_t index : body) {
             // The partial volume on the way to the air goes with the stool.
-            reaches(index, [&](std::size_t at) { return out[at] == std::uint8_t(LumenLabel::air); },
-                    [&](int axis, int sign, int step, std::size_t) {
-                        std::size_t at = index;
-                        for (int n = 1; n < step; ++n) {
-                            at = sign > 0 ? at + strides[axis] : at - strides[axis];
-                            if (out[at] == 0) out[at] = std::uint8_t(LumenLabel::tagged);
-                        }
-                    });
+            reaches(
+                index, [&](std::size_t at) { return out[at] == std::uint8_t(LumenLabel::air); },
+                [&](int axis, int sign, int step, std::size_t) {
+                    std::size_t at = index;
+                    for (int n = 1; n < step; ++n) {
+                        at = sign > 0 ? at + strides[axis] : at - strides[axis];
+                        if (out[at] == 0) out[at] = std::uint8_t(LumenLabel::tagged);
+                    }
+                });
             out[index] = std::uint8_t(LumenLabel::tagged);
         }
     }

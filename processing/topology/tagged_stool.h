@@ -10,6 +10,7 @@ namespace haustra::topology {
 /// their surface, and the partial volume between them and it. Bone or opacified bowel behind the
 /// wall shows the lumen only a small part of its surface through the wall, and is left alone.
 /// `labels` must own its memory.
-void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu, const TissueModel& tissue);
+void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
+                    const TissueModel& tissue);
 
 }  // namespace haustra::topology

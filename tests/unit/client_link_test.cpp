@@ -93,9 +93,9 @@ TEST_F(KnownServersTest, AGivenFingerprintMustMatchAndReplacesThePin) {
 }
 
 TEST_F(KnownServersTest, KeepsCommentsAndOtherServersAndLeavesNoOtherFile) {
-    write("# our reading room\n\nb:7443 " + two + "\n");
+    write("# our reading room\n\nb:7117 " + two + "\n");
     ASSERT_TRUE(KnownServers(file()).pin("a:1", one));
-    EXPECT_EQ(content(), "# our reading room\n\nb:7443 " + two + "\na:1 " + one + "\n");
+    EXPECT_EQ(content(), "# our reading room\n\nb:7117 " + two + "\na:1 " + one + "\n");
     int files = 0;
     for ([[maybe_unused]] const auto& entry :
          std::filesystem::directory_iterator(file().parent_path()))

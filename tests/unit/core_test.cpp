@@ -1,5 +1,8 @@
 // Laws of the core nouns: grids, volumes, meshes, loops over threads.
-#include <gtest/gtest.h>
+#include "core/grid.h"
+#include "core/parallel.h"
+#include "core/tri_mesh.h"
+#include "core/volume.h"
 
 #include <atomic>
 #include <cmath>
@@ -7,10 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/grid.h"
-#include "core/parallel.h"
-#include "core/tri_mesh.h"
-#include "core/volume.h"
+#include <gtest/gtest.h>
 
 namespace haustra {
 namespace {
@@ -18,20 +18,23 @@ namespace {
 Grid obliqueGrid() {
     Grid grid = axisAlignedGrid({5, 7, 3}, {0.7, 0.9, 2.0}, {-10, 20, -30});
     const double a = 0.3;
-    const glm::dmat4 turn(std::cos(a), std::sin(a), 0, 0, -std::sin(a), std::cos(a), 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+    const glm::dmat4 turn(std::cos(a), std::sin(a), 0, 0, -std::sin(a), std::cos(a), 0, 0, 0, 0, 1,
+                          0, 0, 0, 0, 1);
     grid.patientFromVoxel = turn * grid.patientFromVoxel;
     return grid;
 }
 
 TEST(Grid, IndexAndVoxelAreInverse) {
     const Grid grid = obliqueGrid();
-    for (std::size_t n = 0; n < grid.voxelCount(); ++n) EXPECT_EQ(grid.index(grid.voxelAt(n)), n);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+        EXPECT_EQ(grid.index(grid.voxelAt(n)), n);
 }
 
 TEST(Grid, PatientAndVoxelAreInverse) {
     const Grid grid = obliqueGrid();
     const glm::dvec3 voxel(1.25, 5.5, 0.75);
-    EXPECT_LT(glm::distance(grid.voxelFromPatientPoint(grid.patientFromVoxelPoint(voxel)), voxel), 1e-12);
+    EXPECT_LT(glm::distance(grid.voxelFromPatientPoint(grid.patientFromVoxelPoint(voxel)), voxel),
+              1e-12);
     EXPECT_NEAR(grid.voxelVolumeMm3(), 0.7 * 0.9 * 2.0, 1e-12);
     EXPECT_LT(glm::distance(grid.spacingMm(), glm::dvec3(0.7, 0.9, 2.0)), 1e-12);
 }
@@ -83,9 +86,11 @@ TriMesh torus(int around, int along) {
     for (int a = 0; a < along; ++a) {
         for (int b = 0; b < around; ++b) {
             const double u = 2 * M_PI * a / along, v = 2 * M_PI * b / around;
-            mesh.vertices.push_back({(3 + std::cos(v)) * std::cos(u), (3 + std::cos(v)) * std::sin(u), std::sin(v)});
+            mesh.vertices.push_back(
+                {(3 + std::cos(v)) * std::cos(u), (3 + std::cos(v)) * std::sin(u), std::sin(v)});
             const int p = a * around + b, q = a * around + (b + 1) % around;
-            const int r = (a + 1) % along * around + b, s = (a + 1) % along * around + (b + 1) % around;
+            const int r = (a + 1) % along * around + b,
+                      s = (a + 1) % along * around + (b + 1) % around;
             mesh.triangles.push_back({p, r, q});
             mesh.triangles.push_back({q, r, s});
         }
@@ -118,16 +123,19 @@ TEST(Parallel, CoversEachIndexOnce) {
     for (int threads : {1, 2, 5}) {
         std::vector<std::atomic<int>> hits(1003);
         parallelFor(hits.size(), 10, threads, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n) ++hits[n];
+            for (std::size_t n = begin; n < end; ++n)
+                ++hits[n];
         });
-        for (const auto& hit : hits) EXPECT_EQ(hit, 1);
+        for (const auto& hit : hits)
+            EXPECT_EQ(hit, 1);
     }
 }
 
 TEST(Parallel, AnExceptionReachesTheCaller) {
-    EXPECT_THROW(parallelFor(100, 1, 3, [](std::size_t begin, std::size_t) {
-                     if (begin == 50) throw std::runtime_error("50");
-                 }),
+    EXPECT_THROW(parallelFor(100, 1, 3,
+                             [](std::size_t begin, std::size_t) {
+                                 if (begin == 50) throw std::runtime_error("50");
+                             }),
                  std::runtime_error);
 }
 

@@ -1,7 +1,5 @@
 // The dependency rules of the design, checked on every #include line of the tree, and on what the
 // programs link.
-#include <gtest/gtest.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +9,8 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace {
 
@@ -58,19 +58,23 @@ struct Foreign {
 };
 const std::vector<Foreign>& foreignHeaders() {
     static const std::vector<Foreign> rules = [] {
-        auto of = [](const char* pattern, Names folders) { return Foreign{std::regex(pattern), std::move(folders)}; };
+        auto of = [](const char* pattern, Names folders) {
+            return Foreign{std::regex(pattern), std::move(folders)};
+        };
         return std::vector<Foreign>{
             of("^dcmtk/.*", {"processing/dicom"}),
             of("^openjpeg.*", {"processing/dicom"}),
             of("^nifti.*", {"processing/nifti"}),
-            of("^(Eigen|suitesparse|cholmod).*", {"processing/flatten", "processing/cleansing", "processing/topology"}),
+            of("^(Eigen|suitesparse|cholmod).*",
+               {"processing/flatten", "processing/cleansing", "processing/topology"}),
             of("^(CGAL|OpenMesh)/.*", {"processing/surface"}),
             of("^opencv2/.*", {"processing/cad", "processing/coverage"}),
             of("^sqlite3.h$", {"server/records"}),
             of("^turbojpeg.h$", {"server/encode", "client/tiles"}),
             of("^(EGL|GL|GLES.?|epoxy)/.*", {"server/gpu", "server/render", "client/window"}),
             of("^SDL.*", {"client", "client/window"}),
-            of("^(asio|openssl)[./].*", {"server/net", "server/session", "client/link", "processing/store", "processing/pipeline"}),
+            of("^(asio|openssl)[./].*", {"server/net", "server/session", "client/link",
+                                         "processing/store", "processing/pipeline"}),
         };
     }();
     return rules;
@@ -95,14 +99,17 @@ std::vector<Include> includesOfTheTree() {
             std::smatch match;
             for (std::string text; std::getline(in, text);) {
                 if (!std::regex_match(text, match, line)) continue;
-                includes.push_back({relative, relative.parent_path().generic_string(), match[2], match[1] == "\""});
+                includes.push_back({relative, relative.parent_path().generic_string(), match[2],
+                                    match[1] == "\""});
             }
         }
     }
     return includes;
 }
 
-TEST(IncludeRules, TheTreeIsSeen) { EXPECT_GT(includesOfTheTree().size(), 100u); }
+TEST(IncludeRules, TheTreeIsSeen) {
+    EXPECT_GT(includesOfTheTree().size(), 100u);
+}
 
 TEST(IncludeRules, FoldersIncludeOnlyWhatTheyMay) {
     for (const Include& include : includesOfTheTree()) {
@@ -110,7 +117,8 @@ TEST(IncludeRules, FoldersIncludeOnlyWhatTheyMay) {
         const auto rule = allowed().find(include.folder);
         ASSERT_NE(rule, allowed().end()) << include.folder << " has no rule";
         const std::size_t slash = include.header.find('/');
-        ASSERT_NE(slash, std::string::npos) << include.file << " includes \"" << include.header << "\" without a folder";
+        ASSERT_NE(slash, std::string::npos)
+            << include.file << " includes \"" << include.header << "\" without a folder";
         const std::string target = include.header.substr(0, slash);
         const std::string own = fs::path(include.folder).filename().string();
         EXPECT_TRUE(target == "core" || target == own || rule->second.count(target))
@@ -123,10 +131,13 @@ TEST(IncludeRules, ForeignLibrariesStayInTheirFolders) {
         if (include.quoted) continue;
         for (const Foreign& foreign : foreignHeaders()) {
             if (!std::regex_match(include.header, foreign.header)) continue;
-            EXPECT_TRUE(foreign.folders.count(include.folder)) << include.file << " must not include <" << include.header << ">";
-            const bool looseInHeaders = include.header.rfind("asio", 0) == 0 || include.header.rfind("epoxy", 0) == 0;
+            EXPECT_TRUE(foreign.folders.count(include.folder))
+                << include.file << " must not include <" << include.header << ">";
+            const bool looseInHeaders =
+                include.header.rfind("asio", 0) == 0 || include.header.rfind("epoxy", 0) == 0;
             if (!looseInHeaders) {
-                EXPECT_EQ(include.file.extension(), ".cpp") << include.file << " shows <" << include.header << "> to its users";
+                EXPECT_EQ(include.file.extension(), ".cpp")
+                    << include.file << " shows <" << include.header << "> to its users";
             }
         }
     }
@@ -141,7 +152,8 @@ TEST(IncludeRules, TheServerLinksNoImageOrMeshLibrary) {
     std::string linked;
     FILE* pipe = popen(("ldd '" + server.string() + "'").c_str(), "r");
     ASSERT_TRUE(pipe);
-    for (char buffer[512]; std::fgets(buffer, sizeof buffer, pipe);) linked += buffer;
+    for (char buffer[512]; std::fgets(buffer, sizeof buffer, pipe);)
+        linked += buffer;
     ASSERT_EQ(pclose(pipe), 0);
     EXPECT_NE(linked.find("libssl"), std::string::npos) << linked;
     for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti"}) {

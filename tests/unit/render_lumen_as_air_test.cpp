@@ -1,6 +1,7 @@
 // Tagged residue shown as air, against the scan that would have been without residue.
 #include "render/lumen_as_air.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -78,6 +79,46 @@ TEST(LumenAsAir, WhatIsFarFromResidueStays) {
         if (p.y > level - 5.0 && std::hypot(p.x, p.y) < radius + 3.0) continue;
         EXPECT_EQ(cleared[i], phantom.tagged[i]);
     }
+}
+
+TEST(LumenAsAir, AThinWallBetweenAirAndAnotherLoopsResidueStaysClosed) {
+    // Slanted, so that its voxels touch by edges: 1.4 mm of wall, all blur.
+    const Grid grid = axisAlignedGrid({40, 40, 6}, glm::dvec3(0.7));
+    const glm::dvec3 across = glm::normalize(glm::dvec3(1.0, 0.45, 0.0));
+    Volume<std::int16_t> ct(grid);
+    Volume<std::uint8_t> lumen(grid);
+    const auto edge = [](double mm) { return 0.5 + 0.5 * std::erf(mm / (std::sqrt(2.0) * 0.6)); };
+    for (std::size_t i = 0; i < grid.voxelCount(); ++i) {
+        const double mm =
+            glm::dot(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(i))), across) - 18.0;
+        const double air = 1.0 - edge(mm + 0.7), residue = edge(mm - 0.7);
+        ct.writable()[i] = std::int16_t(
+            std::lround(air * airHu + residue * fluidHu + (1.0 - air - residue) * softHu));
+        lumen.writable()[i] = std::uint8_t(mm < -0.7  ? LumenLabel::air
+                                           : mm > 0.7 ? LumenLabel::tagged
+                                                      : LumenLabel::outside);
+    }
+    const Volume<std::int16_t> cleared = lumenAsAir(ct, lumen, 2);
+    for (double along = -6.0; along < 6.0; along += 0.1) {
+        double densest = airHu;
+        for (double mm = -3.0; mm < 3.0; mm += 0.05) {
+            const glm::dvec3 p =
+                (18.0 + mm) * across + along * glm::dvec3(-across.y, across.x, 0.0);
+            const glm::dvec3 voxel = grid.voxelFromPatientPoint(p + glm::dvec3(0.0, 0.0, 2.0));
+            densest = std::max(densest, trilinear(cleared, voxel));
+        }
+        EXPECT_GT(densest, -550.0) << along;
+    }
+}
+
+TEST(LumenAsAir, WhatIsLabelledButNoDenserThanAWallStays) {
+    const Grid grid = axisAlignedGrid({9, 9, 9}, glm::dvec3(1.0));
+    const Volume<std::int16_t> ct(grid, 120);
+    Volume<std::uint8_t> lumen(grid, 0);
+    lumen.writable()[grid.index(4, 4, 4)] = std::uint8_t(LumenLabel::tagged);
+    const Volume<std::int16_t> cleared = lumenAsAir(ct, lumen, 1);
+    for (const std::int16_t hu : cleared.voxels())
+        EXPECT_EQ(hu, 120);
 }
 
 TEST(LumenAsAir, IsTheSameForAnyNumberOfThreads) {
