@@ -12,6 +12,9 @@ namespace {
 
 constexpr int reach = 2;  // voxels over which a scanner blurs an edge
 constexpr double airHu = -1000.0, softHu = 40.0;
+// The lumen's share around a voxel just beyond a flat border; more means that the wall is thin.
+constexpr double flatWallShare = 0.25;
+constexpr double leastResidueHu = softHu + 150.0;
 // Residue this pure counts as pure: its noise and texture are not the wall's.
 constexpr double pureShare = 0.8;
 
@@ -20,8 +23,8 @@ struct Neighbourhood {
     int residueDistance = reach + 1;  ///< Chebyshev, to the nearest tagged voxel
     bool air = false;
     bool outside = false;
-    double residueHu = softHu + 150.0;  ///< the densest tagged voxel, at least clearly tagged
-    double lumenShare = 0.0;            ///< of the nearest 27, binomial weights
+    double residueHu = airHu;  ///< of the densest tagged voxel
+    double lumenShare = 0.0;   ///< of the nearest 27, binomial weights
 };
 
 Neighbourhood lookAround(const Volume<std::int16_t>& ct, const Volume<std::uint8_t>& lumen,
@@ -57,11 +60,16 @@ Neighbourhood lookAround(const Volume<std::int16_t>& ct, const Volume<std::uint8
 }
 
 double replaced(double hu, LumenLabel label, const Neighbourhood& near) {
-    // In the middle of the residue, and at its level under the air: no wall within reach.
-    if (label != LumenLabel::outside && !near.outside) return airHu;
     const auto mixed = [](double airShare) { return softHu + airShare * (airHu - softHu); };
-    // Along the level HU runs through every tissue's value and tells nothing: only the labels do.
-    if (near.air) return std::min(hu, mixed(near.lumenShare));
+    // Labelled, but no denser than a wall: then a wall it is.
+    if (near.residueHu < leastResidueHu) return hu;
+    // Where residue meets air HU runs through every tissue's value and tells nothing: only the
+    // labels do. A wall between air and another loop's residue is all blur, and yet closed.
+    if (near.air) {
+        if (label == LumenLabel::outside)
+            return std::min(hu, mixed(std::min(near.lumenShare, flatWallShare)));
+        return near.outside ? std::min(hu, mixed(near.lumenShare)) : airHu;
+    }
     double share = std::clamp((hu - softHu) / (near.residueHu - softHu) / pureShare, 0.0, 1.0);
     // Beyond the labels' border at most its half: what is dense there may be other tagged bowel.
     if (label == LumenLabel::outside)
