@@ -82,7 +82,7 @@ TEST(LumenAsAir, WhatIsFarFromResidueStays) {
 }
 
 TEST(LumenAsAir, AThinWallBetweenAirAndAnotherLoopsResidueStaysClosed) {
-    // Slanted, so that its voxels touch by edges: 1.4 mm of wall, all blur.
+    // Slanted, so that its voxels touch by edges: 0.7 mm of wall, all blur.
     const Grid grid = axisAlignedGrid({40, 40, 6}, glm::dvec3(0.7));
     const glm::dvec3 across = glm::normalize(glm::dvec3(1.0, 0.45, 0.0));
     Volume<std::int16_t> ct(grid);
@@ -91,12 +91,12 @@ TEST(LumenAsAir, AThinWallBetweenAirAndAnotherLoopsResidueStaysClosed) {
     for (std::size_t i = 0; i < grid.voxelCount(); ++i) {
         const double mm =
             glm::dot(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(i))), across) - 18.0;
-        const double air = 1.0 - edge(mm + 0.7), residue = edge(mm - 0.7);
+        const double air = 1.0 - edge(mm + 0.35), residue = edge(mm - 0.35);
         ct.writable()[i] = std::int16_t(
             std::lround(air * airHu + residue * fluidHu + (1.0 - air - residue) * softHu));
-        lumen.writable()[i] = std::uint8_t(mm < -0.7  ? LumenLabel::air
-                                           : mm > 0.7 ? LumenLabel::tagged
-                                                      : LumenLabel::outside);
+        lumen.writable()[i] = std::uint8_t(mm < -0.35  ? LumenLabel::air
+                                           : mm > 0.35 ? LumenLabel::tagged
+                                                       : LumenLabel::outside);
     }
     const Volume<std::int16_t> cleared = lumenAsAir(ct, lumen, 2);
     for (double along = -6.0; along < 6.0; along += 0.1) {
