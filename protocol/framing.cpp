@@ -5,7 +5,8 @@ namespace {
 
 template <class T>
 void append(std::vector<std::uint8_t>& out, T value) {
-    for (std::size_t byte = 0; byte < sizeof(T); ++byte) out.push_back(std::uint8_t(value >> (8 * byte)));
+    for (std::size_t byte = 0; byte < sizeof(T); ++byte)
+        out.push_back(std::uint8_t(value >> (8 * byte)));
 }
 
 // Reads little-endian integers in order. The caller has checked that there are enough bytes.
@@ -15,7 +16,8 @@ public:
     template <class T>
     T take() {
         T value = 0;
-        for (std::size_t byte = 0; byte < sizeof(T); ++byte) value = T(value | T(T(bytes_[byte]) << (8 * byte)));
+        for (std::size_t byte = 0; byte < sizeof(T); ++byte)
+            value = T(value | T(T(bytes_[byte]) << (8 * byte)));
         bytes_ = bytes_.subspan(sizeof(T));
         return value;
     }
@@ -46,15 +48,21 @@ Result<FrameHeader> parseFrameHeader(std::span<const std::uint8_t> bytes, FrameL
     const auto type = reader.take<std::uint8_t>();
     std::uint32_t limit = 0;
     switch (type) {
-        case std::uint8_t(FrameType::control): limit = limits.maxControlBytes; break;
-        case std::uint8_t(FrameType::tile): limit = limits.maxTileBytes; break;
-        default: return malformed("no frame has the type " + std::to_string(type));
+        case std::uint8_t(FrameType::control):
+            limit = limits.maxControlBytes;
+            break;
+        case std::uint8_t(FrameType::tile):
+            limit = limits.maxTileBytes;
+            break;
+        default:
+            return malformed("no frame has the type " + std::to_string(type));
     }
     header.type = FrameType(type);
-    if (limit == 0) return malformed("a frame of type " + std::to_string(type) + " does not go this way");
+    if (limit == 0)
+        return malformed("a frame of type " + std::to_string(type) + " does not go this way");
     if (header.payloadBytes > limit) {
-        return malformed("a frame of " + std::to_string(header.payloadBytes) + " bytes is over the bound of " +
-                         std::to_string(limit));
+        return malformed("a frame of " + std::to_string(header.payloadBytes) +
+                         " bytes is over the bound of " + std::to_string(limit));
     }
     return header;
 }
@@ -66,7 +74,8 @@ void appendTileHeader(std::vector<std::uint8_t>& out, const TileHeader& header) 
     append(out, std::uint8_t(0));
     append(out, header.picture);
     append(out, header.sequence);
-    for (std::uint16_t value : {header.pictureWidth, header.pictureHeight, header.x, header.y, header.width, header.height}) {
+    for (std::uint16_t value : {header.pictureWidth, header.pictureHeight, header.x, header.y,
+                                header.width, header.height}) {
         append(out, value);
     }
     append(out, header.renderMicroseconds);
@@ -85,8 +94,8 @@ Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes) {
     reader.take<std::uint8_t>();
     header.picture = reader.take<std::uint32_t>();
     header.sequence = reader.take<std::uint64_t>();
-    for (std::uint16_t* field :
-         {&header.pictureWidth, &header.pictureHeight, &header.x, &header.y, &header.width, &header.height}) {
+    for (std::uint16_t* field : {&header.pictureWidth, &header.pictureHeight, &header.x, &header.y,
+                                 &header.width, &header.height}) {
         *field = reader.take<std::uint16_t>();
     }
     header.renderMicroseconds = reader.take<std::uint32_t>();
@@ -95,13 +104,14 @@ Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes) {
     header.last = flags & lastFlag;
     header.exact = flags & exactFlag;
 
-    if (header.viewport >= maxViewports) return malformed("a tile names viewport " + std::to_string(header.viewport));
+    if (header.viewport >= maxViewports)
+        return malformed("a tile names viewport " + std::to_string(header.viewport));
     if (codec != std::uint8_t(TileCodec::jpeg) && codec != std::uint8_t(TileCodec::lossless)) {
         return malformed("a tile names the codec " + std::to_string(codec));
     }
     header.codec = TileCodec(codec);
-    if (header.pictureWidth == 0 || header.pictureHeight == 0 || header.pictureWidth > maxViewportPixels ||
-        header.pictureHeight > maxViewportPixels) {
+    if (header.pictureWidth == 0 || header.pictureHeight == 0 ||
+        header.pictureWidth > maxViewportPixels || header.pictureHeight > maxViewportPixels) {
         return malformed("a tile's picture is " + std::to_string(header.pictureWidth) + "x" +
                          std::to_string(header.pictureHeight));
     }

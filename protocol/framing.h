@@ -2,13 +2,13 @@
 // Everything here works on bytes in memory: no sockets, no threads.
 #pragma once
 
+#include "core/result.h"
+
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "core/result.h"
 
 namespace haustra::protocol {
 
@@ -51,8 +51,8 @@ struct TileHeader {
     TileCodec codec = TileCodec::jpeg;
     bool last = false;
     bool exact = false;
-    std::uint32_t picture = 0;    ///< counts the pictures of a session, from 1
-    std::uint64_t sequence = 0;   ///< newest input that this picture answers
+    std::uint32_t picture = 0;   ///< counts the pictures of a session, from 1
+    std::uint64_t sequence = 0;  ///< newest input that this picture answers
     std::uint16_t pictureWidth = 0, pictureHeight = 0;
     std::uint16_t x = 0, y = 0, width = 0, height = 0;
     std::uint32_t renderMicroseconds = 0, encodeMicroseconds = 0;
@@ -67,6 +67,7 @@ Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes);
 /// Lossless pictures: the MED (LOCO-I) prediction residual of a reversible colour transform,
 /// zstd-compressed (METHODS §3). `rgb` is width·height·3 bytes.
 std::vector<std::uint8_t> encodeLossless(std::span<const std::uint8_t> rgb, int width, int height);
-Result<std::vector<std::uint8_t>> decodeLossless(std::span<const std::uint8_t> bytes, int width, int height);
+Result<std::vector<std::uint8_t>> decodeLossless(std::span<const std::uint8_t> bytes, int width,
+                                                 int height);
 
 }  // namespace haustra::protocol

@@ -1,9 +1,9 @@
 // Lossless pictures: reversible colour transform, MED prediction, zstd (PROTOCOL.md §6).
-#include <zstd.h>
+#include "protocol/framing.h"
 
 #include <algorithm>
 
-#include "protocol/framing.h"
+#include <zstd.h>
 
 namespace haustra::protocol {
 namespace {
@@ -15,7 +15,8 @@ inline int predict(int left, int above, int corner) {
 }
 
 // Green stays; red and blue become differences to it, modulo 256 (the transform of lossless WebP).
-void toDifferences(const std::uint8_t* rgb, std::size_t width, std::uint8_t* green, std::uint8_t* red, std::uint8_t* blue) {
+void toDifferences(const std::uint8_t* rgb, std::size_t width, std::uint8_t* green,
+                   std::uint8_t* red, std::uint8_t* blue) {
     for (std::size_t x = 0; x < width; ++x, rgb += 3) {
         green[x] = rgb[1];
         red[x] = std::uint8_t(rgb[0] - rgb[1]);
@@ -34,7 +35,8 @@ std::vector<std::uint8_t> encodeLossless(std::span<const std::uint8_t> rgb, int 
     const std::size_t stride = w + 1;
     std::vector<std::uint8_t> above(stride * planes, 0), current(stride * planes, 0);
     for (std::size_t y = 0; y < h; ++y) {
-        toDifferences(rgb.data() + y * w * 3, w, &current[1], &current[stride + 1], &current[2 * stride + 1]);
+        toDifferences(rgb.data() + y * w * 3, w, &current[1], &current[stride + 1],
+                      &current[2 * stride + 1]);
         for (int p = 0; p < planes; ++p) {
             std::uint8_t* const row = &current[p * stride];
             const std::uint8_t* const up = &above[p * stride];
@@ -48,13 +50,15 @@ std::vector<std::uint8_t> encodeLossless(std::span<const std::uint8_t> rgb, int 
         std::swap(above, current);
     }
     std::vector<std::uint8_t> out(ZSTD_compressBound(residuals.size()));
-    const std::size_t size = ZSTD_compress(out.data(), out.size(), residuals.data(), residuals.size(), -1);
+    const std::size_t size =
+        ZSTD_compress(out.data(), out.size(), residuals.data(), residuals.size(), -1);
     if (ZSTD_isError(size)) return {};
     out.resize(size);
     return out;
 }
 
-Result<std::vector<std::uint8_t>> decodeLossless(std::span<const std::uint8_t> bytes, int width, int height) {
+Result<std::vector<std::uint8_t>> decodeLossless(std::span<const std::uint8_t> bytes, int width,
+                                                 int height) {
     const std::size_t limit = maxViewportPixels;
     if (width < 1 || height < 1 || std::size_t(width) > limit || std::size_t(height) > limit) {
         return fail(ErrorKind::badInput, "a lossless tile's size is out of bounds", "protocol");
@@ -62,7 +66,8 @@ Result<std::vector<std::uint8_t>> decodeLossless(std::span<const std::uint8_t> b
     const std::size_t w = std::size_t(width), h = std::size_t(height), plane = w * h;
     std::vector<std::uint8_t> residuals(plane * planes);
     // The output buffer bounds what a hostile stream can unpack to.
-    const std::size_t size = ZSTD_decompress(residuals.data(), residuals.size(), bytes.data(), bytes.size());
+    const std::size_t size =
+        ZSTD_decompress(residuals.data(), residuals.size(), bytes.data(), bytes.size());
     if (ZSTD_isError(size) || size != residuals.size()) {
         return fail(ErrorKind::badInput, "a lossless tile does not unpack to its size", "protocol");
     }

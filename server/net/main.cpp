@@ -1,0 +1,131 @@
+// haustra-server: streams the store's cases to clients.
+#include "net/server.h"
+#include "store/durable_file.h"
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <google/protobuf/stubs/logging.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using haustra::Result;
+
+constexpr int exitDone = 0, exitFailed = 1, exitUsage = 2;
+
+struct Arguments {
+    haustra::net::ServerOptions server;
+    fs::path certificate, key, portFile;
+    std::string listen = toString(haustra::net::ListenAddress{}), logLevel = "info";
+};
+
+int failed(const std::string& what) {
+    std::fprintf(stderr, "haustra-server: %s\n", what.c_str());
+    return exitFailed;
+}
+
+void addOptions(CLI::App& program, Arguments& arguments) {
+    program.add_option("--store", arguments.server.store, "The case store to serve")
+        ->type_name("DIR")
+        ->required();
+    program
+        .add_option("--listen", arguments.listen,
+                    "Address to listen on; port 0 takes any that is free")
+        ->type_name("IP:PORT")
+        ->capture_default_str();
+    auto* certificate =
+        program
+            .add_option("--certificate", arguments.certificate,
+                        "PEM certificate chain, in place of the store's self-signed one, which is "
+                        "made in DIR/tls on first start")
+            ->type_name("FILE");
+    auto* key =
+        program.add_option("--key", arguments.key, "PEM key of --certificate")->type_name("FILE");
+    certificate->needs(key);
+    key->needs(certificate);
+    program
+        .add_option("--port-file", arguments.portFile,
+                    "Write the port to this file once clients can connect")
+        ->type_name("FILE");
+    program
+        .add_option("--max-sessions", arguments.server.maxSessions,
+                    "Clients at a time; others are told to come again")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    program
+        .add_option("--encoders", arguments.server.encoders,
+                    "Threads that compress pictures; one serves some hundred pictures a second")
+        ->type_name("N")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    program.add_option("--log-level", arguments.logLevel, "How much to log, on standard error")
+        ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
+        ->capture_default_str();
+}
+
+Result<void> serve(const Arguments& arguments) {
+    auto server = haustra::net::Server::create(arguments.server);
+    if (!server) return tl::make_unexpected(server.error());
+    const auto& address = (*server)->address();
+    std::printf("listening on %s\ncertificate SHA-256 %s\nrendering with %s\n",
+                toString(address).c_str(), (*server)->fingerprint().c_str(),
+                (*server)->renderer().c_str());
+    std::fflush(stdout);
+    if (!arguments.portFile.empty()) {
+        const std::string text = std::to_string(address.port) + "\n";
+        const fs::path folder =
+            arguments.portFile.has_parent_path() ? arguments.portFile.parent_path() : fs::path(".");
+        auto written = haustra::store::writeDurably(folder, arguments.portFile.filename(),
+                                                    {std::as_bytes(std::span(text))});
+        if (!written) return written;
+    }
+    (*server)->run();
+    return {};
+}
+
+int runProgram(int argc, char** argv) {
+    Arguments arguments;
+    arguments.server.software = "haustra-server " HAUSTRA_VERSION;
+    CLI::App program("Haustra's server: renders the cases of a store and streams them to clients.",
+                     "haustra-server");
+    program.set_version_flag("--version", HAUSTRA_VERSION);
+    program.failure_message([](const CLI::App*, const CLI::Error& error) {
+        return "haustra-server: " + std::string(error.what()) + " (see haustra-server --help)\n";
+    });
+    program.footer(
+        "Runs until SIGTERM or SIGINT.\nExit codes: 0 stopped, 1 failed, 2 wrong usage.");
+    addOptions(program, arguments);
+    try {
+        program.parse(argc, argv);
+        auto listen = haustra::net::parseListenAddress(arguments.listen);
+        if (!listen) throw CLI::ValidationError("--listen", listen.error().message);
+        arguments.server.listen = std::move(*listen);
+        if (!arguments.certificate.empty())
+            arguments.server.identity = {arguments.certificate, arguments.key};
+    } catch (const CLI::ParseError& error) {
+        return program.exit(error) == 0 ? exitDone : exitUsage;
+    }
+    spdlog::set_default_logger(spdlog::stderr_logger_mt("haustra-server"));
+    google::protobuf::SetLogHandler(nullptr);  // clients' bad messages are answered, not logged
+    spdlog::set_level(spdlog::level::from_str(arguments.logLevel));
+    const auto served = serve(arguments);
+    return served ? exitDone : failed(haustra::describe(served.error()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return runProgram(argc, argv);
+    } catch (const std::exception& error) {
+        return failed(error.what());
+    }
+}

@@ -1,0 +1,198 @@
+#include "net/server.h"
+
+#include "net/connection.h"
+
+#include <csignal>
+#include <set>
+#include <utility>
+
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
+#include <asio/signal_set.hpp>
+#include <openssl/evp.h>
+#include <openssl/ssl.h>
+#include <openssl/x509.h>
+#include <spdlog/spdlog.h>
+
+namespace haustra::net {
+namespace {
+
+using asio::ip::tcp;
+
+// Connections that have not said hello yet may come on top of the sessions.
+constexpr std::size_t maxStrangers = 64;
+constexpr std::chrono::milliseconds acceptPause{100};  // where no file descriptor is left
+constexpr std::chrono::milliseconds stopPatience{3000};
+
+Result<void> configureTls(asio::ssl::context& tls, const Identity& identity) {
+    SSL_CTX* const context = tls.native_handle();
+    SSL_CTX_set_min_proto_version(context, TLS1_3_VERSION);
+    SSL_CTX_set_num_tickets(context, 0);  // sessions are not resumed
+    SSL_CTX_set_default_passwd_cb(context, [](char*, int, int, void*) { return 0; });
+    if (SSL_CTX_use_certificate_chain_file(context, identity.certificate.c_str()) != 1)
+        return fail(ErrorKind::io, "the certificate cannot be read", identity.certificate);
+    if (SSL_CTX_use_PrivateKey_file(context, identity.key.c_str(), SSL_FILETYPE_PEM) != 1)
+        return fail(ErrorKind::io, "the key cannot be read, or is not the certificate's",
+                    identity.key);
+    return {};
+}
+
+std::string certificateFingerprint(asio::ssl::context& tls) {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned bytes = 0;
+    const X509* const certificate = SSL_CTX_get0_certificate(tls.native_handle());
+    if (!certificate || X509_digest(certificate, EVP_sha256(), digest, &bytes) != 1) return {};
+    static constexpr char digits[] = "0123456789abcdef";
+    std::string text;
+    for (unsigned n = 0; n < bytes; ++n) {
+        text += digits[digest[n] >> 4];
+        text += digits[digest[n] & 15];
+    }
+    return text;
+}
+
+Result<void> listen(tcp::acceptor& acceptor, ListenAddress& address) {
+    const tcp::endpoint endpoint(asio::ip::make_address(address.ip), address.port);
+    asio::error_code error;
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
+    if (error)
+        return fail(ErrorKind::device, "cannot listen: " + error.message(), toString(address));
+    address.port = acceptor.local_endpoint().port();
+    return {};
+}
+
+}  // namespace
+
+// The io_context comes first: what other threads post to it outlives them.
+struct Server::Impl {
+    asio::io_context io{1};
+    asio::ssl::context tls{asio::ssl::context::tls_server};
+    tcp::acceptor acceptor{io};
+    asio::signal_set signals{io};
+    asio::steady_timer pause{io}, stopDeadline{io};
+    ServerOptions options;
+    std::string fingerprint;
+
+    std::unique_ptr<session::RecordsThread> records;
+    std::unique_ptr<session::RenderThread> renderer;
+    std::unique_ptr<session::EncoderThreads> encoders;
+    std::optional<session::Services> services;
+
+    std::set<std::shared_ptr<Connection>> connections;
+    session::SessionId lastId = 0;
+    int sessions = 0;  // admitted connections
+    bool stopping = false;
+
+    Result<void> start();
+    void accept();
+    void serve(tcp::socket socket);
+    void stop();
+};
+
+Result<void> Server::Impl::start() {
+    auto cases = store::CaseStore::open(options.store, false);
+    if (!cases) return tl::make_unexpected(cases.error());
+    const auto identity =
+        options.identity ? Result<Identity>(*options.identity) : identityIn(options.store / "tls");
+    if (!identity) return tl::make_unexpected(identity.error());
+    if (auto configured = configureTls(tls, *identity); !configured) return configured;
+    fingerprint = certificateFingerprint(tls);
+    auto bookmarks = records::BookmarkStore::open(options.store / "records.sqlite3");
+    if (!bookmarks) return tl::make_unexpected(bookmarks.error());
+    auto rendering = session::RenderThread::start(*cases);
+    if (!rendering) return tl::make_unexpected(rendering.error());
+    auto encoding = session::EncoderThreads::start(options.encoders);
+    if (!encoding) return tl::make_unexpected(encoding.error());
+    if (auto listening = listen(acceptor, options.listen); !listening) return listening;
+
+    records = session::RecordsThread::start(std::move(*bookmarks), std::move(*cases));
+    renderer = std::move(*rendering);
+    encoders = std::move(*encoding);
+    services.emplace(session::Services{*renderer, *encoders, *records, options.software});
+    signals.add(SIGTERM);
+    signals.add(SIGINT);
+    signals.async_wait([this](const asio::error_code& error, int) {
+        if (!error) stop();
+    });
+    accept();
+    return {};
+}
+
+void Server::Impl::accept() {
+    acceptor.async_accept([this](const asio::error_code& error, tcp::socket socket) {
+        if (stopping) return;
+        if (!error) {
+            serve(std::move(socket));
+            return accept();
+        }
+        spdlog::warn("cannot accept a connection: {}", error.message());
+        pause.expires_after(acceptPause);
+        pause.async_wait([this](const asio::error_code& cancelled) {
+            if (!cancelled && !stopping) accept();
+        });
+    });
+}
+
+void Server::Impl::serve(tcp::socket socket) {
+    if (connections.size() >= std::size_t(options.maxSessions) + maxStrangers) return;
+    const auto connection = std::make_shared<Connection>(std::move(socket), tls, *services,
+                                                         ++lastId, Connection::Patience{});
+    connections.insert(connection);
+    const auto admitted = std::make_shared<bool>(false);
+    const auto admit = [this, admitted] {
+        *admitted = sessions < options.maxSessions;
+        if (*admitted) ++sessions;
+        return *admitted;
+    };
+    connection->start(admit, [this, admitted, connection] {
+        if (*admitted) --sessions;
+        connections.erase(connection);
+        if (stopping && connections.empty()) stopDeadline.cancel();
+    });
+}
+
+void Server::Impl::stop() {
+    spdlog::info("stopping, with {} connections", connections.size());
+    stopping = true;
+    asio::error_code ignored;
+    acceptor.close(ignored);
+    pause.cancel();
+    const auto all = connections;  // stop() may erase
+    for (const auto& connection : all)
+        connection->stop();
+    if (connections.empty()) return;
+    stopDeadline.expires_after(stopPatience);
+    stopDeadline.async_wait([this](const asio::error_code&) { io.stop(); });
+}
+
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Server::~Server() = default;
+
+Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options) {
+    auto impl = std::make_unique<Impl>();
+    impl->options = options;
+    try {
+        if (auto started = impl->start(); !started) return tl::make_unexpected(started.error());
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::device, error.what(), "server");
+    }
+    return std::unique_ptr<Server>(new Server(std::move(impl)));
+}
+
+const ListenAddress& Server::address() const {
+    return impl_->options.listen;
+}
+const std::string& Server::fingerprint() const {
+    return impl_->fingerprint;
+}
+const std::string& Server::renderer() const {
+    return impl_->renderer->renderer();
+}
+void Server::run() {
+    impl_->io.run();
+}
+
+}  // namespace haustra::net

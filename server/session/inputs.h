@@ -1,0 +1,34 @@
+// Values from the network, checked. Every failure is badInput and names no patient.
+#pragma once
+
+#include "core/result.h"
+#include "protocol/haustra.pb.h"
+#include "records/bookmarks.h"
+#include "render/view.h"
+
+#include <string>
+
+namespace haustra::session {
+
+inline constexpr int minViewportPixels = 16;
+inline constexpr std::size_t maxNoteBytes = 2000;
+inline constexpr std::size_t maxClientKeyBytes = 64;
+inline constexpr double maxCoordinateMm = 1e6;
+
+/// Each coordinate finite and at most maxCoordinateMm from the origin.
+Result<glm::dvec3> positionFrom(const protocol::Vec3& message);
+
+/// Position, directions and field of view as render::checkCamera has it.
+Result<render::Camera> cameraFrom(const protocol::SetCamera& message);
+
+Result<render::View> viewFrom(protocol::View view);
+
+/// One of the presets by name, or a function by its points; not both.
+Result<render::TransferFunction> transferFunctionFrom(const protocol::SetTransferFunction& message);
+
+/// A camera's place with finite arc; the note is at most maxNoteBytes without control characters
+/// but line feed and tab; the key is 1 to maxClientKeyBytes of visible ASCII.
+Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
+                                          const std::string& caseName);
+
+}  // namespace haustra::session

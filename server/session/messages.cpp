@@ -1,0 +1,76 @@
+#include "session/messages.h"
+
+#include "protocol/framing.h"
+#include "render/view.h"
+
+namespace haustra::session {
+namespace {
+
+void fill(protocol::Vec3& message, glm::dvec3 v) {
+    message.set_x(v.x);
+    message.set_y(v.y);
+    message.set_z(v.z);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message) {
+    const std::size_t bytes = message.ByteSizeLong();
+    if (bytes > protocol::maxServerControlBytes)
+        return frameOf(errorMessage(protocol::ErrorReport::INTERNAL,
+                                    "the answer is too long for one message", false));
+    std::vector<std::uint8_t> frame;
+    frame.reserve(protocol::frameHeaderBytes + bytes);
+    protocol::appendFrameHeader(frame, {std::uint32_t(bytes), protocol::FrameType::control});
+    frame.resize(frame.size() + bytes);
+    message.SerializeToArray(frame.data() + frame.size() - bytes, int(bytes));
+    return frame;
+}
+
+protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std::string& message,
+                                     bool fatal, std::uint64_t request) {
+    protocol::ServerMessage answer;
+    auto* error = answer.mutable_error();
+    error->set_code(code);
+    error->set_message(message);
+    error->set_fatal(fatal);
+    error->set_request(request);
+    return answer;
+}
+
+protocol::ServerMessage caseOpenedMessage(const OpenCase& opened) {
+    protocol::ServerMessage answer;
+    auto* message = answer.mutable_case_opened();
+    message->set_name(opened.name);
+    message->set_size_x(std::uint32_t(opened.grid.size.x));
+    message->set_size_y(std::uint32_t(opened.grid.size.y));
+    message->set_size_z(std::uint32_t(opened.grid.size.z));
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            message->add_patient_from_voxel(opened.grid.patientFromVoxel[column][row]);
+    std::uint32_t sample = 0;
+    for (const CenterlinePoint& point : opened.centerline.points) {
+        for (const double number : {point.positionMm.x, point.positionMm.y, point.positionMm.z,
+                                    point.arcMm, point.radiusMm})
+            message->add_centerline(number);
+        if (point.gap) message->add_gap_samples(sample);
+        ++sample;
+    }
+    message->set_patient_position(toString(opened.position));
+    for (const std::string& preset : render::transferFunctionPresets())
+        message->add_transfer_functions(preset);
+    return answer;
+}
+
+void fill(protocol::Bookmark& message, const records::Bookmark& bookmark) {
+    message.set_id(bookmark.id);
+    fill(*message.mutable_position_mm(), bookmark.positionMm);
+    fill(*message.mutable_forward(), bookmark.forward);
+    fill(*message.mutable_up(), bookmark.up);
+    message.set_arc_mm(bookmark.arcMm);
+    message.set_note(bookmark.note);
+    message.set_created_utc(bookmark.createdUtc);
+    message.set_client_key(bookmark.clientKey);
+}
+
+}  // namespace haustra::session

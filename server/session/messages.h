@@ -1,0 +1,24 @@
+// What the server says, as messages and as frames.
+#pragma once
+
+#include "protocol/haustra.pb.h"
+#include "records/bookmarks.h"
+#include "session/open_case.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haustra::session {
+
+/// The message with its frame header. One over the protocol's bound becomes an INTERNAL error.
+std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message);
+
+protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std::string& message,
+                                     bool fatal, std::uint64_t request = 0);
+
+protocol::ServerMessage caseOpenedMessage(const OpenCase& opened);
+
+void fill(protocol::Bookmark& message, const records::Bookmark& bookmark);
+
+}  // namespace haustra::session

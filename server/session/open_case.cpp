@@ -1,0 +1,39 @@
+#include "session/open_case.h"
+
+namespace haustra::session {
+
+Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& name) {
+    const auto source = store.openCase(name);
+    if (!source) return tl::make_unexpected(source.error());
+    const auto products = source->products();
+    if (!products) return tl::make_unexpected(products.error());
+
+    CaseFiles files;
+    files.facts.name = name;
+    auto ct = source->readVolume<std::int16_t>("ct");
+    if (!ct) return tl::make_unexpected(ct.error());
+    files.ct = std::move(*ct);
+    files.facts.grid = files.ct.grid();
+    if (const auto attributes = source->attributes("ct")) {
+        const auto position = attributes->find("position");
+        if (position != attributes->end())
+            files.facts.position = patientPositionFromString(position->second);
+    }
+    for (const store::ProductEntry& entry : *products) {
+        if (entry.product == "lumen") {
+            auto lumen = source->readVolume<std::uint8_t>("lumen");
+            if (!lumen) return tl::make_unexpected(lumen.error());
+            files.lumen = std::move(*lumen);
+        } else if (entry.product == "centerline") {
+            auto centerline = source->readCenterline();
+            if (!centerline) return tl::make_unexpected(centerline.error());
+            files.facts.centerline = std::move(*centerline);
+        } else if (entry.product != "ct") {
+            continue;
+        }
+        files.facts.content += entry.product + ':' + entry.key.hex + ' ';
+    }
+    return files;
+}
+
+}  // namespace haustra::session

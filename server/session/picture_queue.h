@@ -1,0 +1,53 @@
+// Pictures that wait to be drawn: one a session, in turn, and always the newest.
+#pragma once
+
+#include "core/result.h"
+#include "protocol/framing.h"
+#include "render/view.h"
+#include "session/open_case.h"
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <variant>
+
+namespace haustra::session {
+
+using Clock = std::chrono::steady_clock;
+using SessionId = std::uint64_t;
+
+/// One picture to draw. Immutable once queued.
+struct PictureJob {
+    SessionId session = 0;
+    std::shared_ptr<const OpenCase> of;
+    std::variant<render::EndoscopicView, render::SliceView> view;
+    int width = 0, height = 0;
+    /// What the picture answers: viewport, codec, exact and sequence are set.
+    protocol::TileHeader header;
+    Clock::time_point inputAt;  ///< when its newest input arrived
+    /// Called on the render thread with the job's own header, times filled in.
+    std::function<void(const protocol::TileHeader&, Result<render::Image>)> done;
+};
+
+/// Holds at most one job of a session. Sessions are served in the order in which they came, so one
+/// that asks without a pause gets every n-th picture of n. Not thread-safe: RenderThread guards it.
+class PictureQueue {
+public:
+    /// To the end of the line; a job of the same session that still waits is dropped.
+    void add(PictureJob job);
+    /// Puts `job` in the place of the waiting one of its session and viewport, and keeps that
+    /// one's place in the line. False, with `job` untouched, where none waits.
+    bool replace(PictureJob& job);
+    /// Drops what waits of a session.
+    void withdraw(SessionId session);
+    /// The first in the line.
+    std::optional<PictureJob> take();
+    bool empty() const { return jobs_.empty(); }
+
+private:
+    std::deque<PictureJob> jobs_;
+};
+
+}  // namespace haustra::session

@@ -1,0 +1,182 @@
+#include "session/picture_stream.h"
+
+#include <asio/post.hpp>
+
+namespace haustra::session {
+
+PictureStream::PictureStream(SessionId session, asio::any_io_executor io, RenderThread& renderer,
+                             EncoderThreads& encoders, Outlet outlet)
+    : session_(session),
+      io_(std::move(io)),
+      renderer_(renderer),
+      encoders_(encoders),
+      outlet_(std::move(outlet)) {}
+
+void PictureStream::setCase(std::shared_ptr<const OpenCase> opened) {
+    case_ = std::move(opened);
+    ++caseNumber_;
+    slots_ = {};
+    renderer_.withdraw(session_);
+    rendering_.reset();
+    held_.reset();
+}
+
+void PictureStream::stop() {
+    setCase(nullptr);
+    stopped_ = true;
+}
+
+// ---- inputs -----------------------------------------------------------------------------------
+
+template <class Input>
+Result<void> PictureStream::input(const Input& message) {
+    if (message.sequence() <= lastSequence_)
+        return fail(ErrorKind::badInput, "the sequence does not grow", "sequence");
+    lastSequence_ = message.sequence();
+    if (message.viewport() >= slots_.size())
+        return fail(ErrorKind::badInput, "viewports have numbers below 8", "viewport");
+    Slot& slot = slots_[message.viewport()];
+    if (!std::is_same_v<Input, protocol::SetViewport> && !slot.viewport.isOpen())
+        return fail(ErrorKind::unsupported, "the viewport is not open", "viewport");
+    if (auto applied = slot.viewport.apply(message); !applied) return applied;
+    slot.sequence = message.sequence();
+    changed(message.viewport());
+    return {};
+}
+template Result<void> PictureStream::input(const protocol::SetViewport&);
+template Result<void> PictureStream::input(const protocol::SetCamera&);
+template Result<void> PictureStream::input(const protocol::SetSlice&);
+template Result<void> PictureStream::input(const protocol::SetWindowLevel&);
+template Result<void> PictureStream::input(const protocol::SetTransferFunction&);
+
+void PictureStream::changed(std::size_t id) {
+    Slot& slot = slots_[id];
+    slot.due = slot.viewport.isDrawable();
+    slot.inputAt = Clock::now();
+    if (slot.due && slot.viewport.moving()) {
+        if (!slot.rest) slot.rest.emplace(io_);
+        slot.rest->expires_after(restAfter);
+        slot.rest->async_wait([weak = weak_from_this(), id](const asio::error_code& error) {
+            const auto self = weak.lock();
+            if (self && !error) self->atRest(id);
+        });
+    } else {
+        slot.rest.reset();
+    }
+    schedule();
+}
+
+void PictureStream::atRest(std::size_t id) {
+    Slot& slot = slots_[id];
+    // The timer may have been set anew, or dropped, after this call was already on its way.
+    if (!slot.rest || slot.rest->expiry() > Clock::now()) return;
+    slot.rest.reset();
+    slot.viewport.rest();
+    slot.due = true;
+    slot.inputAt = Clock::now();
+    schedule();
+}
+
+// ---- pictures ---------------------------------------------------------------------------------
+
+void PictureStream::schedule() {
+    if (stopped_ || !case_) return;
+    if (rendering_) {
+        // Newer than what still waits in the line: take its place.
+        Slot& slot = slots_[*rendering_];
+        if (slot.due && renderer_.replace(makeJob(*rendering_))) slot.due = false;
+        return;
+    }
+    if (held_ || unsent_ > 0) return;
+    for (std::size_t n = 1; n <= slots_.size(); ++n) {
+        const std::size_t id = (lastDrawn_ + n) % slots_.size();
+        if (!slots_[id].due) continue;
+        slots_[id].due = false;
+        lastDrawn_ = id;
+        rendering_ = id;
+        renderer_.submit(makeJob(id));
+        return;
+    }
+}
+
+PictureJob PictureStream::makeJob(std::size_t id) {
+    const Slot& slot = slots_[id];
+    PictureJob job;
+    job.session = session_;
+    job.of = case_;
+    job.view = slot.viewport.view();
+    job.width = slot.viewport.width();
+    job.height = slot.viewport.height();
+    job.inputAt = slot.inputAt;
+    const bool exact = !slot.viewport.moving() || !jpeg_;
+    job.header.viewport = std::uint8_t(id);
+    job.header.codec = exact ? protocol::TileCodec::lossless : protocol::TileCodec::jpeg;
+    job.header.exact = exact;
+    job.header.sequence = slot.sequence;
+    job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_](
+                   const protocol::TileHeader& header, Result<render::Image> image) {
+        asio::post(io, [weak, ofCase, header, image = std::move(image)]() mutable {
+            if (const auto self = weak.lock()) self->rendered(ofCase, header, std::move(image));
+        });
+    };
+    return job;
+}
+
+void PictureStream::rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
+                             Result<render::Image> image) {
+    if (ofCase != caseNumber_ || stopped_) return;  // rendering_ speaks of a newer picture
+    rendering_.reset();
+    if (!image) {
+        lost(image.error());
+    } else {
+        EncodeJob job{std::move(*image), header, {}};
+        if (encoding_)
+            held_ = Held{std::move(job), ofCase};
+        else
+            encode(std::move(job), ofCase);
+    }
+    schedule();
+}
+
+void PictureStream::encode(EncodeJob job, std::uint64_t ofCase) {
+    encoding_ = true;
+    job.header.picture = ++pictures_;
+    job.done = [weak = weak_from_this(), io = io_,
+                ofCase](Result<std::vector<std::uint8_t>> frames) {
+        asio::post(io, [weak, ofCase, frames = std::move(frames)]() mutable {
+            if (const auto self = weak.lock()) self->encoded(ofCase, std::move(frames));
+        });
+    };
+    encoders_.submit(std::move(job));
+}
+
+void PictureStream::encoded(std::uint64_t ofCase, Result<std::vector<std::uint8_t>> frames) {
+    encoding_ = false;
+    if (stopped_) return;
+    if (ofCase == caseNumber_) {
+        if (frames) {
+            ++unsent_;
+            outlet_.send(std::move(*frames));
+        } else {
+            lost(frames.error());
+        }
+    }
+    if (stopped_) return;  // the outlet may have ended everything
+    if (held_) {
+        Held held = std::move(*held_);
+        held_.reset();
+        encode(std::move(held.job), held.ofCase);
+    }
+    schedule();
+}
+
+void PictureStream::pictureSent() {
+    --unsent_;
+    schedule();
+}
+
+void PictureStream::lost(const Error& error) {
+    outlet_.failed(error);
+}
+
+}  // namespace haustra::session

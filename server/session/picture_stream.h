@@ -1,0 +1,95 @@
+// Decides which picture of a session is drawn when.
+#pragma once
+
+#include "session/encoder_threads.h"
+#include "session/open_case.h"
+#include "session/render_thread.h"
+#include "session/viewport.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include <asio/any_io_executor.hpp>
+#include <asio/steady_timer.hpp>
+
+namespace haustra::session {
+
+/// After this long without an input, a viewport that was moving gets its exact still.
+inline constexpr std::chrono::milliseconds restAfter{150};
+
+/// The viewports of one session, and at most one picture being drawn, one being encoded and one
+/// waiting between the two. Nothing is drawn while a picture waits to be sent: what the link
+/// cannot carry is never made, and the next picture shows the newest input. Belongs to the io
+/// thread; what render and encoder threads finish is posted there.
+class PictureStream : public std::enable_shared_from_this<PictureStream> {
+public:
+    struct Outlet {
+        std::function<void(std::vector<std::uint8_t> frames)> send;  ///< then call pictureSent()
+        std::function<void(const Error& error)> failed;              ///< a picture was lost
+    };
+    PictureStream(SessionId session, asio::any_io_executor io, RenderThread& renderer,
+                  EncoderThreads& encoders, Outlet outlet);
+
+    /// False: the client takes lossless tiles alone.
+    void setJpeg(bool accepted) { jpeg_ = accepted; }
+    /// From here on pictures are of this case (null: of none). Closes all viewports; pictures of
+    /// the case before do not appear any more.
+    void setCase(std::shared_ptr<const OpenCase> opened);
+
+    /// SetViewport, SetCamera, SetSlice, SetWindowLevel, SetTransferFunction. Fails (badInput)
+    /// and changes nothing but the sequence where the message is out of bounds, (unsupported)
+    /// where the viewport is not open.
+    template <class Input>
+    Result<void> input(const Input& message);
+
+    void pictureSent();
+    /// Ends everything; the outlet is not used again.
+    void stop();
+
+private:
+    struct Slot {
+        Viewport viewport;
+        std::uint64_t sequence = 0;
+        bool due = false;  // has to be drawn
+        Clock::time_point inputAt;
+        std::optional<asio::steady_timer> rest;
+    };
+
+    void changed(std::size_t id);
+    void atRest(std::size_t id);
+    void schedule();
+    PictureJob makeJob(std::size_t id);
+    void rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
+                  Result<render::Image> image);
+    void encode(EncodeJob job, std::uint64_t ofCase);
+    void encoded(std::uint64_t ofCase, Result<std::vector<std::uint8_t>> frames);
+    void lost(const Error& error);
+
+    struct Held {
+        EncodeJob job;
+        std::uint64_t ofCase;
+    };
+
+    const SessionId session_;
+    asio::any_io_executor io_;
+    RenderThread& renderer_;
+    EncoderThreads& encoders_;
+    Outlet outlet_;
+    std::shared_ptr<const OpenCase> case_;
+    std::uint64_t caseNumber_ = 0;  // counts setCase: tells old pictures from new ones
+    bool jpeg_ = true, stopped_ = false;
+
+    std::array<Slot, protocol::maxViewports> slots_;
+    std::size_t lastDrawn_ = 0;
+    std::uint64_t lastSequence_ = 0;
+    std::uint32_t pictures_ = 0;
+
+    std::optional<std::size_t> rendering_;  // the viewport whose picture waits or is drawn
+    std::optional<Held> held_;              // drawn, while another is being encoded
+    bool encoding_ = false;
+    int unsent_ = 0;
+};
+
+}  // namespace haustra::session

@@ -1,0 +1,73 @@
+#include "session/records_thread.h"
+
+namespace haustra::session {
+namespace {
+
+// Bounds how long the first of a burst waits for its acknowledgement.
+constexpr std::size_t maxSharedCommit = 256;
+
+}  // namespace
+
+// What lives on the records thread.
+struct RecordsThread::Keeping {
+    records::BookmarkStore bookmarks;
+    store::CaseStore cases;
+    std::vector<Add> additions;  // since the last commit
+
+    void commit() {
+        if (additions.empty()) return;
+        std::vector<records::NewBookmark> batch;
+        for (Add& add : additions)
+            batch.push_back(std::move(add.bookmark));
+        auto added = bookmarks.add(batch);
+        for (std::size_t n = 0; n < additions.size(); ++n) {
+            if (added)
+                additions[n].done(std::move((*added)[n]));
+            else
+                additions[n].done(tl::make_unexpected(added.error()));
+        }
+        additions.clear();
+    }
+
+    void serve(Add& add) { additions.push_back(std::move(add)); }
+    void serve(List& list) {
+        commit();
+        list.done(bookmarks.list(list.caseName));
+    }
+    void serve(ListCases& list) {
+        commit();
+        list.done(cases.cases());
+    }
+};
+
+std::unique_ptr<RecordsThread> RecordsThread::start(records::BookmarkStore bookmarks,
+                                                    store::CaseStore cases) {
+    std::unique_ptr<RecordsThread> self(new RecordsThread);
+    auto keeping = std::make_shared<Keeping>(Keeping{std::move(bookmarks), std::move(cases), {}});
+    self->thread_ = std::thread([&requests = self->requests_, keeping = std::move(keeping)] {
+        for (auto taken = requests.take(maxSharedCommit); !taken.empty();
+             taken = requests.take(maxSharedCommit)) {
+            for (Request& request : taken)
+                std::visit([&](auto& body) { keeping->serve(body); }, request);
+            keeping->commit();
+        }
+    });
+    return self;
+}
+
+RecordsThread::~RecordsThread() {
+    requests_.close();
+    if (thread_.joinable()) thread_.join();
+}
+
+void RecordsThread::add(records::NewBookmark bookmark, Added done) {
+    requests_.push(Add{std::move(bookmark), std::move(done)});
+}
+void RecordsThread::list(std::string caseName, Listed done) {
+    requests_.push(List{std::move(caseName), std::move(done)});
+}
+void RecordsThread::listCases(Cases done) {
+    requests_.push(ListCases{std::move(done)});
+}
+
+}  // namespace haustra::session

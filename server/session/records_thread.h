@@ -1,0 +1,57 @@
+// The thread that waits for the disk, so that no picture has to.
+#pragma once
+
+#include "records/bookmarks.h"
+#include "session/work_queue.h"
+#include "store/case_store.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+namespace haustra::session {
+
+/// Owns the bookmarks. Requests are served in order; additions that wait together share one
+/// commit. Its functions may be called from any thread and never block; callbacks come on the
+/// records thread.
+class RecordsThread {
+public:
+    static std::unique_ptr<RecordsThread> start(records::BookmarkStore bookmarks,
+                                                store::CaseStore cases);
+    /// Serves what waits, and joins.
+    ~RecordsThread();
+    RecordsThread(const RecordsThread&) = delete;
+    RecordsThread& operator=(const RecordsThread&) = delete;
+
+    /// `done` is called after the commit.
+    using Added = std::function<void(Result<records::Bookmark>)>;
+    void add(records::NewBookmark bookmark, Added done);
+    using Listed = std::function<void(Result<std::vector<records::Bookmark>>)>;
+    void list(std::string caseName, Listed done);
+    using Cases = std::function<void(Result<std::vector<std::string>>)>;
+    void listCases(Cases done);
+
+private:
+    struct Add {
+        records::NewBookmark bookmark;
+        Added done;
+    };
+    struct List {
+        std::string caseName;
+        Listed done;
+    };
+    struct ListCases {
+        Cases done;
+    };
+    using Request = std::variant<Add, List, ListCases>;
+    struct Keeping;
+    RecordsThread() = default;
+
+    WorkQueue<Request> requests_;
+    std::thread thread_;
+};
+
+}  // namespace haustra::session

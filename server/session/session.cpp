@@ -1,0 +1,260 @@
+#include "session/session.h"
+
+#include "session/inputs.h"
+#include "session/messages.h"
+
+#include <algorithm>
+
+#include <asio/post.hpp>
+#include <spdlog/spdlog.h>
+
+namespace haustra::session {
+
+using protocol::ClientMessage;
+using protocol::ErrorReport;
+using protocol::ServerMessage;
+
+namespace {
+
+ErrorReport::Code codeOf(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::badInput:
+            return ErrorReport::BAD_VALUE;
+        case ErrorKind::notFound:
+            return ErrorReport::NO_SUCH_CASE;
+        case ErrorKind::unsupported:
+            return ErrorReport::BAD_STATE;
+        default:
+            return ErrorReport::INTERNAL;
+    }
+}
+
+}  // namespace
+
+Session::Session(SessionId id, asio::any_io_executor io, const Services& services, Peer peer)
+    : id_(id), io_(std::move(io)), services_(services), peer_(std::move(peer)) {}
+
+std::shared_ptr<Session> Session::create(SessionId id, asio::any_io_executor io,
+                                         const Services& services, Peer peer) {
+    std::shared_ptr<Session> self(new Session(id, io, services, std::move(peer)));
+    const std::weak_ptr<Session> weak = self;
+    PictureStream::Outlet outlet;
+    outlet.send = [weak](std::vector<std::uint8_t> frames) {
+        const auto session = weak.lock();
+        if (session && session->state_ != State::ended)
+            session->peer_.send(std::move(frames), true);
+    };
+    outlet.failed = [weak](const Error& error) {
+        if (const auto session = weak.lock()) session->report(error);
+    };
+    self->pictures_ = std::make_shared<PictureStream>(id, io, services.renderer, services.encoders,
+                                                      std::move(outlet));
+    return self;
+}
+
+// ---- what the connection tells ----------------------------------------------------------------
+
+void Session::receive(std::span<const std::uint8_t> payload) {
+    if (state_ == State::ended) return;
+    ClientMessage message;
+    if (!message.ParseFromArray(payload.data(), int(payload.size())))
+        return end(ErrorReport::BAD_MESSAGE, "a control message cannot be read");
+    if (state_ == State::hello) {
+        if (!message.has_hello())
+            return end(ErrorReport::BAD_STATE, "the first message is not a hello");
+        return handle(message.hello());
+    }
+    dispatch(message);
+}
+
+void Session::dispatch(const ClientMessage& message) {
+    switch (message.body_case()) {
+        case ClientMessage::kHello:
+            return end(ErrorReport::BAD_STATE, "a second hello");
+        case ClientMessage::kListCases:
+            return handle(message.list_cases());
+        case ClientMessage::kOpenCase:
+            return handle(message.open_case());
+        case ClientMessage::kSetViewport:
+            return handleInput(message.set_viewport());
+        case ClientMessage::kSetCamera:
+            return handleInput(message.set_camera());
+        case ClientMessage::kSetSlice:
+            return handleInput(message.set_slice());
+        case ClientMessage::kSetWindowLevel:
+            return handleInput(message.set_window_level());
+        case ClientMessage::kSetTransferFunction:
+            return handleInput(message.set_transfer_function());
+        case ClientMessage::kAddBookmark:
+            return handle(message.add_bookmark());
+        case ClientMessage::kListBookmarks:
+            return handle(message.list_bookmarks());
+        case ClientMessage::kPing:
+            return handle(message.ping());
+        case ClientMessage::BODY_NOT_SET:
+            break;
+    }
+    end(ErrorReport::BAD_MESSAGE, "a control message says nothing that this version knows");
+}
+
+void Session::pictureSent() {
+    if (state_ != State::ended) pictures_->pictureSent();
+}
+
+void Session::end(ErrorReport::Code code, const std::string& message) {
+    if (state_ == State::ended) return;
+    spdlog::info("session {} is ended: {}", id_, message);
+    send(errorMessage(code, message, true));
+    disconnected();
+    peer_.endAfterSending();
+}
+
+void Session::disconnected() {
+    state_ = State::ended;
+    pictures_->stop();
+    case_.reset();
+}
+
+// ---- requests ---------------------------------------------------------------------------------
+
+void Session::handle(const protocol::Hello& hello) {
+    if (hello.protocol_version() != protocol::protocolVersion)
+        return end(ErrorReport::VERSION,
+                   "this server speaks version " + std::to_string(protocol::protocolVersion));
+    const auto can = [&](const char* capability) {
+        const auto& all = hello.capabilities();
+        return std::find(all.begin(), all.end(), capability) != all.end();
+    };
+    if (!can("lossless"))
+        return end(ErrorReport::VERSION, "a client without \"lossless\" cannot show exact stills");
+    pictures_->setJpeg(can("jpeg"));
+    state_ = State::ready;
+    ServerMessage answer;
+    auto* welcome = answer.mutable_welcome();
+    welcome->set_protocol_version(protocol::protocolVersion);
+    welcome->add_capabilities("jpeg");
+    welcome->add_capabilities("lossless");
+    welcome->set_software(services_.software);
+    welcome->set_renderer(services_.renderer.renderer());
+    send(answer);
+}
+
+template <class T>
+auto Session::answer(void (Session::*then)(std::uint64_t, Result<T>), std::uint64_t request,
+                     int weight) {
+    unanswered_ += weight;
+    return [weak = weak_from_this(), io = io_, then, request, weight](Result<T> result) {
+        asio::post(io, [weak, then, request, weight, result = std::move(result)]() mutable {
+            const auto self = weak.lock();
+            if (!self) return;
+            self->unanswered_ -= weight;
+            if (self->state_ == State::ended) return;
+            ((*self).*then)(request, std::move(result));
+            self->peer_.answered();
+        });
+    };
+}
+
+void Session::handle(const protocol::ListCases&) {
+    services_.records.listCases(answer(&Session::listedCases, 0, listWeight));
+}
+
+void Session::listedCases(std::uint64_t, Result<std::vector<std::string>> names) {
+    if (!names) return report(names.error());
+    ServerMessage message;
+    auto* list = message.mutable_case_list();
+    for (std::string& name : *names)
+        list->add_names(std::move(name));
+    send(message);
+}
+
+void Session::handle(const protocol::OpenCase& message) {
+    if (state_ == State::opening)
+        return refuse(ErrorReport::BAD_STATE, "another case is being opened");
+    if (!store::isCaseName(message.name()))
+        return refuse(ErrorReport::NO_SUCH_CASE, "this is no case's name");
+    state_ = State::opening;
+    case_.reset();
+    pictures_->setCase(nullptr);
+    services_.renderer.openCase(message.name(), [weak = weak_from_this(), io = io_](auto result) {
+        asio::post(io, [weak, result = std::move(result)]() mutable {
+            if (const auto self = weak.lock()) self->opened(std::move(result));
+        });
+    });
+}
+
+void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
+    if (state_ != State::opening) return;
+    if (!result) {
+        state_ = State::ready;
+        return report(result.error());
+    }
+    state_ = State::open;
+    case_ = std::move(*result);
+    pictures_->setCase(case_);
+    spdlog::info("session {} has a case open", id_);
+    send(caseOpenedMessage(*case_));
+}
+
+template <class Input>
+void Session::handleInput(const Input& message) {
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open");
+    if (const auto taken = pictures_->input(message); !taken) report(taken.error());
+}
+
+void Session::handle(const protocol::AddBookmark& message) {
+    const std::uint64_t request = message.request();
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
+    auto bookmark = bookmarkFrom(message, case_->name);
+    if (!bookmark) return report(bookmark.error(), request);
+    services_.records.add(std::move(*bookmark), answer(&Session::addedBookmark, request));
+}
+
+void Session::addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark) {
+    if (!bookmark) return report(bookmark.error(), request);
+    ServerMessage message;
+    message.mutable_bookmark_added()->set_request(request);
+    fill(*message.mutable_bookmark_added()->mutable_bookmark(), *bookmark);
+    send(message);
+}
+
+void Session::handle(const protocol::ListBookmarks& message) {
+    const std::uint64_t request = message.request();
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
+    services_.records.list(case_->name, answer(&Session::listedBookmarks, request, listWeight));
+}
+
+void Session::listedBookmarks(std::uint64_t request,
+                              Result<std::vector<records::Bookmark>> bookmarks) {
+    if (!bookmarks) return report(bookmarks.error(), request);
+    ServerMessage message;
+    message.mutable_bookmark_list()->set_request(request);
+    for (const records::Bookmark& bookmark : *bookmarks)
+        fill(*message.mutable_bookmark_list()->add_bookmarks(), bookmark);
+    send(message);
+}
+
+void Session::handle(const protocol::Ping& message) {
+    ServerMessage answer;
+    answer.mutable_pong()->set_request(message.request());
+    send(answer);
+}
+
+// ---- answers ----------------------------------------------------------------------------------
+
+void Session::send(const ServerMessage& message) {
+    if (state_ != State::ended) peer_.send(frameOf(message), false);
+}
+
+void Session::refuse(ErrorReport::Code code, const std::string& message, std::uint64_t request) {
+    send(errorMessage(code, message, false, request));
+}
+
+void Session::report(const Error& error, std::uint64_t request) {
+    const auto code = codeOf(error.kind);
+    // The place may be a case's name: it goes to the client, never into the log.
+    if (code == ErrorReport::INTERNAL) spdlog::error("session {}: {}", id_, error.message);
+    refuse(code, describe(error), request);
+}
+
+}  // namespace haustra::session

@@ -1,0 +1,95 @@
+// One client's session: the states and answers of PROTOCOL.md §2 and §4.
+#pragma once
+
+#include "protocol/haustra.pb.h"
+#include "session/picture_stream.h"
+#include "session/records_thread.h"
+#include "session/render_thread.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <asio/any_io_executor.hpp>
+
+namespace haustra::session {
+
+/// What sessions use together. Outlives them all.
+struct Services {
+    RenderThread& renderer;
+    EncoderThreads& encoders;
+    RecordsThread& records;
+    std::string software;  ///< name and version, for the welcome
+};
+
+/// The session's side of a connection. Called on the io thread.
+struct Peer {
+    std::function<void(std::vector<std::uint8_t> frames, bool picture)> send;
+    std::function<void()> endAfterSending;  ///< the session is over
+    std::function<void()> answered;         ///< tooBusy() may have become false
+};
+
+/// Belongs to the io thread. Whatever the bytes, a violation costs this session alone.
+class Session : public std::enable_shared_from_this<Session> {
+public:
+    static std::shared_ptr<Session> create(SessionId id, asio::any_io_executor io,
+                                           const Services& services, Peer peer);
+
+    /// A control frame's payload.
+    void receive(std::span<const std::uint8_t> payload);
+    /// A picture given to Peer::send has left.
+    void pictureSent();
+    /// Ends the session with a last, fatal error.
+    void end(protocol::ErrorReport::Code code, const std::string& message);
+    /// The connection is gone; the peer is not used again.
+    void disconnected();
+
+    bool greeted() const { return state_ != State::hello; }
+    /// So many requests wait for their answer that no more should be read.
+    bool tooBusy() const { return unanswered_ >= maxUnanswered; }
+
+    static constexpr int maxUnanswered = 256;
+    static constexpr int listWeight = 64;  ///< a list's answer is long
+
+private:
+    enum class State { hello, ready, opening, open, ended };
+
+    Session(SessionId id, asio::any_io_executor io, const Services& services, Peer peer);
+    void handle(const protocol::Hello& hello);
+    void handle(const protocol::ListCases& message);
+    void handle(const protocol::OpenCase& message);
+    void handle(const protocol::AddBookmark& message);
+    void handle(const protocol::ListBookmarks& message);
+    void handle(const protocol::Ping& message);
+    template <class Input>
+    void handleInput(const Input& message);
+    void opened(Result<std::shared_ptr<const OpenCase>> result);
+
+    void dispatch(const protocol::ClientMessage& message);
+    void send(const protocol::ServerMessage& message);
+    void report(const Error& error, std::uint64_t request = 0);
+    void refuse(protocol::ErrorReport::Code code, const std::string& message,
+                std::uint64_t request = 0);
+    /// A callback for another thread: its result comes to `then` on the io thread, if the session
+    /// still lives.
+    template <class T>
+    auto answer(void (Session::*then)(std::uint64_t request, Result<T>), std::uint64_t request,
+                int weight = 1);
+    void listedCases(std::uint64_t request, Result<std::vector<std::string>> names);
+    void addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark);
+    void listedBookmarks(std::uint64_t request, Result<std::vector<records::Bookmark>> bookmarks);
+
+    const SessionId id_;
+    asio::any_io_executor io_;
+    const Services& services_;
+    Peer peer_;
+    State state_ = State::hello;
+    std::shared_ptr<const OpenCase> case_;
+    std::shared_ptr<PictureStream> pictures_;
+    int unanswered_ = 0;
+};
+
+}  // namespace haustra::session

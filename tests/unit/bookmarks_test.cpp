@@ -1,0 +1,123 @@
+// The bookmark store keeps what it acknowledged, once.
+#include "records/bookmarks.h"
+
+#include "end_to_end/run_program.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+namespace haustra::records {
+namespace {
+
+NewBookmark bookmark(const std::string& caseName, int n) {
+    NewBookmark added;
+    added.caseName = caseName;
+    added.clientKey = "key-" + std::to_string(n);
+    added.positionMm = {0.1 * n, -1.0 / 3.0, 1e-17};
+    added.forward = {0, 0, 1};
+    added.up = {0, -1, 0};
+    added.arcMm = 1000.0 / (n + 1);
+    added.note = "polyp? n\xc2\xb0 " + std::to_string(n) + " '); DROP TABLE bookmarks; --";
+    return added;
+}
+
+void expectSame(const Bookmark& stored, const NewBookmark& added) {
+    EXPECT_EQ(stored.caseName, added.caseName);
+    EXPECT_EQ(stored.clientKey, added.clientKey);
+    EXPECT_EQ(stored.positionMm, added.positionMm);
+    EXPECT_EQ(stored.forward, added.forward);
+    EXPECT_EQ(stored.up, added.up);
+    EXPECT_EQ(stored.arcMm, added.arcMm);
+    EXPECT_EQ(stored.note, added.note);
+}
+
+class Bookmarks : public ::testing::Test {
+protected:
+    BookmarkStore open() {
+        auto store = BookmarkStore::open(folder_.path() / "records.sqlite3");
+        EXPECT_TRUE(store) << describe(store.error());
+        return std::move(*store);
+    }
+    tests::TemporaryFolder folder_;
+};
+
+TEST_F(Bookmarks, AreThereAfterReopeningInTheirOrder) {
+    {
+        BookmarkStore store = open();
+        for (int n = 0; n < 20; ++n) {
+            const auto added = store.add({bookmark("a", 2 * n), bookmark("b", 2 * n + 1)});
+            ASSERT_TRUE(added);
+            for (const auto& one : *added)
+                ASSERT_TRUE(one) << describe(one.error());
+        }
+    }
+    BookmarkStore store = open();
+    const auto listed = store.list("a");
+    ASSERT_TRUE(listed);
+    ASSERT_EQ(listed->size(), 20u);
+    for (int n = 0; n < 20; ++n) {
+        expectSame((*listed)[std::size_t(n)], bookmark("a", 2 * n));
+        EXPECT_EQ((*listed)[std::size_t(n)].createdUtc.size(),
+                  std::size("2020-01-31T23:59:59Z") - 1);
+        EXPECT_TRUE(n == 0 || (*listed)[std::size_t(n)].id > (*listed)[std::size_t(n) - 1].id);
+    }
+    EXPECT_TRUE(store.list("nobody's")->empty());
+}
+
+TEST_F(Bookmarks, OneAddedAgainIsTheSame) {
+    const NewBookmark added = bookmark("a", 1);
+    const auto first = open().add({added});
+    BookmarkStore store = open();
+    NewBookmark changed = added;
+    changed.note = "another text under the same key";
+    const auto again = store.add({added, changed, added});
+    ASSERT_TRUE(first && again);
+    for (const auto& one : *again) {
+        ASSERT_TRUE(one);
+        EXPECT_EQ(one->id, (*first)[0]->id);
+        EXPECT_EQ(one->createdUtc, (*first)[0]->createdUtc);
+        expectSame(*one, added);
+    }
+    EXPECT_EQ(store.list("a")->size(), 1u);
+    // The key counts within its case.
+    NewBookmark elsewhere = added;
+    elsewhere.caseName = "b";
+    EXPECT_NE((*store.add({elsewhere}))[0]->id, (*first)[0]->id);
+}
+
+TEST_F(Bookmarks, ACaseHoldsSoManyAndOthersGoOn) {
+    BookmarkStore store = open();
+    const auto long1 = [](int n) {
+        NewBookmark added = bookmark("a", n);
+        added.note = std::string(2000, 'x');
+        return added;
+    };
+    std::vector<NewBookmark> many;
+    for (int n = 0; n < 2000; ++n)
+        many.push_back(long1(n));
+    const auto added = store.add(many);
+    ASSERT_TRUE(added);
+    std::size_t kept = 0;
+    for (const auto& one : *added)
+        kept += one.has_value();
+    EXPECT_GT(kept, 1000u);
+    EXPECT_LT(kept, 2000u);
+    EXPECT_EQ(store.list("a")->size(), kept);
+    EXPECT_FALSE((*added).back());
+    EXPECT_TRUE((*store.add({bookmark("b", 1)}))[0]);
+    // A retry of one that is stored is not an addition; and a restart does not make room.
+    EXPECT_TRUE((*store.add({long1(0)}))[0]);
+    EXPECT_FALSE((*open().add({long1(5000)}))[0]);
+}
+
+TEST_F(Bookmarks, AFileThatIsNoDatabaseIsRefused) {
+    std::ofstream(folder_.path() / "records.sqlite3") << std::string(8192, 'x');
+    const auto store = BookmarkStore::open(folder_.path() / "records.sqlite3");
+    ASSERT_FALSE(store);
+    EXPECT_EQ(store.error().kind, ErrorKind::io);
+    EXPECT_FALSE(BookmarkStore::open(folder_.path() / "no" / "such" / "folder"));
+}
+
+}  // namespace
+}  // namespace haustra::records
