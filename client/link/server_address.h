@@ -8,7 +8,7 @@
 
 namespace haustra::link {
 
-inline constexpr std::uint16_t defaultPort = 7443;
+inline constexpr std::uint16_t defaultPort = 7117;
 
 struct ServerAddress {
     std::string host;

@@ -23,6 +23,7 @@ struct GlWindow::Impl {
     double scale = 1.0;
     Fonts fonts;
     std::vector<KeyPress> keyPresses;
+    std::optional<ImVec2> mouse;      // as the last event told it
     std::vector<SDL_Event> heldBack;  // releases that wait for the next frame
 
     ~Impl() {
@@ -119,6 +120,10 @@ bool GlWindow::beginFrame(bool busy) {
     for (; has; has = SDL_PollEvent(&event)) {
         if (event.type == SDL_QUIT) return false;
         if (event.type == impl_->wakeEvent) continue;
+        if (event.type == SDL_MOUSEMOTION)
+            impl_->mouse = ImVec2(float(event.motion.x), float(event.motion.y));
+        if (event.type == SDL_WINDOWEVENT && event.window.event == SDL_WINDOWEVENT_LEAVE)
+            impl_->mouse.reset();
         const auto& key = event.key.keysym;
         if (event.type == SDL_KEYDOWN) {
             impl_->keyPresses.push_back({key.scancode, (key.mod & KMOD_SHIFT) != 0,
@@ -133,6 +138,9 @@ bool GlWindow::beginFrame(bool busy) {
     }
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplSDL2_NewFrame();
+    // The backend asks SDL for the global pointer, which lags where the pointer is moved by
+    // software (remote desktops): a drag would begin with a jump.
+    if (impl_->mouse) ImGui::GetIO().MousePos = *impl_->mouse;
     ImGui::NewFrame();
     return true;
 }

@@ -131,7 +131,7 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
     const bool hovered = pane(ui, "endoscopic", area);
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
-        // A drag across the pane's height turns by the field of view: the wall follows the hand.
+        // A drag across the pane's height turns by the field of view, towards the hand.
         const double degreesPerPixel = flight.camera().fovDegrees / area.size().y;
         flight.look(io.MouseDelta.x * degreesPerPixel, -io.MouseDelta.y * degreesPerPixel);
     }

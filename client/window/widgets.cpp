@@ -20,11 +20,11 @@ ImVec2 textSize(ImFont* font, const std::string& text) {
 
 ImVec2 outlinedText(ImDrawList* list, ImFont* font, ImVec2 position, ImU32 colour,
                     const std::string& text) {
-    constexpr ImU32 outline = IM_COL32(0, 0, 0, 170);
-    for (const ImVec2 shift :
-         {ImVec2(-1, 0), ImVec2(1, 0), ImVec2(0, -1), ImVec2(0, 1), ImVec2(1, 1)})
-        list->AddText(font, font->FontSize, {position.x + shift.x, position.y + shift.y}, outline,
-                      text.c_str());
+    constexpr ImU32 outline = IM_COL32(0, 0, 0, 200);
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+            list->AddText(font, font->FontSize, {position.x + float(dx), position.y + float(dy)},
+                          outline, text.c_str());
     list->AddText(font, font->FontSize, position, colour, text.c_str());
     return textSize(font, text);
 }
