@@ -180,32 +180,38 @@ Result<void> partAt(const CtScan& scan, const RunComponents& air, const std::vec
     return {};
 }
 
-// Partial volume between colon air and the colon fluid beneath belongs to the tagged lumen.
-void fillInterfaces(Volume<std::uint8_t>& labels, GravityAxis down) {
+// Partial volume between colon air and the colon fluid straight beneath belongs to the tagged
+// lumen, at the height of a level and the menisci at its rim: elsewhere a thin wall looks the same.
+void fillInterfaces(Volume<std::uint8_t>& labels, const std::vector<Level>& levels,
+                    const std::vector<int>& colonLevels, GravityAxis down) {
+    constexpr int rimVoxels = 2, nearVoxels = 4;
     const Grid& grid = labels.grid();
     const auto out = labels.writable();
-    const int longest = int(std::ceil(2.6 / grid.spacingMm()[down.axis])) + 1;
     const int across = 1 - down.axis;
-    for (int k = 0; k < grid.size.z; ++k) {
-        for (int n = 0; n < grid.size[across]; ++n) {
-            int sinceAir = longest + 1;
-            for (int step = 0; step < grid.size[down.axis]; ++step) {
-                glm::ivec3 v(0, 0, k);
-                v[across] = n;
-                v[down.axis] = down.sign > 0 ? step : grid.size[down.axis] - 1 - step;
-                const std::size_t index = grid.index(v);
-                const auto label = LumenLabel(out[index]);
-                if (label == LumenLabel::air) {
-                    sinceAir = 0;
-                } else if (label == LumenLabel::tagged) {
-                    for (int back = 1; sinceAir <= longest && back <= sinceAir; ++back) {
-                        glm::ivec3 gap = v;
-                        gap[down.axis] -= back * down.sign;
-                        out[grid.index(gap)] = std::uint8_t(LumenLabel::tagged);
+    for (int l : colonLevels) {
+        for (const LevelColumn& column : levels[l].columns) {
+            for (int dz = -rimVoxels; dz <= rimVoxels; ++dz) {
+                for (int dn = -rimVoxels; dn <= rimVoxels; ++dn) {
+                    // From air above the level to fluid below it, nothing else between.
+                    glm::ivec3 v = column.below;
+                    v[across] += dn, v.z += dz, v[down.axis] -= nearVoxels * down.sign;
+                    std::vector<std::size_t> between;
+                    bool underAir = false;
+                    for (int step = 0; step < 2 * nearVoxels; ++step, v[down.axis] += down.sign) {
+                        if (!grid.contains(v)) break;
+                        const std::size_t index = grid.index(v);
+                        if (LumenLabel(out[index]) == LumenLabel::air) {
+                            underAir = true, between.clear();
+                        } else if (LumenLabel(out[index]) == LumenLabel::tagged) {
+                            if (underAir && between.size() < nearVoxels) {
+                                for (std::size_t gap : between)
+                                    out[gap] = std::uint8_t(LumenLabel::tagged);
+                            }
+                            break;
+                        } else if (underAir) {
+                            between.push_back(index);
+                        }
                     }
-                    sinceAir = longest + 1;
-                } else {
-                    ++sinceAir;
                 }
             }
         }
@@ -284,11 +290,14 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
 
     lumen.labels = Volume<std::uint8_t>(grid, std::uint8_t(LumenLabel::outside));
     const auto labels = lumen.labels.writable();
+    std::vector<int> colonLevels;
     std::vector<char> colonAir(air.components().size(), 0);
     for (int n : selected) {
         for (int component : pieces[n].air)
             colonAir[component] = 1;
         for (int pool : pieces[n].pools) {
+            colonLevels.insert(colonLevels.end(), pools[pool].levels.begin(),
+                               pools[pool].levels.end());
             for (std::uint32_t index : pools[pool].voxels)
                 labels[index] = std::uint8_t(LumenLabel::tagged);
         }
@@ -304,7 +313,7 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
             }
         }
     }
-    fillInterfaces(lumen.labels, gravity.down);
+    fillInterfaces(lumen.labels, gravity.levels, colonLevels, gravity.down);
     addTaggedStool(lumen.labels, scan.hu, tissue);
     progress(1.0);
     return lumen;

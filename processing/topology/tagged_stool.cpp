@@ -10,6 +10,8 @@ namespace {
 
 constexpr double largestMl = 30.0;
 constexpr double smallestContactShare = 0.25;
+constexpr double smallestCoreShare = 0.1;
+constexpr double wellAboveHu = 60.0;
 constexpr int contactVoxels = 2;  // of partial volume between air and stool
 
 }  // namespace
@@ -86,6 +88,22 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
             }
         }
         if (tooLarge || body.size() < 8) continue;
+        // A coated fold is thin and no brighter than its blur: stool has an inside, well tagged.
+        std::size_t core = 0;
+        double sum = 0.0;
+        for (std::uint32_t index : body) {
+            const glm::ivec3 v = grid.voxelAt(index);
+            bool inside = true;
+            for (int axis = 0; axis < 3 && inside; ++axis) {
+                inside = v[axis] > 0 && v[axis] + 1 < size[axis] &&
+                         isStool(index - strides[axis]) && isStool(index + strides[axis]);
+            }
+            core += inside;
+            sum += hu[index];
+        }
+        if (double(core) < smallestCoreShare * double(body.size()) ||
+            sum < (above + wellAboveHu) * double(body.size()))
+            continue;
         std::size_t faces = 0, contacts = 0;
         for (std::uint32_t index : body) {
             const glm::ivec3 v = grid.voxelAt(index);
