@@ -7,9 +7,11 @@
 namespace haustra {
 namespace {
 
-glm::dvec3 positionAt(const std::vector<CenterlinePoint>& points, double arcMm, CenterlinePoint* sample) {
-    const auto after = std::upper_bound(points.begin(), points.end(), arcMm,
-                                        [](double arc, const CenterlinePoint& p) { return arc < p.arcMm; });
+glm::dvec3 positionAt(const std::vector<CenterlinePoint>& points, double arcMm,
+                      CenterlinePoint* sample) {
+    const auto after =
+        std::upper_bound(points.begin(), points.end(), arcMm,
+                         [](double arc, const CenterlinePoint& p) { return arc < p.arcMm; });
     const CenterlinePoint& b = after == points.end() ? points.back() : *after;
     const CenterlinePoint& a = after == points.begin() ? points.front() : *(after - 1);
     const double length = b.arcMm - a.arcMm;
@@ -50,7 +52,8 @@ double nearestArc(const Centerline& centerline, glm::dvec3 positionMm) {
     return arc;
 }
 
-std::vector<glm::dvec3> rotationMinimizingUps(const Centerline& centerline, glm::dvec3 preferredUp) {
+std::vector<glm::dvec3> rotationMinimizingUps(const Centerline& centerline,
+                                              glm::dvec3 preferredUp) {
     const auto& points = centerline.points;
     std::vector<glm::dvec3> ups(points.size());
     glm::dvec3 tangent(0.0), up(0.0);
@@ -83,19 +86,28 @@ CenterlineCamera cameraAtArc(const Centerline& centerline, const std::vector<glm
                              double arcMm, FlightDirection direction) {
     const CenterlinePose pose = poseAtArc(centerline, arcMm);
     const auto& points = centerline.points;
-    const auto after = std::lower_bound(
-        points.begin(), points.end(), pose.point.arcMm,
-        [](const CenterlinePoint& p, double arc) { return p.arcMm < arc; });
+    const auto after =
+        std::lower_bound(points.begin(), points.end(), pose.point.arcMm,
+                         [](const CenterlinePoint& p, double arc) { return p.arcMm < arc; });
     std::size_t nearest = std::min<std::size_t>(after - points.begin(), points.size() - 1);
-    if (nearest > 0 && pose.point.arcMm - points[nearest - 1].arcMm < points[nearest].arcMm - pose.point.arcMm) {
+    if (nearest > 0 &&
+        pose.point.arcMm - points[nearest - 1].arcMm < points[nearest].arcMm - pose.point.arcMm) {
         --nearest;
     }
+    const bool antegrade = direction == FlightDirection::antegrade;
     CenterlineCamera camera;
     camera.positionMm = pose.point.positionMm;
-    camera.forward = direction == FlightDirection::antegrade ? pose.tangent : -pose.tangent;
+    // A wide lumen bends far within its own width: the eye goes to where the path will be.
+    const glm::dvec3 ahead =
+        positionAt(points, pose.point.arcMm + (antegrade ? flightLookAheadMm : -flightLookAheadMm),
+                   nullptr) -
+        camera.positionMm;
+    camera.forward = glm::length(ahead) > 0.25 * flightLookAheadMm ? glm::normalize(ahead)
+                     : antegrade                                   ? pose.tangent
+                                                                   : -pose.tangent;
     const glm::dvec3 up = nearest < ups.size() ? ups[nearest] : flightPreferredUp;
-    const glm::dvec3 upright = up - glm::dot(up, pose.tangent) * pose.tangent;
-    camera.up = glm::length(upright) > 1e-6 ? glm::normalize(upright) : anyNormal(pose.tangent);
+    const glm::dvec3 upright = up - glm::dot(up, camera.forward) * camera.forward;
+    camera.up = glm::length(upright) > 1e-6 ? glm::normalize(upright) : anyNormal(camera.forward);
     return camera;
 }
 

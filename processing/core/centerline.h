@@ -1,8 +1,9 @@
 // The colon's centerline: the path that a reader flies along.
 #pragma once
 
-#include <glm/glm.hpp>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 namespace haustra {
 
@@ -52,8 +53,12 @@ struct CenterlineCamera {
     glm::dvec3 up{0.0, -1.0, 0.0};
 };
 
-/// The camera at `arcMm` (clamped to the ends): looks along the tangent of poseAtArc, or against
-/// it; up is that of the nearest sample in `ups`, made orthogonal to the tangent. `ups` is
+/// How far along the path a fly-through camera looks.
+inline constexpr double flightLookAheadMm = 20.0;
+
+/// The camera at `arcMm` (clamped to the ends): looks at the path's place flightLookAheadMm farther
+/// on, along the tangent of poseAtArc where the path ends before; up is that of the nearest sample
+/// in `ups`, made orthogonal to the view. `ups` is
 /// rotationMinimizingUps(centerline, flightPreferredUp); whoever draws a fly-through uses this one
 /// function, so equal arcs give equal pictures. Needs at least one point; O(log n).
 CenterlineCamera cameraAtArc(const Centerline& centerline, const std::vector<glm::dvec3>& ups,

@@ -141,4 +141,29 @@ TEST(Centerline, APreferredUpAlongTheTangentStillGivesOne) {
 }
 
 }  // namespace
+TEST(CameraAtArc, LooksAtThePathAheadOnACircle) {
+    // On a circle of radius r the chord to s mm ahead leaves the tangent by the angle s / 2r.
+    Centerline circle;
+    const double radius = 60.0;
+    for (int n = 0; n <= 300; ++n) {
+        const double a = n / radius;
+        circle.points.push_back(
+            {{radius * std::cos(a), radius * std::sin(a), 0.0}, double(n), 10.0, false});
+    }
+    const auto ups = rotationMinimizingUps(circle, {0, 0, 1});
+    for (FlightDirection direction : {FlightDirection::antegrade, FlightDirection::retrograde}) {
+        const double sign = direction == FlightDirection::antegrade ? 1.0 : -1.0;
+        const CenterlineCamera camera = cameraAtArc(circle, ups, 150.0, direction);
+        const glm::dvec3 tangent = sign * poseAtArc(circle, 150.0).tangent;
+        EXPECT_NEAR(std::acos(glm::dot(camera.forward, tangent)),
+                    flightLookAheadMm / (2.0 * radius), 1e-3);
+        EXPECT_LT(glm::dot(camera.forward, camera.positionMm), 0.0);  // into the bend
+        EXPECT_NEAR(glm::dot(camera.up, camera.forward), 0.0, 1e-12);
+        EXPECT_NEAR(glm::length(camera.up), 1.0, 1e-12);
+    }
+    // At the end the path is over: the camera looks straight on.
+    const CenterlineCamera last = cameraAtArc(circle, ups, 300.0, FlightDirection::antegrade);
+    EXPECT_LT(glm::distance(last.forward, poseAtArc(circle, 300.0).tangent), 1e-12);
+}
+
 }  // namespace haustra
