@@ -103,13 +103,7 @@ void Flight::goTo(const Camera& camera, double arcMm) {
         const CenterlinePose pose = poseAtArc(centerline_, arcMm);
         if (glm::distance(pose.point.positionMm, camera.positionMm) < 0.5) {
             goTo(arcMm);
-            direction_ = glm::dot(camera.forward, pose.tangent) < 0.0 ? FlightDirection::retrograde
-                                                                      : FlightDirection::antegrade;
-            const Camera straight = straightCamera();
-            const double right = glm::dot(camera.forward, rightOf(straight));
-            const double ahead = glm::dot(camera.forward, straight.forward);
-            const double above = std::clamp(glm::dot(camera.forward, straight.up), -1.0, 1.0);
-            setLook(glm::degrees(std::atan2(right, ahead)), glm::degrees(std::asin(above)));
+            lookAs(camera);
             return;
         }
         arcMm_ = nearestArc(centerline_, camera.positionMm);
@@ -117,6 +111,23 @@ void Flight::goTo(const Camera& camera, double arcMm) {
     freeCamera_ = camera;
     freeCamera_.fovDegrees = fovDegrees_;
     free_ = true;
+}
+
+// Sets direction and look offset so that the camera at this arc is `camera`. Either direction can
+// face any way; the one that made the view also gives its up.
+void Flight::lookAs(const Camera& camera) {
+    const auto face = [&](FlightDirection direction) {
+        direction_ = direction;
+        const Camera straight = straightCamera();
+        const double right = glm::dot(camera.forward, rightOf(straight));
+        const double ahead = glm::dot(camera.forward, straight.forward);
+        const double above = std::clamp(glm::dot(camera.forward, straight.up), -1.0, 1.0);
+        setLook(glm::degrees(std::atan2(right, ahead)), glm::degrees(std::asin(above)));
+        return glm::distance(centerlineCamera().up, camera.up);
+    };
+    const double retrograde = face(FlightDirection::retrograde);
+    const double antegrade = face(FlightDirection::antegrade);
+    if (retrograde < antegrade) face(FlightDirection::retrograde);
 }
 
 // The camera that looks straight along the path.

@@ -75,6 +75,7 @@ public:
 private:
     Camera centerlineCamera() const;
     Camera straightCamera() const;
+    void lookAs(const Camera& camera);
 
     Centerline centerline_;
     std::vector<glm::dvec3> ups_;
