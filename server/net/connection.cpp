@@ -46,8 +46,13 @@ void Connection::start(std::function<bool()> admit, std::function<void()> closed
         [self = shared_from_this(), closed = std::move(closed)](std::exception_ptr failure) {
             try {
                 if (failure) std::rethrow_exception(failure);
+            } catch (const asio::system_error& error) {
+                const bool left = error.code() == asio::error::eof ||
+                                  error.code() == asio::ssl::error::stream_truncated;
+                spdlog::info("session {} is over: {}", self->id_,
+                             left ? "the client left" : error.code().message());
             } catch (const std::exception& error) {
-                spdlog::info("session {} is over: {}", self->id_, error.what());
+                spdlog::error("session {} is over: {}", self->id_, error.what());
             }
             self->abort();
             closed();

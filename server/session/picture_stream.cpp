@@ -53,17 +53,22 @@ void PictureStream::changed(std::size_t id) {
     Slot& slot = slots_[id];
     slot.due = slot.viewport.isDrawable();
     slot.inputAt = Clock::now();
-    if (slot.due && slot.viewport.moving()) {
-        if (!slot.rest) slot.rest.emplace(io_);
-        slot.rest->expires_after(restAfter);
-        slot.rest->async_wait([weak = weak_from_this(), id](const asio::error_code& error) {
+    slot.rest.reset();
+    schedule();
+}
+
+// From the sending on, not from the input: however slow the drawing, a client that answers each
+// picture with its next camera gets no stills in between.
+void PictureStream::awaitRest(const protocol::TileHeader& sent) {
+    Slot& slot = slots_[sent.viewport];
+    if (sent.exact || slot.sequence != sent.sequence || slot.due) return;
+    slot.rest.emplace(io_);
+    slot.rest->expires_after(restAfter);
+    slot.rest->async_wait(
+        [weak = weak_from_this(), id = sent.viewport](const asio::error_code& error) {
             const auto self = weak.lock();
             if (self && !error) self->atRest(id);
         });
-    } else {
-        slot.rest.reset();
-    }
-    schedule();
 }
 
 void PictureStream::atRest(std::size_t id) {
@@ -87,7 +92,7 @@ void PictureStream::schedule() {
         if (slot.due && renderer_.replace(makeJob(*rendering_))) slot.due = false;
         return;
     }
-    if (held_ || unsent_ > 0) return;
+    if (held_ || !unsent_.empty()) return;
     for (std::size_t n = 1; n <= slots_.size(); ++n) {
         const std::size_t id = (lastDrawn_ + n) % slots_.size();
         if (!slots_[id].due) continue;
@@ -141,21 +146,22 @@ void PictureStream::rendered(std::uint64_t ofCase, const protocol::TileHeader& h
 void PictureStream::encode(EncodeJob job, std::uint64_t ofCase) {
     encoding_ = true;
     job.header.picture = ++pictures_;
-    job.done = [weak = weak_from_this(), io = io_,
-                ofCase](Result<std::vector<std::uint8_t>> frames) {
-        asio::post(io, [weak, ofCase, frames = std::move(frames)]() mutable {
-            if (const auto self = weak.lock()) self->encoded(ofCase, std::move(frames));
+    job.done = [weak = weak_from_this(), io = io_, ofCase,
+                header = job.header](Result<std::vector<std::uint8_t>> frames) {
+        asio::post(io, [weak, ofCase, header, frames = std::move(frames)]() mutable {
+            if (const auto self = weak.lock()) self->encoded(ofCase, header, std::move(frames));
         });
     };
     encoders_.submit(std::move(job));
 }
 
-void PictureStream::encoded(std::uint64_t ofCase, Result<std::vector<std::uint8_t>> frames) {
+void PictureStream::encoded(std::uint64_t ofCase, const protocol::TileHeader& header,
+                            Result<std::vector<std::uint8_t>> frames) {
     encoding_ = false;
     if (stopped_) return;
     if (ofCase == caseNumber_) {
         if (frames) {
-            ++unsent_;
+            unsent_.push_back(header);
             outlet_.send(std::move(*frames));
         } else {
             lost(frames.error());
@@ -171,7 +177,8 @@ void PictureStream::encoded(std::uint64_t ofCase, Result<std::vector<std::uint8_
 }
 
 void PictureStream::pictureSent() {
-    --unsent_;
+    awaitRest(unsent_.front());
+    unsent_.pop_front();
     schedule();
 }
 

@@ -7,6 +7,7 @@
 #include "session/viewport.h"
 
 #include <array>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,7 +17,8 @@
 
 namespace haustra::session {
 
-/// After this long without an input, a viewport that was moving gets its exact still.
+/// A viewport that was moving gets its exact still when no input has come for this long after its
+/// picture had been sent.
 inline constexpr std::chrono::milliseconds restAfter{150};
 
 /// The viewports of one session, and at most one picture being drawn, one being encoded and one
@@ -58,13 +60,15 @@ private:
     };
 
     void changed(std::size_t id);
+    void awaitRest(const protocol::TileHeader& sent);
     void atRest(std::size_t id);
     void schedule();
     PictureJob makeJob(std::size_t id);
     void rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
                   Result<render::Image> image);
     void encode(EncodeJob job, std::uint64_t ofCase);
-    void encoded(std::uint64_t ofCase, Result<std::vector<std::uint8_t>> frames);
+    void encoded(std::uint64_t ofCase, const protocol::TileHeader& header,
+                 Result<std::vector<std::uint8_t>> frames);
     void lost(const Error& error);
 
     struct Held {
@@ -89,7 +93,7 @@ private:
     std::optional<std::size_t> rendering_;  // the viewport whose picture waits or is drawn
     std::optional<Held> held_;              // drawn, while another is being encoded
     bool encoding_ = false;
-    int unsent_ = 0;
+    std::deque<protocol::TileHeader> unsent_;  // given to the outlet, in order
 };
 
 }  // namespace haustra::session
