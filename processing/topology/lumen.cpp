@@ -262,7 +262,10 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
         bowelAir[component] = 0;
     for (int component : seedAir)
         bowelAir[component] = 1;
+    std::vector<std::uint32_t> excludedVoxels;
     for (int excluded : excludedPools) {
+        excludedVoxels.insert(excludedVoxels.end(), pools[excluded].voxels.begin(),
+                              pools[excluded].voxels.end());
         pools[excluded].voxels.clear(), pools[excluded].levels.clear(),
             pools[excluded].touches.clear();
         for (Pool& pool : pools)
@@ -314,7 +317,7 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
         }
     }
     fillInterfaces(lumen.labels, gravity.levels, colonLevels, gravity.down);
-    addTaggedStool(lumen.labels, scan.hu, tissue);
+    addTaggedStool(lumen.labels, scan.hu, tissue, excludedVoxels);
     progress(1.0);
     return lumen;
 }

@@ -1,8 +1,6 @@
 #include "topology/tagged_stool.h"
 
 #include <algorithm>
-#include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 namespace haustra::topology {
@@ -17,7 +15,7 @@ constexpr int contactVoxels = 2;  // of partial volume between air and stool
 }  // namespace
 
 void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
-                    const TissueModel& tissue) {
+                    const TissueModel& tissue, std::span<const std::uint32_t> excluded) {
     const Grid& grid = labels.grid();
     const glm::ivec3 size = grid.size;
     const auto out = labels.writable();
@@ -25,7 +23,12 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
                                     std::size_t(size.x) * std::size_t(size.y)};
     const std::size_t largest = std::size_t(largestMl * 1000.0 / grid.voxelVolumeMm3());
     const double above = tissue.taggedAboveHu;
-    auto isStool = [&](std::size_t index) { return out[index] == 0 && hu[index] > above; };
+    std::vector<bool> barred(out.size(), false);
+    for (std::uint32_t index : excluded)
+        barred[index] = true;
+    auto isStool = [&](std::size_t index) {
+        return out[index] == 0 && hu[index] > above && !barred[index];
+    };
 
     // Steps from a voxel along ± each axis, up to contactVoxels of neither, to the first voxel for
     // which `hit` holds.
@@ -64,12 +67,12 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
     std::sort(seeds.begin(), seeds.end());
     seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
 
-    std::unordered_set<std::uint32_t> seen;
+    std::vector<bool> seen(out.size(), false);
     for (std::uint32_t seed : seeds) {
-        if (seen.count(seed) || !isStool(seed)) continue;
+        if (seen[seed] || !isStool(seed)) continue;
         std::vector<std::uint32_t> body{seed};
-        seen.insert(seed);
-        bool tooLarge = false;
+        seen[seed] = true;
+        // All of a body is seen, however large: what is left of bone must not pass for stool.
         for (std::size_t head = 0; head < body.size(); ++head) {
             const glm::ivec3 v = grid.voxelAt(body[head]);
             for (int axis = 0; axis < 3; ++axis) {
@@ -77,17 +80,13 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
                     if (v[axis] + sign < 0 || v[axis] + sign >= size[axis]) continue;
                     const std::uint32_t next = std::uint32_t(sign > 0 ? body[head] + strides[axis]
                                                                       : body[head] - strides[axis]);
-                    if (!isStool(next) || seen.count(next)) continue;
-                    seen.insert(next);
+                    if (seen[next] || !isStool(next)) continue;
+                    seen[next] = true;
                     body.push_back(next);
                 }
             }
-            if (body.size() > largest) {
-                tooLarge = true;  // bone, or another loop: what was seen stays seen
-                break;
-            }
         }
-        if (tooLarge || body.size() < 8) continue;
+        if (body.size() < 8 || body.size() > largest) continue;
         // A coated fold is thin and no brighter than its blur: stool has an inside, well tagged.
         std::size_t core = 0;
         double sum = 0.0;

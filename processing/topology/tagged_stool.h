@@ -4,13 +4,17 @@
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 
+#include <cstdint>
+#include <span>
+
 namespace haustra::topology {
 
 /// Labels as tagged the bodies of tagged material that touch labelled lumen over a good part of
 /// their surface, and the partial volume between them and it. Bone or opacified bowel behind the
 /// wall shows the lumen only a small part of its surface through the wall, and is left alone.
-/// `labels` must own its memory.
+/// The voxels `excluded` stay as they are. `labels` must own its memory. O(voxels); takes two bits
+/// a voxel, and 4 bytes for each voxel of the largest tagged body that touches the lumen.
 void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
-                    const TissueModel& tissue);
+                    const TissueModel& tissue, std::span<const std::uint32_t> excluded = {});
 
 }  // namespace haustra::topology

@@ -166,6 +166,22 @@ TEST(Lumen, APersonCanAddAndRemovePieces) {
     EXPECT_EQ(nowhere.error().place, "100.0,30.0,40.0");
 }
 
+// A slab of bone, and what a flood that stops half-way would leave of it, is not stool.
+TEST(Lumen, DenseMaterialThatTouchesTheWallIsNotStool) {
+    Drawing drawing;
+    CtScan scan = drawing.scan(PatientPosition::supine);
+    const auto inBone = [](glm::dvec3 v) {
+        return v.x >= 38 && v.x < 62 && v.y > 45 && v.y < 85 && v.z >= 16 && v.z < 34;
+    };
+    drawing.paint(600, inBone);
+    scan.hu = drawing.hu.share();
+    const auto lumen = find(scan);
+    ASSERT_TRUE(lumen) << describe(lumen.error());
+    EXPECT_EQ(labelled(*lumen, [&](glm::dvec3 v) { return inBone(v) && !Drawing::inColon(v); }),
+              0u);
+    EXPECT_GT(diceWithDrawing(*lumen), 0.99);
+}
+
 TEST(Lumen, ABodyWithoutGasHasNone) {
     Drawing drawing;
     const CtScan scan{drawing.hu.share(), PatientPosition::supine};
