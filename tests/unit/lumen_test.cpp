@@ -166,7 +166,7 @@ TEST(Lumen, APersonCanAddAndRemovePieces) {
     EXPECT_EQ(nowhere.error().place, "100.0,30.0,40.0");
 }
 
-// A slab of bone, and what a flood that stops half-way would leave of it, is not stool.
+// A slab of bone against the wall.
 TEST(Lumen, DenseMaterialThatTouchesTheWallIsNotStool) {
     Drawing drawing;
     CtScan scan = drawing.scan(PatientPosition::supine);
