@@ -40,18 +40,4 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
 /// Total area of levels, mm²: how a direction of gravity shows in the data.
 double totalAreaMm2(const std::vector<Level>& levels);
 
-/// A body of tagged material: its voxels' indices, sorted.
-struct Pool {
-    std::vector<std::uint32_t> voxels;
-    std::vector<int> levels;   ///< indices of the levels that stand on it
-    std::vector<int> touches;  ///< earlier pools that are one body of fluid with this one
-    double meanHu = 0.0;
-};
-
-/// The fluid under each level, levels of one body of fluid together. Grown through voxels well
-/// inside the fluid's HU, so that the thin wall to the next bowel loop stops it; then out to the
-/// half-way HU. Never above the highest level it belongs to.
-std::vector<Pool> floodPools(const Volume<std::int16_t>& hu, const TissueModel& tissue,
-                             const std::vector<Level>& levels, GravityAxis down);
-
 }  // namespace haustra::topology

@@ -3,6 +3,7 @@
 
 #include "core/volume.h"
 #include "topology/air_fluid.h"
+#include "topology/pools.h"
 #include "topology/run_components.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "topology/air_fluid.h"
 #include "topology/colon_selection.h"
+#include "topology/pools.h"
 #include "topology/run_components.h"
 #include "topology/tagged_stool.h"
 
