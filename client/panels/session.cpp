@@ -113,9 +113,12 @@ void Session::refused(const protocol::ErrorReport& report) {
     });
     if (owed != owed_.end()) owed_.erase(owed);  // else it would be sent again for ever
     refusals_.push_back(error);
-    if (phase_ == Phase::connecting) {
-        if (report.code() == protocol::ErrorReport::NO_SUCH_CASE || report.fatal()) giveUp(error);
-    }
+    // An input's late refusal (BAD_VALUE, BAD_STATE) does not tell of the case that is awaited.
+    const bool ofTheCase =
+        report.request() == 0 && (report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
+                                  report.code() == protocol::ErrorReport::INTERNAL ||
+                                  report.code() == protocol::ErrorReport::BUSY);
+    if (phase_ == Phase::connecting && (ofTheCase || report.fatal())) giveUp(error);
 }
 
 void Session::handle(const link::TilePayload& payload, Clock::time_point at) {

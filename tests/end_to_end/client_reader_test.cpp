@@ -2,6 +2,7 @@
 // flight, exact when it rests, and alive again after a lost link.
 #include "end_to_end/fake_server.h"
 #include "panels/reader.h"
+#include "protocol/haustra.pb.h"
 
 #include <filesystem>
 #include <thread>
@@ -80,6 +81,27 @@ protected:
     }
     ClientReaderWithALossyLink() : ClientReader(dropping()) {}
 };
+
+class ClientReaderRefused : public ClientReader, public ::testing::WithParamInterface<int> {
+protected:
+    static Misbehaviour refusing() {
+        Misbehaviour misbehaviour;
+        misbehaviour.refuseCaseWith = GetParam();
+        return misbehaviour;
+    }
+    ClientReaderRefused() : ClientReader(refusing()) {}
+};
+
+TEST_P(ClientReaderRefused, ACaseThatCannotBeOpenedEndsTheWaitWithTheServersWords) {
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::failed; }));
+    EXPECT_NE(reader_->session().failure().message.find("the scan's file is damaged"),
+              std::string::npos);
+    EXPECT_EQ(server_.connections(), 1);
+}
+INSTANTIATE_TEST_SUITE_P(Codes, ClientReaderRefused,
+                         ::testing::Values(protocol::ErrorReport::NO_SUCH_CASE,
+                                           protocol::ErrorReport::INTERNAL,
+                                           protocol::ErrorReport::BUSY));
 
 TEST_F(ClientReader, AtRestAllViewsAreExactAndShowTheCamerasPlace) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));

@@ -297,7 +297,12 @@ struct FakeServer::Impl {
                     write(stream, answer);
                     break;
                 case ClientMessage::kOpenCase:
-                    if (message.open_case().name() != "phantom") {
+                    if (misbehaviour.refuseCaseWith != 0) {
+                        answer.mutable_error()->set_code(
+                            protocol::ErrorReport::Code(misbehaviour.refuseCaseWith));
+                        answer.mutable_error()->set_message("the scan's file is damaged");
+                        write(stream, answer);
+                    } else if (message.open_case().name() != "phantom") {
                         answer.mutable_error()->set_code(protocol::ErrorReport::NO_SUCH_CASE);
                         answer.mutable_error()->set_message("there is no such case");
                         write(stream, answer);

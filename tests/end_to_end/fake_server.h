@@ -27,6 +27,7 @@ struct Misbehaviour {
     bool noStills = false;       ///< never answers a camera at rest
     int dropAfterBookmarks = 0;  ///< stores so many, then closes the socket before acknowledging
     bool truncateWelcome = false;
+    int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
 };
 
 class FakeServer {
