@@ -311,6 +311,20 @@ const std::vector<std::string>& stageNames() {
     return names;
 }
 
+namespace {
+
+// A case that was refused before its first product leaves no folder behind.
+void removeIfEmpty(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        if (entry.path().filename() != ".lock") return;
+    }
+    std::filesystem::remove(folder / ".lock", ignored);
+    std::filesystem::remove(folder, ignored);
+}
+
+}  // namespace
+
 Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& caseName,
                               const PrepareOptions& options) {
     const auto& names = stageNames();
@@ -329,8 +343,11 @@ Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& 
     }
     auto target = store.createCase(caseName);
     if (!target) return tl::make_unexpected(target.error());
+    const store::Case held = *target;  // keeps the lock until the folder is tidied
     try {
-        return Preparation(std::move(*target), options).run();
+        auto report = Preparation(std::move(*target), options).run();
+        if (!report) removeIfEmpty(held.folder());
+        return report;
     } catch (const std::bad_alloc&) {
         return fail(ErrorKind::io, "there is not enough memory", "prepare");
     }

@@ -47,6 +47,7 @@ Result<void> exportVolume(const store::Case& source, const Arguments& arguments)
 }
 
 Result<void> runExport(const Arguments& arguments) {
+    if (auto fit = checkOutputFile(arguments.file); !fit) return fit;
     const auto source = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
         return s.openCase(arguments.caseName);
     });

@@ -95,6 +95,8 @@ Result<void> runPhantom(const Arguments& arguments) {
                     "the folder is not empty (--force replaces series and truth)", out.string());
     }
     fs::create_directories(out.parent_path(), error);
+    if (auto fit = checkOutputFile(out.parent_path() / (out.filename().string() + ".new")); !fit)
+        return fail(ErrorKind::io, "this folder cannot be made", out.string());
 
     ProgressBar bar;
     phantom::PhantomOptions options;
@@ -140,6 +142,11 @@ Command addPhantom(CLI::App& program) {
         "options make equal files.");
     command->add_option("OUT", arguments->out, "The folder to make")->required();
     command->add_option("--seed", arguments->seed, "Which patient")
+        ->check([](const std::string& text) {
+            const bool digits =
+                !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+            return digits ? std::string() : "\"" + text + "\" is not a whole number of 0 or more";
+        })
         ->type_name("N")
         ->capture_default_str();
     command->add_option("--preset", arguments->preset, "How hard to read")

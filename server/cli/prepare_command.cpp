@@ -60,6 +60,13 @@ std::string reportJson(const std::string& caseName, const pipeline::PrepareRepor
 Result<void> runPrepare(Arguments arguments) {
     const fs::path& source =
         arguments.options.series.empty() ? arguments.options.lumenMask : arguments.options.series;
+    // Before a store is made for it.
+    std::error_code ignored;
+    if (!source.empty() && !fs::exists(source, ignored))
+        return fail(ErrorKind::notFound, "there is no such file or folder", source.string());
+    if (!arguments.report.empty()) {
+        if (auto fit = checkOutputFile(arguments.report); !fit) return fit;
+    }
     if (arguments.caseName.empty()) arguments.caseName = defaultCaseName(source);
     const auto store = store::CaseStore::open(arguments.store, true);
     if (!store) return tl::make_unexpected(store.error());

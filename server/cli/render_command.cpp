@@ -1,6 +1,7 @@
 // haustra render: one picture of a case, as the server draws it.
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/text_files.h"
 #include "core/centerline.h"
 #include "gpu/context.h"
 #include "render/case_renderer.h"
@@ -11,6 +12,7 @@
 #include <optional>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace haustra::cli {
 namespace {
@@ -53,6 +55,12 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
         if (read->points.empty())
             return fail(ErrorKind::noResult, "the centerline is empty", source.name());
         centerline = std::move(*read);
+        const double length = centerline.lengthMm();
+        if (!(*arguments.arcMm >= 0.0 && *arguments.arcMm <= length)) {
+            return fail(ErrorKind::badInput,
+                        fmt::format("the centerline runs from 0 to {:.1f} mm", length),
+                        fmt::format("--arc-mm {}", *arguments.arcMm));
+        }
     }
     const auto ct = source.readVolume<std::int16_t>("ct");
     if (!ct) return tl::make_unexpected(ct.error());
@@ -80,6 +88,7 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
 }
 
 Result<void> runRender(const Arguments& arguments) {
+    if (auto fit = checkOutputFile(arguments.out); !fit) return fit;
     const auto source = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
         return s.openCase(arguments.caseName);
     });
@@ -110,6 +119,10 @@ void addPictureOptions(CLI::App& command, const std::shared_ptr<Arguments>& argu
         ->default_str("512x512");
     command.add_option("--out", arguments->out, "The picture; replaced in one step")
         ->type_name("FILE.png")
+        ->check([](const std::string& name) {
+            return fs::path(name).extension() == ".png" ? std::string()
+                                                        : "\"" + name + "\" does not end in .png";
+        })
         ->required();
 }
 

@@ -7,8 +7,23 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace haustra::cli {
+
+namespace fs = std::filesystem;
+
+Result<void> checkOutputFile(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored))
+        return fail(ErrorKind::io, "this is a folder, not a file to write", file.string());
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, ignored))
+        return fail(ErrorKind::io, "there is no folder to write this file in", file.string());
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        return fail(ErrorKind::io, "files cannot be made in this file's folder", file.string());
+    return {};
+}
 
 Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text) {
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");

@@ -10,6 +10,10 @@
 
 namespace haustra::cli {
 
+/// Fails where `file` is a folder, or its folder is missing or cannot be written: known before the
+/// work that makes the content.
+Result<void> checkOutputFile(const std::filesystem::path& file);
+
 /// Replaces `file` in one step: a reader sees the old content or the new.
 Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text);
 

@@ -90,6 +90,7 @@ TEST(CommandLine, FailuresEndWithOneAndOneLineThatNamesThePlace) {
         EXPECT_EQ(lineCount(outcome.err.substr(last)), 1u) << outcome.err;
         EXPECT_NE(outcome.err.find(folder.path().string(), last), std::string::npos) << outcome.err;
     }
+    EXPECT_TRUE(fs::is_empty(folder.path() / "store" / "cases"));  // no half-made case stays
 }
 
 TEST(CommandLine, TheStoreMayComeFromTheEnvironment) {
@@ -100,6 +101,19 @@ TEST(CommandLine, TheStoreMayComeFromTheEnvironment) {
     ::unsetenv("HAUSTRA_STORE");
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_TRUE(outcome.out.empty());
+}
+
+TEST(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeTheWork) {
+    const tests::TemporaryFolder folder;
+    const auto phantom = haustra({"phantom", folder.path() / "p", "--seed", "-1"});
+    EXPECT_EQ(phantom.exitCode, 2) << phantom.err;
+    const auto picture = haustra({"render", "case", "--store", folder.path(), "--arc-mm", "1",
+                                  "--out", folder.path() / "picture.jpg"});
+    EXPECT_EQ(picture.exitCode, 2) << picture.err;
+    const auto table = haustra({"export", "case", "centerline", folder.path() / "no" / "line.csv",
+                                "--store", folder.path()});
+    EXPECT_EQ(table.exitCode, 1);
+    EXPECT_NE(table.err.find("line.csv: there is no folder"), std::string::npos) << table.err;
 }
 
 // One prepared case that the tests below look at.
@@ -136,6 +150,17 @@ protected:
 
     tests::TemporaryFolder folder_;
 };
+
+TEST_F(PreparedPhantom, APlaceBeyondTheCenterlineIsRefused) {
+    for (const char* arc : {"-1", "nan", "100000"}) {
+        const auto outcome = haustra(
+            {"render", "p", "--store", store(), "--arc-mm", arc, "--out", file("beyond.png")});
+        EXPECT_EQ(outcome.exitCode, 1) << arc;
+        EXPECT_NE(outcome.err.find("the centerline runs from 0 to"), std::string::npos)
+            << outcome.err;
+        EXPECT_FALSE(fs::exists(file("beyond.png")));
+    }
+}
 
 TEST_F(PreparedPhantom, ExportedVolumesEqualTheProducts) {
     expectExportEqualsProduct<std::int16_t>("ct");
