@@ -6,7 +6,6 @@
 #include "gpu/texture.h"
 #include "render/classification.h"
 #include "render/leap_map.h"
-#include "render/lumen_as_air.h"
 #include "render/ray_setup.h"
 #include "render/stored_value.h"
 #include "shaders/shader_source.h"
@@ -126,37 +125,29 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context
                                                            const Volume<std::int16_t>& ct,
                                                            const Volume<std::uint8_t>& lumen,
                                                            int threads) {
+    Result<PreparedCase> prepared = prepareCase(ct, lumen, threads);
+    if (!prepared) return tl::make_unexpected(prepared.error());
+    return upload(context, ct, std::move(*prepared), threads);
+}
+
+Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context,
+                                                           const Volume<std::int16_t>& ct,
+                                                           PreparedCase prepared, int threads) {
     using gpu::ComputeProgram, gpu::Filter, gpu::Texture, gpu::TexelFormat, gpu::UniformBuffer;
-    const Grid& grid = ct.grid();
-    if (Result<void> sound = checkGrid(grid, "ct"); !sound)
-        return tl::make_unexpected(sound.error());
-    if (!lumen.empty() && !sameGrid(grid, lumen.grid()))
-        return fail(ErrorKind::badInput, "the lumen is not on the scan's grid", "render");
-    const int side = std::max(grid.size.x, std::max(grid.size.y, grid.size.z));
-    const int most = std::min(2048, gpu::maxTextureSide3d());
-    if (side > most)
-        return fail(ErrorKind::device,
-                    "a scan of " + std::to_string(grid.size.x) + "x" + std::to_string(grid.size.y) +
-                        "x" + std::to_string(grid.size.z) + " voxels has a side over " +
-                        std::to_string(most) + ", the longest that is drawn",
-                    "render");
+    const Grid grid = ct.grid();
+    if (Result<void> fits = checkScanSide(grid, std::min(maxScanSide, gpu::maxTextureSide3d()));
+        !fits)
+        return tl::make_unexpected(fits.error());
 
     const int errorsBefore = context.errorCount();
-    const auto voxels = lumen.voxels();
-    const bool tagged =
-        std::find(voxels.begin(), voxels.end(), std::uint8_t(LumenLabel::tagged)) != voxels.end();
     Result<Texture> ctTexture = uploadVolume(ct, threads, "scan on the GPU");
     if (!ctTexture) return tl::make_unexpected(ctTexture.error());
     std::optional<Texture> clearedTexture;
-    BlockRanges ranges;
-    if (tagged) {
-        const Volume<std::int16_t> cleared = lumenAsAir(ct, lumen, threads);
-        Result<Texture> texture = uploadVolume(cleared, threads, "cleared scan on the GPU");
+    if (!prepared.cleared.empty()) {
+        Result<Texture> texture =
+            uploadVolume(prepared.cleared, threads, "cleared scan on the GPU");
         if (!texture) return tl::make_unexpected(texture.error());
         clearedTexture = std::move(*texture);
-        ranges = blockRanges(cleared, threads);
-    } else {
-        ranges = blockRanges(ct, threads);
     }
     const std::string_view structs = shaderSource("uniforms.h"), march = shaderSource("march.glsl");
     Result<ComputeProgram> cone = ComputeProgram::create(
@@ -181,7 +172,7 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context
                                                         threads,
                                                         std::move(*ctTexture),
                                                         std::move(clearedTexture),
-                                                        std::move(ranges),
+                                                        std::move(prepared.ranges),
                                                         std::move(*cone),
                                                         std::move(*endoscopic),
                                                         std::move(*slice),

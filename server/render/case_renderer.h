@@ -3,6 +3,7 @@
 
 #include "core/ct_scan.h"
 #include "gpu/context.h"
+#include "render/prepared_case.h"
 #include "render/view.h"
 
 #include <memory>
@@ -16,11 +17,14 @@ inline constexpr int maxPictureSide = 2048;
 /// must be current there and outlive it. Equal inputs give equal pixels, whatever was drawn before.
 class CaseRenderer {
 public:
-    /// `ct` is the scan; `lumen` (LumenLabel, on the same grid, may be empty) tells which tagged
-    /// voxels the endoscopic view shows as air. Both are only read here. `threads` (≤ 0: all cores)
-    /// for preparing the volume; it changes no pixel. Fails where a side is longer than the
-    /// device's 3-D textures allow (2048 in general) or its memory is short. Holds 2 bytes a voxel
-    /// on the GPU, 4 with a tagged lumen; 1/2 byte a voxel of main memory.
+    /// Copies the scan and what prepareCase made of it to the GPU. `threads` (≤ 0: all cores)
+    /// changes no pixel. Fails where a side is longer than the device's 3-D textures allow (2048 in
+    /// general) or its memory is short. Holds 2 bytes a voxel on the GPU, 4 with a tagged lumen;
+    /// 1/2 byte a voxel of main memory, and neither volume.
+    static Result<std::unique_ptr<CaseRenderer>> upload(gpu::Context& context,
+                                                        const Volume<std::int16_t>& ct,
+                                                        PreparedCase prepared, int threads = 0);
+    /// Prepares the case (prepareCase) and uploads it.
     static Result<std::unique_ptr<CaseRenderer>> create(gpu::Context& context,
                                                         const Volume<std::int16_t>& ct,
                                                         const Volume<std::uint8_t>& lumen,
