@@ -34,6 +34,7 @@ int failed(const std::string& what) {
 void addOptions(CLI::App& program, Arguments& arguments) {
     program.add_option("--store", arguments.server.store, "The case store to serve")
         ->type_name("DIR")
+        ->envname("HAUSTRA_STORE")
         ->required();
     program
         .add_option("--listen", arguments.listen,

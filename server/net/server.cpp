@@ -78,6 +78,7 @@ struct Server::Impl {
 
     std::unique_ptr<session::RecordsThread> records;
     std::unique_ptr<session::RenderThread> renderer;
+    std::unique_ptr<session::CaseLoader> loader;  // after the renderer, which it uses
     std::unique_ptr<session::EncoderThreads> encoders;
     std::optional<session::Services> services;
 
@@ -102,16 +103,17 @@ Result<void> Server::Impl::start() {
     fingerprint = certificateFingerprint(tls);
     auto bookmarks = records::BookmarkStore::open(options.store / "records.sqlite3");
     if (!bookmarks) return tl::make_unexpected(bookmarks.error());
-    auto rendering = session::RenderThread::start(*cases);
+    auto rendering = session::RenderThread::start();
     if (!rendering) return tl::make_unexpected(rendering.error());
     auto encoding = session::EncoderThreads::start(options.encoders);
     if (!encoding) return tl::make_unexpected(encoding.error());
     if (auto listening = listen(acceptor, options.listen); !listening) return listening;
 
+    loader = session::CaseLoader::start(*cases, **rendering);
     records = session::RecordsThread::start(std::move(*bookmarks), std::move(*cases));
     renderer = std::move(*rendering);
     encoders = std::move(*encoding);
-    services.emplace(session::Services{*renderer, *encoders, *records, options.software});
+    services.emplace(session::Services{*renderer, *loader, *encoders, *records, options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);
     signals.async_wait([this](const asio::error_code& error, int) {

@@ -4,9 +4,10 @@
 
 namespace haustra::session {
 
-void PictureQueue::add(PictureJob job) {
-    withdraw(job.session);
+std::optional<PictureJob> PictureQueue::add(PictureJob job) {
+    auto dropped = withdraw(job.session);
     jobs_.push_back(std::move(job));
+    return dropped;
 }
 
 bool PictureQueue::replace(PictureJob& job) {
@@ -18,8 +19,13 @@ bool PictureQueue::replace(PictureJob& job) {
     return true;
 }
 
-void PictureQueue::withdraw(SessionId session) {
-    std::erase_if(jobs_, [&](const PictureJob& job) { return job.session == session; });
+std::optional<PictureJob> PictureQueue::withdraw(SessionId session) {
+    const auto waiting = std::find_if(
+        jobs_.begin(), jobs_.end(), [&](const PictureJob& job) { return job.session == session; });
+    if (waiting == jobs_.end()) return std::nullopt;
+    std::optional<PictureJob> job(std::move(*waiting));
+    jobs_.erase(waiting);
+    return job;
 }
 
 std::optional<PictureJob> PictureQueue::take() {

@@ -32,16 +32,19 @@ struct PictureJob {
 };
 
 /// Holds at most one job of a session. Sessions are served in the order in which they came, so one
-/// that asks without a pause gets every n-th picture of n. Not thread-safe: RenderThread guards it.
+/// that asks without a pause gets every n-th picture of n. Not thread-safe: RenderThread guards it,
+/// and a job may be its case's last user, whose end wants the same guard: so what leaves the line
+/// is handed back, to be destroyed when the guard is let go.
 class PictureQueue {
 public:
-    /// To the end of the line; a job of the same session that still waits is dropped.
-    void add(PictureJob job);
+    /// To the end of the line; hands back a job of the same session that still waited.
+    [[nodiscard]] std::optional<PictureJob> add(PictureJob job);
     /// Puts `job` in the place of the waiting one of its session and viewport, and keeps that
-    /// one's place in the line. False, with `job` untouched, where none waits.
+    /// one's place in the line; `job` is then the one replaced. False, with `job` untouched, where
+    /// none waits.
     bool replace(PictureJob& job);
-    /// Drops what waits of a session.
-    void withdraw(SessionId session);
+    /// Takes out what waits of a session.
+    [[nodiscard]] std::optional<PictureJob> withdraw(SessionId session);
     /// The first in the line.
     std::optional<PictureJob> take();
     bool empty() const { return jobs_.empty(); }

@@ -2,23 +2,19 @@
 
 #include "gpu/context.h"
 #include "render/case_renderer.h"
+#include "session/guarded.h"
 
 #include <algorithm>
 #include <condition_variable>
 #include <future>
 #include <mutex>
-#include <new>
+#include <optional>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
 namespace haustra::session {
 namespace {
-
-struct OpenRequest {
-    std::string name;
-    RenderThread::Opened opened;
-};
 
 std::uint32_t microsecondsBetween(Clock::time_point from, Clock::time_point to) {
     const auto count = std::chrono::duration_cast<std::chrono::microseconds>(to - from).count();
@@ -31,7 +27,7 @@ struct RenderThread::Shared {
     std::mutex mutex;
     std::condition_variable wake;
     // All guarded by mutex.
-    std::deque<OpenRequest> opens;
+    std::function<void(Drawing&)> errand;  // of the loader, which waits for its end
     PictureQueue pictures;
     bool caseLeft = false;  // the last session of some case is gone
     bool stopping = false;
@@ -40,75 +36,93 @@ struct RenderThread::Shared {
 // What lives on the render thread, from its start to its end.
 struct RenderThread::Drawing {
     struct Entry {
+        std::string name, content;
         std::weak_ptr<const OpenCase> of;
+        std::optional<Clock::time_point> leftAt;  // since when nobody has it open
         std::unique_ptr<render::CaseRenderer> renderer;
     };
 
     std::shared_ptr<Shared> shared;
-    store::CaseStore store;
     std::unique_ptr<gpu::Context> context;
     std::vector<Entry> cases;
 
     void run() {
         std::unique_lock lock(shared->mutex);
         for (;;) {
-            shared->wake.wait(lock, [&] {
-                return shared->stopping || shared->caseLeft || !shared->opens.empty() ||
+            const auto called = [&] {
+                return shared->stopping || shared->caseLeft || shared->errand ||
                        !shared->pictures.empty();
-            });
+            };
+            if (const auto until = nextRelease())
+                shared->wake.wait_until(lock, *until, called);
+            else
+                shared->wake.wait(lock, called);
             if (shared->stopping) return;
-            if (std::exchange(shared->caseLeft, false)) {
-                lock.unlock();
-                std::erase_if(cases, [](const Entry& entry) { return entry.of.expired(); });
-            } else if (!shared->opens.empty()) {
-                OpenRequest request = std::move(shared->opens.front());
-                shared->opens.pop_front();
-                lock.unlock();
-                request.opened(guarded([&] { return open(request.name); }));
-            } else if (auto job = shared->pictures.take()) {
-                lock.unlock();
-                draw(*job);
-                job.reset();  // may be a case's last user, so not under the lock
-            }
+            shared->caseLeft = false;
+            auto errand = std::exchange(shared->errand, nullptr);
+            auto job = errand ? std::nullopt : shared->pictures.take();
+            lock.unlock();
+            releaseLeft(Clock::now());
+            if (errand) errand(*this);
+            if (job) draw(*job);
+            job.reset();  // may be a case's last user, so not under the lock
             lock.lock();
         }
     }
 
-    // Memory may run out in a library; that costs one request.
-    template <class Work>
-    static auto guarded(const Work& work) -> decltype(work()) {
-        try {
-            return work();
-        } catch (const std::bad_alloc&) {
-            return fail(ErrorKind::device, "there is not enough memory", "render");
-        } catch (const std::exception& error) {
-            return fail(ErrorKind::device, error.what(), "render");
-        }
+    std::optional<Clock::time_point> nextRelease() const {
+        std::optional<Clock::time_point> first;
+        for (const Entry& entry : cases)
+            if (entry.leftAt && (!first || *entry.leftAt + keptAfterUse < *first))
+                first = *entry.leftAt + keptAfterUse;
+        return first;
     }
 
-    Result<std::shared_ptr<const OpenCase>> open(const std::string& name) {
-        auto files = readCase(store, name);
-        if (!files) return tl::make_unexpected(files.error());
-        for (const Entry& entry : cases) {
-            auto of = entry.of.lock();
-            if (of && of->name == name && of->content == files->facts.content) return of;
+    void releaseLeft(Clock::time_point now) {
+        for (Entry& entry : cases)
+            if (!entry.leftAt && entry.of.expired()) entry.leftAt = now;
+        std::erase_if(cases, [&](const Entry& entry) {
+            return entry.leftAt && now >= *entry.leftAt + keptAfterUse;
+        });
+    }
+
+    // The pointer of which sessions hold copies.
+    std::shared_ptr<const OpenCase> lend(OpenCase facts) const {
+        return {new OpenCase(std::move(facts)),
+                [queues = std::weak_ptr<Shared>(shared)](const OpenCase* left) {
+                    delete left;
+                    if (const auto alive = queues.lock()) {
+                        const std::lock_guard lock(alive->mutex);
+                        alive->caseLeft = true;
+                        alive->wake.notify_one();
+                    }
+                }};
+    }
+
+    std::shared_ptr<const OpenCase> find(const OpenCase& facts) {
+        for (Entry& entry : cases) {
+            if (entry.name != facts.name || entry.content != facts.content) continue;
+            if (auto of = entry.of.lock()) return of;
+            auto of = lend(facts);
+            entry.of = of;
+            entry.leftAt.reset();
+            return of;
         }
+        return nullptr;
+    }
+
+    Result<std::shared_ptr<const OpenCase>> upload(CaseFiles files, render::PreparedCase prepared) {
+        std::erase_if(cases, [](const Entry& entry) { return entry.of.expired(); });
         const auto start = Clock::now();
-        auto renderer = render::CaseRenderer::create(*context, files->ct, files->lumen);
+        auto renderer = render::CaseRenderer::upload(*context, files.ct, std::move(prepared));
         if (!renderer) return tl::make_unexpected(renderer.error());
-        spdlog::info("a case is on the GPU: {} MiB, after {:.1f} s", (*renderer)->gpuBytes() >> 20,
+        spdlog::info("a case is on the GPU: {} MiB, copied in {:.1f} s",
+                     (*renderer)->gpuBytes() >> 20,
                      1e-6 * microsecondsBetween(start, Clock::now()));
-        std::shared_ptr<const OpenCase> of(
-            new OpenCase(std::move(files->facts)),
-            [queues = std::weak_ptr<Shared>(shared)](const OpenCase* left) {
-                delete left;
-                if (const auto alive = queues.lock()) {
-                    const std::lock_guard lock(alive->mutex);
-                    alive->caseLeft = true;
-                    alive->wake.notify_one();
-                }
-            });
-        cases.push_back({of, std::move(*renderer)});
+        Entry entry{files.facts.name, files.facts.content, {}, {}, std::move(*renderer)};
+        auto of = lend(std::move(files.facts));
+        entry.of = of;
+        cases.push_back(std::move(entry));
         return of;
     }
 
@@ -116,7 +130,9 @@ struct RenderThread::Drawing {
         const auto entry = std::find_if(cases.begin(), cases.end(), [&](const Entry& candidate) {
             return candidate.of.lock() == job.of;
         });
-        if (entry == cases.end()) return;  // cannot be: the job keeps its case alive
+        if (entry == cases.end()) {
+            return job.done(job.header, fail(ErrorKind::device, "the case is not on the GPU"));
+        }
         const auto start = Clock::now();
         auto image = guarded([&] {
             return std::visit(
@@ -132,15 +148,15 @@ struct RenderThread::Drawing {
     }
 };
 
-Result<std::unique_ptr<RenderThread>> RenderThread::start(store::CaseStore store) {
+Result<std::unique_ptr<RenderThread>> RenderThread::start() {
     std::unique_ptr<RenderThread> self(new RenderThread);
     self->shared_ = std::make_shared<Shared>();
     std::promise<Result<std::string>> started;
     auto rendererName = started.get_future();
-    self->thread_ = std::thread([&started, shared = self->shared_, cases = std::move(store)] {
+    self->thread_ = std::thread([&started, shared = self->shared_] {
         auto context = gpu::Context::create();
         if (!context) return started.set_value(tl::make_unexpected(context.error()));
-        Drawing drawing{shared, cases, std::move(*context), {}};
+        Drawing drawing{shared, std::move(*context), {}};
         started.set_value(drawing.context->renderer());
         drawing.run();
         drawing.cases.clear();  // before the context that they need
@@ -160,15 +176,43 @@ RenderThread::~RenderThread() {
     if (thread_.joinable()) thread_.join();
 }
 
-void RenderThread::openCase(std::string name, Opened opened) {
-    const std::lock_guard lock(shared_->mutex);
-    shared_->opens.push_back({std::move(name), std::move(opened)});
-    shared_->wake.notify_one();
+void RenderThread::runThere(std::function<void(Drawing&)> errand) {
+    // Shared, so that it outlives its own set_value.
+    const auto ended = std::make_shared<std::promise<void>>();
+    auto end = ended->get_future();
+    {
+        const std::lock_guard lock(shared_->mutex);
+        shared_->errand = [ended, errand = std::move(errand)](Drawing& drawing) {
+            try {
+                errand(drawing);
+                ended->set_value();
+            } catch (...) {
+                ended->set_exception(std::current_exception());
+            }
+        };
+        shared_->wake.notify_one();
+    }
+    end.get();
+}
+
+std::shared_ptr<const OpenCase> RenderThread::find(const OpenCase& facts) {
+    std::shared_ptr<const OpenCase> found;
+    runThere([&](Drawing& drawing) { found = drawing.find(facts); });
+    return found;
+}
+
+Result<std::shared_ptr<const OpenCase>> RenderThread::upload(CaseFiles files,
+                                                             render::PreparedCase prepared) {
+    Result<std::shared_ptr<const OpenCase>> opened;
+    runThere(
+        [&](Drawing& drawing) { opened = drawing.upload(std::move(files), std::move(prepared)); });
+    return opened;
 }
 
 void RenderThread::submit(PictureJob job) {
+    std::optional<PictureJob> dropped;  // destroyed after the lock is let go
     const std::lock_guard lock(shared_->mutex);
-    shared_->pictures.add(std::move(job));
+    dropped = shared_->pictures.add(std::move(job));
     shared_->wake.notify_one();
 }
 
@@ -178,8 +222,9 @@ bool RenderThread::replace(PictureJob job) {
 }
 
 void RenderThread::withdraw(SessionId session) {
+    std::optional<PictureJob> dropped;  // destroyed after the lock is let go
     const std::lock_guard lock(shared_->mutex);
-    shared_->pictures.withdraw(session);
+    dropped = shared_->pictures.withdraw(session);
 }
 
 }  // namespace haustra::session

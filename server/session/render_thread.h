@@ -1,35 +1,38 @@
 // The thread that owns the GPU: its EGL context and every case's renderer.
 #pragma once
 
+#include "render/prepared_case.h"
 #include "session/open_case.h"
 #include "session/picture_queue.h"
-#include "store/case_store.h"
 
-#include <functional>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <thread>
 
 namespace haustra::session {
 
-/// Its functions may be called from any thread and never block. Callbacks come on the render
-/// thread; they must not throw, nor take long.
+/// Its functions may be called from any thread. Those for pictures never block; callbacks come on
+/// the render thread and must not throw, nor take long.
 class RenderThread {
 public:
     /// Makes the context; fails where there is none to be had.
-    static Result<std::unique_ptr<RenderThread>> start(store::CaseStore store);
-    /// Drops what waits, and joins.
+    static Result<std::unique_ptr<RenderThread>> start();
+    /// Drops what waits, and joins. CaseLoader has ended.
     ~RenderThread();
     RenderThread(const RenderThread&) = delete;
     RenderThread& operator=(const RenderThread&) = delete;
 
     const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
 
-    using Opened = std::function<void(Result<std::shared_ptr<const OpenCase>>)>;
-    /// Sessions on one case with the same products share one renderer. It is freed when the last
-    /// copy of the pointer is gone. Takes seconds for a case that nobody has open, in which no
-    /// picture is drawn.
-    void openCase(std::string name, Opened opened);
+    /// For how long a renderer is kept after the last copy of its case's pointer is gone, unless
+    /// another case is uploaded meanwhile.
+    static constexpr std::chrono::seconds keptAfterUse{30};
+    /// The case of these products where it has a renderer, else empty. One thread, the loader's,
+    /// calls this and upload; both wait for the picture under way.
+    std::shared_ptr<const OpenCase> find(const OpenCase& facts);
+    /// Copies a case to the GPU: some tenths of a second, in which no picture is drawn.
+    Result<std::shared_ptr<const OpenCase>> upload(CaseFiles files, render::PreparedCase prepared);
 
     /// The session has no other job here, or does not want it any more.
     void submit(PictureJob job);
@@ -40,6 +43,7 @@ public:
 private:
     struct Shared;
     struct Drawing;
+    void runThere(std::function<void(Drawing&)> errand);
     RenderThread() = default;
 
     std::shared_ptr<Shared> shared_;  // the queues; OpenCase's deleter refers to them too

@@ -176,7 +176,7 @@ void Session::handle(const protocol::OpenCase& message) {
     state_ = State::opening;
     case_.reset();
     pictures_->setCase(nullptr);
-    services_.renderer.openCase(message.name(), [weak = weak_from_this(), io = io_](auto result) {
+    services_.loader.openCase(message.name(), [weak = weak_from_this(), io = io_](auto result) {
         asio::post(io, [weak, result = std::move(result)]() mutable {
             if (const auto self = weak.lock()) self->opened(std::move(result));
         });
@@ -187,7 +187,10 @@ void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
     if (state_ != State::opening) return;
     if (!result) {
         state_ = State::ready;
-        return report(result.error());
+        // To the client a damaged file is the server's failure, not a bad value of its own.
+        Error error = result.error();
+        if (error.kind != ErrorKind::notFound) error.kind = ErrorKind::io;
+        return report(error);
     }
     state_ = State::open;
     case_ = std::move(*result);
@@ -252,9 +255,10 @@ void Session::refuse(ErrorReport::Code code, const std::string& message, std::ui
 
 void Session::report(const Error& error, std::uint64_t request) {
     const auto code = codeOf(error.kind);
-    // The place may be a case's name: it goes to the client, never into the log.
     if (code == ErrorReport::INTERNAL) spdlog::error("session {}: {}", id_, error.message);
-    refuse(code, describe(error), request);
+    // Where the server keeps its files is not a client's to know; which field it got wrong is.
+    const bool ofFiles = code == ErrorReport::INTERNAL || code == ErrorReport::NO_SUCH_CASE;
+    refuse(code, ofFiles ? error.message : describe(error), request);
 }
 
 }  // namespace haustra::session

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "protocol/haustra.pb.h"
+#include "session/case_loader.h"
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
 #include "session/render_thread.h"
@@ -20,6 +21,7 @@ namespace haustra::session {
 /// What sessions use together. Outlives them all.
 struct Services {
     RenderThread& renderer;
+    CaseLoader& loader;
     EncoderThreads& encoders;
     RecordsThread& records;
     std::string software;  ///< name and version, for the welcome

@@ -1,0 +1,44 @@
+#include "session/case_loader.h"
+
+#include "session/guarded.h"
+
+#include <utility>
+
+namespace haustra::session {
+namespace {
+
+Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, RenderThread& renderer,
+                                             const std::string& name) {
+    auto files = readCase(store, name);
+    if (!files) return tl::make_unexpected(files.error());
+    if (auto there = renderer.find(files->facts)) return there;
+    auto prepared = render::prepareCase(files->ct, files->lumen);
+    if (!prepared) return tl::make_unexpected(prepared.error());
+    return renderer.upload(std::move(*files), std::move(*prepared));
+}
+
+}  // namespace
+
+std::unique_ptr<CaseLoader> CaseLoader::start(store::CaseStore store, RenderThread& renderer) {
+    std::unique_ptr<CaseLoader> self(new CaseLoader);
+    self->thread_ = std::thread([&my = *self, &renderer, store = std::move(store)] {
+        for (auto taken = my.requests_.take(1); !taken.empty() && !my.stopping_;
+             taken = my.requests_.take(1)) {
+            const Request& request = taken.front();
+            request.opened(guarded([&] { return load(store, renderer, request.name); }));
+        }
+    });
+    return self;
+}
+
+CaseLoader::~CaseLoader() {
+    stopping_ = true;
+    requests_.close();
+    if (thread_.joinable()) thread_.join();
+}
+
+void CaseLoader::openCase(std::string name, Opened opened) {
+    requests_.push({std::move(name), std::move(opened)});
+}
+
+}  // namespace haustra::session

@@ -1,0 +1,43 @@
+// The thread that reads cases and prepares them, so that no picture has to wait for it.
+#pragma once
+
+#include "session/open_case.h"
+#include "session/render_thread.h"
+#include "session/work_queue.h"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+namespace haustra::session {
+
+/// Opens one case after the other. Its functions may be called from any thread and never block.
+class CaseLoader {
+public:
+    /// The render thread must outlive the loader.
+    static std::unique_ptr<CaseLoader> start(store::CaseStore store, RenderThread& renderer);
+    /// Finishes the case under way, drops those that wait, and joins.
+    ~CaseLoader();
+    CaseLoader(const CaseLoader&) = delete;
+    CaseLoader& operator=(const CaseLoader&) = delete;
+
+    using Opened = std::function<void(Result<std::shared_ptr<const OpenCase>>)>;
+    /// Sessions on one case with the same products share one renderer. `opened` is called on the
+    /// loader thread, and must not throw; after seconds, for a case that has no renderer.
+    void openCase(std::string name, Opened opened);
+
+private:
+    struct Request {
+        std::string name;
+        Opened opened;
+    };
+    CaseLoader() = default;
+
+    WorkQueue<Request> requests_;
+    std::atomic<bool> stopping_{false};
+    std::thread thread_;
+};
+
+}  // namespace haustra::session
