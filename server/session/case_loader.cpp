@@ -25,6 +25,7 @@ std::unique_ptr<CaseLoader> CaseLoader::start(store::CaseStore store, RenderThre
         for (auto taken = my.requests_.take(1); !taken.empty() && !my.stopping_;
              taken = my.requests_.take(1)) {
             const Request& request = taken.front();
+            if (request.session.expired()) continue;
             request.opened(guarded([&] { return load(store, renderer, request.name); }));
         }
     });
@@ -37,8 +38,8 @@ CaseLoader::~CaseLoader() {
     if (thread_.joinable()) thread_.join();
 }
 
-void CaseLoader::openCase(std::string name, Opened opened) {
-    requests_.push({std::move(name), std::move(opened)});
+void CaseLoader::openCase(std::string name, std::weak_ptr<const void> session, Opened opened) {
+    requests_.push({std::move(name), std::move(session), std::move(opened)});
 }
 
 }  // namespace haustra::session

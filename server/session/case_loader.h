@@ -25,12 +25,14 @@ public:
 
     using Opened = std::function<void(Result<std::shared_ptr<const OpenCase>>)>;
     /// Sessions on one case with the same products share one renderer. `opened` is called on the
-    /// loader thread, and must not throw; after seconds, for a case that has no renderer.
-    void openCase(std::string name, Opened opened);
+    /// loader thread, and must not throw; after seconds, for a case that has no renderer. Nothing
+    /// is read for a session that has ended by its turn, and `opened` is not called.
+    void openCase(std::string name, std::weak_ptr<const void> session, Opened opened);
 
 private:
     struct Request {
         std::string name;
+        std::weak_ptr<const void> session;
         Opened opened;
     };
     CaseLoader() = default;

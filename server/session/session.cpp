@@ -176,11 +176,13 @@ void Session::handle(const protocol::OpenCase& message) {
     state_ = State::opening;
     case_.reset();
     pictures_->setCase(nullptr);
-    services_.loader.openCase(message.name(), [weak = weak_from_this(), io = io_](auto result) {
-        asio::post(io, [weak, result = std::move(result)]() mutable {
-            if (const auto self = weak.lock()) self->opened(std::move(result));
-        });
-    });
+    services_.loader.openCase(message.name(), weak_from_this(),
+                              [weak = weak_from_this(), io = io_](auto result) {
+                                  asio::post(io, [weak, result = std::move(result)]() mutable {
+                                      if (const auto self = weak.lock())
+                                          self->opened(std::move(result));
+                                  });
+                              });
 }
 
 void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
