@@ -16,6 +16,7 @@ enum class LumenLabel : std::uint8_t {
     outside = 0,
     air = 1,     ///< air-filled lumen
     tagged = 2,  ///< tagged fluid or stool inside the lumen, and its interface with the air
+    bridge = 3,  ///< tissue in a collapsed stretch, taken in so that the lumen is one piece
 };
 
 }  // namespace haustra

@@ -21,4 +21,14 @@ struct TissueModel {
     double taggedAboveHu = 0.0;
 };
 
+/// How much of a voxel is air and how much tagged material or bone, in 255ths; the rest is soft
+/// tissue and fat. air + tagged ≤ 255. One voxel of the `mixture` product (dissertation §3.2).
+struct TissueFractions {
+    std::uint8_t air = 0;
+    std::uint8_t tagged = 0;
+    std::uint8_t soft() const { return std::uint8_t(255 - air - tagged); }
+    bool operator==(const TissueFractions&) const = default;
+};
+static_assert(sizeof(TissueFractions) == 2, "a volume of them is mapped from a file");
+
 }  // namespace haustra

@@ -1,0 +1,25 @@
+// Digital cleansing: the scan as it would be had the tagged residue in the colon been air.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "core/result.h"
+#include "core/tissue.h"
+
+namespace haustra::cleansing {
+
+struct Cleansed {
+    Volume<std::int16_t> hu;  ///< equals the scan everywhere but in and at the tagged lumen
+    /// LumenLabel by the cleansed scan: HU below the model's airBelowHu, in and right around the
+    /// segmentation. tagged where the residue was more than the air.
+    Volume<std::uint8_t> lumen;
+};
+
+/// Equation 3.3 of the dissertation and its counterpart for the enhanced mucosa:
+/// y_new = y − m_tag μ_tag + m_tag μ_air, with the local mean of the tagging. Only what
+/// `segmentation` (LumenLabel) holds, and the partial volume around it, changes; a scan with no
+/// tagged label comes back unchanged. The same bytes for any number of threads.
+Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
+                         const Volume<TissueFractions>& mixture,
+                         const Volume<std::uint8_t>& segmentation, int threads = 0);
+
+}  // namespace haustra::cleansing

@@ -1,0 +1,21 @@
+// Simple points and topological numbers of digital topology (Bertrand 1994; dissertation §3.3.2.1)
+// for an object of 6-connected voxels in a background of 18-connected ones.
+#pragma once
+
+#include <cstdint>
+
+namespace haustra::topology {
+
+/// The object voxels among a voxel's 26 neighbours: bit (dx+1) + 3 (dy+1) + 9 (dz+1) for the
+/// neighbour at (dx, dy, dz), bit 13 (the voxel itself) ignored.
+using Neighbourhood = std::uint32_t;
+
+/// T₆(x, X): 6-connected components of the object in the geodesic neighbourhood N₆²(x, X).
+int topologicalNumber6(Neighbourhood object);
+/// T₁₈(x, X̄): 18-connected components of the background in N₁₈²(x, X̄).
+int topologicalNumber18(Neighbourhood object);
+/// Both are 1: adding x to the object, or taking it away, changes no topology. Bit-parallel, a few
+/// nanoseconds; any thread.
+bool isSimple(Neighbourhood object);
+
+}  // namespace haustra::topology
