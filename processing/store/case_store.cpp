@@ -21,53 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr char lockName[] = ".lock";
 
-template <class T>
-constexpr Content contentOf();
-template <>
-constexpr Content contentOf<std::int16_t>() {
-    return Content::int16Volume;
-}
-template <>
-constexpr Content contentOf<std::uint8_t>() {
-    return Content::uint8Volume;
-}
-template <>
-constexpr Content contentOf<float>() {
-    return Content::floatVolume;
-}
-
-const char* describeContent(Content content) {
-    switch (content) {
-        case Content::int16Volume:
-            return "a volume of 16-bit integers";
-        case Content::uint8Volume:
-            return "a volume of bytes";
-        case Content::floatVolume:
-            return "a volume of floats";
-        case Content::centerline:
-            return "a centerline";
-    }
-    return "something unknown";
-}
-
-Digest digestOf(const ProductKey& key) {
-    Digest digest{};
-    for (std::size_t n = 0; n < digest.size() && 2 * n + 1 < key.hex.size(); ++n) {
-        const auto value = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
-        digest[n] = std::uint8_t(value(key.hex[2 * n]) << 4 | value(key.hex[2 * n + 1]));
-    }
-    return digest;
-}
-
-std::string fileName(std::string_view product, const ProductKey& key, const char* extension) {
-    return std::string(product) + "-" + key.hex.substr(0, 16) + extension;
-}
-
-struct CenterlineSample {
-    double x, y, z, arc, radius, gap;
-};
-static_assert(sizeof(CenterlineSample) == centerlineSampleBytes);
-
 // Holds flock(2) on an open file; the kernel lets go when the process ends, however it ends.
 class FileLock {
 public:
@@ -148,7 +101,7 @@ Result<MappedProduct> Case::map(std::string_view product) const {
         }
         const fs::path file = folder_ / entry->file;
         auto mapped = mapProduct(file);
-        if (mapped && mapped->header.key != digestOf(entry->key)) {
+        if (mapped && mapped->header.key != digestFromHex(entry->key.hex)) {
             return fail(ErrorKind::badInput,
                         "the product is damaged: its key is not the one that case.json names",
                         file.string());
@@ -158,40 +111,6 @@ Result<MappedProduct> Case::map(std::string_view product) const {
         }
         triedFile = entry->file;
     }
-}
-
-template <class T>
-Result<Volume<T>> Case::readVolume(std::string_view product) const {
-    auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    if (mapped->header.content != contentOf<T>()) {
-        return fail(ErrorKind::badInput,
-                    std::string(product) + " is " + describeContent(mapped->header.content) +
-                        ", not " + describeContent(contentOf<T>()),
-                    folder_.string());
-    }
-    // The values start on a page, so they are aligned for any T.
-    const T* voxels = reinterpret_cast<const T*>(mapped->values.data());
-    return Volume<T>::view(mapped->header.grid, voxels, mapped->mapping);
-}
-
-Result<Centerline> Case::readCenterline(std::string_view product) const {
-    const auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    if (mapped->header.content != Content::centerline) {
-        return fail(ErrorKind::badInput,
-                    std::string(product) + " is " + describeContent(mapped->header.content) +
-                        ", not a centerline",
-                    folder_.string());
-    }
-    Centerline centerline;
-    centerline.points.reserve(mapped->values.size() / sizeof(CenterlineSample));
-    for (std::size_t at = 0; at < mapped->values.size(); at += sizeof(CenterlineSample)) {
-        CenterlineSample s;
-        std::memcpy(&s, mapped->values.data() + at, sizeof s);
-        centerline.points.push_back({{s.x, s.y, s.z}, s.arc, s.radius, s.gap != 0.0});
-    }
-    return centerline;
 }
 
 Result<Attributes> Case::attributes(std::string_view product) const {
@@ -210,37 +129,6 @@ Result<void> Case::verify(std::string_view product) const {
 Result<void> Case::checkWritable() const {
     if (lock_) return {};
     return fail(ErrorKind::io, "case " + name_ + " is open for reading only", folder_.string());
-}
-
-template <class T>
-Result<void> Case::publishVolume(std::string_view product, const ProductKey& key,
-                                 const Volume<T>& volume, const Attributes& attributes,
-                                 const std::vector<std::string>& outdated) {
-    if (auto writable = checkWritable(); !writable) return writable;
-    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hvol")};
-    const fs::path file = folder_ / entry.file;
-    if (auto sound = checkGrid(volume.grid(), file.string()); !sound) return sound;
-    const ProductHeader header{contentOf<T>(), volume.grid(), digestOf(key), {}, attributes};
-    return writeProduct(folder_, entry.file, header, std::as_bytes(volume.voxels())).and_then([&] {
-        return announce(entry, outdated);
-    });
-}
-
-Result<void> Case::publishCenterline(std::string_view product, const ProductKey& key,
-                                     const Centerline& centerline, const Attributes& attributes,
-                                     const std::vector<std::string>& outdated) {
-    if (auto writable = checkWritable(); !writable) return writable;
-    std::vector<CenterlineSample> samples;
-    samples.reserve(centerline.points.size());
-    for (const CenterlinePoint& p : centerline.points) {
-        samples.push_back({p.positionMm.x, p.positionMm.y, p.positionMm.z, p.arcMm, p.radiusMm,
-                           p.gap ? 1.0 : 0.0});
-    }
-    ProductHeader header{Content::centerline, {}, digestOf(key), {}, attributes};
-    header.grid.size = {int(samples.size()), 1, 1};
-    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hline")};
-    return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(samples)))
-        .and_then([&] { return announce(entry, outdated); });
 }
 
 Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::string>& outdated) {
@@ -274,24 +162,12 @@ void Case::sweep(const std::vector<ProductEntry>& kept) const {
         const std::string name = file.path().filename().string();
         const std::string extension = file.path().extension().string();
         const bool temporary = name.rfind(temporaryPrefix, 0) == 0;
-        const bool product = extension == ".hvol" || extension == ".hline";
+        const bool product = extension == ".hvol" || extension == ".hline" || extension == ".hmesh";
         if (temporary || (product && !names.count(name))) rubbish.push_back(file.path());
     }
     for (const fs::path& file : rubbish)
         fs::remove(file, ignored);
 }
-
-template Result<Volume<std::int16_t>> Case::readVolume(std::string_view) const;
-template Result<Volume<std::uint8_t>> Case::readVolume(std::string_view) const;
-template Result<Volume<float>> Case::readVolume(std::string_view) const;
-template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
-                                          const Volume<std::int16_t>&, const Attributes&,
-                                          const std::vector<std::string>&);
-template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
-                                          const Volume<std::uint8_t>&, const Attributes&,
-                                          const std::vector<std::string>&);
-template Result<void> Case::publishVolume(std::string_view, const ProductKey&, const Volume<float>&,
-                                          const Attributes&, const std::vector<std::string>&);
 
 bool isCaseName(std::string_view name) {
     constexpr std::string_view allowed =

@@ -3,6 +3,7 @@
 //   STORE/cases/NAME/case.json              names the file of each product
 //   STORE/cases/NAME/<product>-<key16>.hvol  a volume (layout: store/product_file.h)
 //   STORE/cases/NAME/<product>-<key16>.hline a centerline
+//   STORE/cases/NAME/<product>-<key16>.hmesh a triangle mesh
 //   STORE/cases/NAME/.lock                  flocked by the one writer
 //   STORE/cases/NAME/.tmp-*                 being written, or left by a writer that was killed
 //
@@ -14,6 +15,8 @@
 #include "core/centerline.h"
 #include "core/ct_scan.h"
 #include "core/result.h"
+#include "core/tissue.h"
+#include "core/tri_mesh.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -44,7 +47,7 @@ using Attributes = std::map<std::string, std::string>;
 
 /// What `case.json` says of one product.
 struct ProductEntry {
-    std::string product;  ///< "ct", "lumen", "distance", "centerline" …
+    std::string product;  ///< "ct", "lumen", "centerline", "surface" …
     ProductKey key;
     std::string file;  ///< name within the case folder
 };
@@ -62,11 +65,14 @@ public:
     std::optional<ProductEntry> find(std::string_view product) const;
     bool has(std::string_view product, const ProductKey& key) const;
 
-    /// A view of the memory-mapped product; T (int16_t, uint8_t or float) must be the type that
-    /// was published. Reads the header alone: the values' pages come when they are touched.
+    /// A view of the memory-mapped product; T (int16_t, uint8_t, float or TissueFractions) must be
+    /// the type that was published. Reads the header alone: the values' pages come when they are
+    /// touched.
     template <class T>
     Result<Volume<T>> readVolume(std::string_view product) const;
     Result<Centerline> readCenterline(std::string_view product = "centerline") const;
+    /// A copy, checked: every vertex is finite and every corner of a triangle is a vertex.
+    Result<TriMesh> readMesh(std::string_view product = "surface") const;
     Result<Attributes> attributes(std::string_view product) const;
     /// Fails, naming the file, where a product is not byte for byte what was published. Reads all
     /// of it, at the speed of SHA-256 on all cores.
@@ -82,6 +88,10 @@ public:
     Result<void> publishCenterline(std::string_view product, const ProductKey& key,
                                    const Centerline& centerline, const Attributes& attributes = {},
                                    const std::vector<std::string>& outdated = {});
+    /// Fails (unsupported) beyond 2^28 vertices or triangles.
+    Result<void> publishMesh(std::string_view product, const ProductKey& key, const TriMesh& mesh,
+                             const Attributes& attributes = {},
+                             const std::vector<std::string>& outdated = {});
 
 private:
     friend class CaseStore;

@@ -1,5 +1,6 @@
 #include "store/product_file.h"
 
+#include "core/tissue.h"
 #include "store/durable_file.h"
 
 #include <bit>
@@ -38,18 +39,36 @@ struct FixedHeader {
 };
 static_assert(sizeof(FixedHeader) == 240 && std::is_trivially_copyable_v<FixedHeader>);
 
-std::size_t bytesPerElement(Content content) {
+bool isVolume(Content content) {
+    return content != Content::centerline && content != Content::mesh;
+}
+
+std::size_t mostElements(Content content) {
+    return content == Content::mesh ? mostMeshElements : std::size_t(1) << 24;
+}
+
+// The sizes have been held against mostElements, so that nothing overflows.
+std::size_t valuesBytes(Content content, const Grid& grid) {
     switch (content) {
         case Content::int16Volume:
-            return 2;
+            return grid.voxelCount() * sizeof(std::int16_t);
         case Content::uint8Volume:
-            return 1;
+            return grid.voxelCount();
         case Content::floatVolume:
-            return 4;
+            return grid.voxelCount() * sizeof(float);
+        case Content::fractionsVolume:
+            return grid.voxelCount() * sizeof(TissueFractions);
         case Content::centerline:
-            return centerlineSampleBytes;
+            return std::size_t(grid.size.x) * centerlineSampleBytes;
+        case Content::mesh:
+            return std::size_t(grid.size.x) * meshVertexBytes +
+                   std::size_t(grid.size.y) * meshTriangleBytes;
     }
     return 0;
+}
+
+bool isKnown(Content content) {
+    return content >= Content::int16Volume && content <= Content::mesh;
 }
 
 Digest headerDigest(const FixedHeader& fixed, std::string_view attributes) {
@@ -140,22 +159,23 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
 
     MappedProduct product;
     product.header.content = Content(fixed.content);
-    const std::size_t elementBytes = bytesPerElement(product.header.content);
-    if (elementBytes == 0) return damaged("it holds an unknown kind of content", file);
+    const Content content = product.header.content;
+    if (!isKnown(content)) return damaged("it holds an unknown kind of content", file);
     for (int axis = 0; axis < 3; ++axis) {
-        if (fixed.size[axis] > (1u << 24)) return damaged("its size is absurd", file);
+        if (fixed.size[axis] > mostElements(content)) return damaged("its size is absurd", file);
         product.header.grid.size[axis] = int(fixed.size[axis]);
     }
     for (int n = 0; n < 12; ++n) {
         product.header.grid.patientFromVoxel[n / 3][n % 3] = fixed.patientFromVoxel[n];
     }
-    if (product.header.content == Content::centerline) {
-        if (fixed.size[1] != 1 || fixed.size[2] != 1) return damaged("its size is absurd", file);
+    if (!isVolume(content)) {
+        if (fixed.size[2] != 1 || (content == Content::centerline && fixed.size[1] != 1))
+            return damaged("its size is absurd", file);
     } else if (auto sound = checkGrid(product.header.grid, file.string()); !sound) {
         return tl::make_unexpected(sound.error());
     }
     if (fixed.valuesOffset != alignedOffset(fixed.attributesBytes) ||
-        fixed.valuesBytes != product.header.grid.voxelCount() * elementBytes) {
+        fixed.valuesBytes != valuesBytes(content, product.header.grid)) {
         return damaged("its header contradicts itself", file);
     }
     if (length < fixed.valuesOffset || length - fixed.valuesOffset != fixed.valuesBytes) {

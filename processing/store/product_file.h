@@ -3,8 +3,9 @@
 //   offset  bytes  field (all little endian)
 //        0      8  "HAUSTRA\n"
 //        8      4  version of this layout, 1
-//       12      4  content: 1 int16 volume, 2 uint8 volume, 3 float volume, 4 centerline
-//       16     12  size i, j, k (volume), or number of samples, 1, 1 (centerline)
+//       12      4  content: 1 int16 volume, 2 uint8 volume, 3 float volume, 4 centerline,
+//                  5 volume of tissue fractions, 6 mesh
+//       16     12  size i, j, k (volume); samples, 1, 1 (centerline); vertices, triangles, 1 (mesh)
 //       28      4  bytes of attributes, A
 //       32     96  patientFromVoxel, four columns of three doubles
 //      128      8  offset of the values, a multiple of 4096
@@ -13,6 +14,10 @@
 //      176     32  blockwise SHA-256 of the values (4 MiB blocks)
 //      208     32  SHA-256 of bytes 0…207 and the attributes
 //      240      A  attributes, a JSON object of strings
+//
+// Values: a volume's voxels, i fastest (of fractions: two bytes, air and tagged in 255ths); a
+// centerline's samples, six doubles each: x, y, z, arc, radius (mm), gap (0 or 1); a mesh's
+// vertices, three doubles each (LPS, mm), then its triangles, three int32 each, counted from 0.
 //
 // The values end the file. A reader believes no field before the file's length bears it out.
 #pragma once
@@ -34,14 +39,19 @@ enum class Content : std::uint32_t {
     int16Volume = 1,
     uint8Volume = 2,
     floatVolume = 3,
-    centerline = 4,  ///< six doubles a sample: x, y, z, arc, radius (mm), gap (0 or 1)
+    centerline = 4,
+    fractionsVolume = 5,
+    mesh = 6,
 };
 inline constexpr std::size_t centerlineSampleBytes = 6 * sizeof(double);
+inline constexpr std::size_t meshVertexBytes = 3 * sizeof(double);
+inline constexpr std::size_t meshTriangleBytes = 3 * sizeof(std::int32_t);
+inline constexpr std::size_t mostMeshElements = std::size_t(1) << 28;
 
 /// Everything of a product file but its values.
 struct ProductHeader {
     Content content = Content::int16Volume;
-    Grid grid;  ///< a centerline of n samples has size (n, 1, 1)
+    Grid grid;  ///< its size is the number of elements, as the file has it
     Digest key{};
     Digest valuesDigest{};
     std::map<std::string, std::string> attributes;
@@ -56,7 +66,7 @@ struct MappedProduct {
 };
 
 /// Maps a product file. Fails, naming the file, where it is cut short, too long or inconsistent.
-/// Reads the header only, not the values.
+/// Reads the header only, not the values: a mesh's indices are still to be checked.
 Result<MappedProduct> mapProduct(const std::filesystem::path& file);
 
 /// Publishes `folder`/`name` as writeDurably does. `header.valuesDigest` is computed here.

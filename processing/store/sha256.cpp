@@ -23,6 +23,14 @@ std::string toHex(const Digest& digest) {
     return hex;
 }
 
+Digest digestFromHex(std::string_view hex) {
+    const auto value = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+    Digest digest{};
+    for (std::size_t n = 0; n < digest.size() && 2 * n + 1 < hex.size(); ++n)
+        digest[n] = std::uint8_t(value(hex[2 * n]) << 4 | value(hex[2 * n + 1]));
+    return digest;
+}
+
 void Sha256::Free::operator()(evp_md_ctx_st* context) const {
     EVP_MD_CTX_free(context);
 }

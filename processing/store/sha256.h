@@ -20,6 +20,8 @@ using Digest = std::array<std::uint8_t, 32>;
 
 /// 64 lower-case hexadecimal digits.
 std::string toHex(const Digest& digest);
+/// The other way; digits that are missing are 0.
+Digest digestFromHex(std::string_view hex);
 
 /// One running hash (OpenSSL EVP). Belongs to one thread.
 class Sha256 {

@@ -1,6 +1,7 @@
 // Laws of the case store: what is published is what is read, keys tell everything apart, and
 // damage is always seen.
 #include "store/case_store.h"
+#include "store/product_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +62,14 @@ template <class T>
 Volume<T> randomVolume(glm::ivec3 size, unsigned seed) {
     Volume<T> volume(obliqueGrid(size));
     std::mt19937 random(seed);
-    for (T& voxel : volume.writable())
-        voxel = T(int(random() % 60000) - 30000);
+    for (T& voxel : volume.writable()) {
+        if constexpr (std::is_same_v<T, TissueFractions>) {
+            voxel.air = std::uint8_t(random() % 256);
+            voxel.tagged = std::uint8_t(random() % (256 - voxel.air));
+        } else {
+            voxel = T(int(random() % 60000) - 30000);
+        }
+    }
     return volume;
 }
 
@@ -82,9 +89,22 @@ Centerline someCenterline(int samples) {
     return line;
 }
 
+TriMesh randomMesh(int vertices, int triangles, unsigned seed) {
+    TriMesh mesh;
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(-400.0, 400.0);
+    for (int n = 0; n < vertices; ++n)
+        mesh.vertices.push_back({place(random), place(random), place(random)});
+    for (int n = 0; n < triangles; ++n) {
+        const auto corner = [&] { return int(random() % unsigned(vertices)); };
+        mesh.triangles.push_back({corner(), corner(), corner()});
+    }
+    return mesh;
+}
+
 template <class T>
 class StoreRoundTrip : public Store {};
-using VoxelTypes = testing::Types<std::int16_t, std::uint8_t, float>;
+using VoxelTypes = testing::Types<std::int16_t, std::uint8_t, float, TissueFractions>;
 TYPED_TEST_SUITE(StoreRoundTrip, VoxelTypes);
 
 TYPED_TEST(StoreRoundTrip, AVolumeComesBackBitForBitWithItsGridAndAttributes) {
@@ -119,6 +139,72 @@ TEST_F(Store, ACenterlineComesBackBitForBit) {
             EXPECT_EQ(back->points[n].radiusMm, line.points[n].radiusMm);
             EXPECT_EQ(back->points[n].gap, line.points[n].gap);
         }
+    }
+}
+
+TEST_F(Store, AMeshComesBackBitForBit) {
+    Case writing = writer();
+    for (const glm::ivec2 size :
+         {glm::ivec2(0, 0), glm::ivec2(3, 0), glm::ivec2(4, 4), glm::ivec2(30001, 60007)}) {
+        const TriMesh mesh = randomMesh(size.x, size.y, 11);
+        ASSERT_TRUE(writing.publishMesh("surface", keyOf(size.x), mesh, {{"genus", "0"}}));
+        const Case reading = store().openCase("patient-1").value();
+        const auto back = reading.readMesh();
+        ASSERT_TRUE(back) << describe(back.error());
+        EXPECT_EQ(back->vertices, mesh.vertices);
+        EXPECT_EQ(back->triangles, mesh.triangles);
+        EXPECT_EQ(reading.attributes("surface").value().at("genus"), "0");
+        EXPECT_TRUE(reading.verify("surface"));
+    }
+    EXPECT_FALSE(writing.readVolume<float>("surface"));
+    EXPECT_FALSE(writing.readCenterline("surface"));
+}
+
+// A file whose checksums are right can still be hostile: it is the content that counts.
+TEST_F(Store, AMeshThatWouldBeReadOutsideItselfIsRefused) {
+    Case writing = writer();
+    const TriMesh sound = randomMesh(40, 70, 3);
+    ASSERT_TRUE(writing.publishMesh("surface", keyOf(1), sound));
+    const std::string name = writing.find("surface")->file;
+    const auto readForged = [&](const TriMesh& mesh, glm::ivec3 size) {
+        ProductHeader header{Content::mesh, {}, digestFromHex(keyOf(1).hex), {}, {}};
+        header.grid.size = size;
+        std::vector<std::byte> bytes(mesh.vertices.size() * 24 + mesh.triangles.size() * 12);
+        std::memcpy(bytes.data(), mesh.vertices.data(), mesh.vertices.size() * 24);
+        std::memcpy(bytes.data() + mesh.vertices.size() * 24, mesh.triangles.data(),
+                    mesh.triangles.size() * 12);
+        EXPECT_TRUE(writeProduct(writing.folder(), name, header, bytes));
+        return writing.readMesh();
+    };
+    ASSERT_TRUE(readForged(sound, {40, 70, 1}));
+    EXPECT_FALSE(readForged(sound, {41, 70, 1}));
+    EXPECT_FALSE(readForged(sound, {40, 71, 1}));
+    EXPECT_FALSE(readForged(sound, {40, 70, 2}));
+    const TriMesh whole = readForged(sound, {38, 74, 1}).value_or(TriMesh{});  // as many bytes
+    for (const glm::ivec3& t : whole.triangles)
+        EXPECT_LT(std::max({t.x, t.y, t.z}), 38);
+    EXPECT_FALSE(readForged(sound, {-1, 70, 1}));
+    EXPECT_FALSE(readForged(sound, {1 << 30, 1 << 30, 1}));
+    for (const int bad : {-1, 40, std::numeric_limits<int>::min(), 1 << 30}) {
+        TriMesh forged = sound;
+        forged.triangles[69][2] = bad;
+        EXPECT_FALSE(readForged(forged, {40, 70, 1})) << bad;
+    }
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        TriMesh forged = sound;
+        forged.vertices[39].y = bad;
+        EXPECT_FALSE(readForged(forged, {40, 70, 1})) << bad;
+    }
+}
+
+TEST_F(Store, ACutMeshIsRefused) {
+    Case writing = writer();
+    ASSERT_TRUE(writing.publishMesh("surface", keyOf(1), randomMesh(40, 70, 3)));
+    const fs::path file = writing.folder() / writing.find("surface")->file;
+    const std::string whole = content(file);
+    for (std::size_t length = 0; length < whole.size(); length += 53) {
+        overwrite(file, whole.substr(0, length));
+        ASSERT_FALSE(writing.readMesh()) << length;
     }
 }
 

@@ -1,0 +1,210 @@
+// A case's volumes, centerlines and meshes: from memory to product files and back.
+#include "store/case_store.h"
+#include "store/product_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace haustra::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class T>
+constexpr Content contentOf();
+template <>
+constexpr Content contentOf<std::int16_t>() {
+    return Content::int16Volume;
+}
+template <>
+constexpr Content contentOf<std::uint8_t>() {
+    return Content::uint8Volume;
+}
+template <>
+constexpr Content contentOf<float>() {
+    return Content::floatVolume;
+}
+template <>
+constexpr Content contentOf<TissueFractions>() {
+    return Content::fractionsVolume;
+}
+
+const char* describeContent(Content content) {
+    switch (content) {
+        case Content::int16Volume:
+            return "a volume of 16-bit integers";
+        case Content::uint8Volume:
+            return "a volume of bytes";
+        case Content::floatVolume:
+            return "a volume of floats";
+        case Content::centerline:
+            return "a centerline";
+        case Content::fractionsVolume:
+            return "a volume of tissue fractions";
+        case Content::mesh:
+            return "a mesh";
+    }
+    return "something unknown";
+}
+
+Result<void> checkContent(const MappedProduct& mapped, Content wanted, std::string_view product,
+                          const fs::path& folder) {
+    if (mapped.header.content == wanted) return {};
+    return fail(ErrorKind::badInput,
+                std::string(product) + " is " + describeContent(mapped.header.content) + ", not " +
+                    describeContent(wanted),
+                folder.string());
+}
+
+std::string fileName(std::string_view product, const ProductKey& key, const char* extension) {
+    return std::string(product) + "-" + key.hex.substr(0, 16) + extension;
+}
+
+struct CenterlineSample {
+    double x, y, z, arc, radius, gap;
+};
+static_assert(sizeof(CenterlineSample) == centerlineSampleBytes);
+static_assert(sizeof(glm::dvec3) == meshVertexBytes && sizeof(glm::ivec3) == meshTriangleBytes);
+
+template <class T>
+void append(std::vector<std::byte>& bytes, const std::vector<T>& values) {
+    const auto more = std::as_bytes(std::span(values));
+    bytes.insert(bytes.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+template <class T>
+Result<Volume<T>> Case::readVolume(std::string_view product) const {
+    auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    if (auto right = checkContent(*mapped, contentOf<T>(), product, folder_); !right)
+        return tl::make_unexpected(right.error());
+    // The values start on a page, so they are aligned for any T.
+    const T* voxels = reinterpret_cast<const T*>(mapped->values.data());
+    return Volume<T>::view(mapped->header.grid, voxels, mapped->mapping);
+}
+
+Result<Centerline> Case::readCenterline(std::string_view product) const {
+    const auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    if (auto right = checkContent(*mapped, Content::centerline, product, folder_); !right)
+        return tl::make_unexpected(right.error());
+    Centerline centerline;
+    centerline.points.reserve(mapped->values.size() / sizeof(CenterlineSample));
+    for (std::size_t at = 0; at < mapped->values.size(); at += sizeof(CenterlineSample)) {
+        CenterlineSample s;
+        std::memcpy(&s, mapped->values.data() + at, sizeof s);
+        centerline.points.push_back({{s.x, s.y, s.z}, s.arc, s.radius, s.gap != 0.0});
+    }
+    return centerline;
+}
+
+Result<TriMesh> Case::readMesh(std::string_view product) const {
+    const auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    if (auto right = checkContent(*mapped, Content::mesh, product, folder_); !right)
+        return tl::make_unexpected(right.error());
+    // mapProduct has held both counts against the number of bytes.
+    TriMesh mesh;
+    mesh.vertices.resize(std::size_t(mapped->header.grid.size.x));
+    mesh.triangles.resize(std::size_t(mapped->header.grid.size.y));
+    const std::size_t vertexBytes = mesh.vertices.size() * meshVertexBytes;
+    const auto copy = [&](auto& values, std::size_t from) {
+        if (!values.empty()) {
+            std::memcpy(values.data(), mapped->values.data() + from,
+                        values.size() * sizeof values[0]);
+        }
+    };
+    copy(mesh.vertices, 0);
+    copy(mesh.triangles, vertexBytes);
+    const auto damaged = [&](const char* what) {
+        return fail(ErrorKind::badInput,
+                    "the product is damaged: " + std::string(product) + " has " + what,
+                    folder_.string());
+    };
+    for (const glm::dvec3& v : mesh.vertices) {
+        if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+            return damaged("a vertex that is nowhere");
+    }
+    const auto count = std::int32_t(mesh.vertices.size());
+    for (const glm::ivec3& t : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            if (t[corner] < 0 || t[corner] >= count)
+                return damaged("a triangle with a corner that is no vertex");
+        }
+    }
+    return mesh;
+}
+
+template <class T>
+Result<void> Case::publishVolume(std::string_view product, const ProductKey& key,
+                                 const Volume<T>& volume, const Attributes& attributes,
+                                 const std::vector<std::string>& outdated) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hvol")};
+    const fs::path file = folder_ / entry.file;
+    if (auto sound = checkGrid(volume.grid(), file.string()); !sound) return sound;
+    const ProductHeader header{
+        contentOf<T>(), volume.grid(), digestFromHex(key.hex), {}, attributes};
+    return writeProduct(folder_, entry.file, header, std::as_bytes(volume.voxels())).and_then([&] {
+        return announce(entry, outdated);
+    });
+}
+
+Result<void> Case::publishCenterline(std::string_view product, const ProductKey& key,
+                                     const Centerline& centerline, const Attributes& attributes,
+                                     const std::vector<std::string>& outdated) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    std::vector<CenterlineSample> samples;
+    samples.reserve(centerline.points.size());
+    for (const CenterlinePoint& p : centerline.points) {
+        samples.push_back({p.positionMm.x, p.positionMm.y, p.positionMm.z, p.arcMm, p.radiusMm,
+                           p.gap ? 1.0 : 0.0});
+    }
+    ProductHeader header{Content::centerline, {}, digestFromHex(key.hex), {}, attributes};
+    header.grid.size = {int(samples.size()), 1, 1};
+    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hline")};
+    return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(samples)))
+        .and_then([&] { return announce(entry, outdated); });
+}
+
+Result<void> Case::publishMesh(std::string_view product, const ProductKey& key, const TriMesh& mesh,
+                               const Attributes& attributes,
+                               const std::vector<std::string>& outdated) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hmesh")};
+    if (mesh.vertices.size() > mostMeshElements || mesh.triangles.size() > mostMeshElements) {
+        return fail(ErrorKind::unsupported, "the mesh has too many vertices or triangles to store",
+                    (folder_ / entry.file).string());
+    }
+    ProductHeader header{Content::mesh, {}, digestFromHex(key.hex), {}, attributes};
+    header.grid.size = {int(mesh.vertices.size()), int(mesh.triangles.size()), 1};
+    std::vector<std::byte> bytes;
+    bytes.reserve(mesh.vertices.size() * meshVertexBytes +
+                  mesh.triangles.size() * meshTriangleBytes);
+    append(bytes, mesh.vertices);
+    append(bytes, mesh.triangles);
+    return writeProduct(folder_, entry.file, header, bytes).and_then([&] {
+        return announce(entry, outdated);
+    });
+}
+
+template Result<Volume<std::int16_t>> Case::readVolume(std::string_view) const;
+template Result<Volume<std::uint8_t>> Case::readVolume(std::string_view) const;
+template Result<Volume<float>> Case::readVolume(std::string_view) const;
+template Result<Volume<TissueFractions>> Case::readVolume(std::string_view) const;
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const Volume<std::int16_t>&, const Attributes&,
+                                          const std::vector<std::string>&);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const Volume<std::uint8_t>&, const Attributes&,
+                                          const std::vector<std::string>&);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&, const Volume<float>&,
+                                          const Attributes&, const std::vector<std::string>&);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const Volume<TissueFractions>&, const Attributes&,
+                                          const std::vector<std::string>&);
+
+}  // namespace haustra::store
