@@ -8,8 +8,10 @@
 
 namespace haustra::surface {
 
-/// Pairs of triangles (sorted) that share more than what their common vertices make them share;
-/// exact (CGAL's self_intersections). O(n log n).
+/// Pairs of triangles (sorted, the lower first) that share more than what their common vertices
+/// make them share, and (n, n) for a triangle without area. Exact (CGAL's predicates and box
+/// intersection; on a manifold mesh what its Polygon_mesh_processing::self_intersections finds),
+/// for any mesh whose indices are within `vertices`. O(n log³ n), one thread; thread-safe.
 std::vector<std::pair<int, int>> selfIntersections(const TriMesh& mesh);
 
 }  // namespace haustra::surface

@@ -1,0 +1,246 @@
+// Laws of the lumen's surface: for any labels and any HU it is a closed manifold without
+// self-intersections, and its topology is that of the labels.
+#include "core/ct_scan.h"
+#include "mesh_laws.h"
+#include "surface/cell_cases.h"
+#include "surface/dual_contouring.h"
+#include "surface/self_intersection.h"
+
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace haustra {
+namespace {
+
+using Labels = Volume<std::uint8_t>;
+using Hu = Volume<std::int16_t>;
+
+/// χ of the solid whose voxels are 6-connected in an 18-connected background, from counts of
+/// elements alone: voxels − edges + squares − cubes, and one more disc for each cube that is
+/// outside at two opposite corners alone, which 18-connectivity keeps apart.
+long solidEuler(const Labels& labels) {
+    const glm::ivec3 size = labels.grid().size;
+    auto inside = [&](glm::ivec3 v) { return labels.grid().contains(v) && labels.at(v) != 0; };
+    long euler = 0;
+    for (int k = -1; k < size.z; ++k) {
+        for (int j = -1; j < size.y; ++j) {
+            for (int i = -1; i < size.x; ++i) {
+                unsigned block = 0;
+                for (int corner = 0; corner < 8; ++corner)
+                    block |= unsigned(inside(glm::ivec3(i, j, k) + surface::cornerOffset(corner)))
+                             << corner;
+                auto all = [&](unsigned mask) { return (block & mask) == mask; };
+                euler += all(0x01);
+                euler -= all(0x03) + all(0x05) + all(0x11);
+                euler += all(0x0f) + all(0x33) + all(0x55);
+                euler -= all(0xff);
+                for (unsigned corner = 0; corner < 4; ++corner)
+                    euler += block == (0xffu & ~(1u << corner | 1u << (7 - corner)));
+            }
+        }
+    }
+    return euler;
+}
+
+/// Components of the voxels that are (or are not) labelled, joined to neighbours at a squared
+/// distance of at most `reach`; beyond the grid lies one ring of background.
+long componentCount(const Labels& labels, bool ofObject, int reach) {
+    const glm::ivec3 size = labels.grid().size + 2;
+    const Grid ring = axisAlignedGrid(size, glm::dvec3(1.0));
+    auto member = [&](glm::ivec3 v) {
+        const bool object = labels.grid().contains(v - 1) && labels.at(v - 1) != 0;
+        return ring.contains(v) && object == ofObject;
+    };
+    std::vector<char> seen(ring.voxelCount(), 0);
+    long count = 0;
+    for (std::size_t start = 0; start < seen.size(); ++start) {
+        if (seen[start] || !member(ring.voxelAt(start))) continue;
+        ++count;
+        std::vector<glm::ivec3> open{ring.voxelAt(start)};
+        seen[start] = 1;
+        while (!open.empty()) {
+            const glm::ivec3 v = open.back();
+            open.pop_back();
+            for (int n = 0; n < 27; ++n) {
+                const glm::ivec3 d(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+                if (glm::dot(glm::dvec3(d), glm::dvec3(d)) > reach || !member(v + d)) continue;
+                if (seen[ring.index(v + d)]) continue;
+                seen[ring.index(v + d)] = 1;
+                open.push_back(v + d);
+            }
+        }
+    }
+    return count;
+}
+
+struct Case {
+    Labels labels;
+    Hu hu;
+};
+
+Case makeCase(glm::ivec3 size, const std::function<bool(glm::ivec3)>& inside,
+              const std::function<int(glm::ivec3)>& hu) {
+    const Grid grid = axisAlignedGrid(size, {0.75, 0.8, 1.05}, {-3.0, 5.0, 100.0});
+    Case made{Labels(grid), Hu(grid)};
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        made.labels.writable()[n] = inside(grid.voxelAt(n)) ? 1 : 0;
+        made.hu.writable()[n] = std::int16_t(hu(grid.voxelAt(n)));
+    }
+    return made;
+}
+
+void expectLaws(const Case& given) {
+    const auto mesh = surface::contourLumen(given.hu, given.labels, -480.0, {1});
+    ASSERT_TRUE(mesh) << describe(mesh.error());
+    const MeshTopology topology = meshTopology(*mesh);
+    ASSERT_TRUE(topology.closed());
+    ASSERT_TRUE(tests::everyVertexHasOneFan(*mesh));
+    ASSERT_EQ(topology.eulerCharacteristic, 2 * solidEuler(given.labels));
+    // Each surface parts one component of the object from one of the background: a tree.
+    ASSERT_EQ(topology.components,
+              componentCount(given.labels, true, 1) + componentCount(given.labels, false, 2) - 1);
+    ASSERT_GT(tests::signedVolumeMm3(*mesh), 0.0);
+    ASSERT_EQ(surface::selfIntersections(*mesh).size(), 0u);
+}
+
+/// HU that make crossings anywhere, and gradients that make no sense.
+std::function<int(glm::ivec3)> wildHu(std::mt19937& random) {
+    return [&random](glm::ivec3) { return -1024 + int(random() % 1200); };
+}
+
+TEST(DualContouringLaw, HoldsForEveryCell) {
+    std::mt19937 random(1);
+    for (unsigned inside = 1; inside < 256; ++inside) {
+        SCOPED_TRACE(inside);
+        for (int repeat = 0; repeat < 4; ++repeat) {
+            expectLaws(makeCase(
+                glm::ivec3(2),
+                [&](glm::ivec3 v) { return inside >> (v.x | v.y << 1 | v.z << 2) & 1; },
+                wildHu(random)));
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(DualContouringLaw, HoldsForEveryPairOfCells) {
+    std::mt19937 random(2);
+    for (unsigned inside = 1; inside < 4096; ++inside) {
+        SCOPED_TRACE(inside);
+        expectLaws(makeCase(
+            {2, 2, 3}, [&](glm::ivec3 v) { return inside >> (v.x | v.y << 1 | v.z << 2) & 1; },
+            wildHu(random)));
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST(DualContouringLaw, HoldsForRandomLabels) {
+    std::mt19937 random(3);
+    for (int repeat = 0; repeat < 600; ++repeat) {
+        SCOPED_TRACE(repeat);
+        const glm::ivec3 size(3 + random() % 7, 3 + random() % 7, 3 + random() % 14);
+        const unsigned percent = 5 + random() % 90;
+        Case given = makeCase(
+            size, [&](glm::ivec3) { return random() % 100 < percent; }, wildHu(random));
+        given.labels.writable()[random() % given.labels.grid().voxelCount()] = 3;
+        expectLaws(given);
+        if (HasFatalFailure()) return;
+    }
+}
+
+TEST(DualContouringLaw, HoldsForNoisyHuThresholded) {
+    std::mt19937 random(4);
+    for (int repeat = 0; repeat < 60; ++repeat) {
+        SCOPED_TRACE(repeat);
+        Case given = makeCase(
+            glm::ivec3(16), [](glm::ivec3) { return false; },
+            [&](glm::ivec3 v) {
+                const double radius = glm::distance(glm::dvec3(v), glm::dvec3(7.6, 7.3, 7.8));
+                const double noise = double(random() % 2001) / 1000.0 - 1.0;
+                return int(-480.0 + 250.0 * (radius - 5.0) + 400.0 * noise);
+            });
+        for (std::size_t n = 0; n < given.hu.voxels().size(); ++n)
+            given.labels.writable()[n] = given.hu[n] < -480 ? 1 : 0;
+        expectLaws(given);
+        if (HasFatalFailure()) return;
+    }
+}
+
+/// Two voxels that touch along an edge alone are two balls; the background that touches so is one.
+TEST(DualContouringLaw, PartsTheObjectAcrossAnAmbiguousFace) {
+    auto hu = [](glm::ivec3) { return -480; };
+    const Case parted = makeCase(
+        {2, 2, 1}, [](glm::ivec3 v) { return v.x == v.y; }, hu);
+    EXPECT_EQ(meshTopology(*surface::contourLumen(parted.hu, parted.labels, -480.0)).components, 2);
+    const Case ring = makeCase(
+        glm::ivec3(3), [](glm::ivec3 v) { return v.z == 1 && !(v.x == 1 && v.y == 1); }, hu);
+    EXPECT_EQ(meshTopology(*surface::contourLumen(ring.hu, ring.labels, -480.0)).genus(), 1);
+}
+
+Case noisyBall(std::uint32_t seed) {
+    std::mt19937 random(seed);
+    Case given = makeCase(
+        {24, 26, 40}, [](glm::ivec3) { return false; },
+        [&](glm::ivec3 v) {
+            const double radius = glm::distance(glm::dvec3(v), glm::dvec3(11.6, 12.3, 17.8));
+            return int(-480.0 + 250.0 * (radius - 8.0)) + int(random() % 200) - 100;
+        });
+    for (std::size_t n = 0; n < given.hu.voxels().size(); ++n)
+        given.labels.writable()[n] = given.hu[n] < -480 ? 1 : 0;
+    return given;
+}
+
+TEST(DualContouringLaw, IsTheSameForAnyNumberOfThreads) {
+    const Case given = noisyBall(5);
+    const TriMesh one = *surface::contourLumen(given.hu, given.labels, -480.0, {1});
+    for (int threads : {2, 3, 7}) {
+        const TriMesh several = *surface::contourLumen(given.hu, given.labels, -480.0, {threads});
+        EXPECT_EQ(one.vertices, several.vertices);
+        EXPECT_EQ(one.triangles, several.triangles);
+    }
+}
+
+TEST(DualContouringLaw, MovesWithTheGrid) {
+    const Case given = noisyBall(6);
+    const TriMesh mesh = *surface::contourLumen(given.hu, given.labels, -480.0);
+    // The patient moves: the same triangles, every vertex shifted.
+    Grid shifted = given.hu.grid();
+    const glm::dvec3 shift(17.0, -230.0, 11.5);
+    shifted.patientFromVoxel[3] += glm::dvec4(shift, 0.0);
+    const auto none = std::shared_ptr<const void>();
+    const TriMesh moved =
+        *surface::contourLumen(Hu::view(shifted, given.hu.voxels().data(), none),
+                               Labels::view(shifted, given.labels.voxels().data(), none), -480.0);
+    ASSERT_EQ(mesh.triangles, moved.triangles);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        ASSERT_LT(glm::distance(mesh.vertices[v] + shift, moved.vertices[v]), 1e-9);
+}
+
+TEST(DualContouringLaw, MirroredGridsGiveTheSameSolid) {
+    const Case given = noisyBall(7);
+    const TriMesh mesh = *surface::contourLumen(given.hu, given.labels, -480.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        Grid mirrored = given.hu.grid();
+        mirrored.patientFromVoxel[axis] = -mirrored.patientFromVoxel[axis];
+        const auto none = std::shared_ptr<const void>();
+        const TriMesh other = *surface::contourLumen(
+            Hu::view(mirrored, given.hu.voxels().data(), none),
+            Labels::view(mirrored, given.labels.voxels().data(), none), -480.0);
+        EXPECT_NEAR(tests::signedVolumeMm3(other), tests::signedVolumeMm3(mesh), 1e-6);
+    }
+}
+
+TEST(DualContouringLaw, RefusesWhatHasNoSurface) {
+    const Grid grid = axisAlignedGrid({4, 4, 4}, glm::dvec3(1.0));
+    const auto empty = surface::contourLumen(Hu(grid, 0), Labels(grid, 0), -480.0);
+    ASSERT_FALSE(empty);
+    EXPECT_EQ(empty.error().kind, ErrorKind::noResult);
+    const auto apart = surface::contourLumen(Hu(axisAlignedGrid({4, 4, 4}, glm::dvec3(2.0)), 0),
+                                             Labels(grid, 1), -480.0);
+    ASSERT_FALSE(apart);
+    EXPECT_EQ(apart.error().kind, ErrorKind::badInput);
+}
+
+}  // namespace
+}  // namespace haustra
