@@ -2,6 +2,7 @@
 
 #include "topology/air_fluid.h"
 #include "topology/colon_selection.h"
+#include "topology/filled_sections.h"
 #include "topology/pools.h"
 #include "topology/run_components.h"
 #include "topology/tagged_stool.h"
@@ -318,6 +319,10 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
         }
     }
     fillInterfaces(lumen.labels, gravity.levels, colonLevels, gravity.down);
+    progress(0.85);
+    if (const double ml = addFilledSections(lumen.labels, scan.hu, tissue, excludedVoxels);
+        ml > 0.0)
+        lumen.notes.push_back(text("%.0f ml of tagged fluid without air above were taken in", ml));
     addTaggedStool(lumen.labels, scan.hu, tissue, excludedVoxels);
     progress(1.0);
     return lumen;

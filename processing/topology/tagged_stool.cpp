@@ -1,5 +1,7 @@
 #include "topology/tagged_stool.h"
 
+#include "topology/axis_walk.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -30,24 +32,8 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
         return out[index] == 0 && hu[index] > above && !barred[index];
     };
 
-    // Steps from a voxel along ± each axis, up to contactVoxels of neither, to the first voxel for
-    // which `hit` holds.
     auto reaches = [&](std::size_t index, auto&& hit, auto&& visit) {
-        const glm::ivec3 v = grid.voxelAt(index);
-        for (int axis = 0; axis < 3; ++axis) {
-            for (int sign : {-1, 1}) {
-                std::size_t at = index;
-                for (int step = 1; step <= contactVoxels + 1; ++step) {
-                    const int n = v[axis] + sign * step;
-                    if (n < 0 || n >= size[axis]) break;
-                    at = sign > 0 ? at + strides[axis] : at - strides[axis];
-                    if (hit(at)) {
-                        visit(axis, sign, step, at);
-                        break;
-                    }
-                }
-            }
-        }
+        walkAxes(grid, index, contactVoxels, hit, visit);
     };
 
     // Candidates: stool voxels that lumen air reaches.

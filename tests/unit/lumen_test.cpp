@@ -166,14 +166,14 @@ TEST(Lumen, APersonCanAddAndRemovePieces) {
     EXPECT_EQ(nowhere.error().place, "100.0,30.0,40.0");
 }
 
-// A slab of bone against the wall.
+// A slab of bone against the wall, brighter than any fluid.
 TEST(Lumen, DenseMaterialThatTouchesTheWallIsNotStool) {
     Drawing drawing;
     CtScan scan = drawing.scan(PatientPosition::supine);
     const auto inBone = [](glm::dvec3 v) {
         return v.x >= 38 && v.x < 62 && v.y > 45 && v.y < 85 && v.z >= 16 && v.z < 34;
     };
-    drawing.paint(600, inBone);
+    drawing.paint(1200, inBone);
     scan.hu = drawing.hu.share();
     const auto lumen = find(scan);
     ASSERT_TRUE(lumen) << describe(lumen.error());
