@@ -25,6 +25,9 @@ public:
     /// O(blocks near the colon); the same for any number of threads.
     ColonField(const ColonShape& shape, const Grid& grid, int threads);
 
+    /// Samples the shape anew in the blocks that a ball reaches.
+    void resample(const ColonShape& shape, glm::dvec3 centre, double radiusMm);
+
     const Grid& grid() const { return grid_; }
     int blockCount() const { return int(blocks_.size()); }
     glm::ivec3 blockOrigin(int block) const { return blocks_[block].origin; }
@@ -46,6 +49,12 @@ private:
         glm::ivec3 origin{0};
         std::array<Sample, blockVoxels> samples;
     };
+    double halfDiagonalMm() const { return 0.5 * blockSize * glm::length(grid_.spacingMm()); }
+    glm::dvec3 centreOf(glm::ivec3 blockOrigin) const {
+        return grid_.patientFromVoxelPoint(glm::dvec3(blockOrigin) + 0.5 * (blockSize - 1.0));
+    }
+    void sample(const ColonShape& shape, ColonShape::Nearby& nearby, Block& block) const;
+
     Grid grid_;
     glm::ivec3 blocksPerAxis_{0};
     std::vector<int> blockAt_;  ///< −1 where there is none

@@ -35,6 +35,7 @@ struct Growth {
     /// No part lies farther than this from `centre`.
     double reachMm() const;
     bool stool() const { return kind == Kind::untaggedStool || kind == Kind::taggedStool; }
+    bool polyp() const { return !stool() && kind != Kind::hyperplastic; }
 };
 
 /// The geometry at one point.

@@ -9,6 +9,8 @@ namespace haustra::phantom {
 namespace {
 
 constexpr double kNoFloor = 1e9;
+/// Over which a meniscus falls off: the capillary length of water.
+constexpr double kMeniscusMm = 2.7;
 
 /// Lowest and highest lumen voxel at each sample of the axis.
 void floorAndCeiling(const ColonShape& shape, const ColonField& field, const Fluid& fluid,
@@ -64,6 +66,10 @@ std::vector<int> summits(const std::vector<double>& floor, double prominence) {
 
 }  // namespace
 
+double Pool::levelAt(double lumenMm) const {
+    return levelMm + riseMm * std::exp(std::min(0.0, lumenMm) / kMeniscusMm);
+}
+
 double Pool::huAt(glm::dvec3 p, double heightMm) const {
     const double depth = std::min(1.0, std::max(0.0, levelMm - heightMm) / 40.0);
     const double blotches = 0.7 * valueNoise(seed, p, 14.0) + 0.3 * valueNoise(seed + 1, p, 5.0);
@@ -79,7 +85,8 @@ const Pool& Fluid::poolAt(double arcMm) const {
 
 Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t seed, Preset preset,
                 const BodyPlan& body) {
-    Random random(seed, 4 + 100 * std::uint64_t(body.position));
+    Random random(seed, 4 + 100 * std::uint64_t(body.position)),
+        menisci(seed, 8 + 100 * std::uint64_t(body.position));
     Fluid fluid;
     fluid.up = -gravityDirection(body.position);
     std::vector<double> floor, ceiling;
@@ -102,6 +109,7 @@ Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t 
         pool.seed = random.bits();
         const bool easy = preset == Preset::easy, hard = preset == Preset::hard;
         pool.hu = hard ? random.uniform(220.0, 400.0) : random.uniform(450.0, 850.0);
+        pool.riseMm = menisci.uniform(0.4, 1.6);
         pool.unevenness = easy ? 0.05 : hard ? 1.0 : 0.4;
         const double wantedMm = easy ? random.uniform(3.0, 12.0) : random.uniform(12.0, 45.0);
         const bool empty = random.chance(easy ? 0.3 : 0.08);

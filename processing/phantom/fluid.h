@@ -11,10 +11,14 @@ namespace haustra::phantom {
 struct Pool {
     double beginMm = 0.0, endMm = 0.0;  ///< arcs
     double levelMm = -1e9;              ///< height of the surface: −gravity · p
+    double riseMm = 0.0;                ///< how far the meniscus climbs the wall
     double hu = 600.0;
     double unevenness = 0.0;  ///< 0…1: how much the tagging varies within the pool
     std::uint64_t seed = 0;
 
+    /// Height of the surface at a signed distance to the lumen's boundary: the meniscus falls off
+    /// exponentially from the wall.
+    double levelAt(double lumenMm) const;
     /// HU of the fluid at a point; denser toward the bottom.
     double huAt(glm::dvec3 p, double heightMm) const;
 };

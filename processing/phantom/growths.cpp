@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 namespace haustra::phantom {
@@ -87,6 +88,9 @@ struct Wanted {
     double apartMm = 25.0;                     ///< from the centres of other growths
     double radiusAtLeastMm = 11.0;             ///< of the colon there
     glm::dvec3 downward{0.0};  ///< unit: on the lower wall, facing up; zero: anywhere
+    int attempts = 80;
+    /// Further wishes about what grew.
+    std::function<bool(const Growth&)> fits = [](const Growth&) { return true; };
 };
 
 class Placer {
@@ -97,7 +101,7 @@ public:
     template <class Grow>
     bool add(const Wanted& wanted, const Grow& grow) {
         const ColonPath& path = shape_.path();
-        for (int attempt = 0; attempt < 80; ++attempt) {
+        for (int attempt = 0; attempt < wanted.attempts; ++attempt) {
             const double arc = random_.uniform(wanted.fromMm, path.lengthMm() - wanted.beforeEndMm);
             const double angle = random_.uniform(0.0, 2.0 * 3.14159265358979);
             const bool collapses = path.collapseEndMm > path.collapseBeginMm;
@@ -110,7 +114,7 @@ public:
                 continue;
             if (crowded(place->at, wanted.apartMm)) continue;
             const Growth growth = grow(*place);
-            if (blocksAxis(growth)) continue;
+            if (!wanted.fits(growth) || blocksAxis(growth)) continue;
             shape_.add(growth);
             return true;
         }
@@ -209,17 +213,51 @@ void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const Body
     }
 }
 
+void addSubmergedPolyps(ColonShape& shape, const Fluid& fluid, std::uint64_t seed, Preset preset) {
+    Random random(seed, 9);
+    Placer placer(shape, random);
+    struct Kind {
+        Growth::Kind kind;
+        double fromMm, toMm;
+        bool cutBySurface;
+    };
+    using enum Growth::Kind;
+    const std::vector<Kind> wanted =
+        preset == Preset::easy
+            ? std::vector<Kind>{{sessile, 4.0, 6.0, false}, {flat, 7.0, 10.0, false}}
+            : std::vector<Kind>{{sessile, 4.0, 6.0, false},
+                                {sessile, 6.0, 9.0, false},
+                                {pedunculated, 6.0, 8.0, false},
+                                {flat, 8.0, 12.0, false},
+                                {sessile, 7.0, 10.0, true}};
+    for (const Kind& kind : wanted) {
+        const double diameter = random.uniform(kind.fromMm, kind.toMm);
+        Wanted where;
+        where.attempts = 600;
+        where.apartMm = 20.0;
+        where.fits = [&](const Growth& growth) {
+            const double height = fluid.heightMm(growth.centre);
+            const double depth = fluid.poolAt(shape.evaluate(growth.centre).arcMm).levelMm - height;
+            // The whole head and a little fluid above it; or the surface about its middle.
+            return kind.cutBySurface ? std::abs(depth) < 0.1 * diameter
+                                     : depth > 0.55 * diameter + 1.5;
+        };
+        placer.add(where, [&](const WallPlace& place) {
+            return polypAt(place, kind.kind, diameter, random);
+        });
+    }
+}
+
 Findings polypsOf(const ColonShape& shape) {
     Findings polyps;
     for (const Growth& growth : shape.growths()) {
-        const char* kind = growth.kind == Growth::Kind::sessile        ? "sessile"
-                           : growth.kind == Growth::Kind::pedunculated ? "pedunculated"
-                           : growth.kind == Growth::Kind::flat         ? "flat"
-                                                                       : nullptr;
-        if (!kind) continue;
+        if (!growth.polyp()) continue;
         const double diameter =
             2.0 * std::max({growth.semiAxes.x, growth.semiAxes.y, growth.semiAxes.z});
-        polyps.findings.push_back({growth.centre, diameter, 1.0, kind});
+        polyps.findings.push_back({growth.centre, diameter, 1.0,
+                                   growth.kind == Growth::Kind::sessile        ? "sessile"
+                                   : growth.kind == Growth::Kind::pedunculated ? "pedunculated"
+                                                                               : "flat"});
     }
     return polyps;
 }

@@ -1,8 +1,7 @@
 #include "phantom/phantom.h"
 
 #include "phantom/anatomy.h"
-#include "phantom/colon_field.h"
-#include "phantom/fluid.h"
+#include "phantom/filled_colon.h"
 #include "phantom/growths.h"
 #include "phantom/implicit.h"
 #include "phantom/random.h"
@@ -17,23 +16,6 @@ namespace {
 
 constexpr double kLumenAirHu = -990.0;
 constexpr double kWallHu = 42.0;
-
-Grid gridOf(Size size) {
-    const bool full = size == Size::full;
-    const glm::ivec3 voxels = full ? glm::ivec3(512, 512, 400) : glm::ivec3(256, 256, 200);
-    const glm::dvec3 spacing = full ? glm::dvec3(0.75, 0.75, 1.05) : glm::dvec3(1.5, 1.5, 2.1);
-    const glm::dvec3 half = 0.5 * spacing * glm::dvec3(voxels - 1);
-    return axisAlignedGrid(voxels, spacing, {-half.x, -half.y, 0.5 * spacing.z});
-}
-
-BodyPlan bodyOf(const PhantomOptions& options) {
-    Random random(options.seed, 6);
-    BodyPlan body;
-    body.position = options.position;
-    body.widthScale = random.uniform(0.97, 1.06);
-    body.fatMm = random.uniform(10.0, 20.0);
-    return body;
-}
 
 /// Paints the colon's wall and growths over the anatomy, and its contents into two volumes.
 class ColonPainter {
@@ -107,9 +89,9 @@ private:
                       const std::vector<const Growth*>& stool) const {
         Contents inside;
         const Pool& pool = fluid_.poolAt(s.arcMm);
-        const double height = fluid_.heightMm(p);
-        inside.share = coverage(height - pool.levelMm, levelWidth_);
-        inside.tagged = height < pool.levelMm;
+        const double height = fluid_.heightMm(p), level = pool.levelAt(s.lumenMm);
+        inside.share = coverage(height - level, levelWidth_);
+        inside.tagged = height < level;
         if (inside.share > 0.0) inside.hu = pool.huAt(p, height);
         for (const Growth* ball : stool) {
             const double d = ball->distance(p), share = coverage(d, width_);
@@ -138,15 +120,10 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
     auto report = [&](double fraction) {
         if (options.progress) options.progress(fraction);
     };
-    const Grid grid = gridOf(options.size);
     const BodyPlan body = bodyOf(options);
-
-    ColonShape shape(makeColonPath(options.seed, options.preset, body), options.seed);
-    addGrowths(shape, options.seed, options.preset, body);
-    report(0.05);
-    const ColonField field(shape, grid, options.threads);
+    const auto [shape, field, fluid] = makeFilledColon(options);
+    const Grid& grid = field.grid();
     report(0.3);
-    const Fluid fluid = pourFluid(shape, field, options.seed, options.preset, body);
 
     Phantom phantom;
     phantom.lumen = Volume<std::uint8_t>(grid, 0);
@@ -193,6 +170,8 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
 
     phantom.centerline = trueCenterline(shape, phantom.lumen, options.threads);
     phantom.polyps = polypsOf(shape);
+    phantom.polypVoxels = polypVoxels(shape, grid);
+    phantom.noiseSdHu = noise.sdHu;
     report(1.0);
     return phantom;
 }

@@ -15,6 +15,9 @@
 
 namespace haustra::phantom {
 
+/// Counts up when equal options make another phantom than before.
+inline constexpr int phantomVersion = 2;
+
 /// easy: little, even fluid; nothing opacified but the colon; other bowel keeps its distance.
 /// standard: more fluid, unevenly tagged, stool balls, opacified and gas-filled small bowel against
 /// the colon. hard: weak (200…400 HU), patchy tagging, untagged stool on the wall, twice the
@@ -44,6 +47,10 @@ struct Phantom {
     Centerline centerline;
     /// Polyps of 4…15 mm. Hyperplastic bumps (smaller, not denser inside) are not among them.
     Findings polyps;
+    /// Of each polyp in turn: the indices of the voxels whose centres lie in its tissue and would
+    /// lie in the lumen without it, ascending.
+    std::vector<std::vector<std::uint32_t>> polypVoxels;
+    double noiseSdHu = 0.0;  ///< of both scans
 };
 
 /// Fails only for a position other than supine or prone. Deterministic in the options, byte for

@@ -44,4 +44,30 @@ Centerline trueCenterline(const ColonShape& shape, const Volume<std::uint8_t>& l
     return line;
 }
 
+std::vector<std::vector<std::uint32_t>> polypVoxels(const ColonShape& shape, const Grid& grid) {
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    std::vector<std::vector<std::uint32_t>> all;
+    for (const Growth& growth : shape.growths()) {
+        if (!growth.polyp()) continue;
+        auto& voxels = all.emplace_back();
+        ColonShape::Nearby nearby;
+        shape.findNearby(growth.centre, growth.reachMm(), nearby);
+        nearby.growths.clear();  // the bare tube with its folds
+        const glm::dvec3 middle(voxelFromPatient * glm::dvec4(growth.centre, 1.0));
+        const glm::dvec3 reach = growth.reachMm() / grid.spacingMm();
+        const glm::ivec3 lo = glm::max(glm::ivec3(glm::ceil(middle - reach)), glm::ivec3(0)),
+                         hi = glm::min(glm::ivec3(glm::floor(middle + reach)), grid.size - 1);
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (int i = lo.x; i <= hi.x; ++i) {
+                    const glm::dvec3 p = grid.patientFromVoxelPoint({i, j, k});
+                    if (growth.distance(p) < 0.0 && shape.evaluate(p, nearby).lumenMm < 0.0)
+                        voxels.push_back(std::uint32_t(grid.index(i, j, k)));
+                }
+            }
+        }
+    }
+    return all;
+}
+
 }  // namespace haustra::phantom

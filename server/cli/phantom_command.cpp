@@ -48,12 +48,14 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
     writing.seriesDescription = "Phantom " + arguments.preset + " " + arguments.position;
     writing.uidSeed = fmt::format("phantom {} {} {} {}", arguments.seed, arguments.preset,
                                   arguments.position, arguments.size);
-    const nlohmann::ordered_json facts{{"seed", arguments.seed},
+    const nlohmann::ordered_json facts{{"version", phantom::phantomVersion},
+                                       {"seed", arguments.seed},
                                        {"preset", arguments.preset},
                                        {"position", arguments.position},
                                        {"size", arguments.size},
                                        {"centerline_mm", made.centerline.lengthMm()},
                                        {"polyps", made.polyps.findings.size()},
+                                       {"noise_sd_hu", made.noiseSdHu},
                                        {"haustra", HAUSTRA_VERSION}};
     const fs::path truth = folder / "truth";
     return dicom::writeSeries(folder / "series", made.scan, writing)

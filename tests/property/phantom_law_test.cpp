@@ -100,6 +100,8 @@ protected:
     void lumenIsOnePieceOrTwoWhereCollapsed();
     void fluidLiesBelowAirWithALevelSurface();
     void polypsAreTissueOnTheWall();
+    void polypVoxelsAreItsTissue();
+    void fluidCoversSomePolyps();
     void untaggedScanDiffersOnlyAtTheTagging();
     void huAreThoseOfAirWallAndTagging();
 
@@ -229,6 +231,43 @@ void PhantomLaws::polypsAreTissueOnTheWall() {
     }
 }
 
+void PhantomLaws::polypVoxelsAreItsTissue() {
+    ASSERT_EQ(phantom_.polypVoxels.size(), phantom_.polyps.findings.size());
+    for (std::size_t p = 0; p < phantom_.polypVoxels.size(); ++p) {
+        const Finding& polyp = phantom_.polyps.findings[p];
+        SCOPED_TRACE(polyp.kind + " of " + std::to_string(polyp.diameterMm) + " mm");
+        const auto& voxels = phantom_.polypVoxels[p];
+        EXPECT_TRUE(std::is_sorted(voxels.begin(), voxels.end()));
+        const double ml = double(voxels.size()) * grid_.voxelVolumeMm3() * 1e-3;
+        const double ballMl = std::pow(polyp.diameterMm, 3.0) * 3.14159 / 6.0 * 1e-3;
+        EXPECT_GT(ml, polyp.kind == "flat" ? 0.05 * ballMl : 0.25 * ballMl);
+        EXPECT_LT(ml, 1.3 * ballMl + 0.2);
+        for (const std::uint32_t v : voxels) {
+            EXPECT_EQ(phantom_.lumen[v], 0);
+            // A stalk is at most as long as this.
+            EXPECT_LT(
+                glm::distance(grid_.patientFromVoxelPoint(grid_.voxelAt(v)), polyp.positionMm),
+                0.6 * polyp.diameterMm + 7.0);
+        }
+    }
+}
+
+void PhantomLaws::fluidCoversSomePolyps() {
+    std::size_t covered = 0;
+    for (const auto& voxels : phantom_.polypVoxels) {
+        std::size_t air = 0, tagged = 0;
+        for (const std::uint32_t v : voxels) {
+            const glm::ivec3 middle = grid_.voxelAt(v);
+            for (int n = 0; n < 27; ++n) {
+                const glm::ivec3 w = middle + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+                air += phantom_.lumen.at(w) == 1, tagged += phantom_.lumen.at(w) == 2;
+            }
+        }
+        covered += tagged > 20 * air;
+    }
+    EXPECT_GE(covered, GetParam().preset == Preset::easy ? 1u : 3u);
+}
+
 void PhantomLaws::untaggedScanDiffersOnlyAtTheTagging() {
     const auto near = grown(phantom_.lumen, 2, 5);
     // A film of fluid thinner than a voxel tags no voxel's centre.
@@ -281,6 +320,8 @@ TEST_P(PhantomLaws, Hold) {
     lumenIsOnePieceOrTwoWhereCollapsed();
     fluidLiesBelowAirWithALevelSurface();
     polypsAreTissueOnTheWall();
+    polypVoxelsAreItsTissue();
+    fluidCoversSomePolyps();
     untaggedScanDiffersOnlyAtTheTagging();
     huAreThoseOfAirWallAndTagging();
 }

@@ -1,5 +1,6 @@
 // The parts of the phantom by themselves: the colon's axis, its surface, fluid, the scanner.
 #include "phantom/colon_field.h"
+#include "phantom/filled_colon.h"
 #include "phantom/growths.h"
 #include "phantom/implicit.h"
 #include "phantom/random.h"
@@ -108,6 +109,35 @@ TEST(ColonShape, BlocksAndSinglePointsAgree) {
         EXPECT_NEAR(sample.outerMm, point.outerMm, 1e-3);
     }
     EXPECT_GT(compared, 100);
+}
+
+TEST(Pool, TheMeniscusClimbsTheWallAndLeavesTheMiddleLevel) {
+    Pool pool;
+    pool.levelMm = -20.0, pool.riseMm = 1.2;
+    EXPECT_DOUBLE_EQ(pool.levelAt(0.0), -18.8);
+    EXPECT_DOUBLE_EQ(pool.levelAt(0.4), -18.8) << "partial volume of the wall";
+    EXPECT_LT(pool.levelAt(-2.0), pool.levelAt(-1.0));
+    EXPECT_NEAR(pool.levelAt(-15.0), -20.0, 0.01);
+}
+
+TEST(FilledColon, PoolsHaveMenisciAndTheFieldKnowsTheSubmergedPolyps) {
+    PhantomOptions options;
+    options.size = Size::small;
+    const FilledColon colon = makeFilledColon(options);
+    for (const Pool& pool : colon.fluid.pools) {
+        EXPECT_GE(pool.riseMm, 0.4);
+        EXPECT_LE(pool.riseMm, 1.6);
+    }
+    const ColonField anew(colon.shape, colon.field.grid(), 2);
+    std::size_t different = 0;
+    const glm::ivec3 size = anew.grid().size;
+    for (int k = 0; k < size.z; ++k) {
+        for (int j = 0; j < size.y; ++j) {
+            for (int i = 0; i < size.x; ++i)
+                different += anew.at(i, j, k).lumenMm != colon.field.at(i, j, k).lumenMm;
+        }
+    }
+    EXPECT_EQ(different, 0u);
 }
 
 TEST(Scanner, BlurHasTheGivenWidthAndKeepsTheSum) {

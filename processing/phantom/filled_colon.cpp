@@ -1,0 +1,41 @@
+#include "phantom/filled_colon.h"
+
+#include "phantom/growths.h"
+#include "phantom/random.h"
+
+namespace haustra::phantom {
+
+Grid gridOf(Size size) {
+    const bool full = size == Size::full;
+    const glm::ivec3 voxels = full ? glm::ivec3(512, 512, 400) : glm::ivec3(256, 256, 200);
+    const glm::dvec3 spacing = full ? glm::dvec3(0.75, 0.75, 1.05) : glm::dvec3(1.5, 1.5, 2.1);
+    const glm::dvec3 half = 0.5 * spacing * glm::dvec3(voxels - 1);
+    return axisAlignedGrid(voxels, spacing, {-half.x, -half.y, 0.5 * spacing.z});
+}
+
+BodyPlan bodyOf(const PhantomOptions& options) {
+    Random random(options.seed, 6);
+    BodyPlan body;
+    body.position = options.position;
+    body.widthScale = random.uniform(0.97, 1.06);
+    body.fatMm = random.uniform(10.0, 20.0);
+    return body;
+}
+
+FilledColon makeFilledColon(const PhantomOptions& options) {
+    const BodyPlan body = bodyOf(options);
+    ColonShape shape(makeColonPath(options.seed, options.preset, body), options.seed);
+    addGrowths(shape, options.seed, options.preset, body);
+    ColonField field(shape, gridOf(options.size), options.threads);
+    Fluid fluid = pourFluid(shape, field, options.seed, options.preset, body);
+    // The levels stay: what a polyp displaces is little beside a pool.
+    const std::size_t dry = shape.growths().size();
+    addSubmergedPolyps(shape, fluid, options.seed, options.preset);
+    for (std::size_t n = dry; n < shape.growths().size(); ++n) {
+        const Growth& growth = shape.growths()[n];
+        field.resample(shape, growth.centre, growth.reachMm() + 3.0);
+    }
+    return {std::move(shape), std::move(field), std::move(fluid)};
+}
+
+}  // namespace haustra::phantom

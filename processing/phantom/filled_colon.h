@@ -1,0 +1,27 @@
+// One patient's colon with what lies in it, as everything drawn from the seed decides.
+#pragma once
+
+#include "phantom/colon_field.h"
+#include "phantom/fluid.h"
+#include "phantom/phantom.h"
+
+namespace haustra::phantom {
+
+/// The grid of a phantom's volumes.
+Grid gridOf(Size size);
+
+/// The body that the options' seed and position make.
+BodyPlan bodyOf(const PhantomOptions& options);
+
+struct FilledColon {
+    ColonShape shape;  ///< with its growths
+    ColonField field;  ///< of `shape`, on gridOf(options.size)
+    Fluid fluid;
+};
+
+/// The colon of the options' patient: the path, what grows on its wall, the fluid that gravity
+/// levels, and the polyps that the fluid covers. Deterministic in seed, preset, position and size,
+/// whatever the number of threads; seconds at full size.
+FilledColon makeFilledColon(const PhantomOptions& options);
+
+}  // namespace haustra::phantom
