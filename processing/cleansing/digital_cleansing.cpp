@@ -1,0 +1,97 @@
+#include "cleansing/digital_cleansing.h"
+
+#include "cleansing/local_means.h"
+#include "cleansing/refined_lumen.h"
+#include "cleansing/tagged_surroundings.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haustra::cleansing {
+namespace {
+
+/// The share of the colon's own residue in each voxel of the surroundings. It falls from shell to
+/// shell: where it rises again, another bowel's contents or bone lies across the wall.
+std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& around,
+                                                     const Volume<TissueFractions>& mixture) {
+    constexpr int notRising = 25;  // in 255ths, for the noise
+    const Grid& grid = mixture.grid();
+    std::vector<std::vector<std::uint8_t>> shares(around.shells.size());
+    // Share and shell (from 1) of each voxel so far.
+    std::vector<std::uint8_t> share(grid.voxelCount(), 0), shellOf(grid.voxelCount(), 0);
+    for (std::size_t shell = 0; shell < around.shells.size(); ++shell) {
+        for (std::uint32_t n : around.shells[shell]) {
+            int tagged = mixture[n].tagged;
+            if (shell > 0 && tagged > 0) {
+                const glm::ivec3 v = grid.voxelAt(n);
+                const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
+                                 hi = glm::min(v + 1, grid.size - 1);
+                int most = 0;
+                for (int k = lo.z; k <= hi.z; ++k) {
+                    for (int j = lo.y; j <= hi.y; ++j) {
+                        for (int i = lo.x; i <= hi.x; ++i) {
+                            const std::size_t m = grid.index(i, j, k);
+                            if (shellOf[m] == shell) most = std::max<int>(most, share[m]);
+                        }
+                    }
+                }
+                tagged = tagged > most + notRising ? 0 : std::min(tagged, most);
+            }
+            shares[shell].push_back(std::uint8_t(tagged));
+        }
+        for (std::size_t m = 0; m < around.shells[shell].size(); ++m) {
+            share[around.shells[shell][m]] = shares[shell][m];
+            shellOf[around.shells[shell][m]] = std::uint8_t(shell + 1);
+        }
+    }
+    return shares;
+}
+
+}  // namespace
+
+Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
+                         const Volume<TissueFractions>& mixture,
+                         const Volume<std::uint8_t>& segmentation, int threads) {
+    const Grid& grid = scan.hu.grid();
+    if (!sameGrid(grid, segmentation.grid()) || !sameGrid(grid, mixture.grid())) {
+        return fail(ErrorKind::badInput, "the mixture or segmentation is not on the scan's grid",
+                    "cleansing");
+    }
+    if (grid.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
+        return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "cleansing");
+    }
+    Cleansed cleansed{scan.hu.clone(), {}};
+    const TaggedSurroundings around = taggedSurroundings(segmentation, threads);
+    if (around.shells[0].empty()) {
+        cleansed.lumen = segmentation.clone();
+        return cleansed;
+    }
+    const LocalMeans means = measureLocalMeans(scan, tissue, segmentation, threads);
+    const auto shares = residueShares(around, mixture);
+    std::vector<CleansedVoxel> changed;
+    for (std::size_t shell = 0; shell < shares.size(); ++shell) {
+        for (std::size_t m = 0; m < shares[shell].size(); ++m) {
+            const std::uint32_t n = around.shells[shell][m];
+            if (shares[shell][m] > 0 || shell == 0)
+                changed.push_back({n, shares[shell][m], mixture[n].air});
+        }
+    }
+    std::sort(changed.begin(), changed.end(),
+              [](const CleansedVoxel& a, const CleansedVoxel& b) { return a.index < b.index; });
+    const auto out = cleansed.hu.writable();
+    parallelFor(changed.size(), 1 << 14, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m) {
+            const CleansedVoxel& voxel = changed[m];
+            const glm::ivec3 v = grid.voxelAt(voxel.index);
+            const double contrast = means.taggedHu.at(v.x, v.y, v.z) - means.airHu;
+            const double hu = scan.hu[voxel.index] - voxel.tagged / 255.0 * contrast;
+            out[voxel.index] = std::int16_t(std::clamp(std::lround(hu), -1024L, 3071L));
+        }
+    });
+    cleansed.lumen = refineLumen(cleansed.hu, tissue, means.airHu, segmentation, changed);
+    return cleansed;
+}
+
+}  // namespace haustra::cleansing

@@ -1,0 +1,39 @@
+// Where air lies straight on tagged material.
+#pragma once
+
+#include "cleansing/local_means.h"
+#include "core/ct_scan.h"
+
+namespace haustra::cleansing {
+
+/// Tells air on tagged material from a wall between the two. Both pass through soft tissue's HU; a
+/// wall takes longer to do so. Along the gradient from air to tagging a bare interface is one step
+/// of the scanner's blur, and the way between two of its heights is longer by a wall's thickness.
+/// Holds references to what it is made of.
+class InterfaceLayer {
+public:
+    InterfaceLayer(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
+                   const LocalMeans& means, int threads);
+
+    /// 0…1: how surely a voxel lies in the blur of a bare interface. Thread-safe.
+    double bareness(glm::ivec3 voxel, double taggedHu, double softHu) const;
+
+    /// Standard deviation of the scanner's blur, as the scan's own interfaces show it.
+    double blurMm() const { return blurMm_; }
+
+private:
+    /// Length of the way from air to tagging through a voxel, mm, and that of a bare step of unit
+    /// blur; negative where there is none.
+    struct Step {
+        double lengthMm = -1.0, unitLength = 1.0;
+    };
+    Step stepThrough(glm::ivec3 voxel, double taggedHu, double softHu) const;
+
+    const Volume<std::int16_t>& hu_;
+    const Volume<std::uint8_t>& segmentation_;
+    const LocalMeans& means_;
+    glm::dvec3 spacingMm_;
+    double blurMm_ = 0.55;
+};
+
+}  // namespace haustra::cleansing

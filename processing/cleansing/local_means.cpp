@@ -1,0 +1,229 @@
+#include "cleansing/local_means.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::cleansing {
+namespace {
+
+constexpr double cellMm = 3.0;
+constexpr double blurReachMm = 1.6;
+
+// Sums over one cell.
+struct CellSums {
+    std::vector<float> weight, value;
+    explicit CellSums(std::size_t cells) : weight(cells, 0.0f), value(cells, 0.0f) {}
+};
+
+void blurAxis(std::vector<float>& data, glm::ivec3 size, int axis, float sigma) {
+    const int reach = std::max(1, int(std::ceil(2.5f * sigma)));
+    std::vector<float> kernel(std::size_t(reach) + 1);
+    for (int r = 0; r <= reach; ++r)
+        kernel[std::size_t(r)] = std::exp(-0.5f * float(r * r) / (sigma * sigma));
+    const std::size_t stride = axis == 0   ? 1
+                               : axis == 1 ? std::size_t(size.x)
+                                           : std::size_t(size.x) * std::size_t(size.y);
+    const int length = size[axis];
+    std::vector<float> line(static_cast<std::size_t>(length));
+    const std::size_t count = data.size() / std::size_t(length);
+    for (std::size_t l = 0; l < count; ++l) {
+        const std::size_t begin = l % stride + l / stride * stride * std::size_t(length);
+        bool any = false;
+        for (int n = 0; n < length; ++n) {
+            line[std::size_t(n)] = data[begin + std::size_t(n) * stride];
+            any |= line[std::size_t(n)] != 0.0f;
+        }
+        if (!any) continue;
+        for (int n = 0; n < length; ++n) {
+            float sum = 0.0f;
+            for (int m = std::max(0, n - reach); m <= std::min(length - 1, n + reach); ++m)
+                sum += kernel[std::size_t(std::abs(m - n))] * line[std::size_t(m)];
+            data[begin + std::size_t(n) * stride] = sum;
+        }
+    }
+}
+
+// From the widest neighbourhood to the narrowest, each the prior of the next.
+void fill(SmoothField& field, const CellSums& sums, double prior, double priorVoxels) {
+    std::vector<float>& mean = field.values();
+    std::fill(mean.begin(), mean.end(), float(prior));
+    for (const float sigma : {8.0f, 4.0f, 2.0f, 1.0f, 0.6f}) {
+        CellSums wide = sums;
+        for (int axis = 0; axis < 3; ++axis) {
+            blurAxis(wide.weight, field.cells(), axis, sigma);
+            blurAxis(wide.value, field.cells(), axis, sigma);
+        }
+        for (std::size_t c = 0; c < mean.size(); ++c) {
+            mean[c] = (wide.value[c] + float(priorVoxels) * mean[c]) /
+                      (wide.weight[c] + float(priorVoxels));
+        }
+    }
+}
+
+std::vector<glm::ivec3> ballOffsets(const Grid& grid, double radiusMm) {
+    const glm::dvec3 spacing = grid.spacingMm();
+    const glm::ivec3 reach = glm::max(glm::ivec3(glm::floor(radiusMm / spacing)), glm::ivec3(1));
+    std::vector<glm::ivec3> offsets;
+    for (int k = -reach.z; k <= reach.z; ++k) {
+        for (int j = -reach.y; j <= reach.y; ++j) {
+            for (int i = -reach.x; i <= reach.x; ++i) {
+                const glm::ivec3 d(i, j, k);
+                const bool face = std::abs(i) + std::abs(j) + std::abs(k) == 1;
+                if (face ||
+                    (d != glm::ivec3(0) && glm::length(glm::dvec3(d) * spacing) <= radiusMm))
+                    offsets.push_back(d);
+            }
+        }
+    }
+    // The farthest first: they are the likeliest to fail.
+    std::stable_sort(offsets.begin(), offsets.end(), [](glm::ivec3 a, glm::ivec3 b) {
+        return glm::dot(glm::vec3(a), glm::vec3(a)) > glm::dot(glm::vec3(b), glm::vec3(b));
+    });
+    return offsets;
+}
+
+template <class Predicate>
+bool everywhere(const Grid& grid, const std::vector<glm::ivec3>& offsets, glm::ivec3 v,
+                const Predicate& holds) {
+    for (const glm::ivec3 d : offsets) {
+        const glm::ivec3 n = v + d;
+        if (grid.contains(n) && !holds(grid.index(n))) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+SmoothField::SmoothField(const Grid& grid, glm::ivec3 voxelsPerCell)
+    : perCell_(voxelsPerCell),
+      cells_((grid.size + voxelsPerCell - 1) / voxelsPerCell),
+      perVoxel_(1.0f / glm::vec3(voxelsPerCell)),
+      values_(std::size_t(cells_.x) * std::size_t(cells_.y) * std::size_t(cells_.z), 0.0f) {}
+
+float SmoothField::at(int i, int j, int k) const {
+    const glm::vec3 p = glm::clamp((glm::vec3(i, j, k) + 0.5f) * perVoxel_ - 0.5f, glm::vec3(0.0f),
+                                   glm::vec3(cells_ - 1));
+    const glm::ivec3 lo = glm::min(glm::ivec3(p), glm::max(cells_ - 2, glm::ivec3(0)));
+    const glm::ivec3 hi = glm::min(lo + 1, cells_ - 1);
+    const glm::vec3 f = p - glm::vec3(lo);
+    auto x = [&](int b, int c) {
+        const float a = values_[cellIndex(lo.x, b, c)];
+        return a + f.x * (values_[cellIndex(hi.x, b, c)] - a);
+    };
+    auto y = [&](int c) {
+        const float a = x(lo.y, c);
+        return a + f.y * (x(hi.y, c) - a);
+    };
+    const float a = y(lo.z);
+    return a + f.z * (y(hi.z) - a);
+}
+
+LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
+                             const Volume<std::uint8_t>& segmentation, int threads) {
+    const Grid& grid = scan.hu.grid();
+    const glm::ivec3 perCell =
+        glm::max(glm::ivec3(glm::round(cellMm / grid.spacingMm())), glm::ivec3(1));
+    LocalMeans means;
+    means.taggedHu = SmoothField(grid, perCell);
+    means.softHu = SmoothField(grid, perCell);
+    const glm::ivec3 cells = means.taggedHu.cells();
+    const auto hu = scan.hu.voxels();
+    const auto label = segmentation.voxels();
+    const std::vector<glm::ivec3> ball = ballOffsets(grid, blurReachMm);
+    const auto isTagged = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::tagged; };
+    const auto isAir = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::air; };
+
+    // One slab of cells is one thread's, so sums do not depend on the threads.
+    CellSums tagged(means.taggedHu.values().size()), soft(means.softHu.values().size());
+    std::vector<double> airSum(std::size_t(cells.z), 0.0), airSquare(airSum), airCount(airSum);
+    std::vector<char> holdsTagged(tagged.weight.size(), 0);
+    parallelFor(std::size_t(cells.z), 1, threads, [&](std::size_t begin, std::size_t end) {
+        for (int k = int(begin) * perCell.z; k < std::min(int(end) * perCell.z, grid.size.z); ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                const std::size_t row = grid.index(0, j, k);
+                for (int i = 0; i < grid.size.x; ++i) {
+                    const std::size_t n = row + std::size_t(i);
+                    if (isTagged(n)) {
+                        const std::size_t cell = means.taggedHu.cellOf(i, j, k);
+                        holdsTagged[cell] = 1;
+                        if (hu[n] <= tissue.meanHu[int(Tissue::soft)]) continue;
+                        // Where the pool is too thin to have an inside, its crest is the best.
+                        float weight = 0.0f;
+                        if (everywhere(grid, ball, {i, j, k}, isTagged)) {
+                            weight = 1.0f;
+                        } else {
+                            bool crest = hu[n] > tissue.taggedAboveHu;
+                            for (int axis = 0; crest && axis < 3; ++axis) {
+                                for (int side = -1; side <= 1; side += 2) {
+                                    glm::ivec3 v(i, j, k);
+                                    v[axis] += side;
+                                    if (grid.contains(v) && scan.hu.at(v) > hu[n]) crest = false;
+                                }
+                            }
+                            if (crest) weight = 0.02f;
+                        }
+                        tagged.weight[cell] += weight, tagged.value[cell] += weight * hu[n];
+                    } else if (isAir(n) && (i + j + k) % 3 == 0 && i > 1 && i + 2 < grid.size.x) {
+                        if (!everywhere(grid, ball, {i, j, k}, isAir)) continue;
+                        const std::size_t slab = std::size_t(k / perCell.z);
+                        airSum[slab] += hu[n], airCount[slab] += 1.0;
+                        // The difference of voxels two apart: free of what changes slowly.
+                        const double d = hu[n + 2] - hu[n];
+                        airSquare[slab] += 0.5 * d * d;
+                    }
+                }
+            }
+        }
+    });
+    double count = 0.0, sum = 0.0, square = 0.0;
+    for (std::size_t s = 0; s < airSum.size(); ++s)
+        count += airCount[s], sum += airSum[s], square += airSquare[s];
+    means.airHu = count > 100.0 ? sum / count : tissue.meanHu[int(Tissue::air)];
+    means.noiseSd = count > 100.0 ? std::clamp(std::sqrt(square / count), 4.0, 60.0)
+                                  : std::clamp(tissue.sdHu[int(Tissue::soft)], 4.0, 60.0);
+
+    // Soft tissue within two cells of the tagging.
+    const double softHu = tissue.meanHu[int(Tissue::soft)];
+    const double fatHu = tissue.meanHu[int(Tissue::fat)];
+    const double leastHu = std::max(0.5 * (softHu + fatHu), softHu - 3.0 * means.noiseSd);
+    const auto isSoft = [&](std::size_t n) {
+        return label[n] == 0 && hu[n] > leastHu && hu[n] < tissue.taggedAboveHu;
+    };
+    std::vector<char> wanted(holdsTagged.size(), 0);
+    for (int k = 0; k < cells.z; ++k) {
+        for (int j = 0; j < cells.y; ++j) {
+            for (int i = 0; i < cells.x; ++i) {
+                if (!holdsTagged[means.softHu.cellIndex(i, j, k)]) continue;
+                const glm::ivec3 lo = glm::max(glm::ivec3(i, j, k) - 2, glm::ivec3(0)),
+                                 hi = glm::min(glm::ivec3(i, j, k) + 2, cells - 1);
+                for (int c = lo.z; c <= hi.z; ++c) {
+                    for (int b = lo.y; b <= hi.y; ++b) {
+                        std::fill(&wanted[means.softHu.cellIndex(lo.x, b, c)],
+                                  &wanted[means.softHu.cellIndex(hi.x, b, c)] + 1, 1);
+                    }
+                }
+            }
+        }
+    }
+    parallelFor(std::size_t(cells.z), 1, threads, [&](std::size_t begin, std::size_t end) {
+        for (int k = int(begin) * perCell.z; k < std::min(int(end) * perCell.z, grid.size.z); ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                for (int i = 0; i < grid.size.x; ++i) {
+                    const std::size_t cell = means.softHu.cellOf(i, j, k);
+                    if (!wanted[cell]) continue;
+                    const std::size_t n = grid.index(i, j, k);
+                    if (!isSoft(n) || !everywhere(grid, ball, {i, j, k}, isSoft)) continue;
+                    soft.weight[cell] += 1.0f, soft.value[cell] += hu[n];
+                }
+            }
+        }
+    });
+    fill(means.taggedHu, tagged,
+         std::max(tissue.meanHu[int(Tissue::taggedOrBone)], tissue.taggedAboveHu + 20.0), 0.05);
+    fill(means.softHu, soft, softHu, 8.0);
+    return means;
+}
+
+}  // namespace haustra::cleansing

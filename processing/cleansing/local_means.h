@@ -1,0 +1,50 @@
+// How dense the tagging, and how dense the soft tissue, is at each place of the colon.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "core/tissue.h"
+
+#include <vector>
+
+namespace haustra::cleansing {
+
+/// A smooth field over a grid, kept on cells of about 3 mm and interpolated between their centres.
+class SmoothField {
+public:
+    SmoothField() = default;
+    SmoothField(const Grid& grid, glm::ivec3 voxelsPerCell);
+
+    glm::ivec3 cells() const { return cells_; }
+    std::size_t cellOf(int i, int j, int k) const {
+        return cellIndex(i / perCell_.x, j / perCell_.y, k / perCell_.z);
+    }
+    std::size_t cellIndex(int i, int j, int k) const {
+        return std::size_t(i) +
+               std::size_t(cells_.x) * (std::size_t(j) + std::size_t(cells_.y) * std::size_t(k));
+    }
+    glm::ivec3 voxelsPerCell() const { return perCell_; }
+    float at(int i, int j, int k) const;
+    std::vector<float>& values() { return values_; }
+
+private:
+    glm::ivec3 perCell_{1}, cells_{0};
+    glm::vec3 perVoxel_{1.0f};
+    std::vector<float> values_;
+};
+
+/// What pure contents and pure wall measure near the tagged colon.
+struct LocalMeans {
+    SmoothField taggedHu;  ///< tagging is uneven: from pool to pool, by depth, in blotches
+    SmoothField softHu;    ///< the wall, its folds and growths
+    double airHu = 0.0;    ///< of the colon's own gas
+    double noiseSd = 0.0;  ///< of one voxel, as pure gas and fluid show it
+};
+
+/// Means over the voxels that lie deeper inside their material than the scanner's blur reaches
+/// (1.6 mm), by normalised convolution: a place that has none nearby takes the mean of a wider
+/// neighbourhood, and in the end the class's own. Tagged material is what `segmentation` says it
+/// is. O(labelled voxels); the same for any number of threads.
+LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
+                             const Volume<std::uint8_t>& segmentation, int threads);
+
+}  // namespace haustra::cleansing

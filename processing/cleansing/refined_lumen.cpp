@@ -1,0 +1,91 @@
+#include "cleansing/refined_lumen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace haustra::cleansing {
+namespace {
+
+constexpr double speckMm3 = 12.0;
+
+/// The 26-connected piece of wall around `seed`, or empty where it has more than `most` voxels.
+std::vector<std::uint32_t> pieceOfWall(const Volume<std::uint8_t>& labels, std::uint32_t seed,
+                                       std::size_t most) {
+    const Grid& grid = labels.grid();
+    std::vector<std::uint32_t> piece{seed};
+    for (std::size_t head = 0; head < piece.size(); ++head) {
+        const glm::ivec3 v = grid.voxelAt(piece[head]);
+        const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)), hi = glm::min(v + 1, grid.size - 1);
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (int i = lo.x; i <= hi.x; ++i) {
+                    const std::size_t n = grid.index(i, j, k);
+                    if (LumenLabel(labels[n]) != LumenLabel::outside) continue;
+                    if (std::find(piece.begin(), piece.end(), n) != piece.end()) continue;
+                    if (piece.size() == most) return {};
+                    piece.push_back(std::uint32_t(n));
+                }
+            }
+        }
+    }
+    return piece;
+}
+
+bool touchesLumen(const Volume<std::uint8_t>& labels, std::size_t index) {
+    const Grid& grid = labels.grid();
+    const glm::ivec3 v = grid.voxelAt(index);
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int side = -1; side <= 1; side += 2) {
+            glm::ivec3 n = v;
+            n[axis] += side;
+            if (grid.contains(n) && LumenLabel(labels.at(n)) != LumenLabel::outside) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& tissue, double airHu,
+                                 const Volume<std::uint8_t>& segmentation,
+                                 std::span<const CleansedVoxel> changed) {
+    Volume<std::uint8_t> labels = segmentation.clone();
+    const auto out = labels.writable();
+    const auto cleansed = hu.writable();
+    const auto labelOf = [](const CleansedVoxel& voxel) {
+        return std::uint8_t(voxel.tagged > voxel.air ? LumenLabel::tagged : LumenLabel::air);
+    };
+    std::vector<const CleansedVoxel*> beside;
+    for (const CleansedVoxel& voxel : changed) {
+        const bool open = cleansed[voxel.index] < tissue.airBelowHu;
+        if (out[voxel.index] == std::uint8_t(LumenLabel::outside)) {
+            if (open) beside.push_back(&voxel);
+        } else if (out[voxel.index] != std::uint8_t(LumenLabel::bridge)) {
+            out[voxel.index] = open ? labelOf(voxel) : std::uint8_t(LumenLabel::outside);
+        }
+    }
+    // Each pass is one step outward.
+    for (int pass = 0; pass < 2; ++pass) {
+        std::vector<const CleansedVoxel*> added, left;
+        for (const CleansedVoxel* voxel : beside)
+            (touchesLumen(labels, voxel->index) ? added : left).push_back(voxel);
+        for (const CleansedVoxel* voxel : added)
+            out[voxel->index] = labelOf(*voxel);
+        beside = std::move(left);
+    }
+    const std::size_t most =
+        std::size_t(std::max(1.0, std::floor(speckMm3 / hu.grid().voxelVolumeMm3())));
+    for (const CleansedVoxel& voxel : changed) {
+        if (LumenLabel(out[voxel.index]) != LumenLabel::outside ||
+            !touchesLumen(labels, voxel.index))
+            continue;
+        for (std::uint32_t n : pieceOfWall(labels, voxel.index, most)) {
+            out[n] = std::uint8_t(LumenLabel::tagged);
+            cleansed[n] = std::int16_t(std::lround(airHu));
+        }
+    }
+    return labels;
+}
+
+}  // namespace haustra::cleansing

@@ -1,0 +1,55 @@
+#include "cleansing/tagged_surroundings.h"
+
+#include "core/ct_scan.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+
+namespace haustra::cleansing {
+
+TaggedSurroundings taggedSurroundings(const Volume<std::uint8_t>& segmentation, int threads) {
+    const Grid& grid = segmentation.grid();
+    const auto label = segmentation.voxels();
+    constexpr int reach = TaggedSurroundings::reach;
+    // Slice by slice, so that the order is that of memory whatever the threads.
+    std::vector<std::vector<std::uint32_t>> slices(std::size_t(grid.size.z));
+    parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t first = grid.index(0, 0, int(k));
+            const std::size_t last = first + std::size_t(grid.size.x) * std::size_t(grid.size.y);
+            for (std::size_t n = first; n < last; ++n) {
+                if (LumenLabel(label[n]) == LumenLabel::tagged)
+                    slices[k].push_back(std::uint32_t(n));
+            }
+        }
+    });
+    TaggedSurroundings around;
+    around.shells.resize(reach + 1);
+    std::vector<char> seen(label.size(), 0);
+    for (const auto& slice : slices)
+        around.shells[0].insert(around.shells[0].end(), slice.begin(), slice.end());
+    for (std::uint32_t n : around.shells[0])
+        seen[n] = 1;
+    for (std::size_t shell = 1; shell < around.shells.size(); ++shell) {
+        auto& out = around.shells[shell];
+        for (std::uint32_t n : around.shells[shell - 1]) {
+            const glm::ivec3 v = grid.voxelAt(n);
+            const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
+                             hi = glm::min(v + 1, grid.size - 1);
+            for (int k = lo.z; k <= hi.z; ++k) {
+                for (int j = lo.y; j <= hi.y; ++j) {
+                    for (int i = lo.x; i <= hi.x; ++i) {
+                        const std::size_t m = grid.index(i, j, k);
+                        if (seen[m]) continue;
+                        seen[m] = 1;
+                        out.push_back(std::uint32_t(m));
+                    }
+                }
+            }
+        }
+        std::sort(out.begin(), out.end());
+    }
+    return around;
+}
+
+}  // namespace haustra::cleansing
