@@ -100,25 +100,26 @@ Result<void> MaybeGzipFile::finish() {
     return {};
 }
 
-void writeGzip(std::ostream& out, std::span<const std::byte> head, std::span<const std::byte> body,
+void writeGzip(std::ostream& out, std::span<const std::byte> head, const ByteSource& body,
                int threads) {
     constexpr std::array<unsigned char, 10> gzipHead = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 4, 255};
     put(out, gzipHead);
     uLong checksum =
         crc32(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(head.data()), uInt(head.size()));
-    put(out, deflateBlock(head, body.empty()));
+    put(out, deflateBlock(head, body.size == 0));
 
     struct Block {
         std::vector<unsigned char> packed;
         uLong checksum = 0;
         std::size_t size = 0;
     };
-    const std::size_t blocks = (body.size() + blockBytes - 1) / blockBytes;
+    const std::size_t blocks = (body.size + blockBytes - 1) / blockBytes;
     for (std::size_t first = 0; first < blocks && out; first += blocksInFlight) {
         std::vector<Block> wave(std::min(blocksInFlight, blocks - first));
         parallelFor(wave.size(), 1, threads, [&](std::size_t n, std::size_t) {
             const std::size_t begin = (first + n) * blockBytes;
-            const auto block = body.subspan(begin, std::min(blockBytes, body.size() - begin));
+            std::vector<std::byte> room(std::min(blockBytes, body.size - begin));
+            const auto block = body.part(begin, room);
             wave[n] = {deflateBlock(block, first + n + 1 == blocks),
                        crc32(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(block.data()),
                              uInt(block.size())),
@@ -130,7 +131,17 @@ void writeGzip(std::ostream& out, std::span<const std::byte> head, std::span<con
         }
     }
     putLittleEndian(out, std::uint32_t(checksum));
-    putLittleEndian(out, std::uint32_t(head.size() + body.size()));  // modulo 2^32, by the format
+    putLittleEndian(out, std::uint32_t(head.size() + body.size));  // modulo 2^32, by the format
+}
+
+void writePlain(std::ostream& out, std::span<const std::byte> head, const ByteSource& body) {
+    const auto put = [&](std::span<const std::byte> bytes) {
+        out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    };
+    put(head);
+    std::vector<std::byte> room(std::min(blockBytes, body.size));
+    for (std::size_t begin = 0; begin < body.size && out; begin += blockBytes)
+        put(body.part(begin, std::span(room).first(std::min(blockBytes, body.size - begin))));
 }
 
 }  // namespace haustra::nifti

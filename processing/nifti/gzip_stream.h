@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <ostream>
 #include <span>
@@ -35,10 +36,19 @@ private:
     std::uint64_t mostBytes_ = 0;
 };
 
+/// The body of a file, of which any part can be had at any time and from any thread.
+struct ByteSource {
+    std::size_t size = 0;
+    /// The bytes from `offset` on, as many as `room` has: where they lie already, or made in it.
+    std::function<std::span<const std::byte>(std::size_t offset, std::span<std::byte> room)> part;
+};
+
 /// Writes `head` and then `body` to `out` as one gzip member, compressed for speed in blocks on
 /// `threads` threads (≤ 0: all cores). The bytes do not depend on the number of threads. Check
 /// `out` afterwards.
-void writeGzip(std::ostream& out, std::span<const std::byte> head, std::span<const std::byte> body,
+void writeGzip(std::ostream& out, std::span<const std::byte> head, const ByteSource& body,
                int threads);
+/// The same, not compressed.
+void writePlain(std::ostream& out, std::span<const std::byte> head, const ByteSource& body);
 
 }  // namespace haustra::nifti

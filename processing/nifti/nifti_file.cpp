@@ -247,6 +247,50 @@ constexpr short datatypeOf() {
     if constexpr (std::is_same_v<T, float>) return NIFTI_TYPE_FLOAT32;
 }
 
+nifti_1_header headerOf(const Grid& grid, short datatype, std::size_t valueBytes, int samples) {
+    nifti_1_header header{};
+    header.sizeof_hdr = sizeof header;
+    header.regular = 'r';
+    header.dim[0] = samples > 1 ? 4 : 3;
+    for (int axis = 1; axis < 8; ++axis)
+        header.dim[axis] = axis <= 3 ? short(grid.size[axis - 1]) : short(1);
+    header.dim[4] = short(samples);
+    header.datatype = datatype;
+    header.bitpix = short(8 * valueBytes);
+    header.vox_offset = float(dataOffset);
+    header.scl_slope = 1.0f;
+    header.pixdim[4] = samples > 1 ? 1.0f : 0.0f;
+    setGeometry(grid, header);
+    std::copy_n("n+1", 4, header.magic);
+    return header;
+}
+
+Result<void> writeImage(const std::filesystem::path& file, const nifti_1_header& header,
+                        const Grid& grid, const ByteSource& body) try {
+    if (auto sound = checkGrid(grid, file.string()); !sound) return sound;
+    std::array<std::byte, dataOffset> head{};
+    std::memcpy(head.data(), &header, sizeof header);
+    std::filesystem::path temporary = file;
+    temporary += '.';
+    temporary += std::to_string(getpid()) + ".tmp";
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    if (file.extension() == ".gz")
+        writeGzip(out, head, body, 0);
+    else
+        writePlain(out, head, body);
+    out.close();
+    std::error_code error;
+    if (out) {
+        std::filesystem::rename(temporary, file, error);
+        if (!error) return {};
+    }
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    return fail(ErrorKind::io, "the file cannot be written", file.string());
+} catch (const std::bad_alloc&) {
+    return fail(ErrorKind::io, "there is not enough memory to write the file", file.string());
+}
+
 }  // namespace
 
 template <class T>
@@ -278,46 +322,30 @@ Result<Volume<T>> readNifti(const std::filesystem::path& file) try {
 }
 
 template <class T>
-Result<void> writeNifti(const std::filesystem::path& file, const Volume<T>& volume) try {
-    const Grid& grid = volume.grid();
-    if (auto sound = checkGrid(grid, file.string()); !sound) return sound;
-    nifti_1_header header{};
-    header.sizeof_hdr = sizeof header;
-    header.regular = 'r';
-    header.dim[0] = 3;
-    for (int axis = 1; axis < 8; ++axis)
-        header.dim[axis] = axis <= 3 ? short(grid.size[axis - 1]) : short(1);
-    header.datatype = datatypeOf<T>();
-    header.bitpix = short(8 * sizeof(T));
-    header.vox_offset = float(dataOffset);
-    header.scl_slope = 1.0f;
-    setGeometry(grid, header);
-    std::copy_n("n+1", 4, header.magic);
+Result<void> writeNifti(const std::filesystem::path& file, const Volume<T>& volume) {
+    const auto voxels = std::as_bytes(volume.voxels());
+    const ByteSource body{voxels.size(), [&](std::size_t offset, std::span<std::byte> room) {
+                              return voxels.subspan(offset, room.size());
+                          }};
+    return writeImage(file, headerOf(volume.grid(), datatypeOf<T>(), sizeof(T), 1), volume.grid(),
+                      body);
+}
 
-    std::array<std::byte, dataOffset> head{};
-    std::memcpy(head.data(), &header, sizeof header);
-    std::filesystem::path temporary = file;
-    temporary += '.';
-    temporary += std::to_string(getpid()) + ".tmp";
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    const auto body = std::as_bytes(volume.voxels());
-    if (file.extension() == ".gz") {
-        writeGzip(out, head, body, 0);
-    } else {
-        out.write(reinterpret_cast<const char*>(head.data()), std::streamsize(head.size()));
-        out.write(reinterpret_cast<const char*>(body.data()), std::streamsize(body.size()));
-    }
-    out.close();
-    std::error_code error;
-    if (out) {
-        std::filesystem::rename(temporary, file, error);
-        if (!error) return {};
-    }
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    return fail(ErrorKind::io, "the file cannot be written", file.string());
-} catch (const std::bad_alloc&) {
-    return fail(ErrorKind::io, "there is not enough memory to write the file", file.string());
+Result<void> writeFractions(const std::filesystem::path& file,
+                            const Volume<TissueFractions>& fractions) {
+    const std::size_t count = fractions.grid().voxelCount();
+    // One after the other: all air, all soft tissue, all tagged.
+    const auto value = [&](std::size_t at) {
+        const TissueFractions voxel = fractions[at % count];
+        return at < count ? voxel.air : at < 2 * count ? voxel.soft() : voxel.tagged;
+    };
+    const ByteSource body{3 * count, [&](std::size_t offset, std::span<std::byte> room) {
+                              for (std::size_t n = 0; n < room.size(); ++n)
+                                  room[n] = std::byte(value(offset + n));
+                              return std::span<const std::byte>(room);
+                          }};
+    return writeImage(file, headerOf(fractions.grid(), NIFTI_TYPE_UINT8, 1, 3), fractions.grid(),
+                      body);
 }
 
 template Result<Volume<std::uint8_t>> readNifti(const std::filesystem::path&);

@@ -2,6 +2,7 @@
 // rows of the affine change sign on the way in and out.
 #pragma once
 
+#include "core/tissue.h"
 #include "core/volume.h"
 
 #include <cstdint>
@@ -26,5 +27,11 @@ Result<Volume<T>> readNifti(const std::filesystem::path& file);
 /// name beside `file` and renamed. The same volume gives the same bytes.
 template <class T>
 Result<void> writeNifti(const std::filesystem::path& file, const Volume<T>& volume);
+
+/// Writes a mixture as one 4-D uint8 image: all voxels' air, then their soft tissue, then their
+/// tagged material, in 255ths that sum to 255. As writeNifti otherwise; takes a few MB. readNifti
+/// refuses the file as one of more than three axes.
+Result<void> writeFractions(const std::filesystem::path& file,
+                            const Volume<TissueFractions>& fractions);
 
 }  // namespace haustra::nifti

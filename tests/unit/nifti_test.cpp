@@ -1,5 +1,6 @@
 // NIfTI files: round trips, headers written by hand from the standard, and refusals.
 #include "data_folder.h"
+#include "nifti/gzip_stream.h"
 #include "nifti/nifti_file.h"
 
 #include <array>
@@ -139,6 +140,48 @@ TEST_F(Nifti, RoundTripIsExact) {
     // Several compressed blocks and waves of them.
     expectRoundTrip<std::int16_t>(folder / "large.nii.gz", obliqueGrid({256, 256, 301}));
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 3) << "a temporary file stays";
+}
+
+TEST_F(Nifti, FractionsAreThreePlanarVolumesInOneImage) {
+    const Grid grid = obliqueGrid({127, 101, 90});  // several compressed blocks
+    const std::size_t count = grid.voxelCount();
+    Volume<TissueFractions> fractions(grid);
+    std::uint32_t state = 1;
+    for (TissueFractions& voxel : fractions.writable()) {
+        state = state * 1664525u + 1013904223u;
+        voxel.air = std::uint8_t(state >> 24);
+        voxel.tagged = std::uint8_t((state >> 8 & 0xffff) % (256u - voxel.air));
+    }
+    for (const char* name : {"a.nii", "a.nii.gz"}) {
+        ASSERT_TRUE(nifti::writeFractions(folder / name, fractions));
+        auto stream = nifti::MaybeGzipFile::open(folder / name);
+        ASSERT_TRUE(stream);
+        std::vector<std::byte> bytes(352 + 3 * count);
+        ASSERT_TRUE(stream->read(bytes));
+        ASSERT_TRUE(stream->finish());
+        std::array<std::int16_t, 8> dim;
+        std::memcpy(dim.data(), bytes.data() + 40, sizeof dim);
+        EXPECT_EQ(dim, (std::array<std::int16_t, 8>{4, 127, 101, 90, 3, 1, 1, 1}));
+        for (std::size_t n = 0; n < count; ++n) {
+            const auto value = [&](std::size_t plane) {
+                return int(bytes[352 + plane * count + n]);
+            };
+            ASSERT_EQ(value(0), fractions[n].air);
+            ASSERT_EQ(value(2), fractions[n].tagged);
+            ASSERT_EQ(value(0) + value(1) + value(2), 255);
+        }
+        const auto refused = readNifti<std::uint8_t>(folder / name);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().kind, ErrorKind::unsupported);
+    }
+    // The first of the three alone is the file that its own volume makes, on the same affine.
+    std::vector<char> bytes = bytesOf(folder / "a.nii");
+    bytes.resize(352 + count);
+    bytes[40] = 3, bytes[48] = 1;
+    put(folder / "air.nii", bytes);
+    const auto air = readNifti<std::uint8_t>(folder / "air.nii");
+    ASSERT_TRUE(air) << describe(air.error());
+    EXPECT_TRUE(sameGrid(air->grid(), grid));
 }
 
 TEST_F(Nifti, ShearedAffineSurvives) {
