@@ -5,6 +5,7 @@
 #include "core/centerline.h"
 #include "gpu/context.h"
 #include "render/case_renderer.h"
+#include "render/comparison.h"
 #include "render/png_file.h"
 #include "store/case_store.h"
 
@@ -22,6 +23,8 @@ namespace fs = std::filesystem;
 struct Arguments {
     fs::path store, out;
     std::string caseName, view = "endoscopic", direction = "antegrade";
+    std::string product;  // empty: what the view shows by itself
+    bool compare = false;
     std::string preset = render::transferFunctionPresets().front();
     std::optional<double> arcMm;
     std::vector<glm::dvec3> positionMm;
@@ -45,6 +48,45 @@ Result<render::EndoscopicView> endoscopicView(const Arguments& arguments,
     return view;
 }
 
+struct Scans {
+    Volume<std::int16_t> ct;
+    Volume<std::int16_t> cleansed;  // empty where it is not drawn
+};
+
+Result<Scans> readScans(const Arguments& arguments, const store::Case& source) {
+    auto ct = source.readVolume<std::int16_t>("ct");
+    if (!ct) return tl::make_unexpected(ct.error());
+    Scans scans{std::move(*ct), {}};
+    const bool asked = arguments.compare || arguments.product == "cleansed";
+    const bool wanted = asked || (arguments.view == "endoscopic" && arguments.product.empty());
+    if (!wanted) return scans;
+    if (!asked && !source.find("cleansed")) {
+        fmt::print(stderr,
+                   "haustra: note: case {} has no cleansed scan; the picture shows the scan as it "
+                   "is, with its residue\n",
+                   source.name());
+        return scans;
+    }
+    auto cleansed = source.readVolume<std::int16_t>("cleansed");
+    if (!cleansed) return tl::make_unexpected(cleansed.error());
+    scans.cleansed = std::move(*cleansed);
+    return scans;
+}
+
+/// Before, classification and after, each as a slice of its own would be.
+Result<render::Image> compare(render::CaseRenderer& renderer,
+                              const Volume<TissueFractions>& mixture, render::SliceView slice,
+                              glm::ivec2 size) {
+    auto before = renderer.render(slice, size.x, size.y);
+    if (!before) return before;
+    auto tissues = render::tissuePicture(mixture, slice, size.x, size.y);
+    if (!tissues) return tissues;
+    slice.scan = render::Scan::cleansed;
+    auto after = renderer.render(slice, size.x, size.y);
+    if (!after) return after;
+    return render::sideBySide({std::move(*before), std::move(*tissues), std::move(*after)});
+}
+
 Result<render::Image> draw(const Arguments& arguments, const store::Case& source) {
     const auto plane = render::viewFromString(arguments.view);
     if (!plane) return tl::make_unexpected(plane.error());
@@ -62,17 +104,19 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
                         fmt::format("--arc-mm {}", *arguments.arcMm));
         }
     }
-    const auto ct = source.readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    Volume<std::uint8_t> lumen;
-    if (source.find("lumen")) {
-        auto read = source.readVolume<std::uint8_t>("lumen");
+    const auto scans = readScans(arguments, source);
+    if (!scans) return tl::make_unexpected(scans.error());
+    // Before the GPU has work: a case may have no mixture.
+    Volume<TissueFractions> mixture;
+    if (arguments.compare) {
+        auto read = source.readVolume<TissueFractions>("mixture");
         if (!read) return tl::make_unexpected(read.error());
-        lumen = std::move(*read);
+        mixture = std::move(*read);
     }
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
-    auto renderer = render::CaseRenderer::create(**context, *ct, lumen, arguments.threads);
+    auto renderer =
+        render::CaseRenderer::create(**context, scans->ct, scans->cleansed, arguments.threads);
     if (!renderer) return tl::make_unexpected(renderer.error());
 
     if (*plane == render::View::endoscopic) {
@@ -84,6 +128,8 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
     slice.positionMm = arguments.positionMm.empty()
                            ? poseAtArc(centerline, *arguments.arcMm).point.positionMm
                            : arguments.positionMm.front();
+    if (arguments.compare) return compare(**renderer, mixture, slice, arguments.size);
+    if (arguments.product == "cleansed") slice.scan = render::Scan::cleansed;
     return (*renderer)->render(slice, arguments.size.x, arguments.size.y);
 }
 
@@ -114,7 +160,7 @@ void addPictureOptions(CLI::App& command, const std::shared_ptr<Arguments>& argu
                     arguments->size[axis] = int(side);
                 }
             },
-            "Pixels")
+            "Pixels; with --compare, of each of the three")
         ->type_name("WxH")
         ->default_str("512x512");
     command.add_option("--out", arguments->out, "The picture; replaced in one step")
@@ -130,6 +176,18 @@ void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& argumen
     command.add_option("--view", arguments->view, "What to draw")
         ->check(CLI::IsMember({"endoscopic", "axial", "coronal", "sagittal"}))
         ->capture_default_str();
+    auto* product =
+        command
+            .add_option("--product", arguments->product,
+                        "Which scan to draw; else a slice shows ct, the endoscopic view cleansed "
+                        "where the case has it")
+            ->check(CLI::IsMember({"ct", "cleansed"}));
+    command
+        .add_flag("--compare", arguments->compare,
+                  "A slice three times, side by side: ct, the mixture by colours (air red, soft "
+                  "tissue green, bone and tagged material blue, air meeting tagged material pink), "
+                  "cleansed")
+        ->excludes(product);
     command
         .add_option(
             "--arc-mm", arguments->arcMm,
@@ -182,6 +240,8 @@ Command addRender(CLI::App& program) {
         if (!slice && !arguments->positionMm.empty()) {
             throw CLI::ValidationError("--position", "the endoscopic view is placed by --arc-mm");
         }
+        if (!slice && arguments->compare)
+            throw CLI::ValidationError("--compare", "compares slices; give --view");
         if (arguments->positionMm.size() > 1)
             throw CLI::ValidationError("--position", "given more than once");
         if (!arguments->arcMm && arguments->positionMm.empty()) {

@@ -66,7 +66,8 @@ struct CaseRenderer::Impl {
     Grid grid;
     int threads;
     gpu::Texture ct;
-    std::optional<gpu::Texture> cleared;  // where there is tagged lumen
+    std::optional<gpu::Texture> cleansed;  // where it differs from the scan
+    bool hasCleansed;
     BlockRanges ranges;
     gpu::ComputeProgram coneStart, endoscopic, slice;
     gpu::UniformBuffer marchBlock, sliceBlock;
@@ -123,31 +124,31 @@ struct CaseRenderer::Impl {
 
 Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context,
                                                            const Volume<std::int16_t>& ct,
-                                                           const Volume<std::uint8_t>& lumen,
+                                                           const Volume<std::int16_t>& cleansed,
                                                            int threads) {
-    Result<PreparedCase> prepared = prepareCase(ct, lumen, threads);
+    Result<PreparedCase> prepared = prepareCase(ct, cleansed, threads);
     if (!prepared) return tl::make_unexpected(prepared.error());
-    return upload(context, ct, std::move(*prepared), threads);
+    return upload(context, std::move(*prepared), threads);
 }
 
 Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context,
-                                                           const Volume<std::int16_t>& ct,
                                                            PreparedCase prepared, int threads) {
     using gpu::ComputeProgram, gpu::Filter, gpu::Texture, gpu::TexelFormat, gpu::UniformBuffer;
-    const Grid grid = ct.grid();
+    const Grid grid = prepared.ct.grid();
     if (Result<void> fits = checkScanSide(grid, std::min(maxScanSide, gpu::maxTextureSide3d()));
         !fits)
         return tl::make_unexpected(fits.error());
 
     const int errorsBefore = context.errorCount();
-    Result<Texture> ctTexture = uploadVolume(ct, threads, "scan on the GPU");
+    Result<Texture> ctTexture = uploadVolume(prepared.ct, threads, "scan on the GPU");
     if (!ctTexture) return tl::make_unexpected(ctTexture.error());
-    std::optional<Texture> clearedTexture;
-    if (!prepared.cleared.empty()) {
+    const bool hasCleansed = !prepared.cleansed.empty();
+    std::optional<Texture> cleansedTexture;
+    if (hasCleansed && prepared.cleansed.voxels().data() != prepared.ct.voxels().data()) {
         Result<Texture> texture =
-            uploadVolume(prepared.cleared, threads, "cleared scan on the GPU");
+            uploadVolume(prepared.cleansed, threads, "cleansed scan on the GPU");
         if (!texture) return tl::make_unexpected(texture.error());
-        clearedTexture = std::move(*texture);
+        cleansedTexture = std::move(*texture);
     }
     const std::string_view structs = shaderSource("uniforms.h"), march = shaderSource("march.glsl");
     Result<ComputeProgram> cone = ComputeProgram::create(
@@ -171,7 +172,8 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context
                                                         grid,
                                                         threads,
                                                         std::move(*ctTexture),
-                                                        std::move(clearedTexture),
+                                                        std::move(cleansedTexture),
+                                                        hasCleansed,
                                                         std::move(prepared.ranges),
                                                         std::move(*cone),
                                                         std::move(*endoscopic),
@@ -204,7 +206,7 @@ Result<Image> CaseRenderer::render(const EndoscopicView& view, int width, int he
     if (!classified) return tl::make_unexpected(classified.error());
     my.marchBlock.write(marchUniforms(view, my.grid, (*classified)->table(), my.ranges.size, size));
     my.marchBlock.bind(shaders::uniformBinding);
-    (my.cleared ? *my.cleared : my.ct).bind(shaders::volumeUnit);
+    (my.cleansed ? *my.cleansed : my.ct).bind(shaders::volumeUnit);
     (*classified)->bind();
     my.firstStep->bindImage(shaders::startImage);
     my.coneStart.dispatch((size + coneTile - 1) / coneTile);
@@ -219,6 +221,9 @@ Result<Image> CaseRenderer::render(const SliceView& view, int width, int height)
     const int errorsBefore = my.context.errorCount();
     if (Result<void> sound = checkPicture(width, height); !sound)
         return tl::make_unexpected(sound.error());
+    const bool cleansed = view.scan == Scan::cleansed;
+    if (cleansed && !my.hasCleansed)
+        return fail(ErrorKind::badInput, "the case has no cleansed scan", "slice");
     const Result<SlicePlacement> placement = placeSlice(view, my.grid, width, height);
     if (!placement) return tl::make_unexpected(placement.error());
     const glm::ivec2 size(width, height);
@@ -240,7 +245,7 @@ Result<Image> CaseRenderer::render(const SliceView& view, int width, int height)
     u.pictureSize = glm::ivec4(size, 0, 0);
     my.sliceBlock.write(u);
     my.sliceBlock.bind(shaders::uniformBinding);
-    my.ct.bind(shaders::volumeUnit);
+    (cleansed && my.cleansed ? *my.cleansed : my.ct).bind(shaders::volumeUnit);
     my.picture->bindImage(shaders::pictureImage);
     my.slice.dispatch(size);
     return my.readPicture(size, errorsBefore);
@@ -249,7 +254,7 @@ Result<Image> CaseRenderer::render(const SliceView& view, int width, int height)
 std::size_t CaseRenderer::gpuBytes() const {
     const Impl& my = *impl_;
     std::size_t bytes = my.ct.bytes();
-    for (const std::optional<gpu::Texture>* texture : {&my.cleared, &my.picture, &my.firstStep})
+    for (const std::optional<gpu::Texture>* texture : {&my.cleansed, &my.picture, &my.firstStep})
         if (*texture) bytes += (*texture)->bytes();
     for (const Classification& one : my.recent)
         bytes += one.gpuBytes();

@@ -1,7 +1,5 @@
 #include "render/prepared_case.h"
 
-#include "render/lumen_as_air.h"
-
 #include <algorithm>
 #include <string>
 
@@ -17,22 +15,24 @@ Result<void> checkScanSide(const Grid& grid, int most) {
                 "render");
 }
 
-Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct, const Volume<std::uint8_t>& lumen,
-                                 int threads) {
+Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct,
+                                 const Volume<std::int16_t>& cleansed, int threads) {
     const Grid& grid = ct.grid();
     if (Result<void> sound = checkGrid(grid, "ct"); !sound)
         return tl::make_unexpected(sound.error());
-    if (!lumen.empty() && !sameGrid(grid, lumen.grid()))
-        return fail(ErrorKind::badInput, "the lumen is not on the scan's grid", "render");
+    if (!cleansed.empty() && !sameGrid(grid, cleansed.grid()))
+        return fail(ErrorKind::badInput, "the cleansed scan is not on the scan's grid", "render");
     if (Result<void> fits = checkScanSide(grid, maxScanSide); !fits)
         return tl::make_unexpected(fits.error());
 
-    const auto labels = lumen.voxels();
-    const bool tagged =
-        std::find(labels.begin(), labels.end(), std::uint8_t(LumenLabel::tagged)) != labels.end();
     PreparedCase prepared;
-    if (tagged) prepared.cleared = lumenAsAir(ct, lumen, threads);
-    prepared.ranges = blockRanges(tagged ? prepared.cleared : ct, threads);
+    prepared.ct = ct.share();
+    if (!cleansed.empty()) {
+        const auto before = ct.voxels(), after = cleansed.voxels();
+        const bool unchanged = std::equal(before.begin(), before.end(), after.begin());
+        prepared.cleansed = (unchanged ? ct : cleansed).share();
+    }
+    prepared.ranges = blockRanges(prepared.endoscopic(), threads);
     return prepared;
 }
 

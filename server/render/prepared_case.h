@@ -1,7 +1,7 @@
-// What a case's renderer is made from beside the scan, computed without a GPU.
+// What a case's renderer is made from, computed without a GPU.
 #pragma once
 
-#include "core/ct_scan.h"
+#include "core/volume.h"
 #include "render/leap_map.h"
 
 #include <cstdint>
@@ -11,19 +11,23 @@ namespace haustra::render {
 /// Longest side of a scan that is drawn, voxels; a device may allow less.
 inline constexpr int maxScanSide = 2048;
 
-/// Everything of a renderer that takes long to compute.
+/// A case's volumes, and what takes long to compute from them.
 struct PreparedCase {
-    /// The scan with its tagged lumen taken for air; empty where none is tagged.
-    Volume<std::int16_t> cleared;
+    Volume<std::int16_t> ct;
+    /// The scan after digital cleansing, which the endoscopic view shows; empty where there is
+    /// none. Where cleansing has changed nothing, this is `ct`, in the same memory.
+    Volume<std::int16_t> cleansed;
     BlockRanges ranges;  ///< of the volume that the endoscopic view shows
+
+    const Volume<std::int16_t>& endoscopic() const { return cleansed.empty() ? ct : cleansed; }
 };
 
-/// `ct` is the scan; `lumen` (LumenLabel, on the same grid, may be empty) tells which tagged
-/// voxels the endoscopic view shows as air. `threads` (≤ 0: all cores) changes no value. Fails
-/// (badInput) where the grids are not sound or not the same, (device) where a side is too long.
-/// O(voxels), a second or two for 512³; reads every page of a memory-mapped scan. Any thread.
-Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct, const Volume<std::uint8_t>& lumen,
-                                 int threads = 0);
+/// Takes handles on `ct` and `cleansed` (which may be empty), HU on the same grid. `threads` (≤ 0:
+/// all cores) changes no value. Fails (badInput) where the grids are not sound or not the same,
+/// (device) where a side is too long. O(voxels), under a second for 512³; reads every page of
+/// memory-mapped volumes, and adds 1/2 byte a voxel of main memory. Any thread.
+Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct,
+                                 const Volume<std::int16_t>& cleansed, int threads = 0);
 
 /// Fails (device) where a side of the grid is longer than `most` voxels.
 Result<void> checkScanSide(const Grid& grid, int most);

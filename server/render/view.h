@@ -86,6 +86,9 @@ struct EndoscopicView {
 /// Says what is wrong with a camera: field of view 1…170°, directions finite and not parallel.
 Result<void> checkCamera(const Camera& camera);
 
+/// Which of a case's two scans a slice shows.
+enum class Scan { original, cleansed };
+
 /// A slice through `positionMm`, radiological convention: axial seen from the feet (patient's
 /// left on the picture's right), coronal from the front, sagittal from the patient's left.
 /// At zoom 1 the whole slice fits the picture, centred, with square millimetres; zooming holds
@@ -95,6 +98,7 @@ struct SliceView {
     glm::dvec3 positionMm{0.0};
     double zoom = 1.0;  ///< 1…64
     WindowLevel window;
+    Scan scan = Scan::original;
 };
 
 /// Where a slice's pixels lie: the centre of pixel (x, y) is topLeftMm + x·rightMm + y·downMm.

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 namespace haustra::session {
 namespace {
 
@@ -12,9 +14,11 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
     auto files = readCase(store, name);
     if (!files) return tl::make_unexpected(files.error());
     if (auto there = renderer.find(files->facts)) return there;
-    auto prepared = render::prepareCase(files->ct, files->lumen);
+    if (!files->facts.cleansed)
+        spdlog::info("a case has no cleansed scan: its endoscopic views show the scan as it is");
+    auto prepared = render::prepareCase(files->ct, files->cleansed);
     if (!prepared) return tl::make_unexpected(prepared.error());
-    return renderer.upload(std::move(*files), std::move(*prepared));
+    return renderer.upload(std::move(files->facts), std::move(*prepared));
 }
 
 }  // namespace

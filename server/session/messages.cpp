@@ -59,6 +59,7 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened) {
     message->set_patient_position(toString(opened.position));
     for (const std::string& preset : render::transferFunctionPresets())
         message->add_transfer_functions(preset);
+    message->set_cleansed(opened.cleansed);
     return answer;
 }
 

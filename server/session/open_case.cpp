@@ -20,10 +20,11 @@ Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& nam
             files.facts.position = patientPositionFromString(position->second);
     }
     for (const store::ProductEntry& entry : *products) {
-        if (entry.product == "lumen") {
-            auto lumen = source->readVolume<std::uint8_t>("lumen");
-            if (!lumen) return tl::make_unexpected(lumen.error());
-            files.lumen = std::move(*lumen);
+        if (entry.product == "cleansed") {
+            auto cleansed = source->readVolume<std::int16_t>("cleansed");
+            if (!cleansed) return tl::make_unexpected(cleansed.error());
+            files.cleansed = std::move(*cleansed);
+            files.facts.cleansed = true;
         } else if (entry.product == "centerline") {
             auto centerline = source->readCenterline();
             if (!centerline) return tl::make_unexpected(centerline.error());

@@ -17,16 +17,17 @@ struct OpenCase {
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
     Centerline centerline;  ///< empty where the case has none yet
+    bool cleansed = false;  ///< the endoscopic view shows the cleansed scan, slices can
 };
 
 /// The case's volumes, memory-mapped, beside what is known of it.
 struct CaseFiles {
     OpenCase facts;
     Volume<std::int16_t> ct;
-    Volume<std::uint8_t> lumen;  ///< empty where the case has none yet
+    Volume<std::int16_t> cleansed;  ///< empty where the case has none yet
 };
 
-/// Reads product "ct" of a case and, where they are there, "lumen" and "centerline". Fails
+/// Reads product "ct" of a case and, where they are there, "cleansed" and "centerline". Fails
 /// (notFound) where there is no such case. Maps the volumes, reads no voxel.
 Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& name);
 

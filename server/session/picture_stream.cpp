@@ -38,6 +38,10 @@ Result<void> PictureStream::input(const Input& message) {
     Slot& slot = slots_[message.viewport()];
     if (!std::is_same_v<Input, protocol::SetViewport> && !slot.viewport.isOpen())
         return fail(ErrorKind::unsupported, "the viewport is not open", "viewport");
+    if constexpr (std::is_same_v<Input, protocol::SetSlice>) {
+        if (message.cleansed() && !(case_ && case_->cleansed))
+            return fail(ErrorKind::badInput, "the case has no cleansed scan", "viewport");
+    }
     if (auto applied = slot.viewport.apply(message); !applied) return applied;
     slot.sequence = message.sequence();
     changed(message.viewport());

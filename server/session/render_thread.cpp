@@ -111,16 +111,16 @@ struct RenderThread::Drawing {
         return nullptr;
     }
 
-    Result<std::shared_ptr<const OpenCase>> upload(CaseFiles files, render::PreparedCase prepared) {
+    Result<std::shared_ptr<const OpenCase>> upload(OpenCase facts, render::PreparedCase prepared) {
         std::erase_if(cases, [](const Entry& entry) { return entry.of.expired(); });
         const auto start = Clock::now();
-        auto renderer = render::CaseRenderer::upload(*context, files.ct, std::move(prepared));
+        auto renderer = render::CaseRenderer::upload(*context, std::move(prepared));
         if (!renderer) return tl::make_unexpected(renderer.error());
         spdlog::info("a case is on the GPU: {} MiB, copied in {:.1f} s",
                      (*renderer)->gpuBytes() >> 20,
                      1e-6 * microsecondsBetween(start, Clock::now()));
-        Entry entry{files.facts.name, files.facts.content, {}, {}, std::move(*renderer)};
-        auto of = lend(std::move(files.facts));
+        Entry entry{facts.name, facts.content, {}, {}, std::move(*renderer)};
+        auto of = lend(std::move(facts));
         entry.of = of;
         cases.push_back(std::move(entry));
         return of;
@@ -201,11 +201,11 @@ std::shared_ptr<const OpenCase> RenderThread::find(const OpenCase& facts) {
     return found;
 }
 
-Result<std::shared_ptr<const OpenCase>> RenderThread::upload(CaseFiles files,
+Result<std::shared_ptr<const OpenCase>> RenderThread::upload(OpenCase facts,
                                                              render::PreparedCase prepared) {
     Result<std::shared_ptr<const OpenCase>> opened;
     runThere(
-        [&](Drawing& drawing) { opened = drawing.upload(std::move(files), std::move(prepared)); });
+        [&](Drawing& drawing) { opened = drawing.upload(std::move(facts), std::move(prepared)); });
     return opened;
 }
 

@@ -32,7 +32,7 @@ public:
     /// calls this and upload; both wait for the picture under way.
     std::shared_ptr<const OpenCase> find(const OpenCase& facts);
     /// Copies a case to the GPU: some tenths of a second, in which no picture is drawn.
-    Result<std::shared_ptr<const OpenCase>> upload(CaseFiles files, render::PreparedCase prepared);
+    Result<std::shared_ptr<const OpenCase>> upload(OpenCase facts, render::PreparedCase prepared);
 
     /// The session has no other job here, or does not want it any more.
     void submit(PictureJob job);

@@ -50,6 +50,7 @@ Result<void> Viewport::apply(const protocol::SetSlice& message) {
         return refuse("the zoom is not within 1 to 64");
     slicePositionMm_ = *position;
     zoom_ = message.zoom();
+    scan_ = message.cleansed() ? render::Scan::cleansed : render::Scan::original;
     moving_ = message.moving();
     return {};
 }
@@ -74,7 +75,7 @@ Result<void> Viewport::apply(const protocol::SetTransferFunction& message) {
 
 std::variant<render::EndoscopicView, render::SliceView> Viewport::view() const {
     if (view_ != render::View::endoscopic)
-        return render::SliceView{view_, *slicePositionMm_, zoom_, window_};
+        return render::SliceView{view_, *slicePositionMm_, zoom_, window_, scan_};
     render::EndoscopicView view;
     view.camera = *camera_;
     view.transferFunction =

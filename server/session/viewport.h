@@ -12,7 +12,8 @@
 namespace haustra::session {
 
 /// A plain value. Each apply() checks a message against PROTOCOL.md §4 and changes the viewport,
-/// or fails (badInput) and leaves it as it was. Sequence and viewport number are the caller's.
+/// or fails (badInput) and leaves it as it was. Sequence, viewport number and whether the case has
+/// a cleansed scan are the caller's.
 class Viewport {
 public:
     /// Width or height 0 closes. A change of view forgets camera, slice, window and colours.
@@ -39,6 +40,7 @@ private:
     std::optional<render::Camera> camera_;
     std::optional<glm::dvec3> slicePositionMm_;
     double zoom_ = 1.0;
+    render::Scan scan_ = render::Scan::original;
     render::WindowLevel window_;
     std::optional<render::TransferFunction> transferFunction_;  ///< none: the first preset
     bool moving_ = false;

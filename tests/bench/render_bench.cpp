@@ -29,8 +29,8 @@ Result<void> bench(const std::string& store, const std::string& name, const std:
     if (!source) return tl::make_unexpected(source.error());
     const auto ct = source->readVolume<std::int16_t>("ct");
     if (!ct) return tl::make_unexpected(ct.error());
-    const auto lumen = source->readVolume<std::uint8_t>("lumen");
-    if (!lumen) return tl::make_unexpected(lumen.error());
+    const auto cleansed = source->readVolume<std::int16_t>("cleansed");
+    if (!cleansed) return tl::make_unexpected(cleansed.error());
     const auto centerline = source->readCenterline();
     if (!centerline) return tl::make_unexpected(centerline.error());
     const auto function = render::transferFunctionPreset(preset);
@@ -39,7 +39,7 @@ Result<void> bench(const std::string& store, const std::string& name, const std:
     const auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
     const double before = milliseconds();
-    const auto renderer = render::CaseRenderer::create(**context, *ct, *lumen);
+    const auto renderer = render::CaseRenderer::create(**context, *ct, *cleansed);
     if (!renderer) return tl::make_unexpected(renderer.error());
     std::printf("%s (%s); case on the GPU in %.0f ms, %zu MiB\n", (*context)->renderer().c_str(),
                 (*context)->platform().c_str(), milliseconds() - before,

@@ -87,11 +87,11 @@ TEST_F(Opening, OthersGetPicturesMeanwhileAndADamagedProductIsOneError) {
             EXPECT_EQ(picture->header.sequence, sequence);
         }
     };
-    StuckProduct lumen(folder_.path(), smallCaseName, "lumen");
+    StuckProduct cleansed(folder_.path(), smallCaseName, "cleansed");
     auto waiting = greeted();
     ask(*waiting, smallCaseName);
     expectPictures();  // none of which waits for the case, as nobody has let it go
-    ASSERT_TRUE(lumen.release());
+    ASSERT_TRUE(cleansed.release());
     const auto refused = waiting->answer();
     ASSERT_TRUE(refused && refused->has_error());
     EXPECT_EQ(refused->error().code(), ErrorReport::INTERNAL);
@@ -99,14 +99,14 @@ TEST_F(Opening, OthersGetPicturesMeanwhileAndADamagedProductIsOneError) {
     expectPictures();
     EXPECT_EQ(uploads(), 1);
 
-    lumen.repair();
+    cleansed.repair();
     ask(*waiting, smallCaseName);  // that its next answer is this one says there was one error
     EXPECT_TRUE(hasOpened(*waiting));
     expectPictures();
 }
 
 TEST_F(Opening, SessionsThatAskAtOnceShareARenderer) {
-    StuckProduct lumen(folder_.path(), smallCaseName, "lumen");
+    StuckProduct cleansed(folder_.path(), smallCaseName, "cleansed");
     auto first = greeted();
     ask(*first, smallCaseName);
     std::vector<std::unique_ptr<TestClient>> together;
@@ -114,7 +114,7 @@ TEST_F(Opening, SessionsThatAskAtOnceShareARenderer) {
         together.push_back(greeted());
         ask(*together.back(), "scan");  // all wait while the first is stuck
     }
-    ASSERT_TRUE(lumen.release());
+    ASSERT_TRUE(cleansed.release());
     EXPECT_TRUE(first->answer()->has_error());
     for (auto& client : together)
         EXPECT_TRUE(hasOpened(*client));

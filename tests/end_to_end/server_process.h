@@ -16,14 +16,15 @@ inline constexpr char smallCaseName[] = "tube";
 
 /// An air-filled, folded tube along z in soft tissue, with a pool of tagged fluid.
 struct SmallCase {
-    Volume<std::int16_t> ct;
-    Volume<std::uint8_t> lumen;
+    Volume<std::int16_t> ct, cleansed;
+    Volume<TissueFractions> mixture;
     Centerline centerline;
 };
 
 inline SmallCase makeSmallCase() {
     const Grid grid = axisAlignedGrid({48, 44, 56}, {0.8, 0.8, 1.1}, {-20.0, -15.0, 100.0});
-    SmallCase made{Volume<std::int16_t>(grid), Volume<std::uint8_t>(grid), {}};
+    SmallCase made{
+        Volume<std::int16_t>(grid), Volume<std::int16_t>(grid), Volume<TissueFractions>(grid), {}};
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const glm::ivec3 v = grid.voxelAt(n);
         const glm::dvec2 fromAxis(v.x - 23.5, v.y - 21.5);
@@ -31,9 +32,13 @@ inline SmallCase makeSmallCase() {
         const bool inside = glm::length(fromAxis) < radius && v.z > 4 && v.z < 52;
         const bool tagged = inside && fromAxis.y > 8.0;
         made.ct.writable()[n] = std::int16_t(tagged ? 400 : inside ? -1000 : 40 + (v.x + v.y) % 7);
-        made.lumen.writable()[n] = std::uint8_t(tagged   ? LumenLabel::tagged
-                                                : inside ? LumenLabel::air
-                                                         : LumenLabel::outside);
+        made.cleansed.writable()[n] = inside ? std::int16_t(-1000) : made.ct[n];
+        // The row of voxels above the level counts as its interface.
+        const bool level = inside && !tagged && fromAxis.y > 7.0;
+        made.mixture.writable()[n] = level    ? TissueFractions{128, 127}
+                                     : tagged ? TissueFractions{0, 255}
+                                     : inside ? TissueFractions{255, 0}
+                                              : TissueFractions{0, 0};
     }
     for (int k = 6; k <= 50; ++k) {
         const glm::dvec3 p = grid.patientFromVoxelPoint({23.5, 21.5, double(k)});
@@ -42,7 +47,7 @@ inline SmallCase makeSmallCase() {
     return made;
 }
 
-/// Publishes the small case, and another without lumen and centerline, called "scan".
+/// Publishes the small case, and another with a scan alone, called "scan".
 inline void makeSmallStore(const std::filesystem::path& folder) {
     const auto orThrow = [](auto result) {
         if (!result) throw std::runtime_error(describe(result.error()));
@@ -54,7 +59,8 @@ inline void makeSmallStore(const std::filesystem::path& folder) {
     const auto key = [](const char* stage) { return store::makeKey(stage, 1, "", {}); };
     auto whole = orThrow(store.createCase(smallCaseName));
     orThrow(whole.publishVolume("ct", key("ct"), made.ct, {{"position", "supine"}}));
-    orThrow(whole.publishVolume("lumen", key("lumen"), made.lumen));
+    orThrow(whole.publishVolume("mixture", key("mixture"), made.mixture));
+    orThrow(whole.publishVolume("cleansed", key("cleansed"), made.cleansed));
     orThrow(whole.publishCenterline("centerline", key("centerline"), made.centerline));
     auto bare = orThrow(store.createCase("scan"));
     orThrow(bare.publishVolume("ct", key("ct"), made.ct));

@@ -91,6 +91,7 @@ TEST_F(ServerTest, WelcomesListsAndOpens) {
     EXPECT_EQ(facts.gap_samples_size(), 2);
     EXPECT_EQ(facts.patient_position(), toString(PatientPosition::supine));
     EXPECT_EQ(facts.transfer_functions(0), "mucosa");
+    EXPECT_TRUE(facts.cleansed());
 }
 
 TEST_F(ServerTest, ACaseWithoutCenterlineShowsItsSlices) {
@@ -100,6 +101,21 @@ TEST_F(ServerTest, ACaseWithoutCenterlineShowsItsSlices) {
     const auto picture = client->picture();
     ASSERT_TRUE(picture);
     EXPECT_TRUE(picture->header.exact);
+}
+
+TEST_F(ServerTest, ACaseThatIsNotCleansedSaysSoAndRefusesCleansedSlices) {
+    auto client = connected();
+    client->hello();
+    const auto answer = client->openCase("scan");
+    ASSERT_TRUE(answer && answer->has_case_opened());
+    EXPECT_FALSE(answer->case_opened().cleansed());
+    client->viewport(1, 2, protocol::AXIAL, 40, 32);
+    client->slice(2, 2, inTheTube, 1.0, false, true);
+    expectError(client->answer(), ErrorReport::BAD_VALUE, false);
+    client->slice(3, 2, inTheTube, 1.0, false);
+    const auto picture = client->picture();
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->header.sequence, 3u);
 }
 
 TEST_F(ServerTest, OtherVersionsAndSilentStrangersAreTurnedAway) {
@@ -271,7 +287,7 @@ TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     const SmallCase truth = makeSmallCase();
     auto context = gpu::Context::create();
     ASSERT_TRUE(context);
-    auto renderer = render::CaseRenderer::create(**context, truth.ct, truth.lumen);
+    auto renderer = render::CaseRenderer::create(**context, truth.ct, truth.cleansed);
     ASSERT_TRUE(renderer);
 
     auto client = opened();

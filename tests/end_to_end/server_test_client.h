@@ -130,10 +130,11 @@ public:
         body->set_moving(moving);
         send(message);
     }
-    void slice(std::uint64_t sequence, std::uint32_t id, Vector position, double zoom,
-               bool moving) {
+    void slice(std::uint64_t sequence, std::uint32_t id, Vector position, double zoom, bool moving,
+               bool cleansed = false) {
         protocol::ClientMessage message;
         auto* body = message.mutable_set_slice();
+        body->set_cleansed(cleansed);
         body->set_sequence(sequence);
         body->set_viewport(id);
         set(body->mutable_position_mm(), position);

@@ -81,9 +81,9 @@ protected:
         }
     }
     std::unique_ptr<render::CaseRenderer> renderer(const Volume<std::int16_t>& ct,
-                                                   const Volume<std::uint8_t>& lumen = {},
+                                                   const Volume<std::int16_t>& cleansed = {},
                                                    int threads = 0) {
-        auto made = render::CaseRenderer::create(*context, ct, lumen, threads);
+        auto made = render::CaseRenderer::create(*context, ct, cleansed, threads);
         if (!made) {
             ADD_FAILURE() << describe(made.error());
             return nullptr;

@@ -109,12 +109,22 @@ TEST_F(Slices, TheEndoscopeSeesThePatientsLeftAsASurgeonDoes) {
     EXPECT_NEAR(seen.y, 0.0, 0.02);
 }
 
-TEST_F(Slices, ShowTheTrueScanWhereTheEndoscopeSeesAir) {
+TEST_F(Slices, ShowTheScanUnlessTheCleansedOneIsAskedFor) {
     const Grid grid = axisAlignedGrid({16, 16, 16}, glm::dvec3(1.0));
-    const Volume<std::int16_t> ct(grid, 600);
-    const SliceView view{View::axial, glm::dvec3(7.5), 1.0, {600.0, 200.0}};
-    const Image image = draw(*renderer(ct, Volume<std::uint8_t>(grid, 2)), view, 16, 16);
-    EXPECT_NEAR(pixel(image, 8, 8), 127.5, 0.6);
+    const Volume<std::int16_t> ct(grid, 600), air(grid, 540), same(grid, 600);
+    SliceView view{View::axial, glm::dvec3(7.5), 1.0, {600.0, 200.0}};
+    const auto cleansed = renderer(ct, air), unchanged = renderer(ct, same), bare = renderer(ct);
+    const Image before = draw(*cleansed, view, 16, 16);
+    EXPECT_NEAR(pixel(before, 8, 8), 127.5, 0.6);
+    EXPECT_EQ(before.rgb, draw(*bare, view, 16, 16).rgb);
+    view.scan = Scan::cleansed;
+    const Image after = draw(*cleansed, view, 16, 16);
+    EXPECT_NEAR(pixel(after, 8, 8), 127.5 - 0.3 * 255.0, 0.6);
+    EXPECT_EQ(draw(*unchanged, view, 16, 16).rgb, before.rgb);
+    const auto none = bare->render(view, 16, 16);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().kind, ErrorKind::badInput);
+    EXPECT_NE(describe(none.error()).find("no cleansed scan"), std::string::npos);
 }
 
 TEST_F(Slices, SayWhatIsWrong) {

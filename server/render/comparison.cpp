@@ -1,0 +1,74 @@
+#include "render/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::render {
+namespace {
+
+// The most that counts as none, 255ths: 5 %.
+constexpr int leastShare = 255 * 5 / 100;
+
+void append(std::vector<std::uint8_t>& rgb, glm::u8vec3 color) {
+    rgb.insert(rgb.end(), {color.r, color.g, color.b});
+}
+
+}  // namespace
+
+glm::u8vec3 tissueColor(TissueFractions fractions) {
+    const auto counted = [](int share) { return share > leastShare ? share : 0; };
+    const int air = counted(fractions.air), tagged = counted(fractions.tagged),
+              soft = counted(fractions.soft());
+    const bool meet = air > 0 && tagged > 0;
+    const glm::ivec3 sum = air * glm::ivec3(meet ? interfaceColor : airColor) +
+                           tagged * glm::ivec3(meet ? interfaceColor : taggedColor) +
+                           soft * glm::ivec3(softColor);
+    const int total = air + tagged + soft;
+    return glm::u8vec3((sum + total / 2) / total);
+}
+
+Result<Image> tissuePicture(const Volume<TissueFractions>& mixture, const SliceView& view,
+                            int width, int height) {
+    const Grid& grid = mixture.grid();
+    const Result<SlicePlacement> placement = placeSlice(view, grid, width, height);
+    if (!placement) return tl::make_unexpected(placement.error());
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    const glm::dvec3 origin(voxelFromPatient * glm::dvec4(placement->topLeftMm, 1.0)),
+        right(voxelFromPatient * glm::dvec4(placement->rightMm, 0.0)),
+        down(voxelFromPatient * glm::dvec4(placement->downMm, 0.0));
+    Image image{width, height, {}};
+    image.rgb.reserve(3 * std::size_t(width) * std::size_t(height));
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const glm::dvec3 nearest =
+                glm::floor(origin + double(x) * right + double(y) * down + 0.5);
+            // Compared before the conversion: the point may lie anywhere.
+            const bool inside = glm::all(glm::greaterThanEqual(nearest, glm::dvec3(0.0))) &&
+                                glm::all(glm::lessThan(nearest, glm::dvec3(grid.size)));
+            append(image.rgb,
+                   inside ? tissueColor(mixture.at(glm::ivec3(nearest))) : glm::u8vec3(0));
+        }
+    }
+    return image;
+}
+
+Image sideBySide(const std::vector<Image>& panels) {
+    Image joined;
+    for (const Image& panel : panels) {
+        joined.height = panel.height;
+        joined.width += panel.width + (joined.width > 0 ? separatorPixels : 0);
+    }
+    joined.rgb.reserve(3 * std::size_t(joined.width) * std::size_t(joined.height));
+    for (int y = 0; y < joined.height; ++y) {
+        for (std::size_t n = 0; n < panels.size(); ++n) {
+            for (int x = 0; n > 0 && x < separatorPixels; ++x)
+                append(joined.rgb, separatorColor);
+            const std::ptrdiff_t stride = 3 * std::ptrdiff_t(panels[n].width);
+            const auto row = panels[n].rgb.begin() + stride * y;
+            joined.rgb.insert(joined.rgb.end(), row, row + stride);
+        }
+    }
+    return joined;
+}
+
+}  // namespace haustra::render

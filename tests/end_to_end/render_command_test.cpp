@@ -1,0 +1,134 @@
+// haustra render on a small store: which scan a picture shows, and the comparison.
+#include "end_to_end/run_program.h"
+#include "end_to_end/server_process.h"
+#include "render/comparison.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+namespace haustra::tests {
+namespace {
+
+using render::Image;
+
+Image readPng(const std::string& file) {
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    EXPECT_TRUE(png_image_begin_read_from_file(&png, file.c_str())) << file;
+    png.format = PNG_FORMAT_RGB;
+    Image image{int(png.width), int(png.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(png))};
+    EXPECT_TRUE(png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr)) << file;
+    return image;
+}
+
+/// The columns from `left` on.
+Image columns(const Image& image, int left, int width) {
+    Image part{width, image.height, {}};
+    for (int y = 0; y < image.height; ++y) {
+        const auto row = image.rgb.begin() + 3 * (std::ptrdiff_t(image.width) * y + left);
+        part.rgb.insert(part.rgb.end(), row, row + 3 * width);
+    }
+    return part;
+}
+
+class RenderCommand : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        makeSmallStore(folder_->path() / "store");
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+
+    static Outcome run(const std::string& name, std::vector<std::string> more) {
+        std::vector<std::string> arguments{
+            "render", name,    "--store", folder_->path() / "store",  "--size",
+            "80x60",  "--out", picture(), "--position=-1.2,9.8,112.0"};
+        if (std::find(more.begin(), more.end(), "--arc-mm") != more.end()) arguments.pop_back();
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runProgram("haustra", arguments);
+    }
+    static Image drawn(const std::string& name, const std::vector<std::string>& more) {
+        const Outcome outcome = run(name, more);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        return readPng(picture());
+    }
+    static std::string picture() { return folder_->path() / "picture.png"; }
+
+    static std::unique_ptr<TemporaryFolder> folder_;
+};
+std::unique_ptr<TemporaryFolder> RenderCommand::folder_;
+
+TEST_F(RenderCommand, AComparisonIsItsThreePicturesSideBySide) {
+    for (const char* plane : {"axial", "coronal", "sagittal"}) {
+        const Image all = drawn(smallCaseName, {"--view", plane, "--compare", "--zoom", "1.5"});
+        ASSERT_EQ(all.width, 3 * 80 + 2 * render::separatorPixels) << plane;
+        ASSERT_EQ(all.height, 60);
+        const int step = 80 + render::separatorPixels;
+        const Image before = drawn(smallCaseName, {"--view", plane, "--zoom", "1.5"}),
+                    after = drawn(smallCaseName,
+                                  {"--view", plane, "--zoom", "1.5", "--product", "cleansed"});
+        EXPECT_EQ(columns(all, 0, 80).rgb, before.rgb) << plane;
+        EXPECT_EQ(columns(all, 2 * step, 80).rgb, after.rgb) << plane;
+        const render::SliceView view{
+            *render::viewFromString(plane), {-1.2, 9.8, 112.0}, 1.5, render::WindowLevel{}};
+        const Image tissues = *render::tissuePicture(makeSmallCase().mixture, view, 80, 60);
+        EXPECT_EQ(columns(all, step, 80).rgb, tissues.rgb) << plane;
+        EXPECT_NE(before.rgb, after.rgb) << plane;
+    }
+}
+
+TEST_F(RenderCommand, TheEndoscopicViewShowsTheCleansedScanUnlessToldOtherwise) {
+    const std::vector<std::string> at{"--arc-mm", "20"};
+    const auto with = [&](const char* product) {
+        return drawn(smallCaseName, {"--arc-mm", "20", "--product", product}).rgb;
+    };
+    const Image byItself = drawn(smallCaseName, at);
+    EXPECT_EQ(byItself.rgb, with("cleansed"));
+    EXPECT_NE(byItself.rgb, with("ct"));
+}
+
+TEST_F(RenderCommand, ACaseThatIsNotCleansedIsDrawnAsScannedAndSaysSo) {
+    const auto store = store::CaseStore::open(folder_->path() / "store", false);
+    ASSERT_TRUE(store);
+    auto old = store->createCase("old");
+    ASSERT_TRUE(old);
+    const SmallCase made = makeSmallCase();
+    const auto key = [](const char* stage) { return store::makeKey(stage, 1, "", {}); };
+    ASSERT_TRUE(old->publishVolume("ct", key("ct"), made.ct));
+    ASSERT_TRUE(old->publishCenterline("centerline", key("centerline"), made.centerline));
+
+    const Outcome outcome = run("old", {"--arc-mm", "20"});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("no cleansed scan"), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+    const Image asScanned = readPng(picture());
+    EXPECT_EQ(asScanned.rgb, drawn(smallCaseName, {"--arc-mm", "20", "--product", "ct"}).rgb);
+    drawn("old", {"--view", "axial"});  // a slice shows the scan: nothing to note
+}
+
+TEST_F(RenderCommand, WhatACaseLacksIsNamed) {
+    const auto fails = [](const std::vector<std::string>& more, const char* product) {
+        const Outcome outcome = run("scan", more);
+        EXPECT_EQ(outcome.exitCode, 1);
+        EXPECT_NE(outcome.err.find(product), std::string::npos) << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    };
+    fails({"--view", "axial", "--compare"}, "no product cleansed");
+    fails({"--view", "coronal", "--product", "cleansed"}, "no product cleansed");
+}
+
+TEST_F(RenderCommand, ComparisonsAreOfSlices) {
+    for (const std::vector<std::string>& wrong :
+         {std::vector<std::string>{"--arc-mm", "20", "--compare"},
+          {"--view", "axial", "--compare", "--product", "cleansed"},
+          {"--view", "axial", "--product", "lumen"}}) {
+        const Outcome outcome = run(smallCaseName, wrong);
+        EXPECT_EQ(outcome.exitCode, 2) << outcome.err;
+    }
+}
+
+}  // namespace
+}  // namespace haustra::tests
