@@ -24,6 +24,7 @@ std::optional<View> viewFromString(const std::string& text);
 struct Slice {
     glm::dvec3 positionMm{0.0};
     double zoom = 1.0;
+    bool cleansed = false;  ///< of the scan after digital cleansing
     bool operator==(const Slice&) const = default;
 };
 
@@ -38,6 +39,7 @@ struct CaseInfo {
     Centerline centerline;
     PatientPosition position = PatientPosition::unknown;
     std::vector<std::string> transferFunctions;
+    bool cleansed = false;  ///< there is a cleansed scan
 };
 
 struct Bookmark {

@@ -113,6 +113,7 @@ protocol::ClientMessage sliceMessage(std::uint64_t sequence, int viewport, const
     body->set_viewport(std::uint32_t(viewport));
     set(body->mutable_position_mm(), slice.positionMm);
     body->set_zoom(slice.zoom);
+    body->set_cleansed(slice.cleansed);
     body->set_moving(moving);
     return message;
 }
@@ -171,6 +172,7 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     info.position = patientPositionFromString(message.patient_position());
     info.transferFunctions.assign(message.transfer_functions().begin(),
                                   message.transfer_functions().end());
+    info.cleansed = message.cleansed();
     return info;
 }
 

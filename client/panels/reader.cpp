@@ -55,6 +55,7 @@ void Reader::caseOpened() {
     }
     sliceFocusMm_ = flight_.camera().positionMm;
     sliceZoom_ = 1.0;
+    slicesCleansed_ = false;
     pictures_ = {};
     pictureCounts_ = {};
     openSizes_ = {};
@@ -137,7 +138,7 @@ void Reader::askForViews(Clock::time_point now) {
 }
 
 Slice Reader::slice(View) const {
-    return {sliceFocusMm_, sliceZoom_};
+    return {sliceFocusMm_, sliceZoom_, slicesCleansed_};
 }
 
 void Reader::scrollSlice(View view, double mm) {
@@ -152,6 +153,10 @@ void Reader::scrollSlice(View view, double mm) {
 
 void Reader::zoomSlices(double factor) {
     sliceZoom_ = std::clamp(sliceZoom_ * factor, 1.0, 32.0);
+}
+
+void Reader::setSlicesCleansed(bool cleansed) {
+    slicesCleansed_ = cleansed && case_ && case_->cleansed;
 }
 
 void Reader::goNear(glm::dvec3 patientMm) {

@@ -35,6 +35,9 @@ public:
     Slice slice(View view) const;
     void scrollSlice(View view, double mm);
     void zoomSlices(double factor);
+    /// Whether slices show the cleansed scan; stays false where the case has none.
+    bool slicesCleansed() const { return slicesCleansed_; }
+    void setSlicesCleansed(bool cleansed);
     /// Flies to the point of the centerline nearest to `patientMm`.
     void goNear(glm::dvec3 patientMm);
 
@@ -79,6 +82,7 @@ private:
     Camera lastCamera_;
     glm::dvec3 sliceFocusMm_{0.0};
     double sliceZoom_ = 1.0;
+    bool slicesCleansed_ = false;
     WindowLevel window_;
     std::string transferFunction_;
 

@@ -174,6 +174,7 @@ SliceAction readSlice(Fields& in) {
         action.positionMm = glm::dvec3(p[0], p[1], p[2]);
     }
     if (in.has("zoom")) action.zoom = in.number("zoom", 1.0, 64.0);
+    if (in.has("cleansed")) action.cleansed = in.flag("cleansed");
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
     if (in.has("png")) action.png = in.fileName("png", ".png");

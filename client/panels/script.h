@@ -35,6 +35,7 @@ struct SliceAction {
     View view = View::axial;
     std::optional<glm::dvec3> positionMm;  ///< default: where the camera is
     double zoom = 1.0;
+    bool cleansed = false;
     std::optional<int> viewport;  ///< default: 1 axial, 2 coronal, 3 sagittal
     std::optional<glm::ivec2> size;
     std::string png;

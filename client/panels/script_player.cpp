@@ -165,7 +165,7 @@ void Player::open(int viewport, View view, int width, int height) {
     if (found != viewports_.end() && found->second.view == view && found->second.width == width &&
         found->second.height == height)
         return;
-    viewports_[viewport] = {view, width, height, Slice{flight_.camera().positionMm, 1.0}};
+    viewports_[viewport] = {view, width, height, Slice{flight_.camera().positionMm}};
     session_.setViewport(viewport, view, width, height);
 }
 
@@ -270,7 +270,8 @@ Status Player::run(const SliceAction& action, ActionReport& report) {
                                 ? glm::ivec2(found->second.width, found->second.height)
                                 : action.size.value_or(glm::ivec2(options_.width, options_.height));
     open(id, action.view, size.x, size.y);
-    const Slice slice{action.positionMm.value_or(flight_.camera().positionMm), action.zoom};
+    const Slice slice{action.positionMm.value_or(flight_.camera().positionMm), action.zoom,
+                      action.cleansed};
     viewports_[id].slice = slice;
     const auto askedAt = Clock::now();
     return awaitStill(id, session_.setSlice(id, slice, false), askedAt, action.png, report);

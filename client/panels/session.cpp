@@ -100,6 +100,7 @@ void Session::opened(const protocol::CaseOpened& message) {
     // After a reconnection the same case keeps its address, and the reader's flight with it.
     const bool same = caseInfo_ && caseInfo_->name == info->name &&
                       caseInfo_->centerline.points.size() == info->centerline.points.size() &&
+                      caseInfo_->cleansed == info->cleansed &&
                       sameGrid(caseInfo_->grid, info->grid);
     if (!same) caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
     phase_ = Phase::open;

@@ -85,6 +85,13 @@ void handleLetter(Ui& ui, ImWchar letter) {
         case 'T':
             nextTransferFunction(reader);
             break;
+        case 'x':
+        case 'X':
+            if (reader.session().caseInfo()->cleansed)
+                reader.setSlicesCleansed(!reader.slicesCleansed());
+            else
+                ui.tell("this case has no cleansed scan");
+            break;
         default:
             break;
     }

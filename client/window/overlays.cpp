@@ -24,6 +24,7 @@ constexpr Key flightKeys[] = {
     {"Shift B", "bookmark with a note"},
     {"P  N", "previous, next bookmark"},
     {"T", "next look of the wall"},
+    {"X", "slices: as scanned, or cleansed"},
     {"M", "show or hide the bookmarks"},
     {"?  F1", "this page"},
     {"Ctrl Q", "quit"},

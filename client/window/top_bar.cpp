@@ -43,6 +43,7 @@ void drawTopBar(Ui& ui, Rect area) {
         about += format("%s%d×%d×%d", about.empty() ? "" : "   ", info.grid.size.x,
                         info.grid.size.y, info.grid.size.z);
         write(ui.fonts.small, color::muted, about);
+        if (!info.cleansed) write(ui.fonts.small, color::bookmark, "not cleansed");
     }
 
     const float side = ui.px(28);

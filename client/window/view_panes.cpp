@@ -201,7 +201,7 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
     const float margin = ui.px(8);
     const double coordinate = glm::dot(shown.positionMm, panels::sliceNormal(view));
     outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin}, color::text,
-                 title(view));
+                 shown.cleansed ? std::string(title(view)) + ", cleansed" : title(view));
     const std::string place = format("%s %.1f mm", axisName(view), coordinate);
     outlinedText(list, ui.fonts.small,
                  {area.max.x - margin - textSize(ui.fonts.small, place).x, area.min.y + margin},

@@ -69,7 +69,8 @@ TEST_F(ClientHeadless, StillsAreTheServersPixels) {
 {"do":"still","png":"still.png"}
 {"do":"view","viewport":1,"view":"axial","size":[150,130]}
 {"do":"window","viewport":1,"center_hu":40,"width_hu":400}
-{"do":"slice","view":"axial","position_mm":[1,2,3],"png":"slice.png"})");
+{"do":"slice","view":"axial","position_mm":[1,2,3],"png":"slice.png"}
+{"do":"slice","view":"axial","position_mm":[1,2,3],"cleansed":true,"png":"cleansed.png"})");
     ASSERT_FALSE(report.failure) << describe(*report.failure);
     int width = 0, height = 0;
     const auto still = readPng("still.png", width, height);
@@ -81,6 +82,8 @@ TEST_F(ClientHeadless, StillsAreTheServersPixels) {
     const auto slice = readPng("slice.png", width, height);
     ASSERT_EQ(height, 130);
     EXPECT_EQ(slice, tests::syntheticPicture(150, 130, {1, 2, 3}, 40.0));
+    EXPECT_EQ(readPng("cleansed.png", width, height),
+              tests::syntheticPicture(150, 130, {1, 2, 3}, 40.0 + tests::cleansedShiftHu));
 }
 
 TEST_F(ClientHeadless, AFlightMeasuresEachPosition) {

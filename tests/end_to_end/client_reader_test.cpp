@@ -129,6 +129,24 @@ TEST_F(ClientReader, InFlightPicturesMoveAndAfterwardsTheyAreExact) {
     expectPicturesOf(reader_->flight().camera().positionMm);
 }
 
+TEST_F(ClientReader, SlicesShowTheCleansedScanOnRequest) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    reader_->setSlicesCleansed(true);
+    ASSERT_TRUE(runUntil([&] { return reader_->shownSlice(View::sagittal).cleansed; }));
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    const glm::dvec3 camera = reader_->flight().camera().positionMm;
+    for (const View view : {View::axial, View::coronal, View::sagittal}) {
+        EXPECT_TRUE(reader_->shownSlice(view).cleansed);
+        EXPECT_EQ(reader_->picture(view).rgb,
+                  tests::syntheticPicture(100, 90, camera,
+                                          reader_->window().centerHu + tests::cleansedShiftHu));
+    }
+    reader_->setSlicesCleansed(false);
+    ASSERT_TRUE(runUntil([&] { return !reader_->shownSlice(View::axial).cleansed; }));
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    expectPicturesOf(camera);
+}
+
 TEST_F(ClientReader, ScrollingASliceLeavesTheCameraAndStaysWithinTheScan) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     const glm::dvec3 camera = reader_->flight().camera().positionMm;

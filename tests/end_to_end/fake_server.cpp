@@ -226,6 +226,7 @@ struct FakeServer::Impl {
         opened->set_size_x(256);
         opened->set_size_y(256);
         opened->set_size_z(200);
+        opened->set_cleansed(true);
         for (const double number :
              {0.7, 0.0, 0.0, -90.0, 0.0, 0.7, 0.0, -90.0, 0.0, 0.0, 1.0, -20.0})
             opened->add_patient_from_voxel(number);
@@ -332,9 +333,10 @@ struct FakeServer::Impl {
                 case ClientMessage::kSetSlice: {
                     const auto& set = message.set_slice();
                     const auto& p = set.position_mm();
-                    sendPicture(stream, ++pictures, set.sequence(), int(set.viewport()),
-                                viewports[int(set.viewport())], {p.x(), p.y(), p.z()},
-                                !set.moving());
+                    Viewport viewport = viewports[int(set.viewport())];
+                    if (set.cleansed()) viewport.centerHu += cleansedShiftHu;
+                    sendPicture(stream, ++pictures, set.sequence(), int(set.viewport()), viewport,
+                                {p.x(), p.y(), p.z()}, !set.moving());
                     break;
                 }
                 case ClientMessage::kSetTransferFunction:

@@ -20,6 +20,9 @@ namespace haustra::tests {
 std::vector<std::uint8_t> syntheticPicture(int width, int height, glm::dvec3 positionMm,
                                            double centerHu);
 
+/// A cleansed slice is drawn as one whose window lies so much higher.
+inline constexpr double cleansedShiftHu = 1000.0;
+
 /// What the fake server does wrong.
 struct Misbehaviour {
     std::uint32_t protocolVersion = 1;

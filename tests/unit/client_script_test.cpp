@@ -32,7 +32,7 @@ TEST(Script, ReadsEveryActionWithItsLine) {
         "\n"
         R"({"do":"still","png":"rectum.png"})"
         "\n"
-        R"({"do":"slice","view":"axial","position_mm":[1,-2,3.5],"zoom":2,"png":"a.png"})"
+        R"({"do":"slice","view":"axial","position_mm":[1,-2,3.5],"zoom":2,"cleansed":true,"png":"a.png"})"
         "\n"
         R"({"do":"window","viewport":1,"center_hu":40,"width_hu":400})"
         "\r\n"
@@ -58,6 +58,7 @@ TEST(Script, ReadsEveryActionWithItsLine) {
     EXPECT_TRUE(std::get<FlyAction>((*actions)[2].body).pipelined);
     EXPECT_EQ(std::get<StillAction>((*actions)[3].body).png, "rectum.png");
     EXPECT_EQ(std::get<SliceAction>((*actions)[4].body).positionMm, glm::dvec3(1, -2, 3.5));
+    EXPECT_TRUE(std::get<SliceAction>((*actions)[4].body).cleansed);
     EXPECT_EQ(std::get<WindowAction>((*actions)[5].body).window.widthHu, 400.0);
     EXPECT_EQ(std::get<BookmarkAction>((*actions)[7].body).note, "sessile, 8 mm");
     EXPECT_EQ((*actions)[9].line, 12);
