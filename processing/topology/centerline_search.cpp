@@ -76,7 +76,7 @@ double stepMm(const BlockGraph& graph, std::int32_t a, std::int32_t b) {
 
 PathTree growWidestTree(const BlockGraph& graph, std::int32_t source) {
     const std::size_t count = graph.nodes.size();
-    PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f)};
+    PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f), {source}};
     std::array<std::int32_t, 26> around;
     // The deepest first; of equals, the first node.
     std::priority_queue<std::pair<float, std::int32_t>> frontier;
@@ -92,16 +92,50 @@ PathTree growWidestTree(const BlockGraph& graph, std::int32_t source) {
             tree.parent[std::size_t(next)] = at;
             tree.lengthMm[std::size_t(next)] =
                 tree.lengthMm[std::size_t(at)] + float(stepMm(graph, at, next));
+            tree.order.push_back(next);
             frontier.emplace(graph.nodes[std::size_t(next)].radiusMm, -next);
         }
     }
     return tree;
 }
 
+PathTree rerooted(PathTree widest, std::int32_t source) {
+    std::vector<std::int32_t> turned;  // from the new source to the old one
+    for (std::int32_t at = source; at >= 0; at = widest.parent[std::size_t(at)])
+        turned.push_back(at);
+    std::vector<float> stepMm(widest.parent.size(), 0.0f);  // to the parent
+    for (const std::int32_t node : widest.order) {
+        const std::int32_t parent = widest.parent[std::size_t(node)];
+        if (parent >= 0) {
+            stepMm[std::size_t(node)] =
+                widest.lengthMm[std::size_t(node)] - widest.lengthMm[std::size_t(parent)];
+        }
+    }
+    for (std::size_t n = turned.size(); n-- > 1;) {
+        widest.parent[std::size_t(turned[n])] = turned[n - 1];
+        stepMm[std::size_t(turned[n])] = stepMm[std::size_t(turned[n - 1])];
+    }
+    widest.parent[std::size_t(source)] = -1;
+    std::vector<bool> isTurned(widest.parent.size(), false);
+    for (const std::int32_t node : turned)
+        isTurned[std::size_t(node)] = true;
+    std::vector<std::int32_t> order = turned;
+    for (const std::int32_t node : widest.order) {
+        if (!isTurned[std::size_t(node)]) order.push_back(node);
+    }
+    widest.lengthMm[std::size_t(source)] = 0.0f;
+    for (std::size_t n = 1; n < order.size(); ++n) {
+        const auto node = std::size_t(order[n]);
+        widest.lengthMm[node] = widest.lengthMm[std::size_t(widest.parent[node])] + stepMm[node];
+    }
+    widest.order = std::move(order);
+    return widest;
+}
+
 PathTree growCheapestTree(const BlockGraph& graph, std::span<const std::int32_t> sources,
                           StepCost cost, const std::vector<bool>& within, double longestMm) {
     const std::size_t count = graph.nodes.size();
-    PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f)};
+    PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f), {}};
     std::vector<double> best(count, std::numeric_limits<double>::infinity());
     std::vector<bool> done(count, false);
     std::array<std::int32_t, 26> around;

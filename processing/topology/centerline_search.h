@@ -14,6 +14,7 @@ namespace haustra::topology {
 struct PathTree {
     std::vector<std::int32_t> parent;  ///< towards the source; −1 at a source and where not reached
     std::vector<float> lengthMm;  ///< of the tree's path from the source; −1 where not reached
+    std::vector<std::int32_t> order;  ///< of a widest tree: what is reached, parents first
 };
 
 /// The tree of widest paths from one node through its component: of all ways to a node, the tree's
@@ -23,6 +24,10 @@ struct PathTree {
 /// [126]), by Prim's algorithm: the deepest node on the frontier is next, the first of equals.
 /// O(n log n).
 PathTree growWidestTree(const BlockGraph& graph, std::int32_t source);
+
+/// The same widest tree seen from another of its nodes: the widest way between any two nodes is the
+/// tree's, so one tree serves all. Linear.
+PathTree rerooted(PathTree widest, std::int32_t source);
 
 /// What a step costs: its length, or its length over the distance from the boundary.
 enum class StepCost { length, closeness };

@@ -4,23 +4,12 @@
 #include "core/ct_scan.h"
 #include "core/parallel.h"
 #include "core/result.h"
+#include "topology/digital_topology.h"
 
 #include <string>
 #include <vector>
 
 namespace haustra::topology {
-
-/// What the (6, 18) pair makes of a mask.
-struct DigitalTopology {
-    long components = 0;           ///< 6-connected, of the object
-    long cavities = 0;             ///< 18-connected components of the background but the outer one
-    long eulerCharacteristic = 0;  ///< of the solid: components − handles + cavities
-    long handles() const { return components + cavities - eulerCharacteristic; }
-    bool isBall() const { return components == 1 && cavities == 0 && eulerCharacteristic == 1; }
-};
-
-/// Labels other than 0 are the object; beyond the grid is background. Linear; any thread count.
-DigitalTopology digitalTopology(const Volume<std::uint8_t>& labels, int threads = 0);
 
 struct HandleCuttingOptions {
     double priorityStep = 0.1;       ///< δ: what a non-simple voxel's priority falls by
@@ -38,9 +27,16 @@ struct CutLumen {
 };
 
 /// The largest-distance-first region growing of §3.3.2.2 from a path through the lumen, adding
-/// simple points alone, so that each handle is cut where it is thinnest. Segments that the path
-/// joins across a gap are joined by a thin bridge; segments off the path are left out. Fails where
-/// the lumen is empty (noResult). The same bytes for any number of threads.
+/// simple points alone, so that each handle is cut where it is thinnest (growBall). Large pieces of
+/// the lumen are joined by thin bridges, labelled so, in the order in which the colon passes them;
+/// small pieces, and those too far off the way, are left out; islands of background that float in
+/// the lumen are filled, with the label of the voxel before them on their row (joinPieces). What is
+/// left out, joined or filled, and large cuts, are in `notes`.
+///
+/// Distances count in units of the grid's smallest spacing: T_th is below the least distance a
+/// voxel can have, so that nothing is left out for being thin. Fails where the lumen is empty
+/// (noResult). The same bytes for any number of threads. O(n log n) in the lumen's voxels; takes
+/// about 6 bytes for each voxel of the lumen's bounding box, beside the result.
 Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
                             const HandleCuttingOptions& options = {});
 

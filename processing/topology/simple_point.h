@@ -1,5 +1,6 @@
-// Simple points and topological numbers of digital topology (Bertrand 1994; dissertation §3.3.2.1)
-// for an object of 6-connected voxels in a background of 18-connected ones.
+// Simple points and topological numbers of digital topology (Bertrand, Pattern Recognition Letters
+// 15:1003, 1994; dissertation §3.3.2.1) for an object of 6-connected voxels in a background of
+// 18-connected ones.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,17 @@ namespace haustra::topology {
 /// neighbour at (dx, dy, dz), bit 13 (the voxel itself) ignored.
 using Neighbourhood = std::uint32_t;
 
-/// T₆(x, X): 6-connected components of the object in the geodesic neighbourhood N₆²(x, X).
+/// T₆₊(x, X): 6-connected components of the object in the geodesic neighbourhood N₆³(x, X).
+///
+/// Against an 18-connected background the order is 3, as Bertrand has it; the dissertation prints
+/// his T₆ of order 2, which goes with a 26-connected background. They differ where six voxels
+/// around a corner lead from one face of x to another: order 2 would refuse x there, although
+/// adding it changes nothing.
 int topologicalNumber6(Neighbourhood object);
 /// T₁₈(x, X̄): 18-connected components of the background in N₁₈²(x, X̄).
 int topologicalNumber18(Neighbourhood object);
-/// Both are 1: adding x to the object, or taking it away, changes no topology. Bit-parallel, a few
-/// nanoseconds; any thread.
+/// Both are 1: adding x to the object, or taking it away, changes no topology. Bit-parallel, some
+/// tens of nanoseconds; any thread.
 bool isSimple(Neighbourhood object);
 
 }  // namespace haustra::topology

@@ -1,0 +1,107 @@
+#include "topology/handle_cutting.h"
+
+#include "topology/ball_growth.h"
+#include "topology/lumen_pieces.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace haustra::topology {
+namespace {
+
+/// A part of a grid.
+struct Box {
+    glm::ivec3 lowest{0}, size{0};
+};
+
+/// The voxels with a label other than 0, and `marginMm` more where the grid has them.
+Box boxAround(const BitMask& mask, const Grid& grid, double marginMm) {
+    glm::ivec3 lo = grid.size, hi(-1);
+    for (int k = 0; k < grid.size.z; ++k) {
+        for (int j = 0; j < grid.size.y; ++j) {
+            const std::uint64_t* row = mask.row(j, k);
+            for (std::size_t w = 0; w < mask.rowWords(); ++w) {
+                if (!row[w]) continue;
+                const int first = int(w * 64) + std::countr_zero(row[w]) - 1;
+                const int last = int(w * 64) + 62 - std::countl_zero(row[w]);
+                lo = glm::min(lo, glm::ivec3(first, j, k));
+                hi = glm::max(hi, glm::ivec3(last, j, k));
+            }
+        }
+    }
+    const glm::ivec3 margin = glm::ivec3(glm::ceil(marginMm / grid.spacingMm())) + 1;
+    lo = glm::max(lo - margin, glm::ivec3(0));
+    hi = glm::min(hi + margin, grid.size - 1);
+    return {lo, hi - lo + 1};
+}
+
+Volume<std::uint8_t> cropped(const Volume<std::uint8_t>& labels, const Box& box) {
+    Grid grid{box.size, labels.grid().patientFromVoxel};
+    grid.patientFromVoxel[3] =
+        glm::dvec4(labels.grid().patientFromVoxelPoint(glm::dvec3(box.lowest)), 1.0);
+    Volume<std::uint8_t> part(grid);
+    for (int k = 0; k < box.size.z; ++k) {
+        for (int j = 0; j < box.size.y; ++j) {
+            const glm::ivec3 from = box.lowest + glm::ivec3(0, j, k);
+            std::memcpy(part.writable().data() + grid.index(0, j, k),
+                        labels.voxels().data() + labels.grid().index(from),
+                        std::size_t(box.size.x));
+        }
+    }
+    return part;
+}
+
+}  // namespace
+
+Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
+                            const HandleCuttingOptions& options) {
+    const Grid& grid = labels.grid();
+    const auto progress = [&](double fraction) {
+        if (options.progress) options.progress(fraction);
+    };
+    Box box;
+    {
+        const BitMask mask = maskOf(labels, options.threads);
+        if (mask.count() == 0)
+            return fail(ErrorKind::noResult, "the lumen is empty", "handle cutting");
+        box = boxAround(mask, grid, options.bridgeRadiusMm);
+    }
+    const Volume<std::uint8_t> part = cropped(labels, box);
+    const BitMask mask = maskOf(part, options.threads);
+    JoinedLumen joined = joinPieces(
+        mask, part.grid(), {.bridgeRadiusMm = options.bridgeRadiusMm, .threads = options.threads});
+    progress(0.3);
+    BallGrowthOptions growth{options.priorityStep, options.priorityThreshold, {}};
+    if (options.progress) growth.progress = [&](double done) { progress(0.3 + 0.65 * done); };
+    const BitMask ball = growBall(joined.domain, joined.distanceMm, joined.path, growth);
+
+    CutLumen cut;
+    cut.handlesCut = digitalTopology(joined.domain, options.threads).handles();
+    cut.cavitiesFilled = joined.cavitiesFilled;
+    cut.notes = std::move(joined.notes);
+    cut.labels = Volume<std::uint8_t>(grid, std::uint8_t(LumenLabel::outside));
+    for (int k = 0; k < box.size.z; ++k) {
+        for (int j = 0; j < box.size.y; ++j) {
+            const std::uint8_t* before = part.voxels().data() + part.grid().index(0, j, k);
+            std::uint8_t* after =
+                cut.labels.writable().data() + grid.index(box.lowest + glm::ivec3(0, j, k));
+            auto filling = std::uint8_t(LumenLabel::air);
+            for (int i = 0; i < box.size.x; ++i) {
+                const glm::ivec3 v(i, j, k);
+                if (before[i] != 0) filling = before[i];
+                if (!ball.test(v)) {
+                    cut.voxelsRemoved += before[i] != 0;
+                    continue;
+                }
+                cut.voxelsAdded += before[i] == 0;
+                after[i] = before[i] != 0           ? before[i]
+                           : joined.bridges.test(v) ? std::uint8_t(LumenLabel::bridge)
+                                                    : filling;
+            }
+        }
+    }
+    progress(1.0);
+    return cut;
+}
+
+}  // namespace haustra::topology

@@ -1,0 +1,263 @@
+#include "topology/lumen_pieces.h"
+
+#include "core/parallel.h"
+#include "topology/centerline_graph.h"
+#include "topology/centerline_order.h"
+#include "topology/centerline_search.h"
+#include "topology/distance_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace haustra::topology {
+namespace {
+
+constexpr std::size_t mostPieces = 12;  // that orderSegments takes
+constexpr double notedIslandMm3 = 50.0;
+
+using Path = std::vector<glm::ivec3>;
+
+std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
+    std::array<char, 200> text;
+    std::snprintf(text.data(), text.size(), pattern, a, b, c, d);
+    return text.data();
+}
+
+void setRun(BitMask& mask, const MaskRun& run) {
+    for (int i = run.begin; i < run.end; ++i)
+        mask.set({i, run.j, run.k});
+}
+
+/// The large pieces of a mask, each a mask of its own, the largest first.
+std::vector<BitMask> largePieces(const BitMask& mask, const Grid& grid, double smallestMl,
+                                 std::vector<std::string>& notes) {
+    const MaskComponents all = objectComponents(mask);
+    std::vector<std::int32_t> bySize(all.voxels.size());
+    std::iota(bySize.begin(), bySize.end(), 0);
+    const auto voxels = [&](std::int32_t c) { return all.voxels[std::size_t(c)]; };
+    std::stable_sort(bySize.begin(), bySize.end(),
+                     [&](std::int32_t a, std::int32_t b) { return voxels(a) > voxels(b); });
+    const double voxelMl = grid.voxelVolumeMm3() / 1000.0;
+    std::vector<std::int32_t> pieceOf(all.voxels.size(), -1);
+    std::size_t kept = 0;
+    double leftOutMl = 0.0;
+    for (const std::int32_t c : bySize) {
+        const double volumeMl = double(voxels(c)) * voxelMl;
+        if (kept == 0 || (volumeMl >= smallestMl && kept < mostPieces))
+            pieceOf[std::size_t(c)] = std::int32_t(kept++);
+        else
+            leftOutMl += volumeMl;
+    }
+    if (kept < bySize.size()) {
+        notes.push_back(format("%.0f small pieces of the lumen left out, %.2f ml in all",
+                               double(bySize.size() - kept), leftOutMl));
+    }
+    std::vector<BitMask> pieces(kept, BitMask(mask.size()));
+    for (const MaskRun& run : all.runs) {
+        if (const std::int32_t piece = pieceOf[std::size_t(run.component)]; piece >= 0)
+            setRun(pieces[std::size_t(piece)], run);
+    }
+    return pieces;
+}
+
+/// Fills the cavities of a mask; islands of some size go to `notes`. Returns how many.
+long fillCavities(BitMask& mask, const Grid& grid, std::vector<std::string>& notes) {
+    const MaskComponents cavities = cavitiesOf(mask);
+    std::vector<glm::dvec3> middle(cavities.voxels.size(), glm::dvec3(0.0));
+    for (const MaskRun& run : cavities.runs) {
+        setRun(mask, run);
+        middle[std::size_t(run.component)] +=
+            double(run.end - run.begin) *
+            glm::dvec3(0.5 * double(run.begin + run.end - 1), run.j, run.k);
+    }
+    for (std::size_t n = 0; n < cavities.voxels.size(); ++n) {
+        const double volumeMm3 = double(cavities.voxels[n]) * grid.voxelVolumeMm3();
+        if (volumeMm3 < notedIslandMm3) continue;
+        const glm::dvec3 at = grid.patientFromVoxelPoint(middle[n] / double(cavities.voxels[n]));
+        notes.push_back(
+            format("an island of %.0f mm3 in the lumen filled, at (%.0f, %.0f, %.0f) mm", volumeMm3,
+                   at.x, at.y, at.z));
+    }
+    return long(cavities.voxels.size());
+}
+
+Volume<std::uint8_t> labelsOf(const BitMask& mask, const Grid& grid, int threads) {
+    Volume<std::uint8_t> labels(grid);
+    parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (int k = int(begin); k < int(end); ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                std::uint8_t* row = labels.writable().data() + grid.index(0, j, k);
+                const std::uint64_t* bits = mask.row(j, k);
+                for (int i = 0; i < grid.size.x; ++i)
+                    row[i] = bits[std::size_t(i + 1) / 64] >> ((i + 1) % 64) & 1u;
+            }
+        }
+    });
+    return labels;
+}
+
+/// Appends a 6-connected way from the path's last voxel to `target` within the two voxels' blocks
+/// and the mask; where there is none, `target` alone.
+void connect(Path& path, glm::ivec3 target, const BitMask& mask) {
+    constexpr int reach = 4;
+    const glm::ivec3 source = path.back();
+    const glm::ivec3 lo = glm::min(source / 2, target / 2) * 2;
+    const glm::ivec3 hi = glm::max(source / 2, target / 2) * 2 + 1;
+    const auto place = [&](glm::ivec3 v) {
+        const glm::ivec3 d = v - lo;
+        return std::size_t(d.x + reach * (d.y + reach * d.z));
+    };
+    std::array<std::int8_t, std::size_t(reach * reach * reach)> cameBy;
+    cameBy.fill(-1);
+    // From the target back, so that the way can be read off in order.
+    std::vector<glm::ivec3> front{target};
+    const auto step = [](int n) {
+        glm::ivec3 s(0);
+        s[n / 2] = n % 2 == 0 ? 1 : -1;
+        return s;
+    };
+    cameBy[place(target)] = 6;
+    for (std::size_t head = 0; head < front.size() && cameBy[place(source)] < 0; ++head) {
+        for (int n = 0; n < 6; ++n) {
+            const glm::ivec3 next = front[head] - step(n);
+            if (glm::any(glm::lessThan(next, lo)) || glm::any(glm::greaterThan(next, hi)) ||
+                cameBy[place(next)] >= 0 || !mask.test(next))
+                continue;
+            cameBy[place(next)] = std::int8_t(n);
+            front.push_back(next);
+        }
+    }
+    if (cameBy[place(source)] < 0)
+        path.push_back(target);
+    else
+        for (glm::ivec3 at = source; at != target;)
+            path.push_back(at += step(cameBy[place(at)]));
+}
+
+/// The widest tree's path between its two farthest nodes, as voxels.
+Path skeletonOf(const BitMask& piece, const Volume<std::uint8_t>& labels,
+                const Volume<float>& distanceMm, int threads) {
+    const BlockGraph graph = makeBlockGraph(labels, distanceMm, threads);
+    PathTree tree = growWidestTree(graph, graph.components.front().deepest);
+    tree = rerooted(std::move(tree), longestPathEnd(tree));
+    Path path;
+    for (const std::int32_t node : pathTo(tree, longestPathEnd(tree))) {
+        if (path.empty())
+            path.push_back(graph.voxelOf(node));
+        else
+            connect(path, graph.voxelOf(node), piece);
+    }
+    return path;
+}
+
+/// Sets the voxels within `radiusMm` of the straight line between two voxels, and appends to `path`
+/// a 6-connected way along it.
+void layBridge(BitMask& bridge, Path& path, glm::ivec3 from, glm::ivec3 to, const Grid& grid,
+               double radiusMm) {
+    const glm::dvec3 spacing = grid.spacingMm();
+    const glm::dvec3 a(from), d(to - from);
+    const glm::ivec3 reach = glm::ivec3(radiusMm / spacing) + 1;
+    const glm::ivec3 lo = glm::max(glm::min(from, to) - reach, glm::ivec3(0));
+    const glm::ivec3 hi = glm::min(glm::max(from, to) + reach, grid.size - 1);
+    const double squaredMm = std::max(1e-9, glm::dot(spacing * d, spacing * d));
+    for (int k = lo.z; k <= hi.z; ++k) {
+        for (int j = lo.y; j <= hi.y; ++j) {
+            for (int i = lo.x; i <= hi.x; ++i) {
+                const glm::dvec3 p = spacing * (glm::dvec3(i, j, k) - a);
+                const double t = std::clamp(glm::dot(p, spacing * d) / squaredMm, 0.0, 1.0);
+                if (glm::distance(p, t * spacing * d) <= radiusMm) bridge.set({i, j, k});
+            }
+        }
+    }
+    // One axis at a time: the one that lags most behind the line.
+    for (glm::ivec3 at = from; at != to;) {
+        int axis = 0;
+        double most = -1.0;
+        for (int n = 0; n < 3; ++n) {
+            const double left = std::abs(double(to[n] - at[n])) / std::max(1.0, std::abs(d[n]));
+            if (at[n] != to[n] && left > most) most = left, axis = n;
+        }
+        at[axis] += to[axis] > at[axis] ? 1 : -1;
+        path.push_back(at);
+        bridge.set(at);
+    }
+}
+
+double lengthMm(const Path& path, glm::dvec3 spacing) {
+    double sum = 0.0;
+    for (std::size_t n = 1; n < path.size(); ++n)
+        sum += glm::length(spacing * glm::dvec3(path[n] - path[n - 1]));
+    return sum;
+}
+
+/// The pieces' paths in the order of travel, each in its direction; those left out go to `notes`.
+std::vector<std::size_t> orderPaths(std::vector<Path>& paths, const Grid& grid,
+                                    std::vector<std::string>& notes) {
+    std::vector<SegmentEnds> ends;
+    glm::dvec3 lo(1e30), hi(-1e30);
+    for (const Path& path : paths) {
+        for (const glm::ivec3 v : path) {
+            lo = glm::min(lo, grid.patientFromVoxelPoint(v));
+            hi = glm::max(hi, grid.patientFromVoxelPoint(v));
+        }
+        ends.push_back({grid.patientFromVoxelPoint(path.front()),
+                        grid.patientFromVoxelPoint(path.back()), lengthMm(path, grid.spacingMm())});
+    }
+    std::vector<std::size_t> order;
+    for (const SegmentVisit visit : orderSegments(ends, 0.5 * (lo + hi))) {
+        order.push_back(visit.segment);
+        if (visit.reversed) std::reverse(paths[visit.segment].begin(), paths[visit.segment].end());
+    }
+    for (std::size_t n = 0; n < paths.size(); ++n) {
+        if (std::find(order.begin(), order.end(), n) != order.end()) continue;
+        const glm::dvec3 at = 0.5 * (ends[n].firstMm + ends[n].lastMm);
+        notes.push_back(
+            format("a piece of %.0f mm at (%.0f, %.0f, %.0f) mm lies too far off the way: left out",
+                   ends[n].lengthMm, at.x, at.y, at.z));
+    }
+    return order;
+}
+
+}  // namespace
+
+JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOptions& options) {
+    JoinedLumen joined{BitMask(mask.size()), BitMask(mask.size()), {}, {}, 0, {}};
+    std::vector<BitMask> pieces = largePieces(mask, grid, options.smallestPieceMl, joined.notes);
+    if (pieces.size() == 1) {
+        joined.domain = std::move(pieces.front());
+        joined.cavitiesFilled = fillCavities(joined.domain, grid, joined.notes);
+        const Volume<std::uint8_t> labels = labelsOf(joined.domain, grid, options.threads);
+        joined.distanceMm = distanceToBoundaryMm(labels, options.threads);
+        joined.path = skeletonOf(joined.domain, labels, joined.distanceMm, options.threads);
+        return joined;
+    }
+    std::vector<Path> paths;
+    for (const BitMask& piece : pieces) {
+        const Volume<std::uint8_t> labels = labelsOf(piece, grid, options.threads);
+        paths.push_back(skeletonOf(piece, labels, distanceToBoundaryMm(labels, options.threads),
+                                   options.threads));
+    }
+    for (const std::size_t n : orderPaths(paths, grid, joined.notes)) {
+        joined.domain.add(pieces[n]);
+        if (!joined.path.empty()) {
+            const glm::ivec3 from = joined.path.back(), to = paths[n].front();
+            layBridge(joined.bridges, joined.path, from, to, grid, options.bridgeRadiusMm);
+            const glm::dvec3 at = grid.patientFromVoxelPoint(0.5 * glm::dvec3(from + to));
+            joined.notes.push_back(
+                format("a bridge of %.0f mm joins two pieces at (%.0f, %.0f, %.0f) mm",
+                       glm::length(grid.spacingMm() * glm::dvec3(to - from)), at.x, at.y, at.z));
+        }
+        joined.path.insert(joined.path.end(), paths[n].begin(), paths[n].end());
+    }
+    joined.bridges.remove(joined.domain);
+    joined.domain.add(joined.bridges);
+    joined.cavitiesFilled = fillCavities(joined.domain, grid, joined.notes);
+    joined.distanceMm =
+        distanceToBoundaryMm(labelsOf(joined.domain, grid, options.threads), options.threads);
+    return joined;
+}
+
+}  // namespace haustra::topology

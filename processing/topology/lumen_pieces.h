@@ -1,0 +1,38 @@
+// The pieces of a lumen that a collapsed or fluid-blocked colon falls into, and bridges between.
+#pragma once
+
+#include "core/volume.h"
+#include "topology/digital_topology.h"
+
+#include <string>
+#include <vector>
+
+namespace haustra::topology {
+
+/// A lumen in one 6-connected piece without cavities, and a path through it.
+struct JoinedLumen {
+    BitMask domain;
+    BitMask bridges;           ///< of the domain, what joins the pieces
+    Volume<float> distanceMm;  ///< distanceToBoundaryMm of the domain
+    std::vector<glm::ivec3> path;
+    long cavitiesFilled = 0;
+    std::vector<std::string> notes;
+};
+
+struct LumenJoinOptions {
+    double smallestPieceMl = 2.0;  ///< smaller pieces are left out, but for the largest
+    double bridgeRadiusMm = 1.5;
+    int threads = 0;
+};
+
+/// Joins the 6-connected pieces of a mask worth a visit, in the order in which the colon passes
+/// them (orderSegments), by straight tubes from tip to tip; what lies too far off the way and
+/// small pieces are left out. Islands of background in the pieces are filled. The path is the
+/// widest tree's between its two farthest nodes, piece by piece: the skeleton from which
+/// dissertation §3.3.2.2 grows the lumen; 6-connected where the lumen lets it be.
+///
+/// `mask` has at least one voxel and is on `grid`. The same for any number of threads.
+/// O(n log n) in the voxels of the mask, and linear in the grid's.
+JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOptions& options = {});
+
+}  // namespace haustra::topology

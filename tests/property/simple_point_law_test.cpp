@@ -1,0 +1,161 @@
+// Topological numbers against components counted by the definition's letter, voxel by voxel.
+#include "topology/digital_topology.h"
+#include "topology/simple_point.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace haustra::topology {
+namespace {
+
+struct Offset {
+    int x, y, z;
+};
+Offset offsetOf(int n) {
+    return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+}
+/// a is an n-neighbour of b (n = 6, 18 or 26), or b itself.
+bool adjacent(Offset a, Offset b, int n) {
+    const int dx = std::abs(a.x - b.x), dy = std::abs(a.y - b.y), dz = std::abs(a.z - b.z);
+    const int most = n == 6 ? 1 : n == 18 ? 2 : 3;
+    return std::max({dx, dy, dz}) <= 1 && dx + dy + dz <= most;
+}
+
+/// #Cₙ[Nₙᵏ(x, X)] for the set X that `inSet` marks, straight from Bertrand's definitions.
+int topologicalNumberByDefinition(const std::array<bool, 27>& inSet, int n, int k) {
+    std::vector<int> geodesic;
+    for (int v = 0; v < 27; ++v) {
+        if (v != 13 && inSet[std::size_t(v)] && adjacent(offsetOf(v), {0, 0, 0}, n))
+            geodesic.push_back(v);
+    }
+    for (int order = 2; order <= k; ++order) {
+        std::vector<int> wider;
+        for (int v = 0; v < 27; ++v) {
+            if (v == 13 || !inSet[std::size_t(v)]) continue;
+            if (std::any_of(geodesic.begin(), geodesic.end(),
+                            [&](int y) { return adjacent(offsetOf(v), offsetOf(y), n); }))
+                wider.push_back(v);
+        }
+        geodesic = wider;
+    }
+    int components = 0;
+    std::array<bool, 27> seen{};
+    for (int start : geodesic) {
+        if (seen[std::size_t(start)]) continue;
+        ++components;
+        std::vector<int> stack{start};
+        seen[std::size_t(start)] = true;
+        while (!stack.empty()) {
+            const int v = stack.back();
+            stack.pop_back();
+            for (int w : geodesic) {
+                if (seen[std::size_t(w)] || !adjacent(offsetOf(v), offsetOf(w), n)) continue;
+                seen[std::size_t(w)] = true;
+                stack.push_back(w);
+            }
+        }
+    }
+    return components;
+}
+
+void expectAgrees(Neighbourhood object) {
+    std::array<bool, 27> inside, outside;
+    for (int v = 0; v < 27; ++v) {
+        inside[std::size_t(v)] = object >> v & 1u;
+        outside[std::size_t(v)] = !inside[std::size_t(v)];
+    }
+    const int t6 = topologicalNumberByDefinition(inside, 6, 3);
+    const int t18 = topologicalNumberByDefinition(outside, 18, 2);
+    ASSERT_EQ(topologicalNumber6(object), t6) << std::hex << object;
+    ASSERT_EQ(topologicalNumber18(object), t18) << std::hex << object;
+    ASSERT_EQ(isSimple(object), t6 == 1 && t18 == 1) << std::hex << object;
+}
+
+/// The bits of `number` put where `mask` has ones.
+Neighbourhood deposited(unsigned number, Neighbourhood mask) {
+    Neighbourhood result = 0;
+    for (; mask; mask &= mask - 1, number >>= 1) {
+        if (number & 1u) result |= mask & (~mask + 1u);
+    }
+    return result;
+}
+
+TEST(SimplePoint, AgreesWithTheDefinitionOnAMillionRandomNeighbourhoods) {
+    std::mt19937 random(7);
+    constexpr int densities = 20, each = 50'000;
+    for (int density = 0; density <= densities; ++density) {
+        for (int n = 0; n < each; ++n) {
+            Neighbourhood object = 0;
+            for (int v = 0; v < 27; ++v) {
+                if (int(random() % densities) < density) object |= 1u << v;
+            }
+            expectAgrees(object);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(SimplePoint, AgreesWithTheDefinitionOnAllSubsetsOfTheEighteen) {
+    // All 2¹⁸ sets of faces and edges, with no corner, with all and with four.
+    Neighbourhood eighteen = 0, corners = 0;
+    for (int v = 0; v < 27; ++v) {
+        const Offset o = offsetOf(v);
+        const int sum = std::abs(o.x) + std::abs(o.y) + std::abs(o.z);
+        if (sum == 1 || sum == 2) eighteen |= 1u << v;
+        if (sum == 3) corners |= 1u << v;
+    }
+    for (Neighbourhood more : {Neighbourhood(0), corners, corners & 0x1c0001c0u}) {
+        for (unsigned number = 0; number < 1u << 18; ++number) {
+            expectAgrees(deposited(number, eighteen) | more);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(SimplePoint, TheVoxelItselfDoesNotCount) {
+    std::mt19937 random(9);
+    for (int n = 0; n < 10'000; ++n) {
+        const Neighbourhood object = random() & random() & ((1u << 27) - 1u);
+        EXPECT_EQ(isSimple(object | 1u << 13), isSimple(object & ~(1u << 13)));
+    }
+}
+
+TEST(SimplePoint, AddingOneChangesNoTopologyAndAddingAnyOtherDoes) {
+    // Random sets in a small grid: components, cavities and Euler characteristic, counted over the
+    // whole grid, change exactly where the voxel is not simple.
+    std::mt19937 random(11);
+    long simple = 0, other = 0;
+    for (int trial = 0; trial < 20'000; ++trial) {
+        BitMask mask(glm::ivec3(5));
+        const unsigned percent = 5 + random() % 90;
+        for (int n = 0; n < 125; ++n) {
+            if (random() % 100 < percent) mask.set({n % 5, n / 5 % 5, n / 25});
+        }
+        const glm::ivec3 v(random() % 5, random() % 5, random() % 5);
+        mask.reset(v);
+        const DigitalTopology before = digitalTopology(mask, 1);
+        const bool isSimplePoint = isSimple(mask.around(v));
+        const int t6 = topologicalNumber6(mask.around(v));
+        const int t18 = topologicalNumber18(mask.around(v));
+        mask.set(v);
+        const DigitalTopology after = digitalTopology(mask, 1);
+        if (isSimplePoint) {
+            ASSERT_EQ(before, after);
+        }
+        // χ changes by 1 less that of what the voxel is attached to: a part of a sphere with T₆
+        // components that leaves T₁₈ of it.
+        const long attached = t6 == 0 ? 0 : t18 == 0 ? 2 : 1 + t6 - t18;
+        ASSERT_EQ(after.eulerCharacteristic - before.eulerCharacteristic, 1 - attached);
+        (isSimplePoint ? simple : other) += 1;
+    }
+    EXPECT_GT(simple, 1000);
+    EXPECT_GT(other, 1000);
+}
+
+}  // namespace
+}  // namespace haustra::topology
