@@ -8,14 +8,19 @@
 
 namespace haustra::surface {
 
-/// Reads PLY, OBJ, OFF or STL (by the name's ending, any case; OpenMesh). Polygons are
-/// triangulated; STL's corners at one place become one vertex. Fails, naming the file, where it
-/// cannot be read, holds no triangle, an index out of range or a coordinate that is not finite.
-/// Thread-safe.
+/// Reads PLY (text or binary), OBJ, OFF (text) or STL (text or binary), by the name's ending in any
+/// case. Polygons are triangulated (see polygon_soup.h); STL's corners at one place become one
+/// vertex; vertices that no triangle uses stay. Nothing is repaired: a mesh that is not manifold
+/// comes as it is. Fails, naming the file, where it cannot be read or ends early, holds no
+/// triangle, an index out of range or a coordinate that is not finite. Thread-safe.
+///
+/// The formats are read here because OpenMesh drops the faces that its half-edges cannot hold and
+/// rounds to float, and CGAL's readers take as much memory as a hostile header claims.
 Result<TriMesh> readMesh(const std::filesystem::path& file);
 
-/// Writes PLY (binary, double), OBJ, OFF or STL (binary) by the name's ending, coordinates in LPS
-/// mm, under a temporary name beside `file` that is renamed. The same mesh gives the same bytes.
+/// Writes PLY (binary, double), OBJ or OFF (text that reads back exactly) or STL (binary, float by
+/// its definition) by the name's ending, coordinates in LPS mm, under a temporary name beside
+/// `file` that is renamed. The same mesh gives the same bytes. Fails (io) naming the file.
 Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh);
 
 }  // namespace haustra::surface

@@ -1,0 +1,176 @@
+#include "surface/mesh_file.h"
+
+#include "surface/polygon_soup.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <optional>
+
+#include <unistd.h>
+
+namespace haustra::surface {
+namespace {
+
+enum class Format { ply, obj, off, stl };
+
+std::optional<Format> formatOf(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    if (ending == ".ply") return Format::ply;
+    if (ending == ".obj") return Format::obj;
+    if (ending == ".off") return Format::off;
+    if (ending == ".stl") return Format::stl;
+    return {};
+}
+
+tl::unexpected<Error> unknownFormat(const std::filesystem::path& file) {
+    return fail(ErrorKind::unsupported, "a mesh file's name must end in .ply, .obj, .off or .stl",
+                file.string());
+}
+
+Result<std::string> readBytes(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(file, error);  // fails for folders and devices
+    std::ifstream stream(file, std::ios::binary);
+    if (error || !stream) {
+        const bool missing = !std::filesystem::exists(file, error);
+        return fail(missing ? ErrorKind::notFound : ErrorKind::io, "cannot read the mesh",
+                    file.string());
+    }
+    std::string bytes(size, '\0');
+    if (!stream.read(bytes.data(), std::streamsize(size)))
+        return fail(ErrorKind::io, "cannot read the mesh", file.string());
+    return bytes;
+}
+
+Result<TriMesh> meshOf(const std::string& bytes, Format format, const std::string& place) {
+    const auto read = format == Format::ply   ? readPly
+                      : format == Format::obj ? readObj
+                      : format == Format::off ? readOff
+                                              : readStl;
+    auto soup = read(bytes, place);
+    if (!soup) return tl::make_unexpected(soup.error());
+    if (format == Format::stl) weldPoints(*soup);
+    return triangulated(*soup, place);
+}
+
+// --------------------------------------------------------------------------------------- writing
+
+template <class Number>
+void appendRaw(std::string& bytes, const Number& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// The shortest text that reads back as the same number.
+template <class Number>
+void appendText(std::string& bytes, Number value, char after) {
+    char text[32];
+    bytes.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+    bytes.push_back(after);
+}
+
+template <class Vector>
+void appendText(std::string& bytes, const Vector& v) {
+    appendText(bytes, v.x, ' ');
+    appendText(bytes, v.y, ' ');
+    appendText(bytes, v.z, '\n');
+}
+
+std::string plyBytes(const TriMesh& mesh) {
+    std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment LPS mm\nelement vertex " +
+                        std::to_string(mesh.vertices.size()) +
+                        "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                        std::to_string(mesh.triangles.size()) +
+                        "\nproperty list uchar int vertex_indices\nend_header\n";
+    bytes.reserve(bytes.size() + 24 * mesh.vertices.size() + 13 * mesh.triangles.size());
+    for (const glm::dvec3& v : mesh.vertices)
+        appendRaw(bytes, v);
+    for (const glm::ivec3& t : mesh.triangles) {
+        bytes.push_back(3);
+        appendRaw(bytes, t);
+    }
+    return bytes;
+}
+
+std::string objBytes(const TriMesh& mesh) {
+    std::string bytes = "# LPS mm\n";
+    for (const glm::dvec3& v : mesh.vertices) {
+        bytes += "v ";
+        appendText(bytes, v);
+    }
+    for (const glm::ivec3& t : mesh.triangles) {
+        bytes += "f ";
+        appendText(bytes, t + 1);
+    }
+    return bytes;
+}
+
+std::string offBytes(const TriMesh& mesh) {
+    std::string bytes = "OFF\n# LPS mm\n" + std::to_string(mesh.vertices.size()) + ' ' +
+                        std::to_string(mesh.triangles.size()) + " 0\n";
+    for (const glm::dvec3& v : mesh.vertices)
+        appendText(bytes, v);
+    for (const glm::ivec3& t : mesh.triangles) {
+        bytes += "3 ";
+        appendText(bytes, t);
+    }
+    return bytes;
+}
+
+std::string stlBytes(const TriMesh& mesh) {
+    std::string bytes(80, '\0');
+    std::strcpy(bytes.data(), "binary STL, LPS mm");
+    appendRaw(bytes, std::uint32_t(mesh.triangles.size()));
+    for (const glm::ivec3& t : mesh.triangles) {
+        const glm::dvec3 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
+        const glm::dvec3 normal = glm::cross(b - a, c - a);
+        const double length = glm::length(normal);
+        appendRaw(bytes, glm::vec3(length > 0.0 ? normal / length : glm::dvec3(0.0)));
+        for (const glm::dvec3& corner : {a, b, c})
+            appendRaw(bytes, glm::vec3(corner));
+        appendRaw(bytes, std::uint16_t(0));
+    }
+    return bytes;
+}
+
+}  // namespace
+
+Result<TriMesh> readMesh(const std::filesystem::path& file) try {
+    const auto format = formatOf(file);
+    if (!format) return unknownFormat(file);
+    const auto bytes = readBytes(file);
+    if (!bytes) return tl::make_unexpected(bytes.error());
+    return meshOf(*bytes, *format, file.string());
+} catch (const std::bad_alloc&) {
+    return fail(ErrorKind::io, "the mesh does not fit into memory", file.string());
+}
+
+Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh) {
+    const auto format = formatOf(file);
+    if (!format) return unknownFormat(file);
+    const std::string bytes = *format == Format::ply   ? plyBytes(mesh)
+                              : *format == Format::obj ? objBytes(mesh)
+                              : *format == Format::off ? offBytes(mesh)
+                                                       : stlBytes(mesh);
+    std::filesystem::path temporary = file;
+    temporary += ".tmp-" + std::to_string(::getpid());
+    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+    stream.write(bytes.data(), std::streamsize(bytes.size()));
+    stream.close();
+    std::error_code error;
+    if (stream) std::filesystem::rename(temporary, file, error);
+    if (!stream || error) {
+        std::error_code ignored;
+        std::filesystem::remove(temporary, ignored);
+        return fail(ErrorKind::io, "cannot write the mesh", file.string());
+    }
+    return {};
+}
+
+}  // namespace haustra::surface
