@@ -68,7 +68,7 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
         cleansed.lumen = segmentation.clone();
         return cleansed;
     }
-    const LocalMeans means = measureLocalMeans(scan, tissue, segmentation, threads);
+    const LocalMeans means = measureLocalMeans(scan, tissue, segmentation, around, threads);
     const auto shares = residueShares(around, mixture);
     std::vector<CleansedVoxel> changed;
     for (std::size_t shell = 0; shell < shares.size(); ++shell) {

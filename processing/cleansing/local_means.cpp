@@ -1,5 +1,7 @@
 #include "cleansing/local_means.h"
 
+#include "cleansing/ball.h"
+#include "cleansing/local_tagging.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -9,7 +11,6 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr double cellMm = 3.0;
-constexpr double blurReachMm = 1.6;
 
 // Sums over one cell.
 struct CellSums {
@@ -62,38 +63,6 @@ void fill(SmoothField& field, const CellSums& sums, double prior, double priorVo
     }
 }
 
-std::vector<glm::ivec3> ballOffsets(const Grid& grid, double radiusMm) {
-    const glm::dvec3 spacing = grid.spacingMm();
-    const glm::ivec3 reach = glm::max(glm::ivec3(glm::floor(radiusMm / spacing)), glm::ivec3(1));
-    std::vector<glm::ivec3> offsets;
-    for (int k = -reach.z; k <= reach.z; ++k) {
-        for (int j = -reach.y; j <= reach.y; ++j) {
-            for (int i = -reach.x; i <= reach.x; ++i) {
-                const glm::ivec3 d(i, j, k);
-                const bool face = std::abs(i) + std::abs(j) + std::abs(k) == 1;
-                if (face ||
-                    (d != glm::ivec3(0) && glm::length(glm::dvec3(d) * spacing) <= radiusMm))
-                    offsets.push_back(d);
-            }
-        }
-    }
-    // The farthest first: they are the likeliest to fail.
-    std::stable_sort(offsets.begin(), offsets.end(), [](glm::ivec3 a, glm::ivec3 b) {
-        return glm::dot(glm::vec3(a), glm::vec3(a)) > glm::dot(glm::vec3(b), glm::vec3(b));
-    });
-    return offsets;
-}
-
-template <class Predicate>
-bool everywhere(const Grid& grid, const std::vector<glm::ivec3>& offsets, glm::ivec3 v,
-                const Predicate& holds) {
-    for (const glm::ivec3 d : offsets) {
-        const glm::ivec3 n = v + d;
-        if (grid.contains(n) && !holds(grid.index(n))) return false;
-    }
-    return true;
-}
-
 }  // namespace
 
 SmoothField::SmoothField(const Grid& grid, glm::ivec3 voxelsPerCell)
@@ -121,14 +90,15 @@ float SmoothField::at(int i, int j, int k) const {
 }
 
 LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
-                             const Volume<std::uint8_t>& segmentation, int threads) {
+                             const Volume<std::uint8_t>& segmentation,
+                             const TaggedSurroundings& around, int threads) {
     const Grid& grid = scan.hu.grid();
     const glm::ivec3 perCell =
         glm::max(glm::ivec3(glm::round(cellMm / grid.spacingMm())), glm::ivec3(1));
     LocalMeans means;
-    means.taggedHu = SmoothField(grid, perCell);
+    SmoothField taggedHu(grid, perCell);
     means.softHu = SmoothField(grid, perCell);
-    const glm::ivec3 cells = means.taggedHu.cells();
+    const glm::ivec3 cells = taggedHu.cells();
     const auto hu = scan.hu.voxels();
     const auto label = segmentation.voxels();
     const std::vector<glm::ivec3> ball = ballOffsets(grid, blurReachMm);
@@ -136,7 +106,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     const auto isAir = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::air; };
 
     // One slab of cells is one thread's, so sums do not depend on the threads.
-    CellSums tagged(means.taggedHu.values().size()), soft(means.softHu.values().size());
+    CellSums tagged(taggedHu.values().size()), soft(means.softHu.values().size());
     std::vector<double> airSum(std::size_t(cells.z), 0.0), airSquare(airSum), airCount(airSum);
     std::vector<char> holdsTagged(tagged.weight.size(), 0);
     parallelFor(std::size_t(cells.z), 1, threads, [&](std::size_t begin, std::size_t end) {
@@ -146,7 +116,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                 for (int i = 0; i < grid.size.x; ++i) {
                     const std::size_t n = row + std::size_t(i);
                     if (isTagged(n)) {
-                        const std::size_t cell = means.taggedHu.cellOf(i, j, k);
+                        const std::size_t cell = taggedHu.cellOf(i, j, k);
                         holdsTagged[cell] = 1;
                         if (hu[n] <= tissue.meanHu[int(Tissue::soft)]) continue;
                         // Where the pool is too thin to have an inside, its crest is the best.
@@ -220,9 +190,10 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
             }
         }
     });
-    fill(means.taggedHu, tagged,
+    fill(taggedHu, tagged,
          std::max(tissue.meanHu[int(Tissue::taggedOrBone)], tissue.taggedAboveHu + 20.0), 0.05);
     fill(means.softHu, soft, softHu, 8.0);
+    means.taggedHu = refineTagging(scan, segmentation, around, taggedHu, means, threads);
     return means;
 }
 

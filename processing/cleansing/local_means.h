@@ -1,6 +1,7 @@
 // How dense the tagging, and how dense the soft tissue, is at each place of the colon.
 #pragma once
 
+#include "cleansing/tagged_surroundings.h"
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 
@@ -34,17 +35,20 @@ private:
 
 /// What pure contents and pure wall measure near the tagged colon.
 struct LocalMeans {
-    SmoothField taggedHu;  ///< tagging is uneven: from pool to pool, by depth, in blotches
+    /// Tagging is uneven: from pool to pool, by depth, in blotches, stool in fluid. HU that each
+    /// voxel would have were it all tagged; set in the surroundings only, 0 elsewhere.
+    Volume<std::int16_t> taggedHu;
     SmoothField softHu;    ///< the wall, its folds and growths
     double airHu = 0.0;    ///< of the colon's own gas
-    double noiseSd = 0.0;  ///< of one voxel, as pure gas and fluid show it
+    double noiseSd = 0.0;  ///< of one voxel, as pure gas shows it
 };
 
 /// Means over the voxels that lie deeper inside their material than the scanner's blur reaches
 /// (1.6 mm), by normalised convolution: a place that has none nearby takes the mean of a wider
 /// neighbourhood, and in the end the class's own. Tagged material is what `segmentation` says it
-/// is. O(labelled voxels); the same for any number of threads.
+/// is; `around` is its surroundings. O(labelled voxels); the same for any number of threads.
 LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
-                             const Volume<std::uint8_t>& segmentation, int threads);
+                             const Volume<std::uint8_t>& segmentation,
+                             const TaggedSurroundings& around, int threads);
 
 }  // namespace haustra::cleansing

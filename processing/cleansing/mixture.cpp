@@ -34,8 +34,9 @@ public:
         double air = std::clamp((softHu - y) / (softHu - airHu), 0.0, 1.0);
         double tagged = std::clamp((y - softHu) / (taggedHu - softHu), 0.0, 1.0);
         const Neighbours around = look(v, softHu, taggedHu);
-        if (!around.tagged) return rounded(air, 0.0);
+        if (!around.tagged && y > softHu) return rounded(0.0, 0.0);
         if (around.meanShare > 0.9 && around.leastShare > 0.5) return rounded(0.0, 1.0);
+        if (!around.tagged) tagged = 0.0;
         const double bare = interfaces_.bareness(v, taggedHu, softHu);
         if (bare > 0.0) {
             const double share = std::clamp((y - airHu) / (taggedHu - airHu), 0.0, 1.0);
@@ -110,7 +111,7 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     const TaggedSurroundings around = taggedSurroundings(segmentation, options.threads);
     progress(0.3);
     if (around.shells[0].empty()) return mixture;
-    const LocalMeans means = measureLocalMeans(scan, tissue, segmentation, options.threads);
+    const LocalMeans means = measureLocalMeans(scan, tissue, segmentation, around, options.threads);
     progress(0.5);
     const InterfaceLayer interfaces(scan, segmentation, means, options.threads);
     progress(0.6);

@@ -11,7 +11,7 @@ namespace haustra::cleansing {
 /// Voxels by their distance from the tagged lumen in 26-neighbour steps: shell 0 is the voxels
 /// labelled tagged, shell n those n steps away. Each shell in memory order.
 struct TaggedSurroundings {
-    static constexpr int reach = 2;
+    static constexpr int reach = 3;
     std::vector<std::vector<std::uint32_t>> shells;
 };
 

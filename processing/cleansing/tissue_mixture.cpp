@@ -6,6 +6,7 @@
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace haustra::cleansing {
@@ -37,15 +38,7 @@ double countIn(const Histogram& histogram, int fromHu, int toHu) {
                            histogram.begin() + (toHu - lowestHu), 0.0);
 }
 
-// Where each class can lie; the mode within is the start of its mean. The bounds overlap what any
-// calibrated scanner gives; they keep EM from swapping classes.
-struct Range {
-    int fromHu, toHu;
-};
-constexpr std::array<Range, tissueCount> meanRange = {
-    {{-1024, -850}, {-160, -40}, {-10, 110}, {180, 1600}}};
-
-double startingMean(const Histogram& histogram, Range range) {
+double startingMean(const Histogram& histogram, HuRange range) {
     // The mode of a histogram smoothed over ±20 HU, so that quantised scans have one too.
     double best = -1.0, mode = 0.5 * (range.fromHu + range.toHu);
     for (int hu = range.fromHu; hu < range.toHu; ++hu) {
@@ -63,7 +56,7 @@ double gaussian(double hu, double mean, double sd) {
 
 // Expectation and maximisation on the histogram. A uniform background takes what belongs to no
 // class: partial-volume voxels, lung, metal.
-void fit(const Histogram& histogram, TissueModel& model) {
+void fit(const Histogram& histogram, const TissuePriors& priors, TissueModel& model) {
     constexpr double smallestSd = 6.0;
     constexpr std::array<double, tissueCount> largestSd = {60.0, 60.0, 60.0, 250.0};
     double background = 0.1;
@@ -93,7 +86,8 @@ void fit(const Histogram& histogram, TissueModel& model) {
             if (mass[t] > 1e-9 * total) {
                 const double mean = sum[t] / mass[t];
                 const double variance = square[t] / mass[t] - mean * mean;
-                model.meanHu[t] = std::clamp<double>(mean, meanRange[t].fromHu, meanRange[t].toHu);
+                model.meanHu[t] =
+                    std::clamp<double>(mean, priors.meanHu[t].fromHu, priors.meanHu[t].toHu);
                 model.sdHu[t] =
                     std::clamp(std::sqrt(std::max(variance, 0.0)), smallestSd, largestSd[t]);
             }
@@ -108,35 +102,43 @@ void fit(const Histogram& histogram, TissueModel& model) {
 
 }  // namespace
 
-Result<TissueModel> fitTissueModel(const CtScan& scan, int threads) {
+Result<TissueModel> fitTissueModel(const CtScan& scan, int threads, const TissuePriors& priors) {
     const Histogram histogram = histogramOf(scan, threads);
     const double all = countIn(histogram, lowestHu, highestHu);
-    const double air = countIn(histogram, lowestHu, -850), soft = countIn(histogram, -10, 110);
+    const HuRange airRange = priors.meanHu[int(Tissue::air)],
+                  softRange = priors.meanHu[int(Tissue::soft)];
+    const double air = countIn(histogram, lowestHu, airRange.toHu),
+                 soft = countIn(histogram, softRange.fromHu, softRange.toHu);
     // Padding (−1024 and less) is not counted; a scan padded with exactly −1024 still shows bowel
     // gas.
     if (air < 1e-4 * std::max(all, 1.0)) {
-        return fail(ErrorKind::noResult, "the scan holds no air (nothing below -850 HU)",
-                    "tissue model");
+        return fail(
+            ErrorKind::noResult,
+            "the scan holds no air (nothing below " + std::to_string(airRange.toHu) + " HU)",
+            "tissue model");
     }
     if (soft < 1e-3 * std::max(all, 1.0)) {
         return fail(ErrorKind::noResult,
-                    "the scan holds no soft tissue (nothing from -10 to 110 HU)", "tissue model");
+                    "the scan holds no soft tissue (nothing from " +
+                        std::to_string(softRange.fromHu) + " to " + std::to_string(softRange.toHu) +
+                        " HU)",
+                    "tissue model");
     }
     TissueModel model;
     for (int t = 0; t < tissueCount; ++t) {
-        model.meanHu[t] = startingMean(histogram, meanRange[t]);
+        model.meanHu[t] = startingMean(histogram, priors.meanHu[t]);
         model.sdHu[t] = 30.0;
         model.weight[t] = 0.9 / tissueCount;
     }
     // Bone and tagging are broad and have no mode worth the name: their mean over the range.
-    const Range dense = meanRange[int(Tissue::taggedOrBone)];
+    const HuRange dense = priors.meanHu[int(Tissue::taggedOrBone)];
     double mass = 0.0, sum = 0.0;
     for (int hu = dense.fromHu; hu < dense.toHu; ++hu) {
         mass += histogram[hu - lowestHu], sum += histogram[hu - lowestHu] * hu;
     }
     if (mass > 0.0) model.meanHu[int(Tissue::taggedOrBone)] = sum / mass;
     model.sdHu[int(Tissue::taggedOrBone)] = 150.0;
-    fit(histogram, model);
+    fit(histogram, priors, model);
     const double softMean = model.meanHu[int(Tissue::soft)], softSd = model.sdHu[int(Tissue::soft)];
     model.airBelowHu = 0.5 * (model.meanHu[int(Tissue::air)] + softMean);
     // Midway, but no lower than soft tissue's noise and no higher than weak tagging.

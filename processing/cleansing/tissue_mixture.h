@@ -8,7 +8,8 @@
 namespace haustra::cleansing {
 
 /// Fits a Gaussian mixture to the scan's histogram by EM (dissertation §3.2; first form, on whole
-/// voxels). Fails where the scan holds no air or no soft tissue.
-Result<TissueModel> fitTissueModel(const CtScan& scan, int threads = 0);
+/// voxels), its means within `priors`. Fails where the scan holds no air or no soft tissue.
+Result<TissueModel> fitTissueModel(const CtScan& scan, int threads = 0,
+                                   const TissuePriors& priors = {});
 
 }  // namespace haustra::cleansing

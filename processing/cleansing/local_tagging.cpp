@@ -1,0 +1,121 @@
+#include "cleansing/local_tagging.h"
+
+#include "cleansing/ball.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haustra::cleansing {
+namespace {
+
+constexpr int window = 3;  // voxels
+
+/// Mean of a voxel and its face neighbours that are tagged.
+double crossMean(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& segmentation,
+                 glm::ivec3 v) {
+    double sum = hu.at(v);
+    int count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int side = -1; side <= 1; side += 2) {
+            glm::ivec3 n = v;
+            n[axis] += side;
+            if (!hu.grid().contains(n) || LumenLabel(segmentation.at(n)) != LumenLabel::tagged)
+                continue;
+            sum += hu.at(n), ++count;
+        }
+    }
+    return sum / count;
+}
+
+}  // namespace
+
+Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
+                                   const TaggedSurroundings& around, const SmoothField& coarse,
+                                   const LocalMeans& means, int threads) {
+    const Grid& grid = scan.hu.grid();
+    const auto hu = scan.hu.voxels();
+    const auto label = segmentation.voxels();
+    const std::vector<glm::ivec3> ball = ballOffsets(grid, blurReachMm);
+    const auto& pools = around.shells[0];
+
+    // Even contents: the blur of nothing else reaches in.
+    std::vector<std::uint8_t> even(grid.voxelCount(), 0);
+    parallelFor(pools.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m) {
+            const glm::ivec3 v = grid.voxelAt(pools[m]);
+            const double soft = means.softHu.at(v.x, v.y, v.z);
+            const double mean = crossMean(scan.hu, segmentation, v);
+            const double tolerance =
+                std::max(4.0 * means.noiseSd, 0.12 * (coarse.at(v.x, v.y, v.z) - soft));
+            even[pools[m]] =
+                mean > soft + 2.0 * means.noiseSd && everywhere(grid, ball, v, [&](std::size_t n) {
+                    return LumenLabel(label[n]) == LumenLabel::tagged &&
+                           std::abs(hu[n] - mean) < tolerance;
+                });
+        }
+    });
+
+    Volume<std::int16_t> tagging(grid, std::int16_t(0));
+    const auto out = tagging.writable();
+    parallelFor(pools.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m) {
+            if (!even[pools[m]]) continue;
+            const glm::ivec3 v = grid.voxelAt(pools[m]);
+            const glm::ivec3 reach(2, 2, 1);
+            const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
+                             hi = glm::min(v + reach, grid.size - 1);
+            double sum = 0.0;
+            int count = 0;
+            for (int k = lo.z; k <= hi.z; ++k) {
+                for (int j = lo.y; j <= hi.y; ++j) {
+                    for (int i = lo.x; i <= hi.x; ++i) {
+                        const std::size_t n = grid.index(i, j, k);
+                        if (even[n]) sum += hu[n], ++count;
+                    }
+                }
+            }
+            out[pools[m]] = std::int16_t(std::lround(sum / count));
+        }
+    });
+
+    constexpr double coarseWeight = 0.02;  // of one voxel 4 mm away
+    const glm::dvec3 spacing = grid.spacingMm();
+    for (const auto& shell : around.shells) {
+        parallelFor(shell.size(), 1 << 12, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t m = begin; m < end; ++m) {
+                if (even[shell[m]]) continue;
+                const glm::ivec3 v = grid.voxelAt(shell[m]);
+                const glm::ivec3 lo = glm::max(v - window, glm::ivec3(0)),
+                                 hi = glm::min(v + window, grid.size - 1);
+                double weight = coarseWeight, sum = coarseWeight * coarse.at(v.x, v.y, v.z);
+                double least = std::numeric_limits<double>::max(), most = -least;
+                for (int k = lo.z; k <= hi.z; ++k) {
+                    for (int j = lo.y; j <= hi.y; ++j) {
+                        const std::size_t row = grid.index(0, j, k);
+                        for (int i = lo.x; i <= hi.x; ++i) {
+                            const std::size_t n = row + std::size_t(i);
+                            if (!even[n]) continue;
+                            const glm::dvec3 d = glm::dvec3(i - v.x, j - v.y, k - v.z) * spacing;
+                            const double d2 = glm::dot(d, d), w = 1.0 / (d2 * d2 + 0.1);
+                            const double there = out[n];
+                            weight += w, sum += w * there;
+                            least = std::min(least, there), most = std::max(most, there);
+                        }
+                    }
+                }
+                double value = sum / weight;
+                if (LumenLabel(label[shell[m]]) == LumenLabel::tagged &&
+                    most - least > std::max(6.0 * means.noiseSd, 0.1 * (value - least))) {
+                    const double here = crossMean(scan.hu, segmentation, v);
+                    if (here > least - means.noiseSd && here < most + means.noiseSd) value = here;
+                }
+                out[shell[m]] = std::int16_t(std::clamp(std::lround(value), 1L, 3071L));
+            }
+        });
+    }
+    return tagging;
+}
+
+}  // namespace haustra::cleansing
