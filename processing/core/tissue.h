@@ -10,6 +10,20 @@ namespace haustra {
 enum class Tissue : std::uint8_t { air = 0, fat = 1, soft = 2, taggedOrBone = 3 };
 inline constexpr int tissueCount = 4;
 
+/// From the first HU up to, and with, the last.
+struct HuRange {
+    int fromHu = 0, toHu = 0;
+    bool operator==(const HuRange&) const = default;
+};
+
+/// Where the mean of each class can lie, ordered as Tissue: a fit starts from the scan's mode in
+/// there and does not leave it, so that classes are not swapped. What any calibrated scanner gives
+/// of an abdomen, unless something else is known. Within −1024…3071.
+struct TissuePriors {
+    std::array<HuRange, tissueCount> meanHu{{{-1024, -850}, {-160, -40}, {-10, 110}, {180, 1600}}};
+    bool operator==(const TissuePriors&) const = default;
+};
+
 /// A Gaussian mixture over HU: class means, standard deviations and weights, ordered as Tissue.
 struct TissueModel {
     std::array<double, tissueCount> meanHu{};

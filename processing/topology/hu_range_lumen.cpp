@@ -1,0 +1,198 @@
+#include "topology/hu_range_lumen.h"
+
+#include "topology/distance_field.h"
+#include "topology/run_components.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haustra::topology {
+namespace {
+
+constexpr double seedReachMm = 5.0;
+constexpr std::size_t grain = std::size_t(1) << 20;
+
+// The mask as RunComponents takes it: what is below 0 is in the set.
+constexpr std::int16_t in = -1, out = 0;
+
+tl::unexpected<Error> refused(ErrorKind kind, std::string message) {
+    return fail(kind, std::move(message), "segmentation");
+}
+
+Volume<std::uint8_t> contentOf(const Volume<std::int16_t>& hu, HuRange range, int threads) {
+    Volume<std::uint8_t> mask(hu.grid());
+    const auto voxels = mask.writable();
+    parallelFor(voxels.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            voxels[n] = hu[n] >= range.fromHu && hu[n] <= range.toHu;
+    });
+    return mask;
+}
+
+template <class T, class Keep>
+void keepWhere(Volume<std::uint8_t>& mask, const Volume<T>& distanceMm, int threads, Keep keep) {
+    const auto voxels = mask.writable();
+    parallelFor(voxels.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            voxels[n] = keep(distanceMm[n]);
+    });
+}
+
+// Erosion and dilation by exact balls: centres farther than the radius from the background, then
+// all that is no farther than the radius from such a centre.
+void open(Volume<std::uint8_t>& mask, double radiusMm, int threads) {
+    const auto radius = float(radiusMm);
+    keepWhere(mask, distanceToBoundaryMm(mask, threads), threads,
+              [&](float mm) { return std::uint8_t(!(mm > radius)); });
+    keepWhere(mask, distanceToBoundaryMm(mask, threads), threads,
+              [&](float mm) { return std::uint8_t(mm <= radius); });
+}
+
+RunComponents componentsWhere(const Volume<std::uint8_t>& mask, bool set, int threads) {
+    Volume<std::int16_t> signs(mask.grid());
+    const auto voxels = signs.writable();
+    parallelFor(voxels.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            voxels[n] = (mask[n] != 0) == set ? in : out;
+    });
+    return RunComponents(signs, 0.0, threads);
+}
+
+// The component at a point, or the nearest one within reach; −1 where there is none.
+int componentNear(const RunComponents& components, const Grid& grid, glm::dvec3 pointMm) {
+    const glm::dvec3 centre = grid.voxelFromPatientPoint(pointMm);
+    const glm::dvec3 spacing = grid.spacingMm();
+    const auto lowest =
+        glm::max(glm::ivec3(glm::floor(centre - seedReachMm / spacing)), glm::ivec3(0));
+    const auto highest =
+        glm::min(glm::ivec3(glm::ceil(centre + seedReachMm / spacing)), grid.size - 1);
+    double nearestMm = seedReachMm;
+    int found = -1;
+    for (int k = lowest.z; k <= highest.z; ++k) {
+        for (int j = lowest.y; j <= highest.y; ++j) {
+            for (int i = lowest.x; i <= highest.x; ++i) {
+                const double mm = glm::distance(grid.patientFromVoxelPoint({i, j, k}), pointMm);
+                if (mm > nearestMm || (mm == nearestMm && found >= 0)) continue;
+                const int component = components.at({i, j, k});
+                if (component >= 0) nearestMm = mm, found = component;
+            }
+        }
+    }
+    return found;
+}
+
+std::string pointText(glm::dvec3 p) {
+    const auto round = [](double mm) { return std::to_string(std::lround(mm)); };
+    return round(p.x) + "," + round(p.y) + "," + round(p.z) + " mm";
+}
+
+// A coordinate beyond every int would have no voxel.
+bool sane(glm::dvec3 pointMm) {
+    return glm::all(glm::lessThan(glm::abs(pointMm), glm::dvec3(1e6)));
+}
+
+Result<std::vector<char>> chooseBodies(const RunComponents& components, const Grid& grid,
+                                       const HuRangeOptions& options) {
+    const auto& bodies = components.components();
+    std::vector<char> chosen(bodies.size(), 0), excluded(bodies.size(), 0);
+    for (const glm::dvec3& point : options.excludesMm) {
+        const int at = sane(point) ? componentNear(components, grid, point) : -1;
+        if (at >= 0) excluded[std::size_t(at)] = 1;
+    }
+    for (const glm::dvec3& point : options.seedsMm) {
+        const int at = sane(point) ? componentNear(components, grid, point) : -1;
+        if (at < 0) {
+            return refused(ErrorKind::badInput, "there is no content of the organ's HU within " +
+                                                    std::to_string(int(seedReachMm)) +
+                                                    " mm of the seed " + pointText(point));
+        }
+        chosen[std::size_t(at)] = 1;
+    }
+    for (std::size_t n = 0; n < bodies.size(); ++n)
+        chosen[n] = chosen[n] && !excluded[n];
+    if (options.seedsMm.empty()) {
+        int largest = -1;
+        for (std::size_t n = 0; n < bodies.size(); ++n) {
+            if (!excluded[n] && (largest < 0 || bodies[n].voxels > bodies[largest].voxels))
+                largest = int(n);
+        }
+        if (largest >= 0) chosen[std::size_t(largest)] = 1;
+    }
+    if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end()) {
+        return refused(ErrorKind::noResult, "every body of the organ's HU is excluded");
+    }
+    return chosen;
+}
+
+// Sets the labels of all voxels of the components that `wanted` has.
+void label(Volume<std::uint8_t>& labels, const RunComponents& components,
+           const std::vector<char>& wanted) {
+    const Grid& grid = labels.grid();
+    for (int k = 0; k < grid.size.z; ++k) {
+        for (int j = 0; j < grid.size.y; ++j) {
+            for (const Run& run : components.row(j, k)) {
+                if (!wanted[std::size_t(run.component)]) continue;
+                std::fill_n(labels.writable().begin() + std::ptrdiff_t(grid.index(run.begin, j, k)),
+                            run.end - run.begin, std::uint8_t(LumenLabel::air));
+            }
+        }
+    }
+}
+
+}  // namespace
+
+Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
+                                      const HuRangeOptions& options) {
+    const Grid& grid = hu.grid();
+    const auto progress = [&](double fraction) {
+        if (options.progress) options.progress(fraction);
+    };
+    Volume<std::uint8_t> mask = contentOf(hu, options.contentHu, options.threads);
+    if (options.openingMm > 0.0) {
+        const glm::dmat3 axes(grid.patientFromVoxel);
+        for (int a = 0; a < 3; ++a) {
+            const glm::dvec3 u = glm::normalize(axes[a]), v = glm::normalize(axes[(a + 1) % 3]);
+            if (!(std::abs(glm::dot(u, v)) <= 1e-3))
+                return refused(ErrorKind::badInput,
+                               "the scan's voxel axes are not at right angles");
+        }
+        open(mask, options.openingMm, options.threads);
+    }
+    progress(0.5);
+    HuRangeLumen lumen{Volume<std::uint8_t>(grid, 0), 0, {}};
+    {
+        const RunComponents content = componentsWhere(mask, true, options.threads);
+        if (content.components().empty()) {
+            return refused(ErrorKind::noResult,
+                           "nothing in the scan has the HU of the organ's content, " +
+                               std::to_string(options.contentHu.fromHu) + " to " +
+                               std::to_string(options.contentHu.toHu));
+        }
+        const auto chosen = chooseBodies(content, grid, options);
+        if (!chosen) return tl::make_unexpected(chosen.error());
+        label(lumen.labels, content, *chosen);
+        lumen.bodies = int(std::count(chosen->begin(), chosen->end(), 1));
+    }
+    progress(0.8);
+    const RunComponents around = componentsWhere(lumen.labels, false, options.threads);
+    std::vector<char> enclosed;
+    std::size_t filled = 0;
+    for (const RunComponent& part : around.components()) {
+        bool atEdge = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            atEdge = atEdge || part.touches(axis, false, grid.size) ||
+                     part.touches(axis, true, grid.size);
+        }
+        enclosed.push_back(!atEdge);
+        if (!atEdge) filled += part.voxels;
+    }
+    label(lumen.labels, around, enclosed);
+    if (filled > 0) {
+        lumen.notes.push_back(std::to_string(filled) +
+                              " voxels of other HU inside the content were taken in");
+    }
+    return lumen;
+}
+
+}  // namespace haustra::topology
