@@ -4,15 +4,20 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace haustra::topology {
 namespace {
 
+// Priorities are whole ticks, finer than any two distances need be told apart.
+constexpr double ticksPerVoxel = 1024.0;
+constexpr int greatestPriority = 1 << 18;  // all that is 256 voxels deep is alike
+
 constexpr std::array<glm::ivec3, 6> faceSteps{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-/// A voxel that waits to be added, in one word: coordinates are below 2¹³ (checkGrid).
+/// A voxel in one word: coordinates are below 2¹³ (checkGrid).
 class PackedVoxel {
 public:
     explicit PackedVoxel(glm::ivec3 v)
@@ -25,58 +30,77 @@ private:
     std::uint64_t bits_;
 };
 
-struct Waiting {
-    float priority;
-    std::uint32_t turn;  ///< when it joined the queue
-    PackedVoxel voxel;
-    /// Comes after `other`: std::push_heap keeps the greatest in front.
-    bool operator<(const Waiting& other) const {
-        return priority != other.priority ? priority < other.priority : turn > other.turn;
-    }
-};
-
-/// The greatest priority first, of equals the first to join. Priorities fall into buckets of a
-/// quarter of a voxel, each a heap of its own: small heaps stay in the cache.
+/// The greatest priority first, of equals the first to join. One list for each priority, and two
+/// levels of bits that tell which of them hold something. A heap would miss the cache at each of
+/// its steps, for most of a lumen's voxels lie at a few small distances.
 class GrowthQueue {
 public:
-    void push(float priority, PackedVoxel voxel) {
-        const auto bucket = std::size_t(std::clamp(priority * 4.0f, 0.0f, 4095.0f));
-        if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
-        top_ = std::max(top_, bucket);
-        buckets_[bucket].push_back({priority, turn_++, voxel});
-        std::push_heap(buckets_[bucket].begin(), buckets_[bucket].end());
+    bool empty() const { return waiting_ == 0; }
+
+    void push(int priority, PackedVoxel voxel) {
+        const auto at = std::size_t(std::max(priority, 0));
+        if (at >= lists_.size()) {
+            lists_.resize(at + 1);
+            used_.resize(at / 64 + 1, 0);
+            usedWords_.resize(at / 4096 + 1, 0);
+        }
+        lists_[at].voxels.push_back(voxel);
+        used_[at / 64] |= bit(at);
+        usedWords_[at / 4096] |= bit(at / 64);
+        ++waiting_;
     }
-    bool empty() {
-        while (top_ > 0 && buckets_[top_].empty())
-            --top_;
-        return buckets_.empty() || buckets_[top_].empty();
-    }
+
+    struct First {
+        int priority;
+        PackedVoxel voxel;
+    };
     /// Of a queue that is not empty.
-    Waiting pop() {
-        std::vector<Waiting>& bucket = buckets_[top_];
-        std::pop_heap(bucket.begin(), bucket.end());
-        const Waiting first = bucket.back();
-        bucket.pop_back();
+    First pop() {
+        std::size_t word = usedWords_.size() - 1;
+        while (usedWords_[word] == 0)
+            --word;
+        word = word * 64 + highestBit(usedWords_[word]);
+        const std::size_t at = word * 64 + highestBit(used_[word]);
+        List& list = lists_[at];
+        const First first{int(at), list.voxels[list.next++]};
+        if (list.next == list.voxels.size()) {
+            list.voxels.clear();
+            list.next = 0;
+            used_[word] &= ~bit(at);
+            if (used_[word] == 0) usedWords_[word / 64] &= ~bit(word);
+        }
+        --waiting_;
         return first;
     }
 
 private:
-    std::vector<std::vector<Waiting>> buckets_;
-    std::size_t top_ = 0;
-    std::uint32_t turn_ = 0;
+    static std::uint64_t bit(std::size_t n) { return std::uint64_t(1) << (n % 64); }
+    static std::size_t highestBit(std::uint64_t word) {
+        return std::size_t(63 - std::countl_zero(word));
+    }
+
+    struct List {
+        std::vector<PackedVoxel> voxels;
+        std::size_t next = 0;
+    };
+    std::vector<List> lists_;
+    std::vector<std::uint64_t> used_, usedWords_;
+    std::size_t waiting_ = 0;
 };
 
 class BallGrowth {
 public:
     BallGrowth(const BitMask& domain, const Volume<float>& distanceMm,
                const BallGrowthOptions& options)
-        : options_(options),
+        : domain_(domain),
           distanceMm_(distanceMm),
-          domain_(domain),
+          progress_(options.progress),
+          step_(std::max(1, int(std::lround(options.priorityStep * ticksPerVoxel)))),
+          threshold_(int(std::lround(options.priorityThreshold * ticksPerVoxel))),
           untouched_(domain),
           ball_(domain.size()) {
         const glm::dvec3 spacing = distanceMm.grid().spacingMm();
-        perMm_ = float(1.0 / std::min({spacing.x, spacing.y, spacing.z}));
+        ticksPerMm_ = float(ticksPerVoxel / std::min({spacing.x, spacing.y, spacing.z}));
     }
 
     BitMask grow(const std::vector<glm::ivec3>& path) && {
@@ -92,7 +116,9 @@ public:
     }
 
 private:
-    float priorityOf(glm::ivec3 v) const { return std::min(distanceMm_.at(v), 1e6f) * perMm_; }
+    int priorityOf(glm::ivec3 v) const {
+        return int(std::min(distanceMm_.at(v) * ticksPerMm_, float(greatestPriority)));
+    }
 
     void add(glm::ivec3 v) {
         ball_.set(v);
@@ -106,23 +132,21 @@ private:
     }
 
     void runQueue() {
-        const std::size_t all = options_.progress ? domain_.count() : 0;
-        std::size_t done = 0;
+        const std::size_t all = progress_ ? domain_.count() : 0;
+        std::size_t added = 0;
         while (!queue_.empty()) {
-            const Waiting first = queue_.pop();
+            const GrowthQueue::First first = queue_.pop();
             const glm::ivec3 v = first.voxel.voxel();
             if (ball_.test(v)) continue;  // the path has been here
             if (isSimple(ball_.around(v))) {
                 add(v);
-                if (options_.progress && ++done % 65536 == 0)
-                    options_.progress(std::min(1.0, double(done) / double(all)));
-                continue;
-            }
-            const float again = first.priority - float(options_.priorityStep);
-            if (again > float(options_.priorityThreshold))
+                if (progress_ && ++added % 65536 == 0)
+                    progress_(std::min(1.0, double(added) / double(all)));
+            } else if (const int again = first.priority - step_; again > threshold_) {
                 queue_.push(again, first.voxel);
-            else
+            } else {
                 leftovers_.push_back(v);
+            }
         }
     }
 
@@ -130,24 +154,24 @@ private:
     void takeLeftovers() {
         std::stable_sort(leftovers_.begin(), leftovers_.end(),
                          [&](glm::ivec3 a, glm::ivec3 b) { return priorityOf(a) > priorityOf(b); });
-        for (bool any = true; any;) {
-            any = false;
-            std::erase_if(leftovers_, [&](glm::ivec3 v) {
-                if (!isSimple(ball_.around(v))) return false;
-                add(v);
-                return any = true;
-            });
+        const auto takeIfSimple = [&](glm::ivec3 v) {
+            const bool simple = isSimple(ball_.around(v));
+            if (simple) add(v);
+            return simple;
+        };
+        while (std::erase_if(leftovers_, takeIfSimple) > 0) {
         }
     }
 
-    const BallGrowthOptions& options_;
-    const Volume<float>& distanceMm_;
     const BitMask& domain_;
+    const Volume<float>& distanceMm_;
+    const Progress& progress_;
+    int step_, threshold_;  // δ and T_th in ticks
+    float ticksPerMm_ = 1.0f;
     BitMask untouched_;  // of the domain, what has not been in the queue
     BitMask ball_;
     GrowthQueue queue_;
     std::vector<glm::ivec3> leftovers_;
-    float perMm_ = 1.0f;
 };
 
 }  // namespace

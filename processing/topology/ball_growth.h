@@ -21,14 +21,15 @@ struct BallGrowthOptions {
 ///
 /// First `path` is followed as far as it is 6-connected and each voxel simple; then the domain's
 /// voxels that the ball reaches are taken in order of priority, which is the distance to the
-/// boundary in units of the grid's smallest spacing, the first to be reached first among equals.
+/// boundary in 1/1024 of the grid's smallest spacing, the first to be reached first among equals.
 /// So two fronts meet, and the one that comes second stops, where a handle is thinnest. A voxel
 /// that is not simple is tried again at δ less down to T_th; every voxel of the domain has a
 /// priority of 1 or more, whatever the spacing, so nothing thin is left out for being thin. In the
 /// end what has become simple since is taken, until no voxel left of the domain is simple.
 ///
 /// `path` must not be empty and its first voxel be in the domain; `distanceMm` is
-/// distanceToBoundaryMm(domain). O(n log n) in the domain's voxels, one thread.
+/// distanceToBoundaryMm(domain). Linear in the domain's voxels but for those tried again; one
+/// thread.
 BitMask growBall(const BitMask& domain, const Volume<float>& distanceMm,
                  const std::vector<glm::ivec3>& path, const BallGrowthOptions& options = {});
 

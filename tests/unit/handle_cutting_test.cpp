@@ -95,7 +95,9 @@ TEST_P(PlantedHandles, AreCutWithinAVoxelOfTheirThinnestSection) {
                 nearest = s;
         }
         const Strut& strut = struts[nearest];
-        EXPECT_LE(std::abs(glm::dot(p - strut.waist(), strut.axis())), voxelMm + 1e-9)
+        // A voxel: its extent along the strut.
+        const double alongMm = glm::dot(glm::abs(strut.axis()), spacing);
+        EXPECT_LE(std::abs(glm::dot(p - strut.waist(), strut.axis())), alongMm + 1e-9)
             << "strut " << nearest;
         EXPECT_LE(glm::distance(p, strut.waist()), strut.waistMm + 1.5 * voxelMm);
         ++removed[nearest];
