@@ -1,6 +1,7 @@
 #include "surface/boundary_crossing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace haustra::surface {
@@ -25,13 +26,24 @@ double BoundaryCrossings::at(glm::ivec3 v) const {
 }
 
 glm::dvec3 BoundaryCrossings::gradient(glm::ivec3 v) const {
-    glm::dvec3 gradient;
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::ivec3 step(0);
-        step[axis] = 1;
-        gradient[axis] = 0.5 * (at(v + step) - at(v - step));
+    constexpr int smooth[3] = {1, 2, 1}, difference[3] = {-1, 0, 1};
+    const glm::ivec3 before = glm::clamp(v - 1, glm::ivec3(0), last_);
+    const glm::ivec3 here = glm::clamp(v, glm::ivec3(0), last_);
+    const glm::ivec3 after = glm::clamp(v + 1, glm::ivec3(0), last_);
+    const int i[3] = {before.x, here.x, after.x};
+    const int j[3] = {before.y, here.y, after.y}, k[3] = {before.z, here.z, after.z};
+    glm::ivec3 sum(0);
+    for (int c = 0; c < 3; ++c) {
+        for (int b = 0; b < 3; ++b) {
+            const std::int16_t* row = hu_.voxels().data() + hu_.grid().index(0, j[b], k[c]);
+            const int low = row[i[0]], middle = row[i[1]], high = row[i[2]];
+            const int smoothed = low + 2 * middle + high;
+            sum.x += smooth[b] * smooth[c] * (high - low);
+            sum.y += difference[b] * smooth[c] * smoothed;
+            sum.z += smooth[b] * difference[c] * smoothed;
+        }
     }
-    return gradient;
+    return glm::dvec3(sum) / 32.0;
 }
 
 Crossing BoundaryCrossings::between(glm::ivec3 inside, glm::ivec3 outside) const {
@@ -47,6 +59,7 @@ Crossing BoundaryCrossings::between(glm::ivec3 inside, glm::ivec3 outside) const
                 covectorMm_ * ((1.0 - t) * gradient(inside) + t * gradient(outside));
             if (glm::dot(normal, mmFromVoxel_ * along) > 0.0) {
                 crossing.normal = glm::normalize(normal);
+                crossing.weight = 1.0 - std::abs(crossed - t) / beyondEdge;
                 share = crossed;
             }
         }

@@ -9,7 +9,8 @@ struct Crossing {
     glm::dvec3 onEdge{0.0};  ///< voxel coordinates, strictly between the two centres
     glm::dvec3 point{0.0};   ///< voxel coordinates where HU crosses, up to half an edge beyond it
     glm::dvec3 normal{0.0};  ///< unit, mm, along rising HU; zero where the HU do not show the wall
-    bool seen() const { return normal != glm::dvec3(0.0); }
+    /// 1 where HU cross between the centres, falling to 0 half an edge beyond.
+    double weight = 0.0;
 };
 
 /// The wall in the HU between voxels that labels tell apart. Reads only; any thread.
@@ -27,7 +28,9 @@ public:
 
 private:
     double at(glm::ivec3 v) const;
-    glm::dvec3 gradient(glm::ivec3 v) const;  // HU a voxel
+    /// HU a voxel, by Sobel's stencil of 27 voxels: smoothed across each difference, it halves the
+    /// noise of central differences and follows oblique walls better.
+    glm::dvec3 gradient(glm::ivec3 v) const;
 
     const Volume<std::int16_t>& hu_;
     double isoHu_;

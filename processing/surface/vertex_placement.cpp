@@ -1,74 +1,108 @@
 #include "surface/vertex_placement.h"
 
 #include "core/parallel.h"
+#include "surface/loop_quadric.h"
+
+#include <array>
 
 namespace haustra::surface {
 namespace {
 
 // The cell is shrunk by this on each side: vertices of neighbouring cells never meet.
 constexpr double cellMargin = 0.05;
-// λ as a share of the number of crossings: holds the position where normals leave it free.
-constexpr double regularisation = 0.1;
+// λ; a crossing's plane weighs 1. Far below what would draw small polyps in, and enough to halve
+// the noise of the normals at 40 HU.
+constexpr double smoothness = 0.3;
+constexpr int steps = 10;
 
-struct Loop {
-    int crossings = 0, seen = 0;
-    glm::dvec3 onEdgeSum{0.0}, pointSum{0.0};
-    glm::dmat3 normalMatrix{0.0};
-    glm::dvec3 normalVector{0.0};
-};
+/// The vertex across each of a cell's six faces (low x, high x, low y …); −1: none.
+using Neighbours = std::array<std::int32_t, 6>;
+
+/// Neighbours of each vertex. Of the two arcs over an ambiguous face, one stands for both.
+std::vector<Neighbours> findNeighbours(const BoundaryCells& cells, int threads) {
+    std::vector<Neighbours> neighbours(cells.vertexCount());
+    for (Neighbours& around : neighbours)
+        around.fill(-1);
+    parallelFor(std::size_t(cells.layers()), 16, threads, [&](std::size_t begin, std::size_t end) {
+        LayerPair pair(cells);
+        for (std::size_t n = begin; n < end; ++n) {
+            pair.moveTo(int(n));
+            for (const BoundaryCell& cell : cells.layer(int(n))) {
+                for (int edge = 0; edge < cellEdges; ++edge) {
+                    const int loop = cellLoops(cell.inside).loopOfEdge[edge];
+                    if (loop < 0) continue;
+                    for (int axis = 0; axis < 3; ++axis) {
+                        // The edge must lie on the low face across the axis.
+                        if (axis == edge / 4 || (lowerCorner(edge) >> axis & 1)) continue;
+                        glm::ivec2 beside(cell.i, cell.j);
+                        if (axis < 2) --beside[axis];
+                        const BoundaryCell& other =
+                            cells.cells()[std::size_t(pair.find(beside.x, beside.y, axis == 2))];
+                        const int there = cellEdge(edge / 4, lowerCorner(edge) | 1 << axis);
+                        const std::int32_t here = cell.firstVertex + loop;
+                        const std::int32_t across =
+                            other.firstVertex + cellLoops(other.inside).loopOfEdge[there];
+                        neighbours[std::size_t(here)][2 * axis] = across;
+                        neighbours[std::size_t(across)][2 * axis + 1] = here;
+                    }
+                }
+            }
+        }
+    });
+    return neighbours;
+}
+
+glm::dvec3 meanOf(const Neighbours& around, const std::vector<glm::dvec3>& mm) {
+    glm::dvec3 sum(0.0);
+    int count = 0;
+    for (std::int32_t vertex : around) {
+        if (vertex < 0) continue;
+        sum += mm[std::size_t(vertex)];
+        ++count;
+    }
+    return sum / double(count);
+}
 
 }  // namespace
 
 std::vector<glm::dvec3> placeVertices(const BoundaryCells& cells,
                                       const BoundaryCrossings& crossings, int threads) {
-    std::vector<glm::dvec3> positions(cells.vertexCount());
+    const std::vector<LoopQuadric> quadrics = loopQuadrics(cells, crossings, threads);
+    const std::vector<Neighbours> neighbours = findNeighbours(cells, threads);
     const glm::dmat3 mmFromVoxel = crossings.mmFromVoxel();
     const glm::dmat3 voxelFromMm = glm::inverse(mmFromVoxel);
+    std::vector<glm::dvec3> mm(quadrics.size()), next(quadrics.size());
+    for (std::size_t v = 0; v < quadrics.size(); ++v)
+        mm[v] = quadrics[v].mean;
 
-    parallelFor(std::size_t(cells.layers()), 1, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-            for (const BoundaryCell& cell : cells.layer(int(n))) {
-                const CellLoops& loops = cellLoops(cell.inside);
-                const glm::ivec3 origin(cell.i, cell.j, BoundaryCells::kOfLayer(int(n)));
-                std::array<Loop, 4> sums;
-                for (int edge = 0; edge < cellEdges; ++edge) {
-                    if (loops.loopOfEdge[edge] < 0) continue;
-                    int in = lowerCorner(edge), out = upperCorner(edge);
-                    if (!(cell.inside >> in & 1)) std::swap(in, out);
-                    const Crossing crossing =
-                        crossings.between(origin + cornerOffset(in), origin + cornerOffset(out));
-                    Loop& loop = sums[std::size_t(loops.loopOfEdge[edge])];
-                    ++loop.crossings;
-                    loop.onEdgeSum += crossing.onEdge - glm::dvec3(origin);
-                    const glm::dvec3 point = crossing.point - glm::dvec3(origin);
-                    loop.pointSum += point;
-                    if (!crossing.seen()) continue;
-                    ++loop.seen;
-                    loop.normalMatrix += glm::outerProduct(crossing.normal, crossing.normal);
-                    loop.normalVector +=
-                        crossing.normal * glm::dot(crossing.normal, mmFromVoxel * point);
-                }
-                for (int l = 0; l < loops.count; ++l) {
-                    const Loop& loop = sums[std::size_t(l)];
-                    glm::dvec3 local = loop.onEdgeSum / double(loop.crossings);
-                    if (loops.count == 1 && loop.seen > 0) {
-                        const glm::dvec3 meanMm =
-                            mmFromVoxel * (loop.pointSum / double(loop.crossings));
-                        const double weight = regularisation * double(loop.crossings);
-                        const glm::dmat3 system = loop.normalMatrix + glm::dmat3(weight);
-                        const glm::dvec3 positionMm =
-                            glm::inverse(system) * (loop.normalVector + weight * meanMm);
-                        local = voxelFromMm * positionMm;
-                        local =
-                            glm::clamp(local, glm::dvec3(cellMargin), glm::dvec3(1.0 - cellMargin));
-                    }
-                    positions[std::size_t(cell.firstVertex) + std::size_t(l)] =
-                        glm::dvec3(origin) + local;
-                }
-            }
+    auto relax = [&](const BoundaryCell& cell, int k) {
+        const std::size_t v = std::size_t(cell.firstVertex);
+        const int count = cellLoops(cell.inside).count;
+        if (count > 1) {
+            for (int loop = 0; loop < count; ++loop)
+                next[v + std::size_t(loop)] = mm[v + std::size_t(loop)];
+            return;
         }
-    });
-    return positions;
+        const LoopQuadric& quadric = quadrics[v];
+        const glm::dvec3 target = quadric.planes + smoothness * meanOf(neighbours[v], mm);
+        const glm::dvec3 free = glm::inverse(quadric.normals + glm::dmat3(smoothness)) * target;
+        const glm::dvec3 origin(cell.i, cell.j, k);
+        next[v] = mmFromVoxel *
+                  glm::clamp(voxelFromMm * free, origin + cellMargin, origin + (1.0 - cellMargin));
+    };
+    for (int step = 0; step < steps; ++step) {
+        parallelFor(std::size_t(cells.layers()), 4, threads,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t n = begin; n < end; ++n) {
+                            for (const BoundaryCell& cell : cells.layer(int(n)))
+                                relax(cell, BoundaryCells::kOfLayer(int(n)));
+                        }
+                    });
+        mm.swap(next);
+    }
+    for (glm::dvec3& p : mm)
+        p = voxelFromMm * p;
+    return mm;
 }
 
 }  // namespace haustra::surface

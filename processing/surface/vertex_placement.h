@@ -9,13 +9,13 @@
 namespace haustra::surface {
 
 /// One position for each loop of each cell, in voxel coordinates, strictly within the cell; where
-/// a cell has several loops, each is within the convex hull of its own crossings, so that the
-/// hulls and hence the sheets keep apart.
+/// a cell has several loops, each is the mean of its own crossings, so that the sheets keep apart.
 ///
-/// A position minimises Σ (n · (x − p))² + λ |x − m|² in mm over the loop's crossings p with
-/// normals n, m being their mean (Ju et al., SIGGRAPH 2002). Where the HU show no wall (cuts and
-/// bridges), positions are relaxed towards their neighbours within their cells instead (Gibson's
-/// constrained elastic surface nets), so that no staircase of voxels is left.
+/// The positions x minimise the sum of their cells' quadrics (loop_quadric.h) and of
+/// λ |x − mean of the neighbours' x|² in mm: the HU decide across the wall, and along the wall the
+/// vertices spread evenly. Where the HU show no wall (cuts, bridges) that leaves the smoothest
+/// sheet within the cells, not a staircase of voxels (Gibson's constrained elastic surface nets,
+/// MICCAI 1998). By Jacobi's iteration, each step clamped to the cells: the same for any threads.
 std::vector<glm::dvec3> placeVertices(const BoundaryCells& cells,
                                       const BoundaryCrossings& crossings, int threads);
 
