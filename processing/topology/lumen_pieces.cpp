@@ -142,7 +142,8 @@ Path skeletonOf(const BitMask& piece, const Volume<std::uint8_t>& labels,
                 const Volume<float>& distanceMm, int threads) {
     const BlockGraph graph = makeBlockGraph(labels, distanceMm, threads);
     PathTree tree = growWidestTree(graph, graph.components.front().deepest);
-    tree = rerooted(std::move(tree), longestPathEnd(tree));
+    const std::int32_t oneEnd = longestPathEnd(tree);
+    tree = rerooted(std::move(tree), oneEnd);
     Path path;
     for (const std::int32_t node : pathTo(tree, longestPathEnd(tree))) {
         if (path.empty())
