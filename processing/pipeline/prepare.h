@@ -19,10 +19,12 @@ struct PrepareOptions {
     std::filesystem::path series;
     std::string seriesUid;  ///< which series of the folder; empty: its only one
     std::filesystem::path
-        lumenMask;      ///< NIfTI; replaces the lumen stage; not 0 is lumen, 2 is tagged
-    std::string until;  ///< last stage to run; empty: all
-    std::vector<glm::dvec3> seedsMm, excludesMm;  ///< overrule the lumen stage (topology/lumen.h)
-    int threads = 0;                              ///< ≤ 0: all cores
+        lumenMask;  ///< NIfTI; replaces the segmentation stage; not 0 is lumen, 2 is tagged
+    std::string organ = "colon";  ///< a built-in profile or a profile's file (organs/README.md)
+    std::string until;            ///< last stage to run; empty: all
+    std::vector<glm::dvec3> seedsMm, excludesMm;  ///< overrule the segmentation (patient, LPS)
+    double surfaceErrorMm = 0.1;  ///< how far the surface may be from the contoured one
+    int threads = 0;              ///< ≤ 0: all cores
     /// How far a stage is, 0…1. Called from the thread that called prepare.
     std::function<void(const std::string& stage, double fraction)> progress;
     /// One line for the log; nothing of the patient.
@@ -43,14 +45,27 @@ struct PrepareReport {
     std::vector<std::string> notes;  ///< what the stages found worth telling, reused ones too
 };
 
-/// Stages in order, by the names that `until` takes: import, lumen, distance, centerline.
+/// Stages in order, by the names that `until` takes: import, segmentation, mixture, cleansing,
+/// denoising, distance, centerline, surface.
 const std::vector<std::string>& stageNames();
 
-/// Makes the products `ct`, `lumen`, `distance` and `centerline` of a case, each in its turn,
-/// skipping those that the store holds under the same key (stage version, options, input keys;
-/// the first input is the content of the source files) and whose bytes are sound. Killed at any
-/// moment it continues with the next call. Holds the case's lock while it runs. The products are
-/// the same bytes for any number of threads.
+/// Makes a case's products, each in its turn:
+///
+///   import        ct              the scan in HU
+///   segmentation  segmentation    the lumen as the organ's profile finds it, or the mask
+///   mixture       mixture         the tissues in each voxel
+///   cleansing     cleansed-lumen  the lumen once the tagging is taken out
+///                 cleansed        the scan in HU with air in the tagging's place
+///   denoising     lumen           the lumen with the organ's topology
+///   distance      distance        mm to the lumen's boundary
+///   centerline    centerline
+///   surface       surface         the lumen's closed surface
+///
+/// Mixture and cleansing run where there is a scan and the organ's profile says so; `lumen` comes
+/// from the segmentation otherwise. Stages whose products the store holds under the same key (stage
+/// version, options, input keys; the first input is the content of the source files), with sound
+/// bytes, are skipped. Killed at any moment it continues with the next call. Holds the case's lock
+/// while it runs. The products are the same bytes for any number of threads.
 Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& caseName,
                               const PrepareOptions& options);
 

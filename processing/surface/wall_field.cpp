@@ -113,7 +113,7 @@ WallHistograms histogramsOf(const Volume<std::int16_t>& hu, const Volume<std::ui
 
 WallField smoothedMask(const Volume<std::uint8_t>& labels, int threads) {
     const Grid& grid = labels.grid();
-    WallField field{Volume<std::int16_t>(grid), 0.0};
+    WallField field{Volume<std::int16_t>(grid), 0.0, false};
     const std::size_t sliceVoxels = std::size_t(grid.size.x) * std::size_t(grid.size.y);
     const auto voxels = field.hu.writable();
     parallelFor(std::size_t(grid.size.z), 16, threads, [&](std::size_t begin, std::size_t end) {
@@ -168,8 +168,8 @@ Result<WallField> contentField(const Volume<std::int16_t>& hu, const Volume<std:
                     "the lumen's content hardly differs from what surrounds it", "surface");
     }
     const double isoHu = 0.5 * (contentHu + aroundHu);
-    if (contentHu < aroundHu) return WallField{hu.share(), isoHu};
-    WallField field{Volume<std::int16_t>(hu.grid()), -isoHu};
+    if (contentHu < aroundHu) return WallField{hu.share(), isoHu, false};
+    WallField field{Volume<std::int16_t>(hu.grid()), -isoHu, true};
     const auto voxels = field.hu.writable();
     parallelFor(voxels.size(), std::size_t(1) << 20, threads,
                 [&](std::size_t begin, std::size_t end) {

@@ -12,6 +12,7 @@ namespace haustra::surface {
 struct WallField {
     Volume<std::int16_t> hu;
     double isoHu = 0.0;
+    bool negated = false;  ///< against the scan: both signs are changed
 };
 
 /// A lumen with no scan: ±1000 outside and inside (label ≠ 0), smoothed over ±2 voxels with

@@ -4,7 +4,9 @@
 #include "cli/text_files.h"
 #include "nifti/nifti_file.h"
 #include "store/case_store.h"
+#include "surface/mesh_file.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -15,16 +17,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Products and the ending of the files they are written to.
-const std::map<std::string, std::string>& formats() {
-    static const std::map<std::string, std::string> endings{
-        {"ct", ".nii.gz"}, {"lumen", ".nii.gz"}, {"distance", ".nii.gz"}, {"centerline", ".csv"}};
+using Endings = std::vector<std::string>;
+
+// Products and the endings of the files they are written to.
+const std::map<std::string, Endings>& formats() {
+    static const Endings volume{".nii.gz", ".nii"};
+    static const std::map<std::string, Endings> endings{
+        {"ct", volume},
+        {"segmentation", volume},
+        {"mixture", volume},
+        {"cleansed", volume},
+        {"cleansed-lumen", volume},
+        {"lumen", volume},
+        {"distance", volume},
+        {"centerline", {".csv"}},
+        {"surface", {".ply", ".obj", ".off", ".stl"}}};
     return endings;
 }
 
 std::vector<std::string> productNames() {
     std::vector<std::string> names;
-    for (const auto& [product, ending] : formats())
+    for (const auto& [product, endings] : formats())
         names.push_back(product);
     return names;
 }
@@ -54,12 +67,26 @@ Result<void> runExport(const Arguments& arguments) {
     if (!source) return tl::make_unexpected(source.error());
     // What leaves the store for other programs has been read whole and found sound.
     if (auto sound = source->verify(arguments.product); !sound) return sound;
-    if (arguments.product == "ct") return exportVolume<std::int16_t>(*source, arguments);
-    if (arguments.product == "lumen") return exportVolume<std::uint8_t>(*source, arguments);
-    if (arguments.product == "distance") return exportVolume<float>(*source, arguments);
-    const auto centerline = source->readCenterline();
-    if (!centerline) return tl::make_unexpected(centerline.error());
-    return writeTextFile(arguments.file, centerlineCsv(*centerline));
+    const std::string& product = arguments.product;
+    if (product == "centerline") {
+        const auto centerline = source->readCenterline();
+        if (!centerline) return tl::make_unexpected(centerline.error());
+        return writeTextFile(arguments.file, centerlineCsv(*centerline));
+    }
+    if (product == "surface") {
+        const auto mesh = source->readMesh();
+        if (!mesh) return tl::make_unexpected(mesh.error());
+        return surface::writeMesh(arguments.file, *mesh);
+    }
+    if (product == "mixture") {
+        const auto mixture = source->readVolume<TissueFractions>(product);
+        if (!mixture) return tl::make_unexpected(mixture.error());
+        return nifti::writeFractions(arguments.file, *mixture);
+    }
+    if (product == "distance") return exportVolume<float>(*source, arguments);
+    if (product == "ct" || product == "cleansed")
+        return exportVolume<std::int16_t>(*source, arguments);
+    return exportVolume<std::uint8_t>(*source, arguments);  // labels
 }
 
 }  // namespace
@@ -68,9 +95,11 @@ Command addExport(CLI::App& program) {
     auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand(
         "export",
-        "Write a product to a file that other programs read: ct (int16, HU), lumen (uint8: 0 "
-        "outside, 1 air, 2 tagged) and distance (float, mm) as .nii.gz, centerline as .csv "
-        "(x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, rectum to cecum).");
+        "Write a product to a file that other programs read: ct and cleansed (int16, HU), "
+        "segmentation, cleansed-lumen and lumen (uint8: 0 outside, 1 air, 2 tagged, 3 bridge over "
+        "a collapse), mixture (4-D uint8: air, soft tissue, tagged, in 255ths) and distance "
+        "(float, mm) as .nii.gz; centerline as .csv (x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, "
+        "rectum to cecum); surface as .ply, .obj, .off or .stl (LPS, mm).");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     command->add_option("PRODUCT", arguments->product, "What to write")
         ->required()
@@ -78,10 +107,13 @@ Command addExport(CLI::App& program) {
     command->add_option("FILE", arguments->file, "Where to; replaced in one step")->required();
     addStoreOption(*command, arguments->store);
     command->callback([arguments] {
-        const std::string& ending = formats().at(arguments->product);
+        const Endings& endings = formats().at(arguments->product);
         const std::string name = arguments->file.filename().string();
-        if (!endsIn(name, ending) && !(ending == ".nii.gz" && endsIn(name, ".nii"))) {
-            throw CLI::ValidationError("FILE", arguments->product + " is written as " + ending +
+        const bool fits = std::any_of(endings.begin(), endings.end(),
+                                      [&](const auto& ending) { return endsIn(name, ending); });
+        if (!fits) {
+            throw CLI::ValidationError("FILE", arguments->product + " is written as " +
+                                                   CLI::detail::join(endings, " or ") +
                                                    ", not as \"" + name + "\"");
         }
     });

@@ -31,7 +31,7 @@ Result<void> runList(const fs::path& folder) {
             std::error_code missing;
             const auto bytes =
                 fs::file_size(store->folder() / "cases" / name / entry.file, missing);
-            fmt::print("    {:<12} {:>10}  {}\n", entry.product,
+            fmt::print("    {:<14} {:>10}  {}\n", entry.product,
                        missing ? "missing" : fmt::format("{:.1f} MB", double(bytes) / 1e6),
                        entry.file);
         }

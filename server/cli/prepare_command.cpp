@@ -96,8 +96,10 @@ Command addPrepare(CLI::App& program) {
     pipeline::PrepareOptions& options = arguments->options;
     CLI::App* command = program.add_subcommand(
         "prepare",
-        "Make a case's products from a CT series: the scan in HU, the colon's lumen, the distance "
-        "to its boundary, its centerline. Work that the store holds already is not done again.");
+        "Make a case's products from a CT series: the scan in HU, the colon's segmentation, the "
+        "tissues in each voxel, the scan cleansed of tagged residue, the lumen without handles, "
+        "the distance to its boundary, its centerline and its surface. Work that the store holds "
+        "already is not done again.");
     command
         ->add_option("SERIES", options.series,
                      "DICOM folder (files in any order and depth) or file, or one NIfTI file")
@@ -110,6 +112,11 @@ Command addPrepare(CLI::App& program) {
         ->check([](const std::string& name) {
             return store::isCaseName(name) ? std::string() : "not a case name: \"" + name + "\"";
         });
+    command
+        ->add_option("--organ", options.organ,
+                     "How the organ is found, shaped and ended: colon (default), bladder, vessel, "
+                     "or a profile of your own (processing/organs/README.md has the format)")
+        ->type_name("NAME|FILE.json");
     command->add_option("--until", options.until, "The last stage to run")
         ->type_name("STAGE")
         ->check(CLI::IsMember(pipeline::stageNames()));
@@ -117,14 +124,22 @@ Command addPrepare(CLI::App& program) {
         ->add_option(
             "--lumen", options.lumenMask,
             "A segmentation of the lumen made elsewhere, on the series' grid: 0 outside, 2 "
-            "tagged, else air. Without SERIES it is the case's own scan's, or stands alone")
+            "tagged, else air; it takes the place of the segmentation stage. Without SERIES it is "
+            "the case's own scan's, or stands alone: then nothing is cleansed, and the surface is "
+            "the mask's")
         ->type_name("MASK.nii.gz");
     command->add_option("--series", options.seriesUid, "Which series of the folder, by its UID")
         ->type_name("UID");
     addPointsOption(*command, "--seed", options.seedsMm,
-                    "The air or fluid at this point (LPS, mm) is colon; may be repeated");
+                    "The air or fluid at this point (LPS, mm) is the organ; may be repeated");
     addPointsOption(*command, "--exclude", options.excludesMm,
-                    "The air or fluid at this point (LPS, mm) is not colon; may be repeated");
+                    "The air or fluid at this point (LPS, mm) is not the organ; may be repeated");
+    command
+        ->add_option("--surface-error-mm", options.surfaceErrorMm,
+                     "How far the simplified surface may be from the finest one, mm")
+        ->type_name("MM")
+        ->check(CLI::Range(0.001, 10.0))
+        ->capture_default_str();
     command
         ->add_option("--report", arguments->report,
                      "Write wall seconds and peak memory of each stage, and notes, as JSON")

@@ -3,6 +3,7 @@
 #include "end_to_end/run_program.h"
 #include "nifti/nifti_file.h"
 #include "store/case_store.h"
+#include "surface/mesh_file.h"
 
 #include <algorithm>
 #include <map>
@@ -164,8 +165,32 @@ TEST_F(PreparedPhantom, APlaceBeyondTheCenterlineIsRefused) {
 
 TEST_F(PreparedPhantom, ExportedVolumesEqualTheProducts) {
     expectExportEqualsProduct<std::int16_t>("ct");
+    expectExportEqualsProduct<std::int16_t>("cleansed");
+    expectExportEqualsProduct<std::uint8_t>("segmentation");
+    expectExportEqualsProduct<std::uint8_t>("cleansed-lumen");
     expectExportEqualsProduct<std::uint8_t>("lumen");
     expectExportEqualsProduct<float>("distance");
+}
+
+TEST_F(PreparedPhantom, TheMixtureIsExportedAsOneImageOfThree) {
+    const auto outcome = haustra({"export", "p", "mixture", file("m.nii"), "--store", store()});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const auto stored = opened().readVolume<TissueFractions>("mixture").value();
+    EXPECT_EQ(fs::file_size(file("m.nii")), 352u + 3u * stored.grid().voxelCount());
+}
+
+TEST_F(PreparedPhantom, TheSurfaceIsExportedInEachFormat) {
+    const TriMesh stored = opened().readMesh().value();
+    for (const char* name : {"s.ply", "s.obj", "s.off", "s.stl"}) {
+        const auto outcome = haustra({"export", "p", "surface", file(name), "--store", store()});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        const auto back = surface::readMesh(file(name));
+        ASSERT_TRUE(back) << describe(back.error());
+        EXPECT_EQ(back->triangles.size(), stored.triangles.size()) << name;
+        EXPECT_EQ(meshTopology(*back).eulerCharacteristic, 2) << name;
+    }
+    EXPECT_EQ(haustra({"export", "p", "surface", file("s.nii.gz"), "--store", store()}).exitCode,
+              2);
 }
 
 TEST_F(PreparedPhantom, TheExportedCenterlineHasALineForEachSample) {
@@ -201,7 +226,8 @@ TEST_F(PreparedPhantom, TheReportHasTimeAndMemoryOfEachStage) {
         EXPECT_GT(stage["wall_seconds"].get<double>(), 0.0);
         EXPECT_GT(stage["peak_memory_mib"].get<double>(), 1.0);
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"import", "lumen", "distance", "centerline"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"import", "segmentation", "mixture", "cleansing",
+                                               "denoising", "distance", "centerline", "surface"}));
 
     ASSERT_EQ(haustra({"prepare", series(), "--lumen", mask(), "--store", store(), "--case", "p",
                        "--report", file("again.json")})
@@ -215,8 +241,9 @@ TEST_F(PreparedPhantom, TheReportHasTimeAndMemoryOfEachStage) {
 TEST_F(PreparedPhantom, TheListNamesCasesProductsAndSizes) {
     const auto outcome = haustra({"list", "--store", store()});
     EXPECT_EQ(outcome.exitCode, 0);
-    EXPECT_EQ(lineCount(outcome.out), 5u) << outcome.out;
-    for (const char* word : {"p\n", "ct", "lumen", "distance", "centerline", " MB"}) {
+    EXPECT_EQ(lineCount(outcome.out), 10u) << outcome.out;
+    for (const char* word : {"p\n", "ct", "segmentation", "mixture", "cleansed", "cleansed-lumen",
+                             "lumen", "distance", "centerline", "surface", " MB"}) {
         EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
     }
 }
@@ -265,7 +292,7 @@ TEST_F(PreparedPhantom, ProductsDoNotDependOnTheNumberOfThreads) {
         for (const auto& file : fs::directory_iterator(made)) {
             files[file.path().filename().string()] = tests::fileContent(file.path());
         }
-        EXPECT_EQ(files.size(), 6u);  // four products, the index, the lock
+        EXPECT_EQ(files.size(), 11u);  // nine products, the index, the lock
         if (first.empty()) first = files;
         EXPECT_TRUE(files == first) << threads;
     }

@@ -2,10 +2,14 @@
 // the products do not depend on the number of threads.
 #include "pipeline/prepare.h"
 
+#include "cleansing/tissue_mixture.h"
+#include "core/tri_mesh.h"
 #include "nifti/nifti_file.h"
+#include "pipeline/product_attributes.h"
 #include "pipeline/source_key.h"
 #include "pipeline/stage_meter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -53,16 +57,19 @@ protected:
                    testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(folder_);
         fs::create_directories(folder_);
-        const auto mask = tubeMask(6.0);
-        ASSERT_TRUE(nifti::writeNifti(maskFile(), mask));
+        ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(6.0)));
+        writeScan(6.0);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    void writeScan(double radiusMm) const {
+        const auto mask = tubeMask(radiusMm);
         Volume<std::int16_t> ct(mask.grid());
         for (std::size_t n = 0; n < mask.grid().voxelCount(); ++n) {
             ct.writable()[n] = mask[n] ? -1000 : std::int16_t(40 + n % 7);
         }
         ASSERT_TRUE(nifti::writeNifti(ctFile(), ct));
     }
-    void TearDown() override { fs::remove_all(folder_); }
-
     fs::path ctFile() const { return folder_ / "ct.nii.gz"; }
     fs::path maskFile() const { return folder_ / "mask.nii.gz"; }
     store::CaseStore store(const std::string& name = "store") const {
@@ -95,18 +102,34 @@ protected:
     }
 
     using Stages = std::map<std::string, bool>;
-    const Stages allDone_{
-        {"import", false}, {"lumen", false}, {"distance", false}, {"centerline", false}};
-    const Stages allReused_{
-        {"import", true}, {"lumen", true}, {"distance", true}, {"centerline", true}};
+    static Stages all(bool reused, const std::vector<std::string>& stages = stageNames()) {
+        Stages result;
+        for (const std::string& stage : stages)
+            result[stage] = reused;
+        return result;
+    }
+    static Stages redone(const std::vector<std::string>& stages) {
+        Stages result = all(true);
+        for (const std::string& stage : stages)
+            result[stage] = false;
+        return result;
+    }
+    static std::string stageOf(const std::string& product) {
+        static const std::map<std::string, std::string> stages{{"ct", "import"},
+                                                               {"cleansed", "cleansing"},
+                                                               {"cleansed-lumen", "cleansing"},
+                                                               {"lumen", "denoising"}};
+        const auto found = stages.find(product);
+        return found == stages.end() ? product : found->second;
+    }
     fs::path folder_;
 };
 
 TEST_F(Prepare, ASecondRunReusesEverythingAndChangesNothing) {
-    EXPECT_EQ(reused(options()), allDone_);
+    EXPECT_EQ(reused(options()), all(false));
     const auto before = bytesOf(store().openCase("tube").value());
-    EXPECT_EQ(before.size(), 4u);
-    EXPECT_EQ(reused(options()), allReused_);
+    EXPECT_EQ(before.size(), 9u);
+    EXPECT_EQ(reused(options()), all(true));
     EXPECT_EQ(bytesOf(store().openCase("tube").value()), before);
 }
 
@@ -125,16 +148,30 @@ TEST_F(Prepare, ProductsAreTheStagesOutputs) {
         ASSERT_EQ(labels[n] != 0, distance[n] > 0.0f);
     }
     EXPECT_NEAR(centerline.lengthMm(), 90.0, 20.0);
+    // Nothing is tagged, so nothing is cleansed, and the surface is the tube's.
+    const auto cleansed = tube.readVolume<std::int16_t>("cleansed").value();
+    EXPECT_TRUE(std::ranges::equal(cleansed.voxels(), ct.voxels()));
+    EXPECT_TRUE(tube.readVolume<TissueFractions>("mixture"));
+    const auto surface = tube.readMesh().value();
+    const MeshTopology topology = meshTopology(surface);
+    EXPECT_TRUE(topology.closed());
+    EXPECT_EQ(topology.eulerCharacteristic, 2);
+    EXPECT_EQ(tube.attributes("surface").value().at("triangles"),
+              std::to_string(surface.triangles.size()));
 }
 
 TEST_F(Prepare, ChangedInputsRedoWhatComesFromThemAlone) {
     reused(options());
     ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(5.0)));
-    EXPECT_EQ(
-        reused(options()),
-        (Stages{{"import", true}, {"lumen", false}, {"distance", false}, {"centerline", false}}));
-    ASSERT_TRUE(nifti::writeNifti(ctFile(), Volume<std::int16_t>(tubeMask(5.0).grid(), -7)));
-    EXPECT_EQ(reused(options()), allDone_);
+    EXPECT_EQ(reused(options()), redone({"segmentation", "mixture", "cleansing", "denoising",
+                                         "distance", "centerline", "surface"}));
+    writeScan(5.0);
+    EXPECT_EQ(reused(options()), all(false));
+    PrepareOptions coarser = options();
+    coarser.surfaceErrorMm = 0.3;
+    EXPECT_EQ(reused(coarser), redone({"surface"}));
+    coarser.threads = 1;
+    EXPECT_EQ(reused(coarser), all(true));
 }
 
 TEST_F(Prepare, ANewScanLeavesNoProductOfTheOldOne) {
@@ -149,20 +186,63 @@ TEST_F(Prepare, ANewScanLeavesNoProductOfTheOldOne) {
 TEST_F(Prepare, UntilStopsAndTheNextRunGoesOn) {
     PrepareOptions some = options();
     some.until = "distance";
-    EXPECT_EQ(reused(some), (Stages{{"import", false}, {"lumen", false}, {"distance", false}}));
-    EXPECT_EQ(
-        reused(options()),
-        (Stages{{"import", true}, {"lumen", true}, {"distance", true}, {"centerline", false}}));
+    EXPECT_EQ(reused(some), all(false, {"import", "segmentation", "mixture", "cleansing",
+                                        "denoising", "distance"}));
+    EXPECT_EQ(reused(options()), redone({"centerline", "surface"}));
 }
 
 TEST_F(Prepare, AMaskStandsAlone) {
     PrepareOptions alone = options();
     alone.series.clear();
     EXPECT_EQ(reused(alone),
-              (Stages{{"lumen", false}, {"distance", false}, {"centerline", false}}));
+              all(false, {"segmentation", "denoising", "distance", "centerline", "surface"}));
     const auto tube = store().openCase("tube").value();
-    EXPECT_FALSE(tube.find("ct"));
+    for (const char* product : {"ct", "mixture", "cleansed", "cleansed-lumen"})
+        EXPECT_FALSE(tube.find(product)) << product;
     EXPECT_TRUE(tube.find("centerline"));
+    EXPECT_TRUE(meshTopology(tube.readMesh().value()).closed());
+}
+
+// What a store of before this order of stages holds: the same names, made otherwise.
+TEST_F(Prepare, OldProductsAreMadeAgain) {
+    reused(options());
+    const auto now = bytesOf(store().openCase("tube").value());
+    fs::remove_all(folder_ / "store");
+    PrepareOptions import = options();
+    import.until = "import";
+    reused(import);
+    {
+        auto old = store().createCase("tube").value();
+        const auto key = store::makeKey("lumen", 1, "", {old.find("ct")->key});
+        ASSERT_TRUE(old.publishVolume("lumen", key, tubeMask(3.0)));
+        ASSERT_TRUE(old.publishVolume("distance", key, Volume<float>(tubeMask(3.0).grid(), 1.0f)));
+        ASSERT_TRUE(old.publishCenterline("centerline", key, {}));
+    }
+    PrepareOptions found = options();
+    found.until = "segmentation";
+    reused(found);
+    EXPECT_EQ(store().openCase("tube")->products()->size(), 2u)
+        << "old products outlive their input";
+    reused(options());
+    EXPECT_EQ(bytesOf(store().openCase("tube").value()), now);
+}
+
+TEST_F(Prepare, TheTissueModelComesBackFromTheSegmentationBitForBit) {
+    reused(options());
+    const auto tube = store().openCase("tube").value();
+    const CtScan scan{tube.readVolume<std::int16_t>("ct").value(), PatientPosition::unknown};
+    const auto fitted = cleansing::fitTissueModel(scan).value();
+    const auto stored = tissueModelOf(tube.attributes("segmentation").value()).value();
+    EXPECT_EQ(stored.meanHu, fitted.meanHu);
+    EXPECT_EQ(stored.sdHu, fitted.sdHu);
+    EXPECT_EQ(stored.weight, fitted.weight);
+    EXPECT_EQ(stored.airBelowHu, fitted.airBelowHu);
+    EXPECT_EQ(stored.taggedAboveHu, fitted.taggedAboveHu);
+    auto damaged = tube.attributes("segmentation").value();
+    for (const char* bad : {"", "1,2,3", "1,2,3,4,5", "1,2,3,x", "1,2,3,nan"}) {
+        damaged["mean-hu"] = bad;
+        EXPECT_FALSE(tissueModelOf(damaged)) << bad;
+    }
 }
 
 TEST_F(Prepare, AMaskWithoutASeriesIsOfTheCasesScan) {
@@ -171,9 +251,10 @@ TEST_F(Prepare, AMaskWithoutASeriesIsOfTheCasesScan) {
     reused(import);
     PrepareOptions mask = options();
     mask.series.clear();
-    EXPECT_EQ(reused(mask), (Stages{{"lumen", false}, {"distance", false}, {"centerline", false}}));
+    EXPECT_EQ(reused(mask), all(false, {"segmentation", "mixture", "cleansing", "denoising",
+                                        "distance", "centerline", "surface"}));
     EXPECT_TRUE(store().openCase("tube")->find("ct"));
-    EXPECT_EQ(reused(options()), allReused_);
+    EXPECT_EQ(reused(options()), all(true));
 }
 
 TEST_F(Prepare, AMaskOnAnotherGridIsRefused) {
@@ -197,8 +278,12 @@ TEST_F(Prepare, MaskValuesFarFromZeroAreLumen) {
     ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(6.0, 255)));
     const auto report = prepare(store(), "tube", options());
     ASSERT_TRUE(report);
-    EXPECT_EQ(report->notes.size(), 1u);
-    const auto labels = store().openCase("tube")->readVolume<std::uint8_t>("lumen").value();
+    EXPECT_NE(std::ranges::find_if(report->notes,
+                                   [](const std::string& note) {
+                                       return note.find("mask values") != std::string::npos;
+                                   }),
+              report->notes.end());
+    const auto labels = store().openCase("tube")->readVolume<std::uint8_t>("segmentation").value();
     EXPECT_EQ(labels.at(24, 20, 6), 1);
 }
 
@@ -221,8 +306,7 @@ TEST_F(Prepare, DamagedProductsAreMadeAgainByteForByte) {
             EXPECT_NE(report->notes.front().find(entry.file), std::string::npos)
                 << report->notes.front();
             for (const StageReport& stage : report->stages) {
-                const std::string product = stage.stage == "import" ? "ct" : stage.stage;
-                EXPECT_EQ(stage.reused, product != entry.product);
+                EXPECT_EQ(stage.reused, stage.stage != stageOf(entry.product));
             }
             EXPECT_EQ(bytesOf(tube), sound);
         }
@@ -259,6 +343,12 @@ TEST_F(Prepare, WrongOptionsAreToldAndLeaveNoCase) {
     EXPECT_FALSE(prepare(store(), "tube", {}));
     wrong = options();
     wrong.series = folder_ / "none";
+    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::notFound);
+    wrong = options();
+    wrong.surfaceErrorMm = 0.0;
+    EXPECT_FALSE(prepare(store(), "tube", wrong));
+    wrong = options();
+    wrong.organ = "spleen";
     EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::notFound);
     EXPECT_FALSE(prepare(store(), "../tube", options()));
     EXPECT_TRUE(fs::is_empty(folder_ / "store" / "cases"));

@@ -1,0 +1,127 @@
+#include "pipeline/lumen_stages.h"
+
+#include "pipeline/product_attributes.h"
+#include "topology/centerline_path.h"
+#include "topology/digital_topology.h"
+#include "topology/distance_field.h"
+#include "topology/handle_cutting.h"
+
+#include <cmath>
+
+namespace haustra::pipeline {
+namespace {
+
+using organs::ExpectedTopology;
+using store::Attributes;
+
+// Raise a stage's version whenever its product changes for the same input and options.
+constexpr int denoisingVersion = 1;
+constexpr int distanceVersion = 1;
+constexpr int centerlineVersion = 1;
+
+// The distance transform goes axis by axis, which needs axes at right angles.
+Result<void> checkOrthogonal(const Grid& grid) {
+    const glm::dmat3 axes(grid.patientFromVoxel);
+    for (int a = 0; a < 3; ++a) {
+        const int b = (a + 1) % 3;
+        const double cosine =
+            glm::dot(axes[a], axes[b]) / (glm::length(axes[a]) * glm::length(axes[b]));
+        if (!(std::abs(cosine) <= 1e-3)) {
+            return fail(ErrorKind::unsupported, "the lumen's voxel axes are not at right angles");
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& source) {
+    const StageMeter meter;
+    const ExpectedTopology topology = preparation.organ().topology;
+    const ProductKey key =
+        store::makeKey("denoising", denoisingVersion,
+                       std::string("topology=") + organs::toString(topology), {source.labelsKey});
+    // What an earlier call cleansed is no part of a case that is not cleansed now.
+    std::vector<std::string> outdated = madeFrom(product::lumen);
+    if (source.labels == product::segmentation) {
+        outdated.insert(outdated.end(),
+                        {product::mixture, product::cleansedLumen, product::cleansed});
+    }
+    const auto make = [&](const Progress& progress) -> Result<void> {
+        store::Case& target = preparation.target();
+        const int threads = preparation.options().threads;
+        const auto labels = target.readVolume<std::uint8_t>(source.labels);
+        if (!labels) return tl::make_unexpected(labels.error());
+        Attributes attributes;
+        if (const auto from = target.attributes(source.labels)) {
+            if (const auto iso = from->find("air-below-hu");
+                iso != from->end() && !source.hu.empty()) {
+                attributes["iso-hu"] = iso->second;
+            }
+        }
+        if (topology == ExpectedTopology::any) {
+            const auto kept = topology::digitalTopology(*labels, threads);
+            attributes["handles-kept"] = std::to_string(kept.handles());
+            return target.publishVolume(product::lumen, key, *labels, attributes, outdated);
+        }
+        topology::HandleCuttingOptions cutting;
+        cutting.threads = threads;
+        cutting.progress = progress;
+        const auto cut = topology::cutHandles(*labels, cutting);
+        if (!cut) return tl::make_unexpected(cut.error());
+        attributes["handles-cut"] = std::to_string(cut->handlesCut);
+        attributes["cavities-filled"] = std::to_string(cut->cavitiesFilled);
+        attributes["voxels-removed"] = std::to_string(cut->voxelsRemoved);
+        attributes["voxels-added"] = std::to_string(cut->voxelsAdded);
+        setNotes(attributes, cut->notes);
+        return target.publishVolume(product::lumen, key, cut->labels, attributes, outdated);
+    };
+    return preparation.run({"denoising", key, {product::lumen}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+Result<ProductKey> measureDistance(Preparation& preparation, const ProductKey& lumen) {
+    const StageMeter meter;
+    const ProductKey key = store::makeKey("distance", distanceVersion, "", {lumen});
+    const auto make = [&](const Progress&) -> Result<void> {
+        store::Case& target = preparation.target();
+        const auto labels = target.readVolume<std::uint8_t>(product::lumen);
+        if (!labels) return tl::make_unexpected(labels.error());
+        if (auto sound = checkOrthogonal(labels->grid()); !sound) return sound;
+        const auto distanceMm =
+            topology::distanceToBoundaryMm(*labels, preparation.options().threads);
+        return target.publishVolume(product::distance, key, distanceMm, {},
+                                    madeFrom(product::distance));
+    };
+    return preparation.run({"distance", key, {product::distance}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& lumen,
+                                   const ProductKey& distance) {
+    const StageMeter meter;
+    const ProductKey key = store::makeKey("centerline", centerlineVersion, "", {lumen, distance});
+    const auto make = [&](const Progress& progress) -> Result<void> {
+        store::Case& target = preparation.target();
+        const auto labels = target.readVolume<std::uint8_t>(product::lumen);
+        if (!labels) return tl::make_unexpected(labels.error());
+        const auto distanceMm = target.readVolume<float>(product::distance);
+        if (!distanceMm) return tl::make_unexpected(distanceMm.error());
+        topology::CenterlineOptions tracing;
+        tracing.threads = preparation.options().threads;
+        tracing.progress = progress;
+        const auto traced = topology::traceCenterline(*labels, *distanceMm, tracing);
+        if (!traced) return tl::make_unexpected(traced.error());
+        Attributes attributes{{"length-mm", exactText(traced->centerline.lengthMm())}};
+        setNotes(attributes, traced->notes);
+        return target.publishCenterline(product::centerline, key, traced->centerline, attributes,
+                                        madeFrom(product::centerline));
+    };
+    return preparation.run({"centerline", key, {product::centerline}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+}  // namespace haustra::pipeline

@@ -1,0 +1,28 @@
+// The stages that shape the lumen: denoising, distance, centerline, surface.
+#pragma once
+
+#include "pipeline/preparation.h"
+
+namespace haustra::pipeline {
+
+using store::ProductKey;
+
+/// What `lumen` is made from, and its surface is contoured on.
+struct WallSource {
+    std::string labels;  ///< the product: cleansed-lumen or segmentation
+    ProductKey labelsKey;
+    std::string hu;  ///< the product: cleansed or ct; empty: there is no scan
+    ProductKey huKey;
+};
+
+/// Each runs its stage and returns its product's key.
+/// `lumen`: handles cut where the organ is a ball, else the labels as they are.
+Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& source);
+Result<ProductKey> measureDistance(Preparation& preparation, const ProductKey& lumen);
+Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& lumen,
+                                   const ProductKey& distance);
+/// `surface`: the lumen contoured at the wall's HU and simplified within the error bound.
+Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
+                               const ProductKey& lumen);
+
+}  // namespace haustra::pipeline

@@ -1,0 +1,93 @@
+#include "pipeline/preparation.h"
+
+#include "pipeline/product_attributes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace haustra::pipeline {
+
+const std::vector<std::string>& madeFrom(const std::string& product) {
+    using namespace product;
+    static const std::map<std::string, std::vector<std::string>> dependents{
+        {ct,
+         {segmentation, mixture, cleansedLumen, cleansed, lumen, distance, centerline, surface}},
+        {segmentation, {mixture, cleansedLumen, cleansed, lumen, distance, centerline, surface}},
+        {mixture, {cleansedLumen, cleansed, lumen, distance, centerline, surface}},
+        {cleansedLumen, {cleansed, lumen, distance, centerline, surface}},
+        {cleansed, {lumen, distance, centerline, surface}},
+        {lumen, {distance, centerline, surface}},
+        {distance, {centerline}},
+        {centerline, {}},
+        {surface, {}}};
+    return dependents.at(product);
+}
+
+Preparation::Preparation(store::Case target, const PrepareOptions& options,
+                         organs::OrganProfile organ)
+    : target_(std::move(target)), options_(options), organ_(std::move(organ)) {}
+
+bool Preparation::wanted(const std::string& stage) const {
+    const auto& names = stageNames();
+    const auto last = std::find(names.begin(), names.end(), options_.until);
+    return std::find(names.begin(), names.end(), stage) <= last;
+}
+
+bool Preparation::reusable(const Stage& stage) {
+    for (const std::string& product : stage.products) {
+        if (!target_.has(product, stage.key)) return false;
+    }
+    bool all = true;
+    for (const std::string& product : stage.products) {
+        if (const auto sound = target_.verify(product); !sound) {
+            report_.notes.push_back(product + " is made again: " + describe(sound.error()));
+            all = false;
+        }
+    }
+    return all;
+}
+
+Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
+                              const std::function<Result<void>(const Progress&)>& make) {
+    const Progress progress = [this, &stage](double fraction) {
+        if (options_.progress) options_.progress(stage.name, std::clamp(fraction, 0.0, 1.0));
+    };
+    const bool reused = reusable(stage);
+    if (!reused) {
+        progress(0.0);
+        if (Result<void> made = make(progress); !made) {
+            if (made.error().place.empty()) made.error().place = stage.name;
+            return made;
+        }
+    }
+    progress(1.0);
+    for (const std::string& product : stage.products) {
+        const auto attributes = target_.attributes(product);
+        if (!attributes) return tl::make_unexpected(attributes.error());
+        for (const std::string& note : notesOf(*attributes))
+            report_.notes.push_back(stage.name + ": " + note);
+    }
+    report_.stages.push_back({stage.name, reused, meter.wallSeconds(), meter.peakMemoryMib()});
+    if (options_.log) {
+        options_.log(
+            stage.name +
+            (reused ? ": already done"
+                    : ": done in " + exactText(std::round(meter.wallSeconds() * 10) / 10) + " s"));
+    }
+    return {};
+}
+
+Result<CtScan> Preparation::readScan() const {
+    auto hu = target_.readVolume<std::int16_t>(product::ct);
+    if (!hu) return tl::make_unexpected(hu.error());
+    const auto attributes = target_.attributes(product::ct);
+    if (!attributes) return tl::make_unexpected(attributes.error());
+    const auto position = attributes->find("position");
+    return CtScan{std::move(*hu), position == attributes->end()
+                                      ? PatientPosition::unknown
+                                      : patientPositionFromString(position->second)};
+}
+
+}  // namespace haustra::pipeline

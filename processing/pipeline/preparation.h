@@ -1,0 +1,70 @@
+// One call of prepare as its stages see it: the case they write, the organ, and what is done of it.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "core/parallel.h"
+#include "organs/organ_profile.h"
+#include "pipeline/prepare.h"
+#include "pipeline/stage_meter.h"
+#include "store/case_store.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haustra::pipeline {
+
+/// Products by the order in which they are made, so that none comes from a later one.
+namespace product {
+inline constexpr char ct[] = "ct", segmentation[] = "segmentation", mixture[] = "mixture",
+                      cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
+                      lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
+                      surface[] = "surface";
+}  // namespace product
+
+/// The products that a product goes into, nearly or by way of others: what is outdated with it.
+const std::vector<std::string>& madeFrom(const std::string& product);
+
+/// One run of a stage. All its products are published under one key.
+struct Stage {
+    std::string name;
+    store::ProductKey key;
+    std::vector<std::string> products;
+};
+
+/// Stages hand volumes on through the store alone: each maps what it reads, page by page as it is
+/// touched, and lets go of it at its end, so that no volume is held longer than it is needed.
+/// Belongs to one thread.
+class Preparation {
+public:
+    Preparation(store::Case target, const PrepareOptions& options, organs::OrganProfile organ);
+
+    store::Case& target() { return target_; }
+    const PrepareOptions& options() const { return options_; }
+    const organs::OrganProfile& organ() const { return organ_; }
+
+    /// Not past `until`.
+    bool wanted(const std::string& stage) const;
+
+    /// Runs `make`, which publishes the stage's products, unless the case holds them all, sound,
+    /// under the stage's key. Either way the stage is reported, with the notes in its products'
+    /// attributes.
+    Result<void> run(const Stage& stage, const StageMeter& meter,
+                     const std::function<Result<void>(const Progress& progress)>& make);
+
+    /// The product `ct`, with its patient position.
+    Result<CtScan> readScan() const;
+
+    PrepareReport takeReport() { return std::move(report_); }
+
+private:
+    bool reusable(const Stage& stage);
+
+    store::Case target_;
+    const PrepareOptions& options_;
+    const organs::OrganProfile organ_;
+    PrepareReport report_;
+};
+
+}  // namespace haustra::pipeline

@@ -1,0 +1,207 @@
+#include "pipeline/scan_stages.h"
+
+#include "cleansing/digital_cleansing.h"
+#include "cleansing/mixture.h"
+#include "cleansing/tissue_mixture.h"
+#include "pipeline/product_attributes.h"
+#include "pipeline/read_inputs.h"
+#include "pipeline/source_key.h"
+#include "topology/hu_range_lumen.h"
+#include "topology/lumen.h"
+
+namespace haustra::pipeline {
+namespace {
+
+using organs::LumenFinder;
+using store::Attributes;
+
+// Raise a stage's version whenever its products change for the same input and options.
+constexpr int importVersion = 1;
+constexpr int segmentationVersion = 1;
+constexpr int maskVersion = 1;
+constexpr int mixtureVersion = 1;
+constexpr int cleansingVersion = 1;
+
+Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,
+                                 const Volume<std::uint8_t>& labels, const Attributes& attributes) {
+    return preparation.target().publishVolume(product::segmentation, key, labels, attributes,
+                                              madeFrom(product::segmentation));
+}
+
+Result<void> findGasAndTagged(Preparation& preparation, const CtScan& scan, const ProductKey& key,
+                              const Progress& progress) {
+    const PrepareOptions& options = preparation.options();
+    const auto tissue =
+        cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues);
+    if (!tissue) return tl::make_unexpected(tissue.error());
+    const auto lumen = topology::findLumen(
+        scan, *tissue, {options.seedsMm, options.excludesMm, options.threads, progress});
+    if (!lumen) return tl::make_unexpected(lumen.error());
+    Attributes attributes{{"source", "scan"},
+                          {"segments", std::to_string(lumen->segments.size())},
+                          {"gravity", exactText(lumen->gravity)}};
+    setTissueModel(attributes, *tissue);
+    setNotes(attributes, lumen->notes);
+    return publishSegmentation(preparation, key, lumen->labels, attributes);
+}
+
+Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const ProductKey& key,
+                         const Progress& progress) {
+    const PrepareOptions& options = preparation.options();
+    const organs::OrganProfile& organ = preparation.organ();
+    const auto lumen =
+        topology::findHuRangeLumen(scan.hu, {organ.contentHu, organ.openingMm, options.seedsMm,
+                                             options.excludesMm, options.threads, progress});
+    if (!lumen) return tl::make_unexpected(lumen.error());
+    Attributes attributes{{"source", "scan"}, {"segments", std::to_string(lumen->bodies)}};
+    setNotes(attributes, lumen->notes);
+    return publishSegmentation(preparation, key, lumen->labels, attributes);
+}
+
+// What mixture and cleansing start from.
+struct SegmentedScan {
+    CtScan scan;
+    Volume<std::uint8_t> labels;
+    TissueModel tissue;
+    glm::dvec3 gravity{0.0};
+};
+
+Result<SegmentedScan> readSegmentedScan(Preparation& preparation) {
+    auto scan = preparation.readScan();
+    if (!scan) return tl::make_unexpected(scan.error());
+    auto labels = preparation.target().readVolume<std::uint8_t>(product::segmentation);
+    if (!labels) return tl::make_unexpected(labels.error());
+    const auto attributes = preparation.target().attributes(product::segmentation);
+    if (!attributes) return tl::make_unexpected(attributes.error());
+    const auto tissue = tissueModelOf(*attributes);
+    if (!tissue) return tl::make_unexpected(tissue.error());
+    return SegmentedScan{std::move(*scan), std::move(*labels), *tissue, gravityOf(*attributes)};
+}
+
+}  // namespace
+
+Result<ProductKey> importScan(Preparation& preparation) {
+    const StageMeter meter;
+    const PrepareOptions& options = preparation.options();
+    const auto source = sourceKey(options.series, options.threads);
+    if (!source) return tl::make_unexpected(source.error());
+    const ProductKey key = store::makeKey("import", importVersion, options.seriesUid, {*source});
+    const auto make = [&](const Progress& progress) -> Result<void> {
+        const auto input = readScan(options.series, options.seriesUid, options.threads, progress);
+        if (!input) return tl::make_unexpected(input.error());
+        Attributes attributes{{"position", toString(input->scan.position)},
+                              {"images", std::to_string(input->images)}};
+        setNotes(attributes, input->notes);
+        return preparation.target().publishVolume(product::ct, key, input->scan.hu, attributes,
+                                                  madeFrom(product::ct));
+    };
+    return preparation.run({"import", key, {product::ct}}, meter, make).map([&] { return key; });
+}
+
+Result<ProductKey> segmentScan(Preparation& preparation, const ProductKey& ct) {
+    const StageMeter meter;
+    const PrepareOptions& options = preparation.options();
+    const ProductKey key = store::makeKey("segmentation", segmentationVersion,
+                                          organs::segmentationOptions(preparation.organ()) +
+                                              exactText("seed", options.seedsMm) +
+                                              exactText("exclude", options.excludesMm),
+                                          {ct});
+    const auto make = [&](const Progress& progress) -> Result<void> {
+        const auto scan = preparation.readScan();
+        if (!scan) return tl::make_unexpected(scan.error());
+        return preparation.organ().finder == LumenFinder::huRange
+                   ? findHuRange(preparation, *scan, key, progress)
+                   : findGasAndTagged(preparation, *scan, key, progress);
+    };
+    return preparation.run({"segmentation", key, {product::segmentation}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+Result<ProductKey> takeMask(Preparation& preparation, const std::optional<ProductKey>& ct) {
+    const StageMeter meter;
+    const PrepareOptions& options = preparation.options();
+    const auto mask = sourceKey(options.lumenMask, options.threads);
+    if (!mask) return tl::make_unexpected(mask.error());
+    std::vector<ProductKey> inputs{*mask};
+    if (ct) inputs.push_back(*ct);
+    // Of the organ, only how its tissues are told apart matters here.
+    const bool fitted = ct && preparation.organ().finder == LumenFinder::gasAndTagged;
+    const ProductKey key =
+        store::makeKey("segmentation-mask", maskVersion,
+                       fitted ? organs::segmentationOptions(preparation.organ()) : "", inputs);
+    const auto make = [&](const Progress&) -> Result<void> {
+        CtScan scan;
+        if (ct) {
+            auto read = preparation.readScan();
+            if (!read) return tl::make_unexpected(read.error());
+            scan = std::move(*read);
+        }
+        const Grid grid = scan.hu.grid();
+        const auto input = readLumenMask(options.lumenMask, ct ? &grid : nullptr);
+        if (!input) return tl::make_unexpected(input.error());
+        Attributes attributes{{"source", "mask"}};
+        if (fitted) {
+            const auto tissue =
+                cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues);
+            if (!tissue) return tl::make_unexpected(tissue.error());
+            attributes["gravity"] = exactText(gravityDirection(scan.position));
+            setTissueModel(attributes, *tissue);
+        }
+        setNotes(attributes, input->notes);
+        return publishSegmentation(preparation, key, input->labels, attributes);
+    };
+    return preparation.run({"segmentation", key, {product::segmentation}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
+                              const ProductKey& segmentation) {
+    const StageMeter meter;
+    const ProductKey key = store::makeKey("mixture", mixtureVersion, "", {ct, segmentation});
+    const auto make = [&](const Progress& progress) -> Result<void> {
+        store::Case& target = preparation.target();
+        const auto input = readSegmentedScan(preparation);
+        if (!input) return tl::make_unexpected(input.error());
+        const auto mixture =
+            cleansing::estimateMixture(input->scan, input->tissue, input->labels, input->gravity,
+                                       {preparation.options().threads, progress});
+        if (!mixture) return tl::make_unexpected(mixture.error());
+        return target.publishVolume(product::mixture, key, *mixture, {},
+                                    madeFrom(product::mixture));
+    };
+    return preparation.run({"mixture", key, {product::mixture}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
+                               const ProductKey& segmentation, const ProductKey& mixture) {
+    const StageMeter meter;
+    const ProductKey key =
+        store::makeKey("cleansing", cleansingVersion, "", {ct, segmentation, mixture});
+    const auto make = [&](const Progress&) -> Result<void> {
+        store::Case& target = preparation.target();
+        const auto input = readSegmentedScan(preparation);
+        if (!input) return tl::make_unexpected(input.error());
+        const auto fractions = target.readVolume<TissueFractions>(product::mixture);
+        if (!fractions) return tl::make_unexpected(fractions.error());
+        const auto cleansed = cleansing::cleanse(input->scan, input->tissue, *fractions,
+                                                 input->labels, preparation.options().threads);
+        if (!cleansed) return tl::make_unexpected(cleansed.error());
+        const Attributes wall{{"air-below-hu", exactText(input->tissue.airBelowHu)}};
+        return target
+            .publishVolume(product::cleansedLumen, key, cleansed->lumen, wall,
+                           madeFrom(product::cleansedLumen))
+            .and_then([&] {
+                return target.publishVolume(product::cleansed, key, cleansed->hu, wall,
+                                            madeFrom(product::cleansed));
+            });
+    };
+    return preparation
+        .run({"cleansing", key, {product::cleansedLumen, product::cleansed}}, meter, make)
+        .map([&] { return key; });
+}
+
+}  // namespace haustra::pipeline

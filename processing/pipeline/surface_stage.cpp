@@ -1,0 +1,121 @@
+#include "pipeline/lumen_stages.h"
+#include "pipeline/product_attributes.h"
+#include "surface/dual_contouring.h"
+#include "surface/simplification.h"
+#include "surface/wall_field.h"
+
+namespace haustra::pipeline {
+namespace {
+
+using organs::ExpectedTopology;
+using organs::LumenFinder;
+using store::Attributes;
+
+// Raise it whenever the surface changes for the same input and options.
+constexpr int surfaceVersion = 1;
+
+// Which HU the wall stands at, and in which field.
+enum class WallRule { air, content, mask };
+
+WallRule wallRule(const Preparation& preparation, const WallSource& source) {
+    if (source.hu.empty()) return WallRule::mask;
+    return preparation.organ().finder == LumenFinder::huRange ? WallRule::content : WallRule::air;
+}
+
+const char* toString(WallRule rule) {
+    switch (rule) {
+        case WallRule::air:
+            return "air";
+        case WallRule::content:
+            return "content";
+        case WallRule::mask:
+            return "mask";
+    }
+    return "";
+}
+
+Result<surface::WallField> readWall(Preparation& preparation, const WallSource& source,
+                                    const Volume<std::uint8_t>& lumen) {
+    const int threads = preparation.options().threads;
+    const WallRule rule = wallRule(preparation, source);
+    if (rule == WallRule::mask) return surface::smoothedMask(lumen, threads);
+    auto hu = preparation.target().readVolume<std::int16_t>(source.hu);
+    if (!hu) return tl::make_unexpected(hu.error());
+    if (rule == WallRule::content) return surface::contentField(*hu, lumen, threads);
+    const auto attributes = preparation.target().attributes(product::segmentation);
+    if (!attributes) return tl::make_unexpected(attributes.error());
+    const auto tissue = tissueModelOf(*attributes);
+    if (!tissue) return tl::make_unexpected(tissue.error());
+    return surface::WallField{std::move(*hu), tissue->airBelowHu, false};
+}
+
+// What every later stage relies on; that it holds is the contouring's and the simplification's
+// promise, so a breach is told, not stored.
+Result<void> checkSurface(const MeshTopology& topology, ExpectedTopology expected) {
+    if (!topology.closed()) {
+        return fail(
+            ErrorKind::noResult,
+            "the surface is not closed and manifold: " + std::to_string(topology.boundaryEdges) +
+                " open edges, " + std::to_string(topology.nonManifoldEdges) + " of no manifold");
+    }
+    if (expected == ExpectedTopology::ball &&
+        (topology.components != 1 || topology.eulerCharacteristic != 2)) {
+        return fail(ErrorKind::noResult, "the surface is not a ball's: it has " +
+                                             std::to_string(topology.components) +
+                                             " parts and Euler characteristic " +
+                                             std::to_string(topology.eulerCharacteristic));
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
+                               const ProductKey& lumenKey) {
+    const StageMeter meter;
+    const PrepareOptions& options = preparation.options();
+    std::vector<ProductKey> inputs{lumenKey};
+    if (!source.hu.empty()) inputs.push_back(source.huKey);
+    const ProductKey key = store::makeKey("surface", surfaceVersion,
+                                          "error-mm=" + exactText(options.surfaceErrorMm) +
+                                              ";wall=" + toString(wallRule(preparation, source)),
+                                          inputs);
+    const auto make = [&](const Progress& progress) -> Result<void> {
+        store::Case& target = preparation.target();
+        Attributes attributes;
+        TriMesh fine;
+        {
+            const auto lumen = target.readVolume<std::uint8_t>(product::lumen);
+            if (!lumen) return tl::make_unexpected(lumen.error());
+            const auto wall = readWall(preparation, source, *lumen);
+            if (!wall) return tl::make_unexpected(wall.error());
+            auto contoured =
+                surface::contourLumen(wall->hu, *lumen, wall->isoHu, {options.threads});
+            if (!contoured) return tl::make_unexpected(contoured.error());
+            fine = std::move(*contoured);
+            if (!source.hu.empty())
+                attributes["iso-hu"] = exactText(wall->negated ? -wall->isoHu : wall->isoHu);
+        }
+        progress(0.3);
+        surface::SimplificationOptions simplification;
+        simplification.errorMm = options.surfaceErrorMm;
+        simplification.threads = options.threads;
+        simplification.progress = [&](double fraction) { progress(0.3 + 0.7 * fraction); };
+        const auto simple = surface::simplify(fine, simplification);
+        if (!simple) return tl::make_unexpected(simple.error());
+        const MeshTopology topology = meshTopology(*simple);
+        if (auto sound = checkSurface(topology, preparation.organ().topology); !sound) return sound;
+        attributes["euler-characteristic"] = std::to_string(topology.eulerCharacteristic);
+        attributes["vertices"] = std::to_string(simple->vertices.size());
+        attributes["triangles"] = std::to_string(simple->triangles.size());
+        attributes["contoured-triangles"] = std::to_string(fine.triangles.size());
+        attributes["error-mm"] = exactText(options.surfaceErrorMm);
+        return target.publishMesh(product::surface, key, *simple, attributes,
+                                  madeFrom(product::surface));
+    };
+    return preparation.run({"surface", key, {product::surface}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+}  // namespace haustra::pipeline
