@@ -1,7 +1,5 @@
 #include "surface/boundary_cells.h"
 
-#include "core/parallel.h"
-
 #include <algorithm>
 #include <cstring>
 

@@ -1,6 +1,7 @@
 // The cells that the lumen's boundary passes through.
 #pragma once
 
+#include "core/parallel.h"
 #include "core/volume.h"
 #include "surface/cell_cases.h"
 
@@ -35,6 +36,16 @@ public:
                 begin_[std::size_t(n) + 1] - begin_[std::size_t(n)]};
     }
     std::span<const BoundaryCell> cells() const { return cells_; }
+    /// body(cell, k) for each cell, on several threads.
+    template <class Body>
+    void forEach(int threads, const Body& body) const {
+        parallelFor(std::size_t(layers()), 4, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                for (const BoundaryCell& cell : layer(int(n)))
+                    body(cell, kOfLayer(int(n)));
+            }
+        });
+    }
     /// Place of a layer's first cell among all.
     std::size_t layerBegin(int n) const { return begin_[std::size_t(n)]; }
     std::size_t vertexCount() const { return vertexCount_; }

@@ -28,8 +28,8 @@ public:
 
 private:
     double at(glm::ivec3 v) const;
-    /// HU a voxel, by Sobel's stencil of 27 voxels: smoothed across each difference, it halves the
-    /// noise of central differences and follows oblique walls better.
+    /// HU a voxel, by Sobel's stencil of 27 voxels: smoothed across each difference, it has half
+    /// the noise of central differences and follows oblique walls better.
     glm::dvec3 gradient(glm::ivec3 v) const;
 
     const Volume<std::int16_t>& hu_;

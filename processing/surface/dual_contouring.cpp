@@ -5,7 +5,8 @@
 #include "surface/face_vertices.h"
 #include "surface/vertex_placement.h"
 
-#include <utility>
+#include <array>
+#include <optional>
 
 namespace haustra::surface {
 namespace {

@@ -1,7 +1,5 @@
 #include "surface/loop_quadric.h"
 
-#include "core/parallel.h"
-
 #include <array>
 #include <utility>
 
@@ -33,12 +31,7 @@ std::vector<LoopQuadric> loopQuadrics(const BoundaryCells& cells,
         for (int loop = 0; loop < loops.count; ++loop)
             quadric[loop].mean /= double(count[std::size_t(loop)]);
     };
-    parallelFor(std::size_t(cells.layers()), 1, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-            for (const BoundaryCell& cell : cells.layer(int(n)))
-                addCell(cell, BoundaryCells::kOfLayer(int(n)));
-        }
-    });
+    cells.forEach(threads, addCell);
     return quadrics;
 }
 

@@ -1,8 +1,8 @@
 // Laws of the lumen's surface: for any labels and any HU it is a closed manifold without
 // self-intersections, and its topology is that of the labels.
 #include "core/ct_scan.h"
+#include "label_topology.h"
 #include "mesh_laws.h"
-#include "surface/cell_cases.h"
 #include "surface/dual_contouring.h"
 #include "surface/self_intersection.h"
 
@@ -16,64 +16,6 @@ namespace {
 
 using Labels = Volume<std::uint8_t>;
 using Hu = Volume<std::int16_t>;
-
-/// χ of the solid whose voxels are 6-connected in an 18-connected background, from counts of
-/// elements alone: voxels − edges + squares − cubes, and one more disc for each cube that is
-/// outside at two opposite corners alone, which 18-connectivity keeps apart.
-long solidEuler(const Labels& labels) {
-    const glm::ivec3 size = labels.grid().size;
-    auto inside = [&](glm::ivec3 v) { return labels.grid().contains(v) && labels.at(v) != 0; };
-    long euler = 0;
-    for (int k = -1; k < size.z; ++k) {
-        for (int j = -1; j < size.y; ++j) {
-            for (int i = -1; i < size.x; ++i) {
-                unsigned block = 0;
-                for (int corner = 0; corner < 8; ++corner)
-                    block |= unsigned(inside(glm::ivec3(i, j, k) + surface::cornerOffset(corner)))
-                             << corner;
-                auto all = [&](unsigned mask) { return (block & mask) == mask; };
-                euler += all(0x01);
-                euler -= all(0x03) + all(0x05) + all(0x11);
-                euler += all(0x0f) + all(0x33) + all(0x55);
-                euler -= all(0xff);
-                for (unsigned corner = 0; corner < 4; ++corner)
-                    euler += block == (0xffu & ~(1u << corner | 1u << (7 - corner)));
-            }
-        }
-    }
-    return euler;
-}
-
-/// Components of the voxels that are (or are not) labelled, joined to neighbours at a squared
-/// distance of at most `reach`; beyond the grid lies one ring of background.
-long componentCount(const Labels& labels, bool ofObject, int reach) {
-    const glm::ivec3 size = labels.grid().size + 2;
-    const Grid ring = axisAlignedGrid(size, glm::dvec3(1.0));
-    auto member = [&](glm::ivec3 v) {
-        const bool object = labels.grid().contains(v - 1) && labels.at(v - 1) != 0;
-        return ring.contains(v) && object == ofObject;
-    };
-    std::vector<char> seen(ring.voxelCount(), 0);
-    long count = 0;
-    for (std::size_t start = 0; start < seen.size(); ++start) {
-        if (seen[start] || !member(ring.voxelAt(start))) continue;
-        ++count;
-        std::vector<glm::ivec3> open{ring.voxelAt(start)};
-        seen[start] = 1;
-        while (!open.empty()) {
-            const glm::ivec3 v = open.back();
-            open.pop_back();
-            for (int n = 0; n < 27; ++n) {
-                const glm::ivec3 d(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-                if (glm::dot(glm::dvec3(d), glm::dvec3(d)) > reach || !member(v + d)) continue;
-                if (seen[ring.index(v + d)]) continue;
-                seen[ring.index(v + d)] = 1;
-                open.push_back(v + d);
-            }
-        }
-    }
-    return count;
-}
 
 struct Case {
     Labels labels;
@@ -97,10 +39,10 @@ void expectLaws(const Case& given) {
     const MeshTopology topology = meshTopology(*mesh);
     ASSERT_TRUE(topology.closed());
     ASSERT_TRUE(tests::everyVertexHasOneFan(*mesh));
-    ASSERT_EQ(topology.eulerCharacteristic, 2 * solidEuler(given.labels));
+    ASSERT_EQ(topology.eulerCharacteristic, 2 * tests::solidEuler(given.labels));
     // Each surface parts one component of the object from one of the background: a tree.
-    ASSERT_EQ(topology.components,
-              componentCount(given.labels, true, 1) + componentCount(given.labels, false, 2) - 1);
+    ASSERT_EQ(topology.components, tests::componentCount(given.labels, true, 1) +
+                                       tests::componentCount(given.labels, false, 2) - 1);
     ASSERT_GT(tests::signedVolumeMm3(*mesh), 0.0);
     ASSERT_EQ(surface::selfIntersections(*mesh).size(), 0u);
 }
