@@ -154,7 +154,9 @@ Result<SurfaceScore> scoreSurface(const TriMesh& mesh, const TrueSurface& truth,
     std::vector<Place> corners;
     for (const glm::dvec3& vertex : mesh.vertices)
         corners.push_back({vertex, 1.0});
-    measure(corners, options.threads, truth, toTruth);
+    measure(corners, options.threads, truth, [&](glm::dvec3 p) {
+        return truth.atMostMm(p) > score.fromMesh.maxMm ? truth.distanceMm(p) : 0.0;
+    });
     const SurfaceDistances atCorners = summarise(corners);
     if (atCorners.maxMm > score.fromMesh.maxMm) {
         score.fromMesh.maxMm = atCorners.maxMm;

@@ -29,13 +29,13 @@ struct SurfaceScore {
 };
 
 struct SurfaceScoreOptions {
-    int samples = 200'000;  ///< of the mesh, spread evenly over its area
+    int samples = 100'000;  ///< of the mesh, spread evenly over its area
     int threads = 0;
 };
 
 /// Fails where the mesh has no area or the truth no samples. The vertices of the mesh count toward
 /// its maximum, too, so that a spike between the samples is seen. The same for any number of
-/// threads. O(samples + vertices) distances to the truth, O(truth samples) to the mesh.
+/// threads. O(samples) distances to the truth, O(truth samples) to the mesh.
 Result<SurfaceScore> scoreSurface(const TriMesh& mesh, const TrueSurface& truth,
                                   const SurfaceScoreOptions& options = {});
 

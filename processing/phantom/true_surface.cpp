@@ -27,14 +27,17 @@ glm::dvec3 bisect(const std::function<double(glm::dvec3)>& field, glm::dvec3 a, 
     return 0.5 * (a + b);
 }
 
-/// The 26 directions to a voxel's neighbours.
-std::array<glm::dvec3, 26> allAround() {
-    std::array<glm::dvec3, 26> directions;
-    for (int n = 0, m = 0; n < 27; ++n) {
-        if (n != 13)
-            directions[std::size_t(m++)] =
-                glm::normalize(glm::dvec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
-    }
+/// To the faces and corners of a cube.
+const std::array<glm::dvec3, 14>& allAround() {
+    static const std::array<glm::dvec3, 14> directions = [] {
+        std::array<glm::dvec3, 14> all;
+        for (int n = 0; n < 8; ++n)
+            all[std::size_t(n)] =
+                glm::normalize(glm::dvec3(n & 1 ? 1 : -1, n & 2 ? 1 : -1, n & 4 ? 1 : -1));
+        for (int n = 0; n < 6; ++n)
+            all[std::size_t(8 + n)][n / 2] = n % 2 ? 1.0 : -1.0;
+        return all;
+    }();
     return directions;
 }
 
@@ -152,11 +155,19 @@ bool TrueSurface::probe(glm::dvec3 p, bool inLumen, glm::dvec3 direction, glm::d
     return true;
 }
 
-double TrueSurface::distanceMm(glm::dvec3 p) const {
-    const auto nearest = near_.nearest(p, [&](std::uint32_t n) {
+CellGrid::Nearest TrueSurface::nearestSample(glm::dvec3 p) const {
+    return near_.nearest(p, [&](std::uint32_t n) {
         const glm::dvec3 d = samples_[n].positionMm - p;
         return glm::dot(d, d);
     });
+}
+
+double TrueSurface::atMostMm(glm::dvec3 p) const {
+    return std::sqrt(nearestSample(p).squaredMm2);
+}
+
+double TrueSurface::distanceMm(glm::dvec3 p) const {
+    const auto nearest = nearestSample(p);
     if (nearest.item == CellGrid::none) return std::numeric_limits<double>::infinity();
     glm::dvec3 foot = slide(p, samples_[nearest.item].positionMm);
     // Creases and thin folds hide nearer places from a slide: any place of p's other side nearer
@@ -166,7 +177,7 @@ double TrueSurface::distanceMm(glm::dvec3 p) const {
     for (const glm::dvec3& direction : allAround())
         found |= glm::distance(p, foot) > kNearMm && probe(p, inLumen, direction, foot);
     if (found) foot = slide(p, foot);
-    for (const double angle : {0.9, 0.45, 0.2, 0.1}) {
+    for (const double angle : {0.7, 0.3, 0.12}) {
         for (int turn = 0; turn < 6 && glm::distance(p, foot) > kNearMm; ++turn) {
             const glm::dvec3 axis = glm::normalize(foot - p);
             const glm::dvec3 u = glm::normalize(glm::cross(

@@ -43,10 +43,13 @@ public:
     /// creases to 0.06 mm. Infinity where there are no samples. Thread-safe; about a hundred
     /// evaluations of the field.
     double distanceMm(glm::dvec3 p) const;
-    /// The same, negative in the lumen.
+    /// The distance to the nearest sample: never less than distanceMm, and cheap.
+    double atMostMm(glm::dvec3 p) const;
+    /// distanceMm, negative in the lumen.
     double signedDistanceMm(glm::dvec3 p) const;
 
 private:
+    CellGrid::Nearest nearestSample(glm::dvec3 p) const;
     glm::dvec3 gradient(glm::dvec3 p, double atP) const;
     glm::dvec3 slide(glm::dvec3 p, glm::dvec3 start) const;
     bool probe(glm::dvec3 p, bool inLumen, glm::dvec3 direction, glm::dvec3& foot) const;

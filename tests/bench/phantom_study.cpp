@@ -1,0 +1,212 @@
+#include "bench/phantom_study.h"
+
+#include "cleansing/digital_cleansing.h"
+#include "cleansing/mixture.h"
+#include "cleansing/tissue_mixture.h"
+#include "nifti/nifti_file.h"
+#include "surface/dual_contouring.h"
+#include "surface/mesh_file.h"
+#include "surface/self_intersection.h"
+#include "surface/simplification.h"
+#include "topology/centerline_path.h"
+#include "topology/distance_field.h"
+#include "topology/lumen.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace haustra::bench {
+namespace {
+
+class Stopwatch {
+public:
+    /// Seconds since the last lap, or since the beginning.
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+SmallestAngles smallestAngles(const TriMesh& mesh) {
+    std::vector<double> degrees;
+    for (const glm::ivec3 t : mesh.triangles) {
+        double least = 180.0;
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 a = mesh.vertices[t[corner]];
+            const glm::dvec3 u = mesh.vertices[t[(corner + 1) % 3]] - a,
+                             v = mesh.vertices[t[(corner + 2) % 3]] - a;
+            least = std::min(
+                least, glm::degrees(std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v))));
+        }
+        degrees.push_back(least);
+    }
+    SmallestAngles angles;
+    if (degrees.empty()) return angles;
+    std::sort(degrees.begin(), degrees.end());
+    angles.least = degrees.front();
+    angles.p1 = degrees[degrees.size() / 100];
+    angles.median = degrees[degrees.size() / 2];
+    angles.shareBelow10 =
+        double(std::lower_bound(degrees.begin(), degrees.end(), 10.0) - degrees.begin()) /
+        double(degrees.size());
+    return angles;
+}
+
+/// Contours, scores, simplifies to each bound and scores again.
+Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int16_t>& cleansedHu,
+                           const Volume<std::uint8_t>& lumen, const StudyOptions& options,
+                           PhantomStudy& study) {
+    const int threads = options.phantom.threads;
+    options.log("true surface");
+    const phantom::TrueSurface surface = phantom::trueLumenSurface(options.phantom, truth.lumen);
+    Stopwatch watch;
+    const auto add = [&](const std::string& what, const TriMesh& mesh,
+                         double seconds) -> Result<void> {
+        options.log("score of surface " + what);
+        auto scored = studySurface(what, mesh, surface, threads);
+        if (!scored) return tl::make_unexpected(scored.error());
+        scored->seconds = seconds;
+        study.surfaces.push_back(std::move(*scored));
+        if (options.out.empty()) return {};
+        return surface::writeMesh(options.out / ("surface " + what + ".ply"), mesh);
+    };
+
+    // What contouring alone does, on a scan that needed no cleansing, in a lumen that is the truth.
+    topology::HandleCuttingOptions cutting;
+    cutting.threads = threads;
+    const auto trueBall = topology::cutHandles(truth.lumen, cutting);
+    if (!trueBall) return tl::make_unexpected(trueBall.error());
+    watch.lap();
+    const auto ideal =
+        surface::contourLumen(truth.untaggedHu, trueBall->labels, study.airBelowHu, {threads});
+    if (!ideal) return tl::make_unexpected(ideal.error());
+    if (auto added = add("truth", *ideal, watch.lap()); !added) return added;
+
+    watch.lap();
+    const auto fine = surface::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
+    if (!fine) return tl::make_unexpected(fine.error());
+    if (auto added = add("fine", *fine, watch.lap()); !added) return added;
+    for (const double errorMm : options.errorBoundsMm) {
+        char what[32];
+        std::snprintf(what, sizeof what, "%.2f mm", errorMm);
+        options.log(std::string("simplification to ") + what);
+        watch.lap();
+        surface::SimplificationOptions simplification;
+        simplification.errorMm = errorMm, simplification.threads = threads;
+        const auto simple = surface::simplify(*fine, simplification);
+        if (!simple) return tl::make_unexpected(simple.error());
+        if (auto added = add(what, *simple, watch.lap()); !added) return added;
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<SurfaceStudy> studySurface(std::string what, const TriMesh& mesh,
+                                  const phantom::TrueSurface& truth, int threads) {
+    SurfaceStudy study;
+    study.what = std::move(what);
+    study.triangles = mesh.triangles.size();
+    study.topology = meshTopology(mesh);
+    study.selfIntersections = surface::selfIntersections(mesh).size();
+    study.angles = smallestAngles(mesh);
+    phantom::SurfaceScoreOptions scoring;
+    scoring.threads = threads;
+    return phantom::scoreSurface(mesh, truth, scoring).map([&](const phantom::SurfaceScore& score) {
+        study.score = score;
+        return study;
+    });
+}
+
+Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
+    const int threads = options.phantom.threads;
+    PhantomStudy study;
+    Stopwatch watch;
+    options.log("phantom");
+    const auto truth = phantom::makePhantom(options.phantom);
+    if (!truth) return tl::make_unexpected(truth.error());
+    study.phantomSeconds = watch.lap();
+    study.noiseSdHu = truth->noiseSdHu;
+    study.lengthMm = truth->centerline.lengthMm();
+    const auto voxels = truth->lumen.voxels();
+    study.lumenMl =
+        double(voxels.size() - std::size_t(std::count(voxels.begin(), voxels.end(), 0))) *
+        truth->lumen.grid().voxelVolumeMm3() * 1e-3;
+
+    options.log("segmentation");
+    watch.lap();
+    const auto tissue = cleansing::fitTissueModel(truth->scan, threads);
+    if (!tissue) return tl::make_unexpected(tissue.error());
+    study.airBelowHu = tissue->airBelowHu;
+    topology::LumenOptions finding;
+    finding.threads = threads;
+    const auto segmentation = topology::findLumen(truth->scan, *tissue, finding);
+    if (!segmentation) return tl::make_unexpected(segmentation.error());
+    study.segmentationSeconds = watch.lap();
+
+    options.log("mixture");
+    const auto mixture = cleansing::estimateMixture(truth->scan, *tissue, segmentation->labels,
+                                                    segmentation->gravity, {threads, {}});
+    if (!mixture) return tl::make_unexpected(mixture.error());
+    study.mixtureSeconds = watch.lap();
+    options.log("cleansing");
+    const auto cleansed =
+        cleansing::cleanse(truth->scan, *tissue, *mixture, segmentation->labels, threads);
+    if (!cleansed) return tl::make_unexpected(cleansed.error());
+    study.cleansingSeconds = watch.lap();
+    options.log("denoising");
+    topology::HandleCuttingOptions cutting;
+    cutting.threads = threads;
+    auto cut = topology::cutHandles(cleansed->lumen, cutting);
+    if (!cut) return tl::make_unexpected(cut.error());
+    study.denoisingSeconds = watch.lap();
+    const Volume<std::uint8_t> lumen = std::move(cut->labels);
+    study.cut = std::move(*cut);
+    options.log("centerline");
+    topology::CenterlineOptions tracing;
+    tracing.threads = threads;
+    const auto traced =
+        topology::traceCenterline(lumen, topology::distanceToBoundaryMm(lumen, threads), tracing);
+    study.centerlineSeconds = watch.lap();
+
+    options.log("scores");
+    study.before = topology::digitalTopology(cleansed->lumen, threads);
+    study.after = topology::digitalTopology(lumen, threads);
+    // A lumen without a centerline still has a score of its own.
+    const Centerline found = traced ? traced->centerline : Centerline{};
+    const auto rough =
+        phantom::scoreLumen(truth->lumen, truth->centerline, segmentation->labels, found);
+    if (!rough) return tl::make_unexpected(rough.error());
+    study.segmentation = *rough;
+    const auto fine = phantom::scoreLumen(truth->lumen, truth->centerline, lumen, found);
+    if (!fine) return tl::make_unexpected(fine.error());
+    study.lumen = *fine;
+    auto clean = phantom::scoreCleansing(*truth, cleansed->hu);
+    if (!clean) return tl::make_unexpected(clean.error());
+    study.cleansing = std::move(*clean);
+
+    if (!options.out.empty()) {
+        std::error_code ignored;  // the writers tell
+        std::filesystem::create_directories(options.out, ignored);
+        const auto written =
+            nifti::writeNifti(options.out / "cleansed.nii.gz", cleansed->hu)
+                .and_then([&] { return nifti::writeNifti(options.out / "lumen.nii.gz", lumen); })
+                .and_then([&] {
+                    return nifti::writeNifti(options.out / "segmentation.nii.gz",
+                                             segmentation->labels);
+                });
+        if (!written) return tl::make_unexpected(written.error());
+    }
+    if (options.surface) {
+        if (auto done = studySurfaces(*truth, cleansed->hu, lumen, options, study); !done)
+            return tl::make_unexpected(done.error());
+    }
+    return study;
+}
+
+}  // namespace haustra::bench
