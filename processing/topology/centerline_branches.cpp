@@ -36,39 +36,38 @@ void cover(const BlockGraph& graph, const std::vector<std::int32_t>& route,
     }
 }
 
-/// A part of the tree that leaves another, followed to its farthest tip.
+/// The way from a tip back to what it leaves.
 struct Chain {
     std::int32_t tip;
     float lengthMm;
 };
 
-/// The tree cut into chains, each the longest way on from where it leaves another or the main
-/// route; the longest chain first, none shorter than `shortestMm`.
-std::vector<Chain> longChains(const PathTree& widest, const std::vector<bool>& onRoute,
-                              double shortestMm) {
-    const auto lengthMm = [&](std::int32_t node) { return widest.lengthMm[std::size_t(node)]; };
-    std::vector<std::int32_t> farthest(widest.parent.size(), -1);  // tip below each node
+/// A forest of shortest ways back to a route, cut into chains: each the longest way on from the
+/// route or from where it leaves another chain. The longest first, none shorter than `shortestMm`.
+std::vector<Chain> longChains(const PathTree& shortest, double shortestMm) {
+    const auto lengthMm = [&](std::int32_t node) { return shortest.lengthMm[std::size_t(node)]; };
+    std::vector<std::int32_t> farthestFirst;
+    for (std::size_t n = 0; n < shortest.parent.size(); ++n) {
+        if (shortest.parent[n] >= 0) farthestFirst.push_back(std::int32_t(n));
+    }
+    std::sort(farthestFirst.begin(), farthestFirst.end(), [&](std::int32_t a, std::int32_t b) {
+        return lengthMm(a) != lengthMm(b) ? lengthMm(a) > lengthMm(b) : a < b;
+    });
+    std::vector<std::int32_t> tipBeyond(shortest.parent.size(), -1);
     std::vector<Chain> chains;
-    const auto end = [&](std::int32_t tip, std::int32_t parent) {
-        const float chainMm = lengthMm(tip) - lengthMm(parent);
-        if (double(chainMm) >= shortestMm) chains.push_back({tip, chainMm});
-    };
-    for (std::size_t n = widest.order.size(); n-- > 1;) {
-        const std::int32_t node = widest.order[n], parent = widest.parent[std::size_t(node)];
-        if (onRoute[std::size_t(node)]) continue;
-        const std::int32_t own = farthest[std::size_t(node)];
-        const std::int32_t tip = own >= 0 ? own : node;
-        if (onRoute[std::size_t(parent)]) {
-            end(tip, parent);
-            continue;
-        }
-        std::int32_t& best = farthest[std::size_t(parent)];
-        if (best < 0 || lengthMm(tip) > lengthMm(best)) {
-            if (best >= 0) end(best, parent);
-            best = tip;
-        } else {
-            end(tip, parent);
-        }
+    // Children come before their parents, and the farthest tip reaches a node first.
+    for (const std::int32_t node : farthestFirst) {
+        std::int32_t& tip = tipBeyond[std::size_t(node)];
+        if (tip < 0) tip = node;
+        const std::int32_t parent = shortest.parent[std::size_t(node)];
+        std::int32_t& beyondParent = tipBeyond[std::size_t(parent)];
+        const bool onRoute = shortest.parent[std::size_t(parent)] < 0;
+        std::int32_t ends = tip;  // the chain that ends at the parent
+        if (!onRoute && (beyondParent < 0 || lengthMm(tip) > lengthMm(beyondParent)))
+            std::swap(ends, beyondParent);
+        if (ends < 0) continue;
+        const float chainMm = lengthMm(ends) - lengthMm(parent);
+        if (double(chainMm) >= shortestMm) chains.push_back({ends, chainMm});
     }
     std::sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) {
         return a.lengthMm != b.lengthMm ? a.lengthMm > b.lengthMm : a.tip < b.tip;
@@ -88,18 +87,20 @@ std::vector<std::vector<std::int32_t>> sideBranches(const BlockGraph& graph, con
         cover(graph, route, covered);
     };
     accept(mainRoute);
+    // Where branches end, the shortest ways tell: the widest tree's wind about. How to get there,
+    // the widest tree tells: the shortest ways cut corners.
+    const PathTree shortest = growCheapestTree(graph, mainRoute, StepCost::length);
     std::vector<std::vector<std::int32_t>> branches;
-    for (const Chain& chain : longChains(widest, onRoute, shortestMm)) {
-        std::vector<std::int32_t> route{chain.tip};
-        std::int32_t leaves = -1;  // the first covered node on the way back
-        while (!onRoute[std::size_t(route.back())]) {
-            if (leaves < 0 && covered[std::size_t(route.back())]) leaves = route.back();
-            route.push_back(widest.parent[std::size_t(route.back())]);
-        }
-        if (leaves < 0) leaves = route.back();
+    for (const Chain& chain : longChains(shortest, shortestMm)) {
+        std::int32_t leaves = chain.tip;
+        while (!covered[std::size_t(leaves)])
+            leaves = shortest.parent[std::size_t(leaves)];
         const float outsideMm =
-            widest.lengthMm[std::size_t(chain.tip)] - widest.lengthMm[std::size_t(leaves)];
+            shortest.lengthMm[std::size_t(chain.tip)] - shortest.lengthMm[std::size_t(leaves)];
         if (double(outsideMm) < shortestMm) continue;
+        std::vector<std::int32_t> route{chain.tip};
+        while (!onRoute[std::size_t(route.back())])
+            route.push_back(widest.parent[std::size_t(route.back())]);
         std::reverse(route.begin(), route.end());
         accept(route);
         branches.push_back(std::move(route));

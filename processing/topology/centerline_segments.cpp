@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdio>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace haustra::topology {
@@ -43,6 +44,22 @@ Segment segmentOf(const BlockGraph& graph, std::int32_t component,
     if (!last) last = farthestTip(graph, tree, EndShape::any);
     segment.route = pathTo(tree, *last);
     segment.widest = std::move(tree);
+    return segment;
+}
+
+/// The segment of one component between the ends of its longest path, the lower one first.
+Segment longestSegmentOf(const BlockGraph& graph, std::int32_t component) {
+    const auto shortestFrom = [&](std::int32_t source) {
+        return growCheapestTree(graph, std::span(&source, 1), StepCost::length);
+    };
+    const std::int32_t deepest = graph.components[std::size_t(component)].deepest;
+    const std::int32_t oneEnd = longestPathEnd(shortestFrom(deepest));
+    std::int32_t last = farthestTip(graph, shortestFrom(oneEnd), EndShape::any);
+    std::int32_t first = farthestTip(graph, shortestFrom(last), EndShape::any);
+    if (graph.positionMm(last).z < graph.positionMm(first).z) std::swap(first, last);
+    Segment segment;
+    segment.widest = growWidestTree(graph, first);
+    segment.route = pathTo(segment.widest, last);
     return segment;
 }
 
@@ -84,8 +101,10 @@ std::vector<Segment> findSegments(const BlockGraph& graph, const GivenEnds& give
         const bool isGiven = c == first || c == last;
         const bool large = volumeMl >= smallestSegmentMl || c == bySize.front();
         if (isGiven || (large && !onlyGiven && segments.size() < most)) {
-            segments.push_back(segmentOf(graph, c, c == first ? given.first : std::nullopt,
-                                         c == last ? given.last : std::nullopt));
+            segments.push_back(!isGiven && rule == EndRule::farthest
+                                   ? longestSegmentOf(graph, c)
+                                   : segmentOf(graph, c, c == first ? given.first : std::nullopt,
+                                               c == last ? given.last : std::nullopt));
         } else {
             leftOutMl += volumeMl;
             ++leftOut;
@@ -146,13 +165,7 @@ Result<std::optional<std::int32_t>> nodeNear(const BlockGraph& graph,
 std::vector<Segment> segmentsToVisit(const BlockGraph& graph, const GivenEnds& given, EndRule rule,
                                      std::vector<std::string>& notes) {
     std::vector<Segment> segments = findSegments(graph, given, rule, notes);
-    if (rule == EndRule::farthest && segments.size() == 1) {
-        Segment& only = segments.front();
-        const bool upsideDown =
-            graph.positionMm(only.route.back()).z < graph.positionMm(only.route.front()).z;
-        if (upsideDown && !only.firstGiven && !only.lastGiven) reverse(only);
-        return segments;
-    }
+    if (rule == EndRule::farthest && segments.size() == 1) return segments;
     std::vector<Segment> visits;
     for (const SegmentVisit visit : orderOf(segments, graph, notes)) {
         visits.push_back(std::move(segments[visit.segment]));
