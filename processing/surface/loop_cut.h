@@ -1,0 +1,22 @@
+// Cutting a surface along a loop, and closing both sides.
+#pragma once
+
+#include "core/tri_mesh.h"
+#include "surface/loop_mesh.h"
+
+namespace haustra::surface {
+
+struct LoopCut {
+    TriMesh mesh;
+    double filledAreaMm2 = 0.0;   ///< of both discs
+    std::size_t firstFilled = 0;  ///< the discs are the triangles from here on
+};
+
+/// Slices `mesh` along a loop that visits no vertex twice, draws the two lips apart by a fraction
+/// of their triangles' heights, and spans each with a disc (see spanLoop); both discs have the same
+/// triangles, so that they lie side by side without touching. Vertices and triangles keep their
+/// numbers: the loop's own vertices stay on its left; those of its right and of the discs come
+/// after all others. Only the loop's vertices move. `halves` must be LoopMesh::of(mesh).
+LoopCut cutAlong(const TriMesh& mesh, const LoopMesh& halves, const Loop& loop);
+
+}  // namespace haustra::surface

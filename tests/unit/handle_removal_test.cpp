@@ -1,0 +1,154 @@
+// Handles of known girth are cut where they are thinnest, and nothing else changes.
+#include "surface/handle_removal.h"
+
+#include "data_folder.h"
+#include "handle_meshes.h"
+#include "surface/mesh_file.h"
+#include "surface/self_intersection.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace haustra::surface {
+namespace {
+
+void expectSphere(const TriMesh& mesh) {
+    const MeshTopology topology = meshTopology(mesh);
+    EXPECT_EQ(topology.eulerCharacteristic, 2);
+    EXPECT_EQ(topology.components, 1);
+    EXPECT_TRUE(topology.closed());
+}
+
+/// Vertices that are no corner of a loop keep their bits; those that are stay within `nearMm`.
+void expectOnlyLoopsMoved(const TriMesh& before, const HandleRemoval& removal, double nearMm) {
+    ASSERT_GE(removal.mesh.vertices.size(), before.vertices.size());
+    std::size_t moved = 0, corners = 0;
+    for (std::size_t v = 0; v < before.vertices.size(); ++v) {
+        if (before.vertices[v] == removal.mesh.vertices[v]) continue;
+        ++moved;
+        EXPECT_LT(glm::distance(before.vertices[v], removal.mesh.vertices[v]), nearMm);
+    }
+    for (const RemovedHandle& handle : removal.handles)
+        corners += handle.loopMm.size();
+    EXPECT_LE(moved, corners);
+}
+
+double lengthOf(const std::vector<glm::dvec3>& loop) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < loop.size(); ++i)
+        length += glm::distance(loop[i], loop[(i + 1) % loop.size()]);
+    return length;
+}
+
+TEST(HandleRemoval, LeavesASphereAsItIs) {
+    const TriMesh sphere = tests::HandledSphere(10.0, 12).mesh();
+    const auto removal = removeHandles(sphere);
+    ASSERT_TRUE(removal) << describe(removal.error());
+    EXPECT_TRUE(removal->handles.empty());
+    EXPECT_EQ(removal->mesh.vertices, sphere.vertices);
+    EXPECT_EQ(removal->mesh.triangles, sphere.triangles);
+    EXPECT_EQ(removal->areaChangeMm2, 0.0);
+}
+
+TEST(HandleRemoval, CutsAThinTorusThroughItsTube) {
+    const TriMesh torus = tests::torusMesh(20.0, 5.0, 120, 48);
+    const auto removal = removeHandles(torus);
+    ASSERT_TRUE(removal) << describe(removal.error());
+    ASSERT_EQ(removal->handles.size(), 1u);
+    const RemovedHandle& handle = removal->handles[0];
+    const double girth = 2.0 * 48 * 5.0 * std::sin(std::numbers::pi / 48);
+    EXPECT_NEAR(handle.lengthMm, girth, 1e-9 * girth);
+    EXPECT_NEAR(handle.lengthMm, lengthOf(handle.loopMm), 1e-9 * girth);
+    EXPECT_NEAR(handle.filledAreaMm2, 2.0 * std::numbers::pi * 25.0, 3.0);
+    expectSphere(removal->mesh);
+    expectOnlyLoopsMoved(torus, *removal, 1.0);
+    EXPECT_TRUE(selfIntersections(removal->mesh).empty());
+}
+
+TEST(HandleRemoval, PlugsATorusWhoseHoleIsNarrow) {
+    const TriMesh torus = tests::torusMesh(20.0, 15.0, 120, 90);
+    const auto removal = removeHandles(torus);
+    ASSERT_TRUE(removal) << describe(removal.error());
+    ASSERT_EQ(removal->handles.size(), 1u);
+    const double girth = 2.0 * 120 * 5.0 * std::sin(std::numbers::pi / 120);
+    EXPECT_NEAR(removal->handles[0].lengthMm, girth, 1e-9 * girth);
+    expectSphere(removal->mesh);
+    EXPECT_TRUE(selfIntersections(removal->mesh).empty());
+}
+
+TEST(HandleRemoval, RemovesPlantedBridgesAndTunnels) {
+    for (int handles = 1; handles <= 6; ++handles) {
+        tests::HandledSphere sphere(50.0, 64);
+        std::vector<double> girths;
+        for (int i = 0; i < handles; ++i)
+            girths.push_back(sphere.addTube(i, 16, 20, 16, 4, 1.5 + 0.1 * i, i % 2 == 0));
+        std::sort(girths.begin(), girths.end());
+        const TriMesh mesh = sphere.mesh();
+        ASSERT_EQ(meshTopology(mesh).genus(), handles);
+        ASSERT_TRUE(selfIntersections(mesh).empty());
+        const auto removal = removeHandles(mesh);
+        ASSERT_TRUE(removal) << describe(removal.error());
+        ASSERT_EQ(removal->handles.size(), girths.size());
+        for (std::size_t i = 0; i < girths.size(); ++i) {
+            EXPECT_LE(removal->handles[i].lengthMm, girths[i] * (1.0 + 1e-9));
+            EXPECT_GT(removal->handles[i].lengthMm, girths[i] * 0.995);
+        }
+        expectSphere(removal->mesh);
+        expectOnlyLoopsMoved(mesh, *removal, 1.0);
+        EXPECT_TRUE(selfIntersections(removal->mesh).empty());
+    }
+}
+
+TEST(HandleRemoval, GivesTheSameBytesForAnyNumberOfThreads) {
+    tests::HandledSphere sphere(50.0, 48);
+    sphere.addTube(0, 10, 14, 14, 4, 2.0, true);
+    sphere.addTube(3, 10, 14, 14, 4, 2.5, false);
+    const auto one = removeHandles(sphere.mesh(), {1, {}}),
+               three = removeHandles(sphere.mesh(), {3, {}});
+    ASSERT_TRUE(one && three);
+    EXPECT_EQ(one->mesh.vertices, three->mesh.vertices);
+    EXPECT_EQ(one->mesh.triangles, three->mesh.triangles);
+}
+
+TEST(HandleRemoval, RefusesWhatIsNotOneClosedManifold) {
+    TriMesh open = tests::torusMesh(20.0, 5.0, 24, 12), twice = open, flipped = open, sheets = open;
+    open.triangles.pop_back();
+    const int count = int(twice.vertices.size());
+    for (int v = 0; v < count; ++v)
+        twice.vertices.push_back(twice.vertices[v] + glm::dvec3(100.0, 0.0, 0.0));
+    for (const glm::ivec3 t : std::vector(twice.triangles))
+        twice.triangles.push_back(t + count);
+    std::swap(flipped.triangles[7].x, flipped.triangles[7].y);
+    TriMesh joined = twice;  // two tori that share one vertex
+    for (glm::ivec3& t : joined.triangles) {
+        for (int corner = 0; corner < 3; ++corner)
+            if (t[corner] == count) t[corner] = 0;
+    }
+    sheets.triangles.push_back(sheets.triangles[0]);
+    TriMesh outside = tests::torusMesh(20.0, 5.0, 24, 12);
+    outside.triangles[3].y = 100000;
+    for (const TriMesh& mesh : {open, twice, flipped, joined, sheets, outside, TriMesh{}}) {
+        const auto removal = removeHandles(mesh);
+        ASSERT_FALSE(removal);
+        EXPECT_EQ(removal.error().kind, ErrorKind::badInput);
+    }
+}
+
+TEST(HandleRemoval, OpensTheRealColonsHandle) {
+    HAUSTRA_REAL_DATA(file, "meshes/colon00090_genus1_100k.ply");
+    const auto mesh = readMesh(file);
+    ASSERT_TRUE(mesh) << describe(mesh.error());
+    ASSERT_EQ(meshTopology(*mesh).genus(), 1);
+    const auto removal = removeHandles(*mesh);
+    ASSERT_TRUE(removal) << describe(removal.error());
+    ASSERT_EQ(removal->handles.size(), 1u);
+    EXPECT_LT(removal->handles[0].lengthMm, 41.9);
+    expectSphere(removal->mesh);
+    expectOnlyLoopsMoved(*mesh, *removal, 2.0);
+    EXPECT_TRUE(selfIntersections(removal->mesh).empty());
+}
+
+}  // namespace
+}  // namespace haustra::surface
