@@ -31,7 +31,7 @@ struct CutLumen {
 /// the lumen are joined by thin bridges, labelled so, in the order in which the colon passes them;
 /// small pieces, and those too far off the way, are left out; islands of background that float in
 /// the lumen are filled, with the label of the voxel before them on their row (joinPieces). What is
-/// left out, joined or filled, and large cuts, are in `notes`.
+/// left out, joined or filled is in `notes`.
 ///
 /// Distances count in units of the grid's smallest spacing: T_th is below the least distance a
 /// voxel can have, so that nothing is left out for being thin. Fails where the lumen is empty

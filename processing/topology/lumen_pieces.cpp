@@ -4,6 +4,7 @@
 #include "topology/centerline_graph.h"
 #include "topology/centerline_order.h"
 #include "topology/centerline_search.h"
+#include "topology/centerline_segments.h"
 #include "topology/distance_field.h"
 
 #include <algorithm>
@@ -137,20 +138,26 @@ void connect(Path& path, glm::ivec3 target, const BitMask& mask) {
             path.push_back(at += step(cameBy[place(at)]));
 }
 
-/// The widest tree's path between its two farthest nodes, as voxels.
+/// The widest way between two nodes of a piece far apart: for a seed any such way will do; a bridge
+/// has to begin at the very tip.
+enum class SkeletonEnds { anywhere, tips };
+
 Path skeletonOf(const BitMask& piece, const Volume<std::uint8_t>& labels,
-                const Volume<float>& distanceMm, int threads) {
+                const Volume<float>& distanceMm, SkeletonEnds ends, int threads) {
     const BlockGraph graph = makeBlockGraph(labels, distanceMm, threads);
-    PathTree tree = growWidestTree(graph, graph.components.front().deepest);
-    const std::int32_t oneEnd = longestPathEnd(tree);
-    tree = rerooted(std::move(tree), oneEnd);
-    Path path;
-    for (const std::int32_t node : pathTo(tree, longestPathEnd(tree))) {
-        if (path.empty())
-            path.push_back(graph.voxelOf(node));
-        else
-            connect(path, graph.voxelOf(node), piece);
+    std::vector<std::int32_t> route;
+    if (ends == SkeletonEnds::tips) {
+        std::vector<std::string> notes;  // a piece is one segment: there are none
+        route = segmentsToVisit(graph, {}, EndRule::farthest, notes).front().route;
+    } else {
+        PathTree tree = growWidestTree(graph, graph.components.front().deepest);
+        const std::int32_t oneEnd = longestPathEnd(tree);
+        tree = rerooted(std::move(tree), oneEnd);
+        route = pathTo(tree, longestPathEnd(tree));
     }
+    Path path{graph.voxelOf(route.front())};
+    for (const std::int32_t node : route)
+        connect(path, graph.voxelOf(node), piece);
     return path;
 }
 
@@ -232,14 +239,15 @@ JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOpt
         joined.cavitiesFilled = fillCavities(joined.domain, grid, joined.notes);
         const Volume<std::uint8_t> labels = labelsOf(joined.domain, grid, options.threads);
         joined.distanceMm = distanceToBoundaryMm(labels, options.threads);
-        joined.path = skeletonOf(joined.domain, labels, joined.distanceMm, options.threads);
+        joined.path = skeletonOf(joined.domain, labels, joined.distanceMm, SkeletonEnds::anywhere,
+                                 options.threads);
         return joined;
     }
     std::vector<Path> paths;
     for (const BitMask& piece : pieces) {
         const Volume<std::uint8_t> labels = labelsOf(piece, grid, options.threads);
         paths.push_back(skeletonOf(piece, labels, distanceToBoundaryMm(labels, options.threads),
-                                   options.threads));
+                                   SkeletonEnds::tips, options.threads));
     }
     for (const std::size_t n : orderPaths(paths, grid, joined.notes)) {
         joined.domain.add(pieces[n]);

@@ -28,8 +28,8 @@ struct LumenJoinOptions {
 /// Joins the 6-connected pieces of a mask worth a visit, in the order in which the colon passes
 /// them (orderSegments), by straight tubes from tip to tip; what lies too far off the way and
 /// small pieces are left out. Islands of background in the pieces are filled. The path is the
-/// widest tree's between its two farthest nodes, piece by piece: the skeleton from which
-/// dissertation §3.3.2.2 grows the lumen; 6-connected where the lumen lets it be.
+/// widest way between two far ends, piece by piece: the skeleton from which dissertation §3.3.2.2
+/// grows the lumen; 6-connected where the lumen lets it be.
 ///
 /// `mask` has at least one voxel and is on `grid`. The same for any number of threads.
 /// O(n log n) in the voxels of the mask, and linear in the grid's.
