@@ -12,14 +12,23 @@ struct SimplificationOptions {
     double minAngleDegrees =
         12.0;  ///< no collapse makes a corner sharper than this, where it was not
     int threads = 0;
-    Progress progress;
+    Progress progress{};  ///< called after each pass
 };
 
 /// Edge collapses under the link condition in the order of their quadric error (Garland and
 /// Heckbert), refused where they would leave the error bound, fold a triangle over, make a sliver
-/// or let the surface cut through itself. A closed manifold without self-intersections stays one,
-/// with the same Euler characteristic. Fails where the mesh is not closed and manifold (badInput).
-/// The same mesh for any number of threads.
+/// or let the surface cut through itself; then flips and tangential moves that widen the sharpest
+/// corners under the same conditions. A closed manifold without self-intersections stays one, with
+/// the same Euler characteristic and components.
+///
+/// The bound holds at samples: each vertex and each edge's midpoint of the input lies within
+/// errorMm of the output, and each vertex, edge midpoint and triangle's centre of the output
+/// within errorMm of the input.
+///
+/// Regions of space are worked on at once, and what their borders cut off in a second and a third
+/// pass with other borders; the borders come from the mesh alone, so that the same mesh comes out
+/// for any number of threads. Fails (badInput) where the mesh is not closed and manifold or not
+/// finite. O(n log n).
 Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& options = {});
 
 }  // namespace haustra::surface

@@ -1,0 +1,131 @@
+#include "surface/simplification.h"
+
+#include "surface/simplification_region.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace haustra::surface {
+namespace {
+
+constexpr double farthestMm = 1e6;
+
+std::vector<Quadric> inputQuadrics(const CornerMesh& mesh) {
+    std::vector<Quadric> quadric(mesh.position.size());
+    for (int t = 0; t < mesh.triangleCount(); ++t) {
+        const int* v = &mesh.vertex[3 * t];
+        const glm::dvec3 a = mesh.position[v[0]];
+        const glm::dvec3 upright = glm::cross(mesh.position[v[1]] - a, mesh.position[v[2]] - a);
+        const double twiceArea = glm::length(upright);
+        if (!(twiceArea > 0.0)) continue;
+        Quadric plane;
+        plane.addPlane(a, upright / twiceArea, twiceArea / 6.0);
+        for (int k = 0; k < 3; ++k)
+            quadric[v[k]] = quadric[v[k]] + plane;
+    }
+    return quadric;
+}
+
+/// The bits of x, two zeros between each.
+std::uint64_t spread(std::uint32_t x) {
+    std::uint64_t bits = x & 0x1fffff;
+    bits = (bits | bits << 32) & 0x1f00000000ffff;
+    bits = (bits | bits << 16) & 0x1f0000ff0000ff;
+    bits = (bits | bits << 8) & 0x100f00f00f00f00f;
+    bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
+    bits = (bits | bits << 2) & 0x1249249249249249;
+    return bits;
+}
+
+/// The mesh with vertices, and triangles by their first vertex, in Morton order: what is near in
+/// space is then near in memory. Vertices are moved by −centre.
+TriMesh orderedInSpace(const TriMesh& mesh, const glm::dvec3& low, const glm::dvec3& centre) {
+    std::vector<std::pair<std::uint64_t, int>> order(mesh.vertices.size());
+    for (std::size_t v = 0; v < order.size(); ++v) {
+        const glm::uvec3 cell(glm::clamp((mesh.vertices[v] - low) * 2.0, 0.0, 2097151.0));
+        order[v] = {spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, int(v)};
+    }
+    std::sort(order.begin(), order.end());
+    TriMesh result;
+    result.vertices.reserve(order.size());
+    std::vector<int> rank(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        rank[order[i].second] = int(i);
+        result.vertices.push_back(mesh.vertices[order[i].second] - centre);
+    }
+    result.triangles.reserve(mesh.triangles.size());
+    for (const glm::ivec3& t : mesh.triangles)
+        result.triangles.push_back({rank[t.x], rank[t.y], rank[t.z]});
+    std::sort(result.triangles.begin(), result.triangles.end(),
+              [](const glm::ivec3& s, const glm::ivec3& t) {
+                  const int sFirst = std::min({s.x, s.y, s.z}), tFirst = std::min({t.x, t.y, t.z});
+                  return sFirst != tFirst ? sFirst < tFirst
+                                          : std::tie(s.x, s.y, s.z) < std::tie(t.x, t.y, t.z);
+              });
+    return result;
+}
+
+/// No triangle may name what is no vertex, before anything is looked up.
+bool indicesValid(const TriMesh& mesh) {
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const glm::ivec3& t) {
+        return glm::all(glm::greaterThanEqual(t, glm::ivec3(0))) &&
+               glm::all(glm::lessThan(t, glm::ivec3(int(mesh.vertices.size()))));
+    });
+}
+
+}  // namespace
+
+Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& options) {
+    if (mesh.triangles.empty()) return TriMesh{};
+    if (!indicesValid(mesh))
+        return fail(ErrorKind::badInput, "a triangle names no vertex", "simplification");
+    glm::dvec3 low(std::numeric_limits<double>::max()), high = -low;
+    for (const glm::dvec3& v : mesh.vertices) {
+        low = glm::min(low, v);
+        high = glm::max(high, v);
+    }
+    if (!(glm::all(glm::lessThan(glm::abs(low), glm::dvec3(farthestMm))) &&
+          glm::all(glm::lessThan(glm::abs(high), glm::dvec3(farthestMm))))) {
+        return fail(ErrorKind::badInput, "the mesh has no finite extent", "simplification");
+    }
+    const glm::dvec3 centre = glm::round(0.5 * (low + high));
+    auto corners = cornerMesh(orderedInSpace(mesh, low, centre));
+    if (!corners) return tl::make_unexpected(corners.error());
+
+    ErrorBound bound(*corners, options.errorMm);
+    auto quadric = inputQuadrics(*corners);
+    const std::size_t vertices = mesh.vertices.size();
+    Simplification shared{std::move(*corners),
+                          std::move(bound),
+                          std::move(quadric),
+                          std::vector<std::uint32_t>(vertices, 0),
+                          std::vector<char>(vertices, 0),
+                          std::vector<char>(vertices, 0),
+                          options.minAngleDegrees};
+
+    struct Pass {
+        std::size_t vertexLimit;
+        double share;
+    };
+    // What a box cuts off in one pass lies inside a box of the next; the last has one box.
+    const Pass passes[] = {{16000, 0.5}, {16000, 0.37}, {vertices, 0.5}};
+    double done = 0.0;
+    for (const Pass& pass : passes) {
+        const std::vector<Region> regions = partition(shared.mesh, pass.vertexLimit, pass.share);
+        parallelFor(regions.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                RegionSimplification(shared, regions[i]).run();
+        });
+        done += 1.0 / std::size(passes);
+        if (options.progress) options.progress(done);
+    }
+    TriMesh result = triMesh(shared.mesh);
+    for (glm::dvec3& v : result.vertices)
+        v += centre;
+    return result;
+}
+
+}  // namespace haustra::surface

@@ -1,0 +1,64 @@
+// The two-sided distance between what simplification began with and what it has.
+#pragma once
+
+#include "surface/simplification_mesh.h"
+
+#include <span>
+#include <vector>
+
+namespace haustra::surface {
+
+/// A triangle prepared for many questions of nearness, in single precision.
+struct NearTriangle {
+    glm::vec3 corner[3];
+    glm::vec3 edge[3];  ///< from corner k to the next
+    glm::vec3 normal;   ///< of unit length
+    float invertedEdgeSquared[3];
+
+    NearTriangle() = default;
+    NearTriangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+    /// Whether p is within √squared of the triangle.
+    bool within(const glm::vec3& p, float squared) const;
+};
+
+/// The input's surface, held by samples: its vertices and the midpoints of its edges. Each sample
+/// hangs on one triangle of the working mesh that is within the bound of it; a patch of triangles
+/// may take the place of another only if the samples of the old find such a triangle in the new,
+/// and the new patch's own samples lie within the bound of the input's triangles.
+class ErrorBound {
+public:
+    ErrorBound(const CornerMesh& input, double errorMm);
+
+    /// Room for one thread's questions.
+    struct Patch {
+        std::vector<int> samples;
+        std::vector<float> x, y, z, squared;
+        std::vector<NearTriangle> triangles;
+        std::vector<int> home;  ///< of each sample: its place in `triangles`
+    };
+
+    /// Takes the samples that hang on `oldTriangles` into the patch.
+    void gather(std::span<const int> oldTriangles, Patch& patch) const;
+    /// Whether `p` is within the bound of an input triangle beside the patch's nearest sample.
+    bool nearInput(const glm::vec3& p, Patch& patch) const;
+    /// Whether each of the patch's samples is within the bound of one of patch.triangles; finds
+    /// their homes.
+    bool findHomes(Patch& patch) const;
+    /// Hangs the patch's samples on the triangles `slots` (parallel to patch.triangles).
+    void rehang(std::span<const int> oldTriangles, std::span<const int> slots, const Patch& patch);
+
+private:
+    bool nearTrianglesOf(int sample, const glm::vec3& p) const;
+    bool nearInputTriangle(int triangle, const glm::vec3& p) const;
+    glm::vec3 place(int sample) const { return place_[std::size_t(sample)]; }
+
+    float errorSquared_;
+    int vertexCount_;
+    std::vector<glm::vec3> place_;
+    std::vector<int> corner_;  ///< of a sample in the input: at the vertex, or facing the edge
+    std::vector<int> inputVertex_, inputOpposite_;
+    std::vector<int> first_;  ///< of a working triangle: its first sample, or −1
+    std::vector<int> next_;   ///< of a sample: the next on the same triangle, or −1
+};
+
+}  // namespace haustra::surface

@@ -1,0 +1,373 @@
+#include "surface/simplification_region.h"
+
+#include "surface/triangle_separation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::surface {
+namespace {
+
+constexpr double cellMm = 1.5;
+constexpr int maxValence = 12;
+constexpr double leastNormalCosine = 0.3;  // between a triangle and what takes its place
+
+/// Cosine of the smallest angle of a triangle; 1 where it has no area.
+double sharpestCosine(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    double s = glm::dot(b - a, b - a), m = glm::dot(c - b, c - b), l = glm::dot(a - c, a - c);
+    if (s > m) std::swap(s, m);
+    if (s > l) std::swap(s, l);
+    const double product = m * l;
+    return product > 0.0 ? 0.5 * (m + l - s) / std::sqrt(product) : 1.0;
+}
+
+glm::dvec3 upright(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return glm::cross(b - a, c - a);
+}
+
+}  // namespace
+
+bool RegionSimplification::Candidate::operator<(const Candidate& other) const {
+    // std::push_heap keeps the greatest on top; the least error is wanted there.
+    if (error != other.error) return error > other.error;
+    return a != other.a ? a > other.a : b > other.b;
+}
+
+RegionSimplification::RegionSimplification(Simplification& shared, const Region& region)
+    : shared_(shared),
+      mesh_(shared.mesh),
+      region_(region),
+      grid_(region.box.low, region.box.high, cellMm),
+      seen_(std::size_t(shared.mesh.triangleCount()), 0),
+      sharpestCosine_(std::cos(shared.minAngleDegrees * (3.14159265358979323846 / 180.0))) {
+    for (const int triangle : region.triangles)
+        grid_.insert(triangle, boxOf(triangle));
+}
+
+bool RegionSimplification::inBox(const glm::dvec3& p) const {
+    return glm::all(glm::lessThanEqual(region_.box.low, p)) &&
+           glm::all(glm::lessThan(p, region_.box.high));
+}
+
+bool RegionSimplification::starInBox(int v) const {
+    bool inside = true;
+    mesh_.aroundVertex(v, [&](int corner) {
+        inside = inside && inBox(mesh_.position[mesh_.vertex[CornerMesh::next(corner)]]);
+    });
+    return inside;
+}
+
+glm::dvec3 RegionSimplification::place(const Replacement& replacement, int v) const {
+    return v == replacement.moved ? replacement.place : mesh_.position[v];
+}
+
+FloatBox RegionSimplification::boxOf(int triangle) const {
+    const int* v = &mesh_.vertex[3 * triangle];
+    return FloatBox::around(mesh_.position[v[0]], mesh_.position[v[1]], mesh_.position[v[2]]);
+}
+
+void RegionSimplification::run() {
+    // What is movable stays so: a collapse or flip in the box gives no vertex a neighbour outside.
+    for (const int v : region_.vertices)
+        shared_.movable[v] = starInBox(v);
+    collapseEdges();
+    betterCorners();
+    for (const int v : region_.vertices)
+        shared_.settled[v] |= shared_.movable[v];
+}
+
+// ------------------------------------------------------------------------------------- collapses
+
+void RegionSimplification::collapseEdges() {
+    for (const int v : region_.vertices) {
+        if (shared_.settled[v] || !movable(v)) continue;
+        mesh_.aroundVertex(v, [&](int corner) {
+            const int w = mesh_.vertex[CornerMesh::next(corner)];
+            if (v < w || shared_.settled[w]) push(v, w);
+        });
+    }
+    while (!heap_.empty()) {
+        std::pop_heap(heap_.begin(), heap_.end());
+        const Candidate candidate = heap_.back();
+        heap_.pop_back();
+        const auto [error, a, b, version] = candidate;
+        if (shared_.version[a] + shared_.version[b] != version) continue;
+        const Quadric sum = shared_.quadric[a] + shared_.quadric[b];
+        const glm::dvec3 middle = 0.5 * (mesh_.position[a] + mesh_.position[b]);
+        if (collapseEdge(a, b, sum.minimiser(middle), Quality::noSharper)) pushEdgesAround(a);
+    }
+}
+
+void RegionSimplification::push(int a, int b) {
+    if (a > b) std::swap(a, b);
+    const Quadric sum = shared_.quadric[a] + shared_.quadric[b];
+    const glm::dvec3 middle = 0.5 * (mesh_.position[a] + mesh_.position[b]);
+    const double error = sum(sum.minimiser(middle));
+    heap_.push_back({float(error), a, b, shared_.version[a] + shared_.version[b]});
+    std::push_heap(heap_.begin(), heap_.end());
+}
+
+void RegionSimplification::pushEdgesAround(int v) {
+    mesh_.aroundVertex(v, [&](int corner) { push(v, mesh_.vertex[CornerMesh::next(corner)]); });
+}
+
+bool RegionSimplification::linkCondition(int a, int b, int cornerAtA) const {
+    const int c = mesh_.vertex[CornerMesh::previous(cornerAtA)];
+    const int d = mesh_.vertex[mesh_.opposite[CornerMesh::previous(cornerAtA)]];
+    if (mesh_.valence[c] <= 3 || mesh_.valence[d] <= 3) return false;
+    int common = 0;
+    mesh_.aroundVertex(a, [&](int cornerA) {
+        const int v = mesh_.vertex[CornerMesh::next(cornerA)];
+        mesh_.aroundVertex(
+            b, [&](int cornerB) { common += mesh_.vertex[CornerMesh::next(cornerB)] == v; });
+    });
+    return common == 2;
+}
+
+bool RegionSimplification::collapseEdge(int a, int b, const glm::dvec3& place, Quality quality) {
+    if (!inBox(place) || !movable(a) || !movable(b)) return false;
+    if (mesh_.valence[a] + mesh_.valence[b] - 4 > maxValence) return false;
+    const int edge = mesh_.cornerOfEdge(a, b);
+    if (edge < 0 || !linkCondition(a, b, edge)) return false;
+
+    Replacement& r = replacement_;
+    r.oldTriangles.clear();
+    r.slots.clear();
+    r.corners.clear();
+    r.moved = a;
+    r.place = place;
+    const int removed[] = {edge / 3, mesh_.opposite[CornerMesh::previous(edge)] / 3};
+    for (const int v : {a, b}) {
+        mesh_.aroundVertex(v, [&](int corner) {
+            const int triangle = corner / 3;
+            if (triangle == removed[0] || triangle == removed[1]) {
+                if (v == a) r.oldTriangles.push_back(triangle);
+                return;
+            }
+            r.oldTriangles.push_back(triangle);
+            r.slots.push_back(triangle);
+            r.corners.push_back({a, mesh_.vertex[CornerMesh::next(corner)],
+                                 mesh_.vertex[CornerMesh::previous(corner)]});
+        });
+    }
+    if (!permitted(r, quality)) return false;
+    removeFromGrid(r);
+    mesh_.collapse(edge);
+    mesh_.position[a] = place;
+    shared_.quadric[a] = shared_.quadric[a] + shared_.quadric[b];
+    ++shared_.version[b];
+    commit(r);
+    return true;
+}
+
+// ------------------------------------------------------------------------- what may be replaced
+
+bool RegionSimplification::permitted(const Replacement& r, Quality quality) {
+    return shapesPermitted(r, quality) && withinBound(r) && !meetsSurface(r);
+}
+
+bool RegionSimplification::shapesPermitted(const Replacement& r, Quality quality) const {
+    double newSharpest = -1.0, oldSharpest = -1.0;
+    glm::dvec3 oldSum(0.0);
+    for (const int triangle : r.oldTriangles) {
+        const int* v = &mesh_.vertex[3 * triangle];
+        const glm::dvec3 &a = mesh_.position[v[0]], &b = mesh_.position[v[1]],
+                         &c = mesh_.position[v[2]];
+        oldSharpest = std::max(oldSharpest, sharpestCosine(a, b, c));
+        oldSum += upright(a, b, c);
+    }
+    const double limit =
+        quality == Quality::better ? oldSharpest - 1e-3 : std::max(oldSharpest, sharpestCosine_);
+    for (std::size_t i = 0; i < r.corners.size(); ++i) {
+        const glm::dvec3 a = place(r, r.corners[i][0]), b = place(r, r.corners[i][1]),
+                         c = place(r, r.corners[i][2]);
+        newSharpest = std::max(newSharpest, sharpestCosine(a, b, c));
+        if (newSharpest > limit) return false;
+        const int* v = &mesh_.vertex[3 * r.slots[i]];
+        const glm::dvec3 before =
+            r.moved >= 0 ? upright(mesh_.position[v[0]], mesh_.position[v[1]], mesh_.position[v[2]])
+                         : oldSum;
+        const glm::dvec3 after = upright(a, b, c);
+        const double along = glm::dot(before, after);
+        if (along <= 0.0 || along * along < leastNormalCosine * leastNormalCosine *
+                                                glm::dot(before, before) * glm::dot(after, after)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool RegionSimplification::withinBound(const Replacement& r) {
+    shared_.bound.gather(r.oldTriangles, patch_);
+    if (r.moved >= 0 && !shared_.bound.nearInput(glm::vec3(r.place), patch_)) return false;
+    patch_.triangles.clear();
+    for (const auto& v : r.corners) {
+        patch_.triangles.emplace_back(glm::vec3(place(r, v[0])), glm::vec3(place(r, v[1])),
+                                      glm::vec3(place(r, v[2])));
+    }
+    if (!shared_.bound.findHomes(patch_)) return false;
+    for (const NearTriangle& t : patch_.triangles) {
+        // Corner 0 moves, or ends the new edge 0–1; each spoke is the edge from it in one triangle.
+        const glm::vec3 spoke = 0.5f * (t.corner[0] + t.corner[1]);
+        const glm::vec3 centre = (t.corner[0] + t.corner[1] + t.corner[2]) * (1.0f / 3.0f);
+        if (!shared_.bound.nearInput(spoke, patch_) || !shared_.bound.nearInput(centre, patch_))
+            return false;
+    }
+    return true;
+}
+
+bool RegionSimplification::meets(const Replacement& r, const std::array<int, 3>& first,
+                                 const std::array<int, 3>& second) const {
+    int inFirst[3], inSecond[3], shared = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            if (first[i] != second[j]) continue;
+            inFirst[shared] = i;
+            inSecond[shared++] = j;
+        }
+    }
+    TriangleCorners p, q;
+    for (int k = 0; k < 3; ++k) {
+        p[k] = place(r, first[k]);
+        q[k] = place(r, second[k]);
+    }
+    if (shared == 0) return !apart(p, q);
+    if (shared == 1) {
+        const int i = inFirst[0], j = inSecond[0];
+        return !apartAtVertex(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3]);
+    }
+    if (shared == 2) {
+        const int a = 3 - inFirst[0] - inFirst[1], b = 3 - inSecond[0] - inSecond[1];
+        return !apartAtEdge(p[inFirst[0]], p[inFirst[1]], p[a], q[b]);
+    }
+    return true;
+}
+
+bool RegionSimplification::meetsSurface(const Replacement& r) {
+    for (std::size_t i = 0; i < r.corners.size(); ++i) {
+        for (std::size_t j = i + 1; j < r.corners.size(); ++j) {
+            if (meets(r, r.corners[i], r.corners[j])) return true;
+        }
+    }
+    ++question_;
+    for (const int triangle : r.oldTriangles)
+        seen_[triangle] = question_;
+    newBoxes_.clear();
+    for (const auto& v : r.corners)
+        newBoxes_.push_back(FloatBox::around(place(r, v[0]), place(r, v[1]), place(r, v[2])));
+    FloatBox all = newBoxes_[0];
+    for (const FloatBox& box : newBoxes_)
+        all.add(box);
+    bool found = false;
+    grid_.visit(all, [&](int triangle, const FloatBox& box) {
+        if (found || !box.touches(all) || seen_[triangle] == question_) return;
+        seen_[triangle] = question_;
+        const int* v = &mesh_.vertex[3 * triangle];
+        for (std::size_t i = 0; i < r.corners.size() && !found; ++i)
+            found = newBoxes_[i].touches(box) && meets(r, r.corners[i], {v[0], v[1], v[2]});
+    });
+    return found;
+}
+
+void RegionSimplification::removeFromGrid(const Replacement& r) {
+    for (const int triangle : r.oldTriangles)
+        grid_.remove(triangle, boxOf(triangle));
+}
+
+void RegionSimplification::commit(const Replacement& r) {
+    if (r.moved >= 0) ++shared_.version[r.moved];
+    for (const int triangle : r.slots)
+        grid_.insert(triangle, boxOf(triangle));
+    shared_.bound.rehang(r.oldTriangles, r.slots, patch_);
+}
+
+// ---------------------------------------------------------------------------------- sharp corners
+
+void RegionSimplification::betterCorners() {
+    for (int round = 0; round < 2; ++round) {
+        for (const int v : region_.vertices) {
+            if (movable(v) && !shared_.settled[v]) betterVertex(v);
+        }
+    }
+}
+
+double RegionSimplification::sharpestAround(int v) const {
+    double sharpest = -1.0;
+    mesh_.aroundVertex(v, [&](int corner) {
+        const int* t = &mesh_.vertex[corner - corner % 3];
+        sharpest = std::max(sharpest, sharpestCosine(mesh_.position[t[0]], mesh_.position[t[1]],
+                                                     mesh_.position[t[2]]));
+    });
+    return sharpest;
+}
+
+bool RegionSimplification::betterVertex(int v) {
+    const double wanted = std::cos(30.0 * 3.14159265358979323846 / 180.0);
+    if (sharpestAround(v) <= wanted) return false;
+    relax(v);
+    int corners[maxValence + 4], count = 0;
+    mesh_.aroundVertex(v, [&](int corner) {
+        if (count < maxValence + 4) corners[count++] = corner;
+    });
+    for (int i = 0; i < count; ++i) {
+        // The edge between the next and the previous may be longest seen from v.
+        if (mesh_.vertex[corners[i]] == v && flip(corners[i])) return true;
+    }
+    return false;
+}
+
+bool RegionSimplification::relax(int v) {
+    Replacement& r = replacement_;
+    r.oldTriangles.clear();
+    r.corners.clear();
+    glm::dvec3 normal(0.0), centre(0.0);
+    double weights = 0.0;
+    mesh_.aroundVertex(v, [&](int corner) {
+        const int b = mesh_.vertex[CornerMesh::next(corner)];
+        const int c = mesh_.vertex[CornerMesh::previous(corner)];
+        r.oldTriangles.push_back(corner / 3);
+        r.corners.push_back({v, b, c});
+        normal += upright(mesh_.position[v], mesh_.position[b], mesh_.position[c]);
+        const double length = glm::distance(mesh_.position[b], mesh_.position[c]);
+        centre += length * (mesh_.position[b] + mesh_.position[c]) * 0.5;
+        weights += length;
+    });
+    const double squared = glm::dot(normal, normal);
+    if (!(squared > 0.0)) return false;
+    r.slots = r.oldTriangles;
+    r.moved = v;
+    glm::dvec3 step = centre / weights - mesh_.position[v];
+    step -= normal * (glm::dot(normal, step) / squared);
+    for (const double share : {1.0, 0.5, 0.2}) {
+        r.place = mesh_.position[v] + share * step;
+        if (!inBox(r.place) || !permitted(r, Quality::better)) continue;
+        removeFromGrid(r);
+        mesh_.position[v] = r.place;
+        commit(r);
+        return true;
+    }
+    return false;
+}
+
+bool RegionSimplification::flip(int corner) {
+    const int across = mesh_.opposite[corner];
+    const int c = mesh_.vertex[corner], a = mesh_.vertex[CornerMesh::next(corner)];
+    const int d = mesh_.vertex[across], b = mesh_.vertex[CornerMesh::previous(corner)];
+    if (!inBox(mesh_.position[d]) || mesh_.valence[a] <= 4 || mesh_.valence[b] <= 4 ||
+        mesh_.valence[c] >= maxValence || mesh_.valence[d] >= maxValence ||
+        mesh_.cornerOfEdge(c, d) >= 0) {
+        return false;
+    }
+    Replacement& r = replacement_;
+    r.oldTriangles = {corner / 3, across / 3};
+    r.slots = r.oldTriangles;
+    r.corners = {{d, c, a}, {c, d, b}};
+    r.moved = -1;
+    if (!permitted(r, Quality::better)) return false;
+    removeFromGrid(r);
+    mesh_.flip(corner);
+    commit(r);
+    return true;
+}
+
+}  // namespace haustra::surface

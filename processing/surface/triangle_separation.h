@@ -1,0 +1,24 @@
+// Whether two triangles of a mesh meet only where they must.
+#pragma once
+
+#include <array>
+
+#include <glm/glm.hpp>
+
+namespace haustra::surface {
+
+using TriangleCorners = std::array<glm::dvec3, 3>;
+
+/// The functions answer true only where a plane parts the two by a margin above rounding (10⁻⁷ mm,
+/// or 10⁻⁷ of the angle's sine), so that true is certain: triangles without a common vertex;
+bool apart(const TriangleCorners& first, const TriangleCorners& second);
+
+/// triangles (v, a, b) and (v, c, d) with the common vertex v only: they meet in v alone;
+bool apartAtVertex(const glm::dvec3& v, const glm::dvec3& a, const glm::dvec3& b,
+                   const glm::dvec3& c, const glm::dvec3& d);
+
+/// triangles on both sides of the edge uv, with third corners a and b: they meet in it alone.
+bool apartAtEdge(const glm::dvec3& u, const glm::dvec3& v, const glm::dvec3& a,
+                 const glm::dvec3& b);
+
+}  // namespace haustra::surface
