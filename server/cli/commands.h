@@ -24,5 +24,6 @@ Command addExport(CLI::App& program);
 Command addList(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addEvaluate(CLI::App& program);
+Command addDenoise(CLI::App& program);
 
 }  // namespace haustra::cli

@@ -32,7 +32,8 @@ int runProgram(int argc, char** argv) {
     const std::vector<haustra::cli::Command> commands{
         haustra::cli::addPhantom(program), haustra::cli::addPrepare(program),
         haustra::cli::addExport(program),  haustra::cli::addList(program),
-        haustra::cli::addRender(program),  haustra::cli::addEvaluate(program)};
+        haustra::cli::addRender(program),  haustra::cli::addEvaluate(program),
+        haustra::cli::addDenoise(program)};
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
