@@ -193,7 +193,8 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     fill(taggedHu, tagged,
          std::max(tissue.meanHu[int(Tissue::taggedOrBone)], tissue.taggedAboveHu + 20.0), 0.05);
     fill(means.softHu, soft, softHu, 8.0);
-    means.taggedHu = refineTagging(scan, segmentation, around, taggedHu, means, threads);
+    means.taggedHu =
+        refineTagging(scan, segmentation, around, taggedHu, means, tissue.taggedAboveHu, threads);
     return means;
 }
 

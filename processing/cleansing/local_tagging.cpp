@@ -12,17 +12,16 @@ namespace {
 
 constexpr int window = 3;  // voxels
 
-/// Mean of a voxel and its face neighbours that are tagged.
-double crossMean(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& segmentation,
-                 glm::ivec3 v) {
+/// Mean of a voxel and its face neighbours that are dense.
+template <class Predicate>
+double crossMean(const Volume<std::int16_t>& hu, const Predicate& isDense, glm::ivec3 v) {
     double sum = hu.at(v);
     int count = 1;
     for (int axis = 0; axis < 3; ++axis) {
         for (int side = -1; side <= 1; side += 2) {
             glm::ivec3 n = v;
             n[axis] += side;
-            if (!hu.grid().contains(n) || LumenLabel(segmentation.at(n)) != LumenLabel::tagged)
-                continue;
+            if (!hu.grid().contains(n) || !isDense(hu.grid().index(n))) continue;
             sum += hu.at(n), ++count;
         }
     }
@@ -33,52 +32,59 @@ double crossMean(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& seg
 
 Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                                    const TaggedSurroundings& around, const SmoothField& coarse,
-                                   const LocalMeans& means, int threads) {
+                                   const LocalMeans& means, double denseAboveHu, int threads) {
     const Grid& grid = scan.hu.grid();
     const auto hu = scan.hu.voxels();
     const auto label = segmentation.voxels();
     const std::vector<glm::ivec3> ball = ballOffsets(grid, blurReachMm);
-    const auto& pools = around.shells[0];
+
+    // Stool that the segmentation missed at a pool's border is tagged too.
+    const auto isDense = [&](std::size_t n) {
+        return LumenLabel(label[n]) == LumenLabel::tagged || hu[n] > denseAboveHu;
+    };
 
     // Even contents: the blur of nothing else reaches in.
     std::vector<std::uint8_t> even(grid.voxelCount(), 0);
-    parallelFor(pools.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t m = begin; m < end; ++m) {
-            const glm::ivec3 v = grid.voxelAt(pools[m]);
-            const double soft = means.softHu.at(v.x, v.y, v.z);
-            const double mean = crossMean(scan.hu, segmentation, v);
-            const double tolerance =
-                std::max(4.0 * means.noiseSd, 0.12 * (coarse.at(v.x, v.y, v.z) - soft));
-            even[pools[m]] =
-                mean > soft + 2.0 * means.noiseSd && everywhere(grid, ball, v, [&](std::size_t n) {
-                    return LumenLabel(label[n]) == LumenLabel::tagged &&
-                           std::abs(hu[n] - mean) < tolerance;
-                });
-        }
-    });
+    for (const auto& shell : around.shells) {
+        parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t m = begin; m < end; ++m) {
+                const glm::ivec3 v = grid.voxelAt(shell[m]);
+                const double soft = means.softHu.at(v.x, v.y, v.z);
+                const double mean = crossMean(scan.hu, isDense, v);
+                const double tolerance =
+                    std::max(4.0 * means.noiseSd, 0.12 * (coarse.at(v.x, v.y, v.z) - soft));
+                even[shell[m]] = mean > soft + 2.0 * means.noiseSd &&
+                                 everywhere(grid, ball, v, [&](std::size_t n) {
+                                     return isDense(n) && std::abs(hu[n] - mean) < tolerance;
+                                 });
+            }
+        });
+    }
 
     Volume<std::int16_t> tagging(grid, std::int16_t(0));
     const auto out = tagging.writable();
-    parallelFor(pools.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t m = begin; m < end; ++m) {
-            if (!even[pools[m]]) continue;
-            const glm::ivec3 v = grid.voxelAt(pools[m]);
-            const glm::ivec3 reach(2, 2, 1);
-            const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
-                             hi = glm::min(v + reach, grid.size - 1);
-            double sum = 0.0;
-            int count = 0;
-            for (int k = lo.z; k <= hi.z; ++k) {
-                for (int j = lo.y; j <= hi.y; ++j) {
-                    for (int i = lo.x; i <= hi.x; ++i) {
-                        const std::size_t n = grid.index(i, j, k);
-                        if (even[n]) sum += hu[n], ++count;
+    for (const auto& shell : around.shells) {
+        parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t m = begin; m < end; ++m) {
+                if (!even[shell[m]]) continue;
+                const glm::ivec3 v = grid.voxelAt(shell[m]);
+                const glm::ivec3 reach(2, 2, 1);
+                const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
+                                 hi = glm::min(v + reach, grid.size - 1);
+                double sum = 0.0;
+                int count = 0;
+                for (int k = lo.z; k <= hi.z; ++k) {
+                    for (int j = lo.y; j <= hi.y; ++j) {
+                        for (int i = lo.x; i <= hi.x; ++i) {
+                            const std::size_t n = grid.index(i, j, k);
+                            if (even[n]) sum += hu[n], ++count;
+                        }
                     }
                 }
+                out[shell[m]] = std::int16_t(std::lround(sum / count));
             }
-            out[pools[m]] = std::int16_t(std::lround(sum / count));
-        }
-    });
+        });
+    }
 
     constexpr double coarseWeight = 0.02;  // of one voxel 4 mm away
     const glm::dvec3 spacing = grid.spacingMm();
@@ -106,9 +112,9 @@ Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t
                     }
                 }
                 double value = sum / weight;
-                if (LumenLabel(label[shell[m]]) == LumenLabel::tagged &&
+                if (isDense(shell[m]) &&
                     most - least > std::max(6.0 * means.noiseSd, 0.1 * (value - least))) {
-                    const double here = crossMean(scan.hu, segmentation, v);
+                    const double here = crossMean(scan.hu, isDense, v);
                     if (here > least - means.noiseSd && here < most + means.noiseSd) value = here;
                 }
                 out[shell[m]] = std::int16_t(std::clamp(std::lround(value), 1L, 3071L));

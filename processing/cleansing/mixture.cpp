@@ -4,9 +4,12 @@
 #include "cleansing/local_means.h"
 #include "cleansing/partial_volume_em.h"
 #include "cleansing/tagged_surroundings.h"
+#include "cleansing/water_level.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace haustra::cleansing {
 namespace {
@@ -21,8 +24,12 @@ TissueFractions rounded(double air, double tagged) {
 class ColonMixture {
 public:
     ColonMixture(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
-                 const LocalMeans& means, const InterfaceLayer& interfaces)
-        : hu_(scan.hu), segmentation_(segmentation), means_(means), interfaces_(interfaces) {}
+                 const LocalMeans& means, const InterfaceLayer& interfaces, const WaterLevel& level)
+        : hu_(scan.hu),
+          segmentation_(segmentation),
+          means_(means),
+          interfaces_(interfaces),
+          level_(level) {}
 
     TissueFractions at(std::size_t index) const {
         const Grid& grid = hu_.grid();
@@ -35,9 +42,25 @@ public:
         double tagged = std::clamp((y - softHu) / (taggedHu - softHu), 0.0, 1.0);
         const Neighbours around = look(v, softHu, taggedHu);
         if (!around.tagged && y > softHu) return rounded(0.0, 0.0);
-        if (around.meanShare > 0.9 && around.leastShare > 0.5) return rounded(0.0, 1.0);
+        // As sure as the noise lets the tagging be told from the wall.
+        const double noise = means_.noiseSd / (taggedHu - softHu);
+        if (around.meanShare > 1.0 - std::max(0.1, 0.8 * noise) &&
+            around.leastShare > 1.0 - std::max(0.5, 4.0 * noise))
+            return rounded(0.0, 1.0);
+        if (around.leastShare > -std::max(0.2, 4.0 * noise)) {
+            // No air near. What is taken out amplifies the noise by the contrast of air: where that
+            // is worse than the blur of a filter, the neighbours take some of it out.
+            const double weak = std::clamp((noise - 0.06) / 0.08, 0.0, 1.0);
+            const double weaker = std::clamp((noise - 0.14) / 0.1, 0.0, 1.0);
+            const double filtered = glm::mix(around.quadraticShare, around.smoothShare, weaker);
+            tagged =
+                std::clamp(glm::mix((y - softHu) / (taggedHu - softHu), filtered, weak), 0.0, 1.0);
+        }
         if (!around.tagged) tagged = 0.0;
         const double bare = interfaces_.bareness(v, taggedHu, softHu);
+        if (bare < 0.95 && aboveFluid(v, softHu, taggedHu) && besideWall(v, softHu, taggedHu)) {
+            if (const auto three = atLevel(v, softHu, taggedHu)) return *three;
+        }
         if (bare > 0.0) {
             const double share = std::clamp((y - airHu) / (taggedHu - airHu), 0.0, 1.0);
             air = glm::mix(air, 1.0 - share, bare), tagged = glm::mix(tagged, share, bare);
@@ -50,26 +73,109 @@ private:
         bool tagged = false;     ///< some are more tagged than soft
         double meanShare = 0.0;  ///< of tagged material, over the 27 voxels
         double leastShare = 1.0;
+        double quadraticShare = 0.0;  ///< of the quadratic fitted to the 27 voxels
+        double smoothShare = 0.0;     ///< by binomial weights
     };
+
+    /// Where the level meets the wall all three tissues may share a voxel. The level tells how much
+    /// of the contents is fluid, and so the HU the voxel would have without the wall; the rest is
+    /// wall. Where that HU is soft tissue's own, the voxels above and below tell its share.
+    std::optional<TissueFractions> atLevel(glm::ivec3 v, double softHu, double taggedHu) const {
+        const auto depth = level_.depthMm(v);
+        if (!depth || std::abs(*depth) > 2.5 * interfaces_.blurMm()) return std::nullopt;
+        const glm::ivec3 down = level_.down();
+        const double stepMm = glm::dot(glm::dvec3(glm::abs(down)), hu_.grid().spacingMm());
+        const double airHu = means_.airHu;
+        const auto fluidAt = [&](double depthMm) {
+            return 0.5 * std::erfc(-depthMm / (interfaces_.blurMm() * std::sqrt(2.0)));
+        };
+        double sum = 0.0, weight = 1e-9;
+        const auto add = [&](int step) {
+            const glm::ivec3 n = v + step * down;
+            if (!hu_.grid().contains(n)) return;
+            const double open = airHu + fluidAt(*depth + step * stepMm) * (taggedHu - airHu);
+            // Of what the noise leaves sure; farther rows count only where this one says little.
+            const double certainty = (softHu - open) / (softHu - airHu);
+            const double w = certainty * certainty * (step == 0 ? 1.0 : 0.02 / std::abs(step));
+            sum += w *
+                   std::clamp((hu_.at(n) - open) / (softHu - open + (softHu > open ? 1e-3 : -1e-3)),
+                              0.0, 1.0);
+            weight += w;
+        };
+        for (int step = -2; step <= 2; ++step)
+            add(step);
+        // A level that the voxel contradicts is that of another pool.
+        const double open = airHu + fluidAt(*depth) * (taggedHu - airHu), y = hu_.at(v);
+        const double slack = 4.0 * means_.noiseSd +
+                             0.3 * fluidAt(*depth) * (1.0 - fluidAt(*depth)) * (taggedHu - airHu);
+        if (y < std::min(open, softHu) - slack || y > std::max(open, softHu) + slack)
+            return std::nullopt;
+        const double soft = sum / weight, tagged = (1.0 - soft) * fluidAt(*depth);
+        return rounded(1.0 - soft - tagged, tagged);
+    }
+
+    /// Whether some of the nine voxels below hold fluid that this one can hold the top of.
+    bool aboveFluid(glm::ivec3 v, double softHu, double taggedHu) const {
+        const glm::ivec3 down = level_.down();
+        if (down == glm::ivec3(0)) return false;
+        const glm::ivec3 across = glm::ivec3(1) - glm::abs(down);
+        const double least = softHu + std::max(0.15 * (taggedHu - softHu), 2.0 * means_.noiseSd);
+        for (int b = -1; b <= 1; ++b) {
+            for (int a = -1; a <= 1; ++a) {
+                const glm::ivec3 aside = down.x   ? glm::ivec3(0, a, b)
+                                         : down.y ? glm::ivec3(a, 0, b)
+                                                  : glm::ivec3(a, b, 0);
+                const glm::ivec3 n = v + down + aside * across;
+                if (hu_.grid().contains(n) && hu_.at(n) > least) return true;
+            }
+        }
+        return false;
+    }
+
+    /// Whether soft tissue lies within 2 mm, in a row that the level has not given its HU.
+    bool besideWall(glm::ivec3 v, double softHu, double taggedHu) const {
+        const Grid& grid = hu_.grid();
+        const glm::ivec3 down = level_.down();
+        if (down == glm::ivec3(0)) return false;
+        const glm::ivec3 reach =
+            glm::max(glm::ivec3(glm::floor(2.0 / grid.spacingMm())), glm::ivec3(1));
+        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(1)),
+                         hi = glm::min(v + reach, grid.size - 2);
+        const double tolerance = std::max(3.0 * means_.noiseSd, 0.15 * (taggedHu - softHu));
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (int i = lo.x; i <= hi.x; ++i) {
+                    const glm::ivec3 n(i, j, k);
+                    if (std::abs(hu_.at(n) - softHu) > tolerance) continue;
+                    // Wall goes on above or below; a level does not.
+                    if (std::abs(hu_.at(n + down) - softHu) < tolerance ||
+                        std::abs(hu_.at(n - down) - softHu) < tolerance)
+                        return true;
+                }
+            }
+        }
+        return false;
+    }
 
     Neighbours look(glm::ivec3 v, double softHu, double taggedHu) const {
         const Grid& grid = hu_.grid();
         Neighbours around;
-        int count = 0;
-        const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)), hi = glm::min(v + 1, grid.size - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    const std::size_t n = grid.index(i, j, k);
+        for (int c = -1; c <= 1; ++c) {
+            for (int b = -1; b <= 1; ++b) {
+                for (int a = -1; a <= 1; ++a) {
+                    const std::size_t n = grid.index(
+                        glm::clamp(v + glm::ivec3(a, b, c), glm::ivec3(0), grid.size - 1));
+                    const int away = a * a + b * b + c * c;
                     const double share = (hu_[n] - softHu) / (taggedHu - softHu);
-                    around.meanShare += share, ++count;
+                    around.meanShare += share / 27.0;
+                    around.quadraticShare += share * (7 - 3 * away) / 27.0;
+                    around.smoothShare += share * double(8 >> away) / 64.0;
                     around.leastShare = std::min(around.leastShare, share);
                     around.tagged |=
                         share > 0.4 && LumenLabel(segmentation_[n]) == LumenLabel::tagged;
                 }
             }
         }
-        around.meanShare /= count;
         around.tagged |= LumenLabel(segmentation_.at(v)) == LumenLabel::tagged;
         return around;
     }
@@ -78,6 +184,7 @@ private:
     const Volume<std::uint8_t>& segmentation_;
     const LocalMeans& means_;
     const InterfaceLayer& interfaces_;
+    const WaterLevel& level_;
 };
 
 }  // namespace
@@ -85,7 +192,6 @@ private:
 Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const TissueModel& tissue,
                                                 const Volume<std::uint8_t>& segmentation,
                                                 glm::dvec3 gravity, const MixtureOptions& options) {
-    (void)gravity;
     const Grid& grid = scan.hu.grid();
     if (!sameGrid(grid, segmentation.grid())) {
         return fail(ErrorKind::badInput, "the segmentation is not on the scan's grid", "mixture");
@@ -115,7 +221,8 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     progress(0.5);
     const InterfaceLayer interfaces(scan, segmentation, means, options.threads);
     progress(0.6);
-    const ColonMixture colon(scan, segmentation, means, interfaces);
+    const WaterLevel level(scan, means, interfaces, around, gravity, options.threads);
+    const ColonMixture colon(scan, segmentation, means, interfaces, level);
     for (const auto& shell : around.shells) {
         parallelFor(shell.size(), 4096, options.threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n)

@@ -1,0 +1,37 @@
+// How high the tagged fluid stands.
+#pragma once
+
+#include "cleansing/interface_layer.h"
+#include "cleansing/local_means.h"
+#include "cleansing/tagged_surroundings.h"
+#include "core/ct_scan.h"
+
+#include <optional>
+
+namespace haustra::cleansing {
+
+/// The height of the fluid's surface to a fraction of a voxel: where bare, flat air–fluid
+/// interfaces stand half-way between air and fluid (dissertation §3.2). It is known beside them
+/// too, as gravity levels it: at a wall, where air, fluid and soft tissue share a voxel, it tells
+/// how much of what is not wall is fluid. A meniscus moves it as far as the nearest columns show.
+class WaterLevel {
+public:
+    /// `gravity` (unit, LPS) must lie within 18° of a grid axis, else there is no level.
+    WaterLevel(const CtScan& scan, const LocalMeans& means, const InterfaceLayer& interfaces,
+               const TaggedSurroundings& around, glm::dvec3 gravity, int threads);
+
+    /// Depth of a voxel's centre below the level, mm (negative above), where one is known within
+    /// 4 voxels of height and 8 across. Thread-safe.
+    std::optional<double> depthMm(glm::ivec3 voxel) const;
+
+    /// Along the grid: a unit step down. Zero where there is no gravity.
+    glm::ivec3 down() const { return down_; }
+
+private:
+    glm::ivec3 down_{0};
+    double stepMm_ = 1.0;
+    /// 0, or 1 + 254 f where the level crosses between this voxel and the one below, f of the way.
+    Volume<std::uint8_t> crossing_;
+};
+
+}  // namespace haustra::cleansing

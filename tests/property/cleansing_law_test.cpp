@@ -1,0 +1,82 @@
+// Laws of cleansing over the taggings and noises that scans have, and on a whole phantom.
+#include "cleansing/tissue_mixture.h"
+#include "cleansing_scenes.h"
+#include "phantom/phantom.h"
+
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+using namespace haustra;
+using namespace haustra::test;
+
+namespace {
+
+class CleansingOf : public testing::TestWithParam<std::tuple<double, double>> {};
+
+// Noise in a mixed voxel is multiplied by at most the contrast of tagged over soft material against
+// air; three times that is the bound.
+TEST_P(CleansingOf, StaysWithinItsErrorBounds) {
+    const auto [taggedHu, noise] = GetParam();
+    const Scene scene = tubeWithLevel(taggedHu, noise);
+    const CleansedScene result = cleanseScene(scene);
+    const double gain = (taggedHu - sceneAirHu) / (taggedHu - sceneSoftHu);
+    const auto inside =
+        errorWhere(scene, result.cleansed, [](Shares s, glm::dvec3) { return s.tagged > 0.999; });
+    EXPECT_LT(std::abs(inside.bias), 5.0 + 0.03 * gain * noise);
+    EXPECT_LT(inside.rmse, 1.15 * noise + 2.0);
+    const auto level = errorWhere(scene, result.cleansed, [](Shares s, glm::dvec3) {
+        return s.soft() < 0.001 && s.air > 0.001 && s.tagged > 0.001;
+    });
+    EXPECT_LT(std::abs(level.bias), 20.0 + 0.1 * noise);
+    const auto wall = errorWhere(scene, result.cleansed, [](Shares s, glm::dvec3) {
+        return s.air < 0.001 && s.tagged > 0.02 && s.soft() > 0.02;
+    });
+    EXPECT_LT(std::abs(wall.bias), 15.0 + 0.35 * gain * noise);
+    EXPECT_LT(wall.rmse, 15.0 + 1.2 * gain * noise);
+}
+
+INSTANTIATE_TEST_SUITE_P(TaggingAndNoise, CleansingOf,
+                         testing::Combine(testing::Values(150.0, 250.0, 450.0, 800.0, 1200.0),
+                                          testing::Values(10.0, 20.0, 40.0)));
+
+TEST(CleansingLaw, ThreadsDoNotChangeABit) {
+    const Scene scene = tubeWithLevel(500.0, 20.0);
+    const CleansedScene one = cleanseScene(scene, 1), three = cleanseScene(scene, 3);
+    for (std::size_t n = 0; n < scene.scan.hu.voxels().size(); ++n) {
+        ASSERT_EQ(one.mixture[n], three.mixture[n]);
+        ASSERT_EQ(one.cleansed.hu[n], three.cleansed.hu[n]);
+        ASSERT_EQ(one.cleansed.lumen[n], three.cleansed.lumen[n]);
+    }
+}
+
+TEST(CleansingLaw, SmallPhantomBecomesItsUntaggedTwin) {
+    phantom::PhantomOptions options;
+    options.size = phantom::Size::small;
+    const auto made = phantom::makePhantom(options);
+    ASSERT_TRUE(made);
+    const auto tissue = cleansing::fitTissueModel(made->scan);
+    ASSERT_TRUE(tissue);
+    const auto mixture = cleansing::estimateMixture(made->scan, *tissue, made->lumen,
+                                                    gravityDirection(made->scan.position));
+    ASSERT_TRUE(mixture);
+    const auto cleansed = cleansing::cleanse(made->scan, *tissue, *mixture, made->lumen);
+    ASSERT_TRUE(cleansed);
+    const Grid& grid = made->scan.hu.grid();
+    double bias = 0.0, before = 0.0, after = 0.0;
+    long count = 0, both = 0, either = 0;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const bool truth = made->lumen[n] != 0, found = cleansed->lumen[n] != 0;
+        both += truth && found, either += truth + found;
+        if (LumenLabel(made->lumen[n]) != LumenLabel::tagged) continue;
+        const double was = made->scan.hu[n] - made->untaggedHu[n];
+        const double is = cleansed->hu[n] - made->untaggedHu[n];
+        bias += is, before += was * was, after += is * is, ++count;
+    }
+    ASSERT_GT(count, 10000);
+    EXPECT_LT(std::abs(bias / double(count)), 30.0);
+    EXPECT_LT(std::sqrt(after / before), 0.10);
+    EXPECT_GT(2.0 * double(both) / double(either), 0.97);
+}
+
+}  // namespace
