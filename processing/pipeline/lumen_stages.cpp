@@ -33,6 +33,14 @@ Result<void> checkOrthogonal(const Grid& grid) {
     return {};
 }
 
+// The `branches` product: one after the other, each from an arc of 0 on.
+Centerline joined(const std::vector<Centerline>& branches) {
+    Centerline all;
+    for (const Centerline& branch : branches)
+        all.points.insert(all.points.end(), branch.points.begin(), branch.points.end());
+    return all;
+}
+
 }  // namespace
 
 Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& source) {
@@ -102,7 +110,14 @@ Result<ProductKey> measureDistance(Preparation& preparation, const ProductKey& l
 Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& lumen,
                                    const ProductKey& distance) {
     const StageMeter meter;
-    const ProductKey key = store::makeKey("centerline", centerlineVersion, "", {lumen, distance});
+    const organs::OrganProfile& organ = preparation.organ();
+    const ProductKey key =
+        store::makeKey("centerline", centerlineVersion,
+                       std::string("end-points=") + organs::toString(organ.endPoints) +
+                           (organ.branches ? ";branches" : ""),
+                       {lumen, distance});
+    Stage stage{"centerline", key, {product::centerline}};
+    if (organ.branches) stage.products.push_back(product::branches);
     const auto make = [&](const Progress& progress) -> Result<void> {
         store::Case& target = preparation.target();
         const auto labels = target.readVolume<std::uint8_t>(product::lumen);
@@ -112,16 +127,22 @@ Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& l
         topology::CenterlineOptions tracing;
         tracing.threads = preparation.options().threads;
         tracing.progress = progress;
+        tracing.ends = organ.endPoints == organs::EndPoints::farthest
+                           ? topology::EndRule::farthest
+                           : topology::EndRule::rectumToCecum;
+        tracing.branches = organ.branches;
         const auto traced = topology::traceCenterline(*labels, *distanceMm, tracing);
         if (!traced) return tl::make_unexpected(traced.error());
         Attributes attributes{{"length-mm", exactText(traced->centerline.lengthMm())}};
         setNotes(attributes, traced->notes);
-        return target.publishCenterline(product::centerline, key, traced->centerline, attributes,
-                                        madeFrom(product::centerline));
+        auto published = target.publishCenterline(product::centerline, key, traced->centerline,
+                                                  attributes, madeFrom(product::centerline));
+        if (!published || !organ.branches) return published;
+        return target.publishCenterline(product::branches, key, joined(traced->branches),
+                                        {{"branches", std::to_string(traced->branches.size())}},
+                                        madeFrom(product::branches));
     };
-    return preparation.run({"centerline", key, {product::centerline}}, meter, make).map([&] {
-        return key;
-    });
+    return preparation.run(stage, meter, make).map([&] { return key; });
 }
 
 }  // namespace haustra::pipeline

@@ -13,14 +13,17 @@ const std::vector<std::string>& madeFrom(const std::string& product) {
     using namespace product;
     static const std::map<std::string, std::vector<std::string>> dependents{
         {ct,
-         {segmentation, mixture, cleansedLumen, cleansed, lumen, distance, centerline, surface}},
-        {segmentation, {mixture, cleansedLumen, cleansed, lumen, distance, centerline, surface}},
-        {mixture, {cleansedLumen, cleansed, lumen, distance, centerline, surface}},
-        {cleansedLumen, {cleansed, lumen, distance, centerline, surface}},
-        {cleansed, {lumen, distance, centerline, surface}},
-        {lumen, {distance, centerline, surface}},
-        {distance, {centerline}},
-        {centerline, {}},
+         {segmentation, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches,
+          surface}},
+        {segmentation,
+         {mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches, surface}},
+        {mixture, {cleansedLumen, cleansed, lumen, distance, centerline, branches, surface}},
+        {cleansedLumen, {cleansed, lumen, distance, centerline, branches, surface}},
+        {cleansed, {lumen, distance, centerline, branches, surface}},
+        {lumen, {distance, centerline, branches, surface}},
+        {distance, {centerline, branches}},
+        {centerline, {branches}},
+        {branches, {}},
         {surface, {}}};
     return dependents.at(product);
 }

@@ -20,7 +20,7 @@ namespace product {
 inline constexpr char ct[] = "ct", segmentation[] = "segmentation", mixture[] = "mixture",
                       cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
                       lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
-                      surface[] = "surface";
+                      branches[] = "branches", surface[] = "surface";
 }  // namespace product
 
 /// The products that a product goes into, nearly or by way of others: what is outdated with it.

@@ -58,7 +58,8 @@ const std::vector<std::string>& stageNames();
 ///                 cleansed        the scan in HU with air in the tagging's place
 ///   denoising     lumen           the lumen with the organ's topology
 ///   distance      distance        mm to the lumen's boundary
-///   centerline    centerline
+///   centerline    centerline      and branches, where the organ's profile keeps them: one after
+///                                 the other, each from an arc of 0 on
 ///   surface       surface         the lumen's closed surface
 ///
 /// Mixture and cleansing run where there is a scan and the organ's profile says so; `lumen` comes

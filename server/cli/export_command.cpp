@@ -31,6 +31,7 @@ const std::map<std::string, Endings>& formats() {
         {"lumen", volume},
         {"distance", volume},
         {"centerline", {".csv"}},
+        {"branches", {".csv"}},
         {"surface", {".ply", ".obj", ".off", ".stl"}}};
     return endings;
 }
@@ -68,8 +69,8 @@ Result<void> runExport(const Arguments& arguments) {
     // What leaves the store for other programs has been read whole and found sound.
     if (auto sound = source->verify(arguments.product); !sound) return sound;
     const std::string& product = arguments.product;
-    if (product == "centerline") {
-        const auto centerline = source->readCenterline();
+    if (product == "centerline" || product == "branches") {
+        const auto centerline = source->readCenterline(product);
         if (!centerline) return tl::make_unexpected(centerline.error());
         return writeTextFile(arguments.file, centerlineCsv(*centerline));
     }
@@ -99,7 +100,8 @@ Command addExport(CLI::App& program) {
         "segmentation, cleansed-lumen and lumen (uint8: 0 outside, 1 air, 2 tagged, 3 bridge over "
         "a collapse), mixture (4-D uint8: air, soft tissue, tagged, in 255ths) and distance "
         "(float, mm) as .nii.gz; centerline as .csv (x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, "
-        "rectum to cecum); surface as .ply, .obj, .off or .stl (LPS, mm).");
+        "rectum to cecum) and branches likewise, each from an arc of 0 on; surface as .ply, .obj, "
+        ".off or .stl (LPS, mm).");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     command->add_option("PRODUCT", arguments->product, "What to write")
         ->required()

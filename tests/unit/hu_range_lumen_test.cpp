@@ -1,0 +1,160 @@
+// Lumens of content with HU of its own: which bodies are taken, against sets counted by hand.
+#include "topology/hu_range_lumen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+namespace haustra::topology {
+namespace {
+
+const Grid grid = axisAlignedGrid({60, 50, 40}, {1.0, 1.0, 1.5}, {-30.0, 10.0, -100.0});
+
+// 300 HU where `content` holds (of a point in mm from voxel 0), 40 HU elsewhere.
+Volume<std::int16_t> scanOf(const std::function<bool(glm::dvec3)>& content) {
+    Volume<std::int16_t> hu(grid);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        hu.writable()[n] = content(glm::dvec3(grid.voxelAt(n)) * grid.spacingMm()) ? 300 : 40;
+    }
+    return hu;
+}
+
+bool inBall(glm::dvec3 p, glm::dvec3 centre, double radius) {
+    return glm::distance(p, centre) <= radius;
+}
+const glm::dvec3 largeCentre(15.0, 25.0, 30.0), smallCentre(45.0, 25.0, 30.0);
+bool inLarge(glm::dvec3 p) {
+    return inBall(p, largeCentre, 11.0);
+}
+bool inSmall(glm::dvec3 p) {
+    return inBall(p, smallCentre, 7.0);
+}
+bool inBridge(glm::dvec3 p) {
+    return std::hypot(p.y - 25.0, p.z - 30.0) <= 1.6 && p.x > 15.0 && p.x < 45.0;
+}
+glm::dvec3 patientMm(glm::dvec3 p) {
+    return glm::dvec3(-30.0, 10.0, -100.0) + p;
+}
+
+HuRangeOptions options() {
+    HuRangeOptions options;
+    options.contentHu = {200, 500};
+    return options;
+}
+
+void expectSet(const Result<HuRangeLumen>& found, const Volume<std::int16_t>& of) {
+    ASSERT_TRUE(found) << describe(found.error());
+    std::size_t wrong = 0;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+        wrong += (found->labels[n] != 0) != (of[n] == 300);
+    EXPECT_EQ(wrong, 0u);
+}
+
+TEST(HuRangeLumen, TheLargestBodyUnlessSeedsSayOtherwise) {
+    const auto both = scanOf([](glm::dvec3 p) { return inLarge(p) || inSmall(p); });
+    expectSet(findHuRangeLumen(both, options()), scanOf(inLarge));
+    HuRangeOptions seeded = options();
+    seeded.seedsMm = {patientMm(smallCentre)};
+    expectSet(findHuRangeLumen(both, seeded), scanOf(inSmall));
+    seeded.seedsMm.push_back(patientMm(largeCentre + glm::dvec3(0, 14.0, 0)));  // 3 mm outside
+    expectSet(findHuRangeLumen(both, seeded), both);
+    EXPECT_EQ(findHuRangeLumen(both, seeded)->bodies, 2);
+    HuRangeOptions excluding = options();
+    excluding.excludesMm = {patientMm(largeCentre)};
+    expectSet(findHuRangeLumen(both, excluding), scanOf(inSmall));
+    excluding.excludesMm.push_back(patientMm(smallCentre));
+    EXPECT_EQ(findHuRangeLumen(both, excluding).error().kind, ErrorKind::noResult);
+}
+
+TEST(HuRangeLumen, BothEndsOfTheRangeAreContent) {
+    auto hu = scanOf(inLarge);
+    HuRangeOptions exact = options();
+    exact.contentHu = {300, 301};
+    expectSet(findHuRangeLumen(hu, exact), hu);
+    exact.contentHu = {299, 300};
+    expectSet(findHuRangeLumen(hu, exact), hu);
+    exact.contentHu = {301, 400};
+    EXPECT_EQ(findHuRangeLumen(hu, exact).error().kind, ErrorKind::noResult);
+}
+
+TEST(HuRangeLumen, WhatTheContentEnclosesBelongsToIt) {
+    const auto hollow =
+        scanOf([](glm::dvec3 p) { return inLarge(p) && !inBall(p, largeCentre, 4); });
+    const auto found = findHuRangeLumen(hollow, options());
+    expectSet(found, scanOf(inLarge));
+    EXPECT_EQ(found->notes.size(), 1u);
+    // A hole that reaches the outside is none of it.
+    const auto bored = scanOf([](glm::dvec3 p) {
+        return inLarge(p) && std::hypot(p.x - largeCentre.x, p.y - largeCentre.y) > 3.0;
+    });
+    expectSet(findHuRangeLumen(bored, options()), bored);
+}
+
+TEST(HuRangeLumen, AnOpeningCutsThinBridgesAndNothingElse) {
+    const auto bridged =
+        scanOf([](glm::dvec3 p) { return inLarge(p) || inSmall(p) || inBridge(p); });
+    expectSet(findHuRangeLumen(bridged, options()), bridged);
+    HuRangeOptions opening = options();
+    opening.openingMm = 3.0;
+    const auto found = findHuRangeLumen(bridged, opening);
+    ASSERT_TRUE(found) << describe(found.error());
+    // By definition: the union of all balls of the radius that fit into the content.
+    std::vector<char> expected(grid.voxelCount(), 0);
+    const glm::dvec3 spacing = grid.spacingMm();
+    const int reach = 4;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        std::vector<std::size_t> ball;
+        bool fits = true;
+        for (int k = -reach; k <= reach && fits; ++k) {
+            for (int j = -reach; j <= reach && fits; ++j) {
+                for (int i = -reach; i <= reach && fits; ++i) {
+                    const glm::ivec3 at = v + glm::ivec3(i, j, k);
+                    if (glm::length(glm::dvec3(i, j, k) * spacing) > opening.openingMm) continue;
+                    if (!grid.contains(at)) continue;
+                    fits = bridged.at(at) == 300;
+                    ball.push_back(grid.index(at));
+                }
+            }
+        }
+        for (const std::size_t at : ball)
+            expected[at] |= char(fits);
+    }
+    std::size_t wrong = 0, inside = 0;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::dvec3 p = glm::dvec3(grid.voxelAt(n)) * spacing;
+        const bool wanted = expected[n] && p.x < 35.0;  // the small ball is another body
+        wrong += (found->labels[n] != 0) != wanted;
+        inside += wanted;
+    }
+    EXPECT_GT(inside, 1000u);
+    EXPECT_EQ(wrong, 0u);
+    opening.openingMm = 20.0;
+    EXPECT_EQ(findHuRangeLumen(bridged, opening).error().kind, ErrorKind::noResult);
+}
+
+TEST(HuRangeLumen, ASeedAwayFromAllContentIsRefused) {
+    const auto hu = scanOf(inLarge);
+    for (const glm::dvec3 away :
+         {patientMm(smallCentre), glm::dvec3(1e5), glm::dvec3(1e300), glm::dvec3(std::nan(""))}) {
+        HuRangeOptions seeded = options();
+        seeded.seedsMm = {away};
+        EXPECT_EQ(findHuRangeLumen(hu, seeded).error().kind, ErrorKind::badInput);
+    }
+}
+
+TEST(HuRangeLumen, TheSameForAnyNumberOfThreads) {
+    const auto hu = scanOf([](glm::dvec3 p) { return inLarge(p) || inSmall(p) || inBridge(p); });
+    HuRangeOptions some = options();
+    some.openingMm = 2.0;
+    some.threads = 1;
+    const auto one = findHuRangeLumen(hu, some).value();
+    some.threads = 3;
+    const auto three = findHuRangeLumen(hu, some).value();
+    EXPECT_TRUE(std::ranges::equal(one.labels.voxels(), three.labels.voxels()));
+}
+
+}  // namespace
+}  // namespace haustra::topology
