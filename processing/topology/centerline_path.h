@@ -46,7 +46,7 @@ struct TracedCenterline {
 ///
 /// Fails where the grids differ, a given end is more than 10 mm outside the lumen (badInput), or
 /// the lumen is empty or a speck (noResult). O(n log n) in the lumen's voxels, n an eighth of them;
-/// takes 32 bytes a node and 4 bytes for each eight voxels of the grid, beside the volumes.
+/// takes some 60 bytes a node and 4 bytes for each eight voxels of the grid, beside the volumes.
 Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
                                          const Volume<float>& distanceMm,
                                          const CenterlineOptions& options = {});
