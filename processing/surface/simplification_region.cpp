@@ -4,13 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace haustra::surface {
 namespace {
 
-constexpr double cellMm = 1.5;
+constexpr double cellMm = 1.25;
+constexpr double wantedAngleDegrees = 20.0;  // sharper corners are bettered
 constexpr int maxValence = 12;
 constexpr double leastNormalCosine = 0.3;  // between a triangle and what takes its place
+
+double cosineOf(double degrees) {
+    return std::cos(degrees * (std::numbers::pi / 180.0));
+}
 
 /// Cosine of the smallest angle of a triangle; 1 where it has no area.
 double sharpestCosine(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -39,7 +45,7 @@ RegionSimplification::RegionSimplification(Simplification& shared, const Region&
       region_(region),
       grid_(region.box.low, region.box.high, cellMm),
       seen_(std::size_t(shared.mesh.triangleCount()), 0),
-      sharpestCosine_(std::cos(shared.minAngleDegrees * (3.14159265358979323846 / 180.0))) {
+      sharpestCosine_(cosineOf(shared.minAngleDegrees)) {
     for (const int triangle : region.triangles)
         grid_.insert(triangle, boxOf(triangle));
 }
@@ -302,8 +308,7 @@ double RegionSimplification::sharpestAround(int v) const {
 }
 
 bool RegionSimplification::betterVertex(int v) {
-    const double wanted = std::cos(30.0 * 3.14159265358979323846 / 180.0);
-    if (sharpestAround(v) <= wanted) return false;
+    if (sharpestAround(v) <= cosineOf(wantedAngleDegrees)) return false;
     relax(v);
     int corners[maxValence + 4], count = 0;
     mesh_.aroundVertex(v, [&](int corner) {

@@ -8,7 +8,7 @@ TriangleGrid::TriangleGrid(const glm::vec3& low, const glm::vec3& high, float ce
         cellMm *= 1.25f;
     cellsPerMm_ = 1.0f / cellMm;
     size_ = glm::ivec3(extent * cellsPerMm_) + 1;
-    first_.assign(std::size_t(size_.x) * size_.y * size_.z, -1);
+    cells_.resize(std::size_t(size_.x) * size_.y * size_.z);
 }
 
 glm::ivec3 TriangleGrid::cellOf(const glm::vec3& point) const {
@@ -17,28 +17,17 @@ glm::ivec3 TriangleGrid::cellOf(const glm::vec3& point) const {
 }
 
 void TriangleGrid::insert(int triangle, const FloatBox& box) {
-    forEachCell(box, [&](int cell) {
-        int entry = free_;
-        if (entry >= 0) {
-            free_ = entries_[entry].next;
-        } else {
-            entry = int(entries_.size());
-            entries_.emplace_back();
-        }
-        entries_[entry] = {triangle, first_[cell], box};
-        first_[cell] = entry;
-    });
+    forEachCell(box, [&](int cell) { cells_[cell].push_back({triangle, box}); });
 }
 
 void TriangleGrid::remove(int triangle, const FloatBox& box) {
     forEachCell(box, [&](int cell) {
-        int* link = &first_[cell];
-        while (entries_[*link].triangle != triangle)
-            link = &entries_[*link].next;
-        const int entry = *link;
-        *link = entries_[entry].next;
-        entries_[entry].next = free_;
-        free_ = entry;
+        std::vector<Entry>& entries = cells_[cell];
+        std::size_t i = 0;
+        while (entries[i].triangle != triangle)
+            ++i;
+        entries[i] = entries.back();
+        entries.pop_back();
     });
 }
 

@@ -30,7 +30,7 @@ struct FloatBox {
 /// box counts to the cells at its border. Of one thread.
 class TriangleGrid {
 public:
-    /// Memory: four bytes a cell; the cell grows where there would be over 2²² of them.
+    /// The cell grows where there would be over 2²² of them.
     TriangleGrid(const glm::vec3& low, const glm::vec3& high, float cellMm);
 
     void insert(int triangle, const FloatBox& box);
@@ -42,14 +42,14 @@ public:
     template <class Visit>
     void visit(const FloatBox& box, const Visit& visit) const {
         forEachCell(box, [&](int cell) {
-            for (int entry = first_[cell]; entry >= 0; entry = entries_[entry].next)
-                visit(entries_[entry].triangle, entries_[entry].box);
+            for (const Entry& entry : cells_[cell])
+                visit(entry.triangle, entry.box);
         });
     }
 
 private:
     struct Entry {
-        int triangle, next;
+        int triangle;
         FloatBox box;
     };
 
@@ -68,9 +68,7 @@ private:
     glm::vec3 low_;
     float cellsPerMm_;
     glm::ivec3 size_;
-    std::vector<int> first_;
-    std::vector<Entry> entries_;
-    int free_ = -1;
+    std::vector<std::vector<Entry>> cells_;
 };
 
 }  // namespace haustra::surface
