@@ -1,6 +1,7 @@
 #include "cleansing/digital_cleansing.h"
 
 #include "cleansing/local_means.h"
+#include "cleansing/menisci.h"
 #include "cleansing/refined_lumen.h"
 #include "cleansing/tagged_surroundings.h"
 #include "core/parallel.h"
@@ -63,12 +64,13 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
         return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "cleansing");
     }
     Cleansed cleansed{scan.hu.clone(), {}};
-    const TaggedSurroundings around = taggedSurroundings(segmentation, threads);
+    const Volume<std::uint8_t> labels = withMenisci(scan, tissue, segmentation);
+    const TaggedSurroundings around = taggedSurroundings(labels, threads);
     if (around.shells[0].empty()) {
         cleansed.lumen = segmentation.clone();
         return cleansed;
     }
-    const LocalMeans means = measureLocalMeans(scan, tissue, segmentation, around, threads);
+    const LocalMeans means = measureLocalMeans(scan, tissue, labels, around, threads);
     const auto shares = residueShares(around, mixture);
     std::vector<CleansedVoxel> changed;
     for (std::size_t shell = 0; shell < shares.size(); ++shell) {
@@ -90,7 +92,7 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
             out[voxel.index] = std::int16_t(std::clamp(std::lround(hu), -1024L, 3071L));
         }
     });
-    cleansed.lumen = refineLumen(cleansed.hu, tissue, means.airHu, segmentation, changed);
+    cleansed.lumen = refineLumen(cleansed.hu, tissue, means.airHu, labels, changed);
     return cleansed;
 }
 

@@ -38,9 +38,14 @@ Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t
     const auto label = segmentation.voxels();
     const std::vector<glm::ivec3> ball = ballOffsets(grid, blurReachMm);
 
-    // Stool that the segmentation missed at a pool's border is tagged too.
+    // Stool that the segmentation missed at a pool's border is tagged too; what is less than half
+    // as dense as the pool may be another bowel behind the wall.
     const auto isDense = [&](std::size_t n) {
-        return LumenLabel(label[n]) == LumenLabel::tagged || hu[n] > denseAboveHu;
+        if (LumenLabel(label[n]) == LumenLabel::tagged) return true;
+        if (hu[n] <= denseAboveHu) return false;
+        const glm::ivec3 v = grid.voxelAt(n);
+        const double soft = means.softHu.at(v.x, v.y, v.z);
+        return hu[n] > soft + 0.5 * (coarse.at(v.x, v.y, v.z) - soft);
     };
 
     // Even contents: the blur of nothing else reaches in.

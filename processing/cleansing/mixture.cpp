@@ -2,6 +2,7 @@
 
 #include "cleansing/interface_layer.h"
 #include "cleansing/local_means.h"
+#include "cleansing/menisci.h"
 #include "cleansing/partial_volume_em.h"
 #include "cleansing/tagged_surroundings.h"
 #include "cleansing/water_level.h"
@@ -110,8 +111,15 @@ private:
                              0.3 * fluidAt(*depth) * (1.0 - fluidAt(*depth)) * (taggedHu - airHu);
         if (y < std::min(open, softHu) - slack || y > std::max(open, softHu) + slack)
             return std::nullopt;
-        const double soft = sum / weight, tagged = (1.0 - soft) * fluidAt(*depth);
-        return rounded(1.0 - soft - tagged, tagged);
+        const double soft = sum / weight;
+        // No less than what the wall alone leaves unexplained, no more than the air alone does.
+        const double least = std::max(0.0, (y - softHu) / (taggedHu - softHu));
+        const double most = std::max(0.0, (y - airHu) / (taggedHu - airHu));
+        const double tagged =
+            std::clamp((1.0 - soft) * fluidAt(*depth), std::min(least, most), most);
+        // Equation 3.1 gives the rest.
+        const double wall = (y - tagged * taggedHu - (1.0 - tagged) * airHu) / (softHu - airHu);
+        return rounded(1.0 - tagged - std::clamp(wall, 0.0, 1.0 - tagged), tagged);
     }
 
     /// Whether some of the nine voxels below hold fluid that this one can hold the top of.
@@ -214,15 +222,16 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
                         out[n] = model.fractionsOf(hu[n]);
                 });
     progress(0.2);
-    const TaggedSurroundings around = taggedSurroundings(segmentation, options.threads);
+    const Volume<std::uint8_t> labels = withMenisci(scan, tissue, segmentation);
+    const TaggedSurroundings around = taggedSurroundings(labels, options.threads);
     progress(0.3);
     if (around.shells[0].empty()) return mixture;
-    const LocalMeans means = measureLocalMeans(scan, tissue, segmentation, around, options.threads);
+    const LocalMeans means = measureLocalMeans(scan, tissue, labels, around, options.threads);
     progress(0.5);
-    const InterfaceLayer interfaces(scan, segmentation, means, options.threads);
+    const InterfaceLayer interfaces(scan, labels, means, options.threads);
     progress(0.6);
     const WaterLevel level(scan, means, interfaces, around, gravity, options.threads);
-    const ColonMixture colon(scan, segmentation, means, interfaces, level);
+    const ColonMixture colon(scan, labels, means, interfaces, level);
     for (const auto& shell : around.shells) {
         parallelFor(shell.size(), 4096, options.threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n)

@@ -1,0 +1,85 @@
+#include "cleansing/menisci.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace haustra::cleansing {
+namespace {
+
+constexpr int farthest = 6;  // face steps from the pool
+constexpr int airWithin = 4;
+
+bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
+    const glm::ivec3 lo = glm::max(v - airWithin, glm::ivec3(0)),
+                     hi = glm::min(v + airWithin, labels.grid().size - 1);
+    for (int k = lo.z; k <= hi.z; ++k) {
+        for (int j = lo.y; j <= hi.y; ++j) {
+            for (int i = lo.x; i <= hi.x; ++i) {
+                if (LumenLabel(labels.at(i, j, k)) == LumenLabel::air) return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Densest HU of the pool around one of its voxels.
+int rimHu(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels, glm::ivec3 v) {
+    const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
+                     hi = glm::min(v + 1, labels.grid().size - 1);
+    int most = hu.at(v);
+    for (int k = lo.z; k <= hi.z; ++k) {
+        for (int j = lo.y; j <= hi.y; ++j) {
+            for (int i = lo.x; i <= hi.x; ++i) {
+                if (LumenLabel(labels.at(i, j, k)) == LumenLabel::tagged)
+                    most = std::max<int>(most, hu.at(i, j, k));
+            }
+        }
+    }
+    return most;
+}
+
+}  // namespace
+
+Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
+                                 const Volume<std::uint8_t>& segmentation) {
+    const Grid& grid = scan.hu.grid();
+    const double softHu = tissue.meanHu[int(Tissue::soft)];
+    Volume<std::uint8_t> labels = segmentation.clone();
+    const auto out = labels.writable();
+    struct Rim {
+        glm::ivec3 voxel;
+        double leastHu;
+    };
+    std::vector<Rim> front, next;
+    const auto spread = [&](glm::ivec3 v, auto&& leastHuOf) {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int side = -1; side <= 1; side += 2) {
+                glm::ivec3 n = v;
+                n[axis] += side;
+                if (!grid.contains(n)) continue;
+                const std::size_t index = grid.index(n);
+                if (LumenLabel(out[index]) != LumenLabel::outside ||
+                    scan.hu[index] <= tissue.taggedAboveHu)
+                    continue;
+                const double least = leastHuOf();
+                if (scan.hu[index] <= least || !airNear(segmentation, n)) continue;
+                out[index] = std::uint8_t(LumenLabel::tagged);
+                next.push_back({n, least});
+            }
+        }
+    };
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        if (LumenLabel(segmentation[n]) != LumenLabel::tagged) continue;
+        const glm::ivec3 v = grid.voxelAt(n);
+        spread(v, [&] { return 0.5 * (softHu + rimHu(scan.hu, segmentation, v)); });
+    }
+    for (int step = 1; step < farthest && !next.empty(); ++step) {
+        front.swap(next);
+        next.clear();
+        for (const Rim& rim : front)
+            spread(rim.voxel, [&] { return rim.leastHu; });
+    }
+    return labels;
+}
+
+}  // namespace haustra::cleansing

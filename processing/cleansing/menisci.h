@@ -1,0 +1,19 @@
+// Fluid that clings to the wall at the level's rim.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "core/tissue.h"
+#include "core/volume.h"
+
+#include <cstdint>
+
+namespace haustra::cleansing {
+
+/// `segmentation` (LumenLabel) with the menisci labelled as tagged: fluid climbs a wall by surface
+/// tension, past the flat level where a segmentation by levels ends. Added are unlabelled voxels at
+/// most 6 face steps from a pool, with air of the lumen within 4 voxels, along voxels that are more
+/// than half as dense, from soft tissue on, as the pool's rim where they begin. O(voxels).
+Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
+                                 const Volume<std::uint8_t>& segmentation);
+
+}  // namespace haustra::cleansing
