@@ -4,7 +4,11 @@
 #include "surface/loop_coarsening.h"
 #include "surface/loop_cut.h"
 #include "surface/loop_homology.h"
+#include "surface/loop_pieces.h"
 #include "surface/loop_search.h"
+#include "surface/self_intersection.h"
+
+#include <limits>
 
 namespace haustra::surface {
 namespace {
@@ -12,6 +16,8 @@ namespace {
 constexpr int coarseVertices = 3000;
 /// Lengths on the coarse mesh are off by up to this: chords for arcs, zigzags for straight paths.
 constexpr double coarseSlack = 1.5;
+/// Classes of loops that are tried for one whose filling is clean.
+constexpr std::size_t mostClasses = 4;
 
 double areaOf(const TriMesh& mesh) {
     double area = 0.0;
@@ -37,88 +43,61 @@ Result<std::vector<int>> coarsePlaces(const TriMesh& mesh) {
     return places;
 }
 
+/// How many pairs of triangles cut through each other where a cut has been filled.
+std::size_t crossingsAt(const LoopCut& cut) {
+    const auto cornersOf = [&](std::size_t t, auto&& use) {
+        for (int corner = 0; corner < 3; ++corner)
+            use(cut.mesh.vertices[std::size_t(cut.mesh.triangles[t][corner])]);
+    };
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (std::size_t t = cut.firstFilled; t < cut.mesh.triangles.size(); ++t)
+        cornersOf(t,
+                  [&](const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); });
+    TriMesh near{cut.mesh.vertices, {}};
+    for (std::size_t t = 0; t < cut.mesh.triangles.size(); ++t) {
+        glm::dvec3 lower(std::numeric_limits<double>::infinity()), upper = -lower;
+        cornersOf(t, [&](const glm::dvec3& p) {
+            lower = glm::min(lower, p), upper = glm::max(upper, p);
+        });
+        if (glm::all(glm::lessThanEqual(lower, high)) && glm::all(glm::lessThanEqual(low, upper)))
+            near.triangles.push_back(cut.mesh.triangles[t]);
+    }
+    return selfIntersections(near).size();
+}
+
 /// One handle less; `mesh` must have one.
 Result<RemovedHandle> removeShortest(TriMesh& mesh, int threads) {
     const auto halves = LoopMesh::of(mesh);
     if (!halves) return tl::make_unexpected(halves.error());
     const auto places = coarsePlaces(mesh);
     if (!places) return tl::make_unexpected(places.error());
+    const auto marks = homologyMarks(*halves);
     LoopSearchOptions search;
     search.threads = threads;
-    const Loop loop = shortestLoop(*halves, homologyMarks(*halves), *places, search);
-    if (loop.halfedges.empty())
+    Loop best;
+    LoopCut bestCut;
+    for (std::size_t crossings = std::numeric_limits<std::size_t>::max(), tries = 0;
+         crossings > 0 && tries < mostClasses; ++tries) {
+        const Loop loop = shortestLoop(*halves, marks, *places, search);
+        if (loop.halfedges.empty()) break;
+        LoopCut cut = cutAlong(mesh, *halves, loop);
+        if (const std::size_t found = crossingsAt(cut); found < crossings) {
+            crossings = found;
+            best = loop;
+            bestCut = std::move(cut);
+        }
+        std::uint64_t sum = 0;
+        for (const int h : loop.halfedges)
+            sum ^= marks[h];
+        search.passOver.push_back(sum);
+    }
+    if (best.halfedges.empty())
         return fail(ErrorKind::noResult, "a handle has no loop along the mesh's edges");
-    RemovedHandle handle{{}, loop.lengthMm, 0.0};
-    for (const int h : loop.halfedges)
+    RemovedHandle handle{{}, best.lengthMm, bestCut.filledAreaMm2};
+    for (const int h : best.halfedges)
         handle.loopMm.push_back(mesh.vertices[std::size_t(halves->origin(h))]);
-    LoopCut cut = cutAlong(mesh, *halves, loop);
-    handle.filledAreaMm2 = cut.filledAreaMm2;
-    mesh = std::move(cut.mesh);
+    mesh = std::move(bestCut.mesh);
     return handle;
-}
-
-/// A connected piece of a mesh, and where its vertices and triangles are in the whole.
-struct Piece {
-    TriMesh mesh;
-    std::vector<int> vertices;
-    std::vector<std::size_t> triangles;
-};
-
-std::vector<Piece> piecesOf(const LoopMesh& halves, const TriMesh& mesh) {
-    std::vector<Piece> pieces;
-    std::vector<int> pieceOf(mesh.triangles.size(), -1), number(mesh.vertices.size(), -1), stack;
-    for (std::size_t seed = 0; seed < mesh.triangles.size(); ++seed) {
-        if (pieceOf[seed] >= 0) continue;
-        pieceOf[seed] = int(pieces.size());
-        pieces.emplace_back();
-        stack.push_back(int(seed));
-        while (!stack.empty()) {
-            const int t = stack.back();
-            stack.pop_back();
-            for (int corner = 0; corner < 3; ++corner) {
-                const int next = halves.opposite(3 * t + corner) / 3;
-                if (pieceOf[next] >= 0) continue;
-                pieceOf[next] = pieceOf[t];
-                stack.push_back(next);
-            }
-        }
-    }
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        Piece& piece = pieces[std::size_t(pieceOf[t])];
-        glm::ivec3 triangle = mesh.triangles[t];
-        for (int corner = 0; corner < 3; ++corner) {
-            int& v = number[triangle[corner]];
-            if (v < 0) {
-                v = int(piece.vertices.size());
-                piece.vertices.push_back(triangle[corner]);
-                piece.mesh.vertices.push_back(mesh.vertices[triangle[corner]]);
-            }
-            triangle[corner] = v;
-        }
-        piece.triangles.push_back(t);
-        piece.mesh.triangles.push_back(triangle);
-    }
-    return pieces;
-}
-
-/// Puts a changed piece back: what it had keeps its numbers in the whole, what is new comes last.
-void putBack(TriMesh& whole, Piece piece) {
-    for (std::size_t v = piece.vertices.size(); v < piece.mesh.vertices.size(); ++v) {
-        piece.vertices.push_back(int(whole.vertices.size()));
-        whole.vertices.emplace_back();
-    }
-    for (std::size_t v = 0; v < piece.vertices.size(); ++v)
-        whole.vertices[std::size_t(piece.vertices[v])] = piece.mesh.vertices[v];
-    for (std::size_t t = 0; t < piece.mesh.triangles.size(); ++t) {
-        glm::ivec3 triangle = piece.mesh.triangles[t];
-        for (int corner = 0; corner < 3; ++corner)
-            triangle[corner] = piece.vertices[std::size_t(triangle[corner])];
-        if (t < piece.triangles.size()) {
-            whole.triangles[piece.triangles[t]] = triangle;
-        } else {
-            whole.triangles.push_back(triangle);
-        }
-    }
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ struct HandleRemoval {
 /// shortestLoop), cut, and both holes filled; repeated until the genus is 0. Of all loops it is the
 /// shortest that does not separate, so thin handles break, tunnels are plugged, and no neck is cut,
 /// which would remove no handle. Where a filling would cut through the surface (something passes
-/// the tunnel), the next shortest loop of another class is taken, if that one is clean. Only the
-/// loops' vertices move, by less than their triangles' size; vertices and triangles keep their
+/// the tunnel), shortest loops of up to three other classes are tried for one that is clean. Only
+/// the loops' vertices move, by less than their triangles' size; vertices and triangles keep their
 /// numbers, and new ones follow. Fails (badInput) where the mesh is open or not manifold. O(n log
 /// n) for each handle. The same mesh for any number of threads.
 Result<HandleRemoval> removeHandles(const TriMesh& mesh, const HandleRemovalOptions& options = {});

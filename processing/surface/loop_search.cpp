@@ -64,6 +64,11 @@ private:
         long settled = 0;
     };
 
+    bool counts(std::uint64_t sum) const {
+        const auto& passed = options_.passOver;
+        return sum != 0 && std::find(passed.begin(), passed.end(), sum) == passed.end();
+    }
+
     Outcome through(int base, double boundMm, Front& work) const {
         LoopFront& front = work.front;
         auto& sums = work.sums;
@@ -71,7 +76,9 @@ private:
         const double lookMm = boundMm * options_.slack;
         const int closing = front.run(
             base, lookMm, [&](int h) { sums[mesh_.target(h)] = sums[mesh_.origin(h)] ^ marks_[h]; },
-            [&](int h) { return sums[mesh_.target(h)] != (sums[mesh_.origin(h)] ^ marks_[h]); });
+            [&](int h) {
+                return counts(sums[mesh_.origin(h)] ^ marks_[h] ^ sums[mesh_.target(h)]);
+            });
         Outcome outcome;
         outcome.settled = long(front.order().size());
         // A loop through v is at most 2·d(base, v) shorter than the shortest through the base.

@@ -14,6 +14,8 @@ struct LoopSearchOptions {
     /// Vertices to settle in all before the best loop so far is taken as it is: reached only where
     /// the shortest loop is some hundreds of edges long.
     long effort = 12'000'000;
+    /// Loops whose marks add up to one of these are passed over, as if they separated.
+    std::vector<std::uint64_t> passOver;
 };
 
 /// The shortest loop along edges that does not separate the surface (by `marks`, see

@@ -101,6 +101,76 @@ TEST(HandleRemoval, RemovesPlantedBridgesAndTunnels) {
     }
 }
 
+TEST(HandleRemoval, PassesOverATunnelThatSomethingGoesThrough) {
+    // A torus whose hole is narrower than its tube, and a finger that reaches through the hole.
+    TriMesh mesh = tests::torusMesh(20.0, 12.0, 60, 40);
+    const auto ringOf = [&](int around, int along) { return around * 40 + along; };
+    const int from = ringOf(0, 13);  // on top, towards the hole
+    std::vector<int> rim;            // round the vertex, counter-clockwise
+    for (int next = -1; rim.empty() || next != rim.front();) {
+        for (const glm::ivec3& t : mesh.triangles) {
+            for (int corner = 0; corner < 3; ++corner) {
+                if (t[corner] != from || (next >= 0 && t[(corner + 1) % 3] != next)) continue;
+                if (rim.empty()) rim.push_back(t[(corner + 1) % 3]);
+                next = t[(corner + 2) % 3];
+                if (next != rim.front()) rim.push_back(next);
+                corner = 3;
+            }
+        }
+    }
+    std::erase_if(mesh.triangles,
+                  [&](const glm::ivec3& t) { return t.x == from || t.y == from || t.z == from; });
+    glm::dvec3 centre(0.0);
+    for (const int v : rim)
+        centre += mesh.vertices[v] / double(rim.size());
+    const glm::dvec3 over(0.0, 0.0, 22.0), down(0.0, 0.0, -22.0);
+    const auto ringAt = [&](const glm::dvec3& at) {
+        std::vector<int> ring;
+        for (const int v : std::vector(rim)) {
+            ring.push_back(int(mesh.vertices.size()));
+            mesh.vertices.push_back(at + mesh.vertices[v] - centre);
+        }
+        return ring;
+    };
+    std::vector<std::vector<int>> rings{rim};
+    for (int s = 1; s <= 12; ++s)
+        rings.push_back(ringAt(glm::mix(centre, over, s / 12.0)));
+    // Down the axis the ring lies across it, turned half over so that it keeps its sense.
+    for (int s = 0; s <= 40; ++s) {
+        std::vector<int> ring;
+        for (std::size_t i = 0; i < rim.size(); ++i) {
+            const glm::dvec3 arm = mesh.vertices[rim[i]] - centre;
+            ring.push_back(int(mesh.vertices.size()));
+            mesh.vertices.push_back(glm::mix(over, down, s / 40.0) +
+                                    glm::dvec3(-arm.x, arm.y, 0.0) - glm::dvec3(3.0, 0.0, 1.5));
+        }
+        rings.push_back(ring);
+    }
+    for (std::size_t r = 0; r + 1 < rings.size(); ++r) {
+        for (std::size_t i = 0; i < rim.size(); ++i) {
+            const std::size_t j = (i + 1) % rim.size();
+            mesh.triangles.push_back({rings[r][i], rings[r][j], rings[r + 1][j]});
+            mesh.triangles.push_back({rings[r][i], rings[r + 1][j], rings[r + 1][i]});
+        }
+    }
+    const int tip = int(mesh.vertices.size());
+    mesh.vertices.push_back(down - glm::dvec3(3.0, 0.0, 3.0));
+    for (std::size_t i = 0; i < rim.size(); ++i)
+        mesh.triangles.push_back({rings.back()[i], rings.back()[(i + 1) % rim.size()], tip});
+    ASSERT_EQ(meshTopology(mesh).genus(), 1);
+    ASSERT_TRUE(meshTopology(mesh).closed());
+    ASSERT_TRUE(selfIntersections(mesh).empty());
+
+    const auto removal = removeHandles(mesh);
+    ASSERT_TRUE(removal) << describe(removal.error());
+    ASSERT_EQ(removal->handles.size(), 1u);
+    const double tubeMm = 2.0 * std::numbers::pi * 12.0, holeMm = 2.0 * std::numbers::pi * 8.0;
+    EXPECT_GT(removal->handles[0].lengthMm, 1.2 * holeMm);
+    EXPECT_NEAR(removal->handles[0].lengthMm, tubeMm, 0.02 * tubeMm);
+    expectSphere(removal->mesh);
+    EXPECT_TRUE(selfIntersections(removal->mesh).empty());
+}
+
 TEST(HandleRemoval, GivesTheSameBytesForAnyNumberOfThreads) {
     tests::HandledSphere sphere(50.0, 48);
     sphere.addTube(0, 10, 14, 14, 4, 2.0, true);
