@@ -3,6 +3,7 @@
 #include "surface/hole_fill.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace haustra::surface {
 namespace {
