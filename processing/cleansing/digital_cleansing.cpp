@@ -87,7 +87,7 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
         for (std::size_t m = begin; m < end; ++m) {
             const CleansedVoxel& voxel = changed[m];
             const glm::ivec3 v = grid.voxelAt(voxel.index);
-            const double contrast = means.taggedHu.at(v.x, v.y, v.z) - means.airHu;
+            const double contrast = means.taggedHu.at(v) - means.airHu.at(v.x, v.y, v.z);
             const double hu = scan.hu[voxel.index] - voxel.tagged / 255.0 * contrast;
             out[voxel.index] = std::int16_t(std::clamp(std::lround(hu), -1024L, 3071L));
         }

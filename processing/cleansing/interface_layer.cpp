@@ -64,8 +64,8 @@ InterfaceLayer::InterfaceLayer(const CtScan& scan, const Volume<std::uint8_t>& s
                 for (int i = 1; i + 1 < grid.size.x; ++i) {
                     if (LumenLabel(segmentation.at(i, j, k)) != LumenLabel::tagged) continue;
                     const double tagged = means.taggedHu.at(i, j, k);
-                    const double share =
-                        (scan.hu.at(i, j, k) - means.airHu) / (tagged - means.airHu);
+                    const double air = means.airHu.at(i, j, k);
+                    const double share = (scan.hu.at(i, j, k) - air) / (tagged - air);
                     if (share < 0.3 || share > 0.7) continue;
                     const Step step = stepThrough({i, j, k}, tagged, means.softHu.at(i, j, k));
                     if (step.lengthMm <= 0.0) continue;
@@ -92,9 +92,10 @@ InterfaceLayer::Step InterfaceLayer::stepThrough(glm::ivec3 voxel, double tagged
                                                  double softHu) const {
     const Grid& grid = hu_.grid();
     if (!grid.contains(voxel - 1) || !grid.contains(voxel + 1)) return {};
-    const double contrast = taggedHu - means_.airHu;
-    const double low = means_.airHu + 0.2 * contrast;
-    const double high = std::max(means_.airHu + 0.8 * contrast, 0.5 * (softHu + taggedHu));
+    const double airHu = means_.airHu.at(voxel.x, voxel.y, voxel.z);
+    const double contrast = taggedHu - airHu;
+    const double low = airHu + 0.2 * contrast;
+    const double high = std::max(airHu + 0.8 * contrast, 0.5 * (softHu + taggedHu));
     const glm::dvec3 g = gradient(hu_, voxel, spacingMm_);
     const double steepness = glm::length(g);
     if (steepness < 0.05 * contrast) return {};
@@ -132,7 +133,7 @@ InterfaceLayer::Step InterfaceLayer::stepThrough(glm::ivec3 voxel, double tagged
     if (LumenLabel(segmentation_.at(above)) != LumenLabel::tagged) return {};
     Step step;
     step.lengthMm = up + down;
-    step.unitLength = normalQuantile((high - means_.airHu) / contrast) - normalQuantile(0.2);
+    step.unitLength = normalQuantile((high - airHu) / contrast) - normalQuantile(0.2);
     return step;
 }
 

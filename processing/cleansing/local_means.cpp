@@ -106,7 +106,8 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     const auto isAir = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::air; };
 
     // One slab of cells is one thread's, so sums do not depend on the threads.
-    CellSums tagged(taggedHu.values().size()), soft(means.softHu.values().size());
+    CellSums air(taggedHu.values().size()), tagged(taggedHu.values().size()),
+        soft(means.softHu.values().size());
     std::vector<double> airSum(std::size_t(cells.z), 0.0), airSquare(airSum), airCount(airSum);
     std::vector<char> holdsTagged(tagged.weight.size(), 0);
     parallelFor(std::size_t(cells.z), 1, threads, [&](std::size_t begin, std::size_t end) {
@@ -139,6 +140,8 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                         if (!everywhere(grid, ball, {i, j, k}, isAir)) continue;
                         const std::size_t slab = std::size_t(k / perCell.z);
                         airSum[slab] += hu[n], airCount[slab] += 1.0;
+                        const std::size_t cell = taggedHu.cellOf(i, j, k);
+                        air.weight[cell] += 1.0f, air.value[cell] += hu[n];
                         // The difference of voxels two apart: free of what changes slowly.
                         const double d = hu[n + 2] - hu[n];
                         airSquare[slab] += 0.5 * d * d;
@@ -150,7 +153,8 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     double count = 0.0, sum = 0.0, square = 0.0;
     for (std::size_t s = 0; s < airSum.size(); ++s)
         count += airCount[s], sum += airSum[s], square += airSquare[s];
-    means.airHu = count > 100.0 ? sum / count : tissue.meanHu[int(Tissue::air)];
+    means.airHu = SmoothField(grid, perCell);
+    fill(means.airHu, air, count > 100.0 ? sum / count : tissue.meanHu[int(Tissue::air)], 1.0);
     means.noiseSd = count > 100.0 ? std::clamp(std::sqrt(square / count), 4.0, 60.0)
                                   : std::clamp(tissue.sdHu[int(Tissue::soft)], 4.0, 60.0);
 

@@ -39,7 +39,7 @@ struct LocalMeans {
     /// voxel would have were it all tagged; set in the surroundings only, 0 elsewhere.
     Volume<std::int16_t> taggedHu;
     SmoothField softHu;    ///< the wall, its folds and growths
-    double airHu = 0.0;    ///< of the colon's own gas
+    SmoothField airHu;     ///< the colon's own gas: scatter from dense fluid lifts it nearby
     double noiseSd = 0.0;  ///< of one voxel, as pure gas shows it
 };
 

@@ -36,7 +36,8 @@ public:
         const Grid& grid = hu_.grid();
         const glm::ivec3 v = grid.voxelAt(index);
         const double y = hu_[index];
-        const double airHu = means_.airHu, softHu = means_.softHu.at(v.x, v.y, v.z);
+        const double airHu = means_.airHu.at(v.x, v.y, v.z),
+                     softHu = means_.softHu.at(v.x, v.y, v.z);
         const double taggedHu = std::max<double>(means_.taggedHu.at(v.x, v.y, v.z), softHu + 60.0);
         // Two tissues at most, by the side of soft tissue's HU that the voxel lies on.
         double air = std::clamp((softHu - y) / (softHu - airHu), 0.0, 1.0);
@@ -86,7 +87,7 @@ private:
         if (!depth || std::abs(*depth) > 2.5 * interfaces_.blurMm()) return std::nullopt;
         const glm::ivec3 down = level_.down();
         const double stepMm = glm::dot(glm::dvec3(glm::abs(down)), hu_.grid().spacingMm());
-        const double airHu = means_.airHu;
+        const double airHu = means_.airHu.at(v.x, v.y, v.z);
         const auto fluidAt = [&](double depthMm) {
             return 0.5 * std::erfc(-depthMm / (interfaces_.blurMm() * std::sqrt(2.0)));
         };

@@ -47,12 +47,16 @@ bool touchesLumen(const Volume<std::uint8_t>& labels, std::size_t index) {
 
 }  // namespace
 
-Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& tissue, double airHu,
-                                 const Volume<std::uint8_t>& segmentation,
+Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& tissue,
+                                 const SmoothField& airHu, const Volume<std::uint8_t>& segmentation,
                                  std::span<const CleansedVoxel> changed) {
     Volume<std::uint8_t> labels = segmentation.clone();
     const auto out = labels.writable();
     const auto cleansed = hu.writable();
+    const auto airAt = [&](std::size_t index) {
+        const glm::ivec3 v = hu.grid().voxelAt(index);
+        return airHu.at(v.x, v.y, v.z);
+    };
     const auto labelOf = [](const CleansedVoxel& voxel) {
         return std::uint8_t(voxel.tagged > voxel.air ? LumenLabel::tagged : LumenLabel::air);
     };
@@ -82,7 +86,7 @@ Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& ti
             continue;
         for (std::uint32_t n : pieceOfWall(labels, voxel.index, most)) {
             out[n] = std::uint8_t(LumenLabel::tagged);
-            cleansed[n] = std::int16_t(std::lround(airHu));
+            cleansed[n] = std::int16_t(std::lround(airAt(n)));
         }
     }
     return labels;

@@ -1,6 +1,7 @@
 // The lumen as the cleansed scan shows it.
 #pragma once
 
+#include "cleansing/local_means.h"
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 #include "core/volume.h"
@@ -21,8 +22,8 @@ struct CleansedVoxel {
 /// LumenLabel by the cleansed scan: what `segmentation` holds, less what is wall now, and more by
 /// those of `changed` (in memory order) that are air now and touch it. Specks of less than 12 mm³
 /// that float in the former residue are noise: they become air in `hu`, and lumen. Bridges stay.
-Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& tissue, double airHu,
-                                 const Volume<std::uint8_t>& segmentation,
+Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& tissue,
+                                 const SmoothField& airHu, const Volume<std::uint8_t>& segmentation,
                                  std::span<const CleansedVoxel> changed);
 
 }  // namespace haustra::cleansing

@@ -32,7 +32,7 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
                     !grid.contains(below - 1) || !grid.contains(v + 1))
                     continue;
                 const double tagged = means.taggedHu.at(v);
-                const double middle = 0.5 * (means.airHu + tagged);
+                const double middle = 0.5 * (means.airHu.at(v.x, v.y, v.z) + tagged);
                 const double here = scan.hu.at(v), next = scan.hu.at(below);
                 if (here >= middle || next < middle) continue;
                 double aside = 0.0;
