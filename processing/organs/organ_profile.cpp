@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int lowestHu = -1024, highestHu = 3071;
-constexpr double largestOpeningMm = 50.0;
+constexpr double largestOpeningMm = 50.0, largestSmoothingMm = 10.0;
 constexpr std::size_t mostBytes = std::size_t(1) << 20;
 
 template <class T>
@@ -159,10 +159,18 @@ Result<void> readLumen(const json& object, const std::string& place, OrganProfil
     fields.choice("finder", finders, profile.finder);
     if (profile.finder == LumenFinder::huRange) {
         fields.range("hu", profile.contentHu);
+        if (fields.has("smoothing-mm"))
+            fields.number("smoothing-mm", 0.0, largestSmoothingMm, profile.smoothingMm);
         if (fields.has("opening-mm"))
             fields.number("opening-mm", 0.0, largestOpeningMm, profile.openingMm);
     }
     return fields.finish();
+}
+
+// The shortest text that reads back as the same double.
+std::string exactText(double value) {
+    char buffer[32];
+    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
 }  // namespace
@@ -242,9 +250,8 @@ std::string segmentationOptions(const OrganProfile& profile) {
     std::string text = std::string("finder=") + nameOf(profile.finder, finders) + ";";
     if (profile.finder == LumenFinder::huRange) {
         text += "hu=" + rangeText(profile.contentHu);
-        char opening[32];
-        const auto end = std::to_chars(opening, opening + sizeof opening, profile.openingMm).ptr;
-        return text + "opening-mm=" + std::string(opening, end) + ";";
+        return text + "smoothing-mm=" + exactText(profile.smoothingMm) +
+               ";opening-mm=" + exactText(profile.openingMm) + ";";
     }
     for (int t = 0; t < tissueCount; ++t) {
         text +=

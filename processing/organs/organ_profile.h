@@ -26,9 +26,10 @@ enum class EndPoints {
 struct OrganProfile {
     std::string organ;
     LumenFinder finder = LumenFinder::gasAndTagged;
-    TissuePriors tissues;    ///< of gasAndTagged
-    HuRange contentHu;       ///< of huRange
-    double openingMm = 0.0;  ///< of huRange: narrower necks are cut off; 0: none
+    TissuePriors tissues;      ///< of gasAndTagged
+    HuRange contentHu;         ///< of huRange
+    double smoothingMm = 0.0;  ///< of huRange: against noise; 0: none
+    double openingMm = 0.0;    ///< of huRange: narrower necks are cut off; 0: none
     bool cleanse = false;
     ExpectedTopology topology = ExpectedTopology::ball;
     EndPoints endPoints = EndPoints::farthest;

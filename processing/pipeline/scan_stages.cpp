@@ -6,6 +6,7 @@
 #include "pipeline/product_attributes.h"
 #include "pipeline/read_inputs.h"
 #include "pipeline/source_key.h"
+#include "surface/wall_field.h"
 #include "topology/hu_range_lumen.h"
 #include "topology/lumen.h"
 
@@ -49,10 +50,17 @@ Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const Pro
                          const Progress& progress) {
     const PrepareOptions& options = preparation.options();
     const organs::OrganProfile& organ = preparation.organ();
-    const auto lumen =
-        topology::findHuRangeLumen(scan.hu, {organ.contentHu, organ.openingMm, options.seedsMm,
-                                             options.excludesMm, options.threads, progress});
+    const Volume<std::int16_t> hu =
+        organ.smoothingMm > 0.0 ? topology::smoothHu(scan.hu, organ.smoothingMm, options.threads)
+                                : scan.hu.share();
+    auto lumen = topology::findHuRangeLumen(hu, {organ.contentHu, organ.openingMm, options.seedsMm,
+                                                 options.excludesMm, options.threads, progress});
     if (!lumen) return tl::make_unexpected(lumen.error());
+    // Where the wall is sharp, the HU on its two sides are themselves close to it.
+    const auto wall = surface::contentField(scan.hu, lumen->labels, options.threads);
+    if (!wall) return tl::make_unexpected(wall.error());
+    topology::growToWall(lumen->labels, hu, wall->negated ? -wall->isoHu : wall->isoHu,
+                         wall->negated, options.threads);
     Attributes attributes{{"source", "scan"}, {"segments", std::to_string(lumen->bodies)}};
     setNotes(attributes, lumen->notes);
     return publishSegmentation(preparation, key, lumen->labels, attributes);

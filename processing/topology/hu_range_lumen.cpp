@@ -4,8 +4,8 @@
 #include "topology/run_components.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace haustra::topology {
 namespace {
@@ -57,6 +57,39 @@ RunComponents componentsWhere(const Volume<std::uint8_t>& mask, bool set, int th
             voxels[n] = (mask[n] != 0) == set ? in : out;
     });
     return RunComponents(signs, 0.0, threads);
+}
+
+// Sets the labels of all voxels of the components that `wanted` has.
+void label(Volume<std::uint8_t>& labels, const RunComponents& components,
+           const std::vector<char>& wanted) {
+    const Grid& grid = labels.grid();
+    for (int k = 0; k < grid.size.z; ++k) {
+        for (int j = 0; j < grid.size.y; ++j) {
+            for (const Run& run : components.row(j, k)) {
+                if (!wanted[std::size_t(run.component)]) continue;
+                std::fill_n(labels.writable().begin() + std::ptrdiff_t(grid.index(run.begin, j, k)),
+                            run.end - run.begin, std::uint8_t(LumenLabel::air));
+            }
+        }
+    }
+}
+
+// Labels the background that no way leads out of to the grid's edge; returns how many voxels.
+std::size_t fillEnclosed(Volume<std::uint8_t>& labels, int threads) {
+    const RunComponents around = componentsWhere(labels, false, threads);
+    std::vector<char> enclosed;
+    std::size_t filled = 0;
+    for (const RunComponent& part : around.components()) {
+        bool atEdge = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            atEdge = atEdge || part.touches(axis, false, labels.grid().size) ||
+                     part.touches(axis, true, labels.grid().size);
+        }
+        enclosed.push_back(!atEdge);
+        if (!atEdge) filled += part.voxels;
+    }
+    label(labels, around, enclosed);
+    return filled;
 }
 
 // The component at a point, or the nearest one within reach; −1 where there is none.
@@ -125,21 +158,6 @@ Result<std::vector<char>> chooseBodies(const RunComponents& components, const Gr
     return chosen;
 }
 
-// Sets the labels of all voxels of the components that `wanted` has.
-void label(Volume<std::uint8_t>& labels, const RunComponents& components,
-           const std::vector<char>& wanted) {
-    const Grid& grid = labels.grid();
-    for (int k = 0; k < grid.size.z; ++k) {
-        for (int j = 0; j < grid.size.y; ++j) {
-            for (const Run& run : components.row(j, k)) {
-                if (!wanted[std::size_t(run.component)]) continue;
-                std::fill_n(labels.writable().begin() + std::ptrdiff_t(grid.index(run.begin, j, k)),
-                            run.end - run.begin, std::uint8_t(LumenLabel::air));
-            }
-        }
-    }
-}
-
 }  // namespace
 
 Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
@@ -157,6 +175,7 @@ Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
                 return refused(ErrorKind::badInput,
                                "the scan's voxel axes are not at right angles");
         }
+        fillEnclosed(mask, options.threads);  // a speck of noise is no neck
         open(mask, options.openingMm, options.threads);
     }
     progress(0.5);
@@ -175,24 +194,91 @@ Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
         lumen.bodies = int(std::count(chosen->begin(), chosen->end(), 1));
     }
     progress(0.8);
-    const RunComponents around = componentsWhere(lumen.labels, false, options.threads);
-    std::vector<char> enclosed;
-    std::size_t filled = 0;
-    for (const RunComponent& part : around.components()) {
-        bool atEdge = false;
-        for (int axis = 0; axis < 3; ++axis) {
-            atEdge = atEdge || part.touches(axis, false, grid.size) ||
-                     part.touches(axis, true, grid.size);
-        }
-        enclosed.push_back(!atEdge);
-        if (!atEdge) filled += part.voxels;
-    }
-    label(lumen.labels, around, enclosed);
+    const std::size_t filled = fillEnclosed(lumen.labels, options.threads);
     if (filled > 0) {
         lumen.notes.push_back(std::to_string(filled) +
                               " voxels of other HU inside the content were taken in");
     }
     return lumen;
+}
+
+// The weights 1, 2, 1 again and again along each axis: a variance of half a voxel each time. The
+// edge of the grid is held.
+Volume<std::int16_t> smoothHu(const Volume<std::int16_t>& hu, double sdMm, int threads) {
+    const Grid& grid = hu.grid();
+    const glm::dvec3 spacing = grid.spacingMm();
+    Volume<std::int16_t> result = hu.clone();
+    const auto voxels = result.writable();
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto passes = std::lround(2.0 * sdMm * sdMm / (spacing[axis] * spacing[axis]));
+        const auto length = std::size_t(grid.size[axis]);
+        if (passes == 0 || length < 2) continue;
+        glm::ivec3 across = grid.size, unit(0);
+        across[axis] = 1;
+        unit[axis] = 1;
+        const Grid lines{across, glm::dmat4(1.0)};
+        const std::size_t stride = grid.index(unit);
+        parallelFor(lines.voxelCount(), 256, threads, [&](std::size_t begin, std::size_t end) {
+            std::vector<float> line(length);
+            for (std::size_t n = begin; n < end; ++n) {
+                const std::size_t first = grid.index(lines.voxelAt(n));
+                for (std::size_t at = 0; at < length; ++at)
+                    line[at] = voxels[first + at * stride];
+                for (long pass = 0; pass < passes; ++pass) {
+                    float before = line[0];
+                    for (std::size_t at = 0; at < length; ++at) {
+                        const float here = line[at];
+                        const float after = at + 1 < length ? line[at + 1] : here;
+                        line[at] = 0.25f * before + 0.5f * here + 0.25f * after;
+                        before = here;
+                    }
+                }
+                for (std::size_t at = 0; at < length; ++at)
+                    voxels[first + at * stride] = std::int16_t(std::lround(line[at]));
+            }
+        });
+    }
+    return result;
+}
+
+void growToWall(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu, double isoHu,
+                bool contentBrighter, int threads) {
+    constexpr int layers = 3;
+    const Grid& grid = labels.grid();
+    const auto voxels = labels.writable();
+    const auto strideOf = [&](int axis) {
+        glm::ivec3 unit(0);
+        unit[axis] = 1;
+        return std::ptrdiff_t(grid.index(unit));
+    };
+    const std::array<std::ptrdiff_t, 3> strides{strideOf(0), strideOf(1), strideOf(2)};
+    for (int layer = 0; layer < layers; ++layer) {
+        // Marked first and labelled after, so that no layer feeds itself.
+        constexpr std::uint8_t marked = 255;
+        std::size_t grown = 0;
+        for (std::size_t n = 0; n < voxels.size(); ++n) {
+            if (voxels[n] != 0 || !(contentBrighter ? hu[n] > isoHu : hu[n] < isoHu)) continue;
+            const glm::ivec3 v = grid.voxelAt(n);
+            const auto inside = [&](std::ptrdiff_t offset) {
+                const std::uint8_t value = voxels[std::size_t(std::ptrdiff_t(n) + offset)];
+                return value != 0 && value != marked;
+            };
+            bool touches = false;
+            for (int axis = 0; axis < 3 && !touches; ++axis) {
+                const std::ptrdiff_t stride = strides[std::size_t(axis)];
+                touches = (v[axis] > 0 && inside(-stride)) ||
+                          (v[axis] + 1 < grid.size[axis] && inside(stride));
+            }
+            if (touches) voxels[n] = marked, ++grown;
+        }
+        if (grown == 0) break;
+        parallelFor(voxels.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                if (voxels[n] == marked) voxels[n] = std::uint8_t(LumenLabel::air);
+            }
+        });
+    }
+    fillEnclosed(labels, threads);
 }
 
 }  // namespace haustra::topology

@@ -27,8 +27,8 @@ struct HuRangeLumen {
 };
 
 /// The 6-connected bodies of content at the seeds or, without a seed, the largest one; what they
-/// enclose (stones, noise) belongs to them. Morphological opening, where asked for, comes before
-/// connection, so that a thin bridge to other content of the same HU is cut.
+/// enclose (stones, noise) belongs to them. Morphological opening, where asked for, comes
+/// before connection, so that a thin bridge to other content of the same HU is cut.
 ///
 /// Fails where nothing has such HU (noResult), a seed is off the scan or more than 5 mm from any
 /// such voxel, or the voxel axes are not at right angles and there is an opening (badInput). Linear
@@ -36,5 +36,16 @@ struct HuRangeLumen {
 /// for any number of threads.
 Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
                                       const HuRangeOptions& options);
+
+/// HU smoothed against noise by binomial weights to about `sdMm` along each axis, in whole steps of
+/// a voxel; a flat wall's half-way HU stays where it is. Linear.
+Volume<std::int16_t> smoothHu(const Volume<std::int16_t>& hu, double sdMm, int threads = 0);
+
+/// Grows the labels through voxels on the content's side of `isoHu` (above it where the content is
+/// brighter than what surrounds it), by at most three voxels (6-connected): from where the content
+/// is sure to where its wall stands. Fills what that encloses. `labels` must own its memory and be
+/// on the grid of `hu`.
+void growToWall(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu, double isoHu,
+                bool contentBrighter, int threads = 0);
 
 }  // namespace haustra::topology

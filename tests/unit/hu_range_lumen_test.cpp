@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -135,6 +136,50 @@ TEST(HuRangeLumen, AnOpeningCutsThinBridgesAndNothingElse) {
     EXPECT_EQ(findHuRangeLumen(bridged, opening).error().kind, ErrorKind::noResult);
 }
 
+// Noise of sd 100 about 300 HU leaves half of the content's voxels outside ±70.
+TEST(HuRangeLumen, SmoothingAndGrowthFindContentUnderNoise) {
+    const auto clean = scanOf(inLarge);
+    Volume<std::int16_t> noisy = clean.clone();
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0.0, 100.0);
+    for (std::int16_t& voxel : noisy.writable())
+        voxel = std::int16_t(std::lround(voxel + noise(random)));
+    HuRangeOptions some;
+    some.contentHu = {230, 370};
+    const auto wrongShare = [&](const Result<HuRangeLumen>& found) {
+        std::size_t wrong = 0, content = 0;
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            wrong += (found->labels[n] != 0) != (clean[n] == 300);
+            content += clean[n] == 300;
+        }
+        return double(wrong) / double(content);
+    };
+    const auto raw = findHuRangeLumen(noisy, some);
+    ASSERT_TRUE(raw);
+    const auto smooth = smoothHu(noisy, 1.3, 2);
+    auto found = findHuRangeLumen(smooth, some);
+    ASSERT_TRUE(found);
+    const double before = wrongShare(found);
+    EXPECT_LT(before, 0.7 * wrongShare(raw));
+    growToWall(found->labels, smooth, 170.0, true, 2);
+    EXPECT_LT(wrongShare(found), 0.5 * before);
+    EXPECT_LT(wrongShare(found), 0.1);
+}
+
+TEST(HuRangeLumen, GrowthGoesThreeVoxelsAndNoFarther) {
+    const auto hu = scanOf([](glm::dvec3) { return false; });
+    Volume<std::uint8_t> labels(grid, 0);
+    labels.writable()[grid.index(30, 25, 20)] = 1;
+    growToWall(labels, hu, 41.0, false);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 d = glm::abs(grid.voxelAt(n) - glm::ivec3(30, 25, 20));
+        ASSERT_EQ(labels[n] != 0, d.x + d.y + d.z <= 3);
+    }
+    growToWall(labels, hu, 40.0, false);
+    growToWall(labels, hu, 40.0, true);
+    EXPECT_EQ(std::ranges::count(labels.voxels(), 1), 63);
+}
+
 TEST(HuRangeLumen, ASeedAwayFromAllContentIsRefused) {
     const auto hu = scanOf(inLarge);
     for (const glm::dvec3 away :
@@ -154,6 +199,7 @@ TEST(HuRangeLumen, TheSameForAnyNumberOfThreads) {
     some.threads = 3;
     const auto three = findHuRangeLumen(hu, some).value();
     EXPECT_TRUE(std::ranges::equal(one.labels.voxels(), three.labels.voxels()));
+    EXPECT_TRUE(std::ranges::equal(smoothHu(hu, 1.5, 1).voxels(), smoothHu(hu, 1.5, 3).voxels()));
 }
 
 }  // namespace
