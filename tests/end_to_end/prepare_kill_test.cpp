@@ -1,7 +1,9 @@
 // kill -9 of `haustra prepare`: the store stays sound, and the next run finishes the work.
 #include "end_to_end/run_program.h"
+#include "nifti/nifti_file.h"
 #include "store/case_store.h"
 
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -17,17 +19,28 @@ constexpr int productCount = 9;
 
 class PrepareKilled : public testing::Test {
 protected:
+    // A bent tube of air in soft tissue, and its mask: each stage has work, none takes long.
     void SetUp() override {
-        ASSERT_TRUE(fs::exists(tests::phantomFolder() / "series"))
-            << "run by ctest, which makes the phantom";
+        const Grid grid = axisAlignedGrid({96, 80, 110}, {0.8, 0.8, 1.2}, {-20.0, 5.0, -300.0});
+        Volume<std::int16_t> hu(grid);
+        Volume<std::uint8_t> mask(grid);
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            const glm::ivec3 v = grid.voxelAt(n);
+            const glm::dvec2 axis(48.0 + 16.0 * std::sin(v.z * 0.06), 40.0);
+            const bool inside =
+                0.8 * glm::distance(glm::dvec2(v), axis) < 14.0 && v.z > 4 && v.z < 105;
+            mask.writable()[n] = inside;
+            hu.writable()[n] = inside ? -1000 : std::int16_t(40 + n % 7);
+        }
+        ASSERT_TRUE(nifti::writeNifti(folder_.path() / "scan.nii", hu));
+        ASSERT_TRUE(nifti::writeNifti(folder_.path() / "mask.nii", mask));
     }
 
     tests::Outcome prepare(const fs::path& store,
                            std::optional<microseconds> killAfter = std::nullopt) {
         return tests::runProgram("haustra",
-                                 {"prepare", tests::phantomFolder() / "series", "--lumen",
-                                  tests::phantomFolder() / "truth" / "lumen.nii.gz", "--store",
-                                  store, "--case", "phantom"},
+                                 {"prepare", folder_.path() / "scan.nii", "--lumen",
+                                  folder_.path() / "mask.nii", "--store", store, "--case", "tube"},
                                  killAfter);
     }
 
@@ -35,7 +48,7 @@ protected:
     static int soundProducts(const fs::path& folder) {
         const auto store = store::CaseStore::open(folder, false);
         if (!store) return 0;
-        const auto opened = store->openCase("phantom");
+        const auto opened = store->openCase("tube");
         if (!opened) return 0;
         const auto entries = opened->products();
         EXPECT_TRUE(entries) << describe(entries.error());
@@ -49,7 +62,7 @@ protected:
 
     static std::map<std::string, std::string> filesOf(const fs::path& store) {
         std::map<std::string, std::string> files;
-        for (const auto& file : fs::directory_iterator(store / "cases" / "phantom")) {
+        for (const auto& file : fs::directory_iterator(store / "cases" / "tube")) {
             files[file.path().filename().string()] = tests::fileContent(file.path());
         }
         return files;
