@@ -7,6 +7,7 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr int farthest = 6;  // face steps from the pool
+constexpr int lagging = 2;   // steps that a segmentation may fall short of the half-way surface
 constexpr int airWithin = 4;
 
 bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
@@ -51,7 +52,7 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
         double leastHu;
     };
     std::vector<Rim> front, next;
-    const auto spread = [&](glm::ivec3 v, auto&& leastHuOf) {
+    const auto spread = [&](glm::ivec3 v, int step, auto&& leastHuOf) {
         for (int axis = 0; axis < 3; ++axis) {
             for (int side = -1; side <= 1; side += 2) {
                 glm::ivec3 n = v;
@@ -62,7 +63,8 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                     scan.hu[index] <= tissue.taggedAboveHu)
                     continue;
                 const double least = leastHuOf();
-                if (scan.hu[index] <= least || !airNear(segmentation, n)) continue;
+                if (scan.hu[index] <= least) continue;
+                if (step > lagging && !airNear(segmentation, n)) continue;
                 out[index] = std::uint8_t(LumenLabel::tagged);
                 next.push_back({n, least});
             }
@@ -71,13 +73,13 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         if (LumenLabel(segmentation[n]) != LumenLabel::tagged) continue;
         const glm::ivec3 v = grid.voxelAt(n);
-        spread(v, [&] { return 0.5 * (softHu + rimHu(scan.hu, segmentation, v)); });
+        spread(v, 1, [&] { return 0.5 * (softHu + rimHu(scan.hu, segmentation, v)); });
     }
     for (int step = 1; step < farthest && !next.empty(); ++step) {
         front.swap(next);
         next.clear();
         for (const Rim& rim : front)
-            spread(rim.voxel, [&] { return rim.leastHu; });
+            spread(rim.voxel, step + 1, [&] { return rim.leastHu; });
     }
     return labels;
 }

@@ -12,7 +12,8 @@ namespace haustra::cleansing {
 /// `segmentation` (LumenLabel) with the menisci labelled as tagged: fluid climbs a wall by surface
 /// tension, past the flat level where a segmentation by levels ends. Added are unlabelled voxels at
 /// most 6 face steps from a pool, with air of the lumen within 4 voxels, along voxels that are more
-/// than half as dense, from soft tissue on, as the pool's rim where they begin. O(voxels).
+/// than half as dense, from soft tissue on, as the pool's rim where they begin; and within 2 steps
+/// of any pool what the segmentation fell short of. O(voxels).
 Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                                  const Volume<std::uint8_t>& segmentation);
 
