@@ -185,6 +185,9 @@ int main(int count, char** arguments) {
     program.add_flag("--small", small, "Phantoms of 256×256×200 voxels");
     program.add_option("--seed", seed, "The first patient");
     program.add_option("--seeds", seeds, "How many patients")->check(CLI::Range(1, 1000));
+    program.add_option("--bound", options.errorBoundsMm, "Simplify to within these, mm")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     program.add_flag("--no-surface", noSurface, "Stop before the surface");
     program.add_flag("--worst", worst, "List where the cleansing is worst, too");
     program.add_option("--out", options.out, "Folder for the cleansed scans, lumens and meshes");
