@@ -40,10 +40,12 @@ bool NearTriangle::within(const glm::vec3& p, float squared) const {
 ErrorBound::ErrorBound(const CornerMesh& input, double errorMm)
     : errorSquared_(float(std::max(0.0, errorMm - roundingMm) * (errorMm - roundingMm))),
       vertexCount_(int(input.position.size())),
+      edgeCount_(int(input.vertex.size() / 2)),
       inputVertex_(input.vertex),
       inputOpposite_(input.opposite),
       first_(std::size_t(input.triangleCount()), -1) {
-    const std::size_t count = input.position.size() + input.vertex.size() / 2;
+    const std::size_t count =
+        input.position.size() + input.vertex.size() / 2 + input.vertex.size() / 3;
     place_.reserve(count);
     corner_.reserve(count);
     next_.assign(count, -1);
@@ -63,6 +65,12 @@ ErrorBound::ErrorBound(const CornerMesh& input, double errorMm)
         place_.push_back(glm::vec3(0.5 * (input.position[input.vertex[CornerMesh::next(c)]] +
                                           input.position[input.vertex[CornerMesh::previous(c)]])));
         hang(c);
+    }
+    for (int t = 0; t < input.triangleCount(); ++t) {
+        const int* v = &input.vertex[3 * t];
+        place_.push_back(
+            glm::vec3((input.position[v[0]] + input.position[v[1]] + input.position[v[2]]) / 3.0));
+        hang(3 * t);
     }
 }
 
@@ -89,6 +97,7 @@ bool ErrorBound::nearInputTriangle(int triangle, const glm::vec3& p) const {
 
 bool ErrorBound::nearTrianglesOf(int sample, const glm::vec3& p) const {
     const int first = corner_[sample];
+    if (sample >= vertexCount_ + edgeCount_) return nearInputTriangle(first / 3, p);
     if (sample >= vertexCount_)
         return nearInputTriangle(first / 3, p) || nearInputTriangle(inputOpposite_[first] / 3, p);
     int corner = first;

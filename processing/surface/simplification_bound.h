@@ -21,7 +21,8 @@ struct NearTriangle {
     bool within(const glm::vec3& p, float squared) const;
 };
 
-/// The input's surface, held by samples: its vertices and the midpoints of its edges. Each sample
+/// The input's surface, held by samples: its vertices, the midpoints of its edges and the centres
+/// of its triangles. Each sample
 /// hangs on one triangle of the working mesh that is within the bound of it; a patch of triangles
 /// may take the place of another only if the samples of the old find such a triangle in the new,
 /// and the new patch's own samples lie within the bound of the input's triangles.
@@ -53,9 +54,9 @@ private:
     glm::vec3 place(int sample) const { return place_[std::size_t(sample)]; }
 
     float errorSquared_;
-    int vertexCount_;
+    int vertexCount_, edgeCount_;
     std::vector<glm::vec3> place_;
-    std::vector<int> corner_;  ///< of a sample in the input: at the vertex, or facing the edge
+    std::vector<int> corner_;  ///< of a sample in the input: at the vertex, facing the edge, or any
     std::vector<int> inputVertex_, inputOpposite_;
     std::vector<int> first_;  ///< of a working triangle: its first sample, or −1
     std::vector<int> next_;   ///< of a sample: the next on the same triangle, or −1

@@ -214,10 +214,11 @@ bool RegionSimplification::withinBound(const Replacement& r) {
     if (!shared_.bound.findHomes(patch_)) return false;
     for (const NearTriangle& t : patch_.triangles) {
         // Corner 0 moves, or ends the new edge 0–1; each spoke is the edge from it in one triangle.
-        const glm::vec3 spoke = 0.5f * (t.corner[0] + t.corner[1]);
         const glm::vec3 centre = (t.corner[0] + t.corner[1] + t.corner[2]) * (1.0f / 3.0f);
-        if (!shared_.bound.nearInput(spoke, patch_) || !shared_.bound.nearInput(centre, patch_))
-            return false;
+        if (!shared_.bound.nearInput(centre, patch_)) return false;
+        for (const float share : {0.25f, 0.5f, 0.75f}) {
+            if (!shared_.bound.nearInput(t.corner[0] + share * t.edge[0], patch_)) return false;
+        }
     }
     return true;
 }
@@ -290,9 +291,10 @@ void RegionSimplification::commit(const Replacement& r) {
 // ---------------------------------------------------------------------------------- sharp corners
 
 void RegionSimplification::betterCorners() {
-    for (int round = 0; round < 2; ++round) {
+    for (int round = 0; round < 3; ++round) {
         for (const int v : region_.vertices) {
-            if (movable(v) && !shared_.settled[v]) betterVertex(v);
+            if (movable(v) && (!shared_.settled[v] || sharpestAround(v) > sharpestCosine_))
+                betterVertex(v);
         }
     }
 }
@@ -307,18 +309,31 @@ double RegionSimplification::sharpestAround(int v) const {
     return sharpest;
 }
 
-bool RegionSimplification::betterVertex(int v) {
-    if (sharpestAround(v) <= cosineOf(wantedAngleDegrees)) return false;
+void RegionSimplification::betterVertex(int v) {
+    const double wanted = cosineOf(wantedAngleDegrees);
+    if (sharpestAround(v) <= wanted) return;
     relax(v);
-    int corners[maxValence + 4], count = 0;
+    int corners[maxValence + 1], count = 0;
     mesh_.aroundVertex(v, [&](int corner) {
-        if (count < maxValence + 4) corners[count++] = corner;
+        if (count <= maxValence) corners[count++] = corner;
     });
     for (int i = 0; i < count; ++i) {
-        // The edge between the next and the previous may be longest seen from v.
-        if (mesh_.vertex[corners[i]] == v && flip(corners[i])) return true;
+        if (flip(corners[i])) break;  // the other corners may no longer be at v
     }
-    return false;
+    if (sharpestAround(v) <= sharpestCosine_) return;
+    int nearest = -1;
+    const auto squaredTo = [&](int w) {
+        const glm::dvec3 away = mesh_.position[w] - mesh_.position[v];
+        return glm::dot(away, away);
+    };
+    mesh_.aroundVertex(v, [&](int corner) {
+        const int w = mesh_.vertex[CornerMesh::next(corner)];
+        if (nearest < 0 || squaredTo(w) < squaredTo(nearest)) nearest = w;
+    });
+    const glm::dvec3 here = mesh_.position[v], there = mesh_.position[nearest];
+    for (const double share : {0.5, 0.0, 1.0}) {
+        if (collapseEdge(v, nearest, here + share * (there - here), Quality::better)) return;
+    }
 }
 
 bool RegionSimplification::relax(int v) {

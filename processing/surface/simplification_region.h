@@ -64,7 +64,7 @@ private:
     bool linkCondition(int a, int b, int cornerAtA) const;
 
     void betterCorners();
-    bool betterVertex(int v);
+    void betterVertex(int v);
     bool relax(int v);
     bool flip(int corner);
     double sharpestAround(int v) const;

@@ -73,6 +73,21 @@ void expectLaws(const TriMesh& before, const TriMesh& after, double errorMm) {
     const auto vertices = tests::sortedDistances(before.vertices, toAfter);
     EXPECT_LE(vertices.back(), errorMm);
     EXPECT_LE(tests::sortedDistances(after.vertices, toBefore).back(), errorMm);
+    std::vector<glm::dvec3> centres;
+    for (const glm::ivec3& t : before.triangles) {
+        const glm::dvec3 &a = before.vertices[t.x], &b = before.vertices[t.y],
+                         &c = before.vertices[t.z];
+        centres.insert(centres.end(),
+                       {(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)});
+    }
+    EXPECT_LE(tests::sortedDistances(centres, toAfter).back(), errorMm);
+
+    // Between the samples nothing is promised, but little is lost.
+    for (const auto& distances : {tests::sortedDistances(tests::samplesOn(before, 0.5), toAfter),
+                                  tests::sortedDistances(tests::samplesOn(after, 0.4), toBefore)}) {
+        EXPECT_LE(distances[distances.size() * 995 / 1000], errorMm);
+        EXPECT_LE(distances.back(), 2.0 * errorMm);
+    }
 }
 
 TEST(SimplificationLaw, HoldsForSmoothAndNoisyWalls) {
