@@ -1,6 +1,7 @@
 // Organs other than the colon, prepared from their profiles alone: a branching vessel full of
 // contrast, and bladders, on scans of known geometry.
 #include "nifti/nifti_file.h"
+#include "organs/built_in_profiles.h"
 #include "pipeline/prepare.h"
 
 #include <algorithm>
@@ -201,6 +202,38 @@ TEST_F(PrepareOrgans, TheBuiltInBladderFindsUrineInFat) {
     ASSERT_TRUE(report) << describe(report.error());
     const double trueMm3 = 4.0 / 3.0 * M_PI * 22 * 18 * 26;
     EXPECT_NEAR(volumeMm3(opened().readMesh().value()), trueMm3, 0.02 * trueMm3);
+}
+
+// The colon is no special case: what its profile says of tissues decides, and so does `cleanse`.
+TEST_F(PrepareOrgans, TheColonIsDrivenByItsProfile) {
+    writeScan(bladder, -1000.0, 45.0);
+    Volume<std::uint8_t> mask(nifti::readNifti<std::int16_t>(folder_ / "scan.nii.gz")->grid());
+    for (std::size_t n = 0; n < mask.grid().voxelCount(); ++n) {
+        mask.writable()[n] =
+            bladder(mask.grid().patientFromVoxelPoint(mask.grid().voxelAt(n))) < 0.0;
+    }
+    ASSERT_TRUE(nifti::writeNifti(folder_ / "mask.nii.gz", mask));
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string text(organs::builtInProfiles().at("colon"));
+        text.replace(text.find(from), from.size(), to);
+        PrepareOptions options;
+        options.series = folder_ / "scan.nii.gz";
+        options.lumenMask = folder_ / "mask.nii.gz";
+        options.organ = writeProfile(text);
+        return prepare(store::CaseStore::open(folder_ / "store", true).value(), "organ", options);
+    };
+    EXPECT_EQ(changed("\"colon\"", "\"stomach\"")->stages.size(), stageNames().size());
+    EXPECT_TRUE(opened().find("cleansed"));
+    const auto raw = changed("\"cleanse\": true", "\"cleanse\": false");
+    ASSERT_TRUE(raw) << describe(raw.error());
+    EXPECT_EQ(raw->stages.size(), stageNames().size() - 2);
+    EXPECT_TRUE(raw->stages[1].reused) << "the segmentation does not depend on it";
+    for (const char* product : {"mixture", "cleansed", "cleansed-lumen"})
+        EXPECT_FALSE(opened().find(product)) << product;
+    EXPECT_TRUE(opened().find("surface"));
+    const auto refused = changed("[-10, 110]", "[100, 110]");
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("100 to 110"), std::string::npos);
 }
 
 TEST_F(PrepareOrgans, ABadProfileLeavesNoCase) {
