@@ -138,44 +138,56 @@ private:
             from = growOnce(body, from, accept);
     }
 
-    // The area over which the body meets labelled lumen, as faces of voxels.
+    // visit(axis, sign, step) for each way from the voxel into labelled lumen that no wall bars:
+    // straight, through partial volume with air, or through fluid thinned by no more than half.
+    template <class Visit>
+    void openings(std::uint32_t index, double edgeHu, Visit&& visit) const {
+        walkAxes(
+            grid_, index, openingVoxels,
+            [&](std::size_t at) { return out_[at] != 0 || (marks_[at] & isFluid); },
+            [&](int axis, int sign, int step, std::size_t at) {
+                if (out_[at] == 0) return;
+                bool open = true;
+                if (out_[at] != std::uint8_t(LumenLabel::air)) {
+                    for (int n = 1; n < step; ++n)
+                        open = open && hu_[along(index, axis, sign * n)] > edgeHu;
+                }
+                if (open) visit(axis, sign, step);
+            });
+    }
+    std::size_t along(std::size_t index, int axis, int steps) const {
+        const std::ptrdiff_t strides[3] = {1, grid_.size.x,
+                                           std::ptrdiff_t(grid_.size.x) * grid_.size.y};
+        return std::size_t(std::ptrdiff_t(index) + strides[axis] * steps);
+    }
+
+    // HU half-way from soft tissue to the body's mean.
+    double edgeHuOf(const std::vector<std::uint32_t>& body) const {
+        double sum = 0.0;
+        for (std::uint32_t index : body)
+            sum += hu_[index];
+        return softHu_ + edgeShare * (sum / double(body.size()) - softHu_);
+    }
+
+    // The area over which the body opens into labelled lumen, as faces of voxels.
     double openingMm2(const std::vector<std::uint32_t>& body) const {
         const glm::dvec3 spacing = grid_.spacingMm();
-        const double voxelMm3 = spacing.x * spacing.y * spacing.z;
+        const double voxelMm3 = spacing.x * spacing.y * spacing.z, edgeHu = edgeHuOf(body);
         double area = 0.0;
-        for (std::uint32_t index : body) {
-            walkAxes(
-                grid_, index, openingVoxels,
-                [&](std::size_t at) { return out_[at] != 0 || (marks_[at] & isFluid); },
-                [&](int axis, int, int, std::size_t at) {
-                    if (out_[at] != 0) area += voxelMm3 / spacing[axis];
-                });
-        }
+        for (std::uint32_t index : body)
+            openings(index, edgeHu, [&](int axis, int, int) { area += voxelMm3 / spacing[axis]; });
         return area;
     }
 
     // Labels the body out to half its brightness, and the partial volume between it and the lumen.
     std::size_t take(std::vector<std::uint32_t>& body) {
-        double sum = 0.0;
-        for (std::uint32_t index : body)
-            sum += hu_[index];
-        const double edgeHu = softHu_ + edgeShare * (sum / double(body.size()) - softHu_);
+        const double edgeHu = edgeHuOf(body);
         std::vector<std::uint32_t> between;
         for (std::uint32_t index : body) {
-            walkAxes(
-                grid_, index, openingVoxels,
-                [&](std::size_t at) { return out_[at] != 0 || (marks_[at] & isFluid); },
-                [&](int axis, int sign, int step, std::size_t at) {
-                    if (out_[at] == 0) return;
-                    const std::size_t stride =
-                        axis == 0   ? 1
-                        : axis == 1 ? std::size_t(grid_.size.x)
-                                    : std::size_t(grid_.size.x) * std::size_t(grid_.size.y);
-                    for (std::size_t n = 1, p = index; n < std::size_t(step); ++n) {
-                        p = sign > 0 ? p + stride : p - stride;
-                        between.push_back(std::uint32_t(p));
-                    }
-                });
+            openings(index, edgeHu, [&](int axis, int sign, int step) {
+                for (int n = 1; n < step; ++n)
+                    between.push_back(std::uint32_t(along(index, axis, sign * n)));
+            });
         }
         std::size_t ring = 0;
         for (int layer = 0; layer < edgeVoxels; ++layer)

@@ -220,6 +220,36 @@ void fillInterfaces(Volume<std::uint8_t>& labels, const std::vector<Level>& leve
     }
 }
 
+// Fluid whose air is not the colon's, or that a level's columns missed: what no labelled air
+// touches is left out.
+void dropStrandedFluid(Volume<std::uint8_t>& labels) {
+    const Grid& grid = labels.grid();
+    const auto out = labels.writable();
+    std::vector<bool> seen(grid.voxelCount(), false);
+    std::vector<std::uint32_t> body;
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        if (seen[n] || LumenLabel(out[n]) != LumenLabel::tagged) continue;
+        body.assign(1, std::uint32_t(n));
+        seen[n] = true;
+        bool besideAir = false;
+        for (std::size_t head = 0; head < body.size(); ++head) {
+            const glm::ivec3 v = grid.voxelAt(body[head]);
+            for (int step = 0; step < 27; ++step) {
+                const glm::ivec3 w = v + glm::ivec3(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
+                if (!grid.contains(w)) continue;
+                const std::size_t next = grid.index(w);
+                besideAir = besideAir || LumenLabel(out[next]) == LumenLabel::air;
+                if (seen[next] || LumenLabel(out[next]) != LumenLabel::tagged) continue;
+                seen[next] = true;
+                body.push_back(std::uint32_t(next));
+            }
+        }
+        if (besideAir) continue;
+        for (std::uint32_t index : body)
+            out[index] = std::uint8_t(LumenLabel::outside);
+    }
+}
+
 }  // namespace
 
 Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
@@ -324,6 +354,7 @@ Result<Lumen> findLumen(const CtScan& scan, const TissueModel& tissue,
         ml > 0.0)
         lumen.notes.push_back(text("%.0f ml of tagged fluid without air above were taken in", ml));
     addTaggedStool(lumen.labels, scan.hu, tissue, excludedVoxels);
+    dropStrandedFluid(lumen.labels);
     progress(1.0);
     return lumen;
 }

@@ -1,6 +1,10 @@
 #include "topology/pools.h"
 
+#include "topology/offshoots.h"
+
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
@@ -10,6 +14,8 @@ namespace haustra::topology {
 namespace {
 
 constexpr double coreShare = 0.7, edgeShare = 0.5;  // of the way from soft tissue to the fluid
+// Fluid wets the wall, and stands in its corners, higher than its level.
+constexpr double climbMm = 5.0;
 constexpr int rimVoxels = 2, edgeVoxels = 2;
 constexpr int seedDepth = 6;  // voxels below the surface that a flood starts from
 // Share of a pool's footprint that its own surface covers: over the first it cannot have leaked
@@ -30,6 +36,7 @@ public:
           levels_(levels),
           down_(down),
           grid_(hu.grid()),
+          climb_(std::max(1, int(std::lround(climbMm / grid_.spacingMm()[down.axis])))),
           owner_(grid_.voxelCount(), 0) {}
 
     std::vector<Pool> run() {
@@ -42,6 +49,8 @@ public:
             if (pools_.size() + 1 >= closed) break;
             if (!joinClaimed(level)) flood(level);
         }
+        for (std::size_t p = 0; p < pools_.size(); ++p)
+            climb(Owner(p + 1));
         for (Pool& pool : pools_) {
             std::sort(pool.voxels.begin(), pool.voxels.end());
             double sum = 0.0;
@@ -61,8 +70,9 @@ private:
         return std::max(0.5 * (soft() + tissue_.taggedAboveHu),
                         soft() + edgeShare * (level.fluidHu - soft()));
     }
-    bool notAbove(std::uint32_t index, const Level& level) const {
-        return (grid_.voxelAt(index)[down_.axis] - level.height) * down_.sign >= -1;
+    /// Not more than `voxels` above the level.
+    bool notAbove(std::uint32_t index, const Level& level, int voxels = 1) const {
+        return (grid_.voxelAt(index)[down_.axis] - level.height) * down_.sign >= -voxels;
     }
 
     template <class Visit>
@@ -117,7 +127,7 @@ private:
     void flood(int number) {
         const Level& level = levels_[number];
         Pool pool = grow(level, false);
-        double covered = coveredShare(pool, level);
+        const double covered = coveredShare(pool, level, false);
         if (covered < wholeShare) {
             // What a pinhole let in is cut off where a flood must have fluid all around.
             release(pool);
@@ -125,7 +135,6 @@ private:
             if (covered < doubtfulShare ||
                 double(deep.voxels.size()) < pinholeShare * double(pool.voxels.size())) {
                 pool = std::move(deep);
-                covered = coveredShare(pool, level);
             } else {
                 release(deep);
                 const Owner mine = Owner(pools_.size() + 1);
@@ -133,7 +142,9 @@ private:
                     owner_[index] = mine;
             }
         }
-        if (covered < leakedShare) keepBelow(pool, level);
+        if (covered < wholeShare && coveredShare(pool, level, true) < leakedShare)
+            keepBelow(pool, level);
+        dropOffshoots(pool, level);
         pool.levels = {number};
         pools_.push_back(std::move(pool));
         cores_.push_back(coreHu(level));
@@ -188,6 +199,41 @@ private:
             owner_[index] = 0;
     }
 
+    // What is dropped stays closed to later pools of the same fluid.
+    void dropOffshoots(Pool& pool, const Level& level) {
+        std::sort(pool.voxels.begin(), pool.voxels.end());
+        const std::vector<std::uint32_t> dull =
+            dullOffshoots(hu_, pool.voxels, soft(), level.fluidHu);
+        std::vector<std::uint32_t> kept;
+        std::set_difference(pool.voxels.begin(), pool.voxels.end(), dull.begin(), dull.end(),
+                            std::back_inserter(kept));
+        for (std::uint32_t index : dull)
+            owner_[index] = closed;
+        pool.voxels = std::move(kept);
+    }
+
+    // Takes in the fluid that stands above the level, along the wall and in corners. Last of all,
+    // so that no pool claims the fluid under another's level.
+    void climb(Owner mine) {
+        Pool& pool = pools_[mine - 1];
+        const double core = cores_[mine - 1];
+        const Level& level = levels_[pool.levels.front()];
+        std::size_t ring = 0;
+        for (int layer = 0; layer < climb_; ++layer) {
+            const std::size_t end = pool.voxels.size();
+            for (std::size_t head = ring; head < end; ++head) {
+                if (notAbove(pool.voxels[head], level, -2)) continue;
+                neighbours(pool.voxels[head], [&](std::uint32_t next) {
+                    if (owner_[next] != 0 || !(hu_[next] > core)) return;
+                    if (notAbove(next, level, 1) || !notAbove(next, level, climb_)) return;
+                    owner_[next] = mine;
+                    pool.voxels.push_back(next);
+                });
+            }
+            ring = end;
+        }
+    }
+
     // Places in the horizontal plane, one number each.
     std::size_t placeOf(glm::ivec3 v) const {
         const int across = 1 - down_.axis;
@@ -196,10 +242,19 @@ private:
 
     // A pool fills a bay of the bowel: a fair part of it lies straight below its own surface. What
     // has run through a thin wall into opacified bowel or bone does not.
-    double coveredShare(const Pool& pool, const Level& level) const {
+    double coveredShare(const Pool& pool, const Level& level, bool allLevels) const {
         std::unordered_set<std::size_t> surface, footprint;
         for (const LevelColumn& c : level.columns)
             surface.insert(placeOf(c.below));
+        // Folds that reach down to the fluid part its surface: each bay's level is some of it.
+        if (allLevels) {
+            const Owner mine = Owner(pools_.size() + 1);
+            for (const Level& other : levels_) {
+                columnsBelow(other, [&](std::uint32_t index) {
+                    if (owner_[index] == mine) surface.insert(placeOf(grid_.voxelAt(index)));
+                });
+            }
+        }
         for (std::uint32_t index : pool.voxels)
             footprint.insert(placeOf(grid_.voxelAt(index)));
         return double(surface.size()) / double(std::max<std::size_t>(1, footprint.size()));
@@ -229,6 +284,7 @@ private:
     const std::vector<Level>& levels_;
     const GravityAxis down_;
     const Grid grid_;
+    const int climb_;
     std::vector<Owner> owner_;
     std::vector<Pool> pools_;
     std::vector<double> cores_;  // of each pool, the HU that it was grown through
