@@ -12,28 +12,8 @@ constexpr double coveringPart = 1.25;
 /// Marks the nodes in the balls inscribed along a route, somewhat larger.
 void cover(const BlockGraph& graph, const std::vector<std::int32_t>& route,
            std::vector<bool>& covered) {
-    const glm::dvec3 spacing = graph.spacingMm;
-    const double blockMm = 2.0 * glm::length(spacing);
-    for (const std::int32_t node : route) {
-        const glm::ivec3 centre = graph.voxelOf(node);
-        const double radiusMm =
-            coveringPart * double(graph.nodes[std::size_t(node)].radiusMm) + 0.5 * blockMm;
-        if (!std::isfinite(radiusMm)) continue;
-        const glm::ivec3 reach = glm::ivec3(radiusMm / (2.0 * spacing)) + 1;
-        const glm::ivec3 lo = glm::max(centre / 2 - reach, glm::ivec3(0));
-        const glm::ivec3 hi = glm::min(centre / 2 + reach, graph.blocks - 1);
-        for (int z = lo.z; z <= hi.z; ++z) {
-            for (int y = lo.y; y <= hi.y; ++y) {
-                for (int x = lo.x; x <= hi.x; ++x) {
-                    const std::int32_t other = graph.nodeAt[graph.blockIndex({x, y, z})];
-                    if (other < 0 || covered[std::size_t(other)]) continue;
-                    const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
-                    if (glm::dot(away, away) <= radiusMm * radiusMm)
-                        covered[std::size_t(other)] = true;
-                }
-            }
-        }
-    }
+    const double blockMm = 2.0 * glm::length(graph.spacingMm);
+    markAlong(graph, route, coveringPart, 0.5 * blockMm, covered);
 }
 
 /// The way from a tip back to what it leaves.

@@ -173,4 +173,29 @@ BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float
     return graph;
 }
 
+void markAlong(const BlockGraph& graph, const std::vector<std::int32_t>& route, double part,
+               double marginMm, std::vector<bool>& marked) {
+    const glm::dvec3 spacing = graph.spacingMm;
+    for (const std::int32_t node : route) {
+        marked[std::size_t(node)] = true;
+        const glm::ivec3 centre = graph.voxelOf(node);
+        const double radiusMm = part * double(graph.nodes[std::size_t(node)].radiusMm) + marginMm;
+        if (!std::isfinite(radiusMm)) continue;
+        const glm::ivec3 reach = glm::ivec3(radiusMm / (2.0 * spacing)) + 1;
+        const glm::ivec3 lo = glm::max(centre / 2 - reach, glm::ivec3(0));
+        const glm::ivec3 hi = glm::min(centre / 2 + reach, graph.blocks - 1);
+        for (int z = lo.z; z <= hi.z; ++z) {
+            for (int y = lo.y; y <= hi.y; ++y) {
+                for (int x = lo.x; x <= hi.x; ++x) {
+                    const std::int32_t other = graph.nodeAt[graph.blockIndex({x, y, z})];
+                    if (other < 0 || marked[std::size_t(other)]) continue;
+                    const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
+                    if (glm::dot(away, away) <= radiusMm * radiusMm)
+                        marked[std::size_t(other)] = true;
+                }
+            }
+        }
+    }
+}
+
 }  // namespace haustra::topology

@@ -55,4 +55,9 @@ struct BlockGraph {
 BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float>& distanceMm,
                           int threads);
 
+/// Marks the nodes within the balls inscribed along a route, their radii times `part` plus
+/// `marginMm`.
+void markAlong(const BlockGraph& graph, const std::vector<std::int32_t>& route, double part,
+               double marginMm, std::vector<bool>& marked);
+
 }  // namespace haustra::topology

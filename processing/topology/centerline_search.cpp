@@ -187,28 +187,8 @@ std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target) {
 
 std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
                                       const std::vector<std::int32_t>& route) {
-    const glm::dvec3 spacing = graph.spacingMm;
     std::vector<bool> within(graph.nodes.size(), false);
-    for (const std::int32_t node : route) {
-        within[std::size_t(node)] = true;
-        const glm::ivec3 centre = graph.voxelOf(node);
-        const double radiusMm = innerPart * double(graph.nodes[std::size_t(node)].radiusMm);
-        if (!std::isfinite(radiusMm)) continue;
-        const glm::ivec3 reach = glm::ivec3(radiusMm / (2.0 * spacing)) + 1;
-        const glm::ivec3 lo = glm::max(centre / 2 - reach, glm::ivec3(0));
-        const glm::ivec3 hi = glm::min(centre / 2 + reach, graph.blocks - 1);
-        for (int z = lo.z; z <= hi.z; ++z) {
-            for (int y = lo.y; y <= hi.y; ++y) {
-                for (int x = lo.x; x <= hi.x; ++x) {
-                    const std::int32_t other = graph.nodeAt[graph.blockIndex({x, y, z})];
-                    if (other < 0 || within[std::size_t(other)]) continue;
-                    const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
-                    if (glm::dot(away, away) <= radiusMm * radiusMm)
-                        within[std::size_t(other)] = true;
-                }
-            }
-        }
-    }
+    markAlong(graph, route, innerPart, 0.0, within);
     const PathTree tree =
         growCheapestTree(graph, std::span(route).first(1), StepCost::closeness, within);
     return pathTo(tree, route.back());
