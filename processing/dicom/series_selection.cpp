@@ -126,7 +126,7 @@ Result<Series> chooseSeries(FoundSeries found, const std::string& seriesUid, con
     }
     if (candidates.size() > 1) {
         std::string message = "there are " + std::to_string(candidates.size()) +
-                              " CT series here; choose one by its UID: ";
+                              " CT series here; choose one by its UID (--series): ";
         for (std::size_t n = 0; n < candidates.size(); ++n)
             message += (n ? "; " : "") + line(candidates[n]->summary);
         return fail(ErrorKind::badInput, std::move(message), path.string());

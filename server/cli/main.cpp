@@ -26,7 +26,11 @@ int runProgram(int argc, char** argv) {
         std::string command = app->get_name();
         for (const CLI::App* used : app->get_subcommands())
             command += " " + used->get_name();
-        return "haustra: " + std::string(error.what()) + " (see " + command + " --help)\n";
+        const auto unknown = app->remaining();
+        const std::string what = app->get_subcommands().empty() && !unknown.empty()
+                                     ? "there is no command or option " + unknown.front()
+                                     : error.what();
+        return "haustra: " + what + " (see " + command + " --help)\n";
     });
     program.footer("Exit codes: 0 done, 1 failed, 2 wrong usage.");
     const std::vector<haustra::cli::Command> commands{

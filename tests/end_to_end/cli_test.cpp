@@ -26,6 +26,10 @@ std::size_t lineCount(const std::string& text) {
     return std::size_t(std::count(text.begin(), text.end(), '\n'));
 }
 
+TEST(CommandLine, AnUnknownCommandIsNamed) {
+    EXPECT_NE(haustra({"bogus"}).err.find("bogus"), std::string::npos);
+}
+
 TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
     ::unsetenv("HAUSTRA_STORE");
     for (const Arguments& wrong : std::vector<Arguments>{
