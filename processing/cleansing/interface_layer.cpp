@@ -46,11 +46,16 @@ glm::dvec3 gradient(const Volume<std::int16_t>& hu, glm::ivec3 v, glm::dvec3 spa
 }  // namespace
 
 InterfaceLayer::InterfaceLayer(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
-                               const LocalMeans& means, int threads)
+                               const LocalMeans& means, glm::dvec3 gravity, int threads)
     : hu_(scan.hu),
       segmentation_(segmentation),
       means_(means),
-      spacingMm_(scan.hu.grid().spacingMm()) {
+      spacingMm_(scan.hu.grid().spacingMm()),
+      down_(0.0) {
+    for (int axis = 0; axis < 3; ++axis) {
+        down_[axis] =
+            glm::dot(glm::dvec3(scan.hu.grid().patientFromVoxel[axis]), gravity) / spacingMm_[axis];
+    }
     // Most of the ways from labelled air to labelled tagging are bare: their blur is the scanner's.
     constexpr int bins = 200;
     constexpr double binMm = 0.01;
@@ -133,15 +138,18 @@ InterfaceLayer::Step InterfaceLayer::stepThrough(glm::ivec3 voxel, double tagged
     if (LumenLabel(segmentation_.at(above)) != LumenLabel::tagged) return {};
     Step step;
     step.lengthMm = up + down;
+    step.level = glm::dot(direction, down_) > 0.64;
+    step.tagged = above;
     step.unitLength = normalQuantile((high - airHu) / contrast) - normalQuantile(0.2);
     return step;
 }
 
-double InterfaceLayer::bareness(glm::ivec3 voxel, double taggedHu, double softHu) const {
+InterfaceLayer::Crossing InterfaceLayer::crossing(glm::ivec3 voxel, double taggedHu,
+                                                  double softHu) const {
     const Step step = stepThrough(voxel, taggedHu, softHu);
-    if (step.lengthMm < 0.0) return 0.0;
+    if (step.lengthMm < 0.0) return {};
     const double wallMm = step.lengthMm - blurMm_ * step.unitLength;
-    return 1.0 - smoothstep(0.35, 0.8, wallMm);
+    return {1.0 - smoothstep(0.35, 0.8, wallMm), step.level, step.tagged};
 }
 
 }  // namespace haustra::cleansing

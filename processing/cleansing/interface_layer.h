@@ -13,10 +13,20 @@ namespace haustra::cleansing {
 class InterfaceLayer {
 public:
     InterfaceLayer(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
-                   const LocalMeans& means, int threads);
+                   const LocalMeans& means, glm::dvec3 gravity, int threads);
 
-    /// 0…1: how surely a voxel lies in the blur of a bare interface. Thread-safe.
-    double bareness(glm::ivec3 voxel, double taggedHu, double softHu) const;
+    /// The way from air to tagging through a voxel.
+    struct Crossing {
+        double bareness = 0.0;  ///< 0…1: how surely the voxel lies in the blur of a bare interface
+        bool level = false;     ///< down is within 50° of the way
+        glm::ivec3 tagged{0};   ///< the voxel of tagging at its end
+    };
+    Crossing crossing(glm::ivec3 voxel, double taggedHu, double softHu) const;
+
+    /// Crossing::bareness. Thread-safe, as crossing() is.
+    double bareness(glm::ivec3 voxel, double taggedHu, double softHu) const {
+        return crossing(voxel, taggedHu, softHu).bareness;
+    }
 
     /// Standard deviation of the scanner's blur, as the scan's own interfaces show it.
     double blurMm() const { return blurMm_; }
@@ -26,6 +36,8 @@ private:
     /// blur; negative where there is none.
     struct Step {
         double lengthMm = -1.0, unitLength = 1.0;
+        bool level = false;
+        glm::ivec3 tagged{0};
     };
     Step stepThrough(glm::ivec3 voxel, double taggedHu, double softHu) const;
 
@@ -33,6 +45,7 @@ private:
     const Volume<std::uint8_t>& segmentation_;
     const LocalMeans& means_;
     glm::dvec3 spacingMm_;
+    glm::dvec3 down_;  ///< gravity along the grid's axes; zero where unknown
     double blurMm_ = 0.55;
 };
 

@@ -1,6 +1,7 @@
 #include "cleansing/mixture.h"
 
 #include "cleansing/interface_layer.h"
+#include "cleansing/level_rim.h"
 #include "cleansing/local_means.h"
 #include "cleansing/menisci.h"
 #include "cleansing/partial_volume_em.h"
@@ -59,7 +60,11 @@ public:
                 std::clamp(glm::mix((y - softHu) / (taggedHu - softHu), filtered, weak), 0.0, 1.0);
         }
         if (!around.tagged) tagged = 0.0;
-        const double bare = interfaces_.bareness(v, taggedHu, softHu);
+        const InterfaceLayer::Crossing crossing = interfaces_.crossing(v, taggedHu, softHu);
+        // Fluid does not stand beside air: under a level, a slanted step hides a wall.
+        const double bare = !crossing.level && level_.standsAbove(crossing.tagged, segmentation_)
+                                ? 0.0
+                                : crossing.bareness;
         if (bare < 0.95 && aboveFluid(v, softHu, taggedHu) && besideWall(v, softHu, taggedHu)) {
             if (const auto three = atLevel(v, softHu, taggedHu)) return *three;
         }
@@ -229,7 +234,7 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     if (around.shells[0].empty()) return mixture;
     const LocalMeans means = measureLocalMeans(scan, tissue, labels, around, options.threads);
     progress(0.5);
-    const InterfaceLayer interfaces(scan, labels, means, options.threads);
+    const InterfaceLayer interfaces(scan, labels, means, gravity, options.threads);
     progress(0.6);
     const WaterLevel level(scan, means, interfaces, around, gravity, options.threads);
     const ColonMixture colon(scan, labels, means, interfaces, level);
@@ -239,6 +244,8 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
                 out[shell[n]] = colon.at(shell[n]);
         });
     }
+    progress(0.8);
+    settleRim(scan, means, level, 2.5 * interfaces.blurMm(), around, mixture, options.threads);
     progress(1.0);
     return mixture;
 }

@@ -54,6 +54,49 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
             }
         });
     }
+    Grid coarse = grid;
+    coarse.size = (grid.size + blockVoxels - 1) / blockVoxels;
+    blocks_ = Volume<std::uint8_t>(coarse, std::uint8_t(0));
+    const auto block = blocks_.writable();
+    for (const auto& shell : around.shells) {
+        for (std::uint32_t n : shell) {
+            if (out[n] == 0) continue;
+            const glm::ivec3 b = grid.voxelAt(n) / blockVoxels;
+            const glm::ivec3 lo = glm::max(b - 1, glm::ivec3(0)),
+                             hi = glm::min(b + 1, coarse.size - 1);
+            for (int k = lo.z; k <= hi.z; ++k) {
+                for (int j = lo.y; j <= hi.y; ++j) {
+                    for (int i = lo.x; i <= hi.x; ++i)
+                        block[coarse.index(i, j, k)] = 1;
+                }
+            }
+        }
+    }
+}
+
+bool WaterLevel::standsAbove(glm::ivec3 voxel, const Volume<std::uint8_t>& segmentation) const {
+    if (crossing_.empty()) return false;
+    constexpr int widestGap = 3, across = 8, height = 3;
+    const Grid& grid = crossing_.grid();
+    glm::ivec3 top = voxel;
+    int gap = 0;
+    for (glm::ivec3 v = voxel - down_; grid.contains(v) && gap <= widestGap; v -= down_) {
+        const LumenLabel label{segmentation.at(v)};
+        if (label == LumenLabel::air) break;
+        gap = label == LumenLabel::tagged ? 0 : gap + 1;
+        if (gap == 0) top = v;
+    }
+    const glm::ivec3 reach = glm::ivec3(across) - (across - height) * glm::abs(down_);
+    const glm::ivec3 lo = glm::max(top - reach, glm::ivec3(0)),
+                     hi = glm::min(top + reach, grid.size - 1);
+    for (int k = lo.z; k <= hi.z; ++k) {
+        for (int j = lo.y; j <= hi.y; ++j) {
+            for (int i = lo.x; i <= hi.x; ++i) {
+                if (crossing_.at(i, j, k) != 0) return true;
+            }
+        }
+    }
+    return false;
 }
 
 std::optional<double> WaterLevel::depthMm(glm::ivec3 voxel) const {

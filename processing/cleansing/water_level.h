@@ -24,6 +24,15 @@ public:
     /// 4 voxels of height and 8 across. Thread-safe.
     std::optional<double> depthMm(glm::ivec3 voxel) const;
 
+    /// Whether a level can be known at a voxel: cheap, and false in most places. Thread-safe.
+    bool near(glm::ivec3 voxel) const {
+        return !blocks_.empty() && blocks_.at(voxel / blockVoxels) != 0;
+    }
+
+    /// Whether a level lies straight above, at the end of a column of `segmentation`'s tagged
+    /// voxels with gaps of at most 3 voxels, or within 8 across of it. Thread-safe.
+    bool standsAbove(glm::ivec3 voxel, const Volume<std::uint8_t>& segmentation) const;
+
     /// Along the grid: a unit step down. Zero where there is no gravity.
     glm::ivec3 down() const { return down_; }
 
@@ -32,6 +41,8 @@ private:
     double stepMm_ = 1.0;
     /// 0, or 1 + 254 f where the level crosses between this voxel and the one below, f of the way.
     Volume<std::uint8_t> crossing_;
+    static constexpr int blockVoxels = 8;
+    Volume<std::uint8_t> blocks_;  ///< 1 where a block or one beside it holds a crossing
 };
 
 }  // namespace haustra::cleansing

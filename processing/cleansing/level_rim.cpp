@@ -1,0 +1,160 @@
+#include "cleansing/level_rim.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace haustra::cleansing {
+namespace {
+
+constexpr double windowMm = 5.0;  // in which the wall's direction is sought
+constexpr double steepest = 3.0;  // mm across per mm of height; a flatter wall gives no direction
+
+class Rim {
+public:
+    Rim(const Volume<std::int16_t>& cleansed, const LocalMeans& means, const WaterLevel& level,
+        double halfHeightMm)
+        : hu_(cleansed),
+          means_(means),
+          level_(level),
+          halfHeightMm_(halfHeightMm),
+          spacingMm_(cleansed.grid().spacingMm()) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (level.down()[axis] != 0) vertical_ = axis;
+        }
+        across_ = {vertical_ == 0 ? 1 : 0, vertical_ == 2 ? 1 : 2};
+    }
+
+    /// HU that the wall above and below gives a voxel.
+    std::optional<double> huAt(glm::ivec3 v) const {
+        if (!besideWall(v)) return std::nullopt;
+        const auto depth = level_.depthMm(v);
+        if (!depth || std::abs(*depth) > halfHeightMm_) return std::nullopt;
+        const auto slope = direction(v, *depth);
+        if (!slope) return std::nullopt;
+        const double beyond = halfHeightMm_ + 0.5 * spacingMm_[vertical_];
+        const double above = sample(v, *slope, -beyond - *depth),
+                     below = sample(v, *slope, beyond - *depth);
+        return glm::mix(above, below, (*depth + beyond) / (2.0 * beyond));
+    }
+
+private:
+    double sample(glm::ivec3 v, glm::dvec2 slope, double downMm) const {
+        glm::dvec3 p(v);
+        p[vertical_] += downMm * level_.down()[vertical_] / spacingMm_[vertical_];
+        p[across_[0]] += downMm * slope.x / spacingMm_[across_[0]];
+        p[across_[1]] += downMm * slope.y / spacingMm_[across_[1]];
+        return trilinear(hu_, glm::clamp(p, glm::dvec3(0.0), glm::dvec3(hu_.grid().size - 1)));
+    }
+
+    bool besideWall(glm::ivec3 v) const {
+        const double air = means_.airHu.at(v.x, v.y, v.z), soft = means_.softHu.at(v.x, v.y, v.z);
+        const double least = air + 0.3 * (soft - air);
+        const glm::ivec3 reach = glm::max(glm::ivec3(glm::round(1.5 / spacingMm_)), glm::ivec3(1));
+        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
+                         hi = glm::min(v + reach, hu_.grid().size - 1);
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (int i = lo.x; i <= hi.x; ++i) {
+                    if (hu_.at(i, j, k) > least) return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    /// How far the wall leans, mm across per mm of depth: least squares over the gradients above
+    /// and below the level's blur.
+    std::optional<glm::dvec2> direction(glm::ivec3 v, double depthMm) const {
+        const Grid& grid = hu_.grid();
+        const glm::ivec3 reach = glm::ivec3(windowMm / spacingMm_);
+        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(1)),
+                         hi = glm::min(v + reach, grid.size - 2);
+        const double clear = halfHeightMm_ + spacingMm_[vertical_];
+        double aa = 0.0, ab = 0.0, bb = 0.0, av = 0.0, bv = 0.0, vv = 0.0;
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (int i = lo.x; i <= hi.x; ++i) {
+                    const glm::ivec3 n(i, j, k);
+                    const glm::dvec3 d = glm::dvec3(n - v) * spacingMm_;
+                    const double there = depthMm + d[vertical_] * level_.down()[vertical_];
+                    const double distance2 = glm::dot(d, d);
+                    if (std::abs(there) < clear || distance2 > windowMm * windowMm) continue;
+                    const auto along = [&](int axis) {
+                        glm::ivec3 step(0);
+                        step[axis] = 1;
+                        return (hu_.at(n + step) - hu_.at(n - step)) / (2.0 * spacingMm_[axis]);
+                    };
+                    const double a = along(across_[0]), b = along(across_[1]),
+                                 down = along(vertical_) * level_.down()[vertical_];
+                    const double w = std::exp(-0.5 * distance2 / 4.0);
+                    aa += w * a * a, ab += w * a * b, bb += w * b * b;
+                    av += w * a * down, bv += w * b * down, vv += w * down * down;
+                }
+            }
+        }
+        // Upright unless the gradients say otherwise.
+        const double ridge = 0.01 * (aa + bb + vv) + 1e-3;
+        aa += ridge, bb += ridge;
+        const double determinant = aa * bb - ab * ab;
+        const glm::dvec2 slope((-av * bb + bv * ab) / determinant,
+                               (-bv * aa + av * ab) / determinant);
+        if (glm::length(slope) > steepest) return std::nullopt;
+        return slope;
+    }
+
+    const Volume<std::int16_t>& hu_;
+    const LocalMeans& means_;
+    const WaterLevel& level_;
+    double halfHeightMm_;
+    glm::dvec3 spacingMm_;
+    int vertical_ = 1;
+    glm::ivec2 across_{0, 2};
+};
+
+}  // namespace
+
+void settleRim(const CtScan& scan, const LocalMeans& means, const WaterLevel& level,
+               double halfHeightMm, const TaggedSurroundings& around,
+               Volume<TissueFractions>& mixture, int threads) {
+    if (level.down() == glm::ivec3(0)) return;
+    const Grid& grid = scan.hu.grid();
+    const auto airAt = [&](glm::ivec3 v) { return means.airHu.at(v.x, v.y, v.z); };
+    Volume<std::int16_t> cleansed = scan.hu.clone();
+    const auto first = cleansed.writable();
+    const auto out = mixture.writable();
+    for (const auto& shell : around.shells) {
+        parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t m = begin; m < end; ++m) {
+                const std::size_t n = shell[m];
+                const glm::ivec3 v = grid.voxelAt(n);
+                const double contrast = means.taggedHu.at(v) - airAt(v);
+                first[n] = std::int16_t(std::clamp(
+                    std::lround(scan.hu[n] - out[n].tagged / 255.0 * contrast), -1024L, 3071L));
+            }
+        });
+    }
+    const Rim rim(cleansed, means, level, halfHeightMm);
+    for (const auto& shell : around.shells) {
+        parallelFor(shell.size(), 1 << 12, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t m = begin; m < end; ++m) {
+                const std::size_t n = shell[m];
+                const glm::ivec3 v = grid.voxelAt(n);
+                if (!level.near(v)) continue;
+                const auto hu = rim.huAt(v);
+                if (!hu) continue;
+                const double air = airAt(v), soft = means.softHu.at(v.x, v.y, v.z);
+                const double tagged =
+                    std::clamp((scan.hu[n] - *hu) / (means.taggedHu.at(v) - air), 0.0, 1.0);
+                const double open = std::clamp((soft - *hu) / (soft - air), 0.0, 1.0);
+                const int t = int(std::lround(255.0 * tagged));
+                out[n] = {std::uint8_t(std::clamp(int(std::lround(255.0 * open)) - t, 0, 255 - t)),
+                          std::uint8_t(t)};
+            }
+        });
+    }
+}
+
+}  // namespace haustra::cleansing

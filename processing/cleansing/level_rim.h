@@ -1,0 +1,21 @@
+// The rim of a fluid level, where air, fluid and wall share voxels.
+#pragma once
+
+#include "cleansing/local_means.h"
+#include "cleansing/tagged_surroundings.h"
+#include "cleansing/water_level.h"
+#include "core/ct_scan.h"
+#include "core/tissue.h"
+
+namespace haustra::cleansing {
+
+/// Settles the shares of residue in `mixture` within `halfHeightMm` of the fluid's level beside
+/// walls. One HU cannot tell the shares of three tissues, but the wall goes on straight past the
+/// level: above and below, beyond the reach of the level's blur, it is known. Along its direction
+/// (the one in which the cleansed scan changes least there) the cleansed HU is interpolated, and
+/// the residue is what explains the difference from the scan. The same for any number of threads.
+void settleRim(const CtScan& scan, const LocalMeans& means, const WaterLevel& level,
+               double halfHeightMm, const TaggedSurroundings& around,
+               Volume<TissueFractions>& mixture, int threads);
+
+}  // namespace haustra::cleansing
