@@ -104,6 +104,7 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& optio
                           std::vector<std::uint32_t>(vertices, 0),
                           std::vector<char>(vertices, 0),
                           std::vector<char>(vertices, 0),
+                          std::vector<char>(vertices, 0),
                           options.minAngleDegrees};
 
     struct Pass {
@@ -111,7 +112,7 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& optio
         double share;
     };
     // What a box cuts off in one pass lies inside a box of the next; the last has one box.
-    const Pass passes[] = {{16000, 0.5}, {16000, 0.37}, {vertices, 0.5}};
+    const Pass passes[] = {{5000, 0.5}, {5000, 0.37}, {5000, 0.62}, {vertices, 0.5}};
     double done = 0.0;
     for (const Pass& pass : passes) {
         const std::vector<Region> regions = partition(shared.mesh, pass.vertexLimit, pass.share);

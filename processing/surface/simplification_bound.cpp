@@ -1,6 +1,9 @@
 #include "surface/simplification_bound.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
 
 namespace haustra::surface {
 namespace {
@@ -18,6 +21,7 @@ NearTriangle::NearTriangle(const glm::vec3& a, const glm::vec3& b, const glm::ve
     for (int k = 0; k < 3; ++k) {
         const float squared = glm::dot(edge[k], edge[k]);
         invertedEdgeSquared[k] = squared > 0.0f ? 1.0f / squared : 0.0f;
+        inward[k] = glm::cross(normal, edge[k]) * std::sqrt(invertedEdgeSquared[k]);
     }
 }
 
@@ -25,9 +29,15 @@ bool NearTriangle::within(const glm::vec3& p, float squared) const {
     const glm::vec3 from[] = {p - corner[0], p - corner[1], p - corner[2]};
     const float height = glm::dot(normal, from[0]);
     if (height * height > squared) return false;
-    bool inside = true;
+    float depth[3];
     for (int k = 0; k < 3; ++k) {
-        if (glm::dot(glm::cross(edge[k], from[k]), normal) >= 0.0f) continue;
+        depth[k] = glm::dot(inward[k], from[k]);
+        if (depth[k] < 0.0f && depth[k] * depth[k] > squared) return false;
+    }
+    const bool flat = normal == glm::vec3(0.0f);
+    bool inside = !flat;
+    for (int k = 0; k < 3; ++k) {
+        if (depth[k] >= 0.0f && !flat) continue;
         inside = false;
         const float along =
             std::clamp(glm::dot(from[k], edge[k]) * invertedEdgeSquared[k], 0.0f, 1.0f);
@@ -39,38 +49,32 @@ bool NearTriangle::within(const glm::vec3& p, float squared) const {
 
 ErrorBound::ErrorBound(const CornerMesh& input, double errorMm)
     : errorSquared_(float(std::max(0.0, errorMm - roundingMm) * (errorMm - roundingMm))),
-      vertexCount_(int(input.position.size())),
-      edgeCount_(int(input.vertex.size() / 2)),
       inputVertex_(input.vertex),
       inputOpposite_(input.opposite),
       first_(std::size_t(input.triangleCount()), -1) {
+    inputPlace_.reserve(input.position.size());
+    for (const glm::dvec3& p : input.position)
+        inputPlace_.push_back(glm::vec3(p));
     const std::size_t count =
         input.position.size() + input.vertex.size() / 2 + input.vertex.size() / 3;
-    place_.reserve(count);
+    sample_.reserve(count);
+    on_.reserve(count);
     corner_.reserve(count);
-    next_.assign(count, -1);
-    const auto hang = [&](int corner) {
-        const int sample = int(corner_.size());
+    const auto add = [&](On on, int corner, const glm::dvec3& place) {
+        int& first = first_[corner / 3];
+        sample_.push_back({glm::vec3(place), first});
+        first = int(on_.size());
+        on_.push_back(on);
         corner_.push_back(corner);
-        if (corner < 0) return;  // a vertex that no triangle uses
-        next_[sample] = first_[corner / 3];
-        first_[corner / 3] = sample;
     };
-    for (std::size_t v = 0; v < input.position.size(); ++v) {
-        place_.push_back(glm::vec3(input.position[v]));
-        hang(input.cornerOf[v]);
-    }
-    for (int c = 0; c < int(input.vertex.size()); ++c) {
-        if (c > input.opposite[c]) continue;
-        place_.push_back(glm::vec3(0.5 * (input.position[input.vertex[CornerMesh::next(c)]] +
-                                          input.position[input.vertex[CornerMesh::previous(c)]])));
-        hang(c);
-    }
+    const auto at = [&](int corner) { return input.position[input.vertex[corner]]; };
     for (int t = 0; t < input.triangleCount(); ++t) {
-        const int* v = &input.vertex[3 * t];
-        place_.push_back(
-            glm::vec3((input.position[v[0]] + input.position[v[1]] + input.position[v[2]]) / 3.0));
-        hang(3 * t);
+        for (int c = 3 * t; c < 3 * t + 3; ++c) {
+            if (input.cornerOf[input.vertex[c]] == c) add(On::vertex, c, at(c));
+            if (c < input.opposite[c])
+                add(On::edge, c, 0.5 * (at(CornerMesh::next(c)) + at(CornerMesh::previous(c))));
+        }
+        add(On::triangle, 3 * t, (at(3 * t) + at(3 * t + 1) + at(3 * t + 2)) / 3.0);
     }
 }
 
@@ -80,8 +84,8 @@ void ErrorBound::gather(std::span<const int> oldTriangles, Patch& patch) const {
     patch.y.clear();
     patch.z.clear();
     for (const int triangle : oldTriangles) {
-        for (int sample = first_[triangle]; sample >= 0; sample = next_[sample]) {
-            const glm::vec3 p = place(sample);
+        for (int sample = first_[triangle]; sample >= 0; sample = sample_[sample].next) {
+            const glm::vec3 p = sample_[sample].place;
             patch.samples.push_back(sample);
             patch.x.push_back(p.x);
             patch.y.push_back(p.y);
@@ -92,13 +96,14 @@ void ErrorBound::gather(std::span<const int> oldTriangles, Patch& patch) const {
 
 bool ErrorBound::nearInputTriangle(int triangle, const glm::vec3& p) const {
     const int* v = &inputVertex_[3 * std::size_t(triangle)];
-    return NearTriangle(place(v[0]), place(v[1]), place(v[2])).within(p, errorSquared_);
+    return NearTriangle(inputPlace_[v[0]], inputPlace_[v[1]], inputPlace_[v[2]])
+        .within(p, errorSquared_);
 }
 
 bool ErrorBound::nearTrianglesOf(int sample, const glm::vec3& p) const {
     const int first = corner_[sample];
-    if (sample >= vertexCount_ + edgeCount_) return nearInputTriangle(first / 3, p);
-    if (sample >= vertexCount_)
+    if (on_[sample] == On::triangle) return nearInputTriangle(first / 3, p);
+    if (on_[sample] == On::edge)
         return nearInputTriangle(first / 3, p) || nearInputTriangle(inputOpposite_[first] / 3, p);
     int corner = first;
     do {
@@ -108,19 +113,23 @@ bool ErrorBound::nearTrianglesOf(int sample, const glm::vec3& p) const {
     return false;
 }
 
-bool ErrorBound::nearInput(const glm::vec3& p, Patch& patch) const {
+bool ErrorBound::nearInput(const glm::vec3& p, const Patch& patch) const {
     const std::size_t count = patch.samples.size();
     if (count == 0) return false;
-    patch.squared.resize(count);
+    // Floats that are not negative order as their bits do; with a sample's number in the lowest
+    // bits, the least key tells the nearest sample (or one as near within rounding) in a loop
+    // without branches.
+    const auto numbers = int(std::bit_ceil(count) - 1);
+    const float *x = patch.x.data(), *y = patch.y.data(), *z = patch.z.data();
+    int least = std::numeric_limits<int>::max();
     for (std::size_t i = 0; i < count; ++i) {
-        const float dx = patch.x[i] - p.x, dy = patch.y[i] - p.y, dz = patch.z[i] - p.z;
-        patch.squared[i] = dx * dx + dy * dy + dz * dz;
+        const float dx = x[i] - p.x, dy = y[i] - p.y, dz = z[i] - p.z;
+        const int bits = std::bit_cast<int>(dx * dx + dy * dy + dz * dz);
+        least = std::min(least, (bits & ~numbers) | int(i));
     }
-    std::size_t nearest = 0;
-    for (std::size_t i = 1; i < count; ++i) {
-        if (patch.squared[i] < patch.squared[nearest]) nearest = i;
-    }
-    return patch.squared[nearest] <= errorSquared_ || nearTrianglesOf(patch.samples[nearest], p);
+    const std::size_t nearest = std::size_t(least & numbers);
+    const glm::vec3 away = glm::vec3(x[nearest], y[nearest], z[nearest]) - p;
+    return glm::dot(away, away) <= errorSquared_ || nearTrianglesOf(patch.samples[nearest], p);
 }
 
 bool ErrorBound::findHomes(Patch& patch) const {
@@ -146,7 +155,7 @@ void ErrorBound::rehang(std::span<const int> oldTriangles, std::span<const int> 
         first_[triangle] = -1;
     for (std::size_t i = 0; i < patch.samples.size(); ++i) {
         int& first = first_[slots[patch.home[i]]];
-        next_[patch.samples[i]] = first;
+        sample_[patch.samples[i]].next = first;
         first = patch.samples[i];
     }
 }

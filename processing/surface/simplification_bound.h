@@ -11,8 +11,9 @@ namespace haustra::surface {
 /// A triangle prepared for many questions of nearness, in single precision.
 struct NearTriangle {
     glm::vec3 corner[3];
-    glm::vec3 edge[3];  ///< from corner k to the next
-    glm::vec3 normal;   ///< of unit length
+    glm::vec3 edge[3];    ///< from corner k to the next
+    glm::vec3 normal;     ///< of unit length; 0 where the triangle has no area
+    glm::vec3 inward[3];  ///< of unit length, in the plane, upright on edge k; 0 as the normal is
     float invertedEdgeSquared[3];
 
     NearTriangle() = default;
@@ -22,10 +23,10 @@ struct NearTriangle {
 };
 
 /// The input's surface, held by samples: its vertices, the midpoints of its edges and the centres
-/// of its triangles. Each sample
-/// hangs on one triangle of the working mesh that is within the bound of it; a patch of triangles
-/// may take the place of another only if the samples of the old find such a triangle in the new,
-/// and the new patch's own samples lie within the bound of the input's triangles.
+/// of its triangles. Each sample hangs on one triangle of the working mesh that is within the bound
+/// of it; a patch of triangles may take the place of another only if the samples of the old find
+/// such a triangle in the new, and the new patch's own samples lie within the bound of the input's
+/// triangles.
 class ErrorBound {
 public:
     ErrorBound(const CornerMesh& input, double errorMm);
@@ -33,7 +34,7 @@ public:
     /// Room for one thread's questions.
     struct Patch {
         std::vector<int> samples;
-        std::vector<float> x, y, z, squared;
+        std::vector<float> x, y, z;
         std::vector<NearTriangle> triangles;
         std::vector<int> home;  ///< of each sample: its place in `triangles`
     };
@@ -41,7 +42,7 @@ public:
     /// Takes the samples that hang on `oldTriangles` into the patch.
     void gather(std::span<const int> oldTriangles, Patch& patch) const;
     /// Whether `p` is within the bound of an input triangle beside the patch's nearest sample.
-    bool nearInput(const glm::vec3& p, Patch& patch) const;
+    bool nearInput(const glm::vec3& p, const Patch& patch) const;
     /// Whether each of the patch's samples is within the bound of one of patch.triangles; finds
     /// their homes.
     bool findHomes(Patch& patch) const;
@@ -51,15 +52,21 @@ public:
 private:
     bool nearTrianglesOf(int sample, const glm::vec3& p) const;
     bool nearInputTriangle(int triangle, const glm::vec3& p) const;
-    glm::vec3 place(int sample) const { return place_[std::size_t(sample)]; }
+
+    enum class On : char { vertex, edge, triangle };
+
+    struct Sample {
+        glm::vec3 place;
+        int next;  ///< on the same working triangle, or −1
+    };
 
     float errorSquared_;
-    int vertexCount_, edgeCount_;
-    std::vector<glm::vec3> place_;
-    std::vector<int> corner_;  ///< of a sample in the input: at the vertex, facing the edge, or any
+    std::vector<glm::vec3> inputPlace_;  ///< of the input's vertices
     std::vector<int> inputVertex_, inputOpposite_;
-    std::vector<int> first_;  ///< of a working triangle: its first sample, or −1
-    std::vector<int> next_;   ///< of a sample: the next on the same triangle, or −1
+    std::vector<Sample> sample_;  ///< by the input's triangles, so that neighbours lie together
+    std::vector<On> on_;
+    std::vector<int> corner_;  ///< of a sample in the input: at the vertex, facing the edge, or any
+    std::vector<int> first_;   ///< of a working triangle: its first sample, or −1
 };
 
 }  // namespace haustra::surface

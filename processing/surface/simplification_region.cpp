@@ -1,7 +1,5 @@
 #include "surface/simplification_region.h"
 
-#include "surface/triangle_separation.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -33,18 +31,11 @@ glm::dvec3 upright(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
 
 }  // namespace
 
-bool RegionSimplification::Candidate::operator<(const Candidate& other) const {
-    // std::push_heap keeps the greatest on top; the least error is wanted there.
-    if (error != other.error) return error > other.error;
-    return a != other.a ? a > other.a : b > other.b;
-}
-
 RegionSimplification::RegionSimplification(Simplification& shared, const Region& region)
     : shared_(shared),
       mesh_(shared.mesh),
       region_(region),
       grid_(region.box.low, region.box.high, cellMm),
-      seen_(std::size_t(shared.mesh.triangleCount()), 0),
       sharpestCosine_(cosineOf(shared.minAngleDegrees)) {
     for (const int triangle : region.triangles)
         grid_.insert(triangle, boxOf(triangle));
@@ -61,10 +52,6 @@ bool RegionSimplification::starInBox(int v) const {
         inside = inside && inBox(mesh_.position[mesh_.vertex[CornerMesh::next(corner)]]);
     });
     return inside;
-}
-
-glm::dvec3 RegionSimplification::place(const Replacement& replacement, int v) const {
-    return v == replacement.moved ? replacement.place : mesh_.position[v];
 }
 
 FloatBox RegionSimplification::boxOf(int triangle) const {
@@ -223,9 +210,10 @@ bool RegionSimplification::withinBound(const Replacement& r) {
     return true;
 }
 
-bool RegionSimplification::meets(const Replacement& r, const std::array<int, 3>& first,
+bool RegionSimplification::meets(const Replacement& r, std::size_t newTriangle,
                                  const std::array<int, 3>& second) const {
-    int inFirst[3], inSecond[3], shared = 0;
+    const std::array<int, 3>& first = r.corners[newTriangle];
+    int inFirst[3] = {-1, -1, -1}, inSecond[3] = {-1, -1, -1}, shared = 0;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
             if (first[i] != second[j]) continue;
@@ -234,10 +222,11 @@ bool RegionSimplification::meets(const Replacement& r, const std::array<int, 3>&
         }
     }
     TriangleCorners p, q;
-    for (int k = 0; k < 3; ++k) {
-        p[k] = place(r, first[k]);
+    for (int k = 0; k < 3; ++k)
         q[k] = place(r, second[k]);
-    }
+    if (shared < 2 && newPlanes_[newTriangle].part(q, inFirst[0], inSecond[0])) return false;
+    for (int k = 0; k < 3; ++k)
+        p[k] = place(r, first[k]);
     if (shared == 0) return !apart(p, q);
     if (shared == 1) {
         const int i = inFirst[0], j = inSecond[0];
@@ -251,27 +240,30 @@ bool RegionSimplification::meets(const Replacement& r, const std::array<int, 3>&
 }
 
 bool RegionSimplification::meetsSurface(const Replacement& r) {
+    newBoxes_.clear();
+    newPlanes_.clear();
+    for (const auto& v : r.corners) {
+        const TriangleCorners triangle = {place(r, v[0]), place(r, v[1]), place(r, v[2])};
+        newBoxes_.push_back(FloatBox::around(triangle[0], triangle[1], triangle[2]));
+        newPlanes_.emplace_back(triangle);
+    }
     for (std::size_t i = 0; i < r.corners.size(); ++i) {
         for (std::size_t j = i + 1; j < r.corners.size(); ++j) {
-            if (meets(r, r.corners[i], r.corners[j])) return true;
+            if (meets(r, i, r.corners[j])) return true;
         }
     }
-    ++question_;
-    for (const int triangle : r.oldTriangles)
-        seen_[triangle] = question_;
-    newBoxes_.clear();
-    for (const auto& v : r.corners)
-        newBoxes_.push_back(FloatBox::around(place(r, v[0]), place(r, v[1]), place(r, v[2])));
     FloatBox all = newBoxes_[0];
     for (const FloatBox& box : newBoxes_)
         all.add(box);
     bool found = false;
     grid_.visit(all, [&](int triangle, const FloatBox& box) {
-        if (found || !box.touches(all) || seen_[triangle] == question_) return;
-        seen_[triangle] = question_;
+        if (found || std::find(r.oldTriangles.begin(), r.oldTriangles.end(), triangle) !=
+                         r.oldTriangles.end()) {
+            return;
+        }
         const int* v = &mesh_.vertex[3 * triangle];
         for (std::size_t i = 0; i < r.corners.size() && !found; ++i)
-            found = newBoxes_[i].touches(box) && meets(r, r.corners[i], {v[0], v[1], v[2]});
+            found = newBoxes_[i].touches(box) && meets(r, i, {v[0], v[1], v[2]});
     });
     return found;
 }
@@ -283,6 +275,10 @@ void RegionSimplification::removeFromGrid(const Replacement& r) {
 
 void RegionSimplification::commit(const Replacement& r) {
     if (r.moved >= 0) ++shared_.version[r.moved];
+    for (const auto& corners : r.corners) {
+        for (const int v : corners)
+            shared_.stirred[v] = 1;
+    }
     for (const int triangle : r.slots)
         grid_.insert(triangle, boxOf(triangle));
     shared_.bound.rehang(r.oldTriangles, r.slots, patch_);
@@ -291,10 +287,15 @@ void RegionSimplification::commit(const Replacement& r) {
 // ---------------------------------------------------------------------------------- sharp corners
 
 void RegionSimplification::betterCorners() {
+    for (const int v : region_.vertices)
+        shared_.stirred[v] =
+            movable(v) && (!shared_.settled[v] || sharpestAround(v) > sharpestCosine_);
     for (int round = 0; round < 3; ++round) {
         for (const int v : region_.vertices) {
-            if (movable(v) && (!shared_.settled[v] || sharpestAround(v) > sharpestCosine_))
-                betterVertex(v);
+            // What could not be bettered cannot be now, unless something changed beside it.
+            if (!movable(v) || !shared_.stirred[v]) continue;
+            shared_.stirred[v] = 0;
+            betterVertex(v);
         }
     }
 }

@@ -6,6 +6,7 @@
 #include "surface/simplification_quadric.h"
 #include "surface/simplification_regions.h"
 #include "surface/triangle_grid.h"
+#include "surface/triangle_separation.h"
 
 #include <array>
 #include <cstdint>
@@ -20,6 +21,7 @@ struct Simplification {
     std::vector<Quadric> quadric;        ///< of a vertex: the input's planes that it stands for
     std::vector<std::uint32_t> version;  ///< of a vertex: counts its changes
     std::vector<char> settled;           ///< of a vertex: nothing more to gain at it
+    std::vector<char> stirred;           ///< of a vertex: a triangle at it changed of late
     std::vector<char> movable;           ///< of a vertex: all its triangles lie in its region's box
     double minAngleDegrees;
 };
@@ -46,7 +48,11 @@ private:
         float error;
         int a, b;  ///< a < b
         std::uint32_t version;
-        bool operator<(const Candidate& other) const;
+        bool operator<(const Candidate& other) const {
+            // std::push_heap keeps the greatest on top; the least error is wanted there.
+            if (error != other.error) return error > other.error;
+            return a != other.a ? a > other.a : b > other.b;
+        }
     };
 
     enum class Quality { noSharper, better };
@@ -54,7 +60,9 @@ private:
     bool inBox(const glm::dvec3& p) const;
     bool starInBox(int v) const;
     bool movable(int v) const { return mesh_.cornerOf[v] >= 0 && shared_.movable[v]; }
-    glm::dvec3 place(const Replacement& replacement, int v) const;
+    const glm::dvec3& place(const Replacement& replacement, int v) const {
+        return v == replacement.moved ? replacement.place : mesh_.position[v];
+    }
     FloatBox boxOf(int triangle) const;
 
     void collapseEdges();
@@ -73,8 +81,8 @@ private:
     bool shapesPermitted(const Replacement& replacement, Quality quality) const;
     bool withinBound(const Replacement& replacement);
     bool meetsSurface(const Replacement& replacement);
-    bool meets(const Replacement& replacement, const std::array<int, 3>& first,
-               const std::array<int, 3>& second) const;
+    bool meets(const Replacement& replacement, std::size_t newTriangle,
+               const std::array<int, 3>& other) const;
     void removeFromGrid(const Replacement& replacement);
     void commit(const Replacement& replacement);
 
@@ -86,8 +94,7 @@ private:
     ErrorBound::Patch patch_;
     Replacement replacement_;
     std::vector<FloatBox> newBoxes_;
-    std::vector<std::uint32_t> seen_;  ///< of a triangle: the last question that met it
-    std::uint32_t question_ = 0;
+    std::vector<SeparatingPlanes> newPlanes_;
     double sharpestCosine_;
 };
 

@@ -11,11 +11,6 @@ TriangleGrid::TriangleGrid(const glm::vec3& low, const glm::vec3& high, float ce
     cells_.resize(std::size_t(size_.x) * size_.y * size_.z);
 }
 
-glm::ivec3 TriangleGrid::cellOf(const glm::vec3& point) const {
-    const glm::vec3 place = (point - low_) * cellsPerMm_;
-    return glm::ivec3(glm::clamp(place, glm::vec3(0.0f), glm::vec3(size_ - 1)));
-}
-
 void TriangleGrid::insert(int triangle, const FloatBox& box) {
     forEachCell(box, [&](int cell) { cells_[cell].push_back({triangle, box}); });
 }

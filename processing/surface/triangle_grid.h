@@ -37,14 +37,22 @@ public:
     /// `box` as it was inserted.
     void remove(int triangle, const FloatBox& box);
 
-    /// Calls visit(triangle, its box) for each triangle in the cells that `box` touches, some
-    /// repeatedly.
+    /// Calls visit(triangle, its box) once for each triangle whose box touches `box`.
     template <class Visit>
     void visit(const FloatBox& box, const Visit& visit) const {
-        forEachCell(box, [&](int cell) {
-            for (const Entry& entry : cells_[cell])
-                visit(entry.triangle, entry.box);
-        });
+        const glm::ivec3 low = cellOf(box.low), high = cellOf(box.high);
+        glm::ivec3 c;
+        for (c.z = low.z; c.z <= high.z; ++c.z) {
+            for (c.y = low.y; c.y <= high.y; ++c.y) {
+                for (c.x = low.x; c.x <= high.x; ++c.x) {
+                    // Told in the first of the cells that both boxes touch.
+                    for (const Entry& entry : cells_[indexOf(c)]) {
+                        if (entry.box.touches(box) && glm::max(low, cellOf(entry.box.low)) == c)
+                            visit(entry.triangle, entry.box);
+                    }
+                }
+            }
+        }
     }
 
 private:
@@ -59,11 +67,17 @@ private:
         for (int k = low.z; k <= high.z; ++k) {
             for (int j = low.y; j <= high.y; ++j) {
                 for (int i = low.x; i <= high.x; ++i)
-                    visit((k * size_.y + j) * size_.x + i);
+                    visit(indexOf({i, j, k}));
             }
         }
     }
-    glm::ivec3 cellOf(const glm::vec3& point) const;
+    glm::ivec3 cellOf(const glm::vec3& point) const {
+        const glm::vec3 place = (point - low_) * cellsPerMm_;
+        return glm::ivec3(glm::clamp(place, glm::vec3(0.0f), glm::vec3(size_ - 1)));
+    }
+    int indexOf(const glm::ivec3& cell) const {
+        return (cell.z * size_.y + cell.y) * size_.x + cell.x;
+    }
 
     glm::vec3 low_;
     float cellsPerMm_;

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double marginMm = 1e-7;
 constexpr double marginSine = 1e-7;
+constexpr double planeMarginMm = 1e-6;
 
 /// Parted by more than the margin along `axis` (of any length).
 bool partedAlong(const glm::dvec3& axis, const TriangleCorners& first,
@@ -92,6 +93,31 @@ bool apartAtEdge(const glm::dvec3& u, const glm::dvec3& v, const glm::dvec3& a,
     // Folded flat where the planes agree and both corners lie on one side of the edge.
     const double cosine = glm::dot(n, m), least = 1.0 - 1e-4;
     return cosine < 0.0 || cosine * cosine < least * least * glm::dot(n, n) * glm::dot(m, m);
+}
+
+SeparatingPlanes::SeparatingPlanes(const TriangleCorners& triangle) : corner_(triangle) {
+    const auto unit = [](const glm::dvec3& x) {
+        const double squared = glm::dot(x, x);
+        return squared > 0.0 ? x / std::sqrt(squared) : glm::dvec3(0.0);
+    };
+    normal_ = unit(glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+    for (int k = 0; k < 3; ++k)
+        outward_[k] = unit(glm::cross(triangle[(k + 1) % 3] - triangle[k], normal_));
+}
+
+bool SeparatingPlanes::part(const TriangleCorners& other, int common, int otherCommon) const {
+    const auto partedBy = [&](const glm::dvec3& axis, const glm::dvec3& origin) {
+        for (int j = 0; j < 3; ++j) {
+            if (j != otherCommon && glm::dot(axis, other[j] - origin) <= planeMarginMm)
+                return false;
+        }
+        return true;
+    };
+    for (int k = 0; k < 3; ++k) {  // the common corner must be the edge's
+        const int facing = (k + 2) % 3;
+        if (common != facing && partedBy(outward_[k], corner_[k])) return true;
+    }
+    return partedBy(normal_, corner_[0]) || partedBy(-normal_, corner_[0]);
 }
 
 }  // namespace haustra::surface

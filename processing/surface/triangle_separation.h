@@ -21,4 +21,21 @@ bool apartAtVertex(const glm::dvec3& v, const glm::dvec3& a, const glm::dvec3& b
 bool apartAtEdge(const glm::dvec3& u, const glm::dvec3& v, const glm::dvec3& a,
                  const glm::dvec3& b);
 
+/// The plane of a triangle and those upright on it through its edges, which part it from most
+/// triangles about it.
+class SeparatingPlanes {
+public:
+    explicit SeparatingPlanes(const TriangleCorners& triangle);
+
+    /// True where one of the planes parts the triangle, by a margin above rounding, from another
+    /// with the corners `other` of which at most one is a corner of this, number `common` of this
+    /// and `otherCommon` of the other (−1: none): they meet there alone, or nowhere.
+    bool part(const TriangleCorners& other, int common, int otherCommon) const;
+
+private:
+    TriangleCorners corner_;
+    glm::dvec3 normal_;
+    std::array<glm::dvec3, 3> outward_;  ///< of edge k, from corner k to the next
+};
+
 }  // namespace haustra::surface

@@ -40,11 +40,18 @@ TriMesh contoured(glm::ivec3 size, double noiseHu,
 }
 
 TriMesh ball(double noiseHu = 0.0) {
-    return contoured({70, 70, 52}, noiseHu,
-                     [](const glm::dvec3& p) { return 22.0 - glm::length(p); });
+    return contoured({42, 42, 34}, noiseHu,
+                     [](const glm::dvec3& p) { return 13.0 - glm::length(p); });
 }
 
 TriMesh torus(double noiseHu = 0.0) {
+    return contoured({52, 52, 20}, noiseHu, [](const glm::dvec3& p) {
+        return 5.0 - glm::length(glm::dvec2(glm::length(glm::dvec2(p)) - 11.0, p.z));
+    });
+}
+
+/// So large that several regions are worked on at once.
+TriMesh largeTorus(double noiseHu) {
     return contoured({80, 80, 30}, noiseHu, [](const glm::dvec3& p) {
         return 8.0 - glm::length(glm::dvec2(glm::length(glm::dvec2(p)) - 18.0, p.z));
     });
@@ -52,10 +59,10 @@ TriMesh torus(double noiseHu = 0.0) {
 
 /// Two balls with less than a voxel of wall between them, beside a thin fold.
 TriMesh closeWalls() {
-    return contoured({90, 60, 46}, 20.0, [](const glm::dvec3& p) {
-        const double left = 13.0 - glm::length(p + glm::dvec3(13.4, 0.0, 0.0));
-        const double right = 13.0 - glm::length(p - glm::dvec3(13.4, 0.0, 0.0));
-        const double fold = std::max(std::abs(p.x - 14.0) - 0.8, p.y);
+    return contoured({60, 36, 28}, 20.0, [](const glm::dvec3& p) {
+        const double left = 8.0 - glm::length(p + glm::dvec3(8.4, 0.0, 0.0));
+        const double right = 8.0 - glm::length(p - glm::dvec3(8.4, 0.0, 0.0));
+        const double fold = std::max(std::abs(p.x - 9.0) - 0.8, p.y);
         return std::min(std::max(left, right), fold);
     });
 }
@@ -130,7 +137,8 @@ TEST(SimplificationLaw, SharpCornersBecomeFewer) {
 }
 
 TEST(SimplificationLaw, TheThreadsDoNotShow) {
-    const TriMesh mesh = torus(30.0);
+    const TriMesh mesh = largeTorus(30.0);
+    ASSERT_GT(mesh.vertices.size(), 10000u);
     const auto one = simplify(mesh, {.errorMm = 0.1, .threads = 1});
     const auto four = simplify(mesh, {.errorMm = 0.1, .threads = 4});
     ASSERT_TRUE(one && four);
