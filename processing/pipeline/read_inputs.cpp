@@ -2,9 +2,11 @@
 
 #include "dicom/import_series.h"
 #include "nifti/nifti_file.h"
+#include "pipeline/axial_order.h"
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <system_error>
 
 namespace haustra::pipeline {
@@ -14,10 +16,19 @@ std::string describeSize(glm::ivec3 size) {
     return std::to_string(size.x) + "×" + std::to_string(size.y) + "×" + std::to_string(size.z);
 }
 
+// Which axis of the patient each stored axis is nearest to.
+std::string describeOrder(const AxisOrder& order) {
+    std::string text(3, ' ');
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        text[std::size_t(order[axis])] = "xyz"[axis];
+    return text;
+}
+
 // Masks that other programs write carry a rounded copy of the scan's affine.
 bool almostSameGrid(const Grid& a, const Grid& b) {
     const glm::dvec3 spacing = b.spacingMm();
     const double toleranceMm = 0.05 * std::min({spacing.x, spacing.y, spacing.z});
+    if (a.size != b.size) return false;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 v =
             glm::dvec3(a.size - 1) * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2);
@@ -26,6 +37,24 @@ bool almostSameGrid(const Grid& a, const Grid& b) {
         if (!(apartMm <= toleranceMm)) return false;
     }
     return true;
+}
+
+// Programs that reorder a scan's axes write its masks in either order.
+std::optional<AxisOrder> orderOnGrid(const Grid& grid, const Grid& wanted) {
+    AxisOrder order = sameOrder;
+    do {
+        if (almostSameGrid(reordered(grid, order), wanted)) return order;
+    } while (std::next_permutation(order.begin(), order.end()));
+    return std::nullopt;
+}
+
+ScanInput inAxialOrder(ScanInput input, int threads) {
+    const AxisOrder order = axialOrder(input.scan.hu.grid());
+    if (order == sameOrder) return input;
+    input.scan.hu = reordered(std::move(input.scan.hu), order, threads);
+    input.notes.push_back("the voxels' axes were put in axial order; they were stored as " +
+                          describeOrder(order));
+    return input;
 }
 
 }  // namespace
@@ -47,8 +76,9 @@ Result<ScanInput> readScan(const std::filesystem::path& series, const std::strin
     if (!isNiftiName(series) || std::filesystem::is_directory(series, ignored)) {
         auto imported = dicom::importSeries(series, {seriesUid, threads, progress});
         if (!imported) return tl::make_unexpected(imported.error());
-        return ScanInput{std::move(imported->scan), imported->summary.images,
-                         std::move(imported->notes)};
+        return inAxialOrder(
+            {std::move(imported->scan), imported->summary.images, std::move(imported->notes)},
+            threads);
     }
     if (!seriesUid.empty()) {
         return fail(ErrorKind::badInput, "a NIfTI file has no series to choose from",
@@ -56,23 +86,25 @@ Result<ScanInput> readScan(const std::filesystem::path& series, const std::strin
     }
     auto volume = nifti::readNifti<std::int16_t>(series);
     if (!volume) return tl::make_unexpected(volume.error());
-    return ScanInput{{std::move(*volume), PatientPosition::unknown}, 1, {}};
+    return inAxialOrder({{std::move(*volume), PatientPosition::unknown}, 1, {}}, threads);
 }
 
-Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid) {
+Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid,
+                                int threads) {
     auto read = nifti::readNifti<std::uint8_t>(file);
     if (!read) return tl::make_unexpected(read.error());
-    if (scanGrid && read->grid().size != scanGrid->size) {
+    const AxisOrder axial = axialOrder(read->grid());
+    const auto order = scanGrid ? orderOnGrid(read->grid(), *scanGrid) : axial;
+    if (!order) {
+        const glm::ivec3 size = reordered(read->grid(), axial).size;
         return fail(ErrorKind::badInput,
-                    "the mask has " + describeSize(read->grid().size) + " voxels, the scan " +
-                        describeSize(scanGrid->size),
+                    size == scanGrid->size
+                        ? "the mask's voxels lie at other places in the patient than the scan's"
+                        : "the mask has " + describeSize(size) + " voxels, the scan " +
+                              describeSize(scanGrid->size),
                     file.string());
     }
-    if (scanGrid && !almostSameGrid(read->grid(), *scanGrid)) {
-        return fail(ErrorKind::badInput,
-                    "the mask's voxels lie at other places in the patient than the scan's",
-                    file.string());
-    }
+    *read = reordered(std::move(*read), *order, threads);
     MaskInput mask{Volume<std::uint8_t>(scanGrid ? *scanGrid : read->grid()), {}};
     const auto labels = mask.labels.writable();
     std::size_t inside = 0, others = 0;

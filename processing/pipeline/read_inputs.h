@@ -21,7 +21,8 @@ struct ScanInput {
     std::vector<std::string> notes;
 };
 
-/// A DICOM series (dicom/import_series.h), or a NIfTI file of unknown patient position.
+/// A DICOM series (dicom/import_series.h), or a NIfTI file of unknown patient position; coronal,
+/// sagittal and other images come in axial order (pipeline/axial_order.h), with a note.
 Result<ScanInput> readScan(const std::filesystem::path& series, const std::string& seriesUid,
                            int threads, const Progress& progress);
 
@@ -31,7 +32,9 @@ struct MaskInput {
 };
 
 /// A segmentation of the lumen in NIfTI: 0 outside, 2 tagged, anything else air. `scanGrid`, where
-/// given, is the scan's grid; the mask must be on it to within a twentieth of a voxel, and gets it.
-Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid);
+/// given, is the scan's grid; the mask must be on it to within a twentieth of a voxel, with its
+/// axes in any order, and gets it. Otherwise the mask comes in axial order.
+Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid,
+                                int threads = 0);
 
 }  // namespace haustra::pipeline

@@ -146,7 +146,7 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
             scan = std::move(*read);
         }
         const Grid grid = scan.hu.grid();
-        const auto input = readLumenMask(options.lumenMask, ct ? &grid : nullptr);
+        const auto input = readLumenMask(options.lumenMask, ct ? &grid : nullptr, options.threads);
         if (!input) return tl::make_unexpected(input.error());
         Attributes attributes{{"source", "mask"}};
         if (fitted) {

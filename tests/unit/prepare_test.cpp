@@ -5,6 +5,7 @@
 #include "cleansing/tissue_mixture.h"
 #include "core/tri_mesh.h"
 #include "nifti/nifti_file.h"
+#include "pipeline/axial_order.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/source_key.h"
 #include "pipeline/stage_meter.h"
@@ -272,6 +273,38 @@ TEST_F(Prepare, AMaskOnAnotherGridIsRefused) {
     EXPECT_FALSE(prepare(store(), "tube", options()));
     ASSERT_TRUE(nifti::writeNifti(maskFile(), Volume<std::uint8_t>(grid, 0)));
     EXPECT_FALSE(prepare(store(), "tube", options()));
+}
+
+TEST_F(Prepare, ACoronalScanIsPreparedAsTheAxialOne) {
+    EXPECT_EQ(reused(options()), all(false));
+    const AxisOrder coronal{0, 2, 1};
+    auto ct = nifti::readNifti<std::int16_t>(ctFile()).value();
+    ASSERT_TRUE(
+        nifti::writeNifti(folder_ / "coronal.nii.gz", reordered(std::move(ct), coronal, 1)));
+    ASSERT_TRUE(
+        nifti::writeNifti(folder_ / "coronal-mask.nii.gz", reordered(tubeMask(6.0), coronal, 1)));
+    PrepareOptions turned = options();
+    turned.series = folder_ / "coronal.nii.gz";
+    for (const fs::path& mask : {maskFile(), folder_ / "coronal-mask.nii.gz"}) {
+        turned.lumenMask = mask;
+        const std::string name = mask.stem().stem().string();
+        const auto report = prepare(store(), name, turned);
+        ASSERT_TRUE(report) << describe(report.error());
+        EXPECT_EQ(std::ranges::count(report->notes,
+                                     "import: the voxels' axes were put in axial order; they were "
+                                     "stored as xzy"),
+                  1);
+        for (const char* product : {"ct", "cleansed"}) {
+            const auto axial = store().openCase("tube")->readVolume<std::int16_t>(product).value();
+            const auto other = store().openCase(name)->readVolume<std::int16_t>(product).value();
+            EXPECT_TRUE(sameGrid(other.grid(), axial.grid()));
+            EXPECT_TRUE(std::ranges::equal(other.voxels(), axial.voxels())) << product;
+        }
+    }
+    // The mask alone.
+    turned.series.clear();
+    ASSERT_TRUE(prepare(store(), "alone", turned));
+    EXPECT_EQ(store().openCase("alone")->readVolume<std::uint8_t>("lumen")->grid().size, tubeSize);
 }
 
 TEST_F(Prepare, MaskValuesFarFromZeroAreLumen) {
