@@ -8,6 +8,7 @@
 #include "surface/loop_search.h"
 #include "surface/self_intersection.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace haustra::surface {
@@ -43,30 +44,68 @@ Result<std::vector<int>> coarsePlaces(const TriMesh& mesh) {
     return places;
 }
 
-/// How many pairs of triangles cut through each other where a cut has been filled.
-std::size_t crossingsAt(const LoopCut& cut) {
-    const auto cornersOf = [&](std::size_t t, auto&& use) {
-        for (int corner = 0; corner < 3; ++corner)
-            use(cut.mesh.vertices[std::size_t(cut.mesh.triangles[t][corner])]);
-    };
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-    for (std::size_t t = cut.firstFilled; t < cut.mesh.triangles.size(); ++t)
-        cornersOf(t,
-                  [&](const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); });
-    TriMesh near{cut.mesh.vertices, {}};
-    for (std::size_t t = 0; t < cut.mesh.triangles.size(); ++t) {
-        glm::dvec3 lower(std::numeric_limits<double>::infinity()), upper = -lower;
-        cornersOf(t, [&](const glm::dvec3& p) {
-            lower = glm::min(lower, p), upper = glm::max(upper, p);
-        });
-        if (glm::all(glm::lessThanEqual(lower, high)) && glm::all(glm::lessThanEqual(low, upper)))
-            near.triangles.push_back(cut.mesh.triangles[t]);
+struct Bounds {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high = -low;
+
+    void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
+    bool meets(const Bounds& other) const {
+        return glm::all(glm::lessThanEqual(low, other.high)) &&
+               glm::all(glm::lessThanEqual(other.low, high));
     }
-    return selfIntersections(near).size();
+};
+
+Bounds boundsOf(const TriMesh& mesh, const glm::ivec3& t) {
+    Bounds bounds;
+    for (int corner = 0; corner < 3; ++corner)
+        bounds.add(mesh.vertices[std::size_t(t[corner])]);
+    return bounds;
 }
 
-/// One handle less; `mesh` must have one.
-Result<RemovedHandle> removeShortest(TriMesh& mesh, int threads) {
+/// How many pairs of triangles cut through each other where `before` has been cut: one that is
+/// filled in or has moved, and another of its own or of the `others`.
+std::size_t crossingsAt(const LoopCut& cut, const TriMesh& before, const TriMesh& others) {
+    const auto moved = [&](int v) {
+        return std::size_t(v) >= before.vertices.size() ||
+               cut.mesh.vertices[std::size_t(v)] != before.vertices[std::size_t(v)];
+    };
+    TriMesh near{cut.mesh.vertices, {}};  // what has changed comes first
+    std::vector<glm::ivec3> rest;
+    Bounds bounds;
+    for (std::size_t t = 0; t < cut.mesh.triangles.size(); ++t) {
+        const glm::ivec3& corners = cut.mesh.triangles[t];
+        if (t < cut.firstFilled && !moved(corners.x) && !moved(corners.y) && !moved(corners.z)) {
+            rest.push_back(corners);
+            continue;
+        }
+        near.triangles.push_back(corners);
+        for (int corner = 0; corner < 3; ++corner)
+            bounds.add(cut.mesh.vertices[std::size_t(corners[corner])]);
+    }
+    const int changed = int(near.triangles.size()), own = int(near.vertices.size());
+    for (const glm::ivec3& t : rest)
+        if (bounds.meets(boundsOf(cut.mesh, t))) near.triangles.push_back(t);
+    near.vertices.insert(near.vertices.end(), others.vertices.begin(), others.vertices.end());
+    for (const glm::ivec3& t : others.triangles)
+        if (bounds.meets(boundsOf(others, t))) near.triangles.push_back(t + own);
+    const auto pairs = selfIntersections(near);
+    return std::size_t(std::count_if(pairs.begin(), pairs.end(), [&](const auto& pair) {
+        return pair.first < changed && pair.first != pair.second;
+    }));
+}
+
+/// The mesh without one of its pieces.
+TriMesh othersThan(const Piece& piece, const TriMesh& whole) {
+    TriMesh others{whole.vertices, {}};
+    std::vector<char> own(whole.triangles.size(), 0);
+    for (const std::size_t t : piece.triangles)
+        own[t] = 1;
+    for (std::size_t t = 0; t < whole.triangles.size(); ++t)
+        if (!own[t]) others.triangles.push_back(whole.triangles[t]);
+    return others;
+}
+
+/// One handle less; `mesh` must have one. `others` are what its fillings should not cut through.
+Result<RemovedHandle> removeShortest(TriMesh& mesh, const TriMesh& others, int threads) {
     const auto halves = LoopMesh::of(mesh);
     if (!halves) return tl::make_unexpected(halves.error());
     const auto places = coarsePlaces(mesh);
@@ -76,12 +115,12 @@ Result<RemovedHandle> removeShortest(TriMesh& mesh, int threads) {
     search.threads = threads;
     Loop best;
     LoopCut bestCut;
-    for (std::size_t crossings = std::numeric_limits<std::size_t>::max(), tries = 0;
-         crossings > 0 && tries < mostClasses; ++tries) {
+    std::size_t crossings = std::numeric_limits<std::size_t>::max();
+    for (std::size_t tries = 0; crossings > 0 && tries < mostClasses; ++tries) {
         const Loop loop = shortestLoop(*halves, marks, *places, search);
         if (loop.halfedges.empty()) break;
         LoopCut cut = cutAlong(mesh, *halves, loop);
-        if (const std::size_t found = crossingsAt(cut); found < crossings) {
+        if (const std::size_t found = crossingsAt(cut, mesh, others); found < crossings) {
             crossings = found;
             best = loop;
             bestCut = std::move(cut);
@@ -93,7 +132,7 @@ Result<RemovedHandle> removeShortest(TriMesh& mesh, int threads) {
     }
     if (best.halfedges.empty())
         return fail(ErrorKind::noResult, "a handle has no loop along the mesh's edges");
-    RemovedHandle handle{{}, best.lengthMm, bestCut.filledAreaMm2};
+    RemovedHandle handle{{}, best.lengthMm, bestCut.filledAreaMm2, crossings};
     for (const int h : best.halfedges)
         handle.loopMm.push_back(mesh.vertices[std::size_t(halves->origin(h))]);
     mesh = std::move(bestCut.mesh);
@@ -114,9 +153,10 @@ Result<HandleRemoval> removeHandles(const TriMesh& mesh, const HandleRemovalOpti
     HandleRemoval removal{mesh, {}, 0.0};
     for (Piece& piece : piecesOf(*halves, mesh)) {
         const long genus = meshTopology(piece.mesh).genus();
+        const TriMesh others = genus > 0 ? othersThan(piece, removal.mesh) : TriMesh{};
         for (long removed = 0; removed < genus; ++removed) {
             report(removal.handles.size());
-            auto handle = removeShortest(piece.mesh, options.threads);
+            auto handle = removeShortest(piece.mesh, others, options.threads);
             if (!handle) return tl::make_unexpected(handle.error());
             removal.handles.push_back(std::move(*handle));
         }

@@ -171,6 +171,81 @@ TEST(HandleRemoval, PassesOverATunnelThatSomethingGoesThrough) {
     EXPECT_TRUE(selfIntersections(removal->mesh).empty());
 }
 
+/// The big torus lies round z; the thread is linked with it, the core runs inside its tube.
+TriMesh bigTorus() {
+    return tests::torusMesh(20.0, 14.0, 60, 44);
+}
+
+TriMesh thread() {
+    TriMesh ring = tests::torusMesh(20.0, 3.0, 60, 12);
+    for (glm::dvec3& p : ring.vertices)
+        p = {p.x + 20.0, -p.z, p.y};
+    return ring;
+}
+
+TriMesh core() {
+    return tests::torusMesh(20.0, 2.0, 60, 12);
+}
+
+TriMesh together(const std::vector<TriMesh>& pieces) {
+    TriMesh mesh;
+    for (const TriMesh& piece : pieces) {
+        const int first = int(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+        for (const glm::ivec3& t : piece.triangles)
+            mesh.triangles.push_back(t + first);
+    }
+    return mesh;
+}
+
+TEST(HandleRemoval, PassesOverATunnelThatAnotherPieceGoesThrough) {
+    const double tubeMm = 2.0 * 44 * 14.0 * std::sin(std::numbers::pi / 44),
+                 threadMm = 2.0 * 12 * 3.0 * std::sin(std::numbers::pi / 12);
+    for (const bool threadFirst : {false, true}) {
+        const TriMesh mesh =
+            threadFirst ? together({thread(), bigTorus()}) : together({bigTorus(), thread()});
+        ASSERT_TRUE(selfIntersections(mesh).empty());
+        const auto removal = removeHandles(mesh);
+        ASSERT_TRUE(removal) << describe(removal.error());
+        ASSERT_EQ(removal->handles.size(), 2u);
+        EXPECT_NEAR(removal->handles[threadFirst ? 1 : 0].lengthMm, tubeMm, 1e-9 * tubeMm);
+        EXPECT_NEAR(removal->handles[threadFirst ? 0 : 1].lengthMm, threadMm, 1e-9 * threadMm);
+        for (const RemovedHandle& handle : removal->handles)
+            EXPECT_EQ(handle.crossings, 0u);
+        EXPECT_EQ(meshTopology(removal->mesh).genus(), 0);
+        EXPECT_EQ(meshTopology(removal->mesh).components, 2);
+        EXPECT_TRUE(selfIntersections(removal->mesh).empty());
+    }
+}
+
+TEST(HandleRemoval, PlugsATubeThatAnotherPieceRunsInside) {
+    const TriMesh outer = tests::torusMesh(20.0, 6.0, 60, 24);
+    const auto removal = removeHandles(together({outer, core()}));
+    ASSERT_TRUE(removal) << describe(removal.error());
+    ASSERT_EQ(removal->handles.size(), 2u);
+    const double holeMm = 2.0 * 60 * 14.0 * std::sin(std::numbers::pi / 60);
+    EXPECT_NEAR(removal->handles[0].lengthMm, holeMm, 1e-9 * holeMm);
+    EXPECT_EQ(removal->handles[0].crossings + removal->handles[1].crossings, 0u);
+    EXPECT_EQ(meshTopology(removal->mesh).genus(), 0);
+    EXPECT_TRUE(selfIntersections(removal->mesh).empty());
+}
+
+TEST(HandleRemoval, TellsOfTheCrossingsWhereNoCutIsClean) {
+    const TriMesh mesh = together({bigTorus(), thread(), core()});
+    ASSERT_TRUE(selfIntersections(mesh).empty());
+    const auto removal = removeHandles(mesh);
+    ASSERT_TRUE(removal) << describe(removal.error());
+    ASSERT_EQ(removal->handles.size(), 3u);
+    EXPECT_GT(removal->handles[0].crossings, 0u);
+    std::size_t told = 0;
+    for (const RemovedHandle& handle : removal->handles)
+        told += handle.crossings;
+    const std::size_t found = selfIntersections(removal->mesh).size();
+    EXPECT_GT(found, 0u);
+    EXPECT_LE(found, told);
+    EXPECT_EQ(meshTopology(removal->mesh).genus(), 0);
+}
+
 TEST(HandleRemoval, GivesTheSameBytesForAnyNumberOfThreads) {
     tests::HandledSphere sphere(50.0, 48);
     sphere.addTube(0, 10, 14, 14, 4, 2.0, true);
