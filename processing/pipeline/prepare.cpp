@@ -24,6 +24,13 @@ Result<void> checkOptions(const PrepareOptions& options) {
     if (options.series.empty() && options.lumenMask.empty()) {
         return fail(ErrorKind::badInput, "there is neither a series nor a mask to prepare");
     }
+    if (options.series.empty() && options.until == "import") {
+        return fail(ErrorKind::badInput, "a mask has no import: there is nothing to make");
+    }
+    if (!options.lumenMask.empty() && !(options.seedsMm.empty() && options.excludesMm.empty())) {
+        return fail(ErrorKind::badInput,
+                    "points to seed or to exclude are of no use where a mask is the lumen");
+    }
     if (!(options.surfaceErrorMm >= leastSurfaceErrorMm &&
           options.surfaceErrorMm <= greatestSurfaceErrorMm)) {
         return fail(ErrorKind::badInput, "the surface's error must be 0.001 to 10 mm");
@@ -33,6 +40,10 @@ Result<void> checkOptions(const PrepareOptions& options) {
         if (!source.empty() && !std::filesystem::exists(source, ignored)) {
             return fail(ErrorKind::notFound, "there is no such file or folder", source.string());
         }
+    }
+    if (std::error_code ignored; std::filesystem::is_directory(options.lumenMask, ignored)) {
+        return fail(ErrorKind::badInput, "this is a folder, not a mask's NIfTI file",
+                    options.lumenMask.string());
     }
     return {};
 }

@@ -21,10 +21,13 @@ struct PrepareOptions {
     std::filesystem::path
         lumenMask;  ///< NIfTI; replaces the segmentation stage; not 0 is lumen, 2 is tagged
     std::string organ = "colon";  ///< a built-in profile or a profile's file (organs/README.md)
-    std::string until;            ///< last stage to run; empty: all
-    std::vector<glm::dvec3> seedsMm, excludesMm;  ///< overrule the segmentation (patient, LPS)
-    double surfaceErrorMm = 0.1;  ///< how far the surface may be from the contoured one
-    int threads = 0;              ///< ≤ 0: all cores
+    std::string until;            ///< last stage to run; empty: all. Not import without a series
+    /// Overrule the segmentation (patient, LPS); not with `lumenMask`.
+    std::vector<glm::dvec3> seedsMm, excludesMm;
+    /// How far the surface may be from the contoured one, at the samples that
+    /// surface/simplification.h names; between them it is not bounded. 0.001 to 10.
+    double surfaceErrorMm = 0.1;
+    int threads = 0;  ///< ≤ 0: all cores
     /// How far a stage is, 0…1. Called from the thread that called prepare.
     std::function<void(const std::string& stage, double fraction)> progress;
     /// One line for the log; nothing of the patient.

@@ -129,19 +129,24 @@ Result<std::vector<char>> chooseBodies(const RunComponents& components, const Gr
                                        const HuRangeOptions& options) {
     const auto& bodies = components.components();
     std::vector<char> chosen(bodies.size(), 0), excluded(bodies.size(), 0);
-    for (const glm::dvec3& point : options.excludesMm) {
-        const int at = sane(point) ? componentNear(components, grid, point) : -1;
-        if (at >= 0) excluded[std::size_t(at)] = 1;
-    }
-    for (const glm::dvec3& point : options.seedsMm) {
-        const int at = sane(point) ? componentNear(components, grid, point) : -1;
-        if (at < 0) {
-            return refused(ErrorKind::badInput, "there is no content of the organ's HU within " +
-                                                    std::to_string(int(seedReachMm)) +
-                                                    " mm of the seed " + pointText(point));
+    const auto lookUp = [&](const std::vector<glm::dvec3>& points,
+                            std::vector<char>& found) -> Result<void> {
+        for (const glm::dvec3& point : points) {
+            const int at = sane(point) ? componentNear(components, grid, point) : -1;
+            if (at < 0) {
+                return refused(ErrorKind::badInput,
+                               "there is no content of the organ's HU within " +
+                                   std::to_string(int(seedReachMm)) + " mm of the point " +
+                                   pointText(point));
+            }
+            found[std::size_t(at)] = 1;
         }
-        chosen[std::size_t(at)] = 1;
-    }
+        return {};
+    };
+    if (auto found = lookUp(options.excludesMm, excluded); !found)
+        return tl::make_unexpected(found.error());
+    if (auto found = lookUp(options.seedsMm, chosen); !found)
+        return tl::make_unexpected(found.error());
     for (std::size_t n = 0; n < bodies.size(); ++n)
         chosen[n] = chosen[n] && !excluded[n];
     if (options.seedsMm.empty()) {

@@ -30,7 +30,7 @@ struct HuRangeLumen {
 /// enclose (stones, noise) belongs to them. Morphological opening, where asked for, comes
 /// before connection, so that a thin bridge to other content of the same HU is cut.
 ///
-/// Fails where nothing has such HU (noResult), a seed is off the scan or more than 5 mm from any
+/// Fails where nothing has such HU (noResult), a point is off the scan or more than 5 mm from any
 /// such voxel, or the voxel axes are not at right angles and there is an opening (badInput). Linear
 /// in the voxels; takes 2 bytes a voxel beside the result, 4 more with an opening. The same bytes
 /// for any number of threads.

@@ -37,6 +37,14 @@ std::string defaultCaseName(const fs::path& source) {
     return name.empty() ? "case" : name;
 }
 
+// CLI::Range lets NaN through.
+std::string checkSurfaceError(const std::string& text) {
+    const auto number = parseNumbers(text, ',', 1);
+    return number && (*number)[0] >= 0.001 && (*number)[0] <= 10.0
+               ? std::string()
+               : "\"" + text + "\" is not 0.001 to 10 mm";
+}
+
 std::string reportJson(const std::string& caseName, const pipeline::PrepareReport& report) {
     auto stages = nlohmann::ordered_json::array();
     double wallSeconds = 0.0, peakMemoryMib = 0.0;
@@ -120,25 +128,32 @@ Command addPrepare(CLI::App& program) {
     command->add_option("--until", options.until, "The last stage to run")
         ->type_name("STAGE")
         ->check(CLI::IsMember(pipeline::stageNames()));
-    command
-        ->add_option(
-            "--lumen", options.lumenMask,
-            "A segmentation of the lumen made elsewhere, on the series' grid: 0 outside, 2 "
-            "tagged, else air; it takes the place of the segmentation stage. Without SERIES it is "
-            "the case's own scan's, or stands alone: then nothing is cleansed, and the surface is "
-            "the mask's")
-        ->type_name("MASK.nii.gz");
+    CLI::Option* lumen =
+        command
+            ->add_option(
+                "--lumen", options.lumenMask,
+                "A segmentation of the lumen made elsewhere, on the series' grid: 0 outside, 2 "
+                "tagged, else air; it takes the place of the segmentation stage. Without SERIES it "
+                "is "
+                "the case's own scan's, or stands alone: then nothing is cleansed, and the surface "
+                "is "
+                "the mask's")
+            ->type_name("MASK.nii.gz");
     command->add_option("--series", options.seriesUid, "Which series of the folder, by its UID")
         ->type_name("UID");
     addPointsOption(*command, "--seed", options.seedsMm,
-                    "The air or fluid at this point (LPS, mm) is the organ; may be repeated");
+                    "The air or fluid at this point (LPS, mm) is the organ; may be repeated")
+        ->excludes(lumen);
     addPointsOption(*command, "--exclude", options.excludesMm,
-                    "The air or fluid at this point (LPS, mm) is not the organ; may be repeated");
+                    "The air or fluid at this point (LPS, mm) is not the organ; may be repeated")
+        ->excludes(lumen);
     command
         ->add_option("--surface-error-mm", options.surfaceErrorMm,
-                     "How far the simplified surface may be from the finest one, mm")
+                     "How far the simplified surface may be from the finest one, mm, at their "
+                     "vertices and at samples of their edges and triangles; between these a "
+                     "point in a thousand may be up to twice as far")
         ->type_name("MM")
-        ->check(CLI::Range(0.001, 10.0))
+        ->check(checkSurfaceError, "FLOAT in [0.001 - 10]")
         ->capture_default_str();
     command
         ->add_option("--report", arguments->report,
@@ -149,6 +164,8 @@ Command addPrepare(CLI::App& program) {
         if (arguments->options.series.empty() && arguments->options.lumenMask.empty()) {
             throw CLI::RequiredError("SERIES or --lumen");
         }
+        if (arguments->options.series.empty() && arguments->options.until == "import")
+            throw CLI::ValidationError("--until import", "a mask has no import without SERIES");
     });
     return {command, [arguments] { return runPrepare(*arguments); }};
 }

@@ -42,6 +42,11 @@ TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
              {"prepare", "x", "--store", "s", "--seed", "1,2"},
              {"prepare", "x", "--store", "s", "--seed", "1,2,nan"},
              {"prepare", "x", "--store", "s", "--threads", "many"},
+             {"prepare", "x", "--store", "s", "--surface-error-mm", "nan"},
+             {"prepare", "x", "--store", "s", "--surface-error-mm", "0"},
+             {"prepare", "x", "--store", "s", "--lumen", "m.nii", "--seed", "1,2,3"},
+             {"prepare", "x", "--store", "s", "--lumen", "m.nii", "--exclude", "1,2,3"},
+             {"prepare", "--store", "s", "--lumen", "m.nii", "--until", "import"},
              {"export", "c", "ct", "file.csv", "--store", "s"},
              {"export", "c", "centerline", "file.nii.gz", "--store", "s"},
              {"export", "c", "lungs", "file.nii.gz", "--store", "s"},
@@ -80,7 +85,7 @@ TEST(CommandLine, FailuresEndWithOneAndOneLineThatNamesThePlace) {
     fs::create_directories(folder.path() / "empty");
     fs::create_directories(folder.path() / "store" / "cases");
     for (const Arguments& bad : std::vector<Arguments>{
-             {"prepare", nothing, "--store", store},
+             {"prepare", nothing, "--store", store, "--seed", "-10,20.5,-300"},
              {"prepare", "--lumen", nothing, "--store", store},
              {"prepare", folder.path() / "empty", "--store", store},
              {"list", "--store", nothing},
@@ -228,7 +233,7 @@ TEST_F(PreparedPhantom, TheExportedCenterlineHasALineForEachSample) {
 
 TEST_F(PreparedPhantom, TheReportHasTimeAndMemoryOfEachStage) {
     ASSERT_EQ(haustra({"prepare", series(), "--lumen", mask(), "--store", file("fresh"), "--case",
-                       "p", "--report", file("report.json"), "--seed", "-10,20.5,-300"})
+                       "p", "--report", file("report.json")})
                   .exitCode,
               0);
     const auto report = nlohmann::json::parse(tests::fileContent(file("report.json")));

@@ -180,13 +180,16 @@ TEST(HuRangeLumen, GrowthGoesThreeVoxelsAndNoFarther) {
     EXPECT_EQ(std::ranges::count(labels.voxels(), 1), 63);
 }
 
-TEST(HuRangeLumen, ASeedAwayFromAllContentIsRefused) {
+TEST(HuRangeLumen, APointAwayFromAllContentIsRefused) {
     const auto hu = scanOf(inLarge);
     for (const glm::dvec3 away :
          {patientMm(smallCentre), glm::dvec3(1e5), glm::dvec3(1e300), glm::dvec3(std::nan(""))}) {
         HuRangeOptions seeded = options();
         seeded.seedsMm = {away};
         EXPECT_EQ(findHuRangeLumen(hu, seeded).error().kind, ErrorKind::badInput);
+        HuRangeOptions excluding = options();
+        excluding.excludesMm = {away};
+        EXPECT_EQ(findHuRangeLumen(hu, excluding).error().kind, ErrorKind::badInput);
     }
 }
 

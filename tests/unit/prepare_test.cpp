@@ -381,6 +381,20 @@ TEST_F(Prepare, WrongOptionsAreToldAndLeaveNoCase) {
     wrong.surfaceErrorMm = 0.0;
     EXPECT_FALSE(prepare(store(), "tube", wrong));
     wrong = options();
+    wrong.surfaceErrorMm = std::nan("");
+    EXPECT_FALSE(prepare(store(), "tube", wrong));
+    wrong = options();
+    wrong.excludesMm = {{0.0, 0.0, 0.0}};
+    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::badInput);
+    wrong = options();
+    wrong.lumenMask = folder_;
+    EXPECT_NE(describe(prepare(store(), "tube", wrong).error()).find("a folder"),
+              std::string::npos);
+    wrong = options();
+    wrong.series.clear();
+    wrong.until = "import";
+    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::badInput);
+    wrong = options();
     wrong.organ = "spleen";
     EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::notFound);
     EXPECT_FALSE(prepare(store(), "../tube", options()));
