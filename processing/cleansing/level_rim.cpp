@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -10,7 +11,8 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr double windowMm = 5.0;  // in which the wall's direction is sought
-constexpr double steepest = 3.0;  // mm across per mm of height; a flatter wall gives no direction
+constexpr double mostBent = 0.1;  // share of the squared gradients along that direction
+constexpr double steepest = 2.5;  // mm across per mm of height; a flatter wall gives no direction
 
 class Rim {
 public:
@@ -102,6 +104,10 @@ private:
         const glm::dvec2 slope((-av * bb + bv * ab) / determinant,
                                (-bv * aa + av * ab) / determinant);
         if (glm::length(slope) > steepest) return std::nullopt;
+        // What the gradients still hold along that direction: a bent wall, or several.
+        const double along = aa * slope.x * slope.x + 2.0 * ab * slope.x * slope.y +
+                             bb * slope.y * slope.y + 2.0 * (av * slope.x + bv * slope.y) + vv;
+        if (along > mostBent * (1.0 + glm::dot(slope, slope)) * (aa + bb + vv)) return std::nullopt;
         return slope;
     }
 
@@ -114,11 +120,44 @@ private:
     glm::ivec2 across_{0, 2};
 };
 
+/// Whether the segmentation has both air and tagging within 2 voxels.
+bool betweenAirAndFluid(const Volume<std::uint8_t>& segmentation, glm::ivec3 v) {
+    const glm::ivec3 lo = glm::max(v - 2, glm::ivec3(0)),
+                     hi = glm::min(v + 2, segmentation.grid().size - 1);
+    bool air = false, tagged = false;
+    for (int k = lo.z; k <= hi.z; ++k) {
+        for (int j = lo.y; j <= hi.y; ++j) {
+            for (int i = lo.x; i <= hi.x; ++i) {
+                const LumenLabel label{segmentation.at(i, j, k)};
+                air |= label == LumenLabel::air, tagged |= label == LumenLabel::tagged;
+                if (air && tagged) return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// The third lowest HU of the face neighbours: a sheet one voxel thin has but two that are open, a
+/// ridge or speck has three and more.
+double thirdLowestAround(const Volume<std::int16_t>& hu, glm::ivec3 v) {
+    std::array<std::int16_t, 6> values;
+    std::size_t count = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int side = -1; side <= 1; side += 2) {
+            glm::ivec3 n = v;
+            n[axis] += side;
+            values[count++] = hu.at(glm::clamp(n, glm::ivec3(0), hu.grid().size - 1));
+        }
+    }
+    std::sort(values.begin(), values.end());
+    return values[2];
+}
+
 }  // namespace
 
-void settleRim(const CtScan& scan, const LocalMeans& means, const WaterLevel& level,
-               double halfHeightMm, const TaggedSurroundings& around,
-               Volume<TissueFractions>& mixture, int threads) {
+void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
+               const LocalMeans& means, const WaterLevel& level, double halfHeightMm,
+               const TaggedSurroundings& around, Volume<TissueFractions>& mixture, int threads) {
     if (level.down() == glm::ivec3(0)) return;
     const Grid& grid = scan.hu.grid();
     const auto airAt = [&](glm::ivec3 v) { return means.airHu.at(v.x, v.y, v.z); };
@@ -143,12 +182,20 @@ void settleRim(const CtScan& scan, const LocalMeans& means, const WaterLevel& le
                 const std::size_t n = shell[m];
                 const glm::ivec3 v = grid.voxelAt(n);
                 if (!level.near(v)) continue;
-                const auto hu = rim.huAt(v);
-                if (!hu) continue;
+                auto straight = rim.huAt(v);
+                if (!straight && betweenAirAndFluid(segmentation, v)) {
+                    const double open = thirdLowestAround(cleansed, v);
+                    if (cleansed[n] > open + 6.0 * means.noiseSd) straight = open;
+                }
+                if (!straight) continue;
                 const double air = airAt(v), soft = means.softHu.at(v.x, v.y, v.z);
-                const double tagged =
-                    std::clamp((scan.hu[n] - *hu) / (means.taggedHu.at(v) - air), 0.0, 1.0);
-                const double open = std::clamp((soft - *hu) / (soft - air), 0.0, 1.0);
+                const double taggedHu = std::max<double>(means.taggedHu.at(v), soft + 60.0);
+                // A voxel as dense as fluid has no room for wall.
+                const double room = (taggedHu - scan.hu[n]) / (taggedHu - soft);
+                const double hu = std::min(
+                    *straight, air + (soft - air) * std::max(0.0, room) + 2.0 * means.noiseSd);
+                const double tagged = std::clamp((scan.hu[n] - hu) / (taggedHu - air), 0.0, 1.0);
+                const double open = std::clamp((soft - hu) / (soft - air), 0.0, 1.0);
                 const int t = int(std::lround(255.0 * tagged));
                 out[n] = {std::uint8_t(std::clamp(int(std::lround(255.0 * open)) - t, 0, 255 - t)),
                           std::uint8_t(t)};

@@ -13,9 +13,11 @@ namespace haustra::cleansing {
 /// walls. One HU cannot tell the shares of three tissues, but the wall goes on straight past the
 /// level: above and below, beyond the reach of the level's blur, it is known. Along its direction
 /// (the one in which the cleansed scan changes least there) the cleansed HU is interpolated, and
-/// the residue is what explains the difference from the scan. The same for any number of threads.
-void settleRim(const CtScan& scan, const LocalMeans& means, const WaterLevel& level,
-               double halfHeightMm, const TaggedSurroundings& around,
-               Volume<TissueFractions>& mixture, int threads);
+/// the residue is what explains the difference from the scan. Where the wall bends too much for
+/// that, a voxel that juts out of it where air and tagging meet becomes as its neighbours.
+/// `segmentation` is LumenLabel. The same for any number of threads.
+void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
+               const LocalMeans& means, const WaterLevel& level, double halfHeightMm,
+               const TaggedSurroundings& around, Volume<TissueFractions>& mixture, int threads);
 
 }  // namespace haustra::cleansing

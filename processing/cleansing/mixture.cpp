@@ -245,7 +245,8 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
         });
     }
     progress(0.8);
-    settleRim(scan, means, level, 2.5 * interfaces.blurMm(), around, mixture, options.threads);
+    settleRim(scan, labels, means, level, 2.5 * interfaces.blurMm(), around, mixture,
+              options.threads);
     progress(1.0);
     return mixture;
 }

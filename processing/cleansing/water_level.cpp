@@ -62,8 +62,9 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
         for (std::uint32_t n : shell) {
             if (out[n] == 0) continue;
             const glm::ivec3 b = grid.voxelAt(n) / blockVoxels;
-            const glm::ivec3 lo = glm::max(b - 1, glm::ivec3(0)),
-                             hi = glm::min(b + 1, coarse.size - 1);
+            const glm::ivec3 reach = glm::ivec3(2) - glm::abs(down_);
+            const glm::ivec3 lo = glm::max(b - reach, glm::ivec3(0)),
+                             hi = glm::min(b + reach, coarse.size - 1);
             for (int k = lo.z; k <= hi.z; ++k) {
                 for (int j = lo.y; j <= hi.y; ++j) {
                     for (int i = lo.x; i <= hi.x; ++i)

@@ -41,8 +41,8 @@ private:
     double stepMm_ = 1.0;
     /// 0, or 1 + 254 f where the level crosses between this voxel and the one below, f of the way.
     Volume<std::uint8_t> crossing_;
-    static constexpr int blockVoxels = 8;
-    Volume<std::uint8_t> blocks_;  ///< 1 where a block or one beside it holds a crossing
+    static constexpr int blockVoxels = 4;
+    Volume<std::uint8_t> blocks_;  ///< 1 where a crossing is 1 block above or below, 2 across
 };
 
 }  // namespace haustra::cleansing

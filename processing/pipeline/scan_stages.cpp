@@ -20,8 +20,8 @@ using store::Attributes;
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 1;
 constexpr int maskVersion = 1;
-constexpr int mixtureVersion = 2;
-constexpr int cleansingVersion = 2;
+constexpr int mixtureVersion = 3;
+constexpr int cleansingVersion = 3;
 
 Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,
                                  const Volume<std::uint8_t>& labels, const Attributes& attributes) {
