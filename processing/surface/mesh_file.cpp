@@ -40,8 +40,8 @@ Result<std::string> readBytes(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (error || !stream) {
         const bool missing = !std::filesystem::exists(file, error);
-        return fail(missing ? ErrorKind::notFound : ErrorKind::io, "cannot read the mesh",
-                    file.string());
+        if (missing) return fail(ErrorKind::notFound, "there is no such file", file.string());
+        return fail(ErrorKind::io, "cannot read the mesh", file.string());
     }
     std::string bytes(size, '\0');
     if (!stream.read(bytes.data(), std::streamsize(size)))

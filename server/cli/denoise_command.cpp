@@ -30,6 +30,20 @@ glm::dvec3 middleOf(const std::vector<glm::dvec3>& loop) {
     return sum / double(loop.size());
 }
 
+std::size_t crossingsOf(const surface::HandleRemoval& removal) {
+    std::size_t crossings = 0;
+    for (const surface::RemovedHandle& handle : removal.handles)
+        crossings += handle.crossings;
+    return crossings;
+}
+
+/// What a line says of crossings: nothing where there are none.
+std::string tellCrossings(const char* before, std::size_t crossings) {
+    if (crossings == 0) return {};
+    return fmt::format("{}{} pair{} of triangles cross", before, crossings,
+                       crossings == 1 ? "" : "s");
+}
+
 nlohmann::ordered_json reportOf(const TriMesh& before, const surface::HandleRemoval& removal) {
     auto handles = nlohmann::ordered_json::array();
     for (const surface::RemovedHandle& handle : removal.handles) {
@@ -40,6 +54,7 @@ nlohmann::ordered_json reportOf(const TriMesh& before, const surface::HandleRemo
         handles.push_back({{"length_mm", handle.lengthMm},
                            {"position_mm", {at.x, at.y, at.z}},
                            {"filled_area_mm2", handle.filledAreaMm2},
+                           {"crossings", handle.crossings},
                            {"loop_mm", loop}});
     }
     const MeshTopology was = meshTopology(before), is = meshTopology(removal.mesh);
@@ -49,6 +64,7 @@ nlohmann::ordered_json reportOf(const TriMesh& before, const surface::HandleRemo
             {"triangles_before", before.triangles.size()},
             {"triangles_after", removal.mesh.triangles.size()},
             {"area_change_mm2", removal.areaChangeMm2},
+            {"crossings", crossingsOf(removal)},
             {"handles", handles}};
 }
 
@@ -76,12 +92,13 @@ Result<void> runDenoise(const Arguments& arguments) {
     for (std::size_t i = 0; i < removal->handles.size(); ++i) {
         const surface::RemovedHandle& handle = removal->handles[i];
         const glm::dvec3 at = middleOf(handle.loopMm);
-        fmt::print("handle {}: loop {:.2f} mm at {:.1f},{:.1f},{:.1f}, {:.2f} mm² filled\n", i + 1,
-                   handle.lengthMm, at.x, at.y, at.z, handle.filledAreaMm2);
+        fmt::print("handle {}: loop {:.2f} mm at {:.1f},{:.1f},{:.1f}, {:.2f} mm² filled{}\n",
+                   i + 1, handle.lengthMm, at.x, at.y, at.z, handle.filledAreaMm2,
+                   tellCrossings(", where ", handle.crossings));
     }
-    fmt::print("genus {} before, {} after; area changed by {:+.2f} mm²\n",
+    fmt::print("genus {} before, {} after; area changed by {:+.2f} mm²{}\n",
                report["genus_before"].get<long>(), report["genus_after"].get<long>(),
-               removal->areaChangeMm2);
+               removal->areaChangeMm2, tellCrossings("; in all ", crossingsOf(*removal)));
     if (arguments.report.empty()) return {};
     return writeTextFile(arguments.report, report.dump(2) + "\n");
 }
@@ -104,8 +121,11 @@ Command addDenoise(CLI::App& program) {
         "denoise",
         "Remove the handles of a closed manifold triangle mesh: each is cut along its shortest "
         "loop, and both holes are filled, until every piece of the mesh is a sphere. Thin handles "
-        "break and narrow tunnels are plugged; all vertices off the loops keep their places. "
-        "Prints each loop's length, middle and filled area, and the genus before and after.");
+        "break and narrow tunnels are plugged, but for those that a part of the mesh goes through: "
+        "there up to three other ways round are tried. All vertices off the loops keep their "
+        "places, exactly but in STL, whose coordinates are floats. Prints each loop's length, "
+        "middle and filled area, how many pairs of triangles cross there if no way was clear, and "
+        "the genus before and after.");
     command->add_option("MESH", arguments->mesh, "The mesh: .ply, .obj, .off or .stl, in mm")
         ->required();
     command

@@ -69,6 +69,8 @@ TEST(Denoise, ReadsAndWritesEveryFormatAndTellsWhatItCut) {
             EXPECT_GT(handle["filled_area_mm2"].get<double>(), 20.0);
         }
         EXPECT_EQ(told["triangles_after"], clean->triangles.size());
+        EXPECT_EQ(told["crossings"], 0);
+        EXPECT_EQ(outcome.out.find("cross"), std::string::npos) << outcome.out;
     }
 }
 
@@ -103,6 +105,38 @@ TEST(Denoise, TreatsEachPieceOfAMesh) {
     EXPECT_EQ(meshTopology(*clean).genus(), 0);
 }
 
+TEST(Denoise, TellsWhereNoCutIsClean) {
+    // A thread goes through the torus's hole, and a ring runs inside its tube.
+    const tests::TemporaryFolder folder;
+    const fs::path in = folder.path() / "in.off", out = folder.path() / "out.off",
+                   report = folder.path() / "report.json";
+    TriMesh mesh = tests::torusMesh(20.0, 14.0, 60, 44);
+    const TriMesh ring = tests::torusMesh(20.0, 2.0, 60, 12);
+    for (const bool isThread : {false, true}) {
+        const int first = int(mesh.vertices.size());
+        for (const glm::dvec3& p : ring.vertices)
+            mesh.vertices.push_back(isThread ? glm::dvec3(p.x + 20.0, -p.z, p.y) : p);
+        for (const glm::ivec3& t : ring.triangles)
+            mesh.triangles.push_back(t + first);
+    }
+    ASSERT_TRUE(surface::writeMesh(in, mesh));
+    const auto outcome = denoise({in, out, "--report", report});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(lineCount(outcome.out), 4u) << outcome.out;
+    const auto told = nlohmann::json::parse(tests::fileContent(report));
+    EXPECT_GT(told["handles"][0]["crossings"], 0);
+    long sum = 0;
+    for (const auto& handle : told["handles"])
+        sum += handle["crossings"].get<long>();
+    EXPECT_EQ(told["crossings"], sum);
+    const std::string first = outcome.out.substr(0, outcome.out.find('\n'));
+    EXPECT_NE(first.find("pairs of triangles cross"), std::string::npos) << outcome.out;
+    EXPECT_NE(
+        outcome.out.find("mm²; in all " + std::to_string(sum) + " pairs of triangles cross\n"),
+        std::string::npos)
+        << outcome.out;
+}
+
 TEST(Denoise, RefusesWhatHasNoInsideAndLeavesNothing) {
     const tests::TemporaryFolder folder;
     const fs::path out = folder.path() / "out.ply";
@@ -115,7 +149,9 @@ TEST(Denoise, RefusesWhatHasNoInsideAndLeavesNothing) {
     ASSERT_TRUE(surface::writeMesh(doubledFile, doubled));
     expectOneError(denoise({openFile, out}), openFile);
     expectOneError(denoise({doubledFile, out}), doubledFile);
-    expectOneError(denoise({folder.path() / "missing.ply", out}), "missing.ply");
+    const auto missing = denoise({folder.path() / "missing.ply", out});
+    expectOneError(missing, "missing.ply");
+    EXPECT_NE(missing.err.find("there is no such file"), std::string::npos) << missing.err;
     expectOneError(denoise({openFile, folder.path() / "no" / "out.ply"}), "out.ply");
     EXPECT_FALSE(fs::exists(out));
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
@@ -124,7 +160,8 @@ TEST(Denoise, RefusesWhatHasNoInsideAndLeavesNothing) {
 TEST(Denoise, ExplainsItselfAndRefusesWrongUsage) {
     const auto help = denoise({"--help"});
     EXPECT_EQ(help.exitCode, 0);
-    for (const char* word : {"Usage: haustra denoise", "MESH", "OUT", "--report", "--threads"})
+    for (const char* word :
+         {"Usage: haustra denoise", "MESH", "OUT", "--report", "--threads", "STL, whose"})
         EXPECT_NE(help.out.find(word), std::string::npos) << help.out;
     for (const Arguments& wrong : std::vector<Arguments>{{},
                                                          {"a.ply"},
