@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -167,6 +169,14 @@ Result<void> readLumen(const json& object, const std::string& place, OrganProfil
     return fields.finish();
 }
 
+// "parse error at line 3, column 7", without the library's numbers and the file's own words.
+std::string briefly(const json::exception& error) {
+    const std::string what = error.what();
+    const std::size_t bracket = what.find("] ");
+    const std::size_t begin = bracket == std::string::npos ? 0 : bracket + 2;
+    return what.substr(begin, what.find(':', begin) - begin);
+}
+
 // The shortest text that reads back as the same double.
 std::string exactText(double value) {
     char buffer[32];
@@ -184,7 +194,13 @@ const char* toString(EndPoints endPoints) {
 }
 
 Result<OrganProfile> parseProfile(std::string_view text, const std::string& place) {
-    const json root = json::parse(text, nullptr, false);
+    json root;
+    try {
+        root = json::parse(text);
+    } catch (const json::exception& error) {
+        return fail(ErrorKind::badInput, "the organ's profile is not JSON: " + briefly(error),
+                    place);
+    }
     if (!root.is_object())
         return fail(ErrorKind::badInput, "the organ's profile is not a JSON object", place);
     OrganProfile profile;
@@ -226,9 +242,13 @@ Result<OrganProfile> parseProfile(std::string_view text, const std::string& plac
 Result<OrganProfile> readProfile(const std::string& nameOrFile) {
     const auto builtIn = builtInProfiles().find(nameOrFile);
     if (builtIn != builtInProfiles().end()) return parseProfile(builtIn->second, builtIn->first);
+    std::error_code ignored;
+    if (std::filesystem::is_directory(nameOrFile, ignored))
+        return fail(ErrorKind::badInput, "this is a folder, not an organ's profile", nameOrFile);
     std::ifstream in(nameOrFile, std::ios::binary);
-    std::string text(mostBytes + 1, '\0');
-    if (!in || (in.read(text.data(), std::streamsize(text.size())), in.bad()) || in.gcount() == 0) {
+    if (!in) {
+        if (std::filesystem::exists(nameOrFile, ignored))
+            return fail(ErrorKind::io, "cannot open", nameOrFile);
         std::string names;
         for (const auto& [name, profile] : builtInProfiles())
             names += (names.empty() ? "" : ", ") + name;
@@ -236,6 +256,11 @@ Result<OrganProfile> readProfile(const std::string& nameOrFile) {
                     "there is no such organ's profile: neither a file nor one of " + names,
                     nameOrFile);
     }
+    std::string text(mostBytes + 1, '\0');
+    in.read(text.data(), std::streamsize(text.size()));
+    if (in.bad()) return fail(ErrorKind::io, "cannot read", nameOrFile);
+    if (in.gcount() == 0)
+        return fail(ErrorKind::badInput, "the organ's profile is an empty file", nameOrFile);
     text.resize(std::size_t(in.gcount()));
     if (text.size() > mostBytes)
         return fail(ErrorKind::badInput, "the file is too large for an organ's profile",

@@ -111,7 +111,11 @@ TEST(OrganProfile, WhatIsNoProfileAtAllIsRefused) {
         EXPECT_FALSE(parseProfile(text, "mine.json")) << text;
     EXPECT_EQ(readProfile("no-such-organ").error().kind, ErrorKind::notFound);
     EXPECT_NE(readProfile("no-such-organ").error().message.find("colon"), std::string::npos);
-    EXPECT_FALSE(readProfile(std::filesystem::temp_directory_path()));  // a folder
+    EXPECT_EQ(parseProfile("{\n\"organ\": colon}", "mine.json").error().message,
+              "the organ's profile is not JSON: parse error at line 2, column 10");
+    EXPECT_NE(readProfile(std::filesystem::temp_directory_path()).error().message.find("a folder"),
+              std::string::npos);
+    EXPECT_NE(readProfile("/dev/null").error().message.find("empty"), std::string::npos);
 }
 
 TEST(OrganProfile, AFileIsReadAsTheBuiltInTextIs) {
