@@ -41,7 +41,10 @@ Result<std::vector<ProductEntry>> readCaseIndex(const std::filesystem::path& cas
     const std::string content{std::istreambuf_iterator<char>(in), {}};
     const json index = json::parse(content, nullptr, false);
     const auto damaged = [&](const std::string& what) {
-        return fail(ErrorKind::badInput, "the case's index is damaged: " + what, file.string());
+        return fail(ErrorKind::badInput,
+                    "the case's index is damaged: " + what +
+                        "; remove this file and prepare the case again from its series",
+                    file.string());
     };
     if (!index.is_object()) return damaged("it is not a JSON object");
     const auto format = index.find("format");
