@@ -70,6 +70,7 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
         if (topology == ExpectedTopology::any) {
             const auto kept = topology::digitalTopology(*labels, threads);
             attributes["handles-kept"] = std::to_string(kept.handles());
+            setNotes(attributes, {attributes["handles-kept"] + " handles kept"});
             return target.publishVolume(product::lumen, key, *labels, attributes, outdated);
         }
         topology::HandleCuttingOptions cutting;
@@ -81,7 +82,12 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
         attributes["cavities-filled"] = std::to_string(cut->cavitiesFilled);
         attributes["voxels-removed"] = std::to_string(cut->voxelsRemoved);
         attributes["voxels-added"] = std::to_string(cut->voxelsAdded);
-        setNotes(attributes, cut->notes);
+        std::vector<std::string> notes{attributes["handles-cut"] + " handles cut, " +
+                                       attributes["cavities-filled"] + " cavities filled, " +
+                                       attributes["voxels-removed"] + " voxels removed, " +
+                                       attributes["voxels-added"] + " added"};
+        notes.insert(notes.end(), cut->notes.begin(), cut->notes.end());
+        setNotes(attributes, notes);
         return target.publishVolume(product::lumen, key, cut->labels, attributes, outdated);
     };
     return preparation.run({"denoising", key, {product::lumen}}, meter, make).map([&] {

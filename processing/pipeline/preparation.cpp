@@ -61,7 +61,9 @@ Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
     if (!reused) {
         progress(0.0);
         if (Result<void> made = make(progress); !made) {
-            if (made.error().place.empty()) made.error().place = stage.name;
+            std::string& place = made.error().place;
+            if (place.find('/') == std::string::npos)
+                place = "case " + target_.name() + ", " + (place.empty() ? stage.name : place);
             return made;
         }
     }

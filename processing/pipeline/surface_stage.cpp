@@ -110,6 +110,9 @@ Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& sourc
         attributes["triangles"] = std::to_string(simple->triangles.size());
         attributes["contoured-triangles"] = std::to_string(fine.triangles.size());
         attributes["error-mm"] = exactText(options.surfaceErrorMm);
+        setNotes(attributes,
+                 {attributes["triangles"] + " triangles of " + attributes["contoured-triangles"] +
+                  " contoured, Euler characteristic " + attributes["euler-characteristic"]});
         return target.publishMesh(product::surface, key, *simple, attributes,
                                   madeFrom(product::surface));
     };

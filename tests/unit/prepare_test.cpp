@@ -335,9 +335,9 @@ TEST_F(Prepare, DamagedProductsAreMadeAgainByteForByte) {
             overwrite(file, bad);
             const auto report = prepare(store(), "tube", options());
             ASSERT_TRUE(report) << describe(report.error());
-            ASSERT_FALSE(report->notes.empty());
-            EXPECT_NE(report->notes.front().find(entry.file), std::string::npos)
-                << report->notes.front();
+            EXPECT_TRUE(std::ranges::any_of(report->notes, [&](const std::string& note) {
+                return note.find(entry.file) != std::string::npos;
+            })) << entry.file;
             for (const StageReport& stage : report->stages) {
                 EXPECT_EQ(stage.reused, stage.stage != stageOf(entry.product));
             }
@@ -347,6 +347,48 @@ TEST_F(Prepare, DamagedProductsAreMadeAgainByteForByte) {
         ASSERT_TRUE(prepare(store(), "tube", options()));
         EXPECT_EQ(bytesOf(tube), sound);
     }
+}
+
+TEST_F(Prepare, WithItsDamagedIndexRemovedACaseIsMadeAgain) {
+    reused(options());
+    const auto tube = store().openCase("tube").value();
+    const auto sound = bytesOf(tube);
+    overwrite(tube.folder() / "case.json", "{");
+    const auto report = prepare(store(), "tube", options());
+    ASSERT_FALSE(report);
+    const std::string said = describe(report.error());
+    EXPECT_NE(said.find("case.json"), std::string::npos) << said;
+    EXPECT_NE(said.find("remove this file"), std::string::npos) << said;
+    fs::remove(tube.folder() / "case.json");
+    EXPECT_EQ(reused(options()), all(false));
+    EXPECT_EQ(bytesOf(tube), sound);
+}
+
+TEST_F(Prepare, WhatDenoisingAndTheSurfaceCameToIsNoted) {
+    for (int run = 0; run < 2; ++run) {  // made, and reused
+        const auto report = prepare(store(), "tube", options());
+        ASSERT_TRUE(report) << describe(report.error());
+        for (const char* start : {"denoising: 0 handles cut, 0 cavities filled, ", "surface: "}) {
+            EXPECT_TRUE(std::ranges::any_of(report->notes, [&](const std::string& note) {
+                return note.rfind(start, 0) == 0;
+            })) << start;
+        }
+    }
+    EXPECT_NE(
+        store().openCase("tube")->attributes("surface")->at("notes").find("Euler characteristic 2"),
+        std::string::npos);
+}
+
+TEST_F(Prepare, AFailedStageNamesItsCase) {
+    Volume<std::uint8_t> speck(tubeMask(6.0).grid(), 0);
+    speck.writable()[speck.grid().index(20, 20, 40)] = 1;
+    ASSERT_TRUE(nifti::writeNifti(maskFile(), speck));
+    PrepareOptions alone = options();
+    alone.series.clear();
+    const auto report = prepare(store(), "speck", alone);
+    ASSERT_FALSE(report);
+    EXPECT_NE(describe(report.error()).find("case speck, "), std::string::npos)
+        << describe(report.error());
 }
 
 TEST_F(Prepare, ProductsDoNotDependOnTheNumberOfThreads) {
