@@ -1,130 +1,17 @@
 // Laws of prepare: work that is unchanged and sound is reused, anything else is done again, and
 // the products do not depend on the number of threads.
-#include "pipeline/prepare.h"
-
 #include "cleansing/tissue_mixture.h"
 #include "core/tri_mesh.h"
-#include "nifti/nifti_file.h"
-#include "pipeline/axial_order.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/source_key.h"
 #include "pipeline/stage_meter.h"
+#include "prepared_tube.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <map>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace haustra::pipeline {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string content(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void overwrite(const fs::path& file, const std::string& bytes) {
-    fs::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
-}
-
-// A bent tube of air in soft tissue, and its mask.
-constexpr glm::ivec3 tubeSize{48, 40, 90};
-
-Volume<std::uint8_t> tubeMask(double radiusMm, std::uint8_t label = 1) {
-    Volume<std::uint8_t> mask(axisAlignedGrid(tubeSize, {0.8, 0.8, 1.2}, {-20.0, 5.0, -300.0}));
-    for (std::size_t n = 0; n < mask.grid().voxelCount(); ++n) {
-        const glm::ivec3 v = mask.grid().voxelAt(n);
-        const glm::dvec2 axis(24.0 + 8.0 * std::sin(v.z * 0.06), 20.0);
-        const bool inside =
-            0.8 * glm::distance(glm::dvec2(v), axis) < radiusMm && v.z > 4 && v.z < 85;
-        mask.writable()[n] = inside ? label : 0;
-    }
-    return mask;
-}
-
-class Prepare : public testing::Test {
-protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  ("haustra-prepare-" + std::to_string(::getpid()) + "-" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-        ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(6.0)));
-        writeScan(6.0);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    void writeScan(double radiusMm) const {
-        const auto mask = tubeMask(radiusMm);
-        Volume<std::int16_t> ct(mask.grid());
-        for (std::size_t n = 0; n < mask.grid().voxelCount(); ++n) {
-            ct.writable()[n] = mask[n] ? -1000 : std::int16_t(40 + n % 7);
-        }
-        ASSERT_TRUE(nifti::writeNifti(ctFile(), ct));
-    }
-    fs::path ctFile() const { return folder_ / "ct.nii.gz"; }
-    fs::path maskFile() const { return folder_ / "mask.nii.gz"; }
-    store::CaseStore store(const std::string& name = "store") const {
-        return store::CaseStore::open(folder_ / name, true).value();
-    }
-    PrepareOptions options() const {
-        PrepareOptions options;
-        options.series = ctFile();
-        options.lumenMask = maskFile();
-        return options;
-    }
-    // Runs it and gives which stages were reused.
-    std::map<std::string, bool> reused(const PrepareOptions& options) const {
-        const auto report = prepare(store(), "tube", options);
-        EXPECT_TRUE(report) << describe(report.error());
-        std::map<std::string, bool> stages;
-        if (report) {
-            for (const StageReport& stage : report->stages)
-                stages[stage.stage] = stage.reused;
-        }
-        return stages;
-    }
-    static std::map<std::string, std::string> bytesOf(const store::Case& source) {
-        std::map<std::string, std::string> bytes;
-        const auto entries = source.products().value();
-        for (const auto& entry : entries) {
-            bytes[entry.product + " " + entry.key.hex] = content(source.folder() / entry.file);
-        }
-        return bytes;
-    }
-
-    using Stages = std::map<std::string, bool>;
-    static Stages all(bool reused, const std::vector<std::string>& stages = stageNames()) {
-        Stages result;
-        for (const std::string& stage : stages)
-            result[stage] = reused;
-        return result;
-    }
-    static Stages redone(const std::vector<std::string>& stages) {
-        Stages result = all(true);
-        for (const std::string& stage : stages)
-            result[stage] = false;
-        return result;
-    }
-    static std::string stageOf(const std::string& product) {
-        static const std::map<std::string, std::string> stages{{"ct", "import"},
-                                                               {"cleansed", "cleansing"},
-                                                               {"cleansed-lumen", "cleansing"},
-                                                               {"lumen", "denoising"}};
-        const auto found = stages.find(product);
-        return found == stages.end() ? product : found->second;
-    }
-    fs::path folder_;
-};
 
 TEST_F(Prepare, ASecondRunReusesEverythingAndChangesNothing) {
     EXPECT_EQ(reused(options()), all(false));
@@ -192,18 +79,6 @@ TEST_F(Prepare, UntilStopsAndTheNextRunGoesOn) {
     EXPECT_EQ(reused(options()), redone({"centerline", "surface"}));
 }
 
-TEST_F(Prepare, AMaskStandsAlone) {
-    PrepareOptions alone = options();
-    alone.series.clear();
-    EXPECT_EQ(reused(alone),
-              all(false, {"segmentation", "denoising", "distance", "centerline", "surface"}));
-    const auto tube = store().openCase("tube").value();
-    for (const char* product : {"ct", "mixture", "cleansed", "cleansed-lumen"})
-        EXPECT_FALSE(tube.find(product)) << product;
-    EXPECT_TRUE(tube.find("centerline"));
-    EXPECT_TRUE(meshTopology(tube.readMesh().value()).closed());
-}
-
 // What a store of before this order of stages holds: the same names, made otherwise.
 TEST_F(Prepare, OldProductsAreMadeAgain) {
     reused(options());
@@ -244,80 +119,6 @@ TEST_F(Prepare, TheTissueModelComesBackFromTheSegmentationBitForBit) {
         damaged["mean-hu"] = bad;
         EXPECT_FALSE(tissueModelOf(damaged)) << bad;
     }
-}
-
-TEST_F(Prepare, AMaskWithoutASeriesIsOfTheCasesScan) {
-    PrepareOptions import = options();
-    import.until = "import";
-    reused(import);
-    PrepareOptions mask = options();
-    mask.series.clear();
-    EXPECT_EQ(reused(mask), all(false, {"segmentation", "mixture", "cleansing", "denoising",
-                                        "distance", "centerline", "surface"}));
-    EXPECT_TRUE(store().openCase("tube")->find("ct"));
-    EXPECT_EQ(reused(options()), all(true));
-}
-
-TEST_F(Prepare, AMaskOnAnotherGridIsRefused) {
-    Volume<std::uint8_t> shifted(tubeMask(6.0));
-    Grid grid = shifted.grid();
-    grid.patientFromVoxel[3].x += 0.4;
-    const auto moved = Volume<std::uint8_t>::view(grid, shifted.voxels().data(), nullptr);
-    ASSERT_TRUE(nifti::writeNifti(maskFile(), moved));
-    const auto report = prepare(store(), "tube", options());
-    ASSERT_FALSE(report);
-    EXPECT_NE(report.error().place.find("mask.nii.gz"), std::string::npos);
-
-    ASSERT_TRUE(nifti::writeNifti(maskFile(),
-                                  Volume<std::uint8_t>(axisAlignedGrid({9, 9, 9}, {1, 1, 1}), 1)));
-    EXPECT_FALSE(prepare(store(), "tube", options()));
-    ASSERT_TRUE(nifti::writeNifti(maskFile(), Volume<std::uint8_t>(grid, 0)));
-    EXPECT_FALSE(prepare(store(), "tube", options()));
-}
-
-TEST_F(Prepare, ACoronalScanIsPreparedAsTheAxialOne) {
-    EXPECT_EQ(reused(options()), all(false));
-    const AxisOrder coronal{0, 2, 1};
-    auto ct = nifti::readNifti<std::int16_t>(ctFile()).value();
-    ASSERT_TRUE(
-        nifti::writeNifti(folder_ / "coronal.nii.gz", reordered(std::move(ct), coronal, 1)));
-    ASSERT_TRUE(
-        nifti::writeNifti(folder_ / "coronal-mask.nii.gz", reordered(tubeMask(6.0), coronal, 1)));
-    PrepareOptions turned = options();
-    turned.series = folder_ / "coronal.nii.gz";
-    for (const fs::path& mask : {maskFile(), folder_ / "coronal-mask.nii.gz"}) {
-        turned.lumenMask = mask;
-        const std::string name = mask.stem().stem().string();
-        const auto report = prepare(store(), name, turned);
-        ASSERT_TRUE(report) << describe(report.error());
-        EXPECT_EQ(std::ranges::count(report->notes,
-                                     "import: the voxels' axes were put in axial order; they were "
-                                     "stored as xzy"),
-                  1);
-        for (const char* product : {"ct", "cleansed"}) {
-            const auto axial = store().openCase("tube")->readVolume<std::int16_t>(product).value();
-            const auto other = store().openCase(name)->readVolume<std::int16_t>(product).value();
-            EXPECT_TRUE(sameGrid(other.grid(), axial.grid()));
-            EXPECT_TRUE(std::ranges::equal(other.voxels(), axial.voxels())) << product;
-        }
-    }
-    // The mask alone.
-    turned.series.clear();
-    ASSERT_TRUE(prepare(store(), "alone", turned));
-    EXPECT_EQ(store().openCase("alone")->readVolume<std::uint8_t>("lumen")->grid().size, tubeSize);
-}
-
-TEST_F(Prepare, MaskValuesFarFromZeroAreLumen) {
-    ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(6.0, 255)));
-    const auto report = prepare(store(), "tube", options());
-    ASSERT_TRUE(report);
-    EXPECT_NE(std::ranges::find_if(report->notes,
-                                   [](const std::string& note) {
-                                       return note.find("mask values") != std::string::npos;
-                                   }),
-              report->notes.end());
-    const auto labels = store().openCase("tube")->readVolume<std::uint8_t>("segmentation").value();
-    EXPECT_EQ(labels.at(24, 20, 6), 1);
 }
 
 TEST_F(Prepare, DamagedProductsAreMadeAgainByteForByte) {
@@ -379,18 +180,6 @@ TEST_F(Prepare, WhatDenoisingAndTheSurfaceCameToIsNoted) {
         std::string::npos);
 }
 
-TEST_F(Prepare, AFailedStageNamesItsCase) {
-    Volume<std::uint8_t> speck(tubeMask(6.0).grid(), 0);
-    speck.writable()[speck.grid().index(20, 20, 40)] = 1;
-    ASSERT_TRUE(nifti::writeNifti(maskFile(), speck));
-    PrepareOptions alone = options();
-    alone.series.clear();
-    const auto report = prepare(store(), "speck", alone);
-    ASSERT_FALSE(report);
-    EXPECT_NE(describe(report.error()).find("case speck, "), std::string::npos)
-        << describe(report.error());
-}
-
 TEST_F(Prepare, ProductsDoNotDependOnTheNumberOfThreads) {
     std::map<std::string, std::string> first;
     for (const int threads : {1, 2, 5}) {
@@ -401,46 +190,6 @@ TEST_F(Prepare, ProductsDoNotDependOnTheNumberOfThreads) {
         if (first.empty()) first = bytes;
         EXPECT_EQ(bytes, first);
     }
-}
-
-TEST_F(Prepare, ACaseThatIsBeingWrittenIsRefused) {
-    const auto held = store().createCase("tube");
-    ASSERT_TRUE(held);
-    const auto report = prepare(store(), "tube", options());
-    ASSERT_FALSE(report);
-    EXPECT_NE(report.error().message.find("being written"), std::string::npos);
-}
-
-TEST_F(Prepare, WrongOptionsAreToldAndLeaveNoCase) {
-    PrepareOptions wrong = options();
-    wrong.until = "polish";
-    EXPECT_FALSE(prepare(store(), "tube", wrong));
-    EXPECT_FALSE(prepare(store(), "tube", {}));
-    wrong = options();
-    wrong.series = folder_ / "none";
-    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::notFound);
-    wrong = options();
-    wrong.surfaceErrorMm = 0.0;
-    EXPECT_FALSE(prepare(store(), "tube", wrong));
-    wrong = options();
-    wrong.surfaceErrorMm = std::nan("");
-    EXPECT_FALSE(prepare(store(), "tube", wrong));
-    wrong = options();
-    wrong.excludesMm = {{0.0, 0.0, 0.0}};
-    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::badInput);
-    wrong = options();
-    wrong.lumenMask = folder_;
-    EXPECT_NE(describe(prepare(store(), "tube", wrong).error()).find("a folder"),
-              std::string::npos);
-    wrong = options();
-    wrong.series.clear();
-    wrong.until = "import";
-    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::badInput);
-    wrong = options();
-    wrong.organ = "spleen";
-    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::notFound);
-    EXPECT_FALSE(prepare(store(), "../tube", options()));
-    EXPECT_TRUE(fs::is_empty(folder_ / "store" / "cases"));
 }
 
 TEST_F(Prepare, ProgressEndsEachStageAtOne) {

@@ -1,0 +1,152 @@
+// What prepare takes: masks beside a scan and alone, volumes in any order of axes; and what it
+// refuses.
+#include "pipeline/axial_order.h"
+#include "prepared_tube.h"
+
+#include <algorithm>
+
+namespace haustra::pipeline {
+namespace {
+
+using PrepareInputs = Prepare;
+
+TEST_F(PrepareInputs, AMaskStandsAlone) {
+    PrepareOptions alone = options();
+    alone.series.clear();
+    EXPECT_EQ(reused(alone),
+              all(false, {"segmentation", "denoising", "distance", "centerline", "surface"}));
+    const auto tube = store().openCase("tube").value();
+    for (const char* product : {"ct", "mixture", "cleansed", "cleansed-lumen"})
+        EXPECT_FALSE(tube.find(product)) << product;
+    EXPECT_TRUE(tube.find("centerline"));
+    EXPECT_TRUE(meshTopology(tube.readMesh().value()).closed());
+}
+
+TEST_F(PrepareInputs, AMaskWithoutASeriesIsOfTheCasesScan) {
+    PrepareOptions import = options();
+    import.until = "import";
+    reused(import);
+    PrepareOptions mask = options();
+    mask.series.clear();
+    EXPECT_EQ(reused(mask), all(false, {"segmentation", "mixture", "cleansing", "denoising",
+                                        "distance", "centerline", "surface"}));
+    EXPECT_TRUE(store().openCase("tube")->find("ct"));
+    EXPECT_EQ(reused(options()), all(true));
+}
+
+TEST_F(PrepareInputs, AMaskOnAnotherGridIsRefused) {
+    Volume<std::uint8_t> shifted(tubeMask(6.0));
+    Grid grid = shifted.grid();
+    grid.patientFromVoxel[3].x += 0.4;
+    const auto moved = Volume<std::uint8_t>::view(grid, shifted.voxels().data(), nullptr);
+    ASSERT_TRUE(nifti::writeNifti(maskFile(), moved));
+    const auto report = prepare(store(), "tube", options());
+    ASSERT_FALSE(report);
+    EXPECT_NE(report.error().place.find("mask.nii.gz"), std::string::npos);
+
+    ASSERT_TRUE(nifti::writeNifti(maskFile(),
+                                  Volume<std::uint8_t>(axisAlignedGrid({9, 9, 9}, {1, 1, 1}), 1)));
+    EXPECT_FALSE(prepare(store(), "tube", options()));
+    ASSERT_TRUE(nifti::writeNifti(maskFile(), Volume<std::uint8_t>(grid, 0)));
+    EXPECT_FALSE(prepare(store(), "tube", options()));
+}
+
+TEST_F(PrepareInputs, ACoronalScanIsPreparedAsTheAxialOne) {
+    EXPECT_EQ(reused(options()), all(false));
+    const AxisOrder coronal{0, 2, 1};
+    auto ct = nifti::readNifti<std::int16_t>(ctFile()).value();
+    ASSERT_TRUE(
+        nifti::writeNifti(folder_ / "coronal.nii.gz", reordered(std::move(ct), coronal, 1)));
+    ASSERT_TRUE(
+        nifti::writeNifti(folder_ / "coronal-mask.nii.gz", reordered(tubeMask(6.0), coronal, 1)));
+    PrepareOptions turned = options();
+    turned.series = folder_ / "coronal.nii.gz";
+    for (const fs::path& mask : {maskFile(), folder_ / "coronal-mask.nii.gz"}) {
+        turned.lumenMask = mask;
+        const std::string name = mask.stem().stem().string();
+        const auto report = prepare(store(), name, turned);
+        ASSERT_TRUE(report) << describe(report.error());
+        EXPECT_EQ(std::ranges::count(report->notes,
+                                     "import: the voxels' axes were put in axial order; they were "
+                                     "stored as xzy"),
+                  1);
+        for (const char* product : {"ct", "cleansed"}) {
+            const auto axial = store().openCase("tube")->readVolume<std::int16_t>(product).value();
+            const auto other = store().openCase(name)->readVolume<std::int16_t>(product).value();
+            EXPECT_TRUE(sameGrid(other.grid(), axial.grid()));
+            EXPECT_TRUE(std::ranges::equal(other.voxels(), axial.voxels())) << product;
+        }
+    }
+    // The mask alone.
+    turned.series.clear();
+    ASSERT_TRUE(prepare(store(), "alone", turned));
+    EXPECT_EQ(store().openCase("alone")->readVolume<std::uint8_t>("lumen")->grid().size, tubeSize);
+}
+
+TEST_F(PrepareInputs, MaskValuesFarFromZeroAreLumen) {
+    ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(6.0, 255)));
+    const auto report = prepare(store(), "tube", options());
+    ASSERT_TRUE(report);
+    EXPECT_NE(std::ranges::find_if(report->notes,
+                                   [](const std::string& note) {
+                                       return note.find("mask values") != std::string::npos;
+                                   }),
+              report->notes.end());
+    const auto labels = store().openCase("tube")->readVolume<std::uint8_t>("segmentation").value();
+    EXPECT_EQ(labels.at(24, 20, 6), 1);
+}
+
+TEST_F(PrepareInputs, AFailedStageNamesItsCase) {
+    Volume<std::uint8_t> speck(tubeMask(6.0).grid(), 0);
+    speck.writable()[speck.grid().index(20, 20, 40)] = 1;
+    ASSERT_TRUE(nifti::writeNifti(maskFile(), speck));
+    PrepareOptions alone = options();
+    alone.series.clear();
+    const auto report = prepare(store(), "speck", alone);
+    ASSERT_FALSE(report);
+    EXPECT_NE(describe(report.error()).find("case speck, "), std::string::npos)
+        << describe(report.error());
+}
+
+TEST_F(PrepareInputs, ACaseThatIsBeingWrittenIsRefused) {
+    const auto held = store().createCase("tube");
+    ASSERT_TRUE(held);
+    const auto report = prepare(store(), "tube", options());
+    ASSERT_FALSE(report);
+    EXPECT_NE(report.error().message.find("being written"), std::string::npos);
+}
+
+TEST_F(PrepareInputs, WrongOptionsAreToldAndLeaveNoCase) {
+    PrepareOptions wrong = options();
+    wrong.until = "polish";
+    EXPECT_FALSE(prepare(store(), "tube", wrong));
+    EXPECT_FALSE(prepare(store(), "tube", {}));
+    wrong = options();
+    wrong.series = folder_ / "none";
+    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::notFound);
+    wrong = options();
+    wrong.surfaceErrorMm = 0.0;
+    EXPECT_FALSE(prepare(store(), "tube", wrong));
+    wrong = options();
+    wrong.surfaceErrorMm = std::nan("");
+    EXPECT_FALSE(prepare(store(), "tube", wrong));
+    wrong = options();
+    wrong.excludesMm = {{0.0, 0.0, 0.0}};
+    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::badInput);
+    wrong = options();
+    wrong.lumenMask = folder_;
+    EXPECT_NE(describe(prepare(store(), "tube", wrong).error()).find("a folder"),
+              std::string::npos);
+    wrong = options();
+    wrong.series.clear();
+    wrong.until = "import";
+    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::badInput);
+    wrong = options();
+    wrong.organ = "spleen";
+    EXPECT_EQ(prepare(store(), "tube", wrong).error().kind, ErrorKind::notFound);
+    EXPECT_FALSE(prepare(store(), "../tube", options()));
+    EXPECT_TRUE(fs::is_empty(folder_ / "store" / "cases"));
+}
+
+}  // namespace
+}  // namespace haustra::pipeline
