@@ -148,10 +148,11 @@ Command addPrepare(CLI::App& program) {
                     "The air or fluid at this point (LPS, mm) is not the organ; may be repeated")
         ->excludes(lumen);
     command
-        ->add_option("--surface-error-mm", options.surfaceErrorMm,
-                     "How far the simplified surface may be from the finest one, mm, at their "
-                     "vertices and at samples of their edges and triangles; between these a "
-                     "point in a thousand may be up to twice as far")
+        ->add_option(
+            "--surface-error-mm", options.surfaceErrorMm,
+            "How far the simplified surface may be from the finest one, mm, at the samples "
+            "where it is held to it: corners, middles of edges and triangles; between "
+            "them it may be farther at a few places")
         ->type_name("MM")
         ->check(checkSurfaceError, "FLOAT in [0.001 - 10]")
         ->capture_default_str();
