@@ -16,12 +16,6 @@
 namespace haustra::cleansing {
 namespace {
 
-TissueFractions rounded(double air, double tagged) {
-    const int a = int(std::lround(255.0 * std::clamp(air, 0.0, 1.0)));
-    const int t = int(std::lround(255.0 * std::clamp(tagged, 0.0, 1.0)));
-    return {std::uint8_t(a), std::uint8_t(std::min(t, 255 - a))};
-}
-
 /// The fractions of one voxel in or beside the tagged lumen.
 class ColonMixture {
 public:
@@ -44,12 +38,12 @@ public:
         double air = std::clamp((softHu - y) / (softHu - airHu), 0.0, 1.0);
         double tagged = std::clamp((y - softHu) / (taggedHu - softHu), 0.0, 1.0);
         const Neighbours around = look(v, softHu, taggedHu);
-        if (!around.tagged && y > softHu) return rounded(0.0, 0.0);
+        if (!around.tagged && y > softHu) return roundedFractions(0.0, 0.0);
         // As sure as the noise lets the tagging be told from the wall.
         const double noise = means_.noiseSd / (taggedHu - softHu);
         if (around.meanShare > 1.0 - std::max(0.1, 0.8 * noise) &&
             around.leastShare > 1.0 - std::max(0.5, 4.0 * noise))
-            return rounded(0.0, 1.0);
+            return roundedFractions(0.0, 1.0);
         if (around.leastShare > -std::max(0.2, 4.0 * noise)) {
             // No air near. What is taken out amplifies the noise by the contrast of air: where that
             // is worse than the blur of a filter, the neighbours take some of it out.
@@ -72,7 +66,7 @@ public:
             const double share = std::clamp((y - airHu) / (taggedHu - airHu), 0.0, 1.0);
             air = glm::mix(air, 1.0 - share, bare), tagged = glm::mix(tagged, share, bare);
         }
-        return rounded(air, tagged);
+        return roundedFractions(air, tagged);
     }
 
 private:
@@ -125,7 +119,7 @@ private:
             std::clamp((1.0 - soft) * fluidAt(*depth), std::min(least, most), most);
         // Equation 3.1 gives the rest.
         const double wall = (y - tagged * taggedHu - (1.0 - tagged) * airHu) / (softHu - airHu);
-        return rounded(1.0 - tagged - std::clamp(wall, 0.0, 1.0 - tagged), tagged);
+        return roundedFractions(1.0 - tagged - std::clamp(wall, 0.0, 1.0 - tagged), tagged);
     }
 
     /// Whether some of the nine voxels below hold fluid that this one can hold the top of.
@@ -247,6 +241,15 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     progress(0.8);
     settleRim(scan, labels, means, level, 2.5 * interfaces.blurMm(), around, mixture,
               options.threads);
+    // Where no tagging is left fat, which the two-tissue model has not, is told from air as far
+    // off.
+    for (const auto& shell : around.shells) {
+        for (const std::uint32_t index : shell) {
+            TissueFractions& fractions = out[index];
+            if (fractions.tagged == 0)
+                fractions.air = std::min(fractions.air, model.fractionsOf(hu[index]).air);
+        }
+    }
     progress(1.0);
     return mixture;
 }

@@ -14,11 +14,14 @@ struct MixtureOptions {
 };
 
 /// The fractions of air, soft tissue (with fat) and tagged material or bone in each voxel: equation
-/// 3.1 of the dissertation, y = Σ m_k μ_k + ε, estimated by EM with class means and variances
-/// re-estimated from the scan (Wang et al. [131]), the tagged mean locally, and a spatial prior
-/// that settles which pair of tissues a mixed voxel holds: HU alone cannot tell air–tagged from
-/// soft tissue. `segmentation` (LumenLabel) tells which tagged material and air is bowel content;
-/// `gravity` (unit LPS, zero where unknown) points down. The same bytes for any number of threads.
+/// 3.1 of the dissertation, y = Σ m_k μ_k + ε (Wang et al. [131]). Away from the tagged lumen they
+/// are what EM over tissues and pairs of tissues expects of the voxel's HU, with class means and
+/// variances re-estimated from the scan (partial_volume_em.h). In and around the tagged lumen they
+/// solve the equation for the means measured nearby (local_means.h); which tissues a mixed voxel
+/// holds, which HU alone cannot tell, is settled by the length of the step through it
+/// (interface_layer.h), the water level (water_level.h) and the wall's course (level_rim.h).
+/// `segmentation` (LumenLabel) tells which tagged material and air is bowel content; `gravity`
+/// (unit LPS, zero where unknown) points down. The same bytes for any number of threads.
 Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const TissueModel& tissue,
                                                 const Volume<std::uint8_t>& segmentation,
                                                 glm::dvec3 gravity,

@@ -1,34 +1,21 @@
 #include "cleansing/partial_volume_em.h"
 
-#include "core/parallel.h"
+#include "cleansing/hu_histogram.h"
 
 #include <array>
 #include <cmath>
-#include <mutex>
 
 namespace haustra::cleansing {
 namespace {
 
-constexpr int lowest = PartialVolumeModel::lowestHu, highest = PartialVolumeModel::highestHu;
 constexpr int binHu = 4;  // finer than any noise
-constexpr int binCount = (highest - lowest + 1) / binHu;
+constexpr int binCount = (highestHu - lowestHu + 1) / binHu;
 using Histogram = std::vector<double>;
 
-Histogram histogramOf(const CtScan& scan, int threads) {
+Histogram binned(const std::vector<double>& byHu) {
     Histogram histogram(binCount, 0.0);
-    std::mutex mutex;
-    const auto voxels = scan.hu.voxels();
-    parallelFor(
-        voxels.size(), std::size_t(1) << 22, threads, [&](std::size_t begin, std::size_t end) {
-            std::vector<std::uint32_t> counts(binCount, 0);
-            for (std::size_t n = begin; n < end; ++n) {
-                if (voxels[n] > lowest)
-                    ++counts[std::size_t((std::min<int>(voxels[n], highest) - lowest) / binHu)];
-            }
-            const std::lock_guard lock(mutex);  // sums of integers: the order does not matter
-            for (int bin = 0; bin < binCount; ++bin)
-                histogram[std::size_t(bin)] += counts[std::size_t(bin)];
-        });
+    for (std::size_t n = 0; n < byHu.size(); ++n)
+        histogram[n / binHu] += byHu[n];
     return histogram;
 }
 
@@ -113,7 +100,7 @@ std::array<double, kindCount> fit(const Histogram& histogram, const std::vector<
         double total = 0.0;
         for (int bin = 0; bin < binCount; ++bin) {
             const double count = histogram[std::size_t(bin)];
-            const double hu = lowest + (bin + 0.5) * binHu - 0.5;
+            const double hu = lowestHu + (bin + 0.5) * binHu - 0.5;
             if (count == 0.0 || !evidence.posterior(hu, part)) continue;
             total += count;
             for (std::size_t n = 0; n < all.size(); ++n) {
@@ -154,21 +141,16 @@ std::array<double, kindCount> fit(const Histogram& histogram, const std::vector<
     return weight;
 }
 
-TissueFractions rounded(double air, double tagged) {
-    const int a = int(std::lround(255.0 * air)), t = int(std::lround(255.0 * tagged));
-    return {std::uint8_t(a), std::uint8_t(std::min(t, 255 - a))};
-}
-
 }  // namespace
 
 PartialVolumeModel fitPartialVolume(const CtScan& scan, const TissueModel& start, int threads) {
     PartialVolumeModel result;
     result.tissue = start;
     const std::vector<Blend> all = blends();
-    const auto weight = fit(histogramOf(scan, threads), all, result.tissue);
+    const auto weight = fit(binned(huHistogram(scan, threads)), all, result.tissue);
     const Evidence evidence(all, result.tissue, weight);
     std::vector<double> part;
-    for (int hu = lowest; hu <= highest; ++hu) {
+    for (int hu = lowestHu; hu <= highestHu; ++hu) {
         double air = 0.0, tagged = 0.0;
         if (hu < result.tissue.meanHu[int(Tissue::air)]) {
             air = 1.0;  // colder than air: noise
@@ -181,7 +163,7 @@ PartialVolumeModel fitPartialVolume(const CtScan& scan, const TissueModel& start
                 if (all[n].a == int(Tissue::taggedOrBone)) tagged += part[n];
             }
         }
-        result.fractions.push_back(rounded(std::min(air, 1.0), std::min(tagged, 1.0)));
+        result.fractions.push_back(roundedFractions(std::min(air, 1.0), std::min(tagged, 1.0)));
     }
     return result;
 }

@@ -1,6 +1,7 @@
 // Class means, variances and fractions from the scan's histogram, partial volume counted in.
 #pragma once
 
+#include "cleansing/hu_histogram.h"
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 
@@ -15,7 +16,6 @@ namespace haustra::cleansing {
 struct PartialVolumeModel {
     TissueModel tissue;
     std::vector<TissueFractions> fractions;  ///< by HU, from lowestHu on
-    static constexpr int lowestHu = -1024, highestHu = 3071;
 
     TissueFractions fractionsOf(int hu) const {
         return fractions[std::size_t(std::clamp(hu, lowestHu, highestHu) - lowestHu)];

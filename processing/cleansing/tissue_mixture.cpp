@@ -1,10 +1,9 @@
 #include "cleansing/tissue_mixture.h"
 
-#include "core/parallel.h"
+#include "cleansing/hu_histogram.h"
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -12,26 +11,8 @@
 namespace haustra::cleansing {
 namespace {
 
-constexpr int lowestHu = -1024, highestHu = 3071;
 constexpr int binCount = highestHu - lowestHu + 1;
 using Histogram = std::vector<double>;
-
-Histogram histogramOf(const CtScan& scan, int threads) {
-    Histogram histogram(binCount, 0.0);
-    std::mutex mutex;
-    const auto voxels = scan.hu.voxels();
-    parallelFor(
-        voxels.size(), std::size_t(1) << 22, threads, [&](std::size_t begin, std::size_t end) {
-            std::vector<std::uint32_t> counts(binCount, 0);
-            for (std::size_t n = begin; n < end; ++n) {
-                if (voxels[n] > lowestHu) ++counts[std::min<int>(voxels[n], highestHu) - lowestHu];
-            }
-            const std::lock_guard lock(mutex);  // sums of integers: the order does not matter
-            for (int bin = 0; bin < binCount; ++bin)
-                histogram[bin] += counts[bin];
-        });
-    return histogram;
-}
 
 double countIn(const Histogram& histogram, int fromHu, int toHu) {
     return std::accumulate(histogram.begin() + (fromHu - lowestHu),
@@ -103,7 +84,7 @@ void fit(const Histogram& histogram, const TissuePriors& priors, TissueModel& mo
 }  // namespace
 
 Result<TissueModel> fitTissueModel(const CtScan& scan, int threads, const TissuePriors& priors) {
-    const Histogram histogram = histogramOf(scan, threads);
+    const Histogram histogram = huHistogram(scan, threads);
     const double all = countIn(histogram, lowestHu, highestHu);
     const HuRange airRange = priors.meanHu[int(Tissue::air)],
                   softRange = priors.meanHu[int(Tissue::soft)];

@@ -1,7 +1,9 @@
 // What the voxels of an abdominal CT are made of.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace haustra {
@@ -43,6 +45,12 @@ struct TissueFractions {
     std::uint8_t soft() const { return std::uint8_t(255 - air - tagged); }
     bool operator==(const TissueFractions&) const = default;
 };
+/// Shares of air and tagged material, clamped to 0…1 and rounded; soft tissue has the rest.
+inline TissueFractions roundedFractions(double air, double tagged) {
+    const int a = int(std::lround(255.0 * std::clamp(air, 0.0, 1.0)));
+    const int t = int(std::lround(255.0 * std::clamp(tagged, 0.0, 1.0)));
+    return {std::uint8_t(a), std::uint8_t(std::min(t, 255 - a))};
+}
 static_assert(sizeof(TissueFractions) == 2, "a volume of them is mapped from a file");
 
 }  // namespace haustra
