@@ -1,21 +1,33 @@
 // The flattened colon: a cut surface with its place in the plane.
 #pragma once
 
+#include "core/tri_mesh.h"
+
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <vector>
 
-#include "core/tri_mesh.h"
+#include <glm/glm.hpp>
 
 namespace haustra {
 
-/// The cut surface (seam vertices doubled) with one flat coordinate a vertex: x in [0, 1] around
-/// the colon, y in [0, height] from rectum to cecum, in units of the circumference. `camera` is
-/// each vertex's sample on the centerline.
+/// One place on the centerline that the wall is looked at from (dissertation §4.3.1).
+struct FlatCamera {
+    glm::dvec3 positionMm{0.0};  ///< LPS
+    double arcMm = 0.0;          ///< along the centerline, from the rectum
+};
+
+/// The colon's surface cut open along its seam, and flattened. The flat plane is periodic: its unit
+/// is the circumference, x in [0, 1] runs around the colon, y in [0, height] from rectum to cecum,
+/// and (0, y) is the same place as (1, y). Triangles that are counter-clockwise on the surface
+/// seen from outside are so in the plane. A picture shows the wall from within: its columns run
+/// towards −x, its rows towards −y (see core/strip_layout.h), and the rectum is at the bottom.
 struct FlatMap {
-    TriMesh surface;
-    std::vector<glm::dvec2> flat;
-    std::vector<std::int32_t> camera;
+    TriMesh surface;  ///< vertices on the seam are doubled; triangles it crosses, split
+    std::vector<glm::dvec2> flat;              ///< per vertex
+    std::vector<std::int32_t> camera;          ///< per vertex, an index into `cameras`
+    std::vector<std::int32_t> sourceTriangle;  ///< per triangle: the one of the closed surface that
+                                               ///< it is, or is a part of
+    std::vector<FlatCamera> cameras;           ///< equally spaced from rectum to cecum
     double height = 0.0;
 };
 

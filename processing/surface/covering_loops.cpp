@@ -8,14 +8,14 @@
 
 namespace haustra::surface {
 
-std::vector<Loop> coveringLoops(const LoopMesh& mesh, const std::vector<std::uint64_t>& marks,
-                                double slack) {
-    std::vector<Loop> loops;
+std::vector<mesh::Loop> coveringLoops(const mesh::HalfedgeMesh& mesh,
+                                      const std::vector<std::uint64_t>& marks, double slack) {
+    std::vector<mesh::Loop> loops;
     int root = 0;
     while (root < mesh.vertexCount() && mesh.outgoing(root) < 0)
         ++root;
     if (root == mesh.vertexCount()) return loops;
-    const CutGraph graph = makeCutGraph(mesh, root);
+    const mesh::CutGraph graph = mesh::makeCutGraph(mesh, root);
     if (graph.basis.empty()) return loops;
     const FundamentalDomain domain = slice(mesh, graph);
     CoveringSpace cover(mesh, domain);
@@ -50,8 +50,9 @@ std::vector<Loop> coveringLoops(const LoopMesh& mesh, const std::vector<std::uin
         loops.push_back(front.loopOver(closing));
         shortestMm = std::min(shortestMm, loops.back().lengthMm);
     }
-    std::stable_sort(loops.begin(), loops.end(),
-                     [](const Loop& a, const Loop& b) { return a.lengthMm < b.lengthMm; });
+    std::stable_sort(loops.begin(), loops.end(), [](const mesh::Loop& a, const mesh::Loop& b) {
+        return a.lengthMm < b.lengthMm;
+    });
     return loops;
 }
 

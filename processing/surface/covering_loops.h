@@ -1,7 +1,7 @@
 // The shortest loops of a coarse mesh, found in its universal covering space.
 #pragma once
 
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <cstdint>
 #include <vector>
@@ -16,7 +16,7 @@ namespace haustra::surface {
 /// to zero are passed over. Loops longer than `slack` times the shortest may be missing. Shortest
 /// first, with the common tail taken off. Empty for a sphere. O(k n log n) for k cut-graph
 /// vertices.
-std::vector<Loop> coveringLoops(const LoopMesh& mesh, const std::vector<std::uint64_t>& marks,
-                                double slack);
+std::vector<mesh::Loop> coveringLoops(const mesh::HalfedgeMesh& mesh,
+                                      const std::vector<std::uint64_t>& marks, double slack);
 
 }  // namespace haustra::surface

@@ -7,7 +7,7 @@ namespace haustra::surface {
 namespace {
 
 /// The disc's boundary, counter-clockwise, from the start of a side on.
-std::vector<int> boundaryWalk(const LoopMesh& mesh, const std::vector<char>& cut,
+std::vector<int> boundaryWalk(const mesh::HalfedgeMesh& mesh, const std::vector<char>& cut,
                               const std::vector<int>& degree) {
     std::vector<int> walk;
     int start = 0;
@@ -17,9 +17,9 @@ std::vector<int> boundaryWalk(const LoopMesh& mesh, const std::vector<char>& cut
     int h = start;
     do {
         walk.push_back(h);
-        h = LoopMesh::next(h);
+        h = mesh::HalfedgeMesh::next(h);
         while (!cut[h])
-            h = LoopMesh::next(mesh.opposite(h));
+            h = mesh::HalfedgeMesh::next(mesh.opposite(h));
     } while (h != start);
     return walk;
 }
@@ -30,7 +30,7 @@ int FundamentalDomain::nextCorner(int side) const {
     return (partner[side] + 1) % int(sides.size());
 }
 
-FundamentalDomain slice(const LoopMesh& mesh, const CutGraph& graph) {
+FundamentalDomain slice(const mesh::HalfedgeMesh& mesh, const mesh::CutGraph& graph) {
     std::vector<int> degree(mesh.vertexCount(), 0);
     for (int h = 0; h < mesh.halfedgeCount(); ++h)
         degree[mesh.origin(h)] += graph.cut[h];
@@ -48,13 +48,14 @@ FundamentalDomain slice(const LoopMesh& mesh, const CutGraph& graph) {
     return domain;
 }
 
-CoveringSpace::CoveringSpace(const LoopMesh& mesh, const FundamentalDomain& domain)
+CoveringSpace::CoveringSpace(const mesh::HalfedgeMesh& mesh, const FundamentalDomain& domain)
     : mesh_(mesh), domain_(domain), turning_(std::size_t(mesh.halfedgeCount())) {
     for (int v = 0; v < mesh.vertexCount(); ++v) {
         const int home = mesh.outgoing(v);
         if (home < 0) continue;
         for (int h = home; mesh.turnLeft(h) != home; h = mesh.turnLeft(h)) {
-            const int left = mesh.turnLeft(h), side = domain.sideOf[LoopMesh::previous(h)];
+            const int left = mesh.turnLeft(h),
+                      side = domain.sideOf[mesh::HalfedgeMesh::previous(h)];
             turning_[left] = turning_[h];
             if (side >= 0) turning_[left].push_back(side);
         }
@@ -104,7 +105,7 @@ void CoveringSpace::closeRing(int copy, int corner) {
 int CoveringSpace::along(int copy, int h) {
     for (const int side : turning_[h])
         copy = across(copy, side);
-    const auto& back = turning_[LoopMesh::next(h)];
+    const auto& back = turning_[mesh::HalfedgeMesh::next(h)];
     for (std::size_t i = back.size(); i-- > 0;)
         copy = across(copy, domain_.partner[back[i]]);
     return copy;

@@ -1,8 +1,8 @@
 // A finite portion of a surface's universal covering space.
 #pragma once
 
-#include "surface/cut_graph.h"
-#include "surface/loop_mesh.h"
+#include "mesh/cut_graph.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <vector>
 
@@ -20,7 +20,7 @@ struct FundamentalDomain {
     int nextCorner(int side) const;  ///< the corner that follows across `side`, round its start
 };
 
-FundamentalDomain slice(const LoopMesh& mesh, const CutGraph& graph);
+FundamentalDomain slice(const mesh::HalfedgeMesh& mesh, const mesh::CutGraph& graph);
 
 /// Copies of the fundamental domain, glued side to partner as walks cross them (dissertation
 /// §3.3.1). Where the copies round a lifted branch point are all there, the ring is closed, so that
@@ -29,7 +29,7 @@ FundamentalDomain slice(const LoopMesh& mesh, const CutGraph& graph);
 /// Keeps references to the mesh and the domain.
 class CoveringSpace {
 public:
-    CoveringSpace(const LoopMesh& mesh, const FundamentalDomain& domain);
+    CoveringSpace(const mesh::HalfedgeMesh& mesh, const FundamentalDomain& domain);
 
     int copies() const { return int(neighbours_.size() / domain_.sides.size()); }
     /// The copy beyond `side`, or −1 where none is glued yet.
@@ -48,7 +48,7 @@ private:
     void glue(int copy, int side, int other);
     void closeRing(int copy, int corner);
 
-    const LoopMesh& mesh_;
+    const mesh::HalfedgeMesh& mesh_;
     const FundamentalDomain& domain_;
     std::vector<int> neighbours_;  // per copy and side
     std::vector<std::vector<int>>

@@ -32,11 +32,11 @@ double areaOf(const TriMesh& mesh) {
 /// Places on the fine mesh where short loops of the coarse mesh pass, best first.
 Result<std::vector<int>> coarsePlaces(const TriMesh& mesh) {
     const CoarseMesh coarse = coarsen(mesh, coarseVertices);
-    const auto halves = LoopMesh::of(coarse.mesh);
+    const auto halves = mesh::HalfedgeMesh::ofClosed(coarse.mesh);
     if (!halves) return tl::make_unexpected(halves.error());
     std::vector<int> places;
     std::vector<char> listed(mesh.vertices.size(), 0);
-    for (const Loop& loop : coveringLoops(*halves, homologyMarks(*halves), coarseSlack)) {
+    for (const mesh::Loop& loop : coveringLoops(*halves, homologyMarks(*halves), coarseSlack)) {
         const int place = coarse.fineVertex[std::size_t(halves->origin(loop.halfedges.front()))];
         if (!listed[place]) places.push_back(place);
         listed[place] = 1;
@@ -106,18 +106,18 @@ TriMesh othersThan(const Piece& piece, const TriMesh& whole) {
 
 /// One handle less; `mesh` must have one. `others` are what its fillings should not cut through.
 Result<RemovedHandle> removeShortest(TriMesh& mesh, const TriMesh& others, int threads) {
-    const auto halves = LoopMesh::of(mesh);
+    const auto halves = mesh::HalfedgeMesh::ofClosed(mesh);
     if (!halves) return tl::make_unexpected(halves.error());
     const auto places = coarsePlaces(mesh);
     if (!places) return tl::make_unexpected(places.error());
     const auto marks = homologyMarks(*halves);
     LoopSearchOptions search;
     search.threads = threads;
-    Loop best;
+    mesh::Loop best;
     LoopCut bestCut;
     std::size_t crossings = std::numeric_limits<std::size_t>::max();
     for (std::size_t tries = 0; crossings > 0 && tries < mostClasses; ++tries) {
-        const Loop loop = shortestLoop(*halves, marks, *places, search);
+        const mesh::Loop loop = shortestLoop(*halves, marks, *places, search);
         if (loop.halfedges.empty()) break;
         LoopCut cut = cutAlong(mesh, *halves, loop);
         if (const std::size_t found = crossingsAt(cut, mesh, others); found < crossings) {
@@ -143,7 +143,7 @@ Result<RemovedHandle> removeShortest(TriMesh& mesh, const TriMesh& others, int t
 
 Result<HandleRemoval> removeHandles(const TriMesh& mesh, const HandleRemovalOptions& options) {
     if (mesh.triangles.empty()) return fail(ErrorKind::badInput, "the mesh has no triangles");
-    const auto halves = LoopMesh::of(mesh);
+    const auto halves = mesh::HalfedgeMesh::ofClosed(mesh);
     if (!halves) return tl::make_unexpected(halves.error());
     const long handles = meshTopology(mesh).genus();
     const auto report = [&](std::size_t removed) {

@@ -18,7 +18,7 @@ struct Lip {
         fans;  // outgoing half-edges, counter-clockwise, without the last edge
 };
 
-Lip lipOf(const LoopMesh& halves, const Loop& loop, bool left) {
+Lip lipOf(const mesh::HalfedgeMesh& halves, const mesh::Loop& loop, bool left) {
     Lip lip;
     const std::size_t n = loop.halfedges.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -31,7 +31,8 @@ Lip lipOf(const LoopMesh& halves, const Loop& loop, bool left) {
 }
 
 /// How each vertex of a lip moves away from the loop, over the surface.
-std::vector<glm::dvec3> drawBack(const TriMesh& mesh, const LoopMesh& halves, const Lip& lip) {
+std::vector<glm::dvec3> drawBack(const TriMesh& mesh, const mesh::HalfedgeMesh& halves,
+                                 const Lip& lip) {
     const std::size_t n = lip.fans.size();
     std::vector<glm::dvec3> direction(n);
     std::vector<double> reach(n);
@@ -41,7 +42,7 @@ std::vector<glm::dvec3> drawBack(const TriMesh& mesh, const LoopMesh& halves, co
         double height = glm::distance(here, mesh.vertices[halves.target(lip.fans[i][0])]);
         for (const int h : lip.fans[i]) {
             const glm::dvec3 &b = mesh.vertices[halves.target(h)],
-                             &c = mesh.vertices[halves.target(LoopMesh::next(h))];
+                             &c = mesh.vertices[halves.target(mesh::HalfedgeMesh::next(h))];
             const glm::dvec3 normal = glm::cross(b - here, c - here);
             const double opposite = glm::distance(b, c);
             // Weighted by angle, each triangle pulls towards the middle of its far edge.
@@ -83,7 +84,7 @@ void addDisc(TriMesh& mesh, const LoopDisc& disc, const std::vector<int>& rim,
 
 }  // namespace
 
-LoopCut cutAlong(const TriMesh& mesh, const LoopMesh& halves, const Loop& loop) {
+LoopCut cutAlong(const TriMesh& mesh, const mesh::HalfedgeMesh& halves, const mesh::Loop& loop) {
     LoopCut cut{mesh, 0.0, mesh.triangles.size()};
     const std::size_t n = loop.halfedges.size();
     std::vector<glm::dvec3> polygon;

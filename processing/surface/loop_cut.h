@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/tri_mesh.h"
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
 namespace haustra::surface {
 
@@ -16,7 +16,7 @@ struct LoopCut {
 /// of their triangles' heights, and spans each with a disc (see spanLoop); both discs have the same
 /// triangles, so that they lie side by side without touching. Vertices and triangles keep their
 /// numbers: the loop's own vertices stay on its left; those of its right and of the discs come
-/// after all others. Only the loop's vertices move. `halves` must be LoopMesh::of(mesh).
-LoopCut cutAlong(const TriMesh& mesh, const LoopMesh& halves, const Loop& loop);
+/// after all others. Only the loop's vertices move. `halves` must be HalfedgeMesh::ofClosed(mesh).
+LoopCut cutAlong(const TriMesh& mesh, const mesh::HalfedgeMesh& halves, const mesh::Loop& loop);
 
 }  // namespace haustra::surface

@@ -1,7 +1,7 @@
 // A shortest-path front that closes loops.
 #pragma once
 
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <algorithm>
 #include <functional>
@@ -15,7 +15,7 @@ namespace haustra::surface {
 /// one object to a thread.
 class LoopFront {
 public:
-    explicit LoopFront(const LoopMesh& mesh)
+    explicit LoopFront(const mesh::HalfedgeMesh& mesh)
         : mesh_(mesh),
           distanceMm_(std::size_t(mesh.vertexCount())),
           into_(std::size_t(mesh.vertexCount())),
@@ -36,7 +36,7 @@ public:
     /// The settled vertices, nearest first.
     const std::vector<int>& order() const { return order_; }
     /// The loop over `closing`, less that tail: it visits no vertex twice.
-    Loop loopOver(int closing) const;
+    mesh::Loop loopOver(int closing) const;
 
 private:
     using Entry = std::pair<double, int>;
@@ -64,7 +64,7 @@ private:
         return path;
     }
 
-    const LoopMesh& mesh_;
+    const mesh::HalfedgeMesh& mesh_;
     std::vector<double> distanceMm_;
     std::vector<int> into_, stamp_, order_;
     std::vector<char> settled_;
@@ -107,13 +107,13 @@ int LoopFront::run(int base, double boundMm, const Reach& reach, const Closes& c
     return best;
 }
 
-inline Loop LoopFront::loopOver(int closing) const {
+inline mesh::Loop LoopFront::loopOver(int closing) const {
     const std::vector<int> out = pathTo(mesh_.origin(closing)),
                            back = pathTo(mesh_.target(closing));
     std::size_t tail = 0;
     while (tail < out.size() && tail < back.size() && out[tail] == back[tail])
         ++tail;
-    Loop loop;
+    mesh::Loop loop;
     loop.halfedges.assign(out.begin() + std::ptrdiff_t(tail), out.end());
     loop.halfedges.push_back(closing);
     for (std::size_t i = back.size(); i-- > tail;)

@@ -20,7 +20,7 @@ int findRoot(std::vector<int>& parent, int v) {
 
 }  // namespace
 
-std::vector<std::uint64_t> homologyMarks(const LoopMesh& mesh) {
+std::vector<std::uint64_t> homologyMarks(const mesh::HalfedgeMesh& mesh) {
     const int halfedges = mesh.halfedgeCount(), faces = halfedges / 3;
     std::vector<std::uint64_t> marks(halfedges, 0);
     if (faces == 0) return marks;

@@ -1,7 +1,7 @@
 // Which loops separate a closed surface.
 #pragma once
 
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,6 +15,6 @@ namespace haustra::surface {
 /// a non-zero sum is still proof, and a zero sum wrong with a chance of 2⁻⁶⁴. Breadth-first dual
 /// tree and the primal forest that it leaves (tree-cotree), so that the curves are short and
 /// straight. The mesh must be connected. O(n).
-std::vector<std::uint64_t> homologyMarks(const LoopMesh& mesh);
+std::vector<std::uint64_t> homologyMarks(const mesh::HalfedgeMesh& mesh);
 
 }  // namespace haustra::surface

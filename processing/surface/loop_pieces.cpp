@@ -4,7 +4,7 @@
 
 namespace haustra::surface {
 
-std::vector<Piece> piecesOf(const LoopMesh& halves, const TriMesh& mesh) {
+std::vector<Piece> piecesOf(const mesh::HalfedgeMesh& halves, const TriMesh& mesh) {
     std::vector<Piece> pieces;
     std::vector<int> pieceOf(mesh.triangles.size(), -1), number(mesh.vertices.size(), -1), stack;
     for (std::size_t seed = 0; seed < mesh.triangles.size(); ++seed) {

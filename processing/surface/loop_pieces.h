@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/tri_mesh.h"
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <vector>
 
@@ -16,8 +16,8 @@ struct Piece {
 };
 
 /// In the order of their first triangles; vertices that no triangle uses are in none. `halves` must
-/// be LoopMesh::of(mesh). O(n).
-std::vector<Piece> piecesOf(const LoopMesh& halves, const TriMesh& mesh);
+/// be HalfedgeMesh::ofClosed(mesh). O(n).
+std::vector<Piece> piecesOf(const mesh::HalfedgeMesh& halves, const TriMesh& mesh);
 
 /// Puts a changed piece back: what it had keeps its numbers in the whole, what is new comes last.
 void putBack(TriMesh& whole, Piece piece);

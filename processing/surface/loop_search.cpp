@@ -15,7 +15,7 @@ constexpr std::size_t batchSize = 16;  // fixed, so that the threads' number cha
 
 class Search {
 public:
-    Search(const LoopMesh& mesh, const std::vector<std::uint64_t>& marks,
+    Search(const mesh::HalfedgeMesh& mesh, const std::vector<std::uint64_t>& marks,
            const LoopSearchOptions& options)
         : mesh_(mesh),
           marks_(marks),
@@ -50,16 +50,17 @@ public:
         }
     }
 
-    const Loop& best() const { return best_; }
+    const mesh::Loop& best() const { return best_; }
 
 private:
     struct Front {
-        explicit Front(const LoopMesh& mesh) : front(mesh), sums(std::size_t(mesh.vertexCount())) {}
+        explicit Front(const mesh::HalfedgeMesh& mesh)
+            : front(mesh), sums(std::size_t(mesh.vertexCount())) {}
         LoopFront front;
         std::vector<std::uint64_t> sums;
     };
     struct Outcome {
-        Loop loop;
+        mesh::Loop loop;
         std::vector<int> ruledOut;
         long settled = 0;
     };
@@ -123,18 +124,19 @@ private:
         }
     }
 
-    const LoopMesh& mesh_;
+    const mesh::HalfedgeMesh& mesh_;
     const std::vector<std::uint64_t>& marks_;
     const LoopSearchOptions& options_;
     std::vector<char> ruledOut_;
     std::vector<std::unique_ptr<Front>> idle_;
     std::mutex mutex_;
-    Loop best_;
+    mesh::Loop best_;
     long effort_ = 0;
 };
 
 /// The starts of marked edges, in an order that leaps about: neighbours are then often ruled out.
-std::vector<int> crossings(const LoopMesh& mesh, const std::vector<std::uint64_t>& marks) {
+std::vector<int> crossings(const mesh::HalfedgeMesh& mesh,
+                           const std::vector<std::uint64_t>& marks) {
     std::vector<char> marked(std::size_t(mesh.vertexCount()), 0);
     for (int h = 0; h < mesh.halfedgeCount(); ++h) {
         if (marks[h] && mesh.origin(h) < mesh.target(h)) marked[mesh.origin(h)] = 1;
@@ -153,8 +155,8 @@ std::vector<int> crossings(const LoopMesh& mesh, const std::vector<std::uint64_t
 
 }  // namespace
 
-Loop shortestLoop(const LoopMesh& mesh, const std::vector<std::uint64_t>& marks,
-                  const std::vector<int>& near, const LoopSearchOptions& options) {
+mesh::Loop shortestLoop(const mesh::HalfedgeMesh& mesh, const std::vector<std::uint64_t>& marks,
+                        const std::vector<int>& near, const LoopSearchOptions& options) {
     Search search(mesh, marks, options);
     search.visit(near, options.effort / 2);
     search.visit(crossings(mesh, marks), options.effort);

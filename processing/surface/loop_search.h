@@ -1,7 +1,7 @@
 // The shortest loop of a fine mesh whose cutting removes a handle.
 #pragma once
 
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <cstdint>
 #include <vector>
@@ -24,7 +24,7 @@ struct LoopSearchOptions {
 /// every loop that counts crosses such an edge. A front that closes nothing within `slack` times
 /// the bound rules out the base vertices close round its own. Empty where every loop separates, or
 /// none is short of infinity. The same loop for any number of threads.
-Loop shortestLoop(const LoopMesh& mesh, const std::vector<std::uint64_t>& marks,
-                  const std::vector<int>& near, const LoopSearchOptions& options = {});
+mesh::Loop shortestLoop(const mesh::HalfedgeMesh& mesh, const std::vector<std::uint64_t>& marks,
+                        const std::vector<int>& near, const LoopSearchOptions& options = {});
 
 }  // namespace haustra::surface

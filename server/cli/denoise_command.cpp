@@ -3,8 +3,8 @@
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "mesh/mesh_file.h"
 #include "surface/handle_removal.h"
-#include "surface/mesh_file.h"
 
 #include <algorithm>
 #include <memory>
@@ -73,7 +73,7 @@ Result<void> runDenoise(const Arguments& arguments) {
         if (file.empty()) continue;
         if (auto fit = checkOutputFile(file); !fit) return fit;
     }
-    const auto mesh = surface::readMesh(arguments.mesh);
+    const auto mesh = mesh::readMesh(arguments.mesh);
     if (!mesh) return tl::make_unexpected(mesh.error());
     surface::HandleRemovalOptions options;
     options.threads = arguments.threads;
@@ -86,7 +86,7 @@ Result<void> runDenoise(const Arguments& arguments) {
         const Error& error = removal.error();
         return fail(error.kind, error.message, arguments.mesh.string());
     }
-    if (auto written = surface::writeMesh(arguments.out, removal->mesh); !written) return written;
+    if (auto written = mesh::writeMesh(arguments.out, removal->mesh); !written) return written;
 
     const auto report = reportOf(*mesh, *removal);
     for (std::size_t i = 0; i < removal->handles.size(); ++i) {

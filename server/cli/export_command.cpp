@@ -2,9 +2,9 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/text_files.h"
+#include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "store/case_store.h"
-#include "surface/mesh_file.h"
 
 #include <algorithm>
 #include <map>
@@ -77,7 +77,7 @@ Result<void> runExport(const Arguments& arguments) {
     if (product == "surface") {
         const auto mesh = source->readMesh();
         if (!mesh) return tl::make_unexpected(mesh.error());
-        return surface::writeMesh(arguments.file, *mesh);
+        return mesh::writeMesh(arguments.file, *mesh);
     }
     if (product == "mixture") {
         const auto mixture = source->readVolume<TissueFractions>(product);

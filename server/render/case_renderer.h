@@ -41,6 +41,10 @@ public:
     /// (badInput) where there is no cleansed scan.
     Result<Image> render(const SliceView& view, int width, int height);
 
+    /// The flattened wall. Fail (badInput) on a bad view or where the case has no flat map.
+    Result<Image> render(const FlatView& view, int width, int height);
+    Result<Image> render(const FlatOverview& view, int width, int height);
+
     /// Bytes of GPU memory held.
     std::size_t gpuBytes() const;
 

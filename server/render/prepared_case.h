@@ -1,10 +1,12 @@
 // What a case's renderer is made from, computed without a GPU.
 #pragma once
 
+#include "core/flat_map.h"
 #include "core/volume.h"
 #include "render/leap_map.h"
 
 #include <cstdint>
+#include <memory>
 
 namespace haustra::render {
 
@@ -18,6 +20,8 @@ struct PreparedCase {
     /// none. Where cleansing has changed nothing, this is `ct`, in the same memory.
     Volume<std::int16_t> cleansed;
     BlockRanges ranges;  ///< of the volume that the endoscopic view shows
+    /// For the flattened views; empty where the case has none. prepareCase leaves it empty.
+    std::shared_ptr<const FlatMap> flatMap;
 
     const Volume<std::int16_t>& endoscopic() const { return cleansed.empty() ? ct : cleansed; }
 };

@@ -3,6 +3,7 @@
 
 #include "core/grid.h"
 #include "core/result.h"
+#include "core/strip_layout.h"
 
 #include <cstdint>
 #include <string>
@@ -111,6 +112,22 @@ struct SlicePlacement {
 /// Fails unless the plane is a slice, zoom and window are in range, and width and height positive.
 /// Slices are planes of patient space also where the grid is oblique.
 Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height);
+
+/// A window onto the flattened wall (dissertation §4.3.2): each pixel's place on the surface and its
+/// camera come from the flat map, and a ray along the camera's line of sight meets the cleansed scan
+/// there. It starts close before the wall, so that no fold in between hides the place. Beyond the
+/// seam the picture repeats; beyond the strip's ends it is black.
+struct FlatView {
+    FlatWindow window;
+    TransferFunction transferFunction;
+    MarchOptions march;
+};
+
+/// The whole strip, laid out in columns (layOutStrip).
+struct FlatOverview {
+    TransferFunction transferFunction;
+    MarchOptions march;
+};
 
 /// Grey 0…255 of a value, before rounding: the window's lower end is black, its upper end white.
 double windowed(double hu, const WindowLevel& window);

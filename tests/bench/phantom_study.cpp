@@ -3,9 +3,9 @@
 #include "cleansing/digital_cleansing.h"
 #include "cleansing/mixture.h"
 #include "cleansing/tissue_mixture.h"
+#include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "surface/dual_contouring.h"
-#include "surface/mesh_file.h"
 #include "surface/self_intersection.h"
 #include "surface/simplification.h"
 #include "topology/centerline_path.h"
@@ -73,7 +73,7 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
         scored->seconds = seconds;
         study.surfaces.push_back(std::move(*scored));
         if (options.out.empty()) return {};
-        return surface::writeMesh(options.out / ("surface " + what + ".ply"), mesh);
+        return mesh::writeMesh(options.out / ("surface " + what + ".ply"), mesh);
     };
 
     // What contouring alone does, on a scan that needed no cleansing, in a lumen that is the truth.

@@ -1,7 +1,7 @@
 // What every stage up to the surface makes of phantoms of each preset in both positions, against
 // their truth, as Markdown tables. `--help` tells the options.
 #include "bench/phantom_study.h"
-#include "surface/mesh_file.h"
+#include "mesh/mesh_file.h"
 
 #include <cstdio>
 #include <map>
@@ -156,7 +156,7 @@ void printTables(const std::vector<Row>& rows, bool surface, bool worst) {
 
 /// Scores a mesh of elsewhere against the phantom.
 Result<void> scoreMesh(const std::string& file, const phantom::PhantomOptions& options) {
-    const auto mesh = surface::readMesh(file);
+    const auto mesh = mesh::readMesh(file);
     if (!mesh) return tl::make_unexpected(mesh.error());
     const auto truth = phantom::makePhantom(options);
     if (!truth) return tl::make_unexpected(truth.error());

@@ -1,9 +1,9 @@
 // The command line as scripts meet it: exit codes, files, formats.
 #include "core/centerline.h"
 #include "end_to_end/run_program.h"
+#include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "store/case_store.h"
-#include "surface/mesh_file.h"
 
 #include <algorithm>
 #include <map>
@@ -199,7 +199,7 @@ TEST_F(PreparedPhantom, TheSurfaceIsExportedInEachFormat) {
     for (const char* name : {"s.ply", "s.obj", "s.off", "s.stl"}) {
         const auto outcome = haustra({"export", "p", "surface", file(name), "--store", store()});
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-        const auto back = surface::readMesh(file(name));
+        const auto back = mesh::readMesh(file(name));
         ASSERT_TRUE(back) << describe(back.error());
         EXPECT_EQ(back->triangles.size(), stored.triangles.size()) << name;
         EXPECT_EQ(meshTopology(*back).eulerCharacteristic, 2) << name;

@@ -1,7 +1,7 @@
 // haustra denoise as scripts meet it.
 #include "end_to_end/run_program.h"
 #include "handle_meshes.h"
-#include "surface/mesh_file.h"
+#include "mesh/mesh_file.h"
 
 #include <algorithm>
 
@@ -46,7 +46,7 @@ TEST(Denoise, ReadsAndWritesEveryFormatAndTellsWhatItCut) {
     for (const char* ending : {".ply", ".obj", ".off", ".STL"}) {
         const fs::path in = folder.path() / (std::string("in") + ending),
                        out = folder.path() / (std::string("out") + ending);
-        ASSERT_TRUE(surface::writeMesh(in, twoHandles()));
+        ASSERT_TRUE(mesh::writeMesh(in, twoHandles()));
         const auto outcome = denoise({in, out, "--report", report, "--threads", "2"});
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_EQ(lineCount(outcome.out), 3u) << outcome.out;
@@ -54,7 +54,7 @@ TEST(Denoise, ReadsAndWritesEveryFormatAndTellsWhatItCut) {
             << outcome.out;
         EXPECT_NE(outcome.out.find("genus 2 before, 0 after; area changed by +"), std::string::npos)
             << outcome.out;
-        const auto clean = surface::readMesh(out);
+        const auto clean = mesh::readMesh(out);
         ASSERT_TRUE(clean) << describe(clean.error());
         const MeshTopology topology = meshTopology(*clean);
         EXPECT_EQ(topology.eulerCharacteristic, 2) << ending;
@@ -77,7 +77,7 @@ TEST(Denoise, ReadsAndWritesEveryFormatAndTellsWhatItCut) {
 TEST(Denoise, MayReplaceItsInputAndThenHasNothingToDo) {
     const tests::TemporaryFolder folder;
     const fs::path file = folder.path() / "mesh.ply";
-    ASSERT_TRUE(surface::writeMesh(file, twoHandles()));
+    ASSERT_TRUE(mesh::writeMesh(file, twoHandles()));
     ASSERT_EQ(denoise({file, file}).exitCode, 0);
     const std::string once = tests::fileContent(file);
     const auto again = denoise({file, file});
@@ -96,10 +96,10 @@ TEST(Denoise, TreatsEachPieceOfAMesh) {
         mesh.vertices.push_back(p + glm::dvec3(200.0, 0.0, 0.0));
     for (const glm::ivec3& t : other.triangles)
         mesh.triangles.push_back(t + first);
-    ASSERT_TRUE(surface::writeMesh(in, mesh));
+    ASSERT_TRUE(mesh::writeMesh(in, mesh));
     const auto outcome = denoise({in, out});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-    const auto clean = surface::readMesh(out);
+    const auto clean = mesh::readMesh(out);
     ASSERT_TRUE(clean);
     EXPECT_EQ(meshTopology(*clean).components, 2);
     EXPECT_EQ(meshTopology(*clean).genus(), 0);
@@ -119,7 +119,7 @@ TEST(Denoise, TellsWhereNoCutIsClean) {
         for (const glm::ivec3& t : ring.triangles)
             mesh.triangles.push_back(t + first);
     }
-    ASSERT_TRUE(surface::writeMesh(in, mesh));
+    ASSERT_TRUE(mesh::writeMesh(in, mesh));
     const auto outcome = denoise({in, out, "--report", report});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_EQ(lineCount(outcome.out), 4u) << outcome.out;
@@ -145,8 +145,8 @@ TEST(Denoise, RefusesWhatHasNoInsideAndLeavesNothing) {
     doubled.triangles.push_back(doubled.triangles[0]);
     const fs::path openFile = folder.path() / "open.ply",
                    doubledFile = folder.path() / "doubled.ply";
-    ASSERT_TRUE(surface::writeMesh(openFile, open));
-    ASSERT_TRUE(surface::writeMesh(doubledFile, doubled));
+    ASSERT_TRUE(mesh::writeMesh(openFile, open));
+    ASSERT_TRUE(mesh::writeMesh(doubledFile, doubled));
     expectOneError(denoise({openFile, out}), openFile);
     expectOneError(denoise({doubledFile, out}), doubledFile);
     const auto missing = denoise({folder.path() / "missing.ply", out});

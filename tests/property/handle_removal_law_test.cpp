@@ -1,13 +1,13 @@
 // Laws of the loops that handles are cut along: against CGAL's exact search, and of the cover.
 #include "data_folder.h"
 #include "handle_meshes.h"
+#include "mesh/mesh_file.h"
 #include "surface/covering_loops.h"
 #include "surface/covering_space.h"
 #include "surface/handle_removal.h"
 #include "surface/loop_coarsening.h"
 #include "surface/loop_homology.h"
 #include "surface/loop_search.h"
-#include "surface/mesh_file.h"
 
 #include <limits>
 #include <set>
@@ -83,8 +83,8 @@ TriMesh shaken(TriMesh mesh, double byMm) {
     return mesh;
 }
 
-Loop loopOf(const TriMesh& mesh) {
-    const LoopMesh halves = LoopMesh::of(mesh).value();
+mesh::Loop loopOf(const TriMesh& mesh) {
+    const mesh::HalfedgeMesh halves = mesh::HalfedgeMesh::ofClosed(mesh).value();
     return shortestLoop(halves, homologyMarks(halves), {}, {});
 }
 
@@ -105,7 +105,7 @@ TEST(HandleRemovalLaw, TheLoopIsTheShortestOfAllThatCgalFinds) {
 
 TEST(HandleRemovalLaw, NoCycleOfCgalsThroughTheColonIsShorter) {
     HAUSTRA_REAL_DATA(file, "meshes/colon00090_genus1_100k.ply");
-    const TriMesh mesh = readMesh(file).value();
+    const TriMesh mesh = mesh::readMesh(file).value();
     const auto removal = removeHandles(mesh);
     ASSERT_TRUE(removal);
     const double oursMm = removal->handles[0].lengthMm;
@@ -177,7 +177,7 @@ TEST(HandleRemovalLaw, CoarseningKeepsTheTopologyAndThePlaces) {
         const CoarseMesh coarse = coarsen(mesh, 300);
         const MeshTopology topology = meshTopology(coarse.mesh);
         EXPECT_TRUE(topology.closed());
-        EXPECT_TRUE(LoopMesh::of(coarse.mesh));
+        EXPECT_TRUE(mesh::HalfedgeMesh::ofClosed(coarse.mesh));
         EXPECT_EQ(topology.genus(), handles);
         EXPECT_LE(coarse.mesh.vertices.size(), 300u);
         for (std::size_t v = 0; v < coarse.fineVertex.size(); ++v)
@@ -187,10 +187,11 @@ TEST(HandleRemovalLaw, CoarseningKeepsTheTopologyAndThePlaces) {
 
 TEST(HandleRemovalLaw, TheCutGraphLeavesOneDiscWhoseSidesPair) {
     for (int handles = 1; handles <= 4; ++handles) {
-        const LoopMesh mesh = LoopMesh::of(coarsen(handled(handles), 400).mesh).value();
-        const CutGraph graph = makeCutGraph(mesh, 0);
+        const mesh::HalfedgeMesh mesh =
+            mesh::HalfedgeMesh::ofClosed(coarsen(handled(handles), 400).mesh).value();
+        const mesh::CutGraph graph = mesh::makeCutGraph(mesh, 0);
         EXPECT_EQ(int(graph.basis.size()), 2 * handles);
-        for (const Loop& loop : graph.basis) {
+        for (const mesh::Loop& loop : graph.basis) {
             for (std::size_t i = 0; i < loop.halfedges.size(); ++i) {
                 EXPECT_EQ(mesh.target(loop.halfedges[i]),
                           mesh.origin(loop.halfedges[(i + 1) % loop.halfedges.size()]));
@@ -215,8 +216,9 @@ TEST(HandleRemovalLaw, TheCutGraphLeavesOneDiscWhoseSidesPair) {
 
 TEST(HandleRemovalLaw, TheCoverIsSimplyConnectedAndItsRingsClose) {
     for (int handles = 1; handles <= 3; ++handles) {
-        const LoopMesh mesh = LoopMesh::of(coarsen(handled(handles), 300).mesh).value();
-        const FundamentalDomain domain = slice(mesh, makeCutGraph(mesh, 0));
+        const mesh::HalfedgeMesh mesh =
+            mesh::HalfedgeMesh::ofClosed(coarsen(handled(handles), 300).mesh).value();
+        const FundamentalDomain domain = slice(mesh, mesh::makeCutGraph(mesh, 0));
         const int sides = int(domain.sides.size());
         CoveringSpace cover(mesh, domain);
         for (int copy = 0; copy < 60; ++copy) {
@@ -260,13 +262,13 @@ TEST(HandleRemovalLaw, TheCoverIsSimplyConnectedAndItsRingsClose) {
 
 TEST(HandleRemovalLaw, LoopsInTheCoverAgreeWithTheSearchOnTheMesh) {
     for (int handles = 1; handles <= 4; ++handles) {
-        const LoopMesh mesh =
-            LoopMesh::of(coarsen(shaken(handled(handles), 0.05), 500).mesh).value();
+        const mesh::HalfedgeMesh mesh =
+            mesh::HalfedgeMesh::ofClosed(coarsen(shaken(handled(handles), 0.05), 500).mesh).value();
         const auto marks = homologyMarks(mesh);
         const auto loops = coveringLoops(mesh, marks, 1.2);
         ASSERT_FALSE(loops.empty());
         EXPECT_NEAR(loops[0].lengthMm, shortestLoop(mesh, marks, {}, {}).lengthMm, 1e-9);
-        for (const Loop& loop : loops) {
+        for (const mesh::Loop& loop : loops) {
             std::uint64_t sum = 0;
             for (const int h : loop.halfedges)
                 sum ^= marks[h];

@@ -3,7 +3,7 @@
 #include "data_folder.h"
 #include "mesh_laws.h"
 #include "surface/dual_contouring.h"
-#include "surface/mesh_file.h"
+#include "mesh/mesh_file.h"
 #include "surface/self_intersection.h"
 #include "surface/simplification.h"
 #include "surface_measure.h"
@@ -191,7 +191,7 @@ TEST(SimplificationLaw, KeepsTheSmallestSolids) {
 
 TEST(SimplificationLaw, KeepsTheGenusOfARealColon) {
     HAUSTRA_REAL_DATA(file, "meshes/colon00090_genus1_100k.ply");
-    const auto mesh = surface::readMesh(file);
+    const auto mesh = mesh::readMesh(file);
     ASSERT_TRUE(mesh) << describe(mesh.error());
     const auto simple = simplify(*mesh, {.errorMm = 0.1});
     ASSERT_TRUE(simple) << describe(simple.error());

@@ -3,7 +3,7 @@
 
 #include "data_folder.h"
 #include "handle_meshes.h"
-#include "surface/mesh_file.h"
+#include "mesh/mesh_file.h"
 #include "surface/self_intersection.h"
 
 #include <algorithm>
@@ -283,7 +283,7 @@ TEST(HandleRemoval, RefusesWhatIsNotOneClosedManifold) {
 
 TEST(HandleRemoval, OpensTheRealColonsHandle) {
     HAUSTRA_REAL_DATA(file, "meshes/colon00090_genus1_100k.ply");
-    const auto mesh = readMesh(file);
+    const auto mesh = mesh::readMesh(file);
     ASSERT_TRUE(mesh) << describe(mesh.error());
     ASSERT_EQ(meshTopology(*mesh).genus(), 1);
     const auto removal = removeHandles(*mesh);

@@ -1,5 +1,5 @@
 // Mesh files: what is written reads back; what others write is read; what is broken is refused.
-#include "surface/mesh_file.h"
+#include "mesh/mesh_file.h"
 
 #include "data_folder.h"
 
@@ -13,8 +13,8 @@
 
 using haustra::ErrorKind;
 using haustra::TriMesh;
-using haustra::surface::readMesh;
-using haustra::surface::writeMesh;
+using haustra::mesh::readMesh;
+using haustra::mesh::writeMesh;
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 
 /// Reads PLY (text or binary), OBJ, OFF (text) or STL (text or binary), by the name's ending in any
 /// case. Polygons are triangulated (see polygon_soup.h); STL's corners at one place become one
@@ -23,4 +23,4 @@ Result<TriMesh> readMesh(const std::filesystem::path& file);
 /// `file` that is renamed. The same mesh gives the same bytes. Fails (io) naming the file.
 Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh);
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

@@ -1,13 +1,13 @@
 // OBJ, OFF and STL; ply_format.cpp reads PLY.
-#include "surface/polygon_soup.h"
-#include "surface/text_scanner.h"
+#include "mesh/polygon_soup.h"
+#include "mesh/text_scanner.h"
 
 #include <bit>
 #include <cstring>
 
 static_assert(std::endian::native == std::endian::little);
 
-namespace haustra::surface {
+namespace haustra::mesh {
 namespace {
 
 constexpr std::size_t stlHeaderBytes = 84, stlFacetBytes = 50;
@@ -153,4 +153,4 @@ Result<PolygonSoup> readStl(std::span<const char> bytes, const std::string& plac
     return readBinaryStl(bytes.subspan(stlHeaderBytes, binaryBytes - stlHeaderBytes));
 }
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

@@ -1,4 +1,4 @@
-// A closed mesh as half-edges: what loops walk on.
+// A manifold mesh as half-edges: what loops and fronts walk on.
 #pragma once
 
 #include "core/result.h"
@@ -6,26 +6,31 @@
 
 #include <vector>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 
 /// Half-edge h = 3·triangle + corner goes from that corner to the triangle's next one, and has the
 /// triangle on its left. Immutable; holds its own copy of the connectivity.
-class LoopMesh {
+class HalfedgeMesh {
 public:
-    /// Fails (badInput) where an index is out of range, a triangle repeats a vertex, an edge does
-    /// not have exactly two triangles that agree on its direction, or a vertex joins several fans.
-    /// O(n).
-    static Result<LoopMesh> of(const TriMesh& mesh);
+    /// Open or closed. Fails (badInput) where an index is out of range, a triangle repeats a
+    /// vertex, an edge has more than two triangles or two that disagree on its direction, or a
+    /// vertex joins several fans. O(n).
+    static Result<HalfedgeMesh> of(const TriMesh& mesh);
+    /// As `of`, and fails (badInput) where an edge has only one triangle.
+    static Result<HalfedgeMesh> ofClosed(const TriMesh& mesh);
+    bool closed() const;
 
     int vertexCount() const { return int(outgoing_.size()); }
     int halfedgeCount() const { return int(origin_.size()); }
     int origin(int h) const { return origin_[h]; }
     int target(int h) const { return origin_[next(h)]; }
+    /// −1 at the rim of an open mesh.
     int opposite(int h) const { return opposite_[h]; }
     double lengthMm(int h) const { return lengthMm_[h]; }
-    /// One half-edge that leaves `v`; −1 where no triangle uses it.
+    /// One half-edge that leaves `v`, at the rim the one from which turning left meets all others;
+    /// −1 where no triangle uses it.
     int outgoing(int v) const { return outgoing_[v]; }
-    /// The next half-edge, counter-clockwise, that leaves the origin of `h`.
+    /// The next half-edge, counter-clockwise, that leaves the origin of `h`; −1 past the rim.
     int turnLeft(int h) const { return opposite_[previous(h)]; }
     static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
     static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
@@ -41,4 +46,4 @@ struct Loop {
     std::vector<int> halfedges;
 };
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

@@ -1,6 +1,6 @@
-#include "surface/mesh_file.h"
+#include "mesh/mesh_file.h"
 
-#include "surface/polygon_soup.h"
+#include "mesh/polygon_soup.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,7 +13,7 @@
 
 #include <unistd.h>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 namespace {
 
 enum class Format { ply, obj, off, stl };
@@ -173,4 +173,4 @@ Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh) {
     return {};
 }
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

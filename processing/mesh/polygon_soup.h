@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 
 /// Polygon p has the corners corners[firstCorner[p]] … corners[firstCorner[p + 1] − 1].
 struct PolygonSoup {
@@ -40,4 +40,4 @@ void weldPoints(PolygonSoup& soup);
 /// no triangle or more than 2³⁰ of anything.
 Result<TriMesh> triangulated(const PolygonSoup& soup, const std::string& place);
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

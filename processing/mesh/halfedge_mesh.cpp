@@ -1,8 +1,9 @@
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
+#include <algorithm>
 #include <numeric>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 namespace {
 
 bool soundTriangles(const TriMesh& mesh) {
@@ -18,12 +19,12 @@ bool soundTriangles(const TriMesh& mesh) {
 
 }  // namespace
 
-Result<LoopMesh> LoopMesh::of(const TriMesh& mesh) {
+Result<HalfedgeMesh> HalfedgeMesh::of(const TriMesh& mesh) {
     if (!soundTriangles(mesh)) {
         return fail(ErrorKind::badInput,
                     "a triangle of the mesh repeats a vertex, or names one that does not exist");
     }
-    LoopMesh made;
+    HalfedgeMesh made;
     const std::size_t halfedges = mesh.triangles.size() * 3;
     made.origin_.resize(halfedges);
     made.opposite_.assign(halfedges, -1);
@@ -51,9 +52,7 @@ Result<LoopMesh> LoopMesh::of(const TriMesh& mesh) {
             ++back;
             made.opposite_[h] = leaving[i];
         }
-        if (same == 1 && back == 0)
-            return fail(ErrorKind::badInput, "the mesh is not closed: an edge has one triangle");
-        if (same != 1 || back != 1) {
+        if (same != 1 || back > 1) {
             return fail(ErrorKind::badInput,
                         "the mesh is not manifold: triangles meet at an edge that cannot lie on "
                         "one surface, or are turned against each other");
@@ -61,17 +60,32 @@ Result<LoopMesh> LoopMesh::of(const TriMesh& mesh) {
     }
     for (int v = 0; v < int(mesh.vertices.size()); ++v) {
         if (first[v] == first[v + 1]) continue;
-        const int start = leaving[first[v]];
+        // At the rim the fan is walked from its clockwise end, or some of it would be missed.
+        int start = leaving[first[v]];
+        for (int i = first[v]; i < first[v + 1]; ++i) {
+            if (made.opposite_[leaving[i]] < 0) start = leaving[i];
+        }
         made.outgoing_[v] = start;
         int fan = 0, h = start;
         do {
             ++fan;
             h = made.turnLeft(h);
-        } while (h != start);
+        } while (h >= 0 && h != start);
         if (fan != first[v + 1] - first[v])
             return fail(ErrorKind::badInput, "the mesh is not manifold: sheets meet at one vertex");
     }
     return made;
 }
 
-}  // namespace haustra::surface
+Result<HalfedgeMesh> HalfedgeMesh::ofClosed(const TriMesh& mesh) {
+    Result<HalfedgeMesh> made = of(mesh);
+    if (made && !made->closed())
+        return fail(ErrorKind::badInput, "the mesh is not closed: an edge has one triangle");
+    return made;
+}
+
+bool HalfedgeMesh::closed() const {
+    return std::find(opposite_.begin(), opposite_.end(), -1) == opposite_.end();
+}
+
+}  // namespace haustra::mesh

@@ -1,4 +1,4 @@
-#include "surface/cut_graph.h"
+#include "mesh/cut_graph.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,7 +6,7 @@
 #include <queue>
 #include <tuple>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 namespace {
 
 struct PathTree {
@@ -15,7 +15,7 @@ struct PathTree {
         into;  ///< the half-edge by which the path from the root arrives; −1 at the root
 };
 
-PathTree shortestPaths(const LoopMesh& mesh, int root) {
+PathTree shortestPaths(const HalfedgeMesh& mesh, int root) {
     PathTree tree{std::vector<double>(mesh.vertexCount(), std::numeric_limits<double>::infinity()),
                   std::vector<int>(mesh.vertexCount(), -1)};
     using Entry = std::pair<double, int>;
@@ -48,7 +48,7 @@ int findRoot(std::vector<int>& parent, int v) {
 }
 
 /// From the root along the tree, over `closing`, and back along the tree.
-Loop treeLoop(const LoopMesh& mesh, const PathTree& tree, int closing) {
+Loop treeLoop(const HalfedgeMesh& mesh, const PathTree& tree, int closing) {
     Loop loop;
     for (int v = mesh.origin(closing); tree.into[v] >= 0; v = mesh.origin(tree.into[v]))
         loop.halfedges.push_back(tree.into[v]);
@@ -62,7 +62,7 @@ Loop treeLoop(const LoopMesh& mesh, const PathTree& tree, int closing) {
 }
 
 /// Takes away edges that end nowhere, which do not hold the disc's sides together.
-void prune(const LoopMesh& mesh, std::vector<char>& cut) {
+void prune(const HalfedgeMesh& mesh, std::vector<char>& cut) {
     std::vector<int> degree(mesh.vertexCount(), 0), ends;
     for (int h = 0; h < mesh.halfedgeCount(); ++h)
         degree[mesh.origin(h)] += cut[h];
@@ -84,7 +84,7 @@ void prune(const LoopMesh& mesh, std::vector<char>& cut) {
 
 }  // namespace
 
-CutGraph makeCutGraph(const LoopMesh& mesh, int root) {
+CutGraph makeCutGraph(const HalfedgeMesh& mesh, int root) {
     const PathTree tree = shortestPaths(mesh, root);
     CutGraph graph;
     graph.cut.assign(mesh.halfedgeCount(), 0);
@@ -120,4 +120,4 @@ CutGraph makeCutGraph(const LoopMesh& mesh, int root) {
     return graph;
 }
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

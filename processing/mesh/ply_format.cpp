@@ -1,6 +1,6 @@
 // PLY: a header that describes elements and their properties, then the elements.
-#include "surface/polygon_soup.h"
-#include "surface/text_scanner.h"
+#include "mesh/polygon_soup.h"
+#include "mesh/text_scanner.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 namespace {
 
 enum class Encoding { text, littleEndian, bigEndian };
@@ -221,4 +221,4 @@ Result<PolygonSoup> readPly(std::span<const char> bytes, const std::string& plac
     return soup;
 }
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

@@ -1,10 +1,10 @@
-#include "surface/polygon_soup.h"
+#include "mesh/polygon_soup.h"
 
 #include <bit>
 #include <cmath>
 #include <unordered_map>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 namespace {
 
 constexpr std::size_t maxCorners = 10000;
@@ -131,4 +131,4 @@ Result<TriMesh> triangulated(const PolygonSoup& soup, const std::string& place) 
     return mesh;
 }
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

@@ -1,11 +1,11 @@
 // Where to slice a closed surface so that it unfolds into one disc.
 #pragma once
 
-#include "surface/loop_mesh.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <vector>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 
 struct CutGraph {
     std::vector<char> cut;    ///< per half-edge: its edge is on the cut graph
@@ -17,6 +17,6 @@ struct CutGraph {
 /// edges in neither. The cut graph is the union of the loops less their common tails, so that every
 /// vertex on it has at least two of its edges, and the surface less the cut graph is one open disc.
 /// Empty for a sphere. The mesh must be connected. O(n log n).
-CutGraph makeCutGraph(const LoopMesh& mesh, int root);
+CutGraph makeCutGraph(const HalfedgeMesh& mesh, int root);
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh

@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace haustra::surface {
+namespace haustra::mesh {
 
 /// Walks over bytes that outlive it; never past their end.
 class TextScanner {
@@ -53,4 +53,4 @@ private:
     std::string_view rest_;
 };
 
-}  // namespace haustra::surface
+}  // namespace haustra::mesh
