@@ -23,7 +23,8 @@ struct WallPlace {
 /// A stretch between two places as it lies on the surface.
 struct WallPath {
     std::vector<glm::dvec3> pointsMm;  ///< the ends, and where it crosses triangles' edges
-    double lengthMm = 0.0;
+    double lengthMm = 0.0;             ///< along the surface
+    double straightMm = 0.0;           ///< from end to end through space: a polyp's diameter
 };
 
 /// Finds places in a flat map. Immutable; any number of threads. Memory about 100 bytes a triangle.
@@ -38,18 +39,21 @@ public:
 
     const FlatMap& map() const;
 
-    /// The place at a flat coordinate; x is taken modulo 1. Empty where y is beyond the strip.
-    /// Where rounding leaves a hair between two triangles, the nearer of them. O(1) expected.
+    /// The place at a flat coordinate; x is taken modulo 1. Empty where y is beyond the strip or
+    /// either is not finite. Where rounding leaves a hair between two triangles, the nearer of
+    /// them. O(log n) expected.
     std::optional<WallPlace> at(glm::dvec2 flat) const;
-    /// The place of the surface nearest to a point. O(log n) expected; exact.
+    /// The place of the surface nearest to a point: a place that `at` gave is found again, also
+    /// where another stretch of wall nearly touches it. O(log n) expected near the wall; exact.
     WallPlace nearest(glm::dvec3 positionMm) const;
 
     /// The 3-D curve of a straight line in the flat plane (x may leave [0, 1]: it wraps, and the
     /// line is not the shorter way round unless the ends say so). Points beyond the strip are
-    /// clamped to it. O(triangles crossed).
+    /// clamped to it; ends must be finite. O(triangles crossed).
     WallPath path(glm::dvec2 from, glm::dvec2 to) const;
     /// Area on the surface, mm², of a closed polygon in the flat plane (x may leave [0, 1], the
-    /// polygon must not wrap around the colon onto itself). Even–odd where it crosses itself.
+    /// polygon must not wrap around the colon onto itself). Even–odd where it crosses itself; 0
+    /// where it has fewer than three corners. O(corners² + triangles met by it).
     double areaMm2(const std::vector<glm::dvec2>& polygon) const;
 
 private:
