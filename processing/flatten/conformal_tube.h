@@ -28,7 +28,7 @@ struct ConformalTubeOptions {
 
 struct ConformalTube {
     PeriodicMap map;
-    double modulus = 0.0;      ///< √(E(u)/E(v)): length over circumference, the map's height
+    double modulus = 0.0;      ///< √(E(v)/E(u)): length over circumference, the map's height
     double certificate = 0.0;  ///< E(u)·E(v) − 1 ≥ 0: bounds the modulus's relative error
     int flippedEdges = 0;      ///< by the intrinsic Delaunay triangulation
     int negativeWeights = 0;   ///< edges whose cotangent weight was negative before it

@@ -1,0 +1,33 @@
+#include "flatten/conjugate_gradient.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+
+namespace haustra::flatten {
+namespace {
+
+template <class Preconditioner>
+IterativeSolution solveWith(const Eigen::SparseMatrix<double>& lower,
+                            const std::vector<double>& right, double tolerance) {
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower, Preconditioner> solver;
+    solver.setTolerance(tolerance);
+    solver.compute(lower);
+    const Eigen::Map<const Eigen::VectorXd> b(right.data(), Eigen::Index(right.size()));
+    const Eigen::VectorXd x = solver.solve(b);
+    return {{x.begin(), x.end()}, int(solver.iterations()), solver.info() == Eigen::Success};
+}
+
+}  // namespace
+
+IterativeSolution conjugateGradient(const SymmetricMatrix& matrix, const std::vector<double>& right,
+                                    bool jacobi, double tolerance) {
+    const Eigen::Map<const Eigen::SparseMatrix<double>> whole(
+        matrix.size, matrix.size, Eigen::Index(matrix.row.size()), matrix.columnStart.data(),
+        matrix.row.data(), matrix.value.data());
+    const auto size = Eigen::Index(right.size());
+    const Eigen::SparseMatrix<double> lower = whole.topLeftCorner(size, size);
+    return jacobi ? solveWith<Eigen::DiagonalPreconditioner<double>>(lower, right, tolerance)
+                  : solveWith<Eigen::IdentityPreconditioner>(lower, right, tolerance);
+}
+
+}  // namespace haustra::flatten
