@@ -12,6 +12,8 @@ namespace haustra::surface {
 namespace {
 
 constexpr double farthestMm = 1e6;
+constexpr float guardMm = 1.0f;     // about a contact
+constexpr int guardedAttempts = 4;  // then the guard is everywhere
 
 std::vector<Quadric> inputQuadrics(const CornerMesh& mesh) {
     std::vector<Quadric> quadric(mesh.position.size());
@@ -76,6 +78,27 @@ bool indicesValid(const TriMesh& mesh) {
     });
 }
 
+/// Contacts are so few that it is cheaper to look for them when all is done, and where there are
+/// some, to begin again with a guard about them.
+void simplifyRegion(Simplification& shared, const Region& region) {
+    std::vector<FloatBox> guarded;
+    for (int attempt = 0;; ++attempt) {
+        RegionPart part(shared, region);
+        if (attempt == guardedAttempts) {
+            guarded = {{glm::vec3(-2.0 * farthestMm), glm::vec3(2.0 * farthestMm)}};
+        }
+        RegionSimplification(part, shared.minAngleDegrees, guarded).run();
+        std::vector<FloatBox> found;
+        if (attempt < guardedAttempts) found = contacts(part.mesh, part.changed);
+        if (found.empty()) {
+            part.writeTo(shared);
+            return;
+        }
+        for (const FloatBox& box : found)
+            guarded.push_back({box.low - guardMm, box.high + guardMm});
+    }
+}
+
 }  // namespace
 
 Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& options) {
@@ -98,27 +121,24 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& optio
     ErrorBound bound(*corners, options.errorMm);
     auto quadric = inputQuadrics(*corners);
     const std::size_t vertices = mesh.vertices.size();
-    Simplification shared{std::move(*corners),
-                          std::move(bound),
-                          std::move(quadric),
-                          std::vector<std::uint32_t>(vertices, 0),
-                          std::vector<char>(vertices, 0),
-                          std::vector<char>(vertices, 0),
-                          std::vector<char>(vertices, 0),
+    const auto triangles = std::size_t(corners->triangleCount());
+    Simplification shared{std::move(*corners),        std::move(bound),
+                          std::move(quadric),         std::vector<char>(vertices, 0),
+                          std::vector<int>(vertices), std::vector<int>(triangles),
                           options.minAngleDegrees};
 
     struct Pass {
         std::size_t vertexLimit;
         double share;
     };
-    // What a box cuts off in one pass lies inside a box of the next; the last has one box.
-    const Pass passes[] = {{5000, 0.5}, {5000, 0.37}, {5000, 0.62}, {vertices, 0.5}};
+    // What a box cuts off in one pass most often lies inside a box of the next.
+    const Pass passes[] = {{5000, 0.5}, {5000, 0.37}, {5000, 0.62}, {20000, 0.45}};
     double done = 0.0;
     for (const Pass& pass : passes) {
         const std::vector<Region> regions = partition(shared.mesh, pass.vertexLimit, pass.share);
         parallelFor(regions.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                RegionSimplification(shared, regions[i]).run();
+                simplifyRegion(shared, regions[i]);
         });
         done += 1.0 / std::size(passes);
         if (options.progress) options.progress(done);

@@ -28,10 +28,11 @@ struct SimplificationOptions {
 /// over either surface are within errorMm of the other and none twice as far, but on a real colon
 /// at 0.05 mm a point 2.6 times as far has been seen.
 ///
-/// Regions of space are worked on at once, and what their borders cut off in three more passes,
-/// two with other borders and one with none; the borders come from the mesh alone, so that the
-/// same mesh comes out for any number of threads. Fails (badInput) where the mesh is not closed and
-/// manifold or not finite. O(n log n).
+/// Regions of space are worked on at once, and what their borders cut off in three more passes
+/// with other borders, which all come from the mesh alone, so that the same mesh comes out for any
+/// number of threads. A region is searched for self-intersections when it is done, and begun again,
+/// with every step tested about those found, until there are none. Fails (badInput) where the mesh
+/// is not closed and manifold or not finite. O(n log n).
 Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& options = {});
 
 }  // namespace haustra::surface

@@ -57,13 +57,15 @@ ErrorBound::ErrorBound(const CornerMesh& input, double errorMm)
         inputPlace_.push_back(glm::vec3(p));
     const std::size_t count =
         input.position.size() + input.vertex.size() / 2 + input.vertex.size() / 3;
-    sample_.reserve(count);
+    place_.reserve(count);
+    next_.reserve(count);
     on_.reserve(count);
     corner_.reserve(count);
     const auto add = [&](On on, int corner, const glm::dvec3& place) {
         int& first = first_[corner / 3];
-        sample_.push_back({glm::vec3(place), first});
-        first = int(on_.size());
+        next_.push_back(first);
+        first = int(place_.size());
+        place_.push_back(glm::vec3(place));
         on_.push_back(on);
         corner_.push_back(corner);
     };
@@ -75,22 +77,6 @@ ErrorBound::ErrorBound(const CornerMesh& input, double errorMm)
                 add(On::edge, c, 0.5 * (at(CornerMesh::next(c)) + at(CornerMesh::previous(c))));
         }
         add(On::triangle, 3 * t, (at(3 * t) + at(3 * t + 1) + at(3 * t + 2)) / 3.0);
-    }
-}
-
-void ErrorBound::gather(std::span<const int> oldTriangles, Patch& patch) const {
-    patch.samples.clear();
-    patch.x.clear();
-    patch.y.clear();
-    patch.z.clear();
-    for (const int triangle : oldTriangles) {
-        for (int sample = first_[triangle]; sample >= 0; sample = sample_[sample].next) {
-            const glm::vec3 p = sample_[sample].place;
-            patch.samples.push_back(sample);
-            patch.x.push_back(p.x);
-            patch.y.push_back(p.y);
-            patch.z.push_back(p.z);
-        }
     }
 }
 
@@ -113,7 +99,38 @@ bool ErrorBound::nearTrianglesOf(int sample, const glm::vec3& p) const {
     return false;
 }
 
-bool ErrorBound::nearInput(const glm::vec3& p, const Patch& patch) const {
+HungSamples::HungSamples(const ErrorBound& bound, std::span<const int> slots)
+    : bound_(bound), first_(slots.size(), -1) {
+    for (std::size_t t = 0; t < slots.size(); ++t) {
+        if (slots[t] < 0) continue;
+        const int begin = int(sample_.size());
+        for (int n = bound.first_[slots[t]]; n >= 0; n = bound.next_[n]) {
+            number_.push_back(n);
+            sample_.push_back({bound.place_[n], int(number_.size())});
+        }
+        if (begin == int(sample_.size())) continue;
+        first_[t] = begin;
+        sample_.back().next = -1;
+    }
+}
+
+void HungSamples::gather(std::span<const int> oldTriangles, Patch& patch) const {
+    patch.samples.clear();
+    patch.x.clear();
+    patch.y.clear();
+    patch.z.clear();
+    for (const int triangle : oldTriangles) {
+        for (int sample = first_[triangle]; sample >= 0; sample = sample_[sample].next) {
+            const glm::vec3 p = sample_[sample].place;
+            patch.samples.push_back(sample);
+            patch.x.push_back(p.x);
+            patch.y.push_back(p.y);
+            patch.z.push_back(p.z);
+        }
+    }
+}
+
+bool HungSamples::nearInput(const glm::vec3& p, const Patch& patch) const {
     const std::size_t count = patch.samples.size();
     if (count == 0) return false;
     // Floats that are not negative order as their bits do; with a sample's number in the lowest
@@ -129,17 +146,18 @@ bool ErrorBound::nearInput(const glm::vec3& p, const Patch& patch) const {
     }
     const std::size_t nearest = std::size_t(least & numbers);
     const glm::vec3 away = glm::vec3(x[nearest], y[nearest], z[nearest]) - p;
-    return glm::dot(away, away) <= errorSquared_ || nearTrianglesOf(patch.samples[nearest], p);
+    return glm::dot(away, away) <= bound_.errorSquared_ ||
+           bound_.nearTrianglesOf(number_[patch.samples[nearest]], p);
 }
 
-bool ErrorBound::findHomes(Patch& patch) const {
+bool HungSamples::findHomes(Patch& patch) const {
     const std::size_t triangles = patch.triangles.size();
     patch.home.resize(patch.samples.size());
     std::size_t last = 0;  // a sample's neighbour in the list is often its neighbour in space
     for (std::size_t i = 0; i < patch.samples.size(); ++i) {
         const glm::vec3 p(patch.x[i], patch.y[i], patch.z[i]);
         std::size_t tried = 0;
-        while (tried < triangles && !patch.triangles[last].within(p, errorSquared_)) {
+        while (tried < triangles && !patch.triangles[last].within(p, bound_.errorSquared_)) {
             ++tried;
             last = last + 1 == triangles ? 0 : last + 1;
         }
@@ -149,15 +167,24 @@ bool ErrorBound::findHomes(Patch& patch) const {
     return true;
 }
 
-void ErrorBound::rehang(std::span<const int> oldTriangles, std::span<const int> slots,
-                        const Patch& patch) {
+void HungSamples::rehang(std::span<const int> oldTriangles, std::span<const int> newTriangles,
+                         const Patch& patch) {
     for (const int triangle : oldTriangles)
         first_[triangle] = -1;
     for (std::size_t i = 0; i < patch.samples.size(); ++i) {
-        int& first = first_[slots[patch.home[i]]];
+        int& first = first_[newTriangles[patch.home[i]]];
         sample_[patch.samples[i]].next = first;
         first = patch.samples[i];
     }
+}
+
+void HungSamples::writeTo(ErrorBound& bound, std::span<const int> slots) const {
+    const auto numberOf = [&](int sample) { return sample < 0 ? -1 : number_[sample]; };
+    for (std::size_t t = 0; t < slots.size(); ++t) {
+        if (slots[t] >= 0) bound.first_[slots[t]] = numberOf(first_[t]);
+    }
+    for (std::size_t n = 0; n < sample_.size(); ++n)
+        bound.next_[number_[n]] = numberOf(sample_[n].next);
 }
 
 }  // namespace haustra::surface

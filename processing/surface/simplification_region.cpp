@@ -7,7 +7,6 @@
 namespace haustra::surface {
 namespace {
 
-constexpr double cellMm = 1.25;
 constexpr double wantedAngleDegrees = 20.0;  // sharper corners are bettered
 constexpr int maxValence = 12;
 constexpr double leastNormalCosine = 0.3;  // between a triangle and what takes its place
@@ -31,52 +30,34 @@ glm::dvec3 upright(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
 
 }  // namespace
 
-RegionSimplification::RegionSimplification(Simplification& shared, const Region& region)
-    : shared_(shared),
-      mesh_(shared.mesh),
-      region_(region),
-      grid_(region.box.low, region.box.high, cellMm),
-      sharpestCosine_(cosineOf(shared.minAngleDegrees)) {
-    for (const int triangle : region.triangles)
-        grid_.insert(triangle, boxOf(triangle));
-}
+RegionSimplification::RegionSimplification(RegionPart& part, double minAngleDegrees,
+                                           std::span<const FloatBox> guarded)
+    : part_(part),
+      mesh_(part.mesh),
+      guard_(part.mesh, guarded),
+      sharpestCosine_(cosineOf(minAngleDegrees)) {}
 
 bool RegionSimplification::inBox(const glm::dvec3& p) const {
-    return glm::all(glm::lessThanEqual(region_.box.low, p)) &&
-           glm::all(glm::lessThan(p, region_.box.high));
-}
-
-bool RegionSimplification::starInBox(int v) const {
-    bool inside = true;
-    mesh_.aroundVertex(v, [&](int corner) {
-        inside = inside && inBox(mesh_.position[mesh_.vertex[CornerMesh::next(corner)]]);
-    });
-    return inside;
-}
-
-FloatBox RegionSimplification::boxOf(int triangle) const {
-    const int* v = &mesh_.vertex[3 * triangle];
-    return FloatBox::around(mesh_.position[v[0]], mesh_.position[v[1]], mesh_.position[v[2]]);
+    return glm::all(glm::lessThanEqual(part_.box().low, p)) &&
+           glm::all(glm::lessThan(p, part_.box().high));
 }
 
 void RegionSimplification::run() {
     // What is movable stays so: a collapse or flip in the box gives no vertex a neighbour outside.
-    for (const int v : region_.vertices)
-        shared_.movable[v] = starInBox(v);
     collapseEdges();
     betterCorners();
-    for (const int v : region_.vertices)
-        shared_.settled[v] |= shared_.movable[v];
+    for (int v = 0; v < part_.insideCount(); ++v)
+        part_.settled[v] |= part_.movable[v];
 }
 
 // ------------------------------------------------------------------------------------- collapses
 
 void RegionSimplification::collapseEdges() {
-    for (const int v : region_.vertices) {
-        if (shared_.settled[v] || !movable(v)) continue;
+    for (int v = 0; v < part_.insideCount(); ++v) {
+        if (part_.settled[v] || !movable(v)) continue;
         mesh_.aroundVertex(v, [&](int corner) {
             const int w = mesh_.vertex[CornerMesh::next(corner)];
-            if (v < w || shared_.settled[w]) push(v, w);
+            if (v < w || part_.settled[w]) push(v, w);
         });
     }
     while (!heap_.empty()) {
@@ -84,8 +65,8 @@ void RegionSimplification::collapseEdges() {
         const Candidate candidate = heap_.back();
         heap_.pop_back();
         const auto [error, a, b, version] = candidate;
-        if (shared_.version[a] + shared_.version[b] != version) continue;
-        const Quadric sum = shared_.quadric[a] + shared_.quadric[b];
+        if (part_.version[a] + part_.version[b] != version) continue;
+        const Quadric sum = part_.quadric[a] + part_.quadric[b];
         const glm::dvec3 middle = 0.5 * (mesh_.position[a] + mesh_.position[b]);
         if (collapseEdge(a, b, sum.minimiser(middle), Quality::noSharper)) pushEdgesAround(a);
     }
@@ -93,10 +74,10 @@ void RegionSimplification::collapseEdges() {
 
 void RegionSimplification::push(int a, int b) {
     if (a > b) std::swap(a, b);
-    const Quadric sum = shared_.quadric[a] + shared_.quadric[b];
+    const Quadric sum = part_.quadric[a] + part_.quadric[b];
     const glm::dvec3 middle = 0.5 * (mesh_.position[a] + mesh_.position[b]);
     const double error = sum(sum.minimiser(middle));
-    heap_.push_back({float(error), a, b, shared_.version[a] + shared_.version[b]});
+    heap_.push_back({float(error), a, b, part_.version[a] + part_.version[b]});
     std::push_heap(heap_.begin(), heap_.end());
 }
 
@@ -125,7 +106,7 @@ bool RegionSimplification::collapseEdge(int a, int b, const glm::dvec3& place, Q
 
     Replacement& r = replacement_;
     r.oldTriangles.clear();
-    r.slots.clear();
+    r.newTriangles.clear();
     r.corners.clear();
     r.moved = a;
     r.place = place;
@@ -138,17 +119,17 @@ bool RegionSimplification::collapseEdge(int a, int b, const glm::dvec3& place, Q
                 return;
             }
             r.oldTriangles.push_back(triangle);
-            r.slots.push_back(triangle);
+            r.newTriangles.push_back(triangle);
             r.corners.push_back({a, mesh_.vertex[CornerMesh::next(corner)],
                                  mesh_.vertex[CornerMesh::previous(corner)]});
         });
     }
     if (!permitted(r, quality)) return false;
-    removeFromGrid(r);
+    guard_.remove(r);
     mesh_.collapse(edge);
     mesh_.position[a] = place;
-    shared_.quadric[a] = shared_.quadric[a] + shared_.quadric[b];
-    ++shared_.version[b];
+    part_.quadric[a] = part_.quadric[a] + part_.quadric[b];
+    ++part_.version[b];
     commit(r);
     return true;
 }
@@ -156,7 +137,7 @@ bool RegionSimplification::collapseEdge(int a, int b, const glm::dvec3& place, Q
 // ------------------------------------------------------------------------- what may be replaced
 
 bool RegionSimplification::permitted(const Replacement& r, Quality quality) {
-    return shapesPermitted(r, quality) && withinBound(r) && !meetsSurface(r);
+    return shapesPermitted(r, quality) && withinBound(r) && !guard_.refuses(r);
 }
 
 bool RegionSimplification::shapesPermitted(const Replacement& r, Quality quality) const {
@@ -176,7 +157,7 @@ bool RegionSimplification::shapesPermitted(const Replacement& r, Quality quality
                          c = place(r, r.corners[i][2]);
         newSharpest = std::max(newSharpest, sharpestCosine(a, b, c));
         if (newSharpest > limit) return false;
-        const int* v = &mesh_.vertex[3 * r.slots[i]];
+        const int* v = &mesh_.vertex[3 * r.newTriangles[i]];
         const glm::dvec3 before =
             r.moved >= 0 ? upright(mesh_.position[v[0]], mesh_.position[v[1]], mesh_.position[v[2]])
                          : oldSum;
@@ -191,110 +172,47 @@ bool RegionSimplification::shapesPermitted(const Replacement& r, Quality quality
 }
 
 bool RegionSimplification::withinBound(const Replacement& r) {
-    shared_.bound.gather(r.oldTriangles, patch_);
-    if (r.moved >= 0 && !shared_.bound.nearInput(glm::vec3(r.place), patch_)) return false;
+    part_.samples.gather(r.oldTriangles, patch_);
+    if (r.moved >= 0 && !part_.samples.nearInput(glm::vec3(r.place), patch_)) return false;
     patch_.triangles.clear();
     for (const auto& v : r.corners) {
         patch_.triangles.emplace_back(glm::vec3(place(r, v[0])), glm::vec3(place(r, v[1])),
                                       glm::vec3(place(r, v[2])));
     }
-    if (!shared_.bound.findHomes(patch_)) return false;
+    if (!part_.samples.findHomes(patch_)) return false;
     for (const NearTriangle& t : patch_.triangles) {
         // Corner 0 moves, or ends the new edge 0–1; each spoke is the edge from it in one triangle.
         const glm::vec3 centre = (t.corner[0] + t.corner[1] + t.corner[2]) * (1.0f / 3.0f);
-        if (!shared_.bound.nearInput(centre, patch_)) return false;
+        if (!part_.samples.nearInput(centre, patch_)) return false;
         for (const float share : {0.25f, 0.5f, 0.75f}) {
-            if (!shared_.bound.nearInput(t.corner[0] + share * t.edge[0], patch_)) return false;
+            if (!part_.samples.nearInput(t.corner[0] + share * t.edge[0], patch_)) return false;
         }
     }
     return true;
-}
-
-bool RegionSimplification::meets(const Replacement& r, std::size_t newTriangle,
-                                 const std::array<int, 3>& second) const {
-    const std::array<int, 3>& first = r.corners[newTriangle];
-    int inFirst[3] = {-1, -1, -1}, inSecond[3] = {-1, -1, -1}, shared = 0;
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            if (first[i] != second[j]) continue;
-            inFirst[shared] = i;
-            inSecond[shared++] = j;
-        }
-    }
-    TriangleCorners p, q;
-    for (int k = 0; k < 3; ++k)
-        q[k] = place(r, second[k]);
-    if (shared < 2 && newPlanes_[newTriangle].part(q, inFirst[0], inSecond[0])) return false;
-    for (int k = 0; k < 3; ++k)
-        p[k] = place(r, first[k]);
-    if (shared == 0) return !apart(p, q);
-    if (shared == 1) {
-        const int i = inFirst[0], j = inSecond[0];
-        return !apartAtVertex(p[i], p[(i + 1) % 3], p[(i + 2) % 3], q[(j + 1) % 3], q[(j + 2) % 3]);
-    }
-    if (shared == 2) {
-        const int a = 3 - inFirst[0] - inFirst[1], b = 3 - inSecond[0] - inSecond[1];
-        return !apartAtEdge(p[inFirst[0]], p[inFirst[1]], p[a], q[b]);
-    }
-    return true;
-}
-
-bool RegionSimplification::meetsSurface(const Replacement& r) {
-    newBoxes_.clear();
-    newPlanes_.clear();
-    for (const auto& v : r.corners) {
-        const TriangleCorners triangle = {place(r, v[0]), place(r, v[1]), place(r, v[2])};
-        newBoxes_.push_back(FloatBox::around(triangle[0], triangle[1], triangle[2]));
-        newPlanes_.emplace_back(triangle);
-    }
-    for (std::size_t i = 0; i < r.corners.size(); ++i) {
-        for (std::size_t j = i + 1; j < r.corners.size(); ++j) {
-            if (meets(r, i, r.corners[j])) return true;
-        }
-    }
-    FloatBox all = newBoxes_[0];
-    for (const FloatBox& box : newBoxes_)
-        all.add(box);
-    bool found = false;
-    grid_.visit(all, [&](int triangle, const FloatBox& box) {
-        if (found || std::find(r.oldTriangles.begin(), r.oldTriangles.end(), triangle) !=
-                         r.oldTriangles.end()) {
-            return;
-        }
-        const int* v = &mesh_.vertex[3 * triangle];
-        for (std::size_t i = 0; i < r.corners.size() && !found; ++i)
-            found = newBoxes_[i].touches(box) && meets(r, i, {v[0], v[1], v[2]});
-    });
-    return found;
-}
-
-void RegionSimplification::removeFromGrid(const Replacement& r) {
-    for (const int triangle : r.oldTriangles)
-        grid_.remove(triangle, boxOf(triangle));
 }
 
 void RegionSimplification::commit(const Replacement& r) {
-    if (r.moved >= 0) ++shared_.version[r.moved];
+    if (r.moved >= 0) ++part_.version[r.moved];
     for (const auto& corners : r.corners) {
         for (const int v : corners)
-            shared_.stirred[v] = 1;
+            part_.stirred[v] = 1;
     }
-    for (const int triangle : r.slots)
-        grid_.insert(triangle, boxOf(triangle));
-    shared_.bound.rehang(r.oldTriangles, r.slots, patch_);
+    for (const int triangle : r.newTriangles)
+        part_.changed[triangle] = 1;
+    guard_.insert(r);
+    part_.samples.rehang(r.oldTriangles, r.newTriangles, patch_);
 }
 
 // ---------------------------------------------------------------------------------- sharp corners
 
 void RegionSimplification::betterCorners() {
-    for (const int v : region_.vertices)
-        shared_.stirred[v] =
-            movable(v) && (!shared_.settled[v] || sharpestAround(v) > sharpestCosine_);
+    for (int v = 0; v < part_.insideCount(); ++v)
+        part_.stirred[v] = movable(v) && (!part_.settled[v] || sharpestAround(v) > sharpestCosine_);
     for (int round = 0; round < 3; ++round) {
-        for (const int v : region_.vertices) {
+        for (int v = 0; v < part_.insideCount(); ++v) {
             // What could not be bettered cannot be now, unless something changed beside it.
-            if (!movable(v) || !shared_.stirred[v]) continue;
-            shared_.stirred[v] = 0;
+            if (!movable(v) || !part_.stirred[v]) continue;
+            part_.stirred[v] = 0;
             betterVertex(v);
         }
     }
@@ -355,14 +273,14 @@ bool RegionSimplification::relax(int v) {
     });
     const double squared = glm::dot(normal, normal);
     if (!(squared > 0.0)) return false;
-    r.slots = r.oldTriangles;
+    r.newTriangles = r.oldTriangles;
     r.moved = v;
     glm::dvec3 step = centre / weights - mesh_.position[v];
     step -= normal * (glm::dot(normal, step) / squared);
     for (const double share : {1.0, 0.5, 0.2}) {
         r.place = mesh_.position[v] + share * step;
         if (!inBox(r.place) || !permitted(r, Quality::better)) continue;
-        removeFromGrid(r);
+        guard_.remove(r);
         mesh_.position[v] = r.place;
         commit(r);
         return true;
@@ -381,11 +299,11 @@ bool RegionSimplification::flip(int corner) {
     }
     Replacement& r = replacement_;
     r.oldTriangles = {corner / 3, across / 3};
-    r.slots = r.oldTriangles;
+    r.newTriangles = r.oldTriangles;
     r.corners = {{d, c, a}, {c, d, b}};
     r.moved = -1;
     if (!permitted(r, Quality::better)) return false;
-    removeFromGrid(r);
+    guard_.remove(r);
     mesh_.flip(corner);
     commit(r);
     return true;

@@ -1,9 +1,9 @@
 // Laws of simplification: topology and embedding kept, the distance bounded both ways, corners not
 // sharpened, the same mesh for any number of threads.
 #include "data_folder.h"
+#include "mesh/mesh_file.h"
 #include "mesh_laws.h"
 #include "surface/dual_contouring.h"
-#include "mesh/mesh_file.h"
 #include "surface/self_intersection.h"
 #include "surface/simplification.h"
 #include "surface_measure.h"
@@ -67,6 +67,15 @@ TriMesh closeWalls() {
     });
 }
 
+/// A ball with sheets of wall in it, as thin as a voxel and no further apart.
+TriMesh thinSheets() {
+    return contoured({48, 48, 36}, 60.0, [](const glm::dvec3& p) {
+        const double wave = p.x + 1.5 * std::sin(0.5 * p.y) * std::cos(0.4 * p.z);
+        const double sheet = 0.45 - std::abs(wave - 2.4 * std::round(wave / 2.4));
+        return std::min(15.0 - glm::length(p), -std::min(sheet, 11.0 - glm::length(p)));
+    });
+}
+
 void expectLaws(const TriMesh& before, const TriMesh& after, double errorMm) {
     const MeshTopology was = meshTopology(before), is = meshTopology(after);
     EXPECT_TRUE(is.closed());
@@ -110,6 +119,21 @@ TEST(SimplificationLaw, HoldsForSmoothAndNoisyWalls) {
             ASSERT_TRUE(simple) << describe(simple.error());
             expectLaws(mesh, *simple, errorMm);
         }
+    }
+}
+
+TEST(SimplificationLaw, ThinSheetsStayApartWhereTheBoundIsAsWideAsThey) {
+    const TriMesh mesh = thinSheets();
+    ASSERT_EQ(surface::selfIntersections(mesh).size(), 0u);
+    for (const double errorMm : {0.2, 0.5, 1.0}) {
+        SCOPED_TRACE(errorMm);
+        const auto simple = simplify(mesh, {.errorMm = errorMm});
+        ASSERT_TRUE(simple) << describe(simple.error());
+        EXPECT_TRUE(meshTopology(*simple).closed());
+        EXPECT_EQ(meshTopology(*simple).eulerCharacteristic,
+                  meshTopology(mesh).eulerCharacteristic);
+        EXPECT_EQ(surface::selfIntersections(*simple).size(), 0u);
+        EXPECT_LT(simple->triangles.size(), mesh.triangles.size() / 4);
     }
 }
 
