@@ -1,6 +1,7 @@
 // A case's volumes, centerlines and meshes: from memory to product files and back.
 #include "store/case_store.h"
 #include "store/product_file.h"
+#include "store/product_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,48 +31,11 @@ constexpr Content contentOf<TissueFractions>() {
     return Content::fractionsVolume;
 }
 
-const char* describeContent(Content content) {
-    switch (content) {
-        case Content::int16Volume:
-            return "a volume of 16-bit integers";
-        case Content::uint8Volume:
-            return "a volume of bytes";
-        case Content::floatVolume:
-            return "a volume of floats";
-        case Content::centerline:
-            return "a centerline";
-        case Content::fractionsVolume:
-            return "a volume of tissue fractions";
-        case Content::mesh:
-            return "a mesh";
-    }
-    return "something unknown";
-}
-
-Result<void> checkContent(const MappedProduct& mapped, Content wanted, std::string_view product,
-                          const fs::path& folder) {
-    if (mapped.header.content == wanted) return {};
-    return fail(ErrorKind::badInput,
-                std::string(product) + " is " + describeContent(mapped.header.content) + ", not " +
-                    describeContent(wanted),
-                folder.string());
-}
-
-std::string fileName(std::string_view product, const ProductKey& key, const char* extension) {
-    return std::string(product) + "-" + key.hex.substr(0, 16) + extension;
-}
-
 struct CenterlineSample {
     double x, y, z, arc, radius, gap;
 };
 static_assert(sizeof(CenterlineSample) == centerlineSampleBytes);
 static_assert(sizeof(glm::dvec3) == meshVertexBytes && sizeof(glm::ivec3) == meshTriangleBytes);
-
-template <class T>
-void append(std::vector<std::byte>& bytes, const std::vector<T>& values) {
-    const auto more = std::as_bytes(std::span(values));
-    bytes.insert(bytes.end(), more.begin(), more.end());
-}
 
 }  // namespace
 
@@ -143,7 +107,7 @@ Result<void> Case::publishVolume(std::string_view product, const ProductKey& key
                                  const Volume<T>& volume, const Attributes& attributes,
                                  const std::vector<std::string>& outdated) {
     if (auto writable = checkWritable(); !writable) return writable;
-    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hvol")};
+    const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hvol")};
     const fs::path file = folder_ / entry.file;
     if (auto sound = checkGrid(volume.grid(), file.string()); !sound) return sound;
     const ProductHeader header{
@@ -165,7 +129,7 @@ Result<void> Case::publishCenterline(std::string_view product, const ProductKey&
     }
     ProductHeader header{Content::centerline, {}, digestFromHex(key.hex), {}, attributes};
     header.grid.size = {int(samples.size()), 1, 1};
-    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hline")};
+    const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hline")};
     return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(samples)))
         .and_then([&] { return announce(entry, outdated); });
 }
@@ -174,7 +138,7 @@ Result<void> Case::publishMesh(std::string_view product, const ProductKey& key, 
                                const Attributes& attributes,
                                const std::vector<std::string>& outdated) {
     if (auto writable = checkWritable(); !writable) return writable;
-    const ProductEntry entry{std::string(product), key, fileName(product, key, ".hmesh")};
+    const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hmesh")};
     if (mesh.vertices.size() > mostMeshElements || mesh.triangles.size() > mostMeshElements) {
         return fail(ErrorKind::unsupported, "the mesh has too many vertices or triangles to store",
                     (folder_ / entry.file).string());
@@ -184,8 +148,8 @@ Result<void> Case::publishMesh(std::string_view product, const ProductKey& key, 
     std::vector<std::byte> bytes;
     bytes.reserve(mesh.vertices.size() * meshVertexBytes +
                   mesh.triangles.size() * meshTriangleBytes);
-    append(bytes, mesh.vertices);
-    append(bytes, mesh.triangles);
+    appendBytes(bytes, mesh.vertices);
+    appendBytes(bytes, mesh.triangles);
     return writeProduct(folder_, entry.file, header, bytes).and_then([&] {
         return announce(entry, outdated);
     });

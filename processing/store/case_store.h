@@ -4,6 +4,7 @@
 //   STORE/cases/NAME/<product>-<key16>.hvol  a volume (layout: store/product_file.h)
 //   STORE/cases/NAME/<product>-<key16>.hline a centerline
 //   STORE/cases/NAME/<product>-<key16>.hmesh a triangle mesh
+//   STORE/cases/NAME/<product>-<key16>.hflat a flat map
 //   STORE/cases/NAME/.lock                  flocked by the one writer
 //   STORE/cases/NAME/.tmp-*                 being written, or left by a writer that was killed
 //
@@ -14,6 +15,7 @@
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
+#include "core/flat_map.h"
 #include "core/result.h"
 #include "core/tissue.h"
 #include "core/tri_mesh.h"
@@ -73,6 +75,10 @@ public:
     Result<Centerline> readCenterline(std::string_view product = "centerline") const;
     /// A copy, checked: every vertex is finite and every corner of a triangle is a vertex.
     Result<TriMesh> readMesh(std::string_view product = "surface") const;
+    /// A copy, checked: whoever walks over it finds every index in range, every number finite, x in
+    /// [0, 1], y in [0, height], arcs that do not fall, and at least one triangle and one camera.
+    /// How many triangles the closed surface has it cannot know.
+    Result<FlatMap> readFlatMap(std::string_view product = "flatmap") const;
     Result<Attributes> attributes(std::string_view product) const;
     /// Fails, naming the file, where a product is not byte for byte what was published. Reads all
     /// of it, at the speed of SHA-256 on all cores.
@@ -92,6 +98,10 @@ public:
     Result<void> publishMesh(std::string_view product, const ProductKey& key, const TriMesh& mesh,
                              const Attributes& attributes = {},
                              const std::vector<std::string>& outdated = {});
+    /// Fails (badInput) where readFlatMap would not read it, (unsupported) beyond 2^28 of anything.
+    Result<void> publishFlatMap(std::string_view product, const ProductKey& key, const FlatMap& map,
+                                const Attributes& attributes = {},
+                                const std::vector<std::string>& outdated = {});
 
 private:
     friend class CaseStore;

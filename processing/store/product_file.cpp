@@ -40,11 +40,13 @@ struct FixedHeader {
 static_assert(sizeof(FixedHeader) == 240 && std::is_trivially_copyable_v<FixedHeader>);
 
 bool isVolume(Content content) {
-    return content != Content::centerline && content != Content::mesh;
+    return content != Content::centerline && content != Content::mesh &&
+           content != Content::flatMap;
 }
 
 std::size_t mostElements(Content content) {
-    return content == Content::mesh ? mostMeshElements : std::size_t(1) << 24;
+    const bool triangles = content == Content::mesh || content == Content::flatMap;
+    return triangles ? mostMeshElements : std::size_t(1) << 24;
 }
 
 // The sizes have been held against mostElements, so that nothing overflows.
@@ -63,12 +65,16 @@ std::size_t valuesBytes(Content content, const Grid& grid) {
         case Content::mesh:
             return std::size_t(grid.size.x) * meshVertexBytes +
                    std::size_t(grid.size.y) * meshTriangleBytes;
+        case Content::flatMap:
+            return sizeof(double) + std::size_t(grid.size.x) * flatMapVertexBytes +
+                   std::size_t(grid.size.y) * flatMapTriangleBytes +
+                   std::size_t(grid.size.z) * flatMapCameraBytes;
     }
     return 0;
 }
 
 bool isKnown(Content content) {
-    return content >= Content::int16Volume && content <= Content::mesh;
+    return content >= Content::int16Volume && content <= Content::flatMap;
 }
 
 Digest headerDigest(const FixedHeader& fixed, std::string_view attributes) {
@@ -168,11 +174,14 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
     for (int n = 0; n < 12; ++n) {
         product.header.grid.patientFromVoxel[n / 3][n % 3] = fixed.patientFromVoxel[n];
     }
-    if (!isVolume(content)) {
-        if (fixed.size[2] != 1 || (content == Content::centerline && fixed.size[1] != 1))
-            return damaged("its size is absurd", file);
-    } else if (auto sound = checkGrid(product.header.grid, file.string()); !sound) {
-        return tl::make_unexpected(sound.error());
+    const bool oneCount = content == Content::centerline;
+    if ((oneCount && fixed.size[1] != 1) ||
+        ((oneCount || content == Content::mesh) && fixed.size[2] != 1)) {
+        return damaged("its size is absurd", file);
+    }
+    if (isVolume(content)) {
+        if (auto sound = checkGrid(product.header.grid, file.string()); !sound)
+            return tl::make_unexpected(sound.error());
     }
     if (fixed.valuesOffset != alignedOffset(fixed.attributesBytes) ||
         fixed.valuesBytes != valuesBytes(content, product.header.grid)) {

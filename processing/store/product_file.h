@@ -4,8 +4,10 @@
 //        0      8  "HAUSTRA\n"
 //        8      4  version of this layout, 1
 //       12      4  content: 1 int16 volume, 2 uint8 volume, 3 float volume, 4 centerline,
-//                  5 volume of tissue fractions, 6 mesh
-//       16     12  size i, j, k (volume); samples, 1, 1 (centerline); vertices, triangles, 1 (mesh)
+//                  5 volume of tissue fractions, 6 mesh, 7 flat map
+//       16     12  size i, j, k (volume); samples, 1, 1 (centerline); vertices, triangles, 1
+//       (mesh);
+//                  vertices, triangles, cameras (flat map)
 //       28      4  bytes of attributes, A
 //       32     96  patientFromVoxel, four columns of three doubles
 //      128      8  offset of the values, a multiple of 4096
@@ -17,7 +19,11 @@
 //
 // Values: a volume's voxels, i fastest (of fractions: two bytes, air and tagged in 255ths); a
 // centerline's samples, six doubles each: x, y, z, arc, radius (mm), gap (0 or 1); a mesh's
-// vertices, three doubles each (LPS, mm), then its triangles, three int32 each, counted from 0.
+// vertices, three doubles each (LPS, mm), then its triangles, three int32 each, counted from 0. A
+// flat map: its height, a double; its vertices, three doubles each (LPS, mm); their flat places,
+// two doubles each (unit: the circumference); its cameras, four doubles each (LPS and arc, mm); its
+// triangles, three int32 each; for each triangle the one of the closed surface that it is a part
+// of, an int32; and for each vertex its camera, an int32.
 //
 // The values end the file. A reader believes no field before the file's length bears it out.
 #pragma once
@@ -42,10 +48,14 @@ enum class Content : std::uint32_t {
     centerline = 4,
     fractionsVolume = 5,
     mesh = 6,
+    flatMap = 7,
 };
 inline constexpr std::size_t centerlineSampleBytes = 6 * sizeof(double);
 inline constexpr std::size_t meshVertexBytes = 3 * sizeof(double);
 inline constexpr std::size_t meshTriangleBytes = 3 * sizeof(std::int32_t);
+inline constexpr std::size_t flatMapVertexBytes = 5 * sizeof(double) + sizeof(std::int32_t);
+inline constexpr std::size_t flatMapTriangleBytes = 4 * sizeof(std::int32_t);
+inline constexpr std::size_t flatMapCameraBytes = 4 * sizeof(double);
 inline constexpr std::size_t mostMeshElements = std::size_t(1) << 28;
 
 /// Everything of a product file but its values.
@@ -66,7 +76,7 @@ struct MappedProduct {
 };
 
 /// Maps a product file. Fails, naming the file, where it is cut short, too long or inconsistent.
-/// Reads the header only, not the values: a mesh's indices are still to be checked.
+/// Reads the header only, not the values: a mesh's or a flat map's are still to be checked.
 Result<MappedProduct> mapProduct(const std::filesystem::path& file);
 
 /// Publishes `folder`/`name` as writeDurably does. `header.valuesDigest` is computed here.
