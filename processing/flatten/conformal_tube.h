@@ -20,8 +20,9 @@ struct ConformalTubeOptions {
     /// Flips edges until no cotangent weight is negative, in the intrinsic metric (Fisher et al.
     /// 2007). The surface's triangles stay as they are.
     bool intrinsicDelaunay = true;
-    /// Repairs what the intrinsic triangulation hides: vertices of flipped triangles move to the
-    /// mean-value mean of their neighbours until nothing is flipped, or no more can be mended.
+    /// Repairs what the intrinsic triangulation hides: patches around flipped triangles are
+    /// unfolded (flip_repair.h), and vertices of triangles stretched over four times as far one way
+    /// as the other, with a ring around them, relaxed (shape_relaxation.h).
     bool repairFlips = true;
     Progress progress;
 };

@@ -1,5 +1,7 @@
 #include "flatten/distortion.h"
 
+#include "flatten/triangle_stretch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,20 +33,6 @@ double angleBetween(const glm::dvec3& p, const glm::dvec3& q) {
 
 double angleBetween(const glm::dvec2& p, const glm::dvec2& q) {
     return std::atan2(std::abs(p.x * q.y - p.y * q.x), glm::dot(p, q));
-}
-
-/// Largest over smallest stretch of the linear map from the triangle with sides a, b in space to
-/// that with sides p, q in the plane.
-double dilatationOf(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec2& p,
-                    const glm::dvec2& q) {
-    const double length = glm::length(a);
-    const double bx = glm::dot(a, b) / length, by = glm::length(glm::cross(a, b)) / length;
-    const glm::dvec2 jx = p / length, jy = (q - jx * bx) / by;
-    // The singular values are the sum and the difference of the two conformal parts.
-    const double same = std::hypot(jx.x + jy.y, jx.y - jy.x);
-    const double opposite = std::hypot(jx.x - jy.y, jx.y + jy.x);
-    const double least = std::abs(same - opposite);
-    return least > 0.0 ? (same + opposite) / least : 0.0;
 }
 
 struct WeightedLog {
@@ -126,8 +114,8 @@ Distortion measureDistortion(const TriMesh& mesh,
                 angleBetween(flat[(c + 1) % 3] - flat[c], flat[(c + 2) % 3] - flat[c]);
             errors.push_back(kDegrees * std::abs(angle - angles[c]));
         }
-        if (flatArea == 0.0) continue;
-        dilatations.push_back(dilatationOf(a, b, p, q));
+        if (const double stretch = dilatation(a, b, p, q); std::isfinite(stretch))
+            dilatations.push_back(stretch);
         if (flatArea > 0.0) logs.push_back({std::log(flatArea / area), area});
     }
     const std::vector<char> rim = rimVertices(mesh);

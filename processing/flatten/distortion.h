@@ -24,7 +24,8 @@ struct Distortion {
 };
 
 /// `cornerAt(triangle, corner)` is the flat place of a corner. Triangles of no area on the surface
-/// are left out of angles and dilatation. O(n log n), deterministic, one thread.
+/// are left out of angles and dilatation, those of no flat area out of dilatation. O(n log n),
+/// deterministic, one thread.
 Distortion measureDistortion(const TriMesh& mesh,
                              const std::function<glm::dvec2(std::size_t, int)>& cornerAt);
 

@@ -2,137 +2,223 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
+
+#include <Eigen/SparseLU>
 
 namespace haustra::flatten {
 namespace {
 
-constexpr int kMostRings = 12;
-constexpr int kSweepsPerRing = 30;
+constexpr double kLeastHeight = 1e-4;  // of a triangle, against its longest side
+constexpr int kRings[] = {0, 1, 2, 3, 5, 8, 12, 18};
+/// What a neighbour's weight is multiplied with for each ring that it lies further inside.
+constexpr double kLeans[] = {1.0, 0.6, 0.3};
 
-double twiceArea(const PeriodicMap& map, const TriMesh& tube, std::size_t t) {
-    const glm::dvec2 at = map.corner(tube, t, 0);
-    const glm::dvec2 a = map.corner(tube, t, 1) - at, b = map.corner(tube, t, 2) - at;
-    return a.x * b.y - a.y * b.x;
+/// Turned over, or of as good as no height.
+bool isFlipped(const PeriodicMap& map, const TriMesh& tube, int t) {
+    const auto at = [&](int c) { return map.corner(tube, std::size_t(t), c); };
+    const glm::dvec2 p = at(1) - at(0), q = at(2) - at(0), r = q - p;
+    const double longest = std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)});
+    return !(p.x * q.y - p.y * q.x > kLeastHeight * longest);
 }
 
-/// The triangles around each vertex, as 3·triangle + corner.
-class Stars {
-public:
-    explicit Stars(const TriMesh& tube) : first_(tube.vertices.size() + 1, 0) {
-        for (const glm::ivec3& t : tube.triangles) {
-            for (int c = 0; c < 3; ++c)
-                ++first_[std::size_t(t[c]) + 1];
-        }
-        for (std::size_t v = 1; v < first_.size(); ++v)
-            first_[v] += first_[v - 1];
-        corners_.resize(tube.triangles.size() * 3);
-        std::vector<int> next(first_.begin(), first_.end() - 1);
-        for (std::size_t n = 0; n < corners_.size(); ++n)
-            corners_[std::size_t(next[std::size_t(tube.triangles[n / 3][int(n % 3)])]++)] = int(n);
-    }
-    const int* begin(int v) const { return corners_.data() + first_[std::size_t(v)]; }
-    const int* end(int v) const { return corners_.data() + first_[std::size_t(v) + 1]; }
-
-private:
-    std::vector<int> first_, corners_;
-};
-
-/// tan of half the angle at a between b and c, finite.
+/// tan of half the angle at a between b and c, kept within bounds.
 double halfTangent(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const glm::dvec3 p = b - a, q = c - a;
     const double sine = glm::length(glm::cross(p, q)), cosine = glm::dot(p, q);
     const double full = std::sqrt(glm::dot(p, p) * glm::dot(q, q));
-    return sine > 1e-9 * full ? (full - cosine) / sine : (cosine > 0.0 ? 1e-9 : 1e9);
+    if (sine > 1e-6 * full) return (full - cosine) / sine;
+    return cosine > 0.0 ? 1e-6 : 1e6;
 }
 
 class Repair {
 public:
-    Repair(PeriodicMap& map, const TriMesh& tube) : map_(map), tube_(tube), stars_(tube) {}
+    Repair(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars)
+        : map_(map), tube_(tube), stars_(stars) {}
 
-    int run(std::vector<int> flipped) {
-        const PeriodicMap before = map_;
-        const std::size_t flipsBefore = flipped.size();
-        std::vector<int> patch;
-        for (int ring = 0; ring < kMostRings && !flipped.empty(); ++ring) {
-            for (const int t : flipped) {
-                for (int c = 0; c < 3; ++c)
-                    patch.push_back(tube_.triangles[std::size_t(t)][c]);
-            }
-            if (ring > 0) patch = withNeighbours(patch);
-            std::sort(patch.begin(), patch.end());
-            patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
-            for (int sweep = 0; sweep < kSweepsPerRing; ++sweep) {
-                for (const int v : patch)
-                    relax(v);
-            }
-            flipped = flippedTriangles(map_, tube_);
+    /// The vertices moved, some more than once.
+    std::vector<int> run(const std::vector<int>& bad) {
+        std::vector<int> moved;
+        for (const int t : bad) {
+            // The repair of one before may have mended it, and between rims nothing can move.
+            if (!isFlipped(map_, tube_, t) || onRims(t)) continue;
+            const std::vector<int> patch = mend(t);
+            moved.insert(moved.end(), patch.begin(), patch.end());
         }
-        if (flipped.size() > flipsBefore) {
-            map_ = before;
-            return 0;
-        }
-        rotate(map_, tube_, 0.0);
-        return int(patch.size());
+        return moved;
     }
 
 private:
-    std::vector<int> withNeighbours(std::vector<int> patch) const {
-        const std::size_t count = patch.size();
-        for (std::size_t n = 0; n < count; ++n) {
-            for (const int* corner = stars_.begin(patch[n]); corner != stars_.end(patch[n]);
-                 ++corner) {
-                for (int c = 0; c < 3; ++c)
-                    patch.push_back(tube_.triangles[std::size_t(*corner / 3)][c]);
-            }
-        }
-        return patch;
+    /// Vertices in rings round a triangle.
+    struct Patch {
+        std::vector<int> vertices;
+        std::unordered_map<int, int> ringOf;
+        int rings = -1;
+    };
+
+    bool isOnRim(int v) const {
+        const double y = map_.flat[std::size_t(v)].y;
+        return y == 0.0 || y == map_.height;
+    }
+    bool onRims(int t) const {
+        const glm::ivec3& corners = tube_.triangles[std::size_t(t)];
+        return isOnRim(corners[0]) && isOnRim(corners[1]) && isOnRim(corners[2]);
     }
 
-    void relax(int v) {
-        const double y = map_.flat[std::size_t(v)].y;
-        glm::dvec2 sum(0.0);
-        double weights = 0.0;
-        for (const int* n = stars_.begin(v); n != stars_.end(v); ++n) {
-            const auto t = std::size_t(*n / 3);
-            const int c = *n % 3;
-            const glm::dvec3& at = tube_.vertices[std::size_t(v)];
-            const glm::dvec2 flat = map_.corner(tube_, t, c);
-            const int others[2] = {(c + 1) % 3, (c + 2) % 3};
-            const glm::dvec3& p = tube_.vertices[std::size_t(tube_.triangles[t][others[0]])];
-            const glm::dvec3& q = tube_.vertices[std::size_t(tube_.triangles[t][others[1]])];
-            const double tangent = halfTangent(at, p, q);
-            for (const int other : others) {
-                const glm::dvec3& far = tube_.vertices[std::size_t(tube_.triangles[t][other])];
-                const double weight = tangent / std::max(glm::distance(at, far), 1e-9);
-                sum += weight * (map_.corner(tube_, t, other) - flat);
-                weights += weight;
+    void add(Patch& patch, int t) const {
+        for (int c = 0; c < 3; ++c) {
+            const int v = tube_.triangles[std::size_t(t)][c];
+            if (!isOnRim(v) && patch.ringOf.emplace(v, patch.rings).second)
+                patch.vertices.push_back(v);
+        }
+    }
+
+    void grow(Patch& patch) const {
+        ++patch.rings;
+        const std::size_t count = patch.vertices.size();
+        for (std::size_t n = 0; n < count; ++n) {
+            for (const int corner : stars_.of(patch.vertices[n]))
+                add(patch, corner / 3);
+        }
+    }
+
+    /// The vertices that were moved for triangle t; none where nothing got better.
+    std::vector<int> mend(int t) {
+        Patch patch;
+        patch.rings = 0;
+        add(patch, t);
+        int most = 0;  // flips mended
+        std::vector<int> vertices;
+        std::vector<glm::dvec2> places;
+        bool whole = false;
+        for (std::size_t n = 0; n < std::size(kRings) && !whole; ++n) {
+            while (patch.rings < kRings[n])
+                grow(patch);
+            const std::vector<int> triangles = trianglesAround(patch);
+            const std::vector<glm::dvec2> before = placesOf(patch.vertices);
+            const int flipsBefore = flipsAmong(triangles);
+            for (const double lean : kLeans) {
+                if (!solve(patch, lean)) continue;
+                const int flips = flipsAmong(triangles);
+                if (flipsBefore - flips > most) {
+                    most = flipsBefore - flips;
+                    vertices = patch.vertices;
+                    places = placesOf(vertices);
+                }
+                setPlaces(patch.vertices, before);
+                whole = flips == 0;
+                if (whole) break;
             }
         }
-        if (!(weights > 0.0)) return;
-        const bool onRim = y == 0.0 || y == map_.height;
-        map_.flat[std::size_t(v)].x += sum.x / weights;
-        if (!onRim) map_.flat[std::size_t(v)].y += sum.y / weights;
+        setPlaces(vertices, places);
+        return vertices;
+    }
+
+    std::vector<int> trianglesAround(const Patch& patch) const {
+        std::vector<int> triangles;
+        for (const int v : patch.vertices) {
+            for (const int corner : stars_.of(v))
+                triangles.push_back(corner / 3);
+        }
+        std::sort(triangles.begin(), triangles.end());
+        triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+        return triangles;
+    }
+
+    int flipsAmong(const std::vector<int>& triangles) const {
+        return int(std::count_if(triangles.begin(), triangles.end(),
+                                 [&](int t) { return isFlipped(map_, tube_, t); }));
+    }
+
+    std::vector<glm::dvec2> placesOf(const std::vector<int>& vertices) const {
+        std::vector<glm::dvec2> places;
+        for (const int v : vertices)
+            places.push_back(map_.flat[std::size_t(v)]);
+        return places;
+    }
+    void setPlaces(const std::vector<int>& vertices, const std::vector<glm::dvec2>& places) {
+        for (std::size_t n = 0; n < vertices.size(); ++n)
+            map_.flat[std::size_t(vertices[n])] = places[n];
+    }
+
+    /// Puts each of the patch's vertices at the mean of its neighbours; false where that fails.
+    bool solve(const Patch& patch, double lean) {
+        const int size = int(patch.vertices.size());
+        std::unordered_map<int, int> unknownOf;
+        for (int n = 0; n < size; ++n)
+            unknownOf.emplace(patch.vertices[std::size_t(n)], n);
+        std::vector<Eigen::Triplet<double>> entries;
+        Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(size, 2);
+        for (int n = 0; n < size; ++n) {
+            const int v = patch.vertices[std::size_t(n)];
+            const int ring = patch.ringOf.at(v);
+            double sum = 0.0;
+            forWeights(v, [&](int w, double weight, double turns) {
+                const auto inside = patch.ringOf.find(w);
+                const int ringOfNeighbour =
+                    inside == patch.ringOf.end() ? patch.rings + 1 : inside->second;
+                weight *= std::pow(lean, ring - ringOfNeighbour);
+                sum += weight;
+                right(n, 0) += weight * turns;
+                if (inside != patch.ringOf.end()) {
+                    entries.emplace_back(n, unknownOf.at(w), -weight);
+                } else {
+                    right(n, 0) += weight * map_.flat[std::size_t(w)].x;
+                    right(n, 1) += weight * map_.flat[std::size_t(w)].y;
+                }
+            });
+            entries.emplace_back(n, n, sum);
+        }
+        Eigen::SparseMatrix<double> matrix(size, size);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
+        if (lu.info() != Eigen::Success) return false;
+        const Eigen::MatrixX2d found = lu.solve(right);
+        if (!found.allFinite()) return false;
+        for (int n = 0; n < size; ++n) {
+            glm::dvec2& at = map_.flat[std::size_t(patch.vertices[std::size_t(n)])];
+            at = {found(n, 0), found(n, 1)};
+        }
+        return true;
+    }
+
+    /// Calls visit(w, weight, turns) for each neighbour w of v, twice for most; turns are those of
+    /// w's place against v's where they share a triangle.
+    template <class Visit>
+    void forWeights(int v, const Visit& visit) const {
+        const glm::dvec3& at = tube_.vertices[std::size_t(v)];
+        for (const int corner : stars_.of(v)) {
+            const auto t = std::size_t(corner / 3);
+            const std::size_t here = std::size_t(corner % 3);
+            const std::size_t others[2] = {(here + 1) % 3, (here + 2) % 3};
+            const auto vertex = [&](std::size_t c) { return tube_.triangles[t][int(c)]; };
+            const double tangent = halfTangent(at, tube_.vertices[std::size_t(vertex(others[0]))],
+                                               tube_.vertices[std::size_t(vertex(others[1]))]);
+            for (const std::size_t other : others) {
+                const double mm = glm::distance(at, tube_.vertices[std::size_t(vertex(other))]);
+                visit(vertex(other), tangent / std::max(mm, 1e-9),
+                      double(map_.turns[t][other] - map_.turns[t][here]));
+            }
+        }
     }
 
     PeriodicMap& map_;
     const TriMesh& tube_;
-    Stars stars_;
+    const VertexStars& stars_;
 };
 
 }  // namespace
 
-std::vector<int> flippedTriangles(const PeriodicMap& map, const TriMesh& tube) {
+std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars) {
     std::vector<int> flipped;
-    for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
-        if (!(twiceArea(map, tube, t) > 0.0)) flipped.push_back(int(t));
+    for (int t = 0; t < int(tube.triangles.size()); ++t) {
+        if (isFlipped(map, tube, t)) flipped.push_back(t);
     }
-    return flipped;
-}
-
-int repairFlips(PeriodicMap& map, const TriMesh& tube) {
-    std::vector<int> flipped = flippedTriangles(map, tube);
-    return flipped.empty() ? 0 : Repair(map, tube).run(std::move(flipped));
+    std::vector<int> moved = Repair(map, tube, stars).run(flipped);
+    std::sort(moved.begin(), moved.end());
+    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    return moved;
 }
 
 }  // namespace haustra::flatten

@@ -1,17 +1,20 @@
-// What is folded over in a flat map, mended where it lies.
+// What is folded over in a flat map, unfolded where it lies.
 #pragma once
 
 #include "flatten/periodic_map.h"
+#include "flatten/vertex_stars.h"
+
+#include <vector>
 
 namespace haustra::flatten {
 
-/// Triangles of no or negative flat area.
-std::vector<int> flippedTriangles(const PeriodicMap& map, const TriMesh& tube);
-
-/// Moves the vertices of flipped triangles to the mean-value mean of their neighbours (Floater
-/// 2003: positive weights, so that a patch with a convex outline unfolds), rims along themselves,
-/// and widens the patches by a ring of neighbours until nothing is flipped or no more can be
-/// mended. Returns the number of vertices moved; the map is never left with more flips than it had.
-int repairFlips(PeriodicMap& map, const TriMesh& tube);
+/// An intrinsic triangulation can leave vertices of the surface's own triangles collinear or turned
+/// over. Around each flipped triangle the vertices of a patch are solved for with mean-value
+/// weights (Floater 2003), which are positive, so that a patch with a convex outline unfolds; where
+/// that does not help, the weights lean outwards, for blind fingers so long that doubles cannot
+/// tell their tips' vertices apart, and the patch is widened by rings of neighbours. A patch that
+/// gets no better is left alone. Rims do not move. x may leave [0, 1). Returns the vertices moved.
+/// O(n), beside small local systems.
+std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars);
 
 }  // namespace haustra::flatten

@@ -156,6 +156,33 @@ TEST(ConformalTube, KeepsOrientationAndWholeTriangles) {
     }
 }
 
+/// A blind finger three times as long as it is round, on a grid shaken almost until it folds.
+TEST(ConformalTube, UnfoldsWhatTheIntrinsicTriangulationHides) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> shake(-0.45 / 60.0, 0.45 / 60.0);
+    const TriMesh mesh = tests::tubeMesh(60, 60, [&](double a, double s) {
+        if (s > 0.0 && s < 1.0) {
+            a += shake(random);
+            s += shake(random);
+        }
+        const double r = 20.0 + 60.0 * std::exp(-std::pow(7.0 * std::hypot(a - 0.5, s - 0.5), 6.0));
+        return glm::dvec3(r * std::cos(kTurn * a), r * std::sin(kTurn * a), 120.0 * s);
+    });
+    flatten::ConformalTubeOptions options;
+    options.repairFlips = false;
+    const auto folded = conformalTube(mesh, 0, options), unfolded = conformalTube(mesh, 0);
+    ASSERT_TRUE(folded && unfolded);
+    const auto before = distortionOf(mesh, folded->map), after = distortionOf(mesh, unfolded->map);
+    EXPECT_GT(before.flips, 0u);
+    EXPECT_GT(before.dilatation.max, 50.0);
+    EXPECT_EQ(after.flips, 0u);
+    EXPECT_LT(after.dilatation.max, 20.0);
+    EXPECT_LT(after.dilatation.mean, before.dilatation.mean);
+    EXPECT_GT(unfolded->repaired, 0);
+    EXPECT_EQ(folded->repaired, 0);
+    EXPECT_EQ(unfolded->modulus, folded->modulus);
+}
+
 TEST(ConformalTube, StartsAtTheLoopThatIsNamed) {
     const TriMesh mesh = bentTube(24, 96);
     const int last = int(mesh.vertices.size()) - 1;
