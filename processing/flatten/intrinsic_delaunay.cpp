@@ -1,6 +1,7 @@
 #include "flatten/intrinsic_delaunay.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -31,7 +32,15 @@ struct Edge {
     int origin, opposite;
     double length;
     std::int8_t turns;
+    char kept;
 };
+
+/// Where the half-edges around a flipped one go, see Flipper::flip.
+std::array<std::pair<int, int>, 4> movesAround(int h, int g) {
+    const int hNext = HalfedgeMesh::next(h), hPrevious = HalfedgeMesh::previous(h);
+    const int gNext = HalfedgeMesh::next(g), gPrevious = HalfedgeMesh::previous(g);
+    return {{{hPrevious, hNext}, {gNext, hPrevious}, {gPrevious, gNext}, {hNext, gPrevious}}};
+}
 
 bool isNegative(const IntrinsicMesh& mesh, int h) {
     const int other = mesh.opposite[std::size_t(h)];
@@ -42,7 +51,7 @@ bool isNegative(const IntrinsicMesh& mesh, int h) {
 
 class Flipper {
 public:
-    explicit Flipper(IntrinsicMesh& mesh) : mesh_(mesh) {}
+    Flipper(IntrinsicMesh& mesh, std::vector<EdgeFlip>* flips) : mesh_(mesh), flips_(flips) {}
 
     int run() {
         std::vector<int> edges;
@@ -58,6 +67,7 @@ public:
             if (!isNegative(mesh_, h) || !flip(h)) continue;
             ++flips;
             const int other = mesh_.opposite[std::size_t(h)];
+            if (flips_) flips_->push_back({h, other});
             for (const int side : {HalfedgeMesh::next(h), HalfedgeMesh::previous(h),
                                    HalfedgeMesh::next(other), HalfedgeMesh::previous(other)}) {
                 if (isNegative(mesh_, side)) edges.push_back(side);
@@ -69,7 +79,7 @@ public:
 private:
     Edge edge(int h) const {
         const auto at = std::size_t(h);
-        return {mesh_.origin[at], mesh_.opposite[at], mesh_.length[at], mesh_.turns[at]};
+        return {mesh_.origin[at], mesh_.opposite[at], mesh_.length[at], mesh_.turns[at], kept(h)};
     }
     void put(int h, const Edge& e) {
         const auto at = std::size_t(h);
@@ -77,12 +87,14 @@ private:
         mesh_.opposite[at] = e.opposite;
         mesh_.length[at] = e.length;
         mesh_.turns[at] = e.turns;
+        if (!mesh_.kept.empty()) mesh_.kept[at] = e.kept;
     }
+    char kept(int h) const { return mesh_.kept.empty() ? 0 : mesh_.kept[std::size_t(h)]; }
 
     /// Triangles i j k and j i l become i l k and j k l; h is i → j before, l → k after.
     bool flip(int h) {
         const int g = mesh_.opposite[std::size_t(h)];
-        if (h / 3 == g / 3) return false;
+        if (h / 3 == g / 3 || kept(h)) return false;
         const int hNext = HalfedgeMesh::next(h), hPrevious = HalfedgeMesh::previous(h);
         const int gNext = HalfedgeMesh::next(g), gPrevious = HalfedgeMesh::previous(g);
         const Edge ij = edge(h), jk = edge(hNext), ki = edge(hPrevious), il = edge(gNext),
@@ -99,10 +111,9 @@ private:
         if (!(length > 0.0)) return false;
         const auto turns = std::int8_t(-il.turns - ki.turns);  // l → i → k
         const int k = ki.origin, l = lj.origin;
-        put(h, {l, g, length, turns});
-        put(g, {k, h, length, std::int8_t(-turns)});
-        const std::pair<int, int> moves[] = {
-            {hPrevious, hNext}, {gNext, hPrevious}, {gPrevious, gNext}, {hNext, gPrevious}};
+        put(h, {l, g, length, turns, 0});
+        put(g, {k, h, length, std::int8_t(-turns), 0});
+        const auto moves = movesAround(h, g);
         const Edge moved[] = {ki, il, lj, jk};
         const auto slotOf = [&](int old) {
             for (const auto& [from, to] : moves) {
@@ -110,7 +121,7 @@ private:
             }
             return old;
         };
-        for (int n = 0; n < 4; ++n) {
+        for (std::size_t n = 0; n < 4; ++n) {
             Edge e = moved[n];
             e.opposite = slotOf(e.opposite);
             put(moves[n].second, e);
@@ -120,14 +131,18 @@ private:
     }
 
     IntrinsicMesh& mesh_;
+    std::vector<EdgeFlip>* flips_;
 };
 
 }  // namespace
 
 IntrinsicMesh intrinsicMesh(const HalfedgeMesh& mesh, const std::vector<std::int8_t>& cornerTurns) {
     const auto count = std::size_t(mesh.halfedgeCount());
-    IntrinsicMesh made{std::vector<int>(count), std::vector<int>(count), std::vector<double>(count),
-                       std::vector<std::int8_t>(count)};
+    IntrinsicMesh made{std::vector<int>(count),
+                       std::vector<int>(count),
+                       std::vector<double>(count),
+                       std::vector<std::int8_t>(count),
+                       {}};
     double sum = 0.0;
     for (int h = 0; h < mesh.halfedgeCount(); ++h) {
         const auto at = std::size_t(h);
@@ -170,8 +185,23 @@ int countNegative(const IntrinsicMesh& mesh) {
     return negative;
 }
 
-int makeDelaunay(IntrinsicMesh& mesh) {
-    return Flipper(mesh).run();
+int makeDelaunay(IntrinsicMesh& mesh, std::vector<EdgeFlip>* flips) {
+    return Flipper(mesh, flips).run();
+}
+
+void carryThroughFlips(const std::vector<EdgeFlip>& flips, std::vector<std::int8_t>& form) {
+    const auto value = [&](int h) -> std::int8_t& { return form[std::size_t(h)]; };
+    for (const auto& [h, g] : flips) {
+        const auto moves = movesAround(h, g);
+        std::array<std::int8_t, 4> moved;
+        for (std::size_t n = 0; n < 4; ++n)
+            moved[n] = value(moves[n].first);
+        for (std::size_t n = 0; n < 4; ++n)
+            value(moves[n].second) = moved[n];
+        // l → i → k, as Flipper::flip.
+        value(h) = std::int8_t(-moved[1] - moved[0]);
+        value(g) = std::int8_t(-value(h));
+    }
 }
 
 }  // namespace haustra::flatten

@@ -6,29 +6,34 @@
 namespace haustra::mesh {
 namespace {
 
-bool soundTriangles(const TriMesh& mesh) {
-    const int count = int(mesh.vertices.size());
-    for (const glm::ivec3& t : mesh.triangles) {
+bool soundTriangles(const std::vector<glm::ivec3>& triangles, int vertexCount) {
+    for (const glm::ivec3& t : triangles) {
         for (int corner = 0; corner < 3; ++corner) {
-            if (t[corner] < 0 || t[corner] >= count || t[corner] == t[(corner + 1) % 3])
+            if (t[corner] < 0 || t[corner] >= vertexCount || t[corner] == t[(corner + 1) % 3])
                 return false;
         }
     }
     return true;
 }
 
+tl::unexpected<Error> unsoundTriangle() {
+    return fail(ErrorKind::badInput,
+                "a triangle of the mesh repeats a vertex, or names one that does not exist");
+}
+
+tl::unexpected<Error> severalFans() {
+    return fail(ErrorKind::badInput, "the mesh is not manifold: sheets meet at one vertex");
+}
+
 }  // namespace
 
 Result<HalfedgeMesh> HalfedgeMesh::of(const TriMesh& mesh) {
-    if (!soundTriangles(mesh)) {
-        return fail(ErrorKind::badInput,
-                    "a triangle of the mesh repeats a vertex, or names one that does not exist");
-    }
+    if (!soundTriangles(mesh.triangles, int(mesh.vertices.size()))) return unsoundTriangle();
     HalfedgeMesh made;
     const std::size_t halfedges = mesh.triangles.size() * 3;
     made.origin_.resize(halfedges);
     made.opposite_.assign(halfedges, -1);
-    made.outgoing_.assign(mesh.vertices.size(), -1);
+    made.outgoing_.resize(mesh.vertices.size());
     made.lengthMm_.resize(halfedges);
     std::vector<int> first(mesh.vertices.size() + 1, 0), leaving(halfedges);
     for (std::size_t h = 0; h < halfedges; ++h) {
@@ -58,23 +63,52 @@ Result<HalfedgeMesh> HalfedgeMesh::of(const TriMesh& mesh) {
                         "one surface, or are turned against each other");
         }
     }
-    for (int v = 0; v < int(mesh.vertices.size()); ++v) {
-        if (first[v] == first[v + 1]) continue;
+    if (!made.findOutgoing()) return severalFans();
+    return made;
+}
+
+Result<HalfedgeMesh> HalfedgeMesh::glued(int vertexCount, const std::vector<glm::ivec3>& triangles,
+                                         std::vector<int> opposite, std::vector<double> lengthMm) {
+    const int halfedges = int(triangles.size()) * 3;
+    if (!soundTriangles(triangles, vertexCount)) return unsoundTriangle();
+    HalfedgeMesh made;
+    made.opposite_ = std::move(opposite);
+    made.lengthMm_ = std::move(lengthMm);
+    made.outgoing_.resize(std::size_t(vertexCount));
+    for (const glm::ivec3& t : triangles)
+        made.origin_.insert(made.origin_.end(), {t.x, t.y, t.z});
+    bool sound = int(made.opposite_.size()) == halfedges && int(made.lengthMm_.size()) == halfedges;
+    for (int h = 0; sound && h < halfedges; ++h) {
+        const int o = made.opposite_[h];
+        if (o == -1) continue;
+        sound = o >= 0 && o < halfedges && o != h && made.opposite_[o] == h &&
+                made.origin(o) == made.target(h) && made.target(o) == made.origin(h) &&
+                made.lengthMm_[o] == made.lengthMm_[h];
+    }
+    if (!sound) return fail(ErrorKind::badInput, "half-edges that are glued do not fit together");
+    if (!made.findOutgoing()) return severalFans();
+    return made;
+}
+
+bool HalfedgeMesh::findOutgoing() {
+    outgoing_.assign(outgoing_.size(), -1);
+    std::vector<int> leaving(outgoing_.size(), 0);
+    for (int h = 0; h < halfedgeCount(); ++h) {
+        int& start = outgoing_[origin_[h]];
+        ++leaving[origin_[h]];
         // At the rim the fan is walked from its clockwise end, or some of it would be missed.
-        int start = leaving[first[v]];
-        for (int i = first[v]; i < first[v + 1]; ++i) {
-            if (made.opposite_[leaving[i]] < 0) start = leaving[i];
-        }
-        made.outgoing_[v] = start;
-        int fan = 0, h = start;
+        if (start < 0 || opposite_[h] < 0) start = h;
+    }
+    for (int v = 0; v < vertexCount(); ++v) {
+        if (outgoing_[v] < 0) continue;
+        int fan = 0, h = outgoing_[v];
         do {
             ++fan;
-            h = made.turnLeft(h);
-        } while (h >= 0 && h != start);
-        if (fan != first[v + 1] - first[v])
-            return fail(ErrorKind::badInput, "the mesh is not manifold: sheets meet at one vertex");
+            h = turnLeft(h);
+        } while (h >= 0 && h != outgoing_[v]);
+        if (fan != leaving[v]) return false;
     }
-    return made;
+    return true;
 }
 
 Result<HalfedgeMesh> HalfedgeMesh::ofClosed(const TriMesh& mesh) {

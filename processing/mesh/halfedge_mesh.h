@@ -18,6 +18,12 @@ public:
     static Result<HalfedgeMesh> of(const TriMesh& mesh);
     /// As `of`, and fails (badInput) where an edge has only one triangle.
     static Result<HalfedgeMesh> ofClosed(const TriMesh& mesh);
+    /// A surface given by its gluing and its edges' lengths alone, which no embedding has to have:
+    /// `opposite` and `lengthMm` are per half-edge of `triangles`, −1 at the rim. Two edges may
+    /// join the same two vertices. Fails as `of`, and where opposite half-edges do not run against
+    /// each other or differ in length.
+    static Result<HalfedgeMesh> glued(int vertexCount, const std::vector<glm::ivec3>& triangles,
+                                      std::vector<int> opposite, std::vector<double> lengthMm);
     bool closed() const;
 
     int vertexCount() const { return int(outgoing_.size()); }
@@ -36,6 +42,9 @@ public:
     static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
 private:
+    /// Fills outgoing_; false where a vertex joins several fans.
+    bool findOutgoing();
+
     std::vector<int> origin_, opposite_, outgoing_;
     std::vector<double> lengthMm_;
 };
