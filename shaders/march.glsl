@@ -19,6 +19,7 @@ struct Ray {
     vec3 origin;       // texture space, at n = 0
     vec3 step;         // texture space, one step
     vec3 directionMm;  // patient space, unit
+    vec3 lightMm;      // patient space, unit: which way the light falls that lights what it meets
     float end;         // the last n inside the volume
 };
 
@@ -32,6 +33,7 @@ Ray rayThrough(vec2 pixel) {
     vec2 ndc = 2.0 * pixel / vec2(u.pictureSize.xy) - 1.0;
     Ray ray;
     ray.directionMm = normalize(u.forwardMm.xyz + ndc.x * u.rightMm.xyz + ndc.y * u.downMm.xyz);
+    ray.lightMm = ray.directionMm;
     ray.origin = u.eyeTexture.xyz;
     ray.step = textureVector(ray.directionMm) * u.stepping.x;
     return ray;
@@ -66,15 +68,15 @@ float stepsToLeave(vec3 position, ivec3 block, float distance, vec3 inverseBlock
     return max(1.0, ceil(min(leave.x, min(leave.y, leave.z)) - 0.001));
 }
 
-// Headlight at the eye; colours are linear light. `gradient` is per voxel index step.
+// A lamp, seen from where it hangs; colours are linear light. `gradient` is per voxel index step.
 vec3 shade(vec3 color, vec3 gradientTexture, Ray ray, float n) {
     // A gradient transforms by the inverse transpose of patientFromTexture.
     vec3 normal = gradientTexture.x * u.textureRowX.xyz + gradientTexture.y * u.textureRowY.xyz +
                   gradientTexture.z * u.textureRowZ.xyz;
     float slope = dot(normal, normal);
-    // Light comes along the ray, so N·L = N·V = R·V's half angle; both faces are lit. Where the
-    // volume is flat there is no surface, and nothing to shade.
-    float facing = slope > 1e-20 ? abs(dot(normal, ray.directionMm)) * inversesqrt(slope) : 1.0;
+    // Light comes along the line of sight, so N·L = N·V = R·V's half angle; both faces are lit. Where
+    // the volume is flat there is no surface, and nothing to shade.
+    float facing = slope > 1e-20 ? abs(dot(normal, ray.lightMm)) * inversesqrt(slope) : 1.0;
     float depth = n * u.stepping.x / u.stepping.w;
     float falloff = 1.0 / (1.0 + depth * depth);
     float mirror = max(2.0 * facing * facing - 1.0, 0.0);

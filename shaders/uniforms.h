@@ -9,6 +9,7 @@
 
 namespace haustra::shaders {
 using vec4 = glm::vec4;
+using dvec2 = glm::dvec2;
 using ivec4 = glm::ivec4;
 #endif
 
@@ -41,6 +42,34 @@ struct SliceUniforms {
     ivec4 pictureSize;   ///< x, y: pixels
 };
 
+/// One window onto the flattened wall. Flat coordinates are whole numbers of a small unit: what is
+/// computed from them is the same to the bit in whichever picture a place is drawn. Lattice pixel g
+/// covers the flat coordinates from (g + phase) to (g + 1 + phase), in pixels.
+struct FlatUniforms {
+    dvec2 phase;    ///< 0…1
+    dvec2 scale;    ///< x: units a pixel, y: pixels a unit
+    ivec4 lattice;  ///< xy: pixel (i, j) is lattice pixel (x − 1 − i, y − 1 − j); z: units a
+                    ///< circumference; w: which copy of the strip is drawn first
+    ivec4 picture;  ///< xy: pixels, z: first triangle drawn, w: last camera
+    vec4 angles;    ///< radians; x: most between ray and wall's normal, y: between light and it;
+                    ///< z: how far ahead of the camera the lamp hangs, in distances to the wall
+    vec4 ray;       ///< x: most steps back from the wall, y: rise of the stored value that ends
+                    ///< the way back, z: most steps on from the wall
+};
+
+/// A vertex of the flat map; millimetres from the volume's centre, in patient directions.
+struct FlatVertex {
+    ivec4 flatPlace;  ///< xy: flat coordinates, in units
+    vec4 placeMm;     ///< w: index of the camera
+    vec4 intoLumen;   ///< xyz: unit, from the wall inwards
+};
+
+/// A camera of the flat map.
+struct FlatEye {
+    vec4 placeMm;  ///< xyz: millimetres from the volume's centre
+    vec4 ahead;    ///< xyz: unit, along the colon to the cecum
+};
+
 #ifdef __cplusplus
 static_assert(sizeof(vec4) == 16 && sizeof(ivec4) == 16);
 static_assert(sizeof(MarchUniforms) == 14 * 16);
@@ -48,10 +77,15 @@ static_assert(offsetof(MarchUniforms, stepping) == 10 * 16);
 static_assert(offsetof(MarchUniforms, lastBlock) == 13 * 16);
 static_assert(sizeof(SliceUniforms) == 5 * 16);
 static_assert(offsetof(SliceUniforms, pictureSize) == 4 * 16);
+static_assert(sizeof(dvec2) == 16 && sizeof(FlatUniforms) == 6 * 16);
+static_assert(offsetof(FlatUniforms, lattice) == 2 * 16);
+static_assert(sizeof(FlatVertex) == 3 * 16 && sizeof(FlatEye) == 2 * 16);
 
 /// Binding points, the same numbers in the shaders.
-inline constexpr unsigned uniformBinding = 0;
-inline constexpr unsigned volumeUnit = 0, leapUnit = 1, tableUnit = 2, startUnit = 3;
+inline constexpr unsigned uniformBinding = 0, flatUniformBinding = 1;
+inline constexpr unsigned flatVertexBinding = 0, flatTriangleBinding = 1, flatCameraBinding = 2;
+inline constexpr unsigned volumeUnit = 0, leapUnit = 1, tableUnit = 2, startUnit = 3,
+                          triangleUnit = 4;
 inline constexpr unsigned pictureImage = 0, startImage = 1;
 }  // namespace haustra::shaders
 #endif

@@ -1,7 +1,9 @@
-// Owner of one linked compute program.
+// Owners of linked programs: compute, and raster.
 #pragma once
 
 #include "core/result.h"
+#include "gpu/buffer.h"
+#include "gpu/texture.h"
 
 #include <initializer_list>
 #include <string_view>
@@ -31,6 +33,31 @@ private:
     ComputeProgram() = default;
     unsigned id_ = 0;
     glm::ivec2 groupSize_{1};
+};
+
+/// Draws triangles into an integer texture. A vertex is known by its index alone: the vertex shader
+/// reads what it needs from storage blocks at gl_VertexID. Belongs to the thread of the context in
+/// which it was made, which must be current when it dies. Move-only.
+class RasterProgram {
+public:
+    /// Compiles and links the two shaders, each from its pieces, as ComputeProgram does.
+    static Result<RasterProgram> create(const char* what,
+                                        std::initializer_list<std::string_view> vertexPieces,
+                                        std::initializer_list<std::string_view> fragmentPieces);
+    ~RasterProgram();
+    RasterProgram(RasterProgram&& other) noexcept;
+    RasterProgram& operator=(RasterProgram&& other) noexcept;
+
+    /// Fills `target`, a 2-D texture of format rg32i, with `background`, then draws the triangles
+    /// [first, first + count) of `indices` (three 32-bit indices each) `copies` times, without
+    /// depth and whichever way they wind; later ones cover earlier ones. What it draws is visible
+    /// to later reads. gl_PrimitiveID counts from `first`.
+    void draw(const Texture& target, glm::ivec2 background, const StorageBuffer& indices, int first,
+              int count, int copies) const;
+
+private:
+    RasterProgram() = default;
+    unsigned program_ = 0, vertexArray_ = 0, framebuffer_ = 0;
 };
 
 }  // namespace haustra::gpu

@@ -26,6 +26,8 @@ Layout layoutOf(TexelFormat format) {
             return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
         case TexelFormat::rgba32f:
             return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+        case TexelFormat::rg32i:
+            return {GL_RG32I, GL_RG_INTEGER, GL_INT, 8};
     }
     return {};
 }

@@ -15,6 +15,7 @@ enum class TexelFormat {
     r32f,     ///< one float
     rgba8,    ///< four bytes, 0…1
     rgba32f,  ///< four floats
+    rg32i,    ///< two integers
 };
 
 enum class Filter {
@@ -52,6 +53,7 @@ public:
     std::size_t bytes() const;
 
 private:
+    friend class RasterProgram;
     Texture() = default;
     unsigned id_ = 0;
     int dimensions_ = 0;

@@ -5,6 +5,7 @@
 #include "gpu/program.h"
 #include "gpu/texture.h"
 #include "render/classification.h"
+#include "render/flat_painter.h"
 #include "render/leap_map.h"
 #include "render/ray_setup.h"
 #include "render/stored_value.h"
@@ -71,14 +72,20 @@ struct CaseRenderer::Impl {
     BlockRanges ranges;
     gpu::ComputeProgram coneStart, endoscopic, slice;
     gpu::UniformBuffer marchBlock, sliceBlock;
+    std::optional<FlatPainter> flat;  // where the case has a flat map
     std::optional<gpu::Texture> picture, firstStep;
     std::vector<Classification> recent;  // the latest used last
 
     /// Made, or found among those lately used: readers of one case may differ in their colours.
-    Result<const Classification*> classification(const EndoscopicView& view) {
-        const double step = stepMm(view.march, grid);
+    Result<const Classification*> classification(const TransferFunction& transferFunction,
+                                                 const MarchOptions& march) {
+        if (Result<void> sound = checkTransferFunction(transferFunction); !sound)
+            return tl::make_unexpected(sound.error());
+        if (Result<void> sound = checkMarch(march); !sound)
+            return tl::make_unexpected(sound.error());
+        const double step = stepMm(march, grid);
         const auto wanted = [&](const Classification& one) {
-            return one.isFor(view.transferFunction, step, view.march.emptySpaceLeaping);
+            return one.isFor(transferFunction, step, march.emptySpaceLeaping);
         };
         if (const auto found = std::find_if(recent.begin(), recent.end(), wanted);
             found != recent.end()) {
@@ -87,7 +94,7 @@ struct CaseRenderer::Impl {
         }
         if (recent.size() == classificationsKept) recent.erase(recent.begin());
         Result<Classification> made = Classification::create(
-            view.transferFunction, step, view.march.emptySpaceLeaping, ranges, threads);
+            transferFunction, step, march.emptySpaceLeaping, ranges, threads);
         if (!made) return tl::make_unexpected(made.error());
         recent.push_back(std::move(*made));
         return &recent.back();
@@ -106,6 +113,29 @@ struct CaseRenderer::Impl {
         picture = std::move(*made);
         firstStep = std::move(*starts);
         return {};
+    }
+
+    /// The volume, what makes it visible, and how rays run through it: bound for march().
+    void bindVolume(const MarchUniforms& u, const Classification& classified) {
+        marchBlock.write(u);
+        marchBlock.bind(shaders::uniformBinding);
+        (cleansed ? *cleansed : ct).bind(shaders::volumeUnit);
+        classified.bind();
+    }
+
+    Result<Image> drawFlat(const FlatWindow& window, const MarchOptions& march,
+                           const Classification& classified, glm::ivec2 size) {
+        const int errorsBefore = context.errorCount();
+        if (Result<void> made = makeTargets(size); !made) return tl::make_unexpected(made.error());
+        bindVolume(marchUniforms(march, grid, classified.table(), ranges.size, size), classified);
+        if (Result<void> drawn = flat->draw(window, stepMm(march, grid), *picture); !drawn)
+            return tl::make_unexpected(drawn.error());
+        return readPicture(size, errorsBefore);
+    }
+
+    Result<void> checkFlat() const {
+        if (flat) return {};
+        return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
     }
 
     Result<Image> readPicture(glm::ivec2 size, int errorsBefore) {
@@ -155,7 +185,8 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context
         "cone_start.comp", {structs, march, shaderSource("cone_start.comp")});
     if (!cone) return tl::make_unexpected(cone.error());
     Result<ComputeProgram> endoscopic = ComputeProgram::create(
-        "endoscopic.comp", {structs, march, shaderSource("endoscopic.comp")});
+        "endoscopic.comp",
+        {structs, march, shaderSource("picture.glsl"), shaderSource("endoscopic.comp")});
     if (!endoscopic) return tl::make_unexpected(endoscopic.error());
     Result<ComputeProgram> slice =
         ComputeProgram::create("slice.comp", {structs, shaderSource("slice.comp")});
@@ -164,6 +195,12 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context
     if (!marchBlock) return tl::make_unexpected(marchBlock.error());
     Result<UniformBuffer> sliceBlock = UniformBuffer::create(sizeof(SliceUniforms));
     if (!sliceBlock) return tl::make_unexpected(sliceBlock.error());
+    std::optional<FlatPainter> flat;
+    if (prepared.flatMap) {
+        Result<FlatPainter> painter = FlatPainter::create(*prepared.flatMap, grid);
+        if (!painter) return tl::make_unexpected(painter.error());
+        flat = std::move(*painter);
+    }
     if (context.errorCount() != errorsBefore)
         return fail(ErrorKind::device, "the graphics driver reported an error", "render");
 
@@ -180,6 +217,7 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context
                                                         std::move(*slice),
                                                         std::move(*marchBlock),
                                                         std::move(*sliceBlock),
+                                                        std::move(flat),
                                                         {},
                                                         {},
                                                         {}})));
@@ -195,19 +233,14 @@ Result<Image> CaseRenderer::render(const EndoscopicView& view, int width, int he
         return tl::make_unexpected(sound.error());
     if (Result<void> sound = checkCamera(view.camera); !sound)
         return tl::make_unexpected(sound.error());
-    if (Result<void> sound = checkTransferFunction(view.transferFunction); !sound)
-        return tl::make_unexpected(sound.error());
-    if (!(view.march.stepVoxels >= 0.05 && view.march.stepVoxels <= 4.0))
-        return fail(ErrorKind::badInput, "the sampling distance is not within 0.05 to 4 voxels");
     const glm::ivec2 size(width, height);
     if (Result<void> made = my.makeTargets(size); !made) return tl::make_unexpected(made.error());
 
-    const Result<const Classification*> classified = my.classification(view);
+    const Result<const Classification*> classified =
+        my.classification(view.transferFunction, view.march);
     if (!classified) return tl::make_unexpected(classified.error());
-    my.marchBlock.write(marchUniforms(view, my.grid, (*classified)->table(), my.ranges.size, size));
-    my.marchBlock.bind(shaders::uniformBinding);
-    (my.cleansed ? *my.cleansed : my.ct).bind(shaders::volumeUnit);
-    (*classified)->bind();
+    my.bindVolume(marchUniforms(view, my.grid, (*classified)->table(), my.ranges.size, size),
+                  **classified);
     my.firstStep->bindImage(shaders::startImage);
     my.coneStart.dispatch((size + coneTile - 1) / coneTile);
     my.firstStep->bind(shaders::startUnit);
@@ -251,11 +284,49 @@ Result<Image> CaseRenderer::render(const SliceView& view, int width, int height)
     return my.readPicture(size, errorsBefore);
 }
 
+Result<Image> CaseRenderer::render(const FlatView& view, int width, int height) {
+    Impl& my = *impl_;
+    if (Result<void> sound = checkPicture(width, height); !sound)
+        return tl::make_unexpected(sound.error());
+    if (Result<void> sound = checkFlatWindow(view.window, width); !sound)
+        return tl::make_unexpected(sound.error());
+    if (Result<void> has = my.checkFlat(); !has) return tl::make_unexpected(has.error());
+    const Result<const Classification*> classified =
+        my.classification(view.transferFunction, view.march);
+    if (!classified) return tl::make_unexpected(classified.error());
+    return my.drawFlat(view.window, view.march, **classified, {width, height});
+}
+
+Result<Image> CaseRenderer::render(const FlatOverview& view, int width, int height) {
+    Impl& my = *impl_;
+    if (Result<void> sound = checkPicture(width, height); !sound)
+        return tl::make_unexpected(sound.error());
+    if (Result<void> has = my.checkFlat(); !has) return tl::make_unexpected(has.error());
+    const Result<const Classification*> classified =
+        my.classification(view.transferFunction, view.march);
+    if (!classified) return tl::make_unexpected(classified.error());
+    Image overview{width, height,
+                   std::vector<std::uint8_t>(3u * unsigned(width) * unsigned(height))};
+    for (const StripColumn& column : layOutStrip(my.flat->height(), {width, height}).columns) {
+        const Result<Image> drawn =
+            my.drawFlat(column.window, view.march, **classified, column.size);
+        if (!drawn) return drawn;
+        const std::size_t row = 3 * std::size_t(column.size.x);
+        for (int y = 0; y < column.size.y; ++y)
+            std::copy_n(
+                &drawn->rgb[row * std::size_t(y)], row,
+                &overview
+                     .rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(column.left))]);
+    }
+    return overview;
+}
+
 std::size_t CaseRenderer::gpuBytes() const {
     const Impl& my = *impl_;
     std::size_t bytes = my.ct.bytes();
     for (const std::optional<gpu::Texture>* texture : {&my.cleansed, &my.picture, &my.firstStep})
         if (*texture) bytes += (*texture)->bytes();
+    if (my.flat) bytes += my.flat->gpuBytes();
     for (const Classification& one : my.recent)
         bytes += one.gpuBytes();
     return bytes;

@@ -13,26 +13,12 @@ double stepMm(const MarchOptions& march, const Grid& grid) {
     return march.stepVoxels * std::min(spacing.x, std::min(spacing.y, spacing.z));
 }
 
-shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& grid,
+shaders::MarchUniforms marchUniforms(const MarchOptions& march, const Grid& grid,
                                      const TransferTable& table, glm::ivec3 blocks,
                                      glm::ivec2 size) {
-    const glm::dvec3 forward = glm::normalize(view.camera.forward);
-    const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
-    const glm::dvec3 up = glm::cross(right, forward);
-    const double halfHeight = std::tan(glm::radians(0.5 * view.camera.fovDegrees));
-    const double halfWidth = halfHeight * size.x / size.y;
     const glm::dvec3 voxels(grid.size);
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
-    const glm::dvec3 eye = (grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels;
-    const double step = stepMm(view.march, grid);
-    // No ray inside the volume is longer than the way from the eye to the farthest corner.
-    double farthestMm = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
-        farthestMm = std::max(
-            farthestMm,
-            glm::distance(view.camera.positionMm, grid.patientFromVoxelPoint(side * voxels - 0.5)));
-    }
+    const double step = stepMm(march, grid);
     const auto row = [&](int r) {
         return glm::vec4(voxelFromPatient[0][r], voxelFromPatient[1][r], voxelFromPatient[2][r],
                          0.0) /
@@ -42,12 +28,10 @@ shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& gri
     const auto limit = [](double hu) {
         return std::isinf(hu) ? std::copysign(2.0, hu) : storedFraction(hu);
     };
+    const double diagonalMm = glm::distance(grid.patientFromVoxelPoint(glm::dvec3(-0.5)),
+                                            grid.patientFromVoxelPoint(voxels - 0.5));
 
     shaders::MarchUniforms u{};
-    u.eyeTexture = glm::vec4(eye, 0.0);
-    u.forwardMm = glm::vec4(forward, 0.0);
-    u.rightMm = glm::vec4(right * halfWidth, 0.0);
-    u.downMm = glm::vec4(-up * halfHeight, 0.0);
     u.textureRowX = row(0);
     u.textureRowY = row(1);
     u.textureRowZ = row(2);
@@ -57,12 +41,39 @@ shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& gri
         glm::vec4(limit(table.visibleAboveHu), limit(table.visibleBelowHu),
                   storedRange * perHu / TransferTable::entries,
                   ((-storedOffset - table.firstHu) * perHu + 0.5) / TransferTable::entries);
-    u.stepping = glm::vec4(step, terminationOpacity, std::ceil(farthestMm / step) + 1.0,
+    u.stepping = glm::vec4(step, terminationOpacity, std::ceil(diagonalMm / step) + 1.0,
                            headlight.halfDepthMm);
     u.light =
         glm::vec4(headlight.ambient, headlight.diffuse, headlight.specular, headlight.shininess);
-    u.pictureSize = glm::ivec4(size, view.march.shading ? 1 : 0, 0);
+    u.pictureSize = glm::ivec4(size, march.shading ? 1 : 0, 0);
     u.lastBlock = glm::ivec4(blocks - 1, coneTile);
+    return u;
+}
+
+shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& grid,
+                                     const TransferTable& table, glm::ivec3 blocks,
+                                     glm::ivec2 size) {
+    shaders::MarchUniforms u = marchUniforms(view.march, grid, table, blocks, size);
+    const glm::dvec3 forward = glm::normalize(view.camera.forward);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+    const glm::dvec3 up = glm::cross(right, forward);
+    const double halfHeight = std::tan(glm::radians(0.5 * view.camera.fovDegrees));
+    const double halfWidth = halfHeight * size.x / size.y;
+    const glm::dvec3 voxels(grid.size);
+    u.eyeTexture =
+        glm::vec4((grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels, 0.0);
+    u.forwardMm = glm::vec4(forward, 0.0);
+    u.rightMm = glm::vec4(right * halfWidth, 0.0);
+    u.downMm = glm::vec4(-up * halfHeight, 0.0);
+    // No ray inside the volume is longer than the way from the eye to the farthest corner.
+    double farthestMm = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
+        farthestMm = std::max(
+            farthestMm,
+            glm::distance(view.camera.positionMm, grid.patientFromVoxelPoint(side * voxels - 0.5)));
+    }
+    u.stepping.z = float(std::ceil(farthestMm / double(stepMm(view.march, grid))) + 1.0);
     return u;
 }
 

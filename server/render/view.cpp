@@ -118,11 +118,31 @@ Result<void> checkCamera(const Camera& camera) {
     return {};
 }
 
+Result<void> checkMarch(const MarchOptions& march) {
+    if (march.stepVoxels >= 0.05 && march.stepVoxels <= 4.0) return {};
+    return fail(ErrorKind::badInput, "the sampling distance is not within 0.05 to 4 voxels");
+}
+
+Result<void> checkFlatWindow(const FlatWindow& window, int width) {
+    if (!std::isfinite(window.center.x) || !(std::abs(window.center.y) <= maxFlatHeight))
+        return fail(ErrorKind::badInput, "the window's centre is not on the strip", "flat window");
+    if (!(window.pixelsPerUnit <= maxPixelsPerUnit &&
+          window.pixelsPerUnit * maxCircumferences >= width))
+        return fail(ErrorKind::badInput,
+                    "the pixels a circumference are over " + std::to_string(maxPixelsPerUnit) +
+                        ", or so few that the picture shows more than " +
+                        std::to_string(maxCircumferences) + " circumferences",
+                    "flat window");
+    return {};
+}
+
 Result<View> viewFromString(const std::string& text) {
-    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
+    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
+                            View::flattened, View::flattenedZoom})
         if (text == toString(view)) return view;
     return fail(ErrorKind::badInput,
-                "no view named '" + text + "' (endoscopic, axial, coronal, sagittal)");
+                "no view named '" + text +
+                    "' (endoscopic, axial, coronal, sagittal, flattened, flattened-zoom)");
 }
 
 const char* toString(View view) {
@@ -135,13 +155,18 @@ const char* toString(View view) {
             return "coronal";
         case View::sagittal:
             return "sagittal";
+        case View::flattened:
+            return "flattened";
+        case View::flattenedZoom:
+            return "flattened-zoom";
     }
     return "";
 }
 
 Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height) {
-    if (view.plane == View::endoscopic)
-        return fail(ErrorKind::badInput, "an endoscopic view is no slice", "slice");
+    if (view.plane != View::axial && view.plane != View::coronal && view.plane != View::sagittal)
+        return fail(ErrorKind::badInput,
+                    std::string("the view ") + toString(view.plane) + " is no slice", "slice");
     if (!finite(view.positionMm))
         return fail(ErrorKind::badInput, "the position is not finite", "slice");
     if (!(view.zoom >= 1.0 && view.zoom <= 64.0))

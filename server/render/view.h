@@ -54,7 +54,7 @@ Result<TransferFunction> transferFunctionPreset(const std::string& name);
 /// falling, colours and opacities 0…1).
 Result<void> checkTransferFunction(const TransferFunction& transferFunction);
 
-enum class View { endoscopic, axial, coronal, sagittal };
+enum class View { endoscopic, axial, coronal, sagittal, flattened, flattenedZoom };
 Result<View> viewFromString(const std::string& text);
 const char* toString(View view);
 
@@ -87,6 +87,9 @@ struct EndoscopicView {
 /// Says what is wrong with a camera: field of view 1…170°, directions finite and not parallel.
 Result<void> checkCamera(const Camera& camera);
 
+/// Fails (badInput) where the sampling distance is out of range.
+Result<void> checkMarch(const MarchOptions& march);
+
 /// Which of a case's two scans a slice shows.
 enum class Scan { original, cleansed };
 
@@ -113,15 +116,39 @@ struct SlicePlacement {
 /// Slices are planes of patient space also where the grid is oblique.
 Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height);
 
-/// A window onto the flattened wall (dissertation §4.3.2): each pixel's place on the surface and its
-/// camera come from the flat map, and a ray along the camera's line of sight meets the cleansed scan
-/// there. It starts close before the wall, so that no fold in between hides the place. Beyond the
-/// seam the picture repeats; beyond the strip's ends it is black.
+/// A window onto the flattened wall (dissertation §4.3.2). Each pixel's place on the surface is
+/// interpolated from the flat map's triangle that covers it, at whatever enlargement, and a ray
+/// meets the cleansed scan there:
+///  - It comes from the camera that the place is registered with. Where that line of sight would
+///    meet the wall from behind or graze it, it is turned towards the wall's normal (mostRayAngle):
+///    every place is seen from the lumen, and what is drawn lies at the place, not beside it.
+///  - It starts where the way back from the place, at most `backMm` long, is darkest, and looks
+///  back
+///    no farther than where the scan rises by `riseHu` again: no fold stands between.
+///  - It ends `depthMm` behind the wall.
+/// The light falls from the camera's side as well, but from a lamp that hangs ahead of the camera
+/// by `lampAhead` times its distance to the wall: from the top of the picture, so that bumps and
+/// dents look different. It is turned by less (mostLightAngle): the sides of folds lie in shade. It
+/// does not fall off. Beyond the seam the picture repeats; beyond the strip's ends it is black.
 struct FlatView {
     FlatWindow window;
     TransferFunction transferFunction;
     MarchOptions march;
 };
+
+/// How the rays of flattened views run. An angle a between a direction and the wall's normal
+/// becomes a / (1 + (a / most)⁴)^¼, radians: under `most`, and a itself where it is small.
+struct FlatRay {
+    double mostRayAngle, mostLightAngle, lampAhead, backMm, riseHu, depthMm;
+};
+inline constexpr FlatRay flatRay{0.8, 1.45, 0.5, 2.0, 200.0, 10.0};
+
+/// Limits of a flattened view: the strip's length in circumferences, the enlargement, and how often
+/// one picture may show the circumference.
+inline constexpr int maxFlatHeight = 4096, maxPixelsPerUnit = 1 << 18, maxCircumferences = 8;
+
+/// Fails (badInput) where a window that is `width` pixels wide is not within the limits.
+Result<void> checkFlatWindow(const FlatWindow& window, int width);
 
 /// The whole strip, laid out in columns (layOutStrip).
 struct FlatOverview {

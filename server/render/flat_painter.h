@@ -1,0 +1,38 @@
+// Draws windows onto the flattened wall.
+#pragma once
+
+#include "core/grid.h"
+#include "gpu/program.h"
+#include "gpu/texture.h"
+#include "render/flat_surface.h"
+#include "render/view.h"
+
+#include <optional>
+
+namespace haustra::render {
+
+/// The raster pass that finds each pixel's triangle, and the compute pass that casts its ray.
+/// Belongs to the thread of the context.
+class FlatPainter {
+public:
+    /// The flat map of a case whose volumes are on `grid`. Fails as FlatSurface::upload does, and
+    /// where the shaders do not compile.
+    static Result<FlatPainter> create(const FlatMap& map, const Grid& grid);
+
+    double height() const { return surface_.height(); }
+    /// Draws into `picture`, the whole of it. The volume, its classification and the block of
+    /// march.glsl must be bound; `stepMm` is that block's. The window must have passed its check.
+    Result<void> draw(const FlatWindow& window, double stepMm, const gpu::Texture& picture);
+    std::size_t gpuBytes() const;
+
+private:
+    FlatPainter(FlatSurface surface, gpu::RasterProgram triangles, gpu::ComputeProgram rays,
+                gpu::UniformBuffer block);
+    FlatSurface surface_;
+    gpu::RasterProgram triangles_;
+    gpu::ComputeProgram rays_;
+    gpu::UniformBuffer block_;
+    std::optional<gpu::Texture> triangleOfPixel_;
+};
+
+}  // namespace haustra::render

@@ -1,0 +1,5 @@
+// Which triangle of the flat map covers a pixel, and in which copy of the strip.
+flat in int stripCopy;
+layout(location = 0) out ivec2 triangle;
+
+void main() { triangle = ivec2(flatWindow.picture.z + gl_PrimitiveID, stripCopy); }
