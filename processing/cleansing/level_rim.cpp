@@ -12,7 +12,7 @@ namespace {
 
 constexpr double windowMm = 5.0;  // in which the wall's direction is sought
 constexpr double mostBent = 0.1;  // share of the squared gradients along that direction
-constexpr double steepest = 2.5;  // mm across per mm of height; a flatter wall gives no direction
+constexpr double steepest = 1.5;  // mm across per mm of height; a flatter wall gives no direction
 
 class Rim {
 public:
@@ -157,7 +157,8 @@ double thirdLowestAround(const Volume<std::int16_t>& hu, glm::ivec3 v) {
 
 void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                const LocalMeans& means, const WaterLevel& level, double halfHeightMm,
-               const TaggedSurroundings& around, Volume<TissueFractions>& mixture, int threads) {
+               const TaggedSurroundings& around, const Volume<std::uint8_t>& settled,
+               Volume<TissueFractions>& mixture, int threads) {
     if (level.down() == glm::ivec3(0)) return;
     const Grid& grid = scan.hu.grid();
     const auto airAt = [&](glm::ivec3 v) { return means.airHu.at(v.x, v.y, v.z); };
@@ -181,7 +182,7 @@ void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
             for (std::size_t m = begin; m < end; ++m) {
                 const std::size_t n = shell[m];
                 const glm::ivec3 v = grid.voxelAt(n);
-                if (!level.near(v)) continue;
+                if (settled[n] || !level.near(v)) continue;
                 auto straight = rim.huAt(v);
                 if (!straight && betweenAirAndFluid(segmentation, v)) {
                     const double open = thirdLowestAround(cleansed, v);

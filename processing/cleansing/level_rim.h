@@ -15,9 +15,11 @@ namespace haustra::cleansing {
 /// (the one in which the cleansed scan changes least there) the cleansed HU is interpolated, and
 /// the residue is what explains the difference from the scan. Where the wall bends too much for
 /// that, a voxel that juts out of it where air and tagging meet becomes as its neighbours.
-/// `segmentation` is LumenLabel. The same for any number of threads.
+/// `segmentation` is LumenLabel; voxels that are 1 in `settled` stay. The same for any number of
+/// threads.
 void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                const LocalMeans& means, const WaterLevel& level, double halfHeightMm,
-               const TaggedSurroundings& around, Volume<TissueFractions>& mixture, int threads);
+               const TaggedSurroundings& around, const Volume<std::uint8_t>& settled,
+               Volume<TissueFractions>& mixture, int threads);
 
 }  // namespace haustra::cleansing

@@ -6,6 +6,7 @@
 #include "cleansing/menisci.h"
 #include "cleansing/partial_volume_em.h"
 #include "cleansing/tagged_surroundings.h"
+#include "cleansing/thin_films.h"
 #include "cleansing/water_level.h"
 
 #include <algorithm>
@@ -239,7 +240,9 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
         });
     }
     progress(0.8);
-    settleRim(scan, labels, means, level, 2.5 * interfaces.blurMm(), around, mixture,
+    const Volume<std::uint8_t> films =
+        settleFilms(scan, labels, means, interfaces.blurMm(), around, mixture, options.threads);
+    settleRim(scan, labels, means, level, 2.5 * interfaces.blurMm(), around, films, mixture,
               options.threads);
     // Where no tagging is left fat, which the two-tissue model has not, is told from air as far
     // off.

@@ -19,7 +19,8 @@ struct MixtureOptions {
 /// variances re-estimated from the scan (partial_volume_em.h). In and around the tagged lumen they
 /// solve the equation for the means measured nearby (local_means.h); which tissues a mixed voxel
 /// holds, which HU alone cannot tell, is settled by the length of the step through it
-/// (interface_layer.h), the water level (water_level.h) and the wall's course (level_rim.h).
+/// (interface_layer.h), the water level (water_level.h), the profile of thin films (thin_films.h)
+/// and the wall's course (level_rim.h).
 /// `segmentation` (LumenLabel) tells which tagged material and air is bowel content; `gravity`
 /// (unit LPS, zero where unknown) points down. The same bytes for any number of threads.
 Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const TissueModel& tissue,

@@ -147,6 +147,28 @@ TEST(Cleansing, ThinWallBetweenAPoolAndAnotherLoopHasNoHoles) {
     }
 }
 
+TEST(Cleansing, FilmThinnerThanTheBlurComesOffTheWall) {
+    // On a floor that leans 12°; from 0.5 mm thick, where it is no denser than the wall, to 3 mm.
+    const glm::dvec3 down(0.208, 0.978, 0.0), floor(21.0, 21.0, 0.0);
+    const auto depth = [=](glm::dvec3 p) {
+        return glm::dot(p * glm::dvec3(1, 1, 0) - floor, down);
+    };
+    const auto thickMm = [](glm::dvec3 p) {
+        return std::clamp(0.5 + 0.07 * (p.x - 5.0), 0.5, 3.0);
+    };
+    const Scene scene = makeScene({56, 56, 24}, 650.0, 15.0, [=](glm::dvec3 p) {
+        const double open = blurredStep(-depth(p)), air = blurredStep(-depth(p) - thickMm(p));
+        return Shares{air, open - air};
+    });
+    const CleansedScene result = cleanseScene(scene);
+    const auto beside = [=](Shares, glm::dvec3 p) {
+        return depth(p) > -thickMm(p) - 1.5 && depth(p) < 1.5 && p.x > 10.0 && p.x < 30.0;
+    };
+    const ErrorStatistics error = errorWhere(scene, result.cleansed, beside);
+    EXPECT_NEAR(error.bias, 0.0, 25.0);
+    EXPECT_LT(error.rmse, 90.0);
+}
+
 TEST(Cleansing, SpecksInTheFluidAreGoneFoldsStay) {
     Scene scene = tubeWithLevel(220.0, 5.0);
     const Grid& grid = scene.scan.hu.grid();
