@@ -58,6 +58,7 @@ Result<Solution> solve(const Systems& systems, const ConformalTubeOptions& optio
     if (options.solver == Solver::cholesky) {
         auto cholesky = SparseCholesky::of(systems.matrix, int(systems.pullU.size()));
         if (!cholesky) return tl::make_unexpected(cholesky.error());
+        if (options.progress) options.progress(0.8);
         found.u = cholesky->solveLeading(systems.pullU);
         found.v = cholesky->solve(systems.pullV);
         return found;
@@ -67,7 +68,7 @@ Result<Solution> solve(const Systems& systems, const ConformalTubeOptions& optio
         for (std::size_t n = begin; n < end; ++n) {
             sides[n] = conjugateGradient(systems.matrix, n == 0 ? systems.pullU : systems.pullV,
                                          options.solver == Solver::jacobiConjugateGradient,
-                                         options.tolerance);
+                                         options.tolerance, options.maxIterations);
         }
     });
     found.u = std::move(sides[0].x);

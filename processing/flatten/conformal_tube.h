@@ -17,6 +17,7 @@ struct ConformalTubeOptions {
     int threads = 0;  ///< the two systems are solved side by side where there are two
     Solver solver = Solver::cholesky;
     double tolerance = 1e-10;  ///< relative residual; of the iterative solvers alone
+    int maxIterations = 0;     ///< of each system; 0: twice its unknowns
     /// Flips edges until no cotangent weight is negative, in the intrinsic metric (Fisher et al.
     /// 2007). The surface's triangles stay as they are.
     bool intrinsicDelaunay = true;

@@ -8,9 +8,10 @@ namespace {
 
 template <class Preconditioner>
 IterativeSolution solveWith(const Eigen::SparseMatrix<double>& lower,
-                            const std::vector<double>& right, double tolerance) {
+                            const std::vector<double>& right, double tolerance, int maxIterations) {
     Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower, Preconditioner> solver;
     solver.setTolerance(tolerance);
+    if (maxIterations > 0) solver.setMaxIterations(maxIterations);
     solver.compute(lower);
     const Eigen::Map<const Eigen::VectorXd> b(right.data(), Eigen::Index(right.size()));
     const Eigen::VectorXd x = solver.solve(b);
@@ -20,14 +21,16 @@ IterativeSolution solveWith(const Eigen::SparseMatrix<double>& lower,
 }  // namespace
 
 IterativeSolution conjugateGradient(const SymmetricMatrix& matrix, const std::vector<double>& right,
-                                    bool jacobi, double tolerance) {
+                                    bool jacobi, double tolerance, int maxIterations) {
     const Eigen::Map<const Eigen::SparseMatrix<double>> whole(
         matrix.size, matrix.size, Eigen::Index(matrix.row.size()), matrix.columnStart.data(),
         matrix.row.data(), matrix.value.data());
     const auto size = Eigen::Index(right.size());
     const Eigen::SparseMatrix<double> lower = whole.topLeftCorner(size, size);
-    return jacobi ? solveWith<Eigen::DiagonalPreconditioner<double>>(lower, right, tolerance)
-                  : solveWith<Eigen::IdentityPreconditioner>(lower, right, tolerance);
+    return jacobi
+               ? solveWith<Eigen::DiagonalPreconditioner<double>>(lower, right, tolerance,
+                                                                  maxIterations)
+               : solveWith<Eigen::IdentityPreconditioner>(lower, right, tolerance, maxIterations);
 }
 
 }  // namespace haustra::flatten

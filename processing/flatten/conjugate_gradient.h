@@ -14,8 +14,9 @@ struct IterativeSolution {
 };
 
 /// The system of the first right.size() unknowns, by conjugate gradients with the diagonal as the
-/// preconditioner (`jacobi`) or without one, to a relative residual of `tolerance`.
+/// preconditioner (`jacobi`) or without one, to a relative residual of `tolerance` or for
+/// `maxIterations` (0: twice the unknowns).
 IterativeSolution conjugateGradient(const SymmetricMatrix& matrix, const std::vector<double>& right,
-                                    bool jacobi, double tolerance);
+                                    bool jacobi, double tolerance, int maxIterations);
 
 }  // namespace haustra::flatten

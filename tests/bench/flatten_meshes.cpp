@@ -1,0 +1,153 @@
+#include "flatten_meshes.h"
+
+#include "core/parallel.h"
+#include "flatten/end_holes.h"
+#include "mesh/halfedge_mesh.h"
+#include "mesh/mesh_file.h"
+#include "store/case_store.h"
+#include "surface/dual_contouring.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace haustra::bench {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kIsoHu = -475.0;  // midway between the generated air and wall
+
+/// The coil's tube: signed distance-like, negative inside.
+double outsideCoil(const glm::dvec3& at) {
+    constexpr double kCoilMm = 60.0, kPitchMm = 75.0, kTurns = 2.0;
+    const double rho = std::hypot(at.x, at.y), angle = std::atan2(at.y, at.x);
+    double nearest = std::numeric_limits<double>::max();
+    for (int turn = -1; turn <= 2; ++turn) {
+        const double s = std::clamp(angle / (2.0 * kPi) + turn, 0.0, kTurns);
+        const double theta = 2.0 * kPi * s;
+        const glm::dvec3 centre(kCoilMm * std::cos(theta), kCoilMm * std::sin(theta),
+                                kPitchMm * (s - 0.5 * kTurns));
+        const double phi = std::atan2(at.z - centre.z, rho - kCoilMm);
+        const double folds = std::pow(0.5 + 0.5 * std::cos(2.0 * kPi * 12.0 * s), 4.0);
+        const double taeniae = 0.5 + 0.5 * std::cos(3.0 * phi);
+        const double radius = 24.0 - 5.0 * folds * (1.0 - taeniae) - 2.0 * taeniae;
+        nearest = std::min(nearest, glm::distance(at, centre) - radius);
+    }
+    return nearest;
+}
+
+Result<Tube> punched(std::string name, const TriMesh& closed, const glm::dvec3 ends[2],
+                     const glm::dvec3 outwards[2]) {
+    auto made = flatten::punchEnds(closed, ends, outwards);
+    if (!made) return tl::make_unexpected(made.error());
+    return Tube{std::move(name), std::move(made->tube)};
+}
+
+/// The vertex farthest from `start` along the edges.
+int farthestFrom(const TriMesh& mesh, const mesh::HalfedgeMesh& edges, int start) {
+    std::vector<double> distance(mesh.vertices.size(), std::numeric_limits<double>::max());
+    using Reached = std::pair<double, int>;
+    std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
+    front.push({distance[std::size_t(start)] = 0.0, start});
+    int farthest = start;
+    while (!front.empty()) {
+        const auto [mm, v] = front.top();
+        front.pop();
+        if (mm > distance[std::size_t(v)]) continue;
+        farthest = v;
+        const int first = edges.outgoing(v);
+        int h = first;
+        do {
+            const int w = edges.target(h);
+            const double there = mm + edges.lengthMm(h);
+            if (there < distance[std::size_t(w)]) front.push({distance[std::size_t(w)] = there, w});
+            h = edges.turnLeft(h);
+        } while (h >= 0 && h != first);
+    }
+    return farthest;
+}
+
+}  // namespace
+
+Result<Tube> generatedTube(double voxelMm) {
+    constexpr double kHalfMm = 88.0, kHalfHeightMm = 104.0, kBlurMm = 1.0;
+    Grid grid;
+    grid.size = {int(2.0 * kHalfMm / voxelMm), int(2.0 * kHalfMm / voxelMm),
+                 int(2.0 * kHalfHeightMm / voxelMm)};
+    for (int axis = 0; axis < 3; ++axis)
+        grid.patientFromVoxel[axis][axis] = voxelMm;
+    grid.patientFromVoxel[3] = {-kHalfMm, -kHalfMm, -kHalfHeightMm, 1.0};
+    Volume<std::int16_t> hu(grid);
+    Volume<std::uint8_t> lumen(grid);
+    const auto huVoxels = hu.writable();
+    const auto lumenVoxels = lumen.writable();
+    parallelFor(std::size_t(grid.size.z), 1, 0, [&](std::size_t begin, std::size_t end) {
+        for (int k = int(begin); k < int(end); ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                for (int i = 0; i < grid.size.x; ++i) {
+                    const double outside =
+                        outsideCoil(grid.patientFromVoxelPoint({double(i), double(j), double(k)}));
+                    const double value = kIsoHu + 525.0 * std::tanh(outside / kBlurMm);
+                    huVoxels[grid.index(i, j, k)] = std::int16_t(std::lround(value));
+                    lumenVoxels[grid.index(i, j, k)] = outside < 0.0;
+                }
+            }
+        }
+    });
+    const auto closed = surface::contourLumen(hu, lumen, kIsoHu);
+    if (!closed) return tl::make_unexpected(closed.error());
+    const glm::dvec3 ends[2] = {{60.0, 0.0, -75.0}, {60.0, 0.0, 75.0}};
+    const glm::dvec3 outwards[2] = {{0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}};
+    return punched("generated coil", *closed, ends, outwards);
+}
+
+Result<Tube> tubeOfFile(const std::string& file) {
+    auto read = mesh::readMesh(file);
+    if (!read) return tl::make_unexpected(read.error());
+    const auto edges = mesh::HalfedgeMesh::of(*read);
+    if (!edges) return tl::make_unexpected(edges.error());
+    const std::string name = std::filesystem::path(file).stem().string();
+    if (!edges->closed()) return Tube{name, std::move(*read)};
+    const int first = farthestFrom(*read, *edges, read->triangles[0].x);
+    const int second = farthestFrom(*read, *edges, first);
+    const glm::dvec3 ends[2] = {read->vertices[std::size_t(first)],
+                                read->vertices[std::size_t(second)]};
+    const glm::dvec3 outwards[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
+    return punched(name, *read, ends, outwards);
+}
+
+Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseName,
+                        bool simplified) {
+    const auto opened = store::CaseStore::open(storeFolder, false).and_then([&](const auto& store) {
+        return store.openCase(caseName);
+    });
+    if (!opened) return tl::make_unexpected(opened.error());
+    const auto centerline = opened->readCenterline();
+    if (!centerline) return tl::make_unexpected(centerline.error());
+    Result<TriMesh> closed;
+    if (simplified) {
+        closed = opened->readMesh("surface");
+    } else {
+        const auto lumen = opened->readVolume<std::uint8_t>("lumen");
+        if (!lumen) return tl::make_unexpected(lumen.error());
+        const std::string scan = opened->find("cleansed") ? "cleansed" : "ct";
+        // A mask alone is contoured as the smoothest sheet that it allows.
+        const auto hu = opened->find(scan) ? opened->readVolume<std::int16_t>(scan)
+                                           : Volume<std::int16_t>(lumen->grid(), 0);
+        if (!hu) return tl::make_unexpected(hu.error());
+        closed = surface::contourLumen(*hu, *lumen, -400.0);
+    }
+    if (!closed) return tl::make_unexpected(closed.error());
+    const CenterlinePose first = poseAtArc(*centerline, 0.0, 6.0),
+                         last = poseAtArc(*centerline, centerline->lengthMm(), 6.0);
+    const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm};
+    const glm::dvec3 outwards[2] = {-first.tangent, last.tangent};
+    return punched(caseName + (simplified ? "" : ", finest"), *closed, ends, outwards);
+}
+
+}  // namespace haustra::bench
