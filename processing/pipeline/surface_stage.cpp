@@ -12,7 +12,7 @@ using organs::LumenFinder;
 using store::Attributes;
 
 // Raise it whenever the surface changes for the same input and options.
-constexpr int surfaceVersion = 3;
+constexpr int surfaceVersion = 4;
 
 // Which HU the wall stands at, and in which field.
 enum class WallRule { air, content, mask };

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -58,15 +60,26 @@ TriMesh orderedInSpace(const TriMesh& mesh, const glm::dvec3& low, const glm::dv
         rank[order[i].second] = int(i);
         result.vertices.push_back(mesh.vertices[order[i].second] - centre);
     }
-    result.triangles.reserve(mesh.triangles.size());
-    for (const glm::ivec3& t : mesh.triangles)
-        result.triangles.push_back({rank[t.x], rank[t.y], rank[t.z]});
-    std::sort(result.triangles.begin(), result.triangles.end(),
-              [](const glm::ivec3& s, const glm::ivec3& t) {
-                  const int sFirst = std::min({s.x, s.y, s.z}), tFirst = std::min({t.x, t.y, t.z});
-                  return sFirst != tFirst ? sFirst < tFirst
-                                          : std::tie(s.x, s.y, s.z) < std::tie(t.x, t.y, t.z);
-              });
+    const auto firstOf = [](const glm::ivec3& t) { return std::min({t.x, t.y, t.z}); };
+    std::vector<std::size_t> begin(order.size() + 1, 0);
+    std::vector<glm::ivec3> renamed;
+    renamed.reserve(mesh.triangles.size());
+    for (const glm::ivec3& t : mesh.triangles) {
+        renamed.push_back({rank[t.x], rank[t.y], rank[t.z]});
+        ++begin[firstOf(renamed.back()) + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    result.triangles.resize(renamed.size());
+    std::vector<std::size_t> end(begin.begin(), begin.end() - 1);
+    for (const glm::ivec3& t : renamed)
+        result.triangles[end[firstOf(t)]++] = t;
+    for (std::size_t v = 0; v < order.size(); ++v) {
+        std::sort(result.triangles.begin() + std::ptrdiff_t(begin[v]),
+                  result.triangles.begin() + std::ptrdiff_t(end[v]),
+                  [](const glm::ivec3& s, const glm::ivec3& t) {
+                      return std::tie(s.x, s.y, s.z) < std::tie(t.x, t.y, t.z);
+                  });
+    }
     return result;
 }
 
@@ -118,11 +131,20 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& optio
     auto corners = cornerMesh(orderedInSpace(mesh, low, centre));
     if (!corners) return tl::make_unexpected(corners.error());
 
-    ErrorBound bound(*corners, options.errorMm);
-    auto quadric = inputQuadrics(*corners);
+    std::optional<ErrorBound> bound;
+    std::vector<Quadric> quadric;
+    parallelFor(2, 1, options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i == 0) {
+                bound.emplace(*corners, options.errorMm);
+            } else {
+                quadric = inputQuadrics(*corners);
+            }
+        }
+    });
     const std::size_t vertices = mesh.vertices.size();
     const auto triangles = std::size_t(corners->triangleCount());
-    Simplification shared{std::move(*corners),        std::move(bound),
+    Simplification shared{std::move(*corners),        std::move(*bound),
                           std::move(quadric),         std::vector<char>(vertices, 0),
                           std::vector<int>(vertices), std::vector<int>(triangles),
                           options.minAngleDegrees};

@@ -13,40 +13,6 @@ constexpr double roundingMm = 1e-4;
 
 }  // namespace
 
-NearTriangle::NearTriangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c)
-    : corner{a, b, c}, edge{b - a, c - b, a - c} {
-    const glm::vec3 upright = glm::cross(edge[0], edge[1]);
-    const float length = glm::length(upright);
-    normal = length > 0.0f ? upright / length : glm::vec3(0.0f);
-    for (int k = 0; k < 3; ++k) {
-        const float squared = glm::dot(edge[k], edge[k]);
-        invertedEdgeSquared[k] = squared > 0.0f ? 1.0f / squared : 0.0f;
-        inward[k] = glm::cross(normal, edge[k]) * std::sqrt(invertedEdgeSquared[k]);
-    }
-}
-
-bool NearTriangle::within(const glm::vec3& p, float squared) const {
-    const glm::vec3 from[] = {p - corner[0], p - corner[1], p - corner[2]};
-    const float height = glm::dot(normal, from[0]);
-    if (height * height > squared) return false;
-    float depth[3];
-    for (int k = 0; k < 3; ++k) {
-        depth[k] = glm::dot(inward[k], from[k]);
-        if (depth[k] < 0.0f && depth[k] * depth[k] > squared) return false;
-    }
-    const bool flat = normal == glm::vec3(0.0f);
-    bool inside = !flat;
-    for (int k = 0; k < 3; ++k) {
-        if (depth[k] >= 0.0f && !flat) continue;
-        inside = false;
-        const float along =
-            std::clamp(glm::dot(from[k], edge[k]) * invertedEdgeSquared[k], 0.0f, 1.0f);
-        const glm::vec3 away = from[k] - along * edge[k];
-        if (glm::dot(away, away) <= squared) return true;
-    }
-    return inside;
-}
-
 ErrorBound::ErrorBound(const CornerMesh& input, double errorMm)
     : errorSquared_(float(std::max(0.0, errorMm - roundingMm) * (errorMm - roundingMm))),
       inputVertex_(input.vertex),
@@ -82,8 +48,7 @@ ErrorBound::ErrorBound(const CornerMesh& input, double errorMm)
 
 bool ErrorBound::nearInputTriangle(int triangle, const glm::vec3& p) const {
     const int* v = &inputVertex_[3 * std::size_t(triangle)];
-    return NearTriangle(inputPlace_[v[0]], inputPlace_[v[1]], inputPlace_[v[2]])
-        .within(p, errorSquared_);
+    return isNear(p, inputPlace_[v[0]], inputPlace_[v[1]], inputPlace_[v[2]], errorSquared_);
 }
 
 bool ErrorBound::nearTrianglesOf(int sample, const glm::vec3& p) const {
@@ -116,55 +81,39 @@ HungSamples::HungSamples(const ErrorBound& bound, std::span<const int> slots)
 
 void HungSamples::gather(std::span<const int> oldTriangles, Patch& patch) const {
     patch.samples.clear();
-    patch.x.clear();
-    patch.y.clear();
-    patch.z.clear();
+    patch.points.clear();
+    // The triangles' lists side by side: the processor waits for several links at once.
+    patch.ends.clear();
     for (const int triangle : oldTriangles) {
-        for (int sample = first_[triangle]; sample >= 0; sample = sample_[sample].next) {
-            const glm::vec3 p = sample_[sample].place;
+        if (first_[triangle] >= 0) patch.ends.push_back(first_[triangle]);
+    }
+    while (!patch.ends.empty()) {
+        for (std::size_t i = 0; i < patch.ends.size();) {
+            const int sample = patch.ends[i];
             patch.samples.push_back(sample);
-            patch.x.push_back(p.x);
-            patch.y.push_back(p.y);
-            patch.z.push_back(p.z);
+            patch.points.add(sample_[sample].place);
+            if (sample_[sample].next >= 0) {
+                patch.ends[i++] = sample_[sample].next;
+            } else {
+                patch.ends[i] = patch.ends.back();
+                patch.ends.pop_back();
+            }
         }
     }
+    patch.points.fill();
 }
 
 bool HungSamples::nearInput(const glm::vec3& p, const Patch& patch) const {
-    const std::size_t count = patch.samples.size();
-    if (count == 0) return false;
-    // Floats that are not negative order as their bits do; with a sample's number in the lowest
-    // bits, the least key tells the nearest sample (or one as near within rounding) in a loop
-    // without branches.
-    const auto numbers = int(std::bit_ceil(count) - 1);
-    const float *x = patch.x.data(), *y = patch.y.data(), *z = patch.z.data();
-    int least = std::numeric_limits<int>::max();
-    for (std::size_t i = 0; i < count; ++i) {
-        const float dx = x[i] - p.x, dy = y[i] - p.y, dz = z[i] - p.z;
-        const int bits = std::bit_cast<int>(dx * dx + dy * dy + dz * dz);
-        least = std::min(least, (bits & ~numbers) | int(i));
-    }
-    const std::size_t nearest = std::size_t(least & numbers);
-    const glm::vec3 away = glm::vec3(x[nearest], y[nearest], z[nearest]) - p;
+    if (patch.samples.empty()) return false;
+    const std::size_t nearest = nearestPoint(patch.points, p);
+    const glm::vec3 away = patch.points.at(nearest) - p;
     return glm::dot(away, away) <= bound_.errorSquared_ ||
            bound_.nearTrianglesOf(number_[patch.samples[nearest]], p);
 }
 
 bool HungSamples::findHomes(Patch& patch) const {
-    const std::size_t triangles = patch.triangles.size();
-    patch.home.resize(patch.samples.size());
-    std::size_t last = 0;  // a sample's neighbour in the list is often its neighbour in space
-    for (std::size_t i = 0; i < patch.samples.size(); ++i) {
-        const glm::vec3 p(patch.x[i], patch.y[i], patch.z[i]);
-        std::size_t tried = 0;
-        while (tried < triangles && !patch.triangles[last].within(p, bound_.errorSquared_)) {
-            ++tried;
-            last = last + 1 == triangles ? 0 : last + 1;
-        }
-        if (tried == triangles) return false;
-        patch.home[i] = int(last);
-    }
-    return true;
+    return findNear(patch.points, patch.triangles, bound_.errorSquared_, patch.home,
+                    patch.heightSquared);
 }
 
 void HungSamples::rehang(std::span<const int> oldTriangles, std::span<const int> newTriangles,

@@ -2,25 +2,12 @@
 #pragma once
 
 #include "surface/simplification_mesh.h"
+#include "surface/simplification_near.h"
 
 #include <span>
 #include <vector>
 
 namespace haustra::surface {
-
-/// A triangle prepared for many questions of nearness, in single precision.
-struct NearTriangle {
-    glm::vec3 corner[3];
-    glm::vec3 edge[3];    ///< from corner k to the next
-    glm::vec3 normal;     ///< of unit length; 0 where the triangle has no area
-    glm::vec3 inward[3];  ///< of unit length, in the plane, upright on edge k; 0 as the normal is
-    float invertedEdgeSquared[3];
-
-    NearTriangle() = default;
-    NearTriangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
-    /// Whether p is within √squared of the triangle.
-    bool within(const glm::vec3& p, float squared) const;
-};
 
 /// The input's surface, held by samples: its vertices, the midpoints of its edges and the centres
 /// of its triangles. Each sample hangs on one triangle of the working mesh that is within the bound
@@ -55,9 +42,11 @@ public:
     /// Room for one thread's questions.
     struct Patch {
         std::vector<int> samples;
-        std::vector<float> x, y, z;
+        std::vector<int> ends;  ///< of the lists of samples that are being gathered
+        PointArrays points;     ///< the samples' places
         std::vector<NearTriangle> triangles;
         std::vector<int> home;  ///< of each sample: its place in `triangles`
+        std::vector<float> heightSquared;
     };
 
     /// Of the working triangles `slots`, here numbered in that order; those numbered −1 are left

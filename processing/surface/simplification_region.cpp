@@ -73,6 +73,7 @@ void RegionSimplification::collapseEdges() {
 }
 
 void RegionSimplification::push(int a, int b) {
+    if (!movable(a) || !movable(b)) return;
     if (a > b) std::swap(a, b);
     const Quadric sum = part_.quadric[a] + part_.quadric[b];
     const glm::dvec3 middle = 0.5 * (mesh_.position[a] + mesh_.position[b]);
