@@ -128,8 +128,9 @@ struct CaseRenderer::Impl {
         const int errorsBefore = context.errorCount();
         if (Result<void> made = makeTargets(size); !made) return tl::make_unexpected(made.error());
         bindVolume(marchUniforms(march, grid, classified.table(), ranges.size, size), classified);
-        if (Result<void> drawn = flat->draw(window, stepMm(march, grid), *picture); !drawn)
-            return tl::make_unexpected(drawn.error());
+        if (Result<void> found = flat->findTriangles(window, size); !found)
+            return tl::make_unexpected(found.error());
+        flat->castRays(stepMm(march, grid), *picture);
         return readPicture(size, errorsBefore);
     }
 

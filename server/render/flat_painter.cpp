@@ -2,7 +2,6 @@
 
 #include "render/stored_value.h"
 #include "shaders/shader_source.h"
-#include "shaders/uniforms.h"
 
 #include <cmath>
 #include <utility>
@@ -16,8 +15,7 @@ namespace {
 constexpr double phasesPerPixel = 65536.0;
 
 shaders::FlatUniforms flatUniforms(const FlatWindow& window, glm::ivec2 size,
-                                   const FlatSurface& surface, TriangleRange triangles,
-                                   double stepMm) {
+                                   const FlatSurface& surface, TriangleRange triangles) {
     const double pixels = window.pixelsPerUnit, units = surface.unitsPerCircumference();
     // Pixel (i, j) shows the flat coordinate (edge − (i, j) − ½) / pixels.
     const glm::dvec2 middle(window.center.x - std::floor(window.center.x), window.center.y);
@@ -31,8 +29,6 @@ shaders::FlatUniforms flatUniforms(const FlatWindow& window, glm::ivec2 size,
     u.lattice = glm::ivec4(glm::ivec2(lattice), surface.unitsPerCircumference(), firstCopy);
     u.picture = glm::ivec4(size, triangles.first, surface.cameraCount() - 1);
     u.angles = glm::vec4(flatRay.mostRayAngle, flatRay.mostLightAngle, flatRay.lampAhead, 0.0);
-    u.ray = glm::vec4(std::ceil(flatRay.backMm / stepMm), flatRay.riseHu / storedRange,
-                      std::ceil(flatRay.depthMm / stepMm), 0.0);
     return u;
 }
 
@@ -66,30 +62,47 @@ FlatPainter::FlatPainter(FlatSurface surface, gpu::RasterProgram triangles,
       rays_(std::move(rays)),
       block_(std::move(block)) {}
 
-Result<void> FlatPainter::draw(const FlatWindow& window, double stepMm,
-                               const gpu::Texture& picture) {
-    const glm::ivec2 size(picture.size());
+Result<void> FlatPainter::findTriangles(const FlatWindow& window, glm::ivec2 size) {
     if (!triangleOfPixel_ || glm::ivec2(triangleOfPixel_->size()) != size) {
         auto made = gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rg32i,
                                          gpu::Filter::nearest, "triangles of the picture");
         if (!made) return tl::make_unexpected(made.error());
         triangleOfPixel_ = std::move(*made);
     }
-    const double pixelUnits = 1.0 / window.pixelsPerUnit;
-    const double halfHeight = (0.5 * size.y + 1.0) * pixelUnits;
+    const double halfHeight = (0.5 * size.y + 1.0) / window.pixelsPerUnit;
     const TriangleRange triangles =
         surface_.trianglesWithin(window.center.y - halfHeight, window.center.y + halfHeight);
-    const shaders::FlatUniforms u = flatUniforms(window, size, surface_, triangles, stepMm);
-    block_.write(u);
+    uniforms_ = flatUniforms(window, size, surface_, triangles);
+    block_.write(uniforms_);
     block_.bind(shaders::flatUniformBinding);
     surface_.bind();
-    const int lastCopy = int(std::floor((double(u.lattice.x) + u.phase.x) / window.pixelsPerUnit));
+    const double rightmost = double(uniforms_.lattice.x) + uniforms_.phase.x;
+    const int lastCopy = int(std::floor(rightmost / window.pixelsPerUnit));
     triangles_.draw(*triangleOfPixel_, {-1, 0}, surface_.triangles(), triangles.first,
-                    triangles.count, lastCopy - u.lattice.w + 1);
+                    triangles.count, lastCopy - uniforms_.lattice.w + 1);
+    return {};
+}
+
+std::vector<int> FlatPainter::triangleOfPixel() const {
+    if (!triangleOfPixel_) return {};
+    const glm::ivec3 size = triangleOfPixel_->size();
+    std::vector<glm::ivec2> found(std::size_t(size.x) * std::size_t(size.y));
+    triangleOfPixel_->read(found.data(), triangleOfPixel_->bytes());
+    std::vector<int> triangles;
+    for (const glm::ivec2 one : found)
+        triangles.push_back(one.x < 0 ? -1 : surface_.mapTriangle(one.x));
+    return triangles;
+}
+
+void FlatPainter::castRays(double stepMm, const gpu::Texture& picture) {
+    uniforms_.ray = glm::vec4(std::ceil(flatRay.backMm / stepMm), flatRay.riseHu / storedRange,
+                              std::ceil(flatRay.depthMm / stepMm), 0.0);
+    block_.write(uniforms_);
+    block_.bind(shaders::flatUniformBinding);
+    surface_.bind();
     triangleOfPixel_->bind(shaders::triangleUnit);
     picture.bindImage(shaders::pictureImage);
-    rays_.dispatch(size);
-    return {};
+    rays_.dispatch(glm::ivec2(picture.size()));
 }
 
 std::size_t FlatPainter::gpuBytes() const {

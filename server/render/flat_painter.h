@@ -6,8 +6,10 @@
 #include "gpu/texture.h"
 #include "render/flat_surface.h"
 #include "render/view.h"
+#include "shaders/uniforms.h"
 
 #include <optional>
+#include <vector>
 
 namespace haustra::render {
 
@@ -20,9 +22,15 @@ public:
     static Result<FlatPainter> create(const FlatMap& map, const Grid& grid);
 
     double height() const { return surface_.height(); }
-    /// Draws into `picture`, the whole of it. The volume, its classification and the block of
-    /// march.glsl must be bound; `stepMm` is that block's. The window must have passed its check.
-    Result<void> draw(const FlatWindow& window, double stepMm, const gpu::Texture& picture);
+    /// Finds which triangle covers each pixel of a picture of `size`. The window must have passed
+    /// its check.
+    Result<void> findTriangles(const FlatWindow& window, glm::ivec2 size);
+    /// What it found, rows from the top: the number of the map's triangle, or −1 beyond the strip.
+    std::vector<int> triangleOfPixel() const;
+    /// Casts the rays of the window that findTriangles was given last, into the whole of `picture`,
+    /// which has the same size. The volume, its classification and the block of march.glsl must be
+    /// bound; `stepMm` is that block's.
+    void castRays(double stepMm, const gpu::Texture& picture);
     std::size_t gpuBytes() const;
 
 private:
@@ -32,6 +40,7 @@ private:
     gpu::RasterProgram triangles_;
     gpu::ComputeProgram rays_;
     gpu::UniformBuffer block_;
+    shaders::FlatUniforms uniforms_{};
     std::optional<gpu::Texture> triangleOfPixel_;
 };
 

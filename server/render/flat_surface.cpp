@@ -161,6 +161,7 @@ Result<FlatSurface> FlatSurface::upload(const FlatMap& map, glm::dvec3 originMm)
     if (!cameraBuffer) return tl::make_unexpected(cameraBuffer.error());
     FlatSurface surface(std::move(*vertexBuffer), std::move(*triangleBuffer),
                         std::move(*cameraBuffer));
+    surface.mapTriangle_ = std::move(order);
     surface.lowestY_ = std::move(lowestSorted);
     surface.highestYSoFar_ = std::move(highestSoFar);
     surface.height_ = map.height;

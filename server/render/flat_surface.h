@@ -21,7 +21,7 @@ public:
     /// map is not sound: numbers of flat coordinates and cameras that differ from the vertices',
     /// indices out of range, values that are not finite, nothing in it, or a height over
     /// maxFlatHeight; (device) where the GPU has no room. O(n log n); 48 bytes a vertex and 12 a
-    /// triangle on the GPU, 16 a triangle in main memory.
+    /// triangle on the GPU, 20 a triangle in main memory.
     static Result<FlatSurface> upload(const FlatMap& map, glm::dvec3 originMm);
 
     double height() const { return height_; }
@@ -32,6 +32,8 @@ public:
     /// A range that holds every triangle with a place in lowY … highY. O(log n).
     TriangleRange trianglesWithin(double lowY, double highY) const;
     const gpu::StorageBuffer& triangles() const { return triangles_; }
+    /// The number in the map of the GPU's triangle.
+    int mapTriangle(int triangle) const { return mapTriangle_[std::size_t(triangle)]; }
     void bind() const;  ///< to the bindings of shaders/uniforms.h
     std::size_t gpuBytes() const;
 
@@ -39,6 +41,7 @@ private:
     FlatSurface(gpu::StorageBuffer vertices, gpu::StorageBuffer triangles,
                 gpu::StorageBuffer cameras);
     gpu::StorageBuffer vertices_, triangles_, cameras_;
+    std::vector<int> mapTriangle_;
     std::vector<double> lowestY_;        // of each triangle: rising
     std::vector<double> highestYSoFar_;  // of all triangles up to each: rising
     double height_ = 0.0;
