@@ -80,6 +80,7 @@ struct Server::Impl {
     std::unique_ptr<session::RenderThread> renderer;
     std::unique_ptr<session::CaseLoader> loader;  // after the renderer, which it uses
     std::unique_ptr<session::EncoderThreads> encoders;
+    std::unique_ptr<session::WallThread> walls;
     std::optional<session::Services> services;
 
     std::set<std::shared_ptr<Connection>> connections;
@@ -113,7 +114,9 @@ Result<void> Server::Impl::start() {
     records = session::RecordsThread::start(std::move(*bookmarks), std::move(*cases));
     renderer = std::move(*rendering);
     encoders = std::move(*encoding);
-    services.emplace(session::Services{*renderer, *loader, *encoders, *records, options.software});
+    walls = session::WallThread::start();
+    services.emplace(
+        session::Services{*renderer, *loader, *encoders, *records, *walls, options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);
     signals.async_wait([this](const asio::error_code& error, int) {

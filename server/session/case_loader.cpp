@@ -18,6 +18,12 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         spdlog::info("a case has no cleansed scan: its endoscopic views show the scan as it is");
     auto prepared = render::prepareCase(files->ct, files->cleansed);
     if (!prepared) return tl::make_unexpected(prepared.error());
+    if (files->flattened) {
+        auto wall = readWall(store, name);
+        if (!wall) return tl::make_unexpected(wall.error());
+        files->facts.wall = std::move(*wall);
+        prepared->flatMap = files->facts.wall->map;
+    }
     return renderer.upload(std::move(files->facts), std::move(*prepared));
 }
 

@@ -43,19 +43,26 @@ Result<render::Camera> cameraFrom(const protocol::SetCamera& message) {
     return camera;
 }
 
-Result<render::View> viewFrom(protocol::View view) {
-    switch (view) {
-        case protocol::ENDOSCOPIC:
-            return render::View::endoscopic;
-        case protocol::AXIAL:
-            return render::View::axial;
-        case protocol::CORONAL:
-            return render::View::coronal;
-        case protocol::SAGITTAL:
-            return render::View::sagittal;
-        default:
-            return refuse("there is no view " + std::to_string(int(view)), "viewport");
-    }
+Result<glm::dvec2> flatPointFrom(const protocol::FlatPoint& message) {
+    const glm::dvec2 point(message.x(), message.y());
+    if (!(std::abs(point.x) <= maxTurns && std::abs(point.y) <= render::maxFlatHeight))
+        return refuse("a coordinate is not a number, or lies far beyond the strip", "flat");
+    return point;
+}
+
+Result<FlatWindow> flatWindowFrom(const protocol::SetFlat& message) {
+    const auto center = flatPointFrom(message.center());
+    if (!center) return tl::make_unexpected(center.error());
+    const double scale = message.pixels_per_circumference();
+    if (!(scale >= minPixelsPerCircumference && scale <= maxPixelsPerCircumference))
+        return refuse("a circumference does not have 16 to 65536 pixels", "flat");
+    return FlatWindow{{center->x - std::floor(center->x), center->y}, scale};
+}
+
+Result<void> checkView(protocol::View view) {
+    if (view == protocol::VIEW_UNSPECIFIED || !protocol::View_IsValid(view))
+        return refuse("there is no view " + std::to_string(int(view)), "viewport");
+    return {};
 }
 
 Result<render::TransferFunction> transferFunctionFrom(

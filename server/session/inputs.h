@@ -14,6 +14,8 @@ inline constexpr int minViewportPixels = 16;
 inline constexpr std::size_t maxNoteBytes = 2000;
 inline constexpr std::size_t maxClientKeyBytes = 64;
 inline constexpr double maxCoordinateMm = 1e6;
+inline constexpr double maxTurns = 1e6;
+inline constexpr double minPixelsPerCircumference = 16.0, maxPixelsPerCircumference = 65536.0;
 
 /// Each coordinate finite and at most maxCoordinateMm from the origin.
 Result<glm::dvec3> positionFrom(const protocol::Vec3& message);
@@ -21,7 +23,14 @@ Result<glm::dvec3> positionFrom(const protocol::Vec3& message);
 /// Position, directions and field of view as render::checkCamera has it.
 Result<render::Camera> cameraFrom(const protocol::SetCamera& message);
 
-Result<render::View> viewFrom(protocol::View view);
+/// Both finite, |x| at most maxTurns, |y| at most render::maxFlatHeight; x stays as it is.
+Result<glm::dvec2> flatPointFrom(const protocol::FlatPoint& message);
+
+/// The window onto the strip, its x in [0, 1).
+Result<FlatWindow> flatWindowFrom(const protocol::SetFlat& message);
+
+/// Fails where there is no such view.
+Result<void> checkView(protocol::View view);
 
 /// One of the presets by name, or a function by its points; not both.
 Result<render::TransferFunction> transferFunctionFrom(const protocol::SetTransferFunction& message);

@@ -60,6 +60,15 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened) {
     for (const std::string& preset : render::transferFunctionPresets())
         message->add_transfer_functions(preset);
     message->set_cleansed(opened.cleansed);
+    if (opened.wall) {
+        auto* flat = message->mutable_flat();
+        flat->set_height(opened.wall->map->height);
+        flat->set_circumference_mm(opened.wall->circumferenceMm);
+        for (const WallRow& row : opened.wall->rows) {
+            flat->add_rows(row.arcMm);
+            flat->add_rows(row.y);
+        }
+    }
     return answer;
 }
 

@@ -29,12 +29,23 @@ Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& nam
             auto centerline = source->readCenterline();
             if (!centerline) return tl::make_unexpected(centerline.error());
             files.facts.centerline = std::move(*centerline);
+        } else if (entry.product == "flatmap") {
+            files.flattened = true;
         } else if (entry.product != "ct") {
             continue;
         }
         files.facts.content += entry.product + ':' + entry.key.hex + ' ';
     }
     return files;
+}
+
+Result<std::shared_ptr<const Wall>> readWall(const store::CaseStore& store,
+                                             const std::string& name) {
+    const auto source = store.openCase(name);
+    if (!source) return tl::make_unexpected(source.error());
+    auto map = source->readFlatMap();
+    if (!map) return tl::make_unexpected(map.error());
+    return makeWall(std::make_shared<const FlatMap>(std::move(*map)));
 }
 
 }  // namespace haustra::session

@@ -3,9 +3,11 @@
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
+#include "session/wall.h"
 #include "store/case_store.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace haustra::session {
@@ -16,19 +18,26 @@ struct OpenCase {
     std::string content;  ///< equal for equal products of the same case
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
-    Centerline centerline;  ///< empty where the case has none yet
-    bool cleansed = false;  ///< the endoscopic view shows the cleansed scan, slices can
+    Centerline centerline;             ///< empty where the case has none yet
+    bool cleansed = false;             ///< the endoscopic view shows the cleansed scan, slices can
+    std::shared_ptr<const Wall> wall;  ///< empty where the case has not been flattened
 };
 
-/// The case's volumes, memory-mapped, beside what is known of it.
+/// The case's volumes, memory-mapped, beside what is known of it. Its wall has not been read.
 struct CaseFiles {
     OpenCase facts;
     Volume<std::int16_t> ct;
     Volume<std::int16_t> cleansed;  ///< empty where the case has none yet
+    bool flattened = false;         ///< there is a flat map
 };
 
 /// Reads product "ct" of a case and, where they are there, "cleansed" and "centerline". Fails
 /// (notFound) where there is no such case. Maps the volumes, reads no voxel.
 Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& name);
+
+/// Reads product "flatmap" and makes it ready for questions: about a second for a million
+/// triangles, and some hundred bytes for each.
+Result<std::shared_ptr<const Wall>> readWall(const store::CaseStore& store,
+                                             const std::string& name);
 
 }  // namespace haustra::session

@@ -42,6 +42,10 @@ Result<void> PictureStream::input(const Input& message) {
         if (message.cleansed() && !(case_ && case_->cleansed))
             return fail(ErrorKind::badInput, "the case has no cleansed scan", "viewport");
     }
+    if constexpr (std::is_same_v<Input, protocol::SetViewport>) {
+        if (isFlat(message.view()) && !(case_ && case_->wall))
+            return fail(ErrorKind::badInput, "the case has not been flattened", "viewport");
+    }
     if (auto applied = slot.viewport.apply(message); !applied) return applied;
     slot.sequence = message.sequence();
     changed(message.viewport());
@@ -50,6 +54,7 @@ Result<void> PictureStream::input(const Input& message) {
 template Result<void> PictureStream::input(const protocol::SetViewport&);
 template Result<void> PictureStream::input(const protocol::SetCamera&);
 template Result<void> PictureStream::input(const protocol::SetSlice&);
+template Result<void> PictureStream::input(const protocol::SetFlat&);
 template Result<void> PictureStream::input(const protocol::SetWindowLevel&);
 template Result<void> PictureStream::input(const protocol::SetTransferFunction&);
 

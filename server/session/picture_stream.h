@@ -40,9 +40,9 @@ public:
     /// the case before do not appear any more.
     void setCase(std::shared_ptr<const OpenCase> opened);
 
-    /// SetViewport, SetCamera, SetSlice, SetWindowLevel, SetTransferFunction. Fails (badInput)
-    /// and changes nothing but the sequence where the message is out of bounds, (unsupported)
-    /// where the viewport is not open.
+    /// SetViewport, SetCamera, SetSlice, SetFlat, SetWindowLevel, SetTransferFunction. Fails
+    /// (badInput) and changes nothing but the sequence where the message is out of bounds,
+    /// (unsupported) where the viewport is not open.
     template <class Input>
     Result<void> input(const Input& message);
 

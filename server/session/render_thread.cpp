@@ -37,6 +37,7 @@ struct RenderThread::Shared {
 struct RenderThread::Drawing {
     struct Entry {
         std::string name, content;
+        std::shared_ptr<const Wall> wall;  // facts that are read anew have none
         std::weak_ptr<const OpenCase> of;
         std::optional<Clock::time_point> leftAt;  // since when nobody has it open
         std::unique_ptr<render::CaseRenderer> renderer;
@@ -103,7 +104,9 @@ struct RenderThread::Drawing {
         for (Entry& entry : cases) {
             if (entry.name != facts.name || entry.content != facts.content) continue;
             if (auto of = entry.of.lock()) return of;
-            auto of = lend(facts);
+            OpenCase again = facts;
+            again.wall = entry.wall;
+            auto of = lend(std::move(again));
             entry.of = of;
             entry.leftAt.reset();
             return of;
@@ -119,7 +122,7 @@ struct RenderThread::Drawing {
         spdlog::info("a case is on the GPU: {} MiB, copied in {:.1f} s",
                      (*renderer)->gpuBytes() >> 20,
                      1e-6 * microsecondsBetween(start, Clock::now()));
-        Entry entry{facts.name, facts.content, {}, {}, std::move(*renderer)};
+        Entry entry{facts.name, facts.content, facts.wall, {}, {}, std::move(*renderer)};
         auto of = lend(std::move(facts));
         entry.of = of;
         cases.push_back(std::move(entry));

@@ -28,8 +28,8 @@ public:
     /// For how long a renderer is kept after the last copy of its case's pointer is gone, unless
     /// another case is uploaded meanwhile.
     static constexpr std::chrono::seconds keptAfterUse{30};
-    /// The case of these products where it has a renderer, else empty. One thread, the loader's,
-    /// calls this and upload; both wait for the picture under way.
+    /// The case of these products where it has a renderer, with its wall, else empty. One thread,
+    /// the loader's, calls this and upload; both wait for the picture under way.
     std::shared_ptr<const OpenCase> find(const OpenCase& facts);
     /// Copies a case to the GPU: some tenths of a second, in which no picture is drawn.
     Result<std::shared_ptr<const OpenCase>> upload(OpenCase facts, render::PreparedCase prepared);

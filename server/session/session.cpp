@@ -2,6 +2,7 @@
 
 #include "session/inputs.h"
 #include "session/messages.h"
+#include "session/wall_questions.h"
 
 #include <algorithm>
 
@@ -81,6 +82,14 @@ void Session::dispatch(const ClientMessage& message) {
             return handleInput(message.set_camera());
         case ClientMessage::kSetSlice:
             return handleInput(message.set_slice());
+        case ClientMessage::kSetFlat:
+            return handleInput(message.set_flat());
+        case ClientMessage::kLocateFlat:
+            return handleQuestion(message.locate_flat());
+        case ClientMessage::kLocatePoint:
+            return handleQuestion(message.locate_point());
+        case ClientMessage::kMeasureFlat:
+            return handleQuestion(message.measure_flat());
         case ClientMessage::kSetWindowLevel:
             return handleInput(message.set_window_level());
         case ClientMessage::kSetTransferFunction:
@@ -113,6 +122,7 @@ void Session::disconnected() {
     state_ = State::ended;
     pictures_->stop();
     case_.reset();
+    questions_.clear();
 }
 
 // ---- requests ---------------------------------------------------------------------------------
@@ -206,6 +216,39 @@ void Session::handleInput(const Input& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open");
     if (const auto taken = pictures_->input(message); !taken) report(taken.error());
 }
+
+// ---- the wall -----------------------------------------------------------------------------------
+
+template <class Question>
+void Session::handleQuestion(const Question& message) {
+    const std::uint64_t request = message.request();
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
+    if (!case_->wall)
+        return refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
+    auto question = questionFrom(message, *case_->wall);
+    if (!question) return report(question.error(), request);
+    questions_.push_back({case_, std::move(*question),
+                          answer(&Session::answeredAboutWall, request, weightOf(message))});
+    if (!asking_) askNext();
+}
+
+void Session::askNext() {
+    asking_ = !questions_.empty();
+    if (!asking_) return;
+    Waiting next = std::move(questions_.front());
+    questions_.pop_front();
+    services_.walls.ask(std::move(next.of), std::move(next.question), std::move(next.done));
+}
+
+void Session::answeredAboutWall(std::uint64_t request, Result<WallAnswer> answer) {
+    if (answer)
+        send(messageOf(*answer, request));
+    else
+        report(answer.error(), request);
+    askNext();
+}
+
+// ---- bookmarks ----------------------------------------------------------------------------------
 
 void Session::handle(const protocol::AddBookmark& message) {
     const std::uint64_t request = message.request();

@@ -6,8 +6,10 @@
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
 #include "session/render_thread.h"
+#include "session/wall_thread.h"
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <span>
@@ -24,6 +26,7 @@ struct Services {
     CaseLoader& loader;
     EncoderThreads& encoders;
     RecordsThread& records;
+    WallThread& walls;
     std::string software;  ///< name and version, for the welcome
 };
 
@@ -68,6 +71,10 @@ private:
     void handle(const protocol::Ping& message);
     template <class Input>
     void handleInput(const Input& message);
+    template <class Question>
+    void handleQuestion(const Question& message);
+    void askNext();
+    void answeredAboutWall(std::uint64_t request, Result<WallAnswer> answer);
     void opened(Result<std::shared_ptr<const OpenCase>> result);
 
     void dispatch(const protocol::ClientMessage& message);
@@ -92,6 +99,14 @@ private:
     std::shared_ptr<const OpenCase> case_;
     std::shared_ptr<PictureStream> pictures_;
     int unanswered_ = 0;
+
+    struct Waiting {
+        std::shared_ptr<const OpenCase> of;
+        WallQuestion question;
+        WallThread::Done done;
+    };
+    std::deque<Waiting> questions_;  // not yet asked
+    bool asking_ = false;
 };
 
 }  // namespace haustra::session

@@ -3,6 +3,7 @@
 #include "protocol/framing.h"
 #include "session/inputs.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace haustra::session {
@@ -12,6 +13,16 @@ tl::unexpected<Error> refuse(std::string message) {
     return fail(ErrorKind::badInput, std::move(message), "viewport");
 }
 
+bool isSlice(protocol::View view) {
+    return view == protocol::AXIAL || view == protocol::CORONAL || view == protocol::SAGITTAL;
+}
+
+render::View planeOf(protocol::View slice) {
+    return slice == protocol::AXIAL     ? render::View::axial
+           : slice == protocol::CORONAL ? render::View::coronal
+                                        : render::View::sagittal;
+}
+
 }  // namespace
 
 Result<void> Viewport::apply(const protocol::SetViewport& message) {
@@ -19,22 +30,21 @@ Result<void> Viewport::apply(const protocol::SetViewport& message) {
         *this = Viewport{};
         return {};
     }
-    const auto view = viewFrom(message.view());
-    if (!view) return tl::make_unexpected(view.error());
+    if (auto known = checkView(message.view()); !known) return known;
     constexpr std::uint32_t low = minViewportPixels, high = protocol::maxViewportPixels;
     if (message.width() < low || message.height() < low || message.width() > high ||
         message.height() > high)
         return refuse("a side is not within " + std::to_string(low) + " to " +
                       std::to_string(high) + " pixels");
-    if (*view != view_) *this = Viewport{};
-    view_ = *view;
+    if (message.view() != view_) *this = Viewport{};
+    view_ = message.view();
     width_ = int(message.width());
     height_ = int(message.height());
     return {};
 }
 
 Result<void> Viewport::apply(const protocol::SetCamera& message) {
-    if (view_ != render::View::endoscopic) return refuse("a slice takes no camera");
+    if (view_ != protocol::ENDOSCOPIC) return refuse("only an endoscopic view takes a camera");
     const auto camera = cameraFrom(message);
     if (!camera) return tl::make_unexpected(camera.error());
     camera_ = *camera;
@@ -43,7 +53,7 @@ Result<void> Viewport::apply(const protocol::SetCamera& message) {
 }
 
 Result<void> Viewport::apply(const protocol::SetSlice& message) {
-    if (view_ == render::View::endoscopic) return refuse("an endoscopic view takes no slice");
+    if (!isSlice(view_)) return refuse("this view takes no slice");
     const auto position = positionFrom(message.position_mm());
     if (!position) return tl::make_unexpected(position.error());
     if (!(message.zoom() >= 1.0 && message.zoom() <= 64.0))
@@ -55,8 +65,21 @@ Result<void> Viewport::apply(const protocol::SetSlice& message) {
     return {};
 }
 
+Result<void> Viewport::apply(const protocol::SetFlat& message) {
+    if (!isFlat(view_)) return refuse("this view shows no strip");
+    if (view_ == protocol::FLATTENED_ZOOM) {
+        const auto window = flatWindowFrom(message);
+        if (!window) return tl::make_unexpected(window.error());
+        flat_ = *window;
+    } else {
+        flat_ = FlatWindow{};
+    }
+    moving_ = message.moving();
+    return {};
+}
+
 Result<void> Viewport::apply(const protocol::SetWindowLevel& message) {
-    if (view_ == render::View::endoscopic) return refuse("an endoscopic view takes no window");
+    if (!isSlice(view_)) return refuse("only slices take a window");
     const protocol::WindowLevel& window = message.window();
     if (!(std::abs(window.center_hu()) <= 65536.0) ||
         !(window.width_hu() >= 1.0 && window.width_hu() <= 65536.0))
@@ -66,23 +89,29 @@ Result<void> Viewport::apply(const protocol::SetWindowLevel& message) {
 }
 
 Result<void> Viewport::apply(const protocol::SetTransferFunction& message) {
-    if (view_ != render::View::endoscopic) return refuse("a slice takes no transfer function");
+    if (isSlice(view_)) return refuse("a slice takes no transfer function");
     auto function = transferFunctionFrom(message);
     if (!function) return tl::make_unexpected(function.error());
     transferFunction_ = std::move(*function);
     return {};
 }
 
-std::variant<render::EndoscopicView, render::SliceView> Viewport::view() const {
-    if (view_ != render::View::endoscopic)
-        return render::SliceView{view_, *slicePositionMm_, zoom_, window_, scan_};
-    render::EndoscopicView view;
-    view.camera = *camera_;
-    view.transferFunction =
+std::variant<render::EndoscopicView, render::SliceView, render::FlatView, render::FlatOverview>
+Viewport::view() const {
+    if (isSlice(view_))
+        return render::SliceView{planeOf(view_), *slicePositionMm_, zoom_, window_, scan_};
+    auto transferFunction =
         transferFunction_
             ? *transferFunction_
             : *render::transferFunctionPreset(render::transferFunctionPresets().front());
-    return view;
+    if (view_ == protocol::FLATTENED) return render::FlatOverview{std::move(transferFunction), {}};
+    if (view_ == protocol::FLATTENED_ZOOM) {
+        FlatWindow window = *flat_;
+        const double least = double(width_) / render::maxCircumferences;
+        window.pixelsPerUnit = std::max(window.pixelsPerUnit, least);
+        return render::FlatView{window, std::move(transferFunction), {}};
+    }
+    return render::EndoscopicView{*camera_, std::move(transferFunction), {}};
 }
 
 }  // namespace haustra::session

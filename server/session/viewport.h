@@ -11,37 +11,45 @@
 
 namespace haustra::session {
 
+inline bool isFlat(protocol::View view) {
+    return view == protocol::FLATTENED || view == protocol::FLATTENED_ZOOM;
+}
+
 /// A plain value. Each apply() checks a message against PROTOCOL.md §4 and changes the viewport,
 /// or fails (badInput) and leaves it as it was. Sequence, viewport number and whether the case has
-/// a cleansed scan are the caller's.
+/// a cleansed scan or has been flattened are the caller's.
 class Viewport {
 public:
-    /// Width or height 0 closes. A change of view forgets camera, slice, window and colours.
+    /// Width or height 0 closes. A change of view forgets all else.
     Result<void> apply(const protocol::SetViewport& message);
     Result<void> apply(const protocol::SetCamera& message);
     Result<void> apply(const protocol::SetSlice& message);
+    Result<void> apply(const protocol::SetFlat& message);
     Result<void> apply(const protocol::SetWindowLevel& message);
     Result<void> apply(const protocol::SetTransferFunction& message);
 
     bool isOpen() const { return width_ > 0; }
     /// Open, and it has been told where to look.
-    bool isDrawable() const { return isOpen() && (camera_ || slicePositionMm_); }
-    /// The newest camera or slice said that more would follow, and rest() has not been called.
+    bool isDrawable() const { return isOpen() && (camera_ || slicePositionMm_ || flat_); }
+    /// The newest camera, slice or place said that more would follow, and rest() has not been
+    /// called.
     bool moving() const { return moving_; }
     void rest() { moving_ = false; }
     int width() const { return width_; }
     int height() const { return height_; }
     /// Only of one that is drawable.
-    std::variant<render::EndoscopicView, render::SliceView> view() const;
+    std::variant<render::EndoscopicView, render::SliceView, render::FlatView, render::FlatOverview>
+    view() const;
 
 private:
-    render::View view_ = render::View::endoscopic;
+    protocol::View view_ = protocol::ENDOSCOPIC;
     int width_ = 0, height_ = 0;
     std::optional<render::Camera> camera_;
     std::optional<glm::dvec3> slicePositionMm_;
     double zoom_ = 1.0;
     render::Scan scan_ = render::Scan::original;
     render::WindowLevel window_;
+    std::optional<FlatWindow> flat_;
     std::optional<render::TransferFunction> transferFunction_;  ///< none: the first preset
     bool moving_ = false;
 };

@@ -1,0 +1,31 @@
+// Questions about the wall from the network, checked against PROTOCOL.md §4, and their answers.
+#pragma once
+
+#include "protocol/haustra.pb.h"
+#include "session/wall.h"
+
+namespace haustra::session {
+
+inline constexpr int maxMeasuredPoints = 128;
+inline constexpr double maxMeasuredTurns = 32.0;  ///< |x| of a measured point
+inline constexpr double maxLineCircumferences = 256.0, maxOutlineCircumferences = 16.0;
+
+/// Each fails (badInput), naming the field, on a value out of its bounds.
+Result<WallQuestion> questionFrom(const protocol::LocateFlat& message, const Wall& wall);
+Result<WallQuestion> questionFrom(const protocol::LocatePoint& message, const Wall& wall);
+Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wall& wall);
+
+/// How much of a session's share of unanswered requests a question takes.
+inline int weightOf(const protocol::LocateFlat&) {
+    return 1;
+}
+inline int weightOf(const protocol::LocatePoint&) {
+    return 1;
+}
+inline int weightOf(const protocol::MeasureFlat&) {
+    return 16;
+}
+
+protocol::ServerMessage messageOf(const WallAnswer& answer, std::uint64_t request);
+
+}  // namespace haustra::session

@@ -1,0 +1,58 @@
+// haustra-server as a program: limits, stopping, exit codes.
+#include "end_to_end/server_process.h"
+#include "end_to_end/server_test_client.h"
+
+#include <gtest/gtest.h>
+
+namespace haustra::tests {
+namespace {
+
+using protocol::ErrorReport;
+
+TEST(Server, FullIsSaidAndStoppingIsClean) {
+    const TemporaryFolder folder;
+    makeSmallStore(folder.path());
+    ServerProcess server(folder.path(), {"--max-sessions", "1"});
+    EXPECT_NE(server.output().find("certificate SHA-256 "), std::string::npos);
+    const auto key = folder.path() / "tls" / "key.pem";
+    EXPECT_EQ(std::filesystem::status(key).permissions(), std::filesystem::perms(0600));
+    const std::string certificate = fileContent(folder.path() / "tls" / "certificate.pem");
+
+    TestClient first(server.port());
+    ASSERT_TRUE(first.hello());
+    {
+        TestClient second(server.port());
+        const auto refused = second.answer();
+        ASSERT_TRUE(refused && refused->has_error());
+        EXPECT_EQ(refused->error().code(), ErrorReport::BUSY);
+        EXPECT_FALSE(second.next());
+    }
+    EXPECT_EQ(server.terminate(), 0) << server.log();
+    const auto farewell = first.answer();
+    ASSERT_TRUE(farewell && farewell->has_error());
+    EXPECT_TRUE(farewell->error().fatal());
+
+    ServerProcess again(folder.path());
+    EXPECT_EQ(fileContent(folder.path() / "tls" / "certificate.pem"), certificate);
+    EXPECT_EQ(again.log().find(smallCaseName), std::string::npos);
+}
+
+TEST(Server, WrongUsageAndFailureHaveTheirExitCodes) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(runProgram("haustra-server", {}).exitCode, 2);
+    EXPECT_EQ(runProgram("haustra-server", {"--store", folder.path(), "--listen", "7117"}).exitCode,
+              2);
+    EXPECT_EQ(runProgram("haustra-server", {"--store", folder.path(), "--key", "k.pem"}).exitCode,
+              2);
+    const Outcome missing = runProgram("haustra-server", {"--store", folder.path() / "none"});
+    EXPECT_EQ(missing.exitCode, 1);
+    EXPECT_FALSE(missing.err.empty());
+    const Outcome help = runProgram("haustra-server", {"--help"});
+    EXPECT_EQ(help.exitCode, 0);
+    for (const char* option :
+         {"--store", "--listen", "--certificate", "--key", "--port-file", "--max-sessions"})
+        EXPECT_NE(help.out.find(option), std::string::npos) << option;
+}
+
+}  // namespace
+}  // namespace haustra::tests
