@@ -7,6 +7,12 @@
 #include <cstdlib>
 
 namespace haustra::cleansing {
+namespace {
+
+/// Fewer level columns are the top of a ball of stool, which needs no wall to hold it.
+constexpr int fewestColumns = 12;
+
+}  // namespace
 
 WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
                        const InterfaceLayer& interfaces, const TaggedSurroundings& around,
@@ -90,10 +96,11 @@ bool WaterLevel::standsAbove(glm::ivec3 voxel, const Volume<std::uint8_t>& segme
     const glm::ivec3 reach = glm::ivec3(across) - (across - height) * glm::abs(down_);
     const glm::ivec3 lo = glm::max(top - reach, glm::ivec3(0)),
                      hi = glm::min(top + reach, grid.size - 1);
+    int count = 0;
     for (int k = lo.z; k <= hi.z; ++k) {
         for (int j = lo.y; j <= hi.y; ++j) {
             for (int i = lo.x; i <= hi.x; ++i) {
-                if (crossing_.at(i, j, k) != 0) return true;
+                if (crossing_.at(i, j, k) != 0 && ++count == fewestColumns) return true;
             }
         }
     }
@@ -101,7 +108,7 @@ bool WaterLevel::standsAbove(glm::ivec3 voxel, const Volume<std::uint8_t>& segme
 }
 
 std::optional<double> WaterLevel::depthMm(glm::ivec3 voxel) const {
-    constexpr int across = 8, height = 4, enough = 4;
+    constexpr int across = 8, height = 4;
     if (crossing_.empty()) return std::nullopt;
     const Grid& grid = crossing_.grid();
     const glm::ivec3 level = glm::ivec3(1) - glm::abs(down_);
@@ -126,7 +133,7 @@ std::optional<double> WaterLevel::depthMm(glm::ivec3 voxel) const {
             }
         }
     }
-    if (count < enough) return std::nullopt;
+    if (count < fewestColumns) return std::nullopt;
     return sum / weight * stepMm_;
 }
 
