@@ -5,7 +5,7 @@
 #include "flatten/flip_repair.h"
 #include "flatten/intrinsic_delaunay.h"
 #include "flatten/shape_relaxation.h"
-#include "flatten/sparse_cholesky.h"
+#include "flatten/tube_solver.h"
 #include "flatten/tube_topology.h"
 
 #include <algorithm>
@@ -14,69 +14,6 @@
 
 namespace haustra::flatten {
 namespace {
-
-/// The unknowns' order: the vertices inside, then those on the rims; the last of these is held at 0
-/// in v, and all of them are held in u.
-struct Numbering {
-    std::vector<int> unknownOf;  ///< per vertex; −1: none
-    std::vector<int> vertexOf;   ///< per unknown
-    int inside = 0;
-};
-
-Numbering numberUnknowns(const TubeTopology& topology, std::size_t vertices) {
-    Numbering made;
-    made.unknownOf.assign(vertices, 0);
-    for (const auto& rim : topology.rims) {
-        for (const int v : rim)
-            made.unknownOf[std::size_t(v)] = 1;
-    }
-    std::vector<int> rimVertices;
-    for (const int v : topology.breadthFirst)
-        (made.unknownOf[std::size_t(v)] != 0 ? rimVertices : made.vertexOf).push_back(v);
-    made.inside = int(made.vertexOf.size());
-    made.vertexOf.insert(made.vertexOf.end(), rimVertices.begin(), rimVertices.end() - 1);
-    made.unknownOf.assign(vertices, -1);
-    for (std::size_t n = 0; n < made.vertexOf.size(); ++n)
-        made.unknownOf[std::size_t(made.vertexOf[n])] = int(n);
-    return made;
-}
-
-struct Systems {
-    SymmetricMatrix matrix;
-    std::vector<double> pullU;  ///< of the unknowns inside
-    std::vector<double> pullV;
-};
-
-struct Solution {
-    std::vector<double> u, v;  ///< per unknown
-    int iterations = 0;
-    bool converged = true;
-};
-
-Result<Solution> solve(const Systems& systems, const ConformalTubeOptions& options) {
-    Solution found;
-    if (options.solver == Solver::cholesky) {
-        auto cholesky = SparseCholesky::of(systems.matrix, int(systems.pullU.size()));
-        if (!cholesky) return tl::make_unexpected(cholesky.error());
-        if (options.progress) options.progress(0.8);
-        found.u = cholesky->solveLeading(systems.pullU);
-        found.v = cholesky->solve(systems.pullV);
-        return found;
-    }
-    IterativeSolution sides[2];
-    parallelFor(2, 1, options.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-            sides[n] = conjugateGradient(systems.matrix, n == 0 ? systems.pullU : systems.pullV,
-                                         options.solver == Solver::jacobiConjugateGradient,
-                                         options.tolerance, options.maxIterations);
-        }
-    });
-    found.u = std::move(sides[0].x);
-    found.v = std::move(sides[1].x);
-    found.iterations = sides[0].iterations + sides[1].iterations;
-    found.converged = sides[0].converged && sides[1].converged;
-    return found;
-}
 
 /// The strip's x from v, whose triangles are whole with `cornerTurns` added; `sign` is that of the
 /// direction in which x grows.
@@ -152,30 +89,28 @@ Result<ConformalTube> conformalTube(const TriMesh& tube, int firstLoop,
     if (options.intrinsicDelaunay) made.flippedEdges = makeDelaunay(mesh);
     report(0.2);
 
-    const Numbering numbering = numberUnknowns(topology, tube.vertices.size());
-    std::vector<double> u(tube.vertices.size(), 0.0), v(tube.vertices.size(), 0.0);
-    for (const int rim : topology.rims[1])
-        u[std::size_t(rim)] = 1.0;
-    const int unknowns = int(numbering.vertexOf.size());
-    Systems systems;
-    systems.matrix = cotangentLaplacian(mesh, numbering.unknownOf, unknowns);
-    systems.pullU = pullOfFixed(mesh, numbering.unknownOf, unknowns, u);
-    systems.pullU.resize(std::size_t(numbering.inside));
-    systems.pullV = pullOfTurns(mesh, numbering.unknownOf, unknowns);
-    report(0.3);
-
-    const auto solution = solve(systems, options);
-    if (!solution) return tl::make_unexpected(solution.error());
-    made.iterations = solution->iterations;
-    made.converged = solution->converged;
-    for (std::size_t n = 0; n < solution->u.size(); ++n)
-        u[std::size_t(numbering.vertexOf[n])] = solution->u[n];
-    for (std::size_t n = 0; n < solution->v.size(); ++n)
-        v[std::size_t(numbering.vertexOf[n])] = solution->v[n];
+    TubeSolution solution;
+    if (options.solver == Solver::cholesky) {
+        auto found =
+            solveTube(mesh, topology, tube.vertices.size(), options.threads, [&] { report(0.8); });
+        if (!found) return tl::make_unexpected(found.error());
+        solution = std::move(*found);
+    } else {
+        auto found = iterateTube(mesh, topology, tube.vertices.size(),
+                                 {options.solver == Solver::jacobiConjugateGradient,
+                                  options.tolerance, options.maxIterations, options.threads});
+        solution = std::move(found.values);
+        made.iterations = found.iterations;
+        made.converged = found.converged;
+    }
+    const std::vector<double>&u = solution.u, &v = solution.v;
     report(0.9);
 
-    const double energyU = dirichletEnergy(mesh, u, false),
-                 energyV = dirichletEnergy(mesh, v, true);
+    double energyU = 0.0, energyV = 0.0;
+    parallelFor(2, 1, options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            (n == 0 ? energyU : energyV) = dirichletEnergy(mesh, n == 0 ? u : v, n == 1);
+    });
     made.certificate = energyU * energyV - 1.0;
     made.modulus = std::sqrt(energyV / energyU);
     if (!std::isfinite(made.modulus) || !(made.modulus > 0.0)) {

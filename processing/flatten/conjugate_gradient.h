@@ -1,22 +1,25 @@
-// Iterative solution of the Laplacian's systems: what Cholesky is measured beside.
+// The tube's harmonic problems by iteration: what Cholesky is measured beside.
 #pragma once
 
-#include "flatten/cotangent_laplacian.h"
-
-#include <vector>
+#include "flatten/tube_solver.h"
 
 namespace haustra::flatten {
 
-struct IterativeSolution {
-    std::vector<double> x;
-    int iterations = 0;
-    bool converged = false;
+struct IterationOptions {
+    bool jacobi = true;        ///< the diagonal as the preconditioner, or none
+    double tolerance = 1e-10;  ///< relative residual
+    int maxIterations = 0;     ///< of each system; 0: twice its unknowns
+    int threads = 0;           ///< the two systems are solved side by side where there are two
 };
 
-/// The system of the first right.size() unknowns, by conjugate gradients with the diagonal as the
-/// preconditioner (`jacobi`) or without one, to a relative residual of `tolerance` or for
-/// `maxIterations` (0: twice the unknowns).
-IterativeSolution conjugateGradient(const SymmetricMatrix& matrix, const std::vector<double>& right,
-                                    bool jacobi, double tolerance, int maxIterations);
+struct IteratedSolution {
+    TubeSolution values;
+    int iterations = 0;  ///< of both systems
+    bool converged = true;
+};
+
+/// As solveTube, by conjugate gradients.
+IteratedSolution iterateTube(const IntrinsicMesh& mesh, const TubeTopology& topology,
+                             std::size_t vertices, const IterationOptions& options);
 
 }  // namespace haustra::flatten

@@ -6,13 +6,11 @@
 namespace haustra::flatten {
 namespace {
 
-/// Calls visit(i, j, ½ cot, turns) for each half-edge from vertex i to j.
+/// Calls visit(i, j, h) for each half-edge h from vertex i to j.
 template <class Visit>
 void forHalfedges(const IntrinsicMesh& mesh, const Visit& visit) {
-    for (int h = 0; h < mesh.halfedgeCount(); ++h) {
-        visit(mesh.origin[std::size_t(h)], mesh.target(h), 0.5 * cotangent(mesh, h),
-              double(mesh.turns[std::size_t(h)]));
-    }
+    for (int h = 0; h < mesh.halfedgeCount(); ++h)
+        visit(mesh.origin[std::size_t(h)], mesh.target(h), h);
 }
 
 }  // namespace
@@ -41,7 +39,7 @@ SymmetricMatrix cotangentLaplacian(const IntrinsicMesh& mesh, const std::vector<
     for (int h = 0; h < mesh.halfedgeCount(); ++h) {
         if (mesh.opposite[std::size_t(h)] > h) continue;
         const auto [low, high] = ends(mesh.origin[std::size_t(h)], mesh.target(h));
-        if (low == high) continue;
+        if (high < 0 || low == high) continue;
         const double weight = 0.5 * cotangentSum(mesh, h);
         if (low >= 0) {
             diagonal[std::size_t(low)] += weight;
@@ -77,12 +75,13 @@ SymmetricMatrix cotangentLaplacian(const IntrinsicMesh& mesh, const std::vector<
 std::vector<double> pullOfFixed(const IntrinsicMesh& mesh, const std::vector<int>& unknownOf,
                                 int size, const std::vector<double>& fixed) {
     std::vector<double> pull(std::size_t(size), 0.0);
-    forHalfedges(mesh, [&](int i, int j, double weight, double) {
+    forHalfedges(mesh, [&](int i, int j, int h) {
+        const double step = fixed[std::size_t(j)] - fixed[std::size_t(i)];
+        if (step == 0.0) return;
+        const double weight = 0.5 * cotangent(mesh, h);
         const int a = unknownOf[std::size_t(i)], b = unknownOf[std::size_t(j)];
-        if (a >= 0)
-            pull[std::size_t(a)] += weight * (fixed[std::size_t(j)] - fixed[std::size_t(i)]);
-        if (b >= 0)
-            pull[std::size_t(b)] += weight * (fixed[std::size_t(i)] - fixed[std::size_t(j)]);
+        if (a >= 0) pull[std::size_t(a)] += weight * step;
+        if (b >= 0) pull[std::size_t(b)] -= weight * step;
     });
     return pull;
 }
@@ -90,8 +89,10 @@ std::vector<double> pullOfFixed(const IntrinsicMesh& mesh, const std::vector<int
 std::vector<double> pullOfTurns(const IntrinsicMesh& mesh, const std::vector<int>& unknownOf,
                                 int size) {
     std::vector<double> pull(std::size_t(size), 0.0);
-    forHalfedges(mesh, [&](int i, int j, double weight, double turns) {
-        if (turns == 0.0) return;
+    forHalfedges(mesh, [&](int i, int j, int h) {
+        const int turns = mesh.turns[std::size_t(h)];
+        if (turns == 0) return;
+        const double weight = 0.5 * cotangent(mesh, h);
         const int a = unknownOf[std::size_t(i)], b = unknownOf[std::size_t(j)];
         if (a >= 0) pull[std::size_t(a)] += weight * turns;
         if (b >= 0) pull[std::size_t(b)] -= weight * turns;
@@ -101,9 +102,10 @@ std::vector<double> pullOfTurns(const IntrinsicMesh& mesh, const std::vector<int
 
 double dirichletEnergy(const IntrinsicMesh& mesh, const std::vector<double>& x, bool around) {
     double energy = 0.0;
-    forHalfedges(mesh, [&](int i, int j, double weight, double turns) {
-        const double step = x[std::size_t(j)] - x[std::size_t(i)] + (around ? turns : 0.0);
-        energy += weight * step * step;
+    forHalfedges(mesh, [&](int i, int j, int h) {
+        const double step = x[std::size_t(j)] - x[std::size_t(i)] +
+                            (around ? double(mesh.turns[std::size_t(h)]) : 0.0);
+        energy += 0.5 * cotangent(mesh, h) * step * step;
     });
     return energy;
 }

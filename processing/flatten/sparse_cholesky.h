@@ -1,4 +1,4 @@
-// Factorisation of the Laplacian, once for all right-hand sides.
+// Factorisation of a sparse symmetric matrix, once for all right-hand sides.
 #pragma once
 
 #include "core/result.h"
@@ -9,25 +9,35 @@
 
 namespace haustra::flatten {
 
-/// L·Lᵀ of a symmetric positive definite matrix, ordered such that its leading block's factor is
-/// a part of it: both systems are solved by one factorisation.
+/// P·A·Pᵀ = L·Lᵀ with P chosen to keep L sparse (approximate minimum degree) and its dense parts
+/// worked on as such (CHOLMOD). Vectors are in the order of A's unknowns throughout. One thread;
+/// several factors may be made and used at once.
 class SparseCholesky {
 public:
-    /// The leading block is the first `leading` unknowns. Fails (noResult) where the matrix is not
-    /// positive definite, or memory runs out. One thread.
-    static Result<SparseCholesky> of(const SymmetricMatrix& matrix, int leading);
+    /// Where `groupEnds` is not empty, all unknowns below groupEnds[0] are eliminated before all
+    /// from there to groupEnds[1], and so on; those from the last end on come last. Fails
+    /// (noResult) where the matrix is not positive definite, or memory runs out.
+    static Result<SparseCholesky> of(const SymmetricMatrix& matrix,
+                                     const std::vector<int>& groupEnds = {});
     SparseCholesky(SparseCholesky&&) noexcept;
     SparseCholesky& operator=(SparseCholesky&&) noexcept;
     ~SparseCholesky();
 
-    std::vector<double> solve(const std::vector<double>& right);
-    /// Of the leading block alone: `right` and the result have `leading` values.
-    std::vector<double> solveLeading(const std::vector<double>& right);
+    std::vector<double> solve(std::vector<double> right);
+    /// x becomes L⁻¹x, and L⁻ᵀx.
+    void forward(std::vector<double>& x);
+    void backward(std::vector<double>& x);
+    /// The rows and columns of L from unknown `first` on, which must begin a group: dense, columns
+    /// one after the other, zero above the diagonal of the elimination's order.
+    std::vector<double> trailing(int first) const;
 
 private:
     struct State;
     explicit SparseCholesky(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
+
+/// The failure where a system has no unique solution.
+tl::unexpected<Error> singularSystem();
 
 }  // namespace haustra::flatten

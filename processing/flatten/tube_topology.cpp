@@ -41,14 +41,20 @@ void forNeighbours(const HalfedgeMesh& mesh, int v, const Visit& visit) {
 struct BreadthFirst {
     std::vector<int> order;
     std::vector<int> from;  ///< per vertex: the one it was reached from, or itself
+    std::vector<int> levelStart;
 };
 
 BreadthFirst breadthFirst(const HalfedgeMesh& mesh, const std::vector<int>& start) {
-    BreadthFirst found{start, std::vector<int>(std::size_t(mesh.vertexCount()), -1)};
+    BreadthFirst found{start, std::vector<int>(std::size_t(mesh.vertexCount()), -1), {0}};
     found.order.reserve(std::size_t(mesh.vertexCount()));
     for (const int v : start)
         found.from[std::size_t(v)] = v;
+    std::size_t levelEnd = start.size();
     for (std::size_t n = 0; n < found.order.size(); ++n) {
+        if (n == levelEnd) {
+            found.levelStart.push_back(int(n));
+            levelEnd = found.order.size();
+        }
         const int v = found.order[n];
         forNeighbours(mesh, v, [&](int w) {
             if (found.from[std::size_t(w)] >= 0) return;
@@ -56,6 +62,7 @@ BreadthFirst breadthFirst(const HalfedgeMesh& mesh, const std::vector<int>& star
             found.order.push_back(w);
         });
     }
+    found.levelStart.push_back(int(found.order.size()));
     return found;
 }
 
@@ -137,6 +144,7 @@ Result<TubeTopology> tubeTopology(const HalfedgeMesh& mesh, int firstRim) {
     topology.rims[0] = std::move(loops[0]);
     topology.rims[1] = std::move(loops[1]);
     topology.breadthFirst = std::move(reached.order);
+    topology.levelStart = std::move(reached.levelStart);
     return topology;
 }
 

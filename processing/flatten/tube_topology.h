@@ -13,6 +13,9 @@ struct TubeTopology {
     std::vector<int> rims[2];  ///< the boundary loops' vertices, in order along them
     /// The vertices that triangles use, breadth first from the first rim.
     std::vector<int> breadthFirst;
+    /// Level n, the vertices n edges away, is breadthFirst[levelStart[n]] … [levelStart[n + 1] −
+    /// 1].
+    std::vector<int> levelStart;
     /// Per half-edge 3·triangle + corner: 1 where that corner lies on the cut and the triangle to
     /// the left of it, else 0. The cut is a shortest path of edges from rim to rim; a corner's
     /// value counts the turns between its vertex and the triangle, the tube being cut open there.

@@ -33,8 +33,10 @@ double outsideCoil(const glm::dvec3& at) {
         const glm::dvec3 centre(kCoilMm * std::cos(theta), kCoilMm * std::sin(theta),
                                 kPitchMm * (s - 0.5 * kTurns));
         const double phi = std::atan2(at.z - centre.z, rho - kCoilMm);
-        const double folds = std::pow(0.5 + 0.5 * std::cos(2.0 * kPi * 12.0 * s), 4.0);
-        const double taeniae = 0.5 + 0.5 * std::cos(3.0 * phi);
+        // The ends are half balls.
+        const double relief = std::min(1.0, 20.0 * std::min(s, kTurns - s));
+        const double folds = relief * std::pow(0.5 + 0.5 * std::cos(2.0 * kPi * 12.0 * s), 4.0);
+        const double taeniae = relief * (0.5 + 0.5 * std::cos(3.0 * phi));
         const double radius = 24.0 - 5.0 * folds * (1.0 - taeniae) - 2.0 * taeniae;
         nearest = std::min(nearest, glm::distance(at, centre) - radius);
     }
