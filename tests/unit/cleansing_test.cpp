@@ -111,16 +111,16 @@ TEST(Cleansing, StoolInAirLeavesNoRing) {
     // Its flat top is no level, and no wall is needed to hold it.
     const glm::dvec3 ball(21.0, 21.0, 12.0);
     const Scene scene = makeScene({56, 56, 24}, 650.0, 12.0, [=](glm::dvec3 p) {
-        const double stool = blurredStep(distanceToSphere(p, ball, 4.5));
+        const double stool = blurredStep(distanceToSphere(p, ball, 6.0));
         const double open = blurredStep(p.x - 5.0) * blurredStep(37.0 - p.x);
         return Shares{open * (1.0 - stool), open * stool};
     });
     const CleansedScene result = cleanseScene(scene);
     const ErrorStatistics ring = errorWhere(scene, result.cleansed, [&](Shares, glm::dvec3 p) {
-        return std::abs(distanceToSphere(p, ball, 4.5)) < 1.5;
+        return std::abs(distanceToSphere(p, ball, 6.0)) < 1.5;
     });
-    EXPECT_NEAR(ring.bias, 0.0, 20.0);
-    EXPECT_LT(ring.rmse, 70.0);
+    EXPECT_NEAR(ring.bias, 0.0, 10.0);
+    EXPECT_LT(ring.rmse, 30.0);
 }
 
 TEST(Cleansing, WallGoesOnStraightPastALevel) {
