@@ -48,6 +48,57 @@ inline mesh::HalfedgeMesh flatTorus(std::complex<double> tau, int m, int n) {
     return *mesh::HalfedgeMesh::glued(m * n, triangles, opposite, lengthMm);
 }
 
+/// Three parallelograms of the sides `right` and `up` in the shape of an L, opposite sides glued:
+/// of genus two, flat but for one vertex with three turns around it. `form` is dz. Each is cut in
+/// n² cells of two triangles.
+struct TranslationSurface {
+    mesh::HalfedgeMesh halfedges;
+    std::vector<std::complex<double>> form;
+};
+inline TranslationSurface glueL(std::complex<double> right, std::complex<double> up, int n) {
+    // Tile 1 is to the right of tile 0, tile 2 above it.
+    const int rightOf[] = {1, 0, 2}, above[] = {2, 1, 0};
+    const auto cell = [&](int tile, int i, int j) { return (tile * n + j) * n + i; };
+    const int count = 3 * n * n * 6;
+    std::vector<int> opposite(std::size_t(count), -1);
+    const auto glue = [&](int g, int h) {
+        opposite[std::size_t(g)] = h;
+        opposite[std::size_t(h)] = g;
+    };
+    TranslationSurface made;
+    std::vector<double> lengthMm;
+    for (int tile = 0; tile < 3; ++tile) {
+        for (int j = 0; j < n; ++j) {
+            for (int i = 0; i < n; ++i) {
+                // Half-edges of the cell: bottom, right, diagonal; diagonal, top, left.
+                const int h = 6 * cell(tile, i, j);
+                glue(h + 2, h + 3);
+                glue(h + 1, 5 + 6 * (i + 1 < n ? cell(tile, i + 1, j) : cell(rightOf[tile], 0, j)));
+                glue(h + 4, 6 * (j + 1 < n ? cell(tile, i, j + 1) : cell(above[tile], i, 0)));
+                for (const std::complex<double> side :
+                     {right, up, -right - up, right + up, -right, -up})
+                    made.form.push_back(side / double(n));
+            }
+        }
+    }
+    // A vertex is what turning left around it meets.
+    std::vector<glm::ivec3> triangles(std::size_t(count / 3), glm::ivec3(-1));
+    int vertices = 0;
+    for (int start = 0; start < count; ++start) {
+        lengthMm.push_back(std::abs(made.form[std::size_t(start)]));
+        if (triangles[std::size_t(start / 3)][start % 3] >= 0) continue;
+        int h = start;
+        do {
+            triangles[std::size_t(h / 3)][h % 3] = vertices;
+            h = opposite[std::size_t(mesh::HalfedgeMesh::previous(h))];
+        } while (h != start);
+        ++vertices;
+    }
+    // Opposite sides' lengths are equal bit for bit: the sum's sign alone differs.
+    made.halfedges = *mesh::HalfedgeMesh::glued(vertices, triangles, opposite, lengthMm);
+    return made;
+}
+
 /// A torus in space that is conformally the plane modulo 1 and `tau`, up to the lattice's choice.
 struct KnownTorus {
     TriMesh mesh;

@@ -89,22 +89,30 @@ Result<FundamentalDomain> layOut(const CarvedSurface& surface) {
     return domain;
 }
 
-Result<FundamentalDomain> fundamentalDomainMap(const TriMesh& mesh, const ComplexForm& form) {
-    Result<HalfedgeMesh> halfedges = HalfedgeMesh::ofClosed(mesh);
-    if (!halfedges) return tl::make_unexpected(halfedges.error());
-    if (mesh.triangles.empty() || form.size() != mesh.triangles.size() * 3)
+Result<FundamentalDomain> fundamentalDomainMap(const TriMesh& mesh, const HalfedgeMesh& halfedges,
+                                               const ComplexForm& form) {
+    const std::size_t count = mesh.triangles.size() * 3;
+    if (count == 0 || !halfedges.closed())
+        return fail(ErrorKind::badInput, "the surface is empty or not closed");
+    if (form.size() != count || std::size_t(halfedges.halfedgeCount()) != count)
         return fail(ErrorKind::badInput, "the form is not of this surface");
     int root = 0;
-    while (halfedges->outgoing(root) < 0)
+    while (halfedges.outgoing(root) < 0)
         ++root;
-    const mesh::CutGraph graph = mesh::makeCutGraph(*halfedges, root);
+    const mesh::CutGraph graph = mesh::makeCutGraph(halfedges, root);
     if (graph.basis.empty())
         return fail(ErrorKind::badInput, "the surface is of genus 0 and closed: nothing opens it");
-    CarvedSurface surface(mesh, *halfedges, form);
+    CarvedSurface surface(mesh, halfedges, form);
     for (int h = 0; h < surface.halfedgeCount(); ++h) {
         if (graph.cut[std::size_t(h)]) surface.setCut(h);
     }
     return layOut(surface);
+}
+
+Result<FundamentalDomain> fundamentalDomainMap(const TriMesh& mesh, const ComplexForm& form) {
+    const Result<HalfedgeMesh> halfedges = HalfedgeMesh::ofClosed(mesh);
+    if (!halfedges) return tl::make_unexpected(halfedges.error());
+    return fundamentalDomainMap(mesh, *halfedges, form);
 }
 
 std::vector<FormZero> formZeros(const HalfedgeMesh& mesh, const ComplexForm& form) {

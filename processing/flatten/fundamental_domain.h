@@ -21,9 +21,14 @@ struct FundamentalDomain {
 Result<FundamentalDomain> layOut(const CarvedSurface& surface);
 
 /// Along the cut graph of the first vertex that a triangle uses; `form` is on the half-edges of
-/// `mesh`. For a genus of 2 or more the plane is covered several times over: around each zero of
-/// the form the surface winds 2 or more times. Fails as HalfedgeMesh::ofClosed, and (badInput) on
-/// genus 0.
+/// `mesh`, whose gluing is `halfedges` (a double cover's is not told by its corners alone). For a
+/// genus of 2 or more the plane is covered several times over: around each zero of the form the
+/// surface winds 2 or more times. Fails (badInput) where the surface is not closed and in one
+/// piece, the form not of it, or the genus 0. O(n log n).
+Result<FundamentalDomain> fundamentalDomainMap(const TriMesh& mesh,
+                                               const mesh::HalfedgeMesh& halfedges,
+                                               const ComplexForm& form);
+/// Fails as HalfedgeMesh::ofClosed, too.
 Result<FundamentalDomain> fundamentalDomainMap(const TriMesh& mesh, const ComplexForm& form);
 
 struct FormZero {

@@ -40,7 +40,7 @@ public:
         int size = 0;
         std::vector<int> unknownOf = numberUnknowns(surface, size);
         Result<SparseCholesky> factor =
-            SparseCholesky::of(cotangentLaplacian(mesh, unknownOf, size), {});
+            SparseCholesky::of(cotangentLaplacian(mesh, unknownOf, size));
         if (!factor) return tl::make_unexpected(factor.error());
         return HarmonicSolver(mesh, std::move(unknownOf), size, std::move(*factor));
     }

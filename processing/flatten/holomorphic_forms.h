@@ -54,8 +54,8 @@ struct HolomorphicOptions {
 /// clamped) over the closed forms with each loop's period 1: an integer form of that class, and the
 /// gradient that makes it harmonic, from one factorisation of the Laplacian for all 2g forms. Fails
 /// (badInput) on genus 0 or where the surface is not closed, manifold and in one piece, (noResult)
-/// where a triangle without area leaves the system singular. O(g · solve + g²·n); 48 bytes · g a
-/// triangle. Deterministic.
+/// where a triangle without area leaves the system singular. O(g · solve + g²·n); about 70 bytes
+/// · g a triangle. One thread.
 Result<HolomorphicBasis> holomorphicBasis(const mesh::HalfedgeMesh& mesh,
                                           const HolomorphicOptions& options = {});
 Result<HolomorphicBasis> holomorphicBasis(const TriMesh& mesh,

@@ -5,19 +5,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
 
 namespace haustra::flatten {
 namespace {
 
-/// Away from a handle a surface shrinks exponentially, below rounding where it is long.
-int largestInThePlane(const TriMesh& mesh, const ComplexForm& form) {
-    std::vector<double> area(mesh.vertices.size(), 0.0);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const double twice = std::imag(std::conj(form[3 * t]) * -form[3 * t + 2]);
-        for (int corner = 0; corner < 3; ++corner)
-            area[std::size_t(mesh.triangles[t][corner])] += twice;
+/// Vertices to start from, the largest in the plane first, and then ever farther from the largest.
+/// Far from its handle a surface shrinks exponentially there, below rounding where it is long.
+std::vector<int> goodBases(const CarvedSurface& surface) {
+    std::vector<double> area(surface.mesh().vertices.size(), 0.0);
+    for (int h = 0; h < surface.halfedgeCount(); ++h) {
+        const std::complex<double> back = surface.form(mesh::HalfedgeMesh::previous(h));
+        area[std::size_t(surface.origin(h))] += std::imag(std::conj(surface.form(h)) * -back);
     }
-    return int(std::max_element(area.begin(), area.end()) - area.begin());
+    std::vector<int> order(area.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return area[std::size_t(a)] > area[std::size_t(b)]; });
+    std::vector<int> bases;
+    for (std::size_t rank = 0; rank < order.size(); rank = 2 * rank + 1) {
+        if (area[std::size_t(order[rank])] > 0.0) bases.push_back(order[rank]);
+    }
+    return bases;
+}
+
+Result<CarvedSurface> carveTrajectories(CarvedSurface surface, int base, std::complex<double> tau) {
+    for (const std::complex<double> direction : {std::complex<double>(1.0), tau}) {
+        const Result<std::vector<int>> line = traceTrajectory(surface, base, direction);
+        if (!line) return tl::make_unexpected(line.error());
+    }
+    return surface;
 }
 
 }  // namespace
@@ -52,13 +71,16 @@ Result<TorusMap> torusMap(const TriMesh& torus, int base, const HolomorphicOptio
         return fail(ErrorKind::badInput, "the surface is not of genus one, but of genus " +
                                              std::to_string(basis->genus()));
     PeriodRatio ratio = periodRatio(*basis);
-    if (base < 0) base = largestInThePlane(torus, ratio.form);
-    CarvedSurface surface(torus, *halfedges, std::move(ratio.form));
-    for (const std::complex<double> direction : {std::complex<double>(1.0), ratio.tau}) {
-        const Result<std::vector<int>> line = traceTrajectory(surface, base, direction);
-        if (!line) return tl::make_unexpected(line.error());
+    const CarvedSurface whole(torus, *halfedges, std::move(ratio.form));
+    const std::vector<int> bases = base >= 0 ? std::vector<int>{base} : goodBases(whole);
+    Result<FundamentalDomain> domain =
+        fail(ErrorKind::noResult, "no triangle of the torus keeps its orientation in the plane");
+    for (const int from : bases) {
+        const Result<CarvedSurface> carved = carveTrajectories(whole, from, ratio.tau);
+        domain = carved ? layOut(*carved) : tl::make_unexpected(carved.error());
+        base = from;
+        if (domain) break;
     }
-    Result<FundamentalDomain> domain = layOut(surface);
     if (!domain) return tl::make_unexpected(domain.error());
 
     // `base` has four copies, at the corners: the one of the least sum of lattice coordinates is 0.

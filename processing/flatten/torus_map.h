@@ -16,7 +16,7 @@ struct TorusMap {
 };
 
 /// Integrates the holomorphic form over the surface, traces the trajectories through the vertex
-/// `base` (−1: the one whose triangles are largest in the plane) along 1 (horizontal) and τ
+/// `base` (−1: one whose triangles are among the largest in the plane) along 1 (horizontal) and τ
 /// (vertical where τ is imaginary; then the parallelogram is a rectangle), and cuts along them.
 /// Fails (badInput) where the surface is not closed, manifold and in one piece of genus one or no
 /// triangle uses `base`, and as holomorphicBasis and traceTrajectory.
