@@ -34,6 +34,14 @@ std::vector<int> numberFans(const CarvedSurface& surface, std::vector<int>& vert
     return fan;
 }
 
+/// Of the cut surface. By half-edges: two edges of it may join the same two vertices.
+long eulerCharacteristic(const CarvedSurface& surface, std::size_t vertices) {
+    long edges = 0;
+    for (int h = 0; h < surface.halfedgeCount(); ++h)
+        edges += surface.cut(h) || h < surface.opposite(h);
+    return long(vertices) - edges + surface.halfedgeCount() / 3;
+}
+
 double flatArea(const FundamentalDomain& domain, const glm::ivec3& t) {
     const std::complex<double> a = domain.flat[std::size_t(t.x)];
     return std::imag(std::conj(domain.flat[std::size_t(t.y)] - a) *
@@ -79,8 +87,8 @@ Result<FundamentalDomain> layOut(const CarvedSurface& surface) {
             queue.push_back(other);
         }
     }
-    const bool disc = meshTopology(domain.cut).eulerCharacteristic == 1;
-    if (queue.size() != triangles || !disc || !(gap <= 1e-6 * largest)) {
+    if (queue.size() != triangles || eulerCharacteristic(surface, vertexOfFan.size()) != 1 ||
+        !(gap <= 1e-6 * largest)) {
         return fail(ErrorKind::noResult,
                     "the surface cannot be laid out: its cuts do not open it to one disc");
     }
