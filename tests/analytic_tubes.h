@@ -3,6 +3,7 @@
 
 #include "core/flat_map.h"
 
+#include <cmath>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -53,5 +54,53 @@ inline std::function<glm::dvec3(double, double)> cylinder(double circumferenceMm
         return glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), circumferenceMm * y);
     };
 }
+
+/// A cylinder along z with half a ball on its wall, bulging inwards: every place of the ball's foot
+/// is `ballMm` from its middle.
+struct HalfBall {
+    double circumferenceMm = 150.0, ballMm = 5.0;
+    glm::dvec2 middle{0.98, 0.5};  ///< in circumferences
+
+    double radiusMm() const { return circumferenceMm / (2.0 * std::numbers::pi); }
+    /// How far inward of the cylinder's tangent plane the foot is that lies in this direction.
+    double riseMm(double azimuth) const {
+        double rise = 0.0;
+        for (int n = 0; n < 50; ++n) {
+            const double aside = std::sqrt(ballMm * ballMm - rise * rise) * std::cos(azimuth);
+            rise = radiusMm() - std::sqrt(radiusMm() * radiusMm() - aside * aside);
+        }
+        return rise;
+    }
+    /// Where on the unrolled cylinder that foot is.
+    glm::dvec2 foot(double azimuth) const {
+        const double rise = riseMm(azimuth), reach = std::sqrt(ballMm * ballMm - rise * rise);
+        const double turn = std::asin(reach * std::cos(azimuth) / radiusMm());
+        return middle + glm::dvec2(turn / (2.0 * std::numbers::pi),
+                                   reach * std::sin(azimuth) / circumferenceMm);
+    }
+    /// Of the ball's part of the surface.
+    double areaMm2() const {
+        constexpr int parts = 360;
+        double sum = 0.0;
+        for (int n = 0; n < parts; ++n) {
+            const double azimuth = 2.0 * std::numbers::pi * n / parts;
+            sum += 2.0 * std::numbers::pi / parts * ballMm * (ballMm - riseMm(azimuth));
+        }
+        return sum;
+    }
+    /// The surface over the unrolled cylinder.
+    glm::dvec3 position(double x, double y) const {
+        const auto wall = cylinder(circumferenceMm);
+        const glm::dvec3 center = wall(middle.x, middle.y), away = wall(x, y) - center;
+        const double distance = glm::length(away);
+        if (distance >= ballMm) return wall(x, y);
+        const glm::dvec3 inward = -glm::normalize(glm::dvec3(center.x, center.y, 0.0));
+        const glm::dvec3 around(inward.y, -inward.x, 0.0), along(0.0, 0.0, 1.0);
+        const double azimuth = std::atan2(away.z, glm::dot(away, around));
+        const double polar = std::acos(riseMm(azimuth) / ballMm) * distance / ballMm;
+        const glm::dvec3 side = std::cos(azimuth) * around + std::sin(azimuth) * along;
+        return center + ballMm * (std::cos(polar) * inward + std::sin(polar) * side);
+    }
+};
 
 }  // namespace haustra::tests

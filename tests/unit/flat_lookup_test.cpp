@@ -315,56 +315,23 @@ TEST(FlatLookup, WholeStripIsTheWholeSurface) {
                 1e-9 * area);
 }
 
-// Half a ball, 10 mm across, on a cylinder's wall: its foot is all 5 mm from its middle. Clicked on
-// its foot from any side, to the pixel of a 400-pixel strip, it reads 10 mm.
+// Half a ball, 10 mm across, over the seam. Clicked on its foot from any side, to the pixel of a
+// 400-pixel strip, it reads 10 mm.
 TEST(FlatLookup, PolypReadsItsDiameterAndArea) {
-    constexpr double ballMm = 5.0;
-    const double radius = circumferenceMm / (2.0 * std::numbers::pi);
-    const glm::dvec2 middle(0.98, 0.5);  // across the seam
-    const auto cylinder = tests::cylinder(circumferenceMm);
-    const glm::dvec3 foot = cylinder(middle.x, middle.y);
-    const glm::dvec3 inward = -glm::normalize(glm::dvec3(foot.x, foot.y, 0.0));
-    const glm::dvec3 around(-inward.y, inward.x, 0.0);
-    // How far inward of the tangent plane the foot is that lies in this direction.
-    const auto rise = [&](double azimuth) {
-        double w = 0.0;
-        for (int n = 0; n < 50; ++n) {
-            const double u = std::sqrt(ballMm * ballMm - w * w) * std::cos(azimuth);
-            w = radius - std::sqrt(radius * radius - u * u);
-        }
-        return w;
-    };
-    const auto wall = [&](double x, double y) {
-        const glm::dvec3 place = cylinder(x, y), away = place - foot;
-        const double distance = glm::length(away);
-        if (distance >= ballMm) return place;
-        const double azimuth = std::atan2(away.z, glm::dot(away, around));
-        const double polar = std::acos(rise(azimuth) / ballMm) * distance / ballMm;
-        return foot + ballMm * (std::cos(polar) * inward +
-                                std::sin(polar) * (std::cos(azimuth) * around +
-                                                   std::sin(azimuth) * glm::dvec3(0, 0, 1)));
-    };
-    const FlatLookup lookup = lookupOf(flatMapOf(wall, 1.0, 400, 400));
-
+    const tests::HalfBall polyp;
+    const FlatLookup lookup = lookupOf(
+        flatMapOf([&](double x, double y) { return polyp.position(x, y); }, 1.0, 400, 400));
     const auto toPixel = [](glm::dvec2 v) { return (glm::floor(400.0 * v) + 0.5) / 400.0; };
     std::vector<glm::dvec2> outline;
-    double ballMm2 = 0.0;
-    constexpr int clicks = 72;
-    for (int n = 0; n < clicks; ++n) {
-        const double azimuth = 2.0 * std::numbers::pi * n / clicks;
-        const double w = rise(azimuth), reach = std::sqrt(ballMm * ballMm - w * w);
-        ballMm2 += 2.0 * std::numbers::pi / clicks * ballMm * (ballMm - w);
-        // By where the foot is on the cylinder.
-        const double turn = std::asin(reach * std::cos(azimuth) / radius);
-        const glm::dvec2 half(-turn / (2.0 * std::numbers::pi),
-                              reach * std::sin(azimuth) / circumferenceMm);
-        const glm::dvec2 away(std::abs(half.x) < 1e-12 ? 0.0 : half.x, half.y);
-        outline.push_back(middle + away);
-        const WallPath path = lookup.path(toPixel(middle + away), toPixel(middle - away));
-        EXPECT_NEAR(path.straightMm, 2.0 * ballMm, 0.5);
+    for (int n = 0; n < 72; ++n) {
+        const double azimuth = std::numbers::pi * n / 36.0;
+        outline.push_back(polyp.foot(azimuth));
+        const WallPath path = lookup.path(toPixel(polyp.foot(azimuth)),
+                                          toPixel(polyp.foot(azimuth + std::numbers::pi)));
+        EXPECT_NEAR(path.straightMm, 2.0 * polyp.ballMm, 0.5);
         EXPECT_GT(path.lengthMm, 14.0);  // over the top
     }
-    EXPECT_NEAR(lookup.areaMm2(outline), ballMm2, 0.02 * ballMm2);
+    EXPECT_NEAR(lookup.areaMm2(outline), polyp.areaMm2(), 0.02 * polyp.areaMm2());
 }
 
 }  // namespace

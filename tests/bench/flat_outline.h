@@ -1,0 +1,45 @@
+// A polyp's outline on the colon's surface and on its flat map.
+#pragma once
+
+#include "core/tri_mesh.h"
+#include "flatten/periodic_map.h"
+#include "mesh/halfedge_mesh.h"
+
+#include <optional>
+#include <vector>
+
+namespace haustra::bench {
+
+/// A closed curve through the surface's triangles, and where its points are in the plane (in one
+/// piece: x may leave [0, 1)).
+struct FlatOutline {
+    std::vector<glm::dvec3> placesMm;
+    std::vector<glm::dvec2> flat;
+    /// In millimetres as the surface lies when it is unrolled around the middle of what is inside:
+    /// geodesic coordinates (see unroll in geodesic_frame.h). A polyp that is draped over a fold
+    /// has its own shape there, which no direction in space shows.
+    std::vector<glm::dvec2> unrolledMm;
+    double insideMm2 = 0.0;  ///< of the piece of surface that it is the border of
+};
+
+/// Where a ball of `radiusMm` around a polyp's centre cuts the surface: of the pieces of surface
+/// inside, the one with the largest area, and of that one's borders the one that encloses the rest
+/// in the plane. With the radius a tenth over the polyp's own, that is a flat or sessile polyp's
+/// foot on the wall, and a ring around a pedunculated one's stalk, or around its head where that
+/// touches the wall. Empty where nothing is inside, a border meets a rim of the tube, or the piece
+/// runs around the whole colon. Each edge is cut at most once.
+std::optional<FlatOutline> outlineAround(const TriMesh& tube, const mesh::HalfedgeMesh& edges,
+                                         const flatten::PeriodicMap& map, glm::dvec3 centerMm,
+                                         double radiusMm);
+
+struct OutlineShape {
+    double area = 0.0;    ///< enclosed
+    double aspect = 1.0;  ///< ≥ 1: longer over shorter axis of the ellipse with its second moments
+};
+
+/// Of what a simple polygon in the plane encloses.
+OutlineShape shapeOf(const std::vector<glm::dvec2>& polygon);
+/// Of a closed curve in space, seen along its vector area: whence it encloses the most.
+OutlineShape shapeOf(const std::vector<glm::dvec3>& curve);
+
+}  // namespace haustra::bench

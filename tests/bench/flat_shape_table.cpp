@@ -1,0 +1,285 @@
+// What the flat map does to shapes and sizes, as Markdown tables: for cases in a store, angles
+// against areas at several area weights and by a change of height alone; for their true polyps, the
+// aspect ratio of the outline in the plane beside that on the surface, and how even the scale is
+// that they are shown at; and how far from where they began pixels come back from the surface.
+// `--help` tells the options.
+#include "core/flat_lookup.h"
+#include "flat_outline.h"
+#include "flatten/conformal_tube.h"
+#include "flatten/distortion.h"
+#include "flatten/seam.h"
+#include "flatten/unified_flattening.h"
+#include "flatten_meshes.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <random>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+using namespace haustra;
+
+namespace {
+
+struct Polyp {
+    std::string of, kind;
+    glm::dvec3 centerMm;
+    double diameterMm;
+};
+
+struct Compared {
+    const Polyp* polyp;
+    bench::OutlineShape onSurface, inPlane;
+    double areaMm2;  ///< of the surface inside
+    double off() const { return inPlane.aspect / onSurface.aspect - 1.0; }
+};
+
+/// A case's tube, its conformal map and what else the tables tell of it.
+struct Study {
+    bench::Tube tube;
+    mesh::HalfedgeMesh edges;
+    flatten::PeriodicMap conformal;
+    std::vector<Polyp> polyps;
+};
+
+[[noreturn]] void stop(const Error& error) {
+    fmt::print(stderr, "{}\n", describe(error));
+    std::exit(1);
+}
+
+template <class T>
+T need(Result<T> result) {
+    if (!result) stop(result.error());
+    return std::move(*result);
+}
+
+std::vector<Polyp> polypsOf(const std::string& file, const std::string& of) {
+    std::ifstream in(file);
+    const auto json = nlohmann::json::parse(in, nullptr, false);
+    if (json.is_discarded() || !json.contains("findings"))
+        stop({ErrorKind::badInput, "holds no findings", file});
+    std::vector<Polyp> polyps;
+    for (const auto& finding : json["findings"]) {
+        const auto p = finding["position_mm"];
+        polyps.push_back({of,
+                          finding["kind"].get<std::string>(),
+                          {p[0], p[1], p[2]},
+                          finding["diameter_mm"].get<double>()});
+    }
+    return polyps;
+}
+
+flatten::Distortion distortionOf(const TriMesh& tube, const flatten::PeriodicMap& map) {
+    return flatten::measureDistortion(
+        tube, [&](std::size_t triangle, int corner) { return map.corner(tube, triangle, corner); });
+}
+
+/// The map with y made to grow, by `share` of the way, as the surface below it does.
+flatten::PeriodicMap evenedByHeight(const TriMesh& tube, flatten::PeriodicMap map, double share) {
+    constexpr int rings = 4000;
+    std::vector<double> below(rings + 1, 0.0);
+    for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
+        const double y =
+            (map.corner(tube, t, 0).y + map.corner(tube, t, 1).y + map.corner(tube, t, 2).y) / 3.0;
+        const glm::ivec3 v = tube.triangles[t];
+        const glm::dvec3 a = tube.vertices[std::size_t(v.x)];
+        below[1 + std::size_t(std::clamp(rings * y / map.height, 0.0, rings - 1.0))] += glm::length(
+            glm::cross(tube.vertices[std::size_t(v.y)] - a, tube.vertices[std::size_t(v.z)] - a));
+    }
+    for (std::size_t r = 1; r < below.size(); ++r)
+        below[r] += below[r - 1];
+    for (glm::dvec2& place : map.flat) {
+        const double at = std::clamp(rings * place.y / map.height, 0.0, double(rings));
+        const auto ring = std::size_t(std::min(at, rings - 1.0));
+        const double even = glm::mix(below[ring], below[ring + 1], at - double(ring));
+        place.y = glm::mix(place.y, map.height * even / below[rings], share);
+    }
+    return map;
+}
+
+void printDistortion(const std::string& name, const std::string& how, const TriMesh& tube,
+                     const flatten::PeriodicMap& map, double seconds) {
+    const flatten::Distortion d = distortionOf(tube, map);
+    fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.3f} | {:.3f} | {:.3g} | {} | {:.2f} | {} |\n",
+               name, how, d.angleErrorDegrees.mean, d.angleErrorDegrees.p95, d.dilatation.mean,
+               d.logAreaDeviation, d.areaRange, d.flips, map.height,
+               seconds < 0.0 ? "-" : fmt::format("{:.1f}", seconds));
+    std::fflush(stdout);
+}
+
+/// The map with an area weight; its seconds.
+flatten::PeriodicMap unified(const Study& study, double weight, int threads, double& seconds) {
+    flatten::UnifiedOptions options;
+    options.areaWeight = weight;
+    options.threads = threads;
+    const auto start = std::chrono::steady_clock::now();
+    auto map = need(flatten::unifiedFlattening(study.tube.mesh, study.conformal, options));
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return map;
+}
+
+std::vector<Compared> compare(const Study& study, const flatten::PeriodicMap& map, double reach) {
+    std::vector<Compared> all;
+    for (const Polyp& polyp : study.polyps) {
+        const auto outline = bench::outlineAround(study.tube.mesh, study.edges, map, polyp.centerMm,
+                                                  0.5 * reach * polyp.diameterMm);
+        if (!outline) {
+            fmt::print(stderr, "{}: no outline of the {:.1f} mm {} polyp\n", polyp.of,
+                       polyp.diameterMm, polyp.kind);
+            continue;
+        }
+        // A ring around a stalk is one in space; what lies on the wall is unrolled with it.
+        const bool ring = polyp.kind == "pedunculated";
+        all.push_back(
+            {&polyp, ring ? bench::shapeOf(outline->placesMm) : bench::shapeOf(outline->unrolledMm),
+             bench::shapeOf(outline->flat), outline->insideMm2});
+    }
+    return all;
+}
+
+void printPolyps(const std::vector<Compared>& all) {
+    fmt::print(
+        "\n| case | polyp | mm | outline mm | aspect on the surface | in the plane | off % |\n"
+        "| --- | --- | --- | --- | --- | --- | --- |\n");
+    for (const Compared& c : all) {
+        fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} |\n", c.polyp->of,
+                   c.polyp->kind, c.polyp->diameterMm, std::sqrt(4.0 / M_PI * c.onSurface.area),
+                   c.onSurface.aspect, c.inPlane.aspect, 100.0 * c.off());
+    }
+}
+
+/// How many polyps keep their aspect within a tenth, and the spread of the scale they are shown at:
+/// of the square root of flat area over area.
+void printSummary(const std::string& weight, const std::string& kind,
+                  const std::vector<Compared>& all) {
+    int count = 0, kept = 0;
+    double sum = 0.0, squares = 0.0, worst = 0.0;
+    for (const Compared& c : all) {
+        if (kind != "all" && c.polyp->kind != kind) continue;
+        ++count;
+        kept += std::abs(c.off()) <= 0.1;
+        worst = std::max(worst, std::abs(c.off()));
+        const double zoom = 0.5 * std::log(c.inPlane.area / c.areaMm2);
+        sum += zoom, squares += zoom * zoom;
+    }
+    if (count == 0) return;
+    const double deviation = std::sqrt(std::max(0.0, squares / count - sum * sum / count / count));
+    fmt::print("| {} | {} | {} | {} ({:.0f} %) | {:.0f} | {:.0f} |\n", weight, kind, count, kept,
+               100.0 * kept / count, 100.0 * worst, 100.0 * (std::exp(deviation) - 1.0));
+}
+
+/// 10,000 random pixels of a strip 1600 wide, to the surface and back.
+void printRoundTrip(const Study& study) {
+    constexpr int pixels = 10000;
+    constexpr double pixelsPerUnit = 1600.0;
+    const TriMesh& tube = study.tube.mesh;
+    FlatMap cut =
+        flatten::cutAlongSeam(tube, study.conformal, flatten::bestSeam(tube, study.conformal));
+    cut.cameras.push_back({});
+    cut.camera.assign(cut.flat.size(), 0);
+    const auto now = [] { return std::chrono::steady_clock::now(); };
+    const auto since = [&](auto start) {
+        return std::chrono::duration<double>(now() - start).count();
+    };
+    const auto begin = now();
+    const FlatLookup lookup(std::make_shared<const FlatMap>(std::move(cut)));
+    const double buildSeconds = since(begin);
+
+    std::mt19937 random(1);
+    std::vector<WallPlace> places;
+    const auto rows = unsigned(pixelsPerUnit * lookup.map().height);
+    auto start = now();
+    for (int n = 0; n < pixels; ++n) {
+        const glm::dvec2 pixel(random() % unsigned(pixelsPerUnit) + 0.5, random() % rows + 0.5);
+        places.push_back(*lookup.at(pixel / pixelsPerUnit));
+    }
+    const double atSeconds = since(start);
+    double worst = 0.0;
+    int beyondHalf = 0;
+    start = now();
+    for (const WallPlace& place : places) {
+        const WallPlace back = lookup.nearest(place.positionMm);
+        const double off =
+            pixelsPerUnit * std::max(std::abs(std::remainder(back.flat.x - place.flat.x, 1.0)),
+                                     std::abs(back.flat.y - place.flat.y));
+        worst = std::max(worst, off);
+        beyondHalf += off > 0.5;
+    }
+    fmt::print("| {} | {:.2g} | {} | {:.2f} | {:.1f} | {:.1f} |\n", study.tube.name, worst,
+               beyondHalf, buildSeconds, 1e6 * atSeconds / pixels, 1e6 * since(start) / pixels);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Shapes and sizes on the flat maps of cases in a store.");
+    std::string storeFolder;
+    std::vector<std::string> cases, truths;
+    std::vector<double> weights{0.1, 0.3, 0.5, 0.8, 1.0};
+    double reach = 1.1;
+    int threads = 0;
+    app.add_option("--store", storeFolder, "The case store's folder")->required();
+    app.add_option("--case", cases, "Cases' names")->required();
+    app.add_option("--polyps", truths, "polyps.json of each case's phantom, in order");
+    app.add_option("--weights", weights, "Area weights beside 0")->capture_default_str();
+    app.add_option("--reach", reach, "The outline's radius over the polyp's")
+        ->capture_default_str();
+    app.add_option("--threads", threads, "Threads; 0 for all cores");
+    CLI11_PARSE(app, argc, argv);
+    if (!truths.empty() && truths.size() != cases.size())
+        stop({ErrorKind::badInput, "must be as many as the cases", "--polyps"});
+
+    std::vector<Study> studies;
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        auto tube = need(bench::tubeOfCase(storeFolder, cases[n], true));
+        auto edges = need(mesh::HalfedgeMesh::of(tube.mesh));
+        auto made = need(flatten::conformalTube(tube.mesh));
+        studies.push_back({std::move(tube), std::move(edges), std::move(made.map),
+                           truths.empty() ? std::vector<Polyp>{} : polypsOf(truths[n], cases[n])});
+    }
+
+    fmt::print(
+        "| case | map | angle error ° | 95 % | dilatation | log-area deviation | area range "
+        "| flips | height | seconds |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- "
+        "| --- |\n");
+    std::vector<std::vector<Compared>> byWeight(weights.size() + 1);
+    for (const Study& study : studies) {
+        const TriMesh& tube = study.tube.mesh;
+        const auto add = [&](std::size_t n, const flatten::PeriodicMap& map) {
+            const auto found = compare(study, map, reach);
+            byWeight[n].insert(byWeight[n].end(), found.begin(), found.end());
+        };
+        printDistortion(study.tube.name, "conformal", tube, study.conformal, -1.0);
+        add(0, study.conformal);
+        for (const double share : {0.5, 1.0})
+            printDistortion(study.tube.name, fmt::format("height alone, {}", share), tube,
+                            evenedByHeight(tube, study.conformal, share), -1.0);
+        for (std::size_t n = 0; n < weights.size(); ++n) {
+            double seconds = 0.0;
+            const auto map = unified(study, weights[n], threads, seconds);
+            printDistortion(study.tube.name, fmt::format("weight {}", weights[n]), tube, map,
+                            seconds);
+            add(n + 1, map);
+        }
+    }
+    fmt::print(
+        "\n| case | there and back, worst pixels | over half a pixel | seconds to build | µs "
+        "to the surface | back |\n| --- | --- | --- | --- | --- | --- |\n");
+    for (const Study& study : studies)
+        printRoundTrip(study);
+    if (truths.empty()) return 0;
+    printPolyps(byWeight[0]);
+    fmt::print(
+        "\n| area weight | polyps | count | aspect within 10 % | worst % | spread of scale % "
+        "|\n| --- | --- | --- | --- | --- | --- |\n");
+    for (std::size_t n = 0; n < byWeight.size(); ++n) {
+        for (const char* kind : {"all", "sessile", "flat", "pedunculated"})
+            printSummary(fmt::format("{}", n == 0 ? 0.0 : weights[n - 1]), kind, byWeight[n]);
+    }
+}
