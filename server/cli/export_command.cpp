@@ -1,6 +1,7 @@
 // haustra export: a product in a format that other programs read.
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/flat_image_export.h"
 #include "cli/text_files.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
@@ -32,7 +33,8 @@ const std::map<std::string, Endings>& formats() {
         {"distance", volume},
         {"centerline", {".csv"}},
         {"branches", {".csv"}},
-        {"surface", {".ply", ".obj", ".off", ".stl"}}};
+        {"surface", {".ply", ".obj", ".off", ".stl"}},
+        {"flat-image", {".png"}}};
     return endings;
 }
 
@@ -46,6 +48,7 @@ std::vector<std::string> productNames() {
 struct Arguments {
     fs::path store, file;
     std::string caseName, product;
+    FlatImageOptions flatImage;
 };
 
 bool endsIn(const std::string& text, const std::string& ending) {
@@ -66,6 +69,8 @@ Result<void> runExport(const Arguments& arguments) {
         return s.openCase(arguments.caseName);
     });
     if (!source) return tl::make_unexpected(source.error());
+    if (arguments.product == "flat-image")
+        return exportFlatImage(*source, arguments.file, arguments.flatImage);
     // What leaves the store for other programs has been read whole and found sound.
     if (auto sound = source->verify(arguments.product); !sound) return sound;
     const std::string& product = arguments.product;
@@ -101,14 +106,21 @@ Command addExport(CLI::App& program) {
         "a collapse), mixture (4-D uint8: air, soft tissue, tagged, in 255ths) and distance "
         "(float, mm) as .nii.gz; centerline as .csv (x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, "
         "rectum to cecum) and branches likewise, each from an arc of 0 on; surface as .ply, .obj, "
-        ".off or .stl (LPS, mm).");
+        ".off or .stl (LPS, mm); flat-image, the whole flattened wall seen from within, the "
+        "rectum at the bottom and black where the surface crosses air, as .png.");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     command->add_option("PRODUCT", arguments->product, "What to write")
         ->required()
         ->check(CLI::IsMember(productNames()));
     command->add_option("FILE", arguments->file, "Where to; replaced in one step")->required();
     addStoreOption(*command, arguments->store);
-    command->callback([arguments] {
+    addFlatImageOptions(*command, arguments->flatImage);
+    command->callback([arguments, command] {
+        for (const char* option :
+             {"--width", "--seam-margin", "--transfer-function", "--threads"}) {
+            if (arguments->product != "flat-image" && command->count(option) > 0)
+                throw CLI::ValidationError(option, "is an option of flat-image");
+        }
         const Endings& endings = formats().at(arguments->product);
         const std::string name = arguments->file.filename().string();
         const bool fits = std::any_of(endings.begin(), endings.end(),

@@ -1,8 +1,10 @@
 // haustra render: one picture of a case, as the server draws it.
 #include "cli/arguments.h"
+#include "cli/case_scans.h"
 #include "cli/commands.h"
 #include "cli/text_files.h"
 #include "core/centerline.h"
+#include "core/flat_lookup.h"
 #include "gpu/context.h"
 #include "render/case_renderer.h"
 #include "render/comparison.h"
@@ -28,6 +30,8 @@ struct Arguments {
     std::string preset = render::transferFunctionPresets().front();
     std::optional<double> arcMm;
     std::vector<glm::dvec3> positionMm;
+    std::optional<glm::dvec2> flat;
+    double pixelsPerCircumference = FlatWindow{}.pixelsPerUnit;
     double fovDegrees = render::Camera{}.fovDegrees, zoom = 1.0;
     glm::ivec2 size{512, 512};
     render::WindowLevel window;
@@ -48,29 +52,50 @@ Result<render::EndoscopicView> endoscopicView(const Arguments& arguments,
     return view;
 }
 
-struct Scans {
-    Volume<std::int16_t> ct;
-    Volume<std::int16_t> cleansed;  // empty where it is not drawn
-};
+bool isFlattened(const Arguments& arguments) {
+    return arguments.view == "flattened" || arguments.view == "flattened-zoom";
+}
+bool isSlice(const Arguments& arguments) {
+    return arguments.view != "endoscopic" && !isFlattened(arguments);
+}
 
-Result<Scans> readScans(const Arguments& arguments, const store::Case& source) {
+Result<CaseScans> readScans(const Arguments& arguments, const store::Case& source) {
+    const bool cleansedIsAsked = arguments.compare || arguments.product == "cleansed";
+    if (cleansedIsAsked || (!isSlice(arguments) && arguments.product.empty()))
+        return readCaseScans(source, cleansedIsAsked);
     auto ct = source.readVolume<std::int16_t>("ct");
     if (!ct) return tl::make_unexpected(ct.error());
-    Scans scans{std::move(*ct), {}};
-    const bool asked = arguments.compare || arguments.product == "cleansed";
-    const bool wanted = asked || (arguments.view == "endoscopic" && arguments.product.empty());
-    if (!wanted) return scans;
-    if (!asked && !source.find("cleansed")) {
-        fmt::print(stderr,
-                   "haustra: note: case {} has no cleansed scan; the picture shows the scan as it "
-                   "is, with its residue\n",
-                   source.name());
-        return scans;
+    return CaseScans{std::move(*ct), {}};
+}
+
+/// The middle of the zoomed window: as given, or the place of the wall nearest to a point.
+Result<glm::dvec2> flatCenter(const Arguments& arguments, const Centerline& centerline,
+                              const std::shared_ptr<const FlatMap>& map) {
+    if (arguments.flat) {
+        if (arguments.flat->y >= 0.0 && arguments.flat->y <= map->height) return *arguments.flat;
+        return fail(ErrorKind::badInput,
+                    fmt::format("the strip runs from 0 to {:.3f} circumferences", map->height),
+                    fmt::format("--flat {},{}", arguments.flat->x, arguments.flat->y));
     }
-    auto cleansed = source.readVolume<std::int16_t>("cleansed");
-    if (!cleansed) return tl::make_unexpected(cleansed.error());
-    scans.cleansed = std::move(*cleansed);
-    return scans;
+    const glm::dvec3 point = arguments.positionMm.empty()
+                                 ? poseAtArc(centerline, *arguments.arcMm).point.positionMm
+                                 : arguments.positionMm.front();
+    return FlatLookup(map).nearest(point).flat;
+}
+
+Result<render::Image> drawFlattened(const Arguments& arguments, const Centerline& centerline,
+                                    const std::shared_ptr<const FlatMap>& map,
+                                    render::CaseRenderer& renderer) {
+    auto function = render::transferFunctionPreset(arguments.preset);
+    if (!function) return tl::make_unexpected(function.error());
+    if (arguments.view == "flattened")
+        return renderer.render(render::FlatOverview{std::move(*function), {}}, arguments.size.x,
+                               arguments.size.y);
+    const auto center = flatCenter(arguments, centerline, map);
+    if (!center) return tl::make_unexpected(center.error());
+    const FlatWindow window{*center, arguments.pixelsPerCircumference};
+    return renderer.render(render::FlatView{window, std::move(*function), {}}, arguments.size.x,
+                           arguments.size.y);
 }
 
 /// Before, classification and after, each as a slice of its own would be.
@@ -113,11 +138,21 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
         if (!read) return tl::make_unexpected(read.error());
         mixture = std::move(*read);
     }
+    std::shared_ptr<const FlatMap> flatMap;
+    if (isFlattened(arguments)) {
+        auto read = source.readFlatMap();
+        if (!read) return tl::make_unexpected(read.error());
+        flatMap = std::make_shared<const FlatMap>(std::move(*read));
+    }
+    auto prepared = render::prepareCase(scans->ct, scans->cleansed, arguments.threads);
+    if (!prepared) return tl::make_unexpected(prepared.error());
+    prepared->flatMap = flatMap;
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
     auto renderer =
-        render::CaseRenderer::create(**context, scans->ct, scans->cleansed, arguments.threads);
+        render::CaseRenderer::upload(**context, std::move(*prepared), arguments.threads);
     if (!renderer) return tl::make_unexpected(renderer.error());
+    if (flatMap) return drawFlattened(arguments, centerline, flatMap, **renderer);
 
     if (*plane == render::View::endoscopic) {
         const auto view = endoscopicView(arguments, centerline);
@@ -172,15 +207,36 @@ void addPictureOptions(CLI::App& command, const std::shared_ptr<Arguments>& argu
         ->required();
 }
 
+void addFlatOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
+    command
+        .add_option_function<std::string>(
+            "--flat",
+            [arguments](const std::string& text) {
+                const auto numbers = parseNumbers(text, ',', 2);
+                if (!numbers) throw CLI::ValidationError("--flat", "\"" + text + "\" is not X,Y");
+                arguments->flat = glm::dvec2((*numbers)[0], (*numbers)[1]);
+            },
+            "The middle of flattened-zoom on the strip, in circumferences: X around the colon, Y "
+            "from the rectum; in place of --arc-mm")
+        ->type_name("X,Y");
+    command
+        .add_option("--pixels-per-circumference", arguments->pixelsPerCircumference,
+                    "Enlargement of flattened-zoom")
+        ->type_name("P")
+        ->check(CLI::Range(1.0, double(render::maxPixelsPerUnit)))
+        ->capture_default_str();
+}
+
 void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
     command.add_option("--view", arguments->view, "What to draw")
-        ->check(CLI::IsMember({"endoscopic", "axial", "coronal", "sagittal"}))
+        ->check(CLI::IsMember(
+            {"endoscopic", "axial", "coronal", "sagittal", "flattened", "flattened-zoom"}))
         ->capture_default_str();
     auto* product =
         command
             .add_option("--product", arguments->product,
-                        "Which scan to draw; else a slice shows ct, the endoscopic view cleansed "
-                        "where the case has it")
+                        "Which scan to draw; else a slice shows ct, the other views cleansed where "
+                        "the case has it")
             ->check(CLI::IsMember({"ct", "cleansed"}));
     command
         .add_flag("--compare", arguments->compare,
@@ -189,12 +245,14 @@ void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& argumen
                   "cleansed")
         ->excludes(product);
     command
-        .add_option(
-            "--arc-mm", arguments->arcMm,
-            "Where on the centerline, from the rectum: the camera, or the point that a slice shows")
+        .add_option("--arc-mm", arguments->arcMm,
+                    "Where on the centerline, from the rectum: the camera, the point that a slice "
+                    "shows, or "
+                    "the one whose nearest place on the wall is in the middle of flattened-zoom")
         ->type_name("A");
     addPointsOption(command, "--position", arguments->positionMm,
-                    "The point (LPS, mm) that a slice shows, in place of --arc-mm");
+                    "The point (LPS, mm) of a slice or of flattened-zoom, in place of --arc-mm");
+    addFlatOptions(command, arguments);
     command.add_option("--direction", arguments->direction, "Which way the camera looks")
         ->check(CLI::IsMember({"antegrade", "retrograde"}))
         ->capture_default_str();
@@ -202,7 +260,9 @@ void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& argumen
         ->type_name("DEGREES")
         ->check(CLI::Range(1.0, 170.0))
         ->capture_default_str();
-    command.add_option("--transfer-function", arguments->preset, "Colours of the endoscopic view")
+    command
+        .add_option("--transfer-function", arguments->preset,
+                    "Colours of the endoscopic and flattened views")
         ->check(CLI::IsMember(render::transferFunctionPresets()))
         ->capture_default_str();
     command
@@ -229,23 +289,36 @@ void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& argumen
 Command addRender(CLI::App& program) {
     auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand(
-        "render", "Draw one picture of a case: a camera in the colon, or a slice of the scan.");
+        "render",
+        "Draw one picture of a case: a camera in the colon, a slice of the scan, or the flattened "
+        "wall.");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     addStoreOption(*command, arguments->store);
     addViewOptions(*command, arguments);
     addPictureOptions(*command, arguments);
     addThreadsOption(*command, arguments->threads);
     command->callback([arguments] {
-        const bool slice = arguments->view != "endoscopic";
-        if (!slice && !arguments->positionMm.empty()) {
+        const std::string& view = arguments->view;
+        if (view == "endoscopic" && !arguments->positionMm.empty()) {
             throw CLI::ValidationError("--position", "the endoscopic view is placed by --arc-mm");
         }
-        if (!slice && arguments->compare)
+        if (!isSlice(*arguments) && arguments->compare)
             throw CLI::ValidationError("--compare", "compares slices; give --view");
+        if (arguments->flat && view != "flattened-zoom")
+            throw CLI::ValidationError("--flat", "places --view flattened-zoom");
         if (arguments->positionMm.size() > 1)
             throw CLI::ValidationError("--position", "given more than once");
-        if (!arguments->arcMm && arguments->positionMm.empty()) {
-            throw CLI::RequiredError(slice ? "--arc-mm or --position" : "--arc-mm");
+        const int places = (arguments->arcMm ? 1 : 0) + int(arguments->positionMm.size()) +
+                           (arguments->flat ? 1 : 0);
+        if (view == "flattened" && places > 0)
+            throw CLI::ValidationError("--view",
+                                       "flattened shows the whole strip and takes no place");
+        if (view == "flattened-zoom" && places > 1)
+            throw CLI::ValidationError("--flat", "the place is given in two ways");
+        if (view != "flattened" && places == 0) {
+            throw CLI::RequiredError(view == "endoscopic"       ? "--arc-mm"
+                                     : view == "flattened-zoom" ? "--flat, --arc-mm or --position"
+                                                                : "--arc-mm or --position");
         }
     });
     return {command, [arguments] { return runRender(*arguments); }};

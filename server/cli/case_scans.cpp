@@ -1,0 +1,24 @@
+#include "cli/case_scans.h"
+
+#include <fmt/format.h>
+
+namespace haustra::cli {
+
+Result<CaseScans> readCaseScans(const store::Case& source, bool cleansedIsAsked) {
+    auto ct = source.readVolume<std::int16_t>("ct");
+    if (!ct) return tl::make_unexpected(ct.error());
+    CaseScans scans{std::move(*ct), {}};
+    if (!cleansedIsAsked && !source.find("cleansed")) {
+        fmt::print(stderr,
+                   "haustra: note: case {} has no cleansed scan; the picture shows the scan as it "
+                   "is, with its residue\n",
+                   source.name());
+        return scans;
+    }
+    auto cleansed = source.readVolume<std::int16_t>("cleansed");
+    if (!cleansed) return tl::make_unexpected(cleansed.error());
+    scans.cleansed = std::move(*cleansed);
+    return scans;
+}
+
+}  // namespace haustra::cli

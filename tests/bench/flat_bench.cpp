@@ -1,0 +1,185 @@
+// Times the flattened views of a prepared case, and counts the triangles that the strip shows.
+// usage: flat_bench STORE CASE [PRESET]
+#include "render/flat_painter.h"
+#include "render/strip_picture.h"
+#include "store/case_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace haustra;
+
+double milliseconds() {
+    return std::chrono::duration<double, std::milli>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+/// Of all of this process's threads: what a busy machine does not disturb.
+double processorMilliseconds() {
+    std::timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * double(now.tv_sec) + 1e-6 * double(now.tv_nsec);
+}
+
+/// A hand that drags the window along and around the strip, at one enlargement after the other.
+Result<void> timeWindows(render::CaseRenderer& renderer, const FlatMap& map,
+                         const render::TransferFunction& function) {
+    constexpr int side = 512, pictures = 60;
+    for (const double pixels : {400.0, 1000.0, 2500.0, 6000.0}) {
+        std::vector<double> times;
+        double processor = 0.0;
+        for (int i = -1; i < pictures; ++i) {
+            const double along = (std::max(i, 0) + 0.5) / pictures;
+            const FlatWindow window{{7.0 * along, map.height * along}, pixels};
+            const double start = milliseconds();
+            const auto image = renderer.render(render::FlatView{window, function, {}}, side, side);
+            if (!image) return tl::make_unexpected(image.error());
+            // The first picture loads the transfer function and the driver's code.
+            if (i < 0) processor = processorMilliseconds();
+            if (i >= 0) times.push_back(milliseconds() - start);
+        }
+        std::sort(times.begin(), times.end());
+        std::printf(
+            "window %d x %d, %4.0f pixels a circumference: median %.1f ms, worst %.1f ms; "
+            "processor time %.1f ms\n",
+            side, side, pixels, times[pictures / 2], times.back(),
+            (processorMilliseconds() - processor) / pictures);
+    }
+    return {};
+}
+
+Result<void> timeStrips(render::CaseRenderer& renderer, const FlatMap& map,
+                        const render::TransferFunction& function) {
+    for (const int width : {400, 1600}) {
+        const render::StripPicture picture{width, 0.0, function, {}};
+        const double start = milliseconds(), processor = processorMilliseconds();
+        int rows = 0;
+        const auto drawn =
+            render::drawStrip(renderer, picture, map.height, [&](const render::Image& band) {
+                rows += band.height;
+                return Result<void>();
+            });
+        if (!drawn) return drawn;
+        std::printf("strip %d x %d: %.2f s; processor time %.2f s\n", width, rows,
+                    (milliseconds() - start) / 1000.0,
+                    (processorMilliseconds() - processor) / 1000.0);
+    }
+    return {};
+}
+
+double turn(glm::dvec2 a, glm::dvec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// Of each triangle, in the flat plane: area and the radius of its inscribed circle.
+struct FlatTriangle {
+    glm::dvec2 center{0.0};
+    double area = 0.0, inradius = 0.0;
+};
+
+FlatTriangle flatTriangle(const FlatMap& map, std::size_t triangle) {
+    const glm::ivec3 t = map.surface.triangles[triangle];
+    const glm::dvec2 a = map.flat[std::size_t(t.x)], b = map.flat[std::size_t(t.y)],
+                     c = map.flat[std::size_t(t.z)];
+    const double ab = glm::distance(a, b), bc = glm::distance(b, c), ca = glm::distance(c, a);
+    FlatTriangle flat;
+    flat.center = (bc * a + ca * b + ab * c) / (ab + bc + ca);
+    flat.area = 0.5 * turn(b - a, c - a);
+    flat.inradius = 2.0 * flat.area / (ab + bc + ca);
+    return flat;
+}
+
+/// Triangles of positive area that tile the rectangle appear once each; and which of them own a
+/// pixel of the strip, or of a closer look where they are too small for that.
+Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
+    const std::size_t count = map.surface.triangles.size();
+    double area = 0.0;
+    std::size_t flipped = 0;
+    for (std::size_t t = 0; t < count; ++t) {
+        const double one = flatTriangle(map, t).area;
+        area += one;
+        flipped += one <= 0.0;
+    }
+    std::printf("%zu triangles, %zu not of positive area; areas sum to the strip's to %.1e\n",
+                count, flipped, std::abs(area / map.height - 1.0));
+    auto painter = render::FlatPainter::create(map, grid);
+    if (!painter) return tl::make_unexpected(painter.error());
+    std::vector<bool> seen(count, false);
+    const auto look = [&](const FlatWindow& window, glm::ivec2 size) -> Result<void> {
+        if (auto found = painter->findTriangles(window, size); !found) return found;
+        for (const int triangle : painter->triangleOfPixel())
+            if (triangle >= 0) seen[std::size_t(triangle)] = true;
+        return {};
+    };
+    for (const int width : {400, 1600}) {
+        constexpr int rows = 1024;
+        for (int row = 0; row < map.height * width; row += rows) {
+            const FlatWindow window{{0.5, (row + 0.5 * rows) / width}, double(width)};
+            if (auto looked = look(window, {width, rows}); !looked) return looked;
+        }
+        std::printf("strip %d wide: %zu triangles own a pixel\n", width,
+                    std::size_t(std::count(seen.begin(), seen.end(), true)));
+    }
+    for (std::size_t t = 0; t < count; ++t) {
+        const FlatTriangle flat = flatTriangle(map, t);
+        if (seen[t] || !(flat.inradius > 0.0)) continue;
+        const FlatWindow window{
+            flat.center, std::clamp(2.0 / flat.inradius, 1.0, double(render::maxPixelsPerUnit))};
+        if (auto looked = look(window, {9, 9}); !looked) return looked;
+    }
+    std::printf("with closer looks at the rest: %zu\n",
+                std::size_t(std::count(seen.begin(), seen.end(), true)));
+    return {};
+}
+
+Result<void> bench(const std::string& store, const std::string& name, const std::string& preset) {
+    const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
+        return s.openCase(name);
+    });
+    if (!source) return tl::make_unexpected(source.error());
+    const auto ct = source->readVolume<std::int16_t>("ct");
+    if (!ct) return tl::make_unexpected(ct.error());
+    const auto cleansed = source->readVolume<std::int16_t>("cleansed");
+    if (!cleansed) return tl::make_unexpected(cleansed.error());
+    auto map = source->readFlatMap();
+    if (!map) return tl::make_unexpected(map.error());
+    const auto shared = std::make_shared<const FlatMap>(std::move(*map));
+    const auto function = render::transferFunctionPreset(preset);
+    if (!function) return tl::make_unexpected(function.error());
+    auto prepared = render::prepareCase(*ct, *cleansed);
+    if (!prepared) return tl::make_unexpected(prepared.error());
+    prepared->flatMap = shared;
+
+    const auto context = gpu::Context::create();
+    if (!context) return tl::make_unexpected(context.error());
+    const auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared));
+    if (!renderer) return tl::make_unexpected(renderer.error());
+    std::printf("%s (%s); strip of %.2f circumferences; %zu MiB on the GPU\n",
+                (*context)->renderer().c_str(), (*context)->platform().c_str(), shared->height,
+                (*renderer)->gpuBytes() >> 20);
+    return timeWindows(**renderer, *shared, *function)
+        .and_then([&] { return timeStrips(**renderer, *shared, *function); })
+        .and_then([&] { return countTriangles(*shared, ct->grid()); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 3 || argc > 4) {
+        std::fprintf(stderr, "usage: flat_bench STORE CASE [PRESET]\n");
+        return 2;
+    }
+    if (const auto done = bench(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa"); !done) {
+        std::fprintf(stderr, "flat_bench: %s\n", haustra::describe(done.error()).c_str());
+        return 1;
+    }
+    return 0;
+}

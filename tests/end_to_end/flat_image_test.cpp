@@ -1,0 +1,151 @@
+// haustra render and export of the flattened wall, on a tube whose map is known.
+#include "core/flat_lookup.h"
+#include "end_to_end/flat_store.h"
+#include "end_to_end/run_program.h"
+#include "render/strip_picture.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+namespace haustra::tests {
+namespace {
+
+using namespace render;
+
+Image readPng(const std::string& file) {
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    EXPECT_TRUE(png_image_begin_read_from_file(&png, file.c_str())) << file;
+    png.format = PNG_FORMAT_RGB;
+    Image image{int(png.width), int(png.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(png))};
+    EXPECT_TRUE(png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr)) << file;
+    return image;
+}
+
+/// Rows and columns from `corner` on.
+std::vector<std::uint8_t> part(const Image& image, glm::ivec2 corner, glm::ivec2 size) {
+    std::vector<std::uint8_t> pixels;
+    for (int y = 0; y < size.y; ++y) {
+        const auto row =
+            image.rgb.begin() + 3 * (std::ptrdiff_t(image.width) * (corner.y + y) + corner.x);
+        pixels.insert(pixels.end(), row, row + 3 * size.x);
+    }
+    return pixels;
+}
+
+class FlatImage : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        makeFlatStore(folder_->path() / "store", tube_);
+        context_ = std::move(*gpu::Context::create());
+        auto prepared = prepareCase(tube_.scan(), {});
+        prepared->flatMap = std::make_shared<const FlatMap>(tube_.map());
+        renderer_ = std::move(*CaseRenderer::upload(*context_, std::move(*prepared)));
+    }
+    static void TearDownTestSuite() {
+        renderer_.reset();
+        context_.reset();
+        folder_.reset();
+    }
+
+    static Outcome run(std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--store", folder_->path() / "store"});
+        return runProgram("haustra", arguments);
+    }
+    static Outcome render(const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"render", smallCaseName, "--size",
+                                           "90x70",  "--out",       picture()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+    static Image rendered(const std::vector<std::string>& more) {
+        const Outcome outcome = render(more);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        return readPng(picture());
+    }
+    static Image exported(const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"export", smallCaseName, "flat-image", picture()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        return readPng(picture());
+    }
+    static std::string picture() { return folder_->path() / "picture.png"; }
+    static FlatView view(glm::dvec2 center, double pixels, const char* preset = "mucosa") {
+        return {{center, pixels}, *transferFunctionPreset(preset), {}};
+    }
+
+    static inline const FlatTube tube_{};
+    static inline std::unique_ptr<TemporaryFolder> folder_;
+    static inline std::unique_ptr<gpu::Context> context_;
+    static inline std::unique_ptr<CaseRenderer> renderer_;
+};
+
+TEST_F(FlatImage, RenderDrawsWhatTheServerDoes) {
+    const FlatOverview overview{*transferFunctionPreset("mucosa"), {}};
+    EXPECT_EQ(rendered({"--view", "flattened"}).rgb, renderer_->render(overview, 90, 70)->rgb);
+    EXPECT_EQ(rendered({"--view", "flattened-zoom", "--flat", "0.2,0.7",
+                        "--pixels-per-circumference", "300", "--transfer-function", "translucent"})
+                  .rgb,
+              renderer_->render(view({0.2, 0.7}, 300.0, "translucent"), 90, 70)->rgb);
+    // The wall nearest to a point; a place may be named in three ways.
+    const FlatLookup lookup(std::make_shared<const FlatMap>(tube_.map()));
+    const glm::dvec3 point(3.0, 4.0, 30.0);
+    EXPECT_EQ(rendered({"--view", "flattened-zoom", "--position", "3,4,30"}).rgb,
+              renderer_->render(view(lookup.nearest(point).flat, 512.0), 90, 70)->rgb);
+    const glm::dvec3 onPath = poseAtArc(tube_.centerline(), 22.5).point.positionMm;
+    EXPECT_EQ(rendered({"--view", "flattened-zoom", "--arc-mm", "22.5"}).rgb,
+              renderer_->render(view(lookup.nearest(onPath).flat, 512.0), 90, 70)->rgb);
+}
+
+TEST_F(FlatImage, TheStripIsOfOnePieceAndFillsThePicture) {
+    // Wider than one picture of the renderer, and longer than one band.
+    const int width = 2100, rows = int(std::lround(tube_.height() * width));
+    const Image strip = exported({"--width", "2100"});
+    ASSERT_EQ(glm::ivec2(strip.width, strip.height), glm::ivec2(width, rows));
+    for (std::size_t i = 0; i < strip.rgb.size(); i += 3)
+        ASSERT_GT(strip.rgb[i], 0) << "pixel " << i / 3;
+    // Across the seams between its parts.
+    const glm::ivec2 size(150, 110);
+    for (const glm::ivec2 corner : {glm::ivec2(1950, 980), {1940, 0}, {300, 1970}}) {
+        const glm::dvec2 center =
+            (glm::dvec2(width, rows) - glm::dvec2(corner) - 0.5 * glm::dvec2(size)) / double(width);
+        EXPECT_EQ(part(strip, corner, size),
+                  renderer_->render(view(center, width), size.x, size.y)->rgb)
+            << corner.x << ", " << corner.y;
+    }
+}
+
+TEST_F(FlatImage, AMarginRepeatsWhatLiesBeyondTheSeam) {
+    const Image plain = exported({"--width", "200"});
+    const Image wide = exported({"--width", "200", "--seam-margin", "0.1"});
+    ASSERT_EQ(wide.width, 240);
+    const glm::ivec2 rows(0, plain.height);
+    EXPECT_EQ(part(wide, {20, 0}, {200, rows.y}), plain.rgb);
+    EXPECT_EQ(part(wide, {0, 0}, {20, rows.y}), part(plain, {180, 0}, {20, rows.y}));
+    EXPECT_EQ(part(wide, {220, 0}, {20, rows.y}), part(plain, {0, 0}, {20, rows.y}));
+}
+
+TEST_F(FlatImage, SaysWhatIsWrong) {
+    const auto says = [](const Outcome& outcome, int exitCode, const char* words) {
+        EXPECT_EQ(outcome.exitCode, exitCode) << words;
+        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    };
+    says(run({"export", "scan", "flat-image", picture()}), 1, "flatmap");
+    says(run({"render", "scan", "--view", "flattened", "--out", picture()}), 1, "flatmap");
+    says(render({"--view", "flattened-zoom", "--flat", "0.5,99"}), 1, "circumferences");
+    says(render({"--view", "flattened-zoom"}), 2, "--flat, --arc-mm or --position");
+    says(render({"--view", "flattened-zoom", "--flat", "0.5,0.5", "--arc-mm", "3"}), 2, "two ways");
+    says(render({"--view", "flattened", "--arc-mm", "3"}), 2, "takes no place");
+    says(render({"--view", "axial", "--flat", "0.5,0.5", "--arc-mm", "3"}), 2, "--flat");
+    says(render({"--view", "flattened-zoom", "--flat", "1,2,3"}), 2, "X,Y");
+    says(run({"export", smallCaseName, "flat-image", folder_->path() / "picture.jpg"}), 2, ".png");
+    says(run({"export", smallCaseName, "ct", folder_->path() / "ct.nii", "--width", "9"}), 2,
+         "flat-image");
+}
+
+}  // namespace
+}  // namespace haustra::tests
