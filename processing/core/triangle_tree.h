@@ -12,7 +12,7 @@ namespace haustra {
 
 /// A binary tree of boxes over triangles, halved at the median along the longest side. Immutable;
 /// any number of threads. It refers to the vertices and triangles it was made of, which must
-/// outlive it; about 30 bytes a triangle beside them.
+/// outlive it; about 40 bytes a triangle beside them.
 class TriangleTree {
 public:
     struct Box {

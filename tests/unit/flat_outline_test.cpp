@@ -1,0 +1,95 @@
+#include "bench/flat_outline.h"
+
+#include "analytic_tubes.h"
+#include "bench/geodesic_frame.h"
+#include "flatten/conformal_tube.h"
+#include "tube_meshes.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace haustra::bench {
+namespace {
+
+template <class Point>
+std::vector<Point> ellipse(double longer, double shorter, double turn,
+                           const std::function<Point(glm::dvec2)>& place) {
+    std::vector<Point> points;
+    for (int n = 0; n < 400; ++n) {
+        const double angle = std::numbers::pi * n / 200.0;
+        const glm::dvec2 p(longer * std::cos(angle), shorter * std::sin(angle));
+        points.push_back(place({p.x * std::cos(turn) - p.y * std::sin(turn) + 7.0,
+                                p.x * std::sin(turn) + p.y * std::cos(turn) - 3.0}));
+    }
+    return points;
+}
+
+TEST(FlatOutline, EllipsesHaveTheirShape) {
+    for (const double turn : {0.0, 0.4, 1.5, 3.0}) {
+        const auto flat = shapeOf(ellipse<glm::dvec2>(3.0, 2.0, turn, [](auto p) { return p; }));
+        EXPECT_NEAR(flat.aspect, 1.5, 1e-6);
+        EXPECT_NEAR(flat.area, 6.0 * std::numbers::pi, 1e-2);
+        const glm::dvec3 u = glm::normalize(glm::dvec3(1.0, 2.0, -1.0)),
+                         v = glm::normalize(glm::cross(u, glm::dvec3(0.3, 0.1, 1.0)));
+        const auto tilted =
+            shapeOf(ellipse<glm::dvec3>(3.0, 2.0, turn, [&](auto p) { return p.x * u + p.y * v; }));
+        EXPECT_NEAR(tilted.aspect, 1.5, 1e-6);
+        EXPECT_NEAR(tilted.area, 6.0 * std::numbers::pi, 1e-2);
+    }
+}
+
+TriMesh cylinderMesh() {
+    return tests::revolvedMesh(120, 100, 100.0, [](double) { return 20.0; });
+}
+
+// A cylinder unrolls without stretching: all distances from the middle are those in the plane.
+TEST(FlatOutline, CylinderUnrollsToThePlane) {
+    const TriMesh mesh = cylinderMesh();
+    const auto edges = mesh::HalfedgeMesh::of(mesh);
+    ASSERT_TRUE(edges);
+    const auto plane = [](glm::dvec3 p) { return glm::dvec2(20.0 * std::atan2(p.y, p.x), p.z); };
+    const glm::dvec2 middle(0.0, 50.0);
+    std::vector<char> patch(mesh.vertices.size(), 0);
+    for (std::size_t v = 0; v < patch.size(); ++v)
+        patch[v] = glm::distance(plane(mesh.vertices[v]), middle) < 12.0;
+    const auto places = unroll(mesh, *edges, patch);
+    for (std::size_t v = 0; v < patch.size(); ++v) {
+        if (!patch[v]) continue;
+        EXPECT_NEAR(glm::length(places[v]), glm::distance(plane(mesh.vertices[v]), middle), 0.1);
+    }
+}
+
+TEST(FlatOutline, HalfBallIsRoundOnTheSurfaceAndInThePlane) {
+    const tests::HalfBall polyp{.middle = {0.98, 0.35}};
+    const TriMesh mesh =
+        tests::tubeMesh(200, 140, [&](double a, double s) { return polyp.position(a, 0.7 * s); });
+    const auto edges = mesh::HalfedgeMesh::of(mesh);
+    ASSERT_TRUE(edges);
+    const auto map = flatten::conformalTube(mesh);
+    ASSERT_TRUE(map);
+    const glm::dvec3 center = tests::cylinder(polyp.circumferenceMm)(0.98, 0.35);
+    const auto outline = outlineAround(mesh, *edges, map->map, center, 1.1 * polyp.ballMm);
+    ASSERT_TRUE(outline);
+    for (const glm::dvec3& place : outline->placesMm)
+        EXPECT_NEAR(glm::distance(place, center), 1.1 * polyp.ballMm, 1e-9);
+    EXPECT_LT(shapeOf(outline->unrolledMm).aspect, 1.08);
+    EXPECT_LT(shapeOf(outline->flat).aspect, 1.06);
+    // With the wall's ring around it.
+    const double ring = std::numbers::pi * 0.21 * polyp.ballMm * polyp.ballMm;
+    EXPECT_NEAR(outline->insideMm2, polyp.areaMm2() + ring, 0.05 * polyp.areaMm2());
+}
+
+TEST(FlatOutline, NothingWhereTheBallMeetsARimOrNoWall) {
+    const TriMesh mesh = cylinderMesh();
+    const auto edges = mesh::HalfedgeMesh::of(mesh);
+    const auto map = flatten::conformalTube(mesh);
+    ASSERT_TRUE(edges && map);
+    EXPECT_TRUE(outlineAround(mesh, *edges, map->map, {20.0, 0.0, 50.0}, 5.0));
+    EXPECT_FALSE(outlineAround(mesh, *edges, map->map, {20.0, 0.0, 2.0}, 5.0));
+    EXPECT_FALSE(outlineAround(mesh, *edges, map->map, {0.0, 0.0, 50.0}, 5.0));
+    EXPECT_FALSE(outlineAround(mesh, *edges, map->map, {0.0, 0.0, 50.0}, 25.0));
+}
+
+}  // namespace
+}  // namespace haustra::bench
