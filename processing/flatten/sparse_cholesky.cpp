@@ -1,5 +1,7 @@
 #include "flatten/sparse_cholesky.h"
 
+#include "flatten/blas_threads.h"
+
 #include <new>
 #include <utility>
 
@@ -32,6 +34,7 @@ struct SparseCholesky::State {
     const int* order() const { return static_cast<const int*>(factor->Perm); }
 
     void substitute(int system, std::vector<double>& x) {
+        const SequentialOpenMp sequential;
         const std::size_t n = x.size();
         permuted.resize(n);
         for (std::size_t k = 0; k < n; ++k)
@@ -58,6 +61,7 @@ SparseCholesky::~SparseCholesky() = default;
 
 Result<SparseCholesky> SparseCholesky::of(const SymmetricMatrix& matrix,
                                           const std::vector<int>& groupEnds) {
+    const SequentialOpenMp sequential;
     auto state = std::make_unique<State>();
     const auto size = std::size_t(matrix.size);
     cholmod_sparse view{};
