@@ -3,6 +3,7 @@
 
 #include "core/centerline.h"
 #include "core/grid.h"
+#include "panels/flat_strip.h"
 #include "panels/flight.h"
 
 #include <optional>
@@ -16,7 +17,15 @@ namespace haustra::panels {
 /// Shortest side of a picture that a server draws.
 inline constexpr int minViewportPixels = 16;
 
-enum class View { endoscopic, axial, coronal, sagittal };
+/// The whole flattened strip, and a window onto it, are views of cases that have been flattened.
+enum class View { endoscopic, axial, coronal, sagittal, flattened, flattenedZoom };
+inline constexpr int viewCount = 6;
+inline bool isSlice(View view) {
+    return view == View::axial || view == View::coronal || view == View::sagittal;
+}
+inline bool isFlat(View view) {
+    return view == View::flattened || view == View::flattenedZoom;
+}
 const char* toString(View view);
 std::optional<View> viewFromString(const std::string& text);
 
@@ -39,7 +48,8 @@ struct CaseInfo {
     Centerline centerline;
     PatientPosition position = PatientPosition::unknown;
     std::vector<std::string> transferFunctions;
-    bool cleansed = false;  ///< there is a cleansed scan
+    bool cleansed = false;          ///< there is a cleansed scan
+    std::optional<FlatStrip> flat;  ///< where the case has been flattened
 };
 
 struct Bookmark {

@@ -118,16 +118,31 @@ void Flight::goTo(const Camera& camera, double arcMm) {
 void Flight::lookAs(const Camera& camera) {
     const auto face = [&](FlightDirection direction) {
         direction_ = direction;
-        const Camera straight = straightCamera();
-        const double right = glm::dot(camera.forward, rightOf(straight));
-        const double ahead = glm::dot(camera.forward, straight.forward);
-        const double above = std::clamp(glm::dot(camera.forward, straight.up), -1.0, 1.0);
-        setLook(glm::degrees(std::atan2(right, ahead)), glm::degrees(std::asin(above)));
+        lookAlong(camera.forward);
         return glm::distance(centerlineCamera().up, camera.up);
     };
     const double retrograde = face(FlightDirection::retrograde);
     const double antegrade = face(FlightDirection::antegrade);
     if (retrograde < antegrade) face(FlightDirection::retrograde);
+}
+
+void Flight::lookAt(double arcMm, glm::dvec3 targetMm) {
+    motion_ = Motion::paused;
+    if (centerline_.points.empty()) return;
+    goTo(arcMm);
+    const glm::dvec3 towards = targetMm - straightCamera().positionMm;
+    const double length = glm::length(towards);
+    if (length > 0.0) lookAlong(towards / length);
+}
+
+// Sets the look offset to a unit direction, also to one steeper than the hand can turn to.
+void Flight::lookAlong(glm::dvec3 direction) {
+    const Camera straight = straightCamera();
+    const double right = glm::dot(direction, rightOf(straight));
+    const double ahead = glm::dot(direction, straight.forward);
+    const double above = std::clamp(glm::dot(direction, straight.up), -1.0, 1.0);
+    yawDegrees_ = glm::degrees(std::atan2(right, ahead));
+    pitchDegrees_ = glm::degrees(std::asin(above));
 }
 
 // The camera that looks straight along the path.

@@ -62,6 +62,10 @@ public:
     /// of `arcMm`, else freely.
     void goTo(const Camera& camera, double arcMm);
 
+    /// Goes to an arc of the path and looks at a patient point from there; pauses. Without a path,
+    /// or where the point is the camera's own place, only the former.
+    void lookAt(double arcMm, glm::dvec3 targetMm);
+
     Camera camera() const { return free_ ? freeCamera_ : centerlineCamera(); }
     double arcMm() const { return arcMm_; }  ///< in free flight: where the centerline was left
     bool isFree() const { return free_; }
@@ -76,6 +80,7 @@ private:
     Camera centerlineCamera() const;
     Camera straightCamera() const;
     void lookAs(const Camera& camera);
+    void lookAlong(glm::dvec3 direction);
 
     Centerline centerline_;
     std::vector<glm::dvec3> ups_;

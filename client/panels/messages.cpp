@@ -11,6 +11,8 @@ void set(protocol::Vec3* out, glm::dvec3 v) {
     out->set_z(v.z);
 }
 
+constexpr double maxStripHeight = 4096.0;
+
 glm::dvec3 vectorFrom(const protocol::Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
@@ -25,6 +27,10 @@ protocol::View viewCode(View view) {
             return protocol::CORONAL;
         case View::sagittal:
             return protocol::SAGITTAL;
+        case View::flattened:
+            return protocol::FLATTENED;
+        case View::flattenedZoom:
+            return protocol::FLATTENED_ZOOM;
     }
     return protocol::VIEW_UNSPECIFIED;
 }
@@ -57,6 +63,37 @@ Result<Centerline> centerlineFrom(const protocol::CaseOpened& message) {
     return centerline;
 }
 
+Result<FlatStrip> stripFrom(const protocol::FlatStrip& message) {
+    const auto refuse = [](const char* what) {
+        return fail(ErrorKind::badInput, what, "case opened: flat");
+    };
+    FlatStrip strip;
+    strip.height = message.height();
+    strip.circumferenceMm = message.circumference_mm();
+    if (!(strip.height > 0.0 && strip.height <= maxStripHeight))
+        return refuse("the strip's height is none");
+    if (!(strip.circumferenceMm > 0.0) || !std::isfinite(strip.circumferenceMm))
+        return refuse("its circumference is none");
+    if (message.rows_size() < 2 || message.rows_size() % 2 != 0)
+        return refuse("its rows do not come in pairs");
+    FlatStrip::Row before;
+    for (int n = 0; n < message.rows_size(); n += 2) {
+        const FlatStrip::Row row{message.rows(n), message.rows(n + 1)};
+        // Written so that what is not a number fails, too.
+        if (!(row.arcMm >= before.arcMm && row.arcMm < INFINITY && row.y >= before.y &&
+              row.y <= strip.height))
+            return refuse("its rows are not in order within the strip");
+        strip.rows.push_back(row);
+        before = row;
+    }
+    return strip;
+}
+
+void set(protocol::FlatPoint* out, glm::dvec2 flat) {
+    out->set_x(flat.x);
+    out->set_y(flat.y);
+}
+
 }  // namespace
 
 const char* toString(View view) {
@@ -69,12 +106,17 @@ const char* toString(View view) {
             return "coronal";
         case View::sagittal:
             return "sagittal";
+        case View::flattened:
+            return "flattened";
+        case View::flattenedZoom:
+            return "flattened-zoom";
     }
     return "";
 }
 
 std::optional<View> viewFromString(const std::string& text) {
-    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
+    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
+                            View::flattened, View::flattenedZoom})
         if (text == toString(view)) return view;
     return std::nullopt;
 }
@@ -118,6 +160,18 @@ protocol::ClientMessage sliceMessage(std::uint64_t sequence, int viewport, const
     return message;
 }
 
+protocol::ClientMessage flatMessage(std::uint64_t sequence, int viewport, const FlatWindow& window,
+                                    bool moving) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_flat();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    set(body->mutable_center(), window.center);
+    body->set_pixels_per_circumference(window.pixelsPerUnit);
+    body->set_moving(moving);
+    return message;
+}
+
 protocol::ClientMessage windowMessage(std::uint64_t sequence, int viewport,
                                       const WindowLevel& window) {
     protocol::ClientMessage message;
@@ -152,6 +206,31 @@ protocol::ClientMessage bookmarkMessage(std::uint64_t request, const Bookmark& b
     return message;
 }
 
+protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec2 flat) {
+    protocol::ClientMessage message;
+    message.mutable_locate_flat()->set_request(request);
+    set(message.mutable_locate_flat()->mutable_flat(), flat);
+    return message;
+}
+
+protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec3 positionMm) {
+    protocol::ClientMessage message;
+    message.mutable_locate_point()->set_request(request);
+    set(message.mutable_locate_point()->mutable_position_mm(), positionMm);
+    return message;
+}
+
+protocol::ClientMessage measureMessage(std::uint64_t request, const std::vector<glm::dvec2>& points,
+                                       bool closed) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_measure_flat();
+    body->set_request(request);
+    for (const glm::dvec2 point : points)
+        set(body->add_points(), point);
+    body->set_closed(closed);
+    return message;
+}
+
 Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     CaseInfo info;
     info.name = message.name();
@@ -173,6 +252,11 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     info.transferFunctions.assign(message.transfer_functions().begin(),
                                   message.transfer_functions().end());
     info.cleansed = message.cleansed();
+    if (message.has_flat()) {
+        auto strip = stripFrom(message.flat());
+        if (!strip) return tl::make_unexpected(strip.error());
+        info.flat = std::move(*strip);
+    }
     return info;
 }
 
@@ -187,6 +271,28 @@ Bookmark bookmarkFrom(const protocol::Bookmark& message) {
     bookmark.createdUtc = message.created_utc();
     bookmark.clientKey = message.client_key();
     return bookmark;
+}
+
+Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
+    WallPlace place;
+    place.flat = {message.flat().x(), message.flat().y()};
+    place.positionMm = vectorFrom(message.position_mm());
+    place.triangle = message.triangle();
+    place.arcMm = message.arc_mm();
+    place.cameraMm = vectorFrom(message.camera_mm());
+    const glm::dvec3 sum = glm::dvec3(place.flat, place.arcMm) + place.positionMm + place.cameraMm;
+    if (!std::isfinite(sum.x + sum.y + sum.z))
+        return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
+    return place;
+}
+
+Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message) {
+    const FlatMeasure measure{message.length_mm(), message.straight_mm(), message.area_mm2(),
+                              message.largest_diameter_mm()};
+    if (!std::isfinite(measure.lengthMm + measure.straightMm + measure.areaMm2 +
+                       measure.largestDiameterMm))
+        return fail(ErrorKind::badInput, "the server sent a measurement that is no number", "wall");
+    return measure;
 }
 
 }  // namespace haustra::panels

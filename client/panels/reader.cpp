@@ -11,8 +11,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::array<View, viewCount> views = {View::endoscopic, View::axial, View::coronal,
-                                               View::sagittal};
+constexpr std::array<View, viewCount> views = {View::endoscopic, View::axial,
+                                               View::coronal,    View::sagittal,
+                                               View::flattened,  View::flattenedZoom};
 constexpr std::size_t at(View view) {
     return std::size_t(view);
 }
@@ -32,14 +33,19 @@ Reader::Reader(link::ConnectionOptions options, std::string caseName)
       pacers_{ViewPacer(milliseconds(15), milliseconds(110)),
               ViewPacer(milliseconds(115), milliseconds(125)),
               ViewPacer(milliseconds(115), milliseconds(130)),
-              ViewPacer(milliseconds(115), milliseconds(135))} {}
+              ViewPacer(milliseconds(115), milliseconds(135)),
+              // The strip changes with its pane and colours alone.
+              ViewPacer(milliseconds(250), milliseconds(250)),
+              ViewPacer(milliseconds(15), milliseconds(120))} {}
 
 void Reader::update(double seconds) {
     session_.poll(milliseconds(0));
     if (session_.caseInfo() && session_.caseInfo() != case_) caseOpened();
     takePictures();
     if (!case_) return;
-    flight_.advance(seconds);
+    wall_.update(*case_);
+    takePicked();
+    travel(seconds);
     askForViews(Clock::now());
 }
 
@@ -53,6 +59,13 @@ void Reader::caseOpened() {
             case_->grid.patientFromVoxelPoint(0.5 * glm::dvec3(case_->grid.size - 1));
         flight_.goTo(camera, 0.0);
     }
+    tour_ = case_->flat ? StripTour(*case_->flat) : StripTour();
+    tour_.setPaneSize(paneSizes_[at(View::flattenedZoom)]);
+    tour_.showWholeCircumference();
+    followedArcMm_ = flight_.arcMm();
+    if (case_->flat) tour_.follow(followedArcMm_);
+    wall_.reset();
+    picked_.reset();
     sliceFocusMm_ = flight_.camera().positionMm;
     sliceZoom_ = 1.0;
     slicesCleansed_ = false;
@@ -80,15 +93,13 @@ void Reader::takePictures() {
             asked.pop_front();
         }
         if (answered) shownSlices_[n] = answered->slice;
-        if (n == at(View::endoscopic)) {
-            pictureTimes_.push_back(arrival.decodedAt);
-            if (answered && answered->moving) {
-                const double ms =
-                    std::chrono::duration<double, std::milli>(arrival.decodedAt - answered->at)
-                        .count();
-                latencies_.add(ms);
-                detail_.add(ms);
-            }
+        if (answered && n == at(View::flattenedZoom)) shownWindow_ = answered->window;
+        if (n == at(View::endoscopic)) pictureTimes_.push_back(arrival.decodedAt);
+        if (answered && answered->moving) {
+            const double ms =
+                std::chrono::duration<double, std::milli>(arrival.decodedAt - answered->at).count();
+            details_[n].add(ms);
+            if (n == at(View::endoscopic)) latencies_.add(ms);
         }
         pictures_[n] = std::move(arrival.picture);
         ++pictureCounts_[n];
@@ -104,15 +115,99 @@ void Reader::setPaneSize(View view, glm::ivec2 pixels) {
     const glm::ivec2 size = scaled(pixels, std::min(1.0, limit));
     if (size == paneSizes_[at(view)]) return;
     paneSizes_[at(view)] = size;
+    if (view == View::flattenedZoom) tour_.setPaneSize(size);
     pacers_[at(view)].touch();
 }
 
+// The window has a pane for it, and the case what it shows.
+bool Reader::inUse(View view) const {
+    return paneSizes_[at(view)] != glm::ivec2(0) && (!isFlat(view) || hasStrip());
+}
+
 void Reader::openPane(View view, bool moving) {
+    const bool scales = view == View::endoscopic || view == View::flattenedZoom;
     const glm::ivec2 size =
-        scaled(paneSizes_[at(view)], moving && view == View::endoscopic ? detail_.scale() : 1.0);
+        scaled(paneSizes_[at(view)], moving && scales ? details_[at(view)].scale() : 1.0);
     if (size == openSizes_[at(view)]) return;
     openSizes_[at(view)] = size;
     session_.setViewport(int(view), view, size.x, size.y);
+}
+
+// The flight moves the window of the zoom view; the fly-over's window moves the camera.
+void Reader::travel(double seconds) {
+    flight_.advance(seconds);
+    if (!case_->flat) return;
+    const double arc = placeArcMm();
+    if (arc != followedArcMm_) {
+        tour_.follow(arc);
+    } else {
+        tour_.advance(seconds, flight_.speedMmPerS(), flight_.direction());
+        if (!tour_.flyingOver() || tour_.window().center.y == followedY_) return;
+        flight_.goTo(tour_.arcMm());
+    }
+    picked_.reset();
+    followedArcMm_ = placeArcMm();
+    followedY_ = tour_.window().center.y;
+}
+
+double Reader::placeArcMm() const {
+    return flight_.isFree() && !flight_.centerline().points.empty()
+               ? nearestArc(flight_.centerline(), flight_.camera().positionMm)
+               : flight_.arcMm();
+}
+
+void Reader::goToFlat(glm::dvec2 flat, bool center) {
+    if (!hasStrip()) return;
+    flat.y = std::clamp(flat.y, 0.0, case_->flat->height);
+    centerPicked_ = center;
+    wall_.pick(flat);
+}
+
+void Reader::takePicked() {
+    const auto place = wall_.takePicked();
+    if (!place) return;
+    tour_.setMotion(Motion::paused);
+    flight_.lookAt(place->arcMm, place->positionMm);
+    // The camera's new place is not followed: slices and window show what was picked.
+    lastCamera_ = flight_.camera();
+    pacers_[at(View::endoscopic)].touch();
+    followedArcMm_ = placeArcMm();
+    sliceFocusMm_ = place->positionMm;
+    if (centerPicked_) tour_.centerOn(place->flat);
+    followedY_ = tour_.window().center.y;
+    picked_ = place;
+}
+
+Motion Reader::motion() const {
+    return tour_.flyingOver() ? tour_.motion() : flight_.motion();
+}
+
+void Reader::setMotion(Motion motion) {
+    if (tour_.flyingOver())
+        tour_.setMotion(motion);
+    else
+        flight_.setMotion(motion);
+}
+
+void Reader::setFlyingOver(bool on) {
+    flight_.setMotion(Motion::paused);
+    tour_.setFlyingOver(on && hasStrip());
+    if (tour_.flyingOver()) flight_.resetLook();
+    followedY_ = tour_.window().center.y;
+}
+
+bool Reader::changed(View view, bool cameraMoved) const {
+    switch (view) {
+        case View::endoscopic:
+            return cameraMoved;
+        case View::flattened:
+            return false;
+        case View::flattenedZoom:
+            return tour_.window().center != askedWindow_.center ||
+                   tour_.window().pixelsPerUnit != askedWindow_.pixelsPerUnit;
+        default:
+            return !(slice(view) == askedSlices_[at(view)]);
+    }
 }
 
 void Reader::askForViews(Clock::time_point now) {
@@ -122,19 +217,25 @@ void Reader::askForViews(Clock::time_point now) {
     lastCamera_ = camera;
     for (const View view : views) {
         const std::size_t n = at(view);
-        if (paneSizes_[n] == glm::ivec2(0)) continue;
-        const Slice wanted = slice(view);
-        const bool changed = view == View::endoscopic ? moved : !(wanted == askedSlices_[n]);
-        const auto ask = pacers_[n].next(changed, now);
-        if (ask == ViewPacer::Ask::nothing) continue;
-        const bool moving = ask == ViewPacer::Ask::moving;
+        if (!inUse(view)) continue;
+        const auto due = pacers_[n].next(changed(view, moved), now);
+        if (due == ViewPacer::Ask::nothing) continue;
+        const bool moving = due == ViewPacer::Ask::moving;
+        if (moving && view == View::flattened) continue;  // its still follows at once
         openPane(view, moving);
-        askedSlices_[n] = wanted;
-        const auto sequence = view == View::endoscopic ? session_.setCamera(int(n), camera, moving)
-                                                       : session_.setSlice(int(n), wanted, moving);
-        asked_[n].push_back({sequence, now, wanted, moving});
+        if (isSlice(view)) askedSlices_[n] = slice(view);
+        if (view == View::flattenedZoom) askedWindow_ = tour_.window();
+        asked_[n].push_back({ask(view, moving), now, slice(view), tour_.window(), moving});
         if (asked_[n].size() > 256) asked_[n].pop_front();
     }
+}
+
+std::uint64_t Reader::ask(View view, bool moving) {
+    if (view == View::endoscopic) return session_.setCamera(int(view), lastCamera_, moving);
+    if (isSlice(view)) return session_.setSlice(int(view), slice(view), moving);
+    FlatWindow window = tour_.window();
+    window.pixelsPerUnit *= double(openSizes_[at(view)].x) / paneSizes_[at(view)].x;
+    return session_.setFlat(int(view), window, moving);
 }
 
 Slice Reader::slice(View) const {
@@ -161,7 +262,7 @@ void Reader::setSlicesCleansed(bool cleansed) {
 
 void Reader::goNear(glm::dvec3 patientMm) {
     if (!case_ || case_->centerline.points.empty()) return;
-    flight_.setMotion(Motion::paused);
+    setMotion(Motion::paused);
     flight_.goTo(nearestArc(case_->centerline, patientMm));
 }
 
@@ -178,8 +279,11 @@ void Reader::setWindow(WindowLevel window) {
 
 void Reader::setTransferFunction(const std::string& preset) {
     transferFunction_ = preset;
-    session_.setTransferFunction(int(View::endoscopic), preset);
-    pacers_[at(View::endoscopic)].touch();
+    for (const View view : views) {
+        if (isSlice(view) || (isFlat(view) && !hasStrip())) continue;
+        session_.setTransferFunction(int(view), preset);
+        pacers_[at(view)].touch();
+    }
 }
 
 void Reader::addBookmark(std::string note) {
@@ -203,9 +307,9 @@ double Reader::picturesPerSecond() const {
 
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
-    if (flight_.motion() != Motion::paused) return true;
-    return std::any_of(pacers_.begin(), pacers_.end(),
-                       [](const ViewPacer& pacer) { return pacer.owes(); });
+    if (motion() != Motion::paused || wall_.waits()) return true;
+    return std::any_of(views.begin(), views.end(),
+                       [&](View view) { return inUse(view) && pacers_[at(view)].owes(); });
 }
 
 }  // namespace haustra::panels

@@ -1,19 +1,19 @@
-// A reader at work: one case, a flight through it, four views that follow. The window draws this
+// A reader at work: one case, a flight through it, the views that follow. The window draws this
 // and turns the hand's movements into its calls; it holds no window itself.
 #pragma once
 
 #include "panels/latency.h"
 #include "panels/pacing.h"
 #include "panels/session.h"
+#include "panels/strip_tour.h"
+#include "panels/wall_questions.h"
 
 #include <memory>
 
 namespace haustra::panels {
 
-inline constexpr int viewCount = 4;
-
 /// Belongs to one thread. Viewport numbers are those of View: 0 endoscopic, 1 axial, 2 coronal,
-/// 3 sagittal.
+/// 3 sagittal, 4 flattened, 5 flattened zoom; the last two only where the case has been flattened.
 class Reader {
 public:
     Reader(link::ConnectionOptions options, std::string caseName);
@@ -30,6 +30,7 @@ public:
 
     /// The pane's size in pixels; the server draws at this size, at most 2048 a side.
     void setPaneSize(View view, glm::ivec2 pixels);
+    glm::ivec2 paneSize(View view) const { return paneSizes_[std::size_t(view)]; }
 
     /// The slice that is shown now. Slices follow the camera; scrolling leaves it until it moves.
     Slice slice(View view) const;
@@ -40,6 +41,26 @@ public:
     void setSlicesCleansed(bool cleansed);
     /// Flies to the point of the centerline nearest to `patientMm`.
     void goNear(glm::dvec3 patientMm);
+
+    bool hasStrip() const { return case_ && case_->flat; }
+    /// The window of the zoom view. It follows the camera along the colon; moving it leaves the
+    /// camera, but for the fly-over, which the camera follows.
+    StripTour& tour() { return tour_; }
+    const StripTour& tour() const { return tour_; }
+    /// Where the camera is along the path; in free flight, the nearest place of it.
+    double placeArcMm() const;
+    /// Goes to a place of the flattened wall: once the server has said where it is, the camera
+    /// looks at it, slices show it, and with `center` the zoom view has it in its middle.
+    void goToFlat(glm::dvec2 flat, bool center);
+    /// The place that was gone to last, until the camera moves on.
+    const std::optional<WallPlace>& pickedPlace() const { return picked_; }
+    WallQuestions& wall() { return wall_; }
+    const WallQuestions& wall() const { return wall_; }
+
+    /// Of the fly-over where it is on, else of the flight.
+    Motion motion() const;
+    void setMotion(Motion motion);
+    void setFlyingOver(bool on);
 
     const WindowLevel& window() const { return window_; }
     void setWindow(WindowLevel window);
@@ -57,6 +78,9 @@ public:
     /// The slice that the newest picture of a slice view shows; it lags behind slice().
     const Slice& shownSlice(View view) const { return shownSlices_[std::size_t(view)]; }
 
+    /// The window that the newest picture of the zoom view shows, in pixels of its pane.
+    const FlatWindow& shownWindow() const { return shownWindow_; }
+
     /// From camera message to decoded picture, of the last moving endoscopic pictures, ms.
     Summary latencyMs() const { return latencies_.summary(); }
     double picturesPerSecond() const;
@@ -68,17 +92,28 @@ private:
         std::uint64_t sequence;
         Clock::time_point at;
         Slice slice;
+        FlatWindow window;
         bool moving;
     };
 
     void caseOpened();
     void takePictures();
+    void travel(double seconds);
+    void takePicked();
+    bool changed(View view, bool cameraMoved) const;
+    bool inUse(View view) const;
     void askForViews(Clock::time_point now);
+    std::uint64_t ask(View view, bool moving);
     void openPane(View view, bool moving);
 
     Session session_;
     std::shared_ptr<const CaseInfo> case_;
     Flight flight_{Centerline{}};
+    StripTour tour_;
+    WallQuestions wall_{session_};
+    std::optional<WallPlace> picked_;
+    bool centerPicked_ = false;
+    double followedArcMm_ = 0.0, followedY_ = 0.0;  // of camera and tour, when last one led
     Camera lastCamera_;
     glm::dvec3 sliceFocusMm_{0.0};
     double sliceZoom_ = 1.0;
@@ -89,11 +124,12 @@ private:
     std::array<glm::ivec2, viewCount> paneSizes_{};
     std::array<glm::ivec2, viewCount> openSizes_{};
     std::array<Slice, viewCount> askedSlices_{}, shownSlices_{};
+    FlatWindow askedWindow_, shownWindow_;
     std::array<ViewPacer, viewCount> pacers_;
     std::array<std::deque<Asked>, viewCount> asked_;
     std::array<tiles::Picture, viewCount> pictures_;
     std::array<std::uint64_t, viewCount> pictureCounts_{};
-    MovingDetail detail_;
+    std::array<MovingDetail, viewCount> details_;  // slices and the strip are always whole
     RecentTimes latencies_{40};
     std::deque<Clock::time_point> pictureTimes_;
 };

@@ -1,116 +1,14 @@
 #include "panels/script.h"
 
-#include "protocol/framing.h"
-
-#include <cmath>
-#include <set>
-
-#include <nlohmann/json.hpp>
+#include "panels/script_fields.h"
 
 namespace haustra::panels {
 namespace {
 
 using nlohmann::json;
 
-// Thrown and caught in this file: what is wrong with a line, in a sentence.
-struct Refusal {
-    std::string message;
-};
-
-// One line's object. Remembers which keys were asked for, so that a misspelt one is not passed
-// over.
-class Fields {
-public:
-    explicit Fields(const json& object) : object_(object) { asked_.insert("do"); }
-
-    bool has(const char* key) {
-        asked_.insert(key);
-        return object_.contains(key);
-    }
-    double number(const char* key, double low, double high) {
-        const double value = get<double>(key, &json::is_number, "a number");
-        if (!(value >= low && value <= high)) refuse(key, "must lie in " + span(low, high));
-        return value;
-    }
-    int integer(const char* key, int low, int high) {
-        const auto value = get<std::int64_t>(key, &json::is_number_integer, "a whole number");
-        if (value < low || value > high) refuse(key, "must lie in " + span(low, high));
-        return int(value);
-    }
-    std::string text(const char* key, std::size_t maxBytes = 1000) {
-        auto value = get<std::string>(key, &json::is_string, "a text");
-        if (value.size() > maxBytes)
-            refuse(key, "is longer than " + std::to_string(maxBytes) + " bytes");
-        return value;
-    }
-    bool flag(const char* key) { return get<bool>(key, &json::is_boolean, "true or false"); }
-    std::string fileName(const char* key, const char* extension) {
-        std::string value = text(key, 200);
-        const bool plain =
-            value.find_first_of(std::string("/\\\0", 3)) == std::string::npos && value[0] != '.';
-        if (!plain || !value.ends_with(extension))
-            refuse(key, std::string("must be a plain file name ending in ") + extension);
-        return value;
-    }
-    std::vector<double> numbers(const char* key, std::size_t count, double low, double high) {
-        asked_.insert(key);
-        const json& list = at(key);
-        if (!list.is_array() || list.size() != count)
-            refuse(key, "must be a list of " + std::to_string(count) + " numbers");
-        std::vector<double> values;
-        for (const json& item : list) {
-            if (!item.is_number())
-                refuse(key, "must be a list of " + std::to_string(count) + " numbers");
-            values.push_back(item.get<double>());
-            if (!(values.back() >= low && values.back() <= high))
-                refuse(key, "must hold numbers in " + span(low, high));
-        }
-        return values;
-    }
-    glm::ivec2 size(const char* key) {
-        const auto values = numbers(key, 2, minViewportPixels, protocol::maxViewportPixels);
-        return {int(values[0]), int(values[1])};
-    }
-    View view(const char* key) {
-        const auto found = viewFromString(text(key));
-        if (!found) refuse(key, "must be endoscopic, axial, coronal or sagittal");
-        return *found;
-    }
-    int viewport() { return integer("viewport", 0, int(protocol::maxViewports) - 1); }
-
-    [[noreturn]] static void refuse(const std::string& key, const std::string& what) {
-        throw Refusal{"\"" + key + "\" " + what};
-    }
-    void allMustBeKnown() const {
-        for (const auto& [key, value] : object_.items())
-            if (!asked_.count(key)) throw Refusal{"\"" + key + "\" is not a key of this action"};
-    }
-
-private:
-    static std::string span(double low, double high) {
-        const auto text = [](double v) {
-            return json(v == std::floor(v) ? json(std::int64_t(v)) : json(v)).dump();
-        };
-        return text(low) + "…" + text(high);
-    }
-    const json& at(const char* key) const {
-        const auto found = object_.find(key);
-        if (found == object_.end()) throw Refusal{"\"" + std::string(key) + "\" is missing"};
-        return *found;
-    }
-    template <class T>
-    T get(const char* key, bool (json::*is)() const noexcept, const char* what) {
-        asked_.insert(key);
-        const json& value = at(key);
-        if (!(value.*is)()) refuse(key, std::string("must be ") + what);
-        return value.get<T>();
-    }
-
-    const json& object_;
-    std::set<std::string> asked_;
-};
-
-constexpr double maxArcMm = 1e5, maxPositionMm = 1e5;
+constexpr double maxArcMm = 1e5, maxStripHeight = 4096.0;
+constexpr std::size_t maxMeasuredPoints = 128;
 
 ViewAction readView(Fields& in) {
     ViewAction action;
@@ -167,17 +65,68 @@ StillAction readStill(Fields& in) {
 SliceAction readSlice(Fields& in) {
     SliceAction action;
     action.view = in.view("view");
-    if (action.view == View::endoscopic)
-        Fields::refuse("view", "must be axial, coronal or sagittal");
-    if (in.has("position_mm")) {
-        const auto p = in.numbers("position_mm", 3, -maxPositionMm, maxPositionMm);
-        action.positionMm = glm::dvec3(p[0], p[1], p[2]);
-    }
+    if (!isSlice(action.view)) Fields::refuse("view", "must be axial, coronal or sagittal");
+    if (in.has("position_mm")) action.positionMm = in.position("position_mm");
     if (in.has("zoom")) action.zoom = in.number("zoom", 1.0, 64.0);
     if (in.has("cleansed")) action.cleansed = in.flag("cleansed");
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
     if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+FlatAction readFlat(Fields& in) {
+    FlatAction action;
+    if (in.has("center")) action.center = in.flat("center");
+    if (in.has("arc_mm")) action.arcMm = in.number("arc_mm", 0.0, maxArcMm);
+    if (action.center && action.arcMm)
+        Fields::refuse("arc_mm", "and \"center\" exclude each other");
+    if (in.has("pixels_per_circumference"))
+        action.pixelsPerCircumference = in.number("pixels_per_circumference", 16.0, 65536.0);
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+StripAction readStrip(Fields& in) {
+    StripAction action;
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+FlyOverAction readFlyOver(Fields& in) {
+    FlyOverAction action;
+    if (in.has("from")) action.from = in.number("from", 0.0, maxStripHeight);
+    if (in.has("to")) action.to = in.number("to", 0.0, maxStripHeight);
+    if (in.has("positions")) action.positions = in.integer("positions", 2, 100'000);
+    if (in.has("pixels_per_circumference"))
+        action.pixelsPerCircumference = in.number("pixels_per_circumference", 16.0, 65536.0);
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("pipelined")) action.pipelined = in.flag("pipelined");
+    if (in.has("endoscopic")) action.endoscopic = in.flag("endoscopic");
+    if (action.endoscopic && action.viewport == 0)
+        Fields::refuse("viewport", "0 shows the endoscopic view");
+    return action;
+}
+
+LocateAction readLocate(Fields& in) {
+    LocateAction action;
+    if (in.has("flat")) action.flat = in.flat("flat");
+    if (in.has("position_mm")) action.positionMm = in.position("position_mm");
+    if (action.flat.has_value() == action.positionMm.has_value())
+        Fields::refuse("flat", "or \"position_mm\" is needed, not both");
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+MeasureAction readMeasure(Fields& in) {
+    MeasureAction action;
+    if (in.has("closed")) action.closed = in.flag("closed");
+    action.points = in.flats("flat", action.closed ? 3 : 2, maxMeasuredPoints);
+    if (in.has("json")) action.json = in.fileName("json", ".json");
     return action;
 }
 
@@ -215,8 +164,8 @@ WaitAction readWait(Fields& in) {
 
 Action readAction(const std::string& line) {
     const json object = json::parse(line, nullptr, false);
-    if (object.is_discarded()) throw Refusal{"not a JSON object"};
-    if (!object.is_object()) throw Refusal{"not a JSON object"};
+    if (object.is_discarded()) throw ScriptRefusal{"not a JSON object"};
+    if (!object.is_object()) throw ScriptRefusal{"not a JSON object"};
     Fields in(object);
     Action action;
     action.name = in.text("do");
@@ -230,6 +179,16 @@ Action readAction(const std::string& line) {
         action.body = readStill(in);
     else if (action.name == "slice")
         action.body = readSlice(in);
+    else if (action.name == "flat")
+        action.body = readFlat(in);
+    else if (action.name == "strip")
+        action.body = readStrip(in);
+    else if (action.name == "flyover")
+        action.body = readFlyOver(in);
+    else if (action.name == "locate")
+        action.body = readLocate(in);
+    else if (action.name == "measure")
+        action.body = readMeasure(in);
     else if (action.name == "window")
         action.body = readWindow(in);
     else if (action.name == "transfer")
@@ -241,7 +200,7 @@ Action readAction(const std::string& line) {
     else if (action.name == "wait")
         action.body = readWait(in);
     else
-        throw Refusal{"no such action: \"" + action.name + "\""};
+        throw ScriptRefusal{"no such action: \"" + action.name + "\""};
     in.allMustBeKnown();
     return action;
 }
@@ -257,7 +216,7 @@ Result<std::vector<Action>> parseScript(std::istream& in, const std::string& nam
         try {
             actions.push_back(readAction(line));
             actions.back().line = number;
-        } catch (const Refusal& refusal) {
+        } catch (const ScriptRefusal& refusal) {
             return fail(ErrorKind::badInput, refusal.message, name + ":" + std::to_string(number));
         } catch (const json::exception& error) {
             return fail(ErrorKind::badInput, error.what(), name + ":" + std::to_string(number));

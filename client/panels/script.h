@@ -40,6 +40,37 @@ struct SliceAction {
     std::optional<glm::ivec2> size;
     std::string png;
 };
+struct FlatAction {
+    std::optional<glm::dvec2> center;  ///< in circumferences
+    std::optional<double> arcMm;       ///< at most one of both; neither: around the camera
+    std::optional<double> pixelsPerCircumference;  ///< default: all around fits
+    int viewport = int(View::flattenedZoom);
+    std::optional<glm::ivec2> size;
+    std::string png;
+};
+struct StripAction {
+    int viewport = int(View::flattened);
+    std::optional<glm::ivec2> size;
+    std::string png;
+};
+struct FlyOverAction {
+    std::optional<double> from, to;  ///< circumferences; default: the whole strip
+    int positions = 200;
+    std::optional<double> pixelsPerCircumference;
+    int viewport = int(View::flattenedZoom);
+    bool pipelined = false;
+    bool endoscopic = false;  ///< the endoscopic view follows, in viewport 0
+};
+struct LocateAction {
+    std::optional<glm::dvec2> flat;
+    std::optional<glm::dvec3> positionMm;  ///< exactly one of both
+    std::string json;
+};
+struct MeasureAction {
+    std::vector<glm::dvec2> points;
+    bool closed = false;
+    std::string json;
+};
 struct WindowAction {
     int viewport = 1;
     WindowLevel window;
@@ -62,8 +93,9 @@ struct WaitAction {
 struct Action {
     int line = 0;
     std::string name;  ///< the value of "do"
-    std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, WindowAction,
-                 TransferAction, BookmarkAction, BookmarksAction, WaitAction>
+    std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, FlatAction, StripAction,
+                 FlyOverAction, LocateAction, MeasureAction, WindowAction, TransferAction,
+                 BookmarkAction, BookmarksAction, WaitAction>
         body;
 };
 

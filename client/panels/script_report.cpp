@@ -23,6 +23,25 @@ json jsonOf(const Summary& summary) {
             {"max", rounded(summary.max)}};
 }
 
+json jsonOf(glm::dvec3 v) {
+    return json::array({v.x, v.y, v.z});
+}
+
+json jsonOf(const WallPlace& place) {
+    return {{"flat", json::array({place.flat.x, place.flat.y})},
+            {"position_mm", jsonOf(place.positionMm)},
+            {"triangle", place.triangle},
+            {"arc_mm", place.arcMm},
+            {"camera_mm", jsonOf(place.cameraMm)}};
+}
+
+json jsonOf(const FlatMeasure& measure) {
+    return {{"length_mm", measure.lengthMm},
+            {"straight_mm", measure.straightMm},
+            {"area_mm2", measure.areaMm2},
+            {"largest_diameter_mm", measure.largestDiameterMm}};
+}
+
 json jsonOf(const ActionReport& action) {
     json out = {{"line", action.line}, {"do", action.name}, {"seconds", rounded(action.seconds)}};
     if (!action.file.empty()) out["file"] = action.file;
@@ -51,10 +70,21 @@ json jsonOf(const ActionReport& action) {
             out["acknowledged"].push_back({{"id", a.id}, {"client_key", a.clientKey}});
     }
     if (action.bookmarks) out["bookmarks"] = *action.bookmarks;
+    if (action.following) out["following"] = *action.following;
+    if (action.place) out["place"] = jsonOf(*action.place);
+    if (action.measure) out["measure"] = jsonOf(*action.measure);
     return out;
 }
 
 }  // namespace
+
+std::string toJson(const WallPlace& place) {
+    return jsonOf(place).dump(2) + "\n";
+}
+
+std::string toJson(const FlatMeasure& measure) {
+    return jsonOf(measure).dump(2) + "\n";
+}
 
 std::string toJson(const PlayReport& report) {
     json out = {{"client", report.clientSoftware},

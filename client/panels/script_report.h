@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "panels/flat_strip.h"
 
 #include <cstdint>
 #include <optional>
@@ -29,6 +30,9 @@ struct ActionReport {
     bool pipelined = false;
     std::vector<Acknowledgement> acknowledged;
     std::optional<std::size_t> bookmarks;
+    std::optional<int> following;  ///< endoscopic pictures beside those of a fly-over
+    std::optional<WallPlace> place;
+    std::optional<FlatMeasure> measure;
 };
 
 struct PlayReport {
@@ -41,5 +45,7 @@ struct PlayReport {
 /// Pretty-printed JSON. Keys name their units; percentiles as in latency.h. client/SCRIPT.md
 /// describes it.
 std::string toJson(const PlayReport& report);
+std::string toJson(const WallPlace& place);
+std::string toJson(const FlatMeasure& measure);
 
 }  // namespace haustra::panels

@@ -29,6 +29,11 @@ std::string cutUtf8(std::string text, std::size_t maxBytes) {
     return text;
 }
 
+bool sameStrip(const std::optional<FlatStrip>& a, const std::optional<FlatStrip>& b) {
+    return a.has_value() == b.has_value() &&
+           (!a || (a->height == b->height && a->rows.size() == b->rows.size()));
+}
+
 }  // namespace
 
 Session::Session(link::ConnectionOptions options, std::string caseName)
@@ -86,6 +91,12 @@ void Session::handle(const protocol::ServerMessage& message) {
             answeredList_ = std::max(answeredList_, message.bookmark_list().request());
             break;
         }
+        case protocol::ServerMessage::kWallPlace:
+            answeredAboutWall(message.wall_place(), placeFrom(message.wall_place()));
+            break;
+        case protocol::ServerMessage::kFlatMeasure:
+            answeredAboutWall(message.flat_measure(), measureFrom(message.flat_measure()));
+            break;
         case protocol::ServerMessage::kError:
             refused(message.error());
             break;
@@ -101,6 +112,7 @@ void Session::opened(const protocol::CaseOpened& message) {
     const bool same = caseInfo_ && caseInfo_->name == info->name &&
                       caseInfo_->centerline.points.size() == info->centerline.points.size() &&
                       caseInfo_->cleansed == info->cleansed &&
+                      sameStrip(caseInfo_->flat, info->flat) &&
                       sameGrid(caseInfo_->grid, info->grid);
     if (!same) caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
     phase_ = Phase::open;
@@ -113,6 +125,8 @@ void Session::refused(const protocol::ErrorReport& report) {
         return report.request() != 0 && o.request == report.request();
     });
     if (owed != owed_.end()) owed_.erase(owed);  // else it would be sent again for ever
+    if (questions_.erase(report.request()) > 0)
+        wallAnswers_.push_back({report.request(), tl::make_unexpected(error)});
     refusals_.push_back(error);
     // An input's late refusal (BAD_VALUE, BAD_STATE) does not tell of the case that is awaited.
     const bool ofTheCase =
@@ -156,6 +170,8 @@ void Session::openCase(const std::string& name) {
     caseName_ = name;
     bookmarks_.clear();
     viewports_.clear();
+    questions_.clear();
+    wallAnswers_.clear();
     if (phase_ == Phase::failed || phase_ == Phase::lost) return;
     phase_ = Phase::connecting;
     askForCase();
@@ -171,6 +187,8 @@ void Session::askAgain() {
     for (const Owed& owed : owed_)
         if (owed.caseName == caseName_)
             connection_.send(bookmarkMessage(owed.request, owed.bookmark));
+    for (const auto& [request, question] : questions_)
+        connection_.send(question);
     requestBookmarks();
 }
 
@@ -204,6 +222,7 @@ void Session::sayWhatWaited(int viewport, const ViewportState& state) {
         connection_.send(cameraMessage(++sequence_, viewport, *state.camera, state.moving));
     if (state.slice)
         connection_.send(sliceMessage(++sequence_, viewport, *state.slice, state.moving));
+    if (state.flat) connection_.send(flatMessage(++sequence_, viewport, *state.flat, state.moving));
 }
 
 std::uint64_t Session::setCamera(int viewport, const Camera& camera, bool moving) {
@@ -222,6 +241,14 @@ std::uint64_t Session::setSlice(int viewport, const Slice& slice, bool moving) {
     return sequence_;
 }
 
+std::uint64_t Session::setFlat(int viewport, const FlatWindow& window, bool moving) {
+    ViewportState& state = viewports_[viewport];
+    state.flat = window;
+    state.moving = moving;
+    sendInput(state, flatMessage(++sequence_, viewport, window, moving));
+    return sequence_;
+}
+
 std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
     ViewportState& state = viewports_[viewport];
     state.window = window;
@@ -234,6 +261,31 @@ std::uint64_t Session::setTransferFunction(int viewport, const std::string& pres
     state.transferFunction = preset;
     sendInput(state, transferMessage(++sequence_, viewport, preset));
     return sequence_;
+}
+
+// ---- the wall -------------------------------------------------------------------------------
+
+std::uint64_t Session::ask(const protocol::ClientMessage& question) {
+    questions_[request_] = question;
+    sendIfOpen(question);
+    return request_;
+}
+
+std::uint64_t Session::locate(glm::dvec2 flat) {
+    return ask(locateMessage(++request_, flat));
+}
+std::uint64_t Session::locate(glm::dvec3 positionMm) {
+    return ask(locateMessage(++request_, positionMm));
+}
+std::uint64_t Session::measure(const std::vector<glm::dvec2>& points, bool closed) {
+    return ask(measureMessage(++request_, points, closed));
+}
+
+template <class Message, class Body>
+void Session::answeredAboutWall(const Message& message, Result<Body> body) {
+    if (questions_.erase(message.request()) == 0) return;  // of a case that is left
+    if (!body) return giveUp(body.error());
+    wallAnswers_.push_back({message.request(), std::move(*body)});
 }
 
 // ---- bookmarks ------------------------------------------------------------------------------

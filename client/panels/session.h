@@ -10,6 +10,8 @@
 #include <array>
 #include <deque>
 #include <map>
+#include <utility>
+#include <variant>
 
 namespace haustra::panels {
 
@@ -56,6 +58,7 @@ public:
     std::uint64_t setViewport(int viewport, View view, int width, int height);
     std::uint64_t setCamera(int viewport, const Camera& camera, bool moving);
     std::uint64_t setSlice(int viewport, const Slice& slice, bool moving);
+    std::uint64_t setFlat(int viewport, const FlatWindow& window, bool moving);
     std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
     std::uint64_t setTransferFunction(int viewport, const std::string& preset);
 
@@ -75,6 +78,18 @@ public:
     /// Number of the newest requestBookmarks that was answered.
     std::uint64_t answeredBookmarkRequest() const { return answeredList_; }
 
+    /// Questions about the wall; each returns its request's number. What has no answer when the
+    /// link is lost is asked again when it is back; another case forgets it.
+    std::uint64_t locate(glm::dvec2 flat);
+    std::uint64_t locate(glm::dvec3 positionMm);
+    std::uint64_t measure(const std::vector<glm::dvec2>& points, bool closed);
+    struct WallAnswer {
+        std::uint64_t request;
+        Result<std::variant<WallPlace, FlatMeasure>> body;
+    };
+    /// What has been answered since the last call, or refused.
+    std::vector<WallAnswer> takeWallAnswers() { return std::exchange(wallAnswers_, {}); }
+
     static constexpr std::size_t maxNoteBytes = 1000;
 
 private:
@@ -83,6 +98,7 @@ private:
         int width = 0, height = 0;
         std::optional<Camera> camera;
         std::optional<Slice> slice;
+        std::optional<FlatWindow> flat;
         std::optional<WindowLevel> window;
         std::optional<std::string> transferFunction;
         bool moving = false;
@@ -100,6 +116,9 @@ private:
     void opened(const protocol::CaseOpened& message);
     void refused(const protocol::ErrorReport& report);
     void acknowledge(const Bookmark& bookmark);
+    std::uint64_t ask(const protocol::ClientMessage& question);
+    template <class Message, class Body>
+    void answeredAboutWall(const Message& message, Result<Body> body);
     void askForCase();
     void askAgain();
     void giveUp(Error error);
@@ -122,6 +141,8 @@ private:
     std::vector<Error> refusals_;
     std::vector<Bookmark> bookmarks_;
     std::deque<Owed> owed_;
+    std::map<std::uint64_t, protocol::ClientMessage> questions_;  // without an answer, by request
+    std::vector<WallAnswer> wallAnswers_;
 
     link::Connection connection_;  // last: its events must not outlive what they change
 };

@@ -11,8 +11,14 @@ namespace {
 using panels::Flight;
 using panels::Motion;
 
-void toggle(Flight& flight, Motion motion) {
-    flight.setMotion(flight.motion() == motion ? Motion::paused : motion);
+void toggle(panels::Reader& reader, Motion motion) {
+    reader.setMotion(reader.motion() == motion ? Motion::paused : motion);
+}
+
+// A tool of the flattened wall, or none where it was chosen already.
+void toggle(Ui& ui, DrawingTool tool) {
+    if (!ui.reader.hasStrip()) return ui.tell("this case has not been flattened");
+    ui.tool = ui.tool == tool ? DrawingTool::none : tool;
 }
 
 void stepAlong(Flight& flight, double mm) {
@@ -85,6 +91,21 @@ void handleLetter(Ui& ui, ImWchar letter) {
         case 'T':
             nextTransferFunction(reader);
             break;
+        case 'v':
+        case 'V':
+            if (reader.hasStrip())
+                reader.setFlyingOver(!reader.tour().flyingOver());
+            else
+                ui.tell("this case has not been flattened");
+            break;
+        case 'l':
+        case 'L':
+            toggle(ui, DrawingTool::line);
+            break;
+        case 'o':
+        case 'O':
+            toggle(ui, DrawingTool::outline);
+            break;
         case 'x':
         case 'X':
             if (reader.session().caseInfo()->cleansed)
@@ -105,14 +126,15 @@ void moveFreely(Flight& flight, double seconds, bool fast) {
     flight.moveFreely(way * flight.speedMmPerS() * std::min(seconds, 0.1) * (fast ? 3.0 : 1.0));
 }
 
-void handleFlightKey(Flight& flight, const KeyPress& key) {
+void handleFlightKey(panels::Reader& reader, const KeyPress& key) {
+    Flight& flight = reader.flight();
     const double stepMm = key.shift ? 10.0 : 1.0;
     switch (key.scancode) {
         case SDL_SCANCODE_SPACE:
-            toggle(flight, Motion::forward);
+            toggle(reader, Motion::forward);
             break;
         case SDL_SCANCODE_BACKSPACE:
-            toggle(flight, Motion::backward);
+            toggle(reader, Motion::backward);
             break;
         case SDL_SCANCODE_RIGHT:
         case SDL_SCANCODE_UP:
@@ -142,7 +164,10 @@ bool handleKeys(Ui& ui, const std::vector<KeyPress>& presses, double seconds) {
     for (const KeyPress& key : presses) {
         if (key.ctrl && key.scancode == SDL_SCANCODE_Q) return false;
         if (key.scancode == SDL_SCANCODE_F1) ui.showHelp = !ui.showHelp;
-        if (key.scancode == SDL_SCANCODE_ESCAPE) ui.showHelp = false;
+        if (key.scancode == SDL_SCANCODE_ESCAPE) {
+            if (!ui.showHelp) ui.tool = DrawingTool::none, ui.reader.wall().clearMeasurement();
+            ui.showHelp = false;
+        }
     }
     if (io.WantTextInput) return true;
     for (const ImWchar letter : io.InputQueueCharacters)
@@ -152,7 +177,7 @@ bool handleKeys(Ui& ui, const std::vector<KeyPress>& presses, double seconds) {
     if (flight.isFree()) moveFreely(flight, seconds, io.KeyShift);
     if (flight.centerline().points.empty()) return true;
     for (const KeyPress& key : presses)
-        if (!key.ctrl && !key.alt) handleFlightKey(flight, key);
+        if (!key.ctrl && !key.alt) handleFlightKey(ui.reader, key);
     return true;
 }
 

@@ -24,8 +24,11 @@ constexpr Key flightKeys[] = {
     {"Shift B", "bookmark with a note"},
     {"P  N", "previous, next bookmark"},
     {"T", "next look of the wall"},
+    {"V", "fly over the flattened wall, or along the path"},
+    {"L  O", "measure a line, an outline on the flattened wall"},
     {"X", "slices: as scanned, or cleansed"},
     {"M", "show or hide the bookmarks"},
+    {"Esc", "stop measuring, clear it"},
     {"?  F1", "this page"},
     {"Ctrl Q", "quit"},
 };
@@ -36,6 +39,10 @@ constexpr Key mouseKeys[] = {
     {"wheel on a slice", "scroll; with Ctrl zoom; with Shift ×10"},
     {"double-click a slice", "fly to the nearest point of the path"},
     {"track below", "go to that place"},
+    {"click the strip", "go to that place of the wall; drag: look it over"},
+    {"click the wall", "look at that place in all views"},
+    {"drag the wall", "move it; wheel: enlarge"},
+    {"Shift, Ctrl drag", "on the wall: measure a line, an outline"},
 };
 
 float drawKeys(Ui& ui, ImDrawList* list, ImVec2 corner, float column, const char* heading,
@@ -101,7 +108,7 @@ void drawNotices(Ui& ui, Rect area) {
 void drawHelp(Ui& ui, Rect area) {
     ImDrawList* list = ImGui::GetForegroundDrawList();
     list->AddRectFilled(area.min, area.max, color::shade);
-    const ImVec2 size(ui.px(880), ui.px(520));
+    const ImVec2 size(ui.px(960), ui.px(590));
     const ImVec2 min((area.min.x + area.max.x - size.x) / 2,
                      (area.min.y + area.max.y - size.y) / 2);
     const ImVec2 max(min.x + size.x, min.y + size.y);
@@ -112,7 +119,7 @@ void drawHelp(Ui& ui, Rect area) {
                   color::text, "Haustra, virtual colonoscopy");
     const float top = min.y + ui.px(66);
     drawKeys(ui, list, {min.x + margin, top}, ui.px(96), "Keys", flightKeys, std::size(flightKeys));
-    const float right = min.x + ui.px(440);
+    const float right = min.x + ui.px(490);
     float y =
         drawKeys(ui, list, {right, top}, ui.px(150), "Mouse", mouseKeys, std::size(mouseKeys));
     y += ui.px(22);

@@ -1,6 +1,7 @@
 #include "window/reader_window.h"
 
 #include "window/gl_window.h"
+#include "window/layout.h"
 #include "window/ui.h"
 
 #include <algorithm>
@@ -12,33 +13,6 @@ namespace {
 using panels::Clock;
 using panels::View;
 
-struct Layout {
-    Rect top, endoscopic, axial, coronal, sagittal, bookmarks, transport, middle;
-};
-
-// The endoscopic view takes what the others leave; the slices stand in a column of three.
-Layout layOut(const Ui& ui) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const float topHigh = ui.px(44), bottomHigh = ui.px(88), gap = ui.px(3);
-    const float panelWide = ui.showBookmarks ? ui.px(248) : 0.0f;
-    const float high = size.y - topHigh - bottomHigh;
-    const float sliceHigh = (high - 2 * gap) / 3;
-    const float sliceWide = std::clamp(sliceHigh * 1.25f, ui.px(200), size.x * 0.32f);
-    const float slicesRight = size.x - panelWide, slicesLeft = slicesRight - sliceWide;
-    Layout layout;
-    layout.top = {{0, 0}, {size.x, topHigh}};
-    layout.transport = {{0, size.y - bottomHigh}, size};
-    layout.middle = {{0, topHigh}, {size.x, size.y - bottomHigh}};
-    layout.endoscopic = {{0, topHigh}, {slicesLeft - gap, size.y - bottomHigh}};
-    Rect* slices[] = {&layout.axial, &layout.coronal, &layout.sagittal};
-    for (int n = 0; n < 3; ++n) {
-        const float y = topHigh + float(n) * (sliceHigh + gap);
-        *slices[n] = {{slicesLeft, y}, {slicesRight, y + sliceHigh}};
-    }
-    layout.bookmarks = {{slicesRight, topHigh}, {size.x, size.y - bottomHigh}};
-    return layout;
-}
-
 void drawEverything(Ui& ui) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
@@ -48,13 +22,17 @@ void drawEverything(Ui& ui) {
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleVar();
-    const Layout layout = layOut(ui);
+    const Layout layout = layOut(ui, ImGui::GetIO().DisplaySize);
     drawTopBar(ui, layout.top);
     if (ui.reader.isOpen()) {
         drawEndoscopicPane(ui, layout.endoscopic);
         drawSlicePane(ui, View::axial, layout.axial);
         drawSlicePane(ui, View::coronal, layout.coronal);
         drawSlicePane(ui, View::sagittal, layout.sagittal);
+        if (ui.reader.hasStrip()) {
+            drawStripPane(ui, layout.strip);
+            drawZoomPane(ui, layout.zoom);
+        }
         if (ui.showBookmarks) drawBookmarkPanel(ui, layout.bookmarks);
         drawTransportBar(ui, layout.transport);
     } else {
@@ -93,9 +71,11 @@ bool readyForScreenshot(const panels::Reader& reader, const WindowOptions& optio
     if (elapsed < due) return false;
     const panels::Phase phase = reader.session().phase();
     bool waiting = phase == panels::Phase::connecting;
-    if (phase == panels::Phase::open && reader.flight().motion() == panels::Motion::paused)
-        for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
-            waiting = waiting || !reader.picture(view).exact;
+    if (phase == panels::Phase::open && reader.motion() == panels::Motion::paused)
+        for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
+                                View::flattened, View::flattenedZoom})
+            waiting = waiting ||
+                      (!reader.picture(view).exact && (reader.hasStrip() || !panels::isFlat(view)));
     return !waiting || elapsed > due + std::chrono::seconds(20);
 }
 
@@ -118,6 +98,7 @@ Result<void> run(WindowOptions options) {
     panels::Reader reader(options.connection, options.caseName);
     Ui ui{reader, window.fonts(), float(window.scale()),
           link::toString(options.connection.address)};
+    ui.showBookmarks = options.width >= int(ui.px(1400));
     Watcher watcher;
 
     const auto start = Clock::now();

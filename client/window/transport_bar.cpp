@@ -31,7 +31,7 @@ void drawTrack(Ui& ui, Rect area) {
     const double mouseArc =
         std::clamp(double(mouseX - area.min.x) / area.size().x, 0.0, 1.0) * length;
     if (ImGui::IsItemActive()) {
-        flight.setMotion(Motion::paused);
+        ui.reader.setMotion(Motion::paused);
         flight.goTo(mouseArc);
     }
     const bool hovered = ImGui::IsItemHovered();
@@ -98,27 +98,44 @@ constexpr WindowPreset windowPresets[] = {{"colon", {0, 2000}},
                                           {"lung", {-600, 1600}},
                                           {"bone", {400, 1800}}};
 
+// The fly-over, and the tools of the flattened wall.
+void drawStripControls(Ui& ui, float side) {
+    panels::Reader& reader = ui.reader;
+    const bool flyingOver = reader.tour().flyingOver();
+    sameRow(ui, 12);
+    if (iconButton("over", Icon::flyOver, side, "Fly over the flattened wall (V)", flyingOver))
+        reader.setFlyingOver(!flyingOver);
+    const auto toolButton = [&](const char* id, Icon icon, const char* hint, DrawingTool tool) {
+        sameRow(ui, 4);
+        if (iconButton(id, icon, side, hint, ui.tool == tool))
+            ui.tool = ui.tool == tool ? DrawingTool::none : tool;
+    };
+    toolButton("line", Icon::line, "Measure a line on the flattened wall (L)", DrawingTool::line);
+    toolButton("outline", Icon::outline, "Measure an outline on the flattened wall (O)",
+               DrawingTool::outline);
+}
+
 void drawControls(Ui& ui) {
     panels::Reader& reader = ui.reader;
     Flight& flight = reader.flight();
     const float side = ui.px(controlSide);
-    const Motion motion = flight.motion();
+    const Motion motion = reader.motion();
 
     if (iconButton("rectum", Icon::toRectum, side, "To the rectum (Home)"))
-        flight.setMotion(Motion::paused), flight.goTo(0.0);
+        reader.setMotion(Motion::paused), flight.goTo(0.0);
     sameRow(ui, 4);
     if (iconButton("back", Icon::backward, side, "Fly backward (Backspace)",
                    motion == Motion::backward))
-        flight.setMotion(motion == Motion::backward ? Motion::paused : Motion::backward);
+        reader.setMotion(motion == Motion::backward ? Motion::paused : Motion::backward);
     sameRow(ui, 4);
     if (iconButton("pause", Icon::pause, side, "Pause (Space)", motion == Motion::paused))
-        flight.setMotion(Motion::paused);
+        reader.setMotion(Motion::paused);
     sameRow(ui, 4);
     if (iconButton("play", Icon::forward, side, "Fly forward (Space)", motion == Motion::forward))
-        flight.setMotion(motion == Motion::forward ? Motion::paused : Motion::forward);
+        reader.setMotion(motion == Motion::forward ? Motion::paused : Motion::forward);
     sameRow(ui, 4);
     if (iconButton("cecum", Icon::toCecum, side, "To the cecum (End)"))
-        flight.setMotion(Motion::paused), flight.goTo(flight.centerline().lengthMm());
+        reader.setMotion(Motion::paused), flight.goTo(flight.centerline().lengthMm());
     sameRow(ui, 12);
     if (iconButton("turn", Icon::turnRound, side, "Turn round (R)"))
         flight.setDirection(flight.direction() == FlightDirection::antegrade
@@ -130,6 +147,7 @@ void drawControls(Ui& ui) {
     sameRow(ui, 4);
     if (iconButton("bookmark", Icon::bookmark, side, "Bookmark this place (B)"))
         reader.addBookmark("");
+    if (reader.hasStrip()) drawStripControls(ui, side);
 
     sameRow(ui, 20);
     label(ui, "speed");

@@ -10,6 +10,7 @@
 #include <array>
 #include <deque>
 #include <string>
+#include <vector>
 
 namespace haustra::window {
 
@@ -19,6 +20,9 @@ struct Notice {
     double untilSeconds;
     bool trouble;
 };
+
+/// `none`: a drag moves the picture.
+enum class DrawingTool { none, line, outline };
 
 struct Ui {
     panels::Reader& reader;
@@ -30,6 +34,9 @@ struct Ui {
     bool showHelp = false, showBookmarks = true, focusNote = false;
     std::array<char, 256> note{};
     double drag = 0.0;  ///< pixels that the mouse moved since it was pressed on a pane
+    DrawingTool tool = DrawingTool::none;  ///< what a drag on the flattened wall does
+    std::vector<glm::dvec2> drawing{};     ///< flat, while the mouse draws a line or an outline
+    bool drawsOutline = false;
 
     float px(float length) const { return length * scale; }
     void tell(std::string text, bool trouble = false);
@@ -45,6 +52,9 @@ struct Rect {
 void drawTopBar(Ui& ui, Rect area);
 void drawEndoscopicPane(Ui& ui, Rect area);
 void drawSlicePane(Ui& ui, panels::View view, Rect area);
+/// The whole flattened strip, and the window onto it.
+void drawStripPane(Ui& ui, Rect area);
+void drawZoomPane(Ui& ui, Rect area);
 void drawTransportBar(Ui& ui, Rect area);
 void drawBookmarkPanel(Ui& ui, Rect area);
 void drawNotices(Ui& ui, Rect area);

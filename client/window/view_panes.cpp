@@ -1,6 +1,6 @@
 // The endoscopic view and the slices: pictures, what is written on them, the mouse.
 #include "panels/slice_map.h"
-#include "window/ui.h"
+#include "window/pane.h"
 #include "window/widgets.h"
 
 #include <algorithm>
@@ -11,35 +11,20 @@ namespace {
 
 using panels::View;
 
-// Uploads and draws the view's newest picture over `area`; a dim note where there is none yet.
-void drawPicture(Ui& ui, View view, Rect area, ImDrawList* list) {
-    PictureTexture& texture = ui.textures[std::size_t(view)];
-    texture.show(ui.reader.picture(view), ui.reader.pictureCount(view));
-    list->AddRectFilled(area.min, area.max, IM_COL32_BLACK);
-    if (!texture.empty()) {
-        list->AddImage(texture.id(), area.min, area.max);
-        return;
-    }
-    const std::string waiting = "waiting for the picture…";
-    const ImVec2 size = textSize(ui.fonts.small, waiting);
-    list->AddText(ui.fonts.small, ui.fonts.small->FontSize,
-                  {(area.min.x + area.max.x - size.x) / 2, (area.min.y + area.max.y - size.y) / 2},
-                  color::muted, waiting.c_str());
-}
-
-// An invisible button that takes the mouse over the pane.
-bool pane(Ui& ui, const char* id, Rect area) {
-    ImGui::SetCursorScreenPos(area.min);
-    ImGui::InvisibleButton(id, area.size());
-    if (ImGui::IsItemActivated()) ui.drag = 0.0;
-    const ImVec2 moved = ImGui::GetIO().MouseDelta;
-    if (ImGui::IsItemActive()) ui.drag += std::hypot(moved.x, moved.y);
-    return ImGui::IsItemHovered();
-}
-
-glm::ivec2 framebufferSize(Rect area) {
-    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-    return {std::max(1, int(area.size().x * scale.x)), std::max(1, int(area.size().y * scale.y))};
+// Where the picked place is seen, or would be but for what is in front of it.
+void drawPicked(Ui& ui, const panels::WallPlace& place, Rect area, ImDrawList* list) {
+    const panels::Camera camera = ui.reader.flight().camera();
+    const glm::dvec3 to = place.positionMm - camera.positionMm;
+    const double depth = glm::dot(to, camera.forward);
+    if (depth <= 0.0) return;
+    const double scale =
+        0.5 * area.size().y / std::tan(glm::radians(0.5 * camera.fovDegrees)) / depth;
+    const glm::dvec3 right = glm::cross(camera.forward, camera.up);
+    list->PushClipRect(area.min, area.max, true);
+    drawPickedCross(ui, list,
+                    {(area.min.x + area.max.x) / 2 + float(glm::dot(to, right) * scale),
+                     (area.min.y + area.max.y) / 2 - float(glm::dot(to, camera.up) * scale)});
+    list->PopClipRect();
 }
 
 void drawEdgeLetters(Ui& ui, View view, Rect area, ImDrawList* list) {
@@ -145,6 +130,7 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
                         (flight.direction() == FlightDirection::antegrade ? stepMm : -stepMm));
     }
 
+    if (const auto& picked = reader.pickedPlace()) drawPicked(ui, *picked, area, list);
     const float margin = ui.px(12);
     const double length = flight.centerline().lengthMm();
     const bool antegrade = flight.direction() == FlightDirection::antegrade;
@@ -197,6 +183,12 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
 
     list->PushClipRect(area.min, area.max, true);
     drawCrosshair(ui, map, pixels, area, list);
+    if (const auto& picked = reader.pickedPlace()) {
+        const glm::dvec2 pixel = map.pixelFromPatient(picked->positionMm);
+        drawPickedCross(ui, list,
+                        {area.min.x + float((pixel.x + 0.5) * pixels),
+                         area.min.y + float((pixel.y + 0.5) * pixels)});
+    }
     drawEdgeLetters(ui, view, area, list);
     const float margin = ui.px(8);
     const double coordinate = glm::dot(shown.positionMm, panels::sliceNormal(view));

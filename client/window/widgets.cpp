@@ -84,6 +84,20 @@ void drawIcon(ImDrawList* list, Icon icon, ImVec2 c, float side, ImU32 colour) {
             list->AddLine(at(0, -1), at(0, -0.3f), colour, line);
             list->AddLine(at(0, 0.3f), at(0, 1), colour, line);
             break;
+        case Icon::flyOver:  // a strip with an arrow along it
+            list->AddRect(at(-0.75f, -0.9f), at(0.75f, 0.9f), colour, 0, 0, line * 0.8f);
+            list->AddLine(at(0, 0.7f), at(0, -0.2f), colour, line);
+            list->AddTriangleFilled(at(-0.4f, -0.05f), at(0, -0.65f), at(0.4f, -0.05f), colour);
+            break;
+        case Icon::line:
+            list->AddLine(at(-0.7f, 0.7f), at(0.7f, -0.7f), colour, line);
+            list->AddCircleFilled(at(-0.7f, 0.7f), r * 0.24f, colour);
+            list->AddCircleFilled(at(0.7f, -0.7f), r * 0.24f, colour);
+            break;
+        case Icon::outline:
+            list->AddCircle(c, r * 0.75f, colour, 0, line);
+            list->AddLine(at(-0.35f, 0), at(0.35f, 0), colour, line * 0.8f);
+            break;
         case Icon::cross:
             list->AddLine(at(-0.6f, -0.6f), at(0.6f, 0.6f), colour, line);
             list->AddLine(at(-0.6f, 0.6f), at(0.6f, -0.6f), colour, line);

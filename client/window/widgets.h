@@ -19,7 +19,10 @@ enum class Icon {
     bookmark,
     help,
     center,
-    cross
+    cross,
+    flyOver,
+    line,
+    outline
 };
 
 /// A square button with a drawn symbol. True when pressed.

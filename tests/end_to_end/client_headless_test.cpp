@@ -1,6 +1,7 @@
 // The client's session and scripts against a server on the loopback: exact stills, latencies,
 // pinning, refusals, lost links.
 #include "end_to_end/fake_server.h"
+#include "end_to_end/fake_wall.h"
 #include "panels/script_player.h"
 
 #include <fstream>
@@ -110,6 +111,111 @@ TEST_F(ClientHeadless, AFlightMeasuresEachPosition) {
         EXPECT_EQ(json["actions"][0]["latency_ms"]["count"], 40);
         EXPECT_EQ(json["server"], "fake-server 1");
     }
+}
+
+TEST_F(ClientHeadless, TheFlattenedWallIsSeenLocatedAndMeasured) {
+    FakeServer server;
+    const auto report = play(optionsFor(server), R"({"do":"flat","center":[0.25,3],"png":"flat.png"}
+{"do":"go","fraction":0.5}
+{"do":"flat","pixels_per_circumference":400,"size":[150,130],"png":"here.png"}
+{"do":"strip","size":[120,300],"png":"strip.png"}
+{"do":"locate","flat":[0.75,1.5],"json":"place.json"}
+{"do":"locate","position_mm":[60,0,0]}
+{"do":"measure","flat":[[0.9,2],[1.1,2]]}
+{"do":"measure","flat":[[0.1,2],[0.2,2],[0.2,2.1],[0.1,2.1]],"closed":true,"json":"measure.json"})");
+    ASSERT_FALSE(report.failure) << describe(*report.failure);
+    int width = 0, height = 0;
+    EXPECT_EQ(
+        readPng("flat.png", width, height),
+        tests::syntheticPicture(200, 200, tests::syntheticPosition({0.25, 3.0}, 200 / 1.16), 0.0));
+    EXPECT_EQ(readPng("here.png", width, height),
+              tests::syntheticPicture(150, 130, tests::syntheticPosition({0.5, 3.0}, 400.0), 0.0));
+    readPng("strip.png", width, height);
+    EXPECT_EQ(width, 120);
+    EXPECT_EQ(height, 300);
+    std::ifstream in(folder_ / "place.json");
+    const auto place = nlohmann::json::parse(in);
+    const auto truth = tests::fakePlace({0.75, 1.5});
+    EXPECT_NEAR(place["arc_mm"], truth.arc_mm(), 1e-9);
+    EXPECT_NEAR(place["position_mm"][1], truth.position_mm().y(), 1e-9);
+    EXPECT_EQ(place["triangle"], truth.triangle());
+    EXPECT_NEAR(report.actions[5].place->flat.y, 0.0, 1e-9);
+    EXPECT_NEAR(report.actions[6].measure->lengthMm, 0.2 * tests::fakeCircumferenceMm, 1e-9);
+    EXPECT_NEAR(report.actions[7].measure->areaMm2, 0.01 * 90.0 * 90.0, 1e-9);
+    const auto json = nlohmann::json::parse(toJson(report));
+    EXPECT_NEAR(json["actions"][6]["measure"]["straight_mm"], 18.0, 1e-9);
+
+    EXPECT_NE(describe(*play(optionsFor(server), R"({"do":"locate","flat":[0.5,7]})").failure)
+                  .find("script:1: locate"),
+              std::string::npos);
+    Misbehaviour bare;
+    bare.notFlattened = true;
+    FakeServer other(bare);
+    auto options = optionsFor(other);
+    options.pinning.knownServersFile = folder_ / "known-other";
+    for (const char* action :
+         {R"({"do":"flat"})", R"({"do":"strip"})", R"({"do":"flyover"})",
+          R"({"do":"locate","flat":[0,0]})", R"({"do":"measure","flat":[[0,0],[0.1,0]]})",
+          R"({"do":"view","view":"flattened"})"}) {
+        const auto refused = play(options, action);
+        ASSERT_TRUE(refused.failure) << action;
+        EXPECT_NE(refused.failure->message.find("has not been flattened"), std::string::npos);
+    }
+}
+
+TEST_F(ClientHeadless, AFlyOverMeasuresEachPosition) {
+    FakeServer server;
+    for (const char* options :
+         {R"("pipelined":false)", R"("pipelined":true)", R"("pipelined":false,"endoscopic":true)",
+          R"("pipelined":true,"endoscopic":true)"}) {
+        const auto report = play(optionsFor(server),
+                                 std::string(R"({"do":"flyover","positions":30,)") + options + "}");
+        ASSERT_FALSE(report.failure) << describe(*report.failure);
+        const ActionReport& over = report.actions.at(0);
+        EXPECT_EQ(over.latencyMs.size(), 30u);
+        const bool follows = std::string(options).find("endoscopic") != std::string::npos;
+        EXPECT_EQ(over.following.has_value(), follows);
+        if (follows) {
+            EXPECT_GE(*over.following, 28);
+        }
+    }
+}
+
+TEST_F(ClientHeadless, AQuestionThatTheLostLinkSwallowedIsAskedAgain) {
+    Misbehaviour wrong;
+    wrong.silentAboutTheWall = true;
+    FakeServer silent(wrong);
+    const auto report = play(optionsFor(silent), R"({"do":"locate","flat":[0.5,1]})");
+    ASSERT_TRUE(report.failure);
+    EXPECT_NE(report.failure->message.find("the answer about the wall did not come"),
+              std::string::npos);
+
+    wrong = {};
+    wrong.dropAfterBookmarks = 1;
+    FakeServer dropping(wrong);
+    auto options = optionsFor(dropping);
+    options.pinning.knownServersFile = folder_ / "known-dropping";
+    options.reconnect = true;
+    Session session(options, "phantom");
+    const auto until = [&](const auto& done) {
+        const auto deadline = Clock::now() + std::chrono::seconds(20);
+        while (!done() && Clock::now() < deadline)
+            session.poll(std::chrono::milliseconds(10));
+        return done();
+    };
+    ASSERT_TRUE(until([&] { return session.phase() == Phase::open; }));
+    session.addBookmark({}, 0.0, "stored, and then the link breaks");
+    const auto request = session.locate(glm::dvec2(0.5, 1.0));
+    std::vector<Session::WallAnswer> answers;
+    ASSERT_TRUE(until([&] {
+        for (auto& answer : session.takeWallAnswers())
+            answers.push_back(std::move(answer));
+        return !answers.empty();
+    }));
+    EXPECT_EQ(answers.front().request, request);
+    ASSERT_TRUE(answers.front().body);
+    EXPECT_EQ(std::get<WallPlace>(*answers.front().body).flat.y, 1.0);
+    EXPECT_EQ(dropping.connections(), 2);
 }
 
 TEST_F(ClientHeadless, BookmarksAreAcknowledgedAndListed) {

@@ -1,5 +1,6 @@
 #include "end_to_end/fake_server.h"
 
+#include "end_to_end/fake_wall.h"
 #include "link/fingerprint.h"
 #include "protocol/framing.h"
 #include "protocol/haustra.pb.h"
@@ -15,7 +16,6 @@
 #include <openssl/rsa.h>
 #include <openssl/ssl.h>
 #include <openssl/x509.h>
-#include <turbojpeg.h>
 
 namespace haustra::tests {
 namespace {
@@ -52,16 +52,8 @@ Identity makeIdentity() {
     return identity;
 }
 
-std::vector<std::uint8_t> encodeJpeg(const std::vector<std::uint8_t>& rgb, int width, int height) {
-    tjhandle handle = tjInitCompress();
-    unsigned char* bytes = nullptr;
-    unsigned long size = 0;
-    tjCompress2(handle, rgb.data(), width, width * 3, height, TJPF_RGB, &bytes, &size, TJSAMP_420,
-                80, 0);
-    std::vector<std::uint8_t> jpeg(bytes, bytes + size);
-    tjFree(bytes);
-    tjDestroy(handle);
-    return jpeg;
+glm::dvec3 pointOf(const protocol::Vec3& p) {
+    return {p.x(), p.y(), p.z()};
 }
 
 struct Viewport {
@@ -71,21 +63,6 @@ struct Viewport {
 };
 
 }  // namespace
-
-std::vector<std::uint8_t> syntheticPicture(int width, int height, glm::dvec3 positionMm,
-                                           double centerHu) {
-    std::vector<std::uint8_t> rgb;
-    rgb.reserve(std::size_t(width) * std::size_t(height) * 3);
-    const double shift = positionMm.x + positionMm.y + positionMm.z;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            rgb.push_back(std::uint8_t(128 + 100 * std::sin(0.02 * (x + shift))));
-            rgb.push_back(std::uint8_t(128 + 100 * std::sin(0.03 * (y - shift))));
-            rgb.push_back(std::uint8_t(128 + 100 * std::sin(0.01 * (x + y) + 0.01 * centerHu)));
-        }
-    }
-    return rgb;
-}
 
 struct FakeServer::Impl {
     Misbehaviour misbehaviour;
@@ -172,54 +149,19 @@ struct FakeServer::Impl {
         asio::write(stream, asio::buffer(frame));
     }
 
-    void sendPicture(Stream& stream, std::uint32_t number, std::uint64_t sequence, int id,
-                     const Viewport& viewport, glm::dvec3 positionMm, bool exact) {
-        const auto rgb =
-            syntheticPicture(viewport.width, viewport.height, positionMm, viewport.centerHu);
-        constexpr int side = 128;
-        std::vector<std::uint8_t> out;
-        for (int y = 0; y < viewport.height; y += side) {
-            for (int x = 0; x < viewport.width; x += side) {
-                const int w = std::min(side, viewport.width - x),
-                          h = std::min(side, viewport.height - y);
-                std::vector<std::uint8_t> tile;
-                for (int row = y; row < y + h; ++row) {
-                    const auto start = rgb.begin() + (row * viewport.width + x) * 3;
-                    tile.insert(tile.end(), start, start + w * 3);
-                }
-                std::vector<std::uint8_t> bytes =
-                    exact ? protocol::encodeLossless(tile, w, h) : encodeJpeg(tile, w, h);
-                if (misbehaviour.garbageTiles)
-                    for (std::size_t n = 0; n < bytes.size(); ++n)
-                        bytes[n] = std::uint8_t(n * 37 + 11);
-                protocol::TileHeader header;
-                header.viewport = std::uint8_t(id);
-                header.codec = exact ? protocol::TileCodec::lossless : protocol::TileCodec::jpeg;
-                header.last = x + side >= viewport.width && y + side >= viewport.height;
-                header.exact = exact;
-                header.picture = number;
-                header.sequence = sequence;
-                header.pictureWidth = std::uint16_t(viewport.width);
-                header.pictureHeight = std::uint16_t(viewport.height);
-                header.x = std::uint16_t(x);
-                header.y = std::uint16_t(y);
-                header.width = std::uint16_t(w);
-                header.height = std::uint16_t(h);
-                header.renderMicroseconds = 1000;
-                header.encodeMicroseconds = 200;
-                header.queueMicroseconds = 30;
-                std::vector<std::uint8_t> payload;
-                protocol::appendTileHeader(payload, header);
-                payload.insert(payload.end(), bytes.begin(), bytes.end());
-                protocol::appendFrameHeader(
-                    out, {std::uint32_t(payload.size()), protocol::FrameType::tile});
-                out.insert(out.end(), payload.begin(), payload.end());
-            }
-        }
-        asio::write(stream, asio::buffer(out));
+    template <class Input>
+    void sendPicture(Stream& stream, std::uint32_t number, const Input& input,
+                     const std::map<int, Viewport>& viewports, glm::dvec3 positionMm,
+                     double shiftHu = 0.0) {
+        const int id = int(input.viewport());
+        const Viewport& viewport = viewports.at(id);
+        asio::write(stream, asio::buffer(framesOf({id, viewport.width, viewport.height, number,
+                                                   input.sequence(), !input.moving(), positionMm,
+                                                   viewport.centerHu + shiftHu,
+                                                   misbehaviour.garbageTiles})));
     }
 
-    static ServerMessage caseOpened(const std::string& name) {
+    ServerMessage caseOpened(const std::string& name) {
         ServerMessage message;
         auto* opened = message.mutable_case_opened();
         opened->set_name(name);
@@ -239,6 +181,7 @@ struct FakeServer::Impl {
         opened->set_patient_position("supine");
         opened->add_transfer_functions("mucosa");
         opened->add_transfer_functions("translucent");
+        if (!misbehaviour.notFlattened) *opened->mutable_flat() = fakeStrip();
         return message;
     }
 
@@ -324,21 +267,27 @@ struct FakeServer::Impl {
                 case ClientMessage::kSetCamera: {
                     const auto& set = message.set_camera();
                     if (!set.moving() && misbehaviour.noStills) break;
-                    const auto& p = set.position_mm();
-                    sendPicture(stream, ++pictures, set.sequence(), int(set.viewport()),
-                                viewports[int(set.viewport())], {p.x(), p.y(), p.z()},
-                                !set.moving());
+                    sendPicture(stream, ++pictures, set, viewports, pointOf(set.position_mm()));
                     break;
                 }
                 case ClientMessage::kSetSlice: {
                     const auto& set = message.set_slice();
-                    const auto& p = set.position_mm();
-                    Viewport viewport = viewports[int(set.viewport())];
-                    if (set.cleansed()) viewport.centerHu += cleansedShiftHu;
-                    sendPicture(stream, ++pictures, set.sequence(), int(set.viewport()), viewport,
-                                {p.x(), p.y(), p.z()}, !set.moving());
+                    sendPicture(stream, ++pictures, set, viewports, pointOf(set.position_mm()),
+                                set.cleansed() ? cleansedShiftHu : 0.0);
                     break;
                 }
+                case ClientMessage::kSetFlat: {
+                    const auto& set = message.set_flat();
+                    sendPicture(stream, ++pictures, set, viewports,
+                                syntheticPosition({set.center().x(), set.center().y()},
+                                                  set.pixels_per_circumference()));
+                    break;
+                }
+                case ClientMessage::kLocateFlat:
+                case ClientMessage::kLocatePoint:
+                case ClientMessage::kMeasureFlat:
+                    if (!misbehaviour.silentAboutTheWall) write(stream, aboutFakeWall(message));
+                    break;
                 case ClientMessage::kSetTransferFunction:
                     if (message.set_transfer_function().preset() != "mucosa" &&
                         message.set_transfer_function().preset() != "translucent") {
@@ -394,18 +343,7 @@ std::vector<std::string> FakeServer::storedBookmarkKeys() const {
 }
 
 Centerline FakeServer::centerline() {
-    Centerline path;
-    for (int n = 0; n <= 600; ++n) {
-        const double t = n / 600.0 * 9.0;
-        CenterlinePoint point;
-        point.positionMm = {60 * std::cos(t), 60 * std::sin(t), 18 * t};
-        point.radiusMm = 15;
-        if (n > 0)
-            point.arcMm = path.points.back().arcMm +
-                          glm::distance(point.positionMm, path.points.back().positionMm);
-        path.points.push_back(point);
-    }
-    return path;
+    return fakeCenterline();
 }
 
 }  // namespace haustra::tests

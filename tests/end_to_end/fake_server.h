@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/centerline.h"
+#include "end_to_end/fake_pictures.h"
 
 #include <atomic>
 #include <cstdint>
@@ -16,10 +17,6 @@
 
 namespace haustra::tests {
 
-/// Colour of pixel (x, y) of the synthetic picture of a camera or slice at `positionMm`.
-std::vector<std::uint8_t> syntheticPicture(int width, int height, glm::dvec3 positionMm,
-                                           double centerHu);
-
 /// A cleansed slice is drawn as one whose window lies so much higher.
 inline constexpr double cleansedShiftHu = 1000.0;
 
@@ -30,6 +27,8 @@ struct Misbehaviour {
     bool noStills = false;       ///< never answers a camera at rest
     int dropAfterBookmarks = 0;  ///< stores so many, then closes the socket before acknowledging
     bool truncateWelcome = false;
+    bool notFlattened = false;        ///< the case has no strip
+    bool silentAboutTheWall = false;  ///< never says where a place lies, nor how long a line is
     int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
 };
 

@@ -65,6 +65,78 @@ TEST(Script, ReadsEveryActionWithItsLine) {
     EXPECT_EQ(std::get<WaitAction>((*actions)[9].body).ms, 12.5);
 }
 
+TEST(Script, ReadsTheActionsOnTheFlattenedWall) {
+    const auto actions = parse(
+        R"({"do":"flat","center":[0.25,3.5],"pixels_per_circumference":900,"size":[640,480],"png":"f.png"})"
+        "\n"
+        R"({"do":"flat","arc_mm":250,"viewport":6})"
+        "\n"
+        R"({"do":"strip","size":[400,800],"png":"s.png"})"
+        "\n"
+        R"({"do":"flyover","from":1,"to":9.5,"positions":50,"pipelined":true,"endoscopic":true})"
+        "\n"
+        R"({"do":"locate","flat":[0.5,2],"json":"place.json"})"
+        "\n"
+        R"({"do":"locate","position_mm":[1,2,3]})"
+        "\n"
+        R"({"do":"measure","flat":[[0.1,1],[0.2,1],[0.2,1.1]],"closed":true,"json":"m.json"})");
+    ASSERT_TRUE(actions) << describe(actions.error());
+    ASSERT_EQ(actions->size(), 7u);
+    const auto& flat = std::get<FlatAction>((*actions)[0].body);
+    EXPECT_EQ(flat.center, glm::dvec2(0.25, 3.5));
+    EXPECT_EQ(flat.pixelsPerCircumference, 900.0);
+    EXPECT_EQ(flat.size, glm::ivec2(640, 480));
+    EXPECT_EQ(flat.viewport, 5);
+    EXPECT_EQ(std::get<FlatAction>((*actions)[1].body).arcMm, 250.0);
+    EXPECT_EQ(std::get<FlatAction>((*actions)[1].body).viewport, 6);
+    EXPECT_EQ(std::get<StripAction>((*actions)[2].body).viewport, 4);
+    const auto& over = std::get<FlyOverAction>((*actions)[3].body);
+    EXPECT_EQ(over.from, 1.0);
+    EXPECT_EQ(over.to, 9.5);
+    EXPECT_TRUE(over.pipelined && over.endoscopic);
+    EXPECT_EQ(std::get<LocateAction>((*actions)[4].body).flat, glm::dvec2(0.5, 2.0));
+    EXPECT_EQ(std::get<LocateAction>((*actions)[5].body).positionMm, glm::dvec3(1, 2, 3));
+    const auto& measure = std::get<MeasureAction>((*actions)[6].body);
+    EXPECT_TRUE(measure.closed);
+    EXPECT_EQ(measure.points, (std::vector<glm::dvec2>{{0.1, 1.0}, {0.2, 1.0}, {0.2, 1.1}}));
+}
+
+TEST(Script, ActionsOnTheFlattenedWallHaveTheirBounds) {
+    std::string many = R"({"do":"measure","flat":[[0,0])";
+    for (int n = 0; n < 128; ++n)
+        many += ",[0,0]";
+    many += "]}";
+    const char* wrong[][2] = {
+        {R"({"do":"flat","center":[0.5,1],"arc_mm":3})", "arc_mm"},
+        {R"({"do":"flat","center":[0.5]})", "center"},
+        {R"({"do":"flat","center":0.5})", "center"},
+        {R"({"do":"flat","center":[0.5,1e9]})", "center"},
+        {R"({"do":"flat","pixels_per_circumference":2})", "pixels_per_circumference"},
+        {R"({"do":"flat","viewport":9})", "viewport"},
+        {R"({"do":"flat","png":"../f.png"})", "png"},
+        {R"({"do":"strip","center":[0.5,1]})", "center"},
+        {R"({"do":"flyover","from":-1})", "from"},
+        {R"({"do":"flyover","positions":1})", "positions"},
+        {R"({"do":"flyover","endoscopic":true,"viewport":0})", "viewport"},
+        {R"({"do":"locate"})", "flat"},
+        {R"({"do":"locate","flat":[0,0],"position_mm":[0,0,0]})", "flat"},
+        {R"({"do":"measure"})", "flat"},
+        {R"({"do":"measure","flat":[[0,0]]})", "flat"},
+        {R"({"do":"measure","flat":[[0,0],[1]]})", "flat"},
+        {R"({"do":"measure","flat":[[0,0],[0.1,"1"]]})", "flat"},
+        {R"({"do":"measure","flat":[[0,0],[33,0]]})", "flat"},
+        {R"({"do":"measure","flat":[[0,0],[0.1,0]],"closed":true})", "flat"},
+        {many.c_str(), "flat"},
+        {R"({"do":"slice","view":"flattened"})", "view"},
+    };
+    for (const auto& [line, key] : wrong) {
+        const auto actions = parse(line);
+        ASSERT_FALSE(actions) << line;
+        EXPECT_NE(actions.error().message.find(std::string("\"") + key + "\""), std::string::npos)
+            << actions.error().message;
+    }
+}
+
 TEST(Script, ErrorsNameTheLineAndTheKey) {
     const struct {
         const char* line;
@@ -80,7 +152,7 @@ TEST(Script, ErrorsNameTheLineAndTheKey) {
         {"{\"do\":\"go\",\"arc_mm\":1,\"fraction\":0.5}", "exclude each other"},
         {"{\"do\":\"fly\",\"positions\":1.5}", "\"positions\" must be a whole number"},
         {"{\"do\":\"view\",\"view\":\"upside\"}",
-         "\"view\" must be endoscopic, axial, coronal or sagittal"},
+         "\"view\" must be endoscopic, axial, coronal, sagittal, flattened or flattened-zoom"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"viewport\":8}", "\"viewport\" must lie in 0…7"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"size\":[4096,4]}",
          "\"size\" must hold numbers in 16…2048"},

@@ -1,0 +1,20 @@
+// What the panes with pictures share.
+#pragma once
+
+#include "window/ui.h"
+
+namespace haustra::window {
+
+/// Black over `area`, and a dim note where the view has no picture yet. False then. Uploads the
+/// newest picture otherwise.
+bool preparePicture(Ui& ui, panels::View view, Rect area, ImDrawList* list);
+/// The view's newest picture over all of `area`.
+void drawPicture(Ui& ui, panels::View view, Rect area, ImDrawList* list);
+/// An invisible button that takes the mouse over the pane; Ui::drag grows while it is held. True
+/// while the mouse is over it.
+bool pane(Ui& ui, const char* id, Rect area);
+glm::ivec2 framebufferSize(Rect area);
+/// The mark of the place on the wall that the reader has picked.
+void drawPickedCross(Ui& ui, ImDrawList* list, ImVec2 p);
+
+}  // namespace haustra::window

@@ -1,0 +1,222 @@
+// The reader's flattened views, against a server on the loopback: strip, window, camera and slices
+// follow each other; bookmarks find their wall; lines are measured.
+#include "end_to_end/fake_server.h"
+#include "end_to_end/fake_wall.h"
+#include "panels/reader.h"
+
+#include <filesystem>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace haustra::panels {
+namespace {
+
+using tests::FakeServer;
+using tests::Misbehaviour;
+
+class ClientFlatReader : public ::testing::Test {
+protected:
+    explicit ClientFlatReader(Misbehaviour misbehaviour = {}) : server_(misbehaviour) {}
+
+    void SetUp() override {
+        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("haustra-flat-" + std::string(info->name()) + std::to_string(::getpid()));
+        link::ConnectionOptions options;
+        options.address = {"127.0.0.1", server_.port()};
+        options.pinning.knownServersFile = folder_ / "known_servers";
+        options.reconnect = true;
+        reader_ = std::make_unique<Reader>(options, "phantom");
+        for (const View view : {View::endoscopic, View::axial, View::flattened})
+            reader_->setPaneSize(view, {100, 90});
+        reader_->setPaneSize(View::flattenedZoom, {232, 100});
+        ASSERT_TRUE(runUntil([&] { return atRest(); }));
+    }
+    void TearDown() override {
+        reader_.reset();
+        std::filesystem::remove_all(folder_);
+    }
+    template <class Done>
+    bool runUntil(Done done) {
+        const auto deadline = Clock::now() + std::chrono::seconds(30);
+        while (!done()) {
+            if (Clock::now() > deadline) return false;
+            reader_->update(0.01);
+            std::this_thread::sleep_for(std::chrono::milliseconds(3));
+        }
+        return true;
+    }
+    bool atRest() const {
+        if (!reader_->isOpen() || reader_->restless()) return false;
+        for (const View view :
+             {View::endoscopic, View::axial, View::flattened, View::flattenedZoom})
+            if ((reader_->hasStrip() || !isFlat(view)) && !reader_->picture(view).exact)
+                return false;
+        return true;
+    }
+    void expectZoomPictureOf(glm::dvec2 center, double pixelsPerCircumference) const {
+        EXPECT_EQ(reader_->picture(View::flattenedZoom).rgb,
+                  tests::syntheticPicture(
+                      232, 100, tests::syntheticPosition(center, pixelsPerCircumference), 0.0));
+    }
+    double length() const { return FakeServer::centerline().lengthMm(); }
+    static glm::dvec3 vector(const protocol::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+    FakeServer server_;
+    std::filesystem::path folder_;
+    std::unique_ptr<Reader> reader_;
+};
+
+TEST_F(ClientFlatReader, TheWindowFollowsTheFlight) {
+    EXPECT_TRUE(reader_->hasStrip());
+    expectZoomPictureOf({0.5, 0.0}, 200.0);  // all around, with the seam's margins
+    reader_->flight().goTo(0.5 * length());
+    reader_->update(0.0);
+    EXPECT_NEAR(reader_->tour().window().center.y, 3.0, 1e-9);
+    ASSERT_TRUE(runUntil([&] { return atRest(); }));
+    expectZoomPictureOf(reader_->tour().window().center, 200.0);
+    EXPECT_EQ(reader_->shownWindow().center, reader_->tour().window().center);
+    reader_->flight().flyFreely();
+    const double arc = reader_->placeArcMm();
+    reader_->flight().moveFreely({0.0, 0.0, 40.0});
+    reader_->update(0.0);
+    EXPECT_GT(reader_->placeArcMm(), arc + 10.0);
+    EXPECT_NEAR(reader_->tour().window().center.y, 6.0 * reader_->placeArcMm() / length(), 1e-6);
+}
+
+TEST_F(ClientFlatReader, MovingTheWindowLeavesTheCamera) {
+    const Camera camera = reader_->flight().camera();
+    reader_->tour().drag({30.0, 50.0});
+    reader_->tour().zoom(2.0, {116.0, 50.0});
+    ASSERT_TRUE(runUntil([&] {
+        return atRest() && reader_->shownWindow().center == reader_->tour().window().center;
+    }));
+    EXPECT_EQ(reader_->flight().camera(), camera);
+    EXPECT_NEAR(reader_->tour().window().center.y, 0.25, 1e-12);
+    expectZoomPictureOf(reader_->tour().window().center, 400.0);
+}
+
+TEST_F(ClientFlatReader, AClickOnTheStripLeadsAllViewsThere) {
+    const glm::dvec2 flat(0.3, 2.4);
+    const glm::dvec3 wall = vector(tests::fakePlace(flat).position_mm());
+    reader_->flight().setMotion(Motion::forward);
+    reader_->goToFlat(flat, true);
+    EXPECT_TRUE(reader_->restless());
+    ASSERT_TRUE(runUntil([&] { return reader_->pickedPlace().has_value(); }));
+    const Camera camera = reader_->flight().camera();
+    EXPECT_EQ(reader_->flight().motion(), Motion::paused);
+    EXPECT_NEAR(reader_->flight().arcMm(), 0.4 * length(), 1e-9);
+    EXPECT_GT(glm::dot(camera.forward, glm::normalize(wall - camera.positionMm)), 1.0 - 1e-9);
+    EXPECT_EQ(reader_->tour().window().center, flat);
+    ASSERT_TRUE(runUntil([&] { return atRest() && reader_->shownWindow().center == flat; }));
+    EXPECT_LT(glm::distance(reader_->shownSlice(View::axial).positionMm, wall), 1e-9);
+    EXPECT_EQ(reader_->picture(View::endoscopic).rgb,
+              tests::syntheticPicture(100, 90, camera.positionMm, 0.0));
+    expectZoomPictureOf(flat, 200.0);
+    // The mark goes when the camera goes on, and slices follow the camera again.
+    reader_->flight().goTo(10.0);
+    reader_->update(0.0);
+    EXPECT_FALSE(reader_->pickedPlace());
+    EXPECT_EQ(reader_->slice(View::axial).positionMm, reader_->flight().camera().positionMm);
+}
+
+TEST_F(ClientFlatReader, AClickInTheWindowLeavesItWhereItIs) {
+    reader_->tour().centerOn({0.5, 3.0});
+    reader_->goToFlat({1.2, 3.1}, false);  // past the seam
+    ASSERT_TRUE(runUntil([&] { return reader_->pickedPlace().has_value(); }));
+    EXPECT_NEAR(reader_->pickedPlace()->flat.x, 0.2, 1e-9);
+    EXPECT_EQ(reader_->tour().window().center, glm::dvec2(0.5, 3.0));
+    EXPECT_NEAR(reader_->flight().arcMm(), 3.1 / 6.0 * length(), 1e-9);
+    reader_->goToFlat({0.5, 99.0}, false);  // held to the strip
+    ASSERT_TRUE(runUntil([&] { return reader_->pickedPlace()->flat.y == 6.0; }));
+    EXPECT_TRUE(reader_->session().takeRefusals().empty());
+}
+
+TEST_F(ClientFlatReader, TheCameraFollowsTheFlyOver) {
+    reader_->setFlyingOver(true);
+    reader_->flight().setSpeed(180.0);  // two circumferences a second
+    reader_->setMotion(Motion::forward);
+    EXPECT_EQ(reader_->flight().motion(), Motion::paused);
+    const auto pictures = reader_->pictureCount(View::flattenedZoom),
+               followed = reader_->pictureCount(View::endoscopic);
+    double y = 0.0;
+    ASSERT_TRUE(runUntil([&] {
+        EXPECT_GE(reader_->tour().window().center.y, y);
+        y = reader_->tour().window().center.y;
+        EXPECT_NEAR(reader_->flight().arcMm(), y / 6.0 * length(), 1e-6);
+        return reader_->motion() == Motion::paused;
+    }));
+    EXPECT_EQ(y, 6.0);
+    EXPECT_GT(reader_->pictureCount(View::flattenedZoom), pictures + 10);
+    EXPECT_GT(reader_->pictureCount(View::endoscopic), followed + 10);
+    ASSERT_TRUE(runUntil([&] { return atRest(); }));
+    expectZoomPictureOf({0.5, 6.0}, 200.0);
+    // Whoever takes the camera elsewhere takes the fly-over along.
+    reader_->setMotion(Motion::backward);
+    reader_->flight().goTo(0.5 * length());
+    reader_->update(0.01);
+    EXPECT_EQ(reader_->motion(), Motion::paused);
+    EXPECT_NEAR(reader_->tour().window().center.y, 3.0, 1e-9);
+    reader_->setFlyingOver(false);
+    reader_->setMotion(Motion::forward);
+    EXPECT_EQ(reader_->flight().motion(), Motion::forward);
+}
+
+TEST_F(ClientFlatReader, BookmarksFindTheirPlaceOnTheStrip) {
+    for (const double arc : {100.0, 200.0, 300.0}) {
+        reader_->flight().goTo(arc);
+        reader_->flight().setLook(90.0, 0.0);
+        reader_->addBookmark("");
+    }
+    ASSERT_TRUE(runUntil([&] { return reader_->wall().bookmarkPlaces().size() == 3; }));
+    for (const Bookmark& bookmark : reader_->session().bookmarks()) {
+        const WallPlace& place = reader_->wall().bookmarkPlaces().at(bookmark.clientKey);
+        EXPECT_NEAR(place.flat.y, 6.0 * bookmark.arcMm / length(), 0.2);
+    }
+}
+
+TEST_F(ClientFlatReader, LinesAndOutlinesAreMeasuredWhileTheyAreDrawn) {
+    WallQuestions& wall = reader_->wall();
+    for (const double x : {0.6, 0.7, 0.8, 0.9})  // only the newest counts
+        wall.measure({{0.5, 1.0}, {x, 1.0}}, false);
+    ASSERT_TRUE(runUntil([&] {
+        return wall.measurement()->result &&
+               std::abs(wall.measurement()->result->lengthMm - 0.4 * 90.0) < 1e-9;
+    }));
+    wall.measure({{0.5, 1.0}, {0.7, 1.0}, {0.7, 1.1}, {0.5, 1.1}}, true);
+    EXPECT_FALSE(wall.measurement()->result) << "a line's length is no outline's";
+    ASSERT_TRUE(runUntil([&] { return wall.measurement()->result.has_value(); }));
+    EXPECT_NEAR(wall.measurement()->result->areaMm2, 0.02 * 90.0 * 90.0, 1e-6);
+    EXPECT_NEAR(wall.measurement()->result->largestDiameterMm, std::hypot(18.0, 9.0), 1e-6);
+    wall.clearMeasurement();
+    EXPECT_FALSE(wall.measurement());
+}
+
+class ClientFlatReaderWithoutStrip : public ClientFlatReader {
+protected:
+    static Misbehaviour bare() {
+        Misbehaviour misbehaviour;
+        misbehaviour.notFlattened = true;
+        return misbehaviour;
+    }
+    ClientFlatReaderWithoutStrip() : ClientFlatReader(bare()) {}
+};
+
+TEST_F(ClientFlatReaderWithoutStrip, NothingOfItIsAskedFor) {
+    EXPECT_FALSE(reader_->hasStrip());
+    reader_->goToFlat({0.5, 0.5}, true);
+    reader_->setFlyingOver(true);
+    EXPECT_FALSE(reader_->tour().flyingOver());
+    reader_->addBookmark("");
+    reader_->setTransferFunction("translucent");
+    reader_->flight().goTo(200.0);
+    ASSERT_TRUE(runUntil([&] { return atRest(); }));
+    EXPECT_EQ(reader_->pictureCount(View::flattened), 0u);
+    EXPECT_EQ(reader_->pictureCount(View::flattenedZoom), 0u);
+    EXPECT_TRUE(reader_->session().takeRefusals().empty());
+}
+
+}  // namespace
+}  // namespace haustra::panels

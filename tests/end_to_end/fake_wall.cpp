@@ -1,0 +1,110 @@
+#include "end_to_end/fake_wall.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace haustra::tests {
+namespace {
+
+void set(protocol::Vec3* out, glm::dvec3 v) {
+    out->set_x(v.x);
+    out->set_y(v.y);
+    out->set_z(v.z);
+}
+
+protocol::FlatMeasure measured(const protocol::MeasureFlat& question) {
+    protocol::FlatMeasure measure;
+    const auto point = [&](int n) {
+        const auto& p = question.points(n % question.points_size());
+        return fakeCircumferenceMm * glm::dvec2(p.x(), p.y());
+    };
+    const int count = question.points_size(), legs = question.closed() ? count : count - 1;
+    double length = 0.0, doubleArea = 0.0, farthest = 0.0;
+    for (int n = 0; n < legs; ++n) {
+        const glm::dvec2 a = point(n), b = point(n + 1);
+        length += glm::distance(a, b);
+        doubleArea += a.x * b.y - a.y * b.x;
+        for (int m = 0; m < count; ++m)
+            farthest = std::max(farthest, glm::distance(a, point(m)));
+    }
+    measure.set_request(question.request());
+    measure.set_length_mm(length);
+    if (question.closed()) {
+        measure.set_area_mm2(0.5 * std::abs(doubleArea));
+        measure.set_largest_diameter_mm(farthest);
+    } else {
+        measure.set_straight_mm(glm::distance(point(0), point(count - 1)));
+    }
+    return measure;
+}
+
+}  // namespace
+
+Centerline fakeCenterline() {
+    Centerline path;
+    for (int n = 0; n <= 600; ++n) {
+        const double t = n / 600.0 * 9.0;
+        CenterlinePoint point;
+        point.positionMm = {60 * std::cos(t), 60 * std::sin(t), 18 * t};
+        point.radiusMm = fakeRadiusMm;
+        if (n > 0)
+            point.arcMm = path.points.back().arcMm +
+                          glm::distance(point.positionMm, path.points.back().positionMm);
+        path.points.push_back(point);
+    }
+    return path;
+}
+
+protocol::FlatStrip fakeStrip() {
+    protocol::FlatStrip strip;
+    strip.set_height(fakeStripHeight);
+    strip.set_circumference_mm(fakeCircumferenceMm);
+    const double length = fakeCenterline().lengthMm();
+    for (int n = 0; n <= 60; ++n) {
+        strip.add_rows(length * n / 60);
+        strip.add_rows(fakeStripHeight * n / 60);
+    }
+    return strip;
+}
+
+protocol::WallPlace fakePlace(glm::dvec2 flat) {
+    static const Centerline path = fakeCenterline();
+    protocol::WallPlace place;
+    const double x = flat.x - std::floor(flat.x), arc = flat.y / fakeStripHeight * path.lengthMm();
+    const glm::dvec3 camera = poseAtArc(path, arc).point.positionMm;
+    const double angle = 2.0 * std::numbers::pi * x;
+    place.mutable_flat()->set_x(x);
+    place.mutable_flat()->set_y(flat.y);
+    set(place.mutable_position_mm(),
+        camera + fakeRadiusMm * glm::dvec3(std::cos(angle), std::sin(angle), 0.0));
+    set(place.mutable_camera_mm(), camera);
+    place.set_arc_mm(arc);
+    place.set_triangle(std::uint32_t(1000.0 * flat.y));
+    return place;
+}
+
+protocol::ServerMessage aboutFakeWall(const protocol::ClientMessage& question) {
+    protocol::ServerMessage answer;
+    if (question.has_measure_flat()) {
+        *answer.mutable_flat_measure() = measured(question.measure_flat());
+    } else if (question.has_locate_point()) {
+        const Centerline path = fakeCenterline();
+        const auto& p = question.locate_point().position_mm();
+        const double arc = nearestArc(path, {p.x(), p.y(), p.z()});
+        *answer.mutable_wall_place() = fakePlace({0.25, arc / path.lengthMm() * fakeStripHeight});
+        answer.mutable_wall_place()->set_request(question.locate_point().request());
+    } else {
+        const auto& locate = question.locate_flat();
+        if (locate.flat().y() < 0.0 || locate.flat().y() > fakeStripHeight) {
+            answer.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);
+            answer.mutable_error()->set_message("the place lies beyond the strip");
+            answer.mutable_error()->set_request(locate.request());
+            return answer;
+        }
+        *answer.mutable_wall_place() = fakePlace({locate.flat().x(), locate.flat().y()});
+        answer.mutable_wall_place()->set_request(locate.request());
+    }
+    return answer;
+}
+
+}  // namespace haustra::tests

@@ -1,0 +1,23 @@
+// The colon of the fake server: a spiral tube, and its strip.
+#pragma once
+
+#include "core/centerline.h"
+#include "protocol/haustra.pb.h"
+
+#include <glm/glm.hpp>
+
+namespace haustra::tests {
+
+inline constexpr double fakeRadiusMm = 15.0, fakeCircumferenceMm = 90.0, fakeStripHeight = 6.0;
+
+Centerline fakeCenterline();
+/// y grows evenly with the arc.
+protocol::FlatStrip fakeStrip();
+/// The place at a flat coordinate: fakeRadiusMm away from the path, at the angle 2πx in the
+/// patient's axial plane.
+protocol::WallPlace fakePlace(glm::dvec2 flat);
+/// The answer to LocateFlat, LocatePoint (at x = ¼ of the nearest place of the path) or
+/// MeasureFlat (as on a cylinder), a refusal where the place is not on the strip.
+protocol::ServerMessage aboutFakeWall(const protocol::ClientMessage& question);
+
+}  // namespace haustra::tests

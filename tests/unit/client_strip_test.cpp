@@ -1,0 +1,182 @@
+// The strip as the client knows it, the window onto it, the fly-over, and descriptions of strips
+// that a server should not send.
+#include "panels/messages.h"
+#include "panels/strip_tour.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace haustra::panels {
+namespace {
+
+FlatStrip evenStrip() {
+    return {10.0, 100.0, {{0.0, 0.2}, {500.0, 5.0}, {900.0, 9.5}}};
+}
+
+TEST(ClientStrip, RowsAndArcsInterpolateAndAreHeldAtTheEnds) {
+    const FlatStrip strip = evenStrip();
+    EXPECT_DOUBLE_EQ(strip.yAtArc(500.0), 5.0);
+    EXPECT_DOUBLE_EQ(strip.yAtArc(700.0), 7.25);
+    EXPECT_DOUBLE_EQ(strip.yAtArc(-5.0), 0.2);
+    EXPECT_DOUBLE_EQ(strip.yAtArc(1e4), 9.5);
+    for (double arc = 0.0; arc <= 900.0; arc += 12.5)
+        EXPECT_NEAR(strip.arcAtY(strip.yAtArc(arc)), arc, 1e-9);
+    // Where several cameras look at one row, the middle of them.
+    const FlatStrip level{3.0, 100.0, {{0, 0}, {10, 1}, {20, 1}, {30, 1}, {40, 2}}};
+    EXPECT_DOUBLE_EQ(level.arcAtY(1.0), 20.0);
+    EXPECT_DOUBLE_EQ(level.arcAtY(1.5), 35.0);
+    EXPECT_DOUBLE_EQ(level.yAtArc(25.0), 1.0);
+    EXPECT_DOUBLE_EQ((FlatStrip{1.0, 9.0, {{7.0, 0.5}}}).arcAtY(0.9), 7.0);
+}
+
+class ClientStripTour : public ::testing::Test {
+protected:
+    ClientStripTour() : tour_(evenStrip()) {
+        tour_.setPaneSize({580, 300});
+        tour_.showWholeCircumference();
+    }
+    glm::dvec2 flatAt(glm::dvec2 pixel) const {
+        return tour_.window().flatFromPixel(pixel, tour_.paneSize());
+    }
+    StripTour tour_;
+};
+
+TEST_F(ClientStripTour, ShowsAllAroundAndAMarginWhateverThePanesSize) {
+    EXPECT_NEAR(flatAt({0, 150}).x - flatAt({580, 150}).x, 1.16, 1e-12);
+    tour_.setPaneSize({1000, 200});
+    EXPECT_NEAR(flatAt({0, 100}).x - flatAt({1000, 100}).x, 1.16, 1e-12);
+    EXPECT_EQ(wholeCircumference(1000), tour_.window().pixelsPerUnit);
+}
+
+TEST_F(ClientStripTour, WhatTheHandHoldsStaysUnderIt) {
+    tour_.centerOn({0.5, 4.0});
+    const glm::dvec2 held = flatAt({100, 80});
+    tour_.drag({60, -25});
+    EXPECT_LT(glm::distance(flatAt({160, 55}), held), 1e-12);
+    tour_.zoom(1.7, {160, 55});
+    EXPECT_LT(glm::distance(flatAt({160, 55}), held), 1e-12);
+    tour_.zoom(1e9, {290, 150});
+    EXPECT_EQ(tour_.window().pixelsPerUnit, StripTour::maxPixelsPerUnit);
+    tour_.zoom(1e-9, {290, 150});
+    EXPECT_EQ(tour_.window().pixelsPerUnit, 0.5 * wholeCircumference(580));
+    tour_.drag({1e6, 1e6});
+    EXPECT_EQ(tour_.window().center.y, 10.0);
+    EXPECT_GE(tour_.window().center.x, 0.0);
+    EXPECT_LT(tour_.window().center.x, 1.0);
+}
+
+TEST_F(ClientStripTour, FollowingTheCameraKeepsTheSideThatIsSeen) {
+    tour_.centerOn({0.9, 1.0});
+    tour_.follow(500.0);
+    EXPECT_EQ(tour_.window().center, glm::dvec2(0.9, 5.0));
+}
+
+TEST_F(ClientStripTour, TheFlyOverGoesFromEndToEndAtASteadyPace) {
+    tour_.setMotion(Motion::forward);
+    EXPECT_EQ(tour_.motion(), Motion::paused) << "not flying over";
+    tour_.zoom(4.0, {290, 150});
+    tour_.setFlyingOver(true);
+    EXPECT_EQ(tour_.window().pixelsPerUnit, wholeCircumference(580));
+    tour_.centerOn({0.5, 0.0});
+    tour_.setMotion(Motion::forward);
+    double before = 0.0, arcBefore = 0.0;
+    int steps = 0;
+    while (tour_.motion() == Motion::forward && steps < 1000) {
+        tour_.advance(0.1, 50.0, FlightDirection::antegrade);  // 50 mm of 100 mm a second
+        if (tour_.motion() == Motion::forward) {
+            EXPECT_NEAR(tour_.window().center.y - before, 0.05, 1e-12);
+        }
+        EXPECT_GE(tour_.arcMm(), arcBefore);
+        before = tour_.window().center.y;
+        arcBefore = tour_.arcMm();
+        ++steps;
+    }
+    EXPECT_NEAR(steps, 200, 1);
+    EXPECT_EQ(tour_.window().center.y, 10.0);
+    EXPECT_EQ(tour_.arcMm(), 900.0);
+    tour_.setMotion(Motion::backward);
+    tour_.advance(1.0, 100.0, FlightDirection::antegrade);
+    EXPECT_DOUBLE_EQ(tour_.window().center.y, 9.0);
+    tour_.setMotion(Motion::forward);
+    tour_.advance(1.0, 100.0, FlightDirection::retrograde);
+    EXPECT_DOUBLE_EQ(tour_.window().center.y, 8.0);
+    tour_.setFlyingOver(false);
+    EXPECT_EQ(tour_.motion(), Motion::paused);
+}
+
+TEST(ClientFlight, LooksAtAPlaceFromThePath) {
+    Centerline path;
+    for (int n = 0; n <= 100; ++n)
+        path.points.push_back({{double(n), 0.1 * n, std::sin(0.1 * n)}, double(n), 10.0});
+    for (const FlightDirection direction :
+         {FlightDirection::antegrade, FlightDirection::retrograde}) {
+        Flight flight(path);
+        flight.setDirection(direction);
+        flight.setMotion(Motion::forward);
+        for (const glm::dvec3 target :
+             {glm::dvec3(50, 20, 3), {40, 5, 12}, {40, 5, -12}, {60, -9, 0}, {50, 5, 1e3}}) {
+            flight.lookAt(50.0, target);
+            const Camera camera = flight.camera();
+            EXPECT_EQ(flight.motion(), Motion::paused);
+            EXPECT_EQ(flight.arcMm(), 50.0);
+            EXPECT_FALSE(flight.isFree());
+            const glm::dvec3 towards = glm::normalize(target - camera.positionMm);
+            EXPECT_GT(glm::dot(camera.forward, towards), 1.0 - 1e-9);
+            EXPECT_NEAR(glm::dot(camera.forward, camera.up), 0.0, 1e-9);
+        }
+    }
+}
+
+protocol::CaseOpened soundCase() {
+    protocol::CaseOpened opened;
+    opened.set_size_x(10), opened.set_size_y(10), opened.set_size_z(10);
+    for (const double number : {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})
+        opened.add_patient_from_voxel(number);
+    auto* flat = opened.mutable_flat();
+    flat->set_height(3.0);
+    flat->set_circumference_mm(120.0);
+    for (const double number : {0.0, 0.1, 200.0, 1.5, 350.0, 2.9})
+        flat->add_rows(number);
+    return opened;
+}
+
+TEST(ClientStrip, OnlySoundStripsAreTakenFromAServer) {
+    const auto info = caseInfoFrom(soundCase());
+    ASSERT_TRUE(info && info->flat);
+    EXPECT_EQ(info->flat->rows.size(), 3u);
+    EXPECT_EQ(info->flat->circumferenceMm, 120.0);
+    protocol::CaseOpened without = soundCase();
+    without.clear_flat();
+    EXPECT_FALSE(caseInfoFrom(without)->flat);
+
+    const double nan = std::nan("");
+    const auto refused = [](const auto& spoil) {
+        protocol::CaseOpened opened = soundCase();
+        spoil(*opened.mutable_flat());
+        return !caseInfoFrom(opened);
+    };
+    for (const double bad : {0.0, -1.0, nan, double(INFINITY), 5000.0})
+        EXPECT_TRUE(refused([&](protocol::FlatStrip& flat) { flat.set_height(bad); })) << bad;
+    for (const double bad : {0.0, -1.0, nan, double(INFINITY)})
+        EXPECT_TRUE(refused([&](protocol::FlatStrip& flat) { flat.set_circumference_mm(bad); }));
+    EXPECT_TRUE(refused([](protocol::FlatStrip& flat) { flat.clear_rows(); }));
+    EXPECT_TRUE(refused([](protocol::FlatStrip& flat) { flat.add_rows(400.0); }));
+    for (int n = 0; n < 6; ++n) {
+        EXPECT_TRUE(refused([&](protocol::FlatStrip& flat) { flat.set_rows(n, nan); })) << n;
+        EXPECT_TRUE(refused([&](protocol::FlatStrip& flat) { flat.set_rows(n, -1.0); })) << n;
+        EXPECT_TRUE(refused([&](protocol::FlatStrip& flat) { flat.set_rows(n, INFINITY); })) << n;
+    }
+
+    protocol::WallPlace place;
+    EXPECT_TRUE(placeFrom(place));
+    place.mutable_position_mm()->set_y(nan);
+    EXPECT_FALSE(placeFrom(place));
+    protocol::FlatMeasure measure;
+    EXPECT_TRUE(measureFrom(measure));
+    measure.set_area_mm2(INFINITY);
+    EXPECT_FALSE(measureFrom(measure));
+}
+
+}  // namespace
+}  // namespace haustra::panels
