@@ -110,7 +110,8 @@ protected:
         static const std::map<std::string, std::string> stages{{"ct", "import"},
                                                                {"cleansed", "cleansing"},
                                                                {"cleansed-lumen", "cleansing"},
-                                                               {"lumen", "denoising"}};
+                                                               {"lumen", "denoising"},
+                                                               {"flatmap", "flattening"}};
         const auto found = stages.find(product);
         return found == stages.end() ? product : found->second;
     }

@@ -1,5 +1,7 @@
 #include "flatten/flattening.h"
 
+#include "flatten/unified_flattening.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -8,6 +10,15 @@
 
 namespace haustra::flatten {
 namespace {
+
+// Of the time, where unifiedFlattening follows the conformal map.
+constexpr double conformalShare = 0.2;
+
+/// Progress from `from` to `to` of the whole.
+Progress part(const Progress& whole, double from, double to) {
+    if (!whole) return {};
+    return [=](double fraction) { whole(from + (to - from) * fraction); };
+}
 
 // Its bits: what lies at the same place of the surface.
 std::string placeKey(glm::dvec3 positionMm) {
@@ -49,17 +60,32 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
                                const FlatteningOptions& options) {
     ConformalTubeOptions conformal;
     conformal.threads = options.threads;
-    conformal.progress = options.progress;
+    conformal.progress =
+        part(options.progress, 0.0, options.areaWeight > 0.0 ? conformalShare : 1.0);
     auto flat = conformalTube(tube, firstLoop, conformal);
     if (!flat) return tl::make_unexpected(flat.error());
     Flattening made;
     made.modulus = flat->modulus;
     made.certificate = flat->certificate;
     made.repaired = flat->repaired;
-    made.distortion = measureDistortion(
-        tube, [&](std::size_t t, int corner) { return flat->map.corner(tube, t, corner); });
-    made.seam = bestSeam(tube, flat->map, options.seam);
-    made.map = cutAlongSeam(tube, std::move(flat->map), made.seam);
+    PeriodicMap map = std::move(flat->map);
+    const auto measured = [&] {
+        return measureDistortion(
+            tube, [&](std::size_t t, int corner) { return map.corner(tube, t, corner); });
+    };
+    made.conformal = made.distortion = measured();
+    if (options.areaWeight > 0.0) {
+        UnifiedOptions unified;
+        unified.areaWeight = options.areaWeight;
+        unified.threads = options.threads;
+        unified.progress = part(options.progress, conformalShare, 1.0);
+        auto traded = unifiedFlattening(tube, map, unified);
+        if (!traded) return tl::make_unexpected(traded.error());
+        map = std::move(*traded);
+        made.distortion = measured();
+    }
+    made.seam = bestSeam(tube, map, options.seam);
+    made.map = cutAlongSeam(tube, std::move(map), made.seam);
     made.flips = flipsOf(made.map);
     made.seamMismatch = seamMismatch(made.map);
     return made;

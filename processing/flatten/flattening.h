@@ -1,4 +1,4 @@
-// From a tube to its flat map: the conformal map, the seam and the cut, and how good they are.
+// From a tube to its flat map: the map, the seam and the cut, and how good they are.
 #pragma once
 
 #include "core/flat_map.h"
@@ -14,6 +14,7 @@ namespace haustra::flatten {
 
 struct FlatteningOptions {
     SeamOptions seam;
+    double areaWeight = 0.0;  ///< above 0 the conformal map is followed by unifiedFlattening
     int threads = 0;
     Progress progress;
 };
@@ -22,14 +23,16 @@ struct Flattening {
     FlatMap map;  ///< without cameras; its sourceTriangle are the tube's
     double modulus = 0.0, certificate = 0.0;
     Distortion distortion;      ///< of the tube's own triangles, before the seam splits some
+    Distortion conformal;       ///< before areaWeight took effect; the same where it is 0
     std::size_t flips = 0;      ///< among the triangles of `map`
     double seam = 0.0;          ///< the x of the uncut map that the seam lies at
     double seamMismatch = 0.0;  ///< seamMismatch(map)
     int repaired = 0;           ///< vertices
 };
 
-/// conformalTube, bestSeam, cutAlongSeam, measureDistortion. `firstLoop`: a vertex on the loop that
-/// becomes y = 0, or −1. Fails as conformalTube does.
+/// conformalTube, unifiedFlattening where it is asked for, bestSeam, cutAlongSeam,
+/// measureDistortion. `firstLoop`: a vertex on the loop that becomes y = 0, or −1. Fails as these
+/// do.
 Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
                                const FlatteningOptions& options = {});
 

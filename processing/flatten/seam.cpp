@@ -11,8 +11,8 @@ namespace {
 constexpr int columns = 720;
 // Beyond the seam a picture repeats about so much of the circumference; it is to be quiet too.
 constexpr double marginTurns = 0.04;
-// A vertex this near to the seam, in edges, lies on it: a cut there would leave a sliver. Nearer than
-// the least hair its x would not survive the addition of a turn.
+// A vertex this near to the seam, in edges, lies on it: a cut there would leave a sliver. Nearer
+// than the least hair its x would not survive the addition of a turn.
 constexpr double snapShare = 1e-6, leastHair = 1e-12;
 
 glm::dvec3 corner(const TriMesh& tube, std::size_t triangle, int c) {
@@ -112,6 +112,11 @@ std::vector<double> nearbyPlaces(const TriMesh& tube, const PeriodicMap& map,
     return count;
 }
 
+/// Of two equal numbers it is that number, which rounding would miss.
+double between(double from, double to, double share) {
+    return std::clamp(from + share * (to - from), std::min(from, to), std::max(from, to));
+}
+
 /// Cuts triangle after triangle at the whole numbers of x. Lines are cut in ascending order, so
 /// that two triangles cut the edge between them at the same places.
 class SeamCut {
@@ -186,7 +191,7 @@ private:
             const double share = (line - xOf(a)) / (xOf(b) - xOf(a));
             const Point from = points_[std::size_t(a.point)], to = points_[std::size_t(b.point)];
             points_.push_back({glm::mix(from.positionMm, to.positionMm, share),
-                               {0.0, glm::mix(from.flat.y, to.flat.y, share)}});
+                               {0.0, between(from.flat.y, to.flat.y, share)}});
             copies_.push_back({-1, -1});
         }
         return {made->second, std::int64_t(line)};
@@ -261,6 +266,9 @@ double bestSeam(const TriMesh& tube, const PeriodicMap& map, const SeamOptions& 
 
 FlatMap cutAlongSeam(const TriMesh& tube, PeriodicMap map, double seam) {
     rotate(map, tube, seam);
+    // Rounding must not carry a vertex past the rims.
+    for (glm::dvec2& at : map.flat)
+        at.y = std::clamp(at.y, 0.0, map.height);
     snapToSeam(map, tube);
     return SeamCut(tube, map).cut();
 }

@@ -1,17 +1,12 @@
 #include "mesh/mesh_file.h"
 
+#include "mesh/file_writing.h"
 #include "mesh/polygon_soup.h"
 
-#include <algorithm>
-#include <cctype>
-#include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <new>
 #include <optional>
-
-#include <unistd.h>
 
 namespace haustra::mesh {
 namespace {
@@ -19,9 +14,7 @@ namespace {
 enum class Format { ply, obj, off, stl };
 
 std::optional<Format> formatOf(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string ending = endingOf(file);
     if (ending == ".ply") return Format::ply;
     if (ending == ".obj") return Format::obj;
     if (ending == ".off") return Format::off;
@@ -62,26 +55,6 @@ Result<TriMesh> meshOf(const std::string& bytes, Format format, const std::strin
 
 // --------------------------------------------------------------------------------------- writing
 
-template <class Number>
-void appendRaw(std::string& bytes, const Number& value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-/// The shortest text that reads back as the same number.
-template <class Number>
-void appendText(std::string& bytes, Number value, char after) {
-    char text[32];
-    bytes.append(text, std::to_chars(text, text + sizeof text, value).ptr);
-    bytes.push_back(after);
-}
-
-template <class Vector>
-void appendText(std::string& bytes, const Vector& v) {
-    appendText(bytes, v.x, ' ');
-    appendText(bytes, v.y, ' ');
-    appendText(bytes, v.z, '\n');
-}
-
 std::string plyBytes(const TriMesh& mesh) {
     std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment LPS mm\nelement vertex " +
                         std::to_string(mesh.vertices.size()) +
@@ -102,11 +75,11 @@ std::string objBytes(const TriMesh& mesh) {
     std::string bytes = "# LPS mm\n";
     for (const glm::dvec3& v : mesh.vertices) {
         bytes += "v ";
-        appendText(bytes, v);
+        appendTextLine(bytes, v);
     }
     for (const glm::ivec3& t : mesh.triangles) {
         bytes += "f ";
-        appendText(bytes, t + 1);
+        appendTextLine(bytes, t + 1);
     }
     return bytes;
 }
@@ -115,10 +88,10 @@ std::string offBytes(const TriMesh& mesh) {
     std::string bytes = "OFF\n# LPS mm\n" + std::to_string(mesh.vertices.size()) + ' ' +
                         std::to_string(mesh.triangles.size()) + " 0\n";
     for (const glm::dvec3& v : mesh.vertices)
-        appendText(bytes, v);
+        appendTextLine(bytes, v);
     for (const glm::ivec3& t : mesh.triangles) {
         bytes += "3 ";
-        appendText(bytes, t);
+        appendTextLine(bytes, t);
     }
     return bytes;
 }
@@ -158,19 +131,7 @@ Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh) {
                               : *format == Format::obj ? objBytes(mesh)
                               : *format == Format::off ? offBytes(mesh)
                                                        : stlBytes(mesh);
-    std::filesystem::path temporary = file;
-    temporary += ".tmp-" + std::to_string(::getpid());
-    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-    stream.write(bytes.data(), std::streamsize(bytes.size()));
-    stream.close();
-    std::error_code error;
-    if (stream) std::filesystem::rename(temporary, file, error);
-    if (!stream || error) {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-        return fail(ErrorKind::io, "cannot write the mesh", file.string());
-    }
-    return {};
+    return replaceFile(file, bytes);
 }
 
 }  // namespace haustra::mesh

@@ -210,6 +210,9 @@ Result<OrganProfile> parseProfile(std::string_view text, const std::string& plac
     fields.choice("topology", topologies, profile.topology);
     fields.choice("end-points", endPointRules, profile.endPoints);
     fields.flag("branches", profile.branches);
+    if (fields.has("flatten")) fields.flag("flatten", profile.flatten);
+    if (profile.flatten && profile.topology != ExpectedTopology::ball)
+        fields.wrong("flatten", "needs the topology ball");
     const auto readObject = [&](const char* name, auto read) -> Result<void> {
         const json* object = fields.find(name);
         if (!object) return {};

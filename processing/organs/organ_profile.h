@@ -34,6 +34,7 @@ struct OrganProfile {
     ExpectedTopology topology = ExpectedTopology::ball;
     EndPoints endPoints = EndPoints::farthest;
     bool branches = false;  ///< the centerline keeps them
+    bool flatten = false;   ///< a tube between the centerline's ends: its surface is mapped flat
 };
 
 /// A profile from its text. Fails (badInput), naming `place` and the field, where the text is not

@@ -1,4 +1,4 @@
-// The stages that shape the lumen: denoising, distance, centerline, surface.
+// The stages that shape the lumen: denoising, distance, centerline, surface, flattening.
 #pragma once
 
 #include "pipeline/preparation.h"
@@ -24,5 +24,9 @@ Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& l
 /// `surface`: the lumen contoured at the wall's HU and simplified within the error bound.
 Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
                                const ProductKey& lumen);
+/// `flatmap`: the surface's conformal map, cut open, each vertex with the place of the centerline
+/// that it is seen from.
+Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& surface,
+                                  const ProductKey& centerline);
 
 }  // namespace haustra::pipeline

@@ -14,17 +14,20 @@ const std::vector<std::string>& madeFrom(const std::string& product) {
     static const std::map<std::string, std::vector<std::string>> dependents{
         {ct,
          {segmentation, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches,
-          surface}},
+          surface, flatMap}},
         {segmentation,
-         {mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches, surface}},
-        {mixture, {cleansedLumen, cleansed, lumen, distance, centerline, branches, surface}},
-        {cleansedLumen, {cleansed, lumen, distance, centerline, branches, surface}},
-        {cleansed, {lumen, distance, centerline, branches, surface}},
-        {lumen, {distance, centerline, branches, surface}},
-        {distance, {centerline, branches}},
-        {centerline, {branches}},
+         {mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches, surface,
+          flatMap}},
+        {mixture,
+         {cleansedLumen, cleansed, lumen, distance, centerline, branches, surface, flatMap}},
+        {cleansedLumen, {cleansed, lumen, distance, centerline, branches, surface, flatMap}},
+        {cleansed, {lumen, distance, centerline, branches, surface, flatMap}},
+        {lumen, {distance, centerline, branches, surface, flatMap}},
+        {distance, {centerline, branches, flatMap}},
+        {centerline, {branches, flatMap}},
         {branches, {}},
-        {surface, {}}};
+        {surface, {flatMap}},
+        {flatMap, {}}};
     return dependents.at(product);
 }
 

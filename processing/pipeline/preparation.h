@@ -20,7 +20,7 @@ namespace product {
 inline constexpr char ct[] = "ct", segmentation[] = "segmentation", mixture[] = "mixture",
                       cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
                       lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
-                      branches[] = "branches", surface[] = "surface";
+                      branches[] = "branches", surface[] = "surface", flatMap[] = "flatmap";
 }  // namespace product
 
 /// The products that a product goes into, nearly or by way of others: what is outdated with it.
@@ -56,6 +56,8 @@ public:
     /// The product `ct`, with its patient position.
     Result<CtScan> readScan() const;
 
+    /// A line for the report, of something that no product tells.
+    void note(const std::string& line) { report_.notes.push_back(line); }
     PrepareReport takeReport() { return std::move(report_); }
 
 private:

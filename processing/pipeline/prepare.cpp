@@ -35,6 +35,8 @@ Result<void> checkOptions(const PrepareOptions& options) {
           options.surfaceErrorMm <= greatestSurfaceErrorMm)) {
         return fail(ErrorKind::badInput, "the surface's error must be 0.001 to 10 mm");
     }
+    if (!(options.areaWeight >= 0.0 && options.areaWeight <= 1.0))
+        return fail(ErrorKind::badInput, "the weight of areas must be between 0 and 1");
     for (const std::filesystem::path& source : {options.series, options.lumenMask}) {
         std::error_code ignored;
         if (!source.empty() && !std::filesystem::exists(source, ignored)) {
@@ -86,6 +88,13 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     if (!preparation.wanted("surface")) return preparation.takeReport();
     const auto surface = makeSurface(preparation, wall, *lumen);
     if (!surface) return tl::make_unexpected(surface.error());
+    if (!preparation.wanted("flattening")) return preparation.takeReport();
+    if (!preparation.organ().flatten) {
+        preparation.note("flattening: left out, as the organ's profile does not ask for it");
+        return preparation.takeReport();
+    }
+    const auto flatMap = flattenSurface(preparation, *surface, *centerline);
+    if (!flatMap) return tl::make_unexpected(flatMap.error());
     return preparation.takeReport();
 }
 
@@ -104,7 +113,7 @@ void removeIfEmpty(const std::filesystem::path& folder) {
 const std::vector<std::string>& stageNames() {
     static const std::vector<std::string> names{"import",     "segmentation", "mixture",
                                                 "cleansing",  "denoising",    "distance",
-                                                "centerline", "surface"};
+                                                "centerline", "surface",      "flattening"};
     return names;
 }
 

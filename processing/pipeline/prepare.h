@@ -27,6 +27,8 @@ struct PrepareOptions {
     /// How far the surface may be from the contoured one, at the samples that
     /// surface/simplification.h names; between them it is not bounded. 0.001 to 10.
     double surfaceErrorMm = 0.1;
+    /// Of the flat map, from 0 (angles are kept) to 1 (areas nearly are): flatten/flattening.h.
+    double areaWeight = 0.0;
     int threads = 0;  ///< ≤ 0: all cores
     /// How far a stage is, 0…1. Called from the thread that called prepare.
     std::function<void(const std::string& stage, double fraction)> progress;
@@ -49,7 +51,7 @@ struct PrepareReport {
 };
 
 /// Stages in order, by the names that `until` takes: import, segmentation, mixture, cleansing,
-/// denoising, distance, centerline, surface.
+/// denoising, distance, centerline, surface, flattening.
 const std::vector<std::string>& stageNames();
 
 /// Makes a case's products, each in its turn:
@@ -64,12 +66,15 @@ const std::vector<std::string>& stageNames();
 ///   centerline    centerline      and branches, where the organ's profile keeps them: one after
 ///                                 the other, each from an arc of 0 on
 ///   surface       surface         the lumen's closed surface
+///   flattening    flatmap         the surface on the plane, with the centerline's places that it
+///                                 is seen from
 ///
 /// Mixture and cleansing run where there is a scan and the organ's profile says so; `lumen` comes
-/// from the segmentation otherwise. Stages whose products the store holds under the same key (stage
-/// version, options, input keys; the first input is the content of the source files), with sound
-/// bytes, are skipped. Killed at any moment it continues with the next call. Holds the case's lock
-/// while it runs. The products are the same bytes for any number of threads.
+/// from the segmentation otherwise. Flattening runs where the profile says so. A stage that fails
+/// leaves the products before it published. Stages whose products the store holds under the same
+/// key (stage version, options, input keys; the first input is the content of the source files),
+/// with sound bytes, are skipped. Killed at any moment it continues with the next call. Holds the
+/// case's lock while it runs. The products are the same bytes for any number of threads.
 Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& caseName,
                               const PrepareOptions& options);
 

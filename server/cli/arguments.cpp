@@ -39,8 +39,10 @@ void addThreadsOption(CLI::App& command, int& threads) {
         ->capture_default_str();
 }
 
-CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
-                             std::vector<glm::dvec3>& points, const std::string& description) {
+namespace {
+
+CLI::Option* addPoints(CLI::App& command, const std::string& name, std::vector<glm::dvec3>& points,
+                       const std::string& description) {
     const auto take = [&points, name](const std::vector<std::string>& texts) {
         points.clear();
         for (const std::string& text : texts) {
@@ -49,9 +51,39 @@ CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
             points.emplace_back((*numbers)[0], (*numbers)[1], (*numbers)[2]);
         }
     };
-    return command.add_option_function<std::vector<std::string>>(name, take, description)
+    return command.add_option_function<std::vector<std::string>>(name, take, description);
+}
+
+}  // namespace
+
+CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
+                             std::vector<glm::dvec3>& points, const std::string& description) {
+    return addPoints(command, name, points, description)
         ->type_name("X,Y,Z")
         ->allow_extra_args(false);
+}
+
+CLI::Option* addEndsOption(CLI::App& command, std::vector<glm::dvec3>& endsMm,
+                           const std::string& description) {
+    return addPoints(command, "--ends", endsMm, description)->type_name("X,Y,Z")->expected(2);
+}
+
+void addAreaWeightOption(CLI::App& command, double& areaWeight) {
+    // CLI::Range lets NaN through.
+    const auto check = [](const std::string& text) {
+        const auto number = parseNumbers(text, ',', 1);
+        return number && (*number)[0] >= 0.0 && (*number)[0] <= 1.0
+                   ? std::string()
+                   : "\"" + text + "\" is not between 0 and 1";
+    };
+    command
+        .add_option(
+            "--area-weight", areaWeight,
+            "Of the flat map, how far angles are traded for areas: from 0, where small shapes "
+            "are kept, to 1, where sizes nearly are")
+        ->type_name("W")
+        ->check(check, "FLOAT in [0 - 1]")
+        ->capture_default_str();
 }
 
 }  // namespace haustra::cli

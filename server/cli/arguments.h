@@ -30,4 +30,11 @@ void addThreadsOption(CLI::App& command, int& threads);
 CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
                              std::vector<glm::dvec3>& points, const std::string& description);
 
+/// --ends x,y,z x,y,z in patient millimetres: none, or two points.
+CLI::Option* addEndsOption(CLI::App& command, std::vector<glm::dvec3>& endsMm,
+                           const std::string& description);
+
+/// --area-weight W of a flat map, from 0 (conformal) to 1 (as nearly area-preserving as can be).
+void addAreaWeightOption(CLI::App& command, double& areaWeight);
+
 }  // namespace haustra::cli

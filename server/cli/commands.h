@@ -25,5 +25,6 @@ Command addList(CLI::App& program);
 Command addRender(CLI::App& program);
 Command addEvaluate(CLI::App& program);
 Command addDenoise(CLI::App& program);
+Command addFlatten(CLI::App& program);
 
 }  // namespace haustra::cli

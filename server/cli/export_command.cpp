@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/flat_image_export.h"
 #include "cli/text_files.h"
+#include "mesh/flat_map_file.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "store/case_store.h"
@@ -34,6 +35,7 @@ const std::map<std::string, Endings>& formats() {
         {"centerline", {".csv"}},
         {"branches", {".csv"}},
         {"surface", {".ply", ".obj", ".off", ".stl"}},
+        {"flatmap", {".obj", ".ply"}},
         {"flat-image", {".png"}}};
     return endings;
 }
@@ -84,6 +86,11 @@ Result<void> runExport(const Arguments& arguments) {
         if (!mesh) return tl::make_unexpected(mesh.error());
         return mesh::writeMesh(arguments.file, *mesh);
     }
+    if (product == "flatmap") {
+        const auto map = source->readFlatMap();
+        if (!map) return tl::make_unexpected(map.error());
+        return mesh::writeFlatMap(arguments.file, *map);
+    }
     if (product == "mixture") {
         const auto mixture = source->readVolume<TissueFractions>(product);
         if (!mixture) return tl::make_unexpected(mixture.error());
@@ -106,7 +113,9 @@ Command addExport(CLI::App& program) {
         "a collapse), mixture (4-D uint8: air, soft tissue, tagged, in 255ths) and distance "
         "(float, mm) as .nii.gz; centerline as .csv (x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, "
         "rectum to cecum) and branches likewise, each from an arc of 0 on; surface as .ply, .obj, "
-        ".off or .stl (LPS, mm); flat-image, the whole flattened wall seen from within, the "
+        ".off or .stl (LPS, mm); flatmap, the cut surface, as .obj (vt: flat coordinates in "
+        "circumferences) or .ply (s, t, and of each vertex the camera on the centerline that sees "
+        "it, its index and arc_mm); flat-image, the whole flattened wall seen from within, the "
         "rectum at the bottom and black where the surface crosses air, as .png.");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     command->add_option("PRODUCT", arguments->product, "What to write")

@@ -106,8 +106,8 @@ Command addPrepare(CLI::App& program) {
         "prepare",
         "Make a case's products from a CT series: the scan in HU, the colon's segmentation, the "
         "tissues in each voxel, the scan cleansed of tagged residue, the lumen without handles, "
-        "the distance to its boundary, its centerline and its surface. Work that the store holds "
-        "already is not done again.");
+        "the distance to its boundary, its centerline, its surface and the surface's flat map. "
+        "Work that the store holds already is not done again.");
     command
         ->add_option("SERIES", options.series,
                      "DICOM folder (files in any order and depth) or file, or one NIfTI file")
@@ -156,6 +156,7 @@ Command addPrepare(CLI::App& program) {
         ->type_name("MM")
         ->check(checkSurfaceError, "FLOAT in [0.001 - 10]")
         ->capture_default_str();
+    addAreaWeightOption(*command, options.areaWeight);
     command
         ->add_option("--report", arguments->report,
                      "Write wall seconds and peak memory of each stage, and notes, as JSON")

@@ -44,12 +44,15 @@ TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
              {"prepare", "x", "--store", "s", "--threads", "many"},
              {"prepare", "x", "--store", "s", "--surface-error-mm", "nan"},
              {"prepare", "x", "--store", "s", "--surface-error-mm", "0"},
+             {"prepare", "x", "--store", "s", "--area-weight", "1.1"},
+             {"prepare", "x", "--store", "s", "--area-weight", "nan"},
              {"prepare", "x", "--store", "s", "--lumen", "m.nii", "--seed", "1,2,3"},
              {"prepare", "x", "--store", "s", "--lumen", "m.nii", "--exclude", "1,2,3"},
              {"prepare", "--store", "s", "--lumen", "m.nii", "--until", "import"},
              {"export", "c", "ct", "file.csv", "--store", "s"},
              {"export", "c", "centerline", "file.nii.gz", "--store", "s"},
              {"export", "c", "lungs", "file.nii.gz", "--store", "s"},
+             {"export", "c", "flatmap", "file.off", "--store", "s"},
              {"render", "c", "--store", "s", "--out", "x.png"},
              {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--size", "0x7"},
              {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--size", "7"},
@@ -71,7 +74,8 @@ TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
 TEST(CommandLine, HelpIsThereForEverySubcommand) {
     EXPECT_EQ(haustra({"--help"}).exitCode, 0);
     EXPECT_EQ(haustra({"--version"}).exitCode, 0);
-    for (const char* command : {"phantom", "prepare", "export", "list", "render", "evaluate"}) {
+    for (const char* command :
+         {"phantom", "prepare", "export", "list", "render", "evaluate", "denoise", "flatten"}) {
         const auto outcome = haustra({command, "--help"});
         EXPECT_EQ(outcome.exitCode, 0);
         EXPECT_NE(outcome.out.find("Usage: haustra " + std::string(command)), std::string::npos)
@@ -208,6 +212,26 @@ TEST_F(PreparedPhantom, TheSurfaceIsExportedInEachFormat) {
               2);
 }
 
+TEST_F(PreparedPhantom, TheFlatMapIsExportedWithItsFlatCoordinates) {
+    const auto map = store::CaseStore::open(store(), false)->openCase("p")->readFlatMap().value();
+    for (const char* name : {"f.obj", "f.ply"}) {
+        const auto outcome = haustra({"export", "p", "flatmap", file(name), "--store", store()});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        const auto mesh = mesh::readMesh(file(name));
+        ASSERT_TRUE(mesh) << describe(mesh.error());
+        EXPECT_EQ(mesh->vertices, map.surface.vertices);
+        EXPECT_EQ(mesh->triangles, map.surface.triangles);
+    }
+    std::istringstream obj(tests::fileContent(file("f.obj")));
+    std::string line;
+    for (std::size_t v = 0; std::getline(obj, line);) {
+        if (!line.starts_with("vt ")) continue;
+        double x = -1.0, y = -1.0;
+        ASSERT_EQ(std::sscanf(line.c_str(), "vt %lf %lf", &x, &y), 2);
+        ASSERT_EQ(glm::dvec2(x, y), map.flat.at(v++));
+    }
+}
+
 TEST_F(PreparedPhantom, TheExportedCenterlineHasALineForEachSample) {
     ASSERT_EQ(haustra({"export", "p", "centerline", file("c.csv"), "--store", store()}).exitCode,
               0);
@@ -246,7 +270,8 @@ TEST_F(PreparedPhantom, TheReportHasTimeAndMemoryOfEachStage) {
         EXPECT_GT(stage["peak_memory_mib"].get<double>(), 1.0);
     }
     EXPECT_EQ(names, (std::vector<std::string>{"import", "segmentation", "mixture", "cleansing",
-                                               "denoising", "distance", "centerline", "surface"}));
+                                               "denoising", "distance", "centerline", "surface",
+                                               "flattening"}));
 
     ASSERT_EQ(haustra({"prepare", series(), "--lumen", mask(), "--store", store(), "--case", "p",
                        "--report", file("again.json")})
@@ -260,9 +285,9 @@ TEST_F(PreparedPhantom, TheReportHasTimeAndMemoryOfEachStage) {
 TEST_F(PreparedPhantom, TheListNamesCasesProductsAndSizes) {
     const auto outcome = haustra({"list", "--store", store()});
     EXPECT_EQ(outcome.exitCode, 0);
-    EXPECT_EQ(lineCount(outcome.out), 10u) << outcome.out;
+    EXPECT_EQ(lineCount(outcome.out), 11u) << outcome.out;
     for (const char* word : {"p\n", "ct", "segmentation", "mixture", "cleansed", "cleansed-lumen",
-                             "lumen", "distance", "centerline", "surface", " MB"}) {
+                             "lumen", "distance", "centerline", "surface", "flatmap", " MB"}) {
         EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
     }
 }
@@ -312,7 +337,7 @@ TEST_F(PreparedPhantom, ProductsDoNotDependOnTheNumberOfThreads) {
         for (const auto& file : fs::directory_iterator(made)) {
             files[file.path().filename().string()] = tests::fileContent(file.path());
         }
-        EXPECT_EQ(files.size(), 11u);  // nine products, the index, the lock
+        EXPECT_EQ(files.size(), 12u);  // nine products, the index, the lock
         if (first.empty()) first = files;
         EXPECT_TRUE(files == first) << threads;
     }

@@ -34,6 +34,7 @@ TEST(OrganProfile, TheBuiltInOnesAreWhatTheirNamesSay) {
     EXPECT_EQ(colon.topology, ExpectedTopology::ball);
     EXPECT_EQ(colon.endPoints, EndPoints::rectumCecum);
     EXPECT_FALSE(colon.branches);
+    EXPECT_TRUE(colon.flatten);
     EXPECT_EQ(colon.tissues, TissuePriors{});  // an abdomen's
     const OrganProfile vessel = readProfile("vessel").value();
     EXPECT_EQ(vessel.finder, LumenFinder::huRange);
@@ -42,6 +43,7 @@ TEST(OrganProfile, TheBuiltInOnesAreWhatTheirNamesSay) {
     EXPECT_EQ(vessel.endPoints, EndPoints::farthest);
     EXPECT_TRUE(vessel.branches);
     EXPECT_FALSE(vessel.cleanse);
+    EXPECT_FALSE(vessel.flatten);
     EXPECT_GT(readProfile("bladder")->openingMm, 0.0);
 }
 
@@ -73,6 +75,9 @@ TEST(OrganProfile, WhatIsWrongIsRefusedWithFileAndField) {
         {"colon", R"([{"op":"replace","path":"/organ","value":""}])", "organ", "text"},
         {"colon", R"([{"op":"replace","path":"/cleanse","value":"yes"}])", "cleanse",
          "true nor false"},
+        {"colon", R"([{"op":"replace","path":"/flatten","value":1}])", "flatten", "true nor false"},
+        {"vessel", R"([{"op":"add","path":"/flatten","value":true}])", "flatten",
+         "needs the topology ball"},
         {"colon", R"([{"op":"replace","path":"/topology","value":"torus"}])", "topology",
          "ball nor any"},
         {"colon", R"([{"op":"replace","path":"/end-points","value":3}])", "end-points", "text"},

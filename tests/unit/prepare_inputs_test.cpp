@@ -13,8 +13,8 @@ using PrepareInputs = Prepare;
 TEST_F(PrepareInputs, AMaskStandsAlone) {
     PrepareOptions alone = options();
     alone.series.clear();
-    EXPECT_EQ(reused(alone),
-              all(false, {"segmentation", "denoising", "distance", "centerline", "surface"}));
+    EXPECT_EQ(reused(alone), all(false, {"segmentation", "denoising", "distance", "centerline",
+                                         "surface", "flattening"}));
     const auto tube = store().openCase("tube").value();
     for (const char* product : {"ct", "mixture", "cleansed", "cleansed-lumen"})
         EXPECT_FALSE(tube.find(product)) << product;
@@ -29,7 +29,7 @@ TEST_F(PrepareInputs, AMaskWithoutASeriesIsOfTheCasesScan) {
     PrepareOptions mask = options();
     mask.series.clear();
     EXPECT_EQ(reused(mask), all(false, {"segmentation", "mixture", "cleansing", "denoising",
-                                        "distance", "centerline", "surface"}));
+                                        "distance", "centerline", "surface", "flattening"}));
     EXPECT_TRUE(store().openCase("tube")->find("ct"));
     EXPECT_EQ(reused(options()), all(true));
 }

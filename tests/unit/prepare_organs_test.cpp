@@ -122,8 +122,11 @@ TEST_F(PrepareOrgans, AContrastFilledVesselWithItsBranch) {
         stages.push_back(stage.stage);
     EXPECT_EQ(stages, (std::vector<std::string>{"import", "segmentation", "denoising", "distance",
                                                 "centerline", "surface"}));
+    EXPECT_TRUE(std::ranges::any_of(report->notes, [](const std::string& note) {
+        return note.starts_with("flattening: left out");
+    }));
     const store::Case made = opened();
-    for (const char* product : {"mixture", "cleansed", "cleansed-lumen"})
+    for (const char* product : {"mixture", "cleansed", "cleansed-lumen", "flatmap"})
         EXPECT_FALSE(made.find(product)) << product;
 
     const TriMesh surface = made.readMesh().value();

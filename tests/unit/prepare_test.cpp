@@ -2,6 +2,7 @@
 // the products do not depend on the number of threads.
 #include "cleansing/tissue_mixture.h"
 #include "core/tri_mesh.h"
+#include "flat_meshes.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/source_key.h"
 #include "pipeline/stage_meter.h"
@@ -16,9 +17,46 @@ namespace {
 TEST_F(Prepare, ASecondRunReusesEverythingAndChangesNothing) {
     EXPECT_EQ(reused(options()), all(false));
     const auto before = bytesOf(store().openCase("tube").value());
-    EXPECT_EQ(before.size(), 9u);
+    EXPECT_EQ(before.size(), 10u);
     EXPECT_EQ(reused(options()), all(true));
     EXPECT_EQ(bytesOf(store().openCase("tube").value()), before);
+}
+
+// Every triangle of the surface is in the map, but those of the two holes at its ends.
+void expectFlatMapOf(const TriMesh& surface, const Centerline& centerline,
+                     const store::Case& tube) {
+    const auto flat = tube.readFlatMap();
+    ASSERT_TRUE(flat) << describe(flat.error());
+    const auto attributes = tube.attributes("flatmap").value();
+    EXPECT_EQ(attributes.at("modulus").substr(0, 6), exactText(flat->height).substr(0, 6));
+    EXPECT_EQ(attributes.at("flips"), "0");
+    EXPECT_EQ(attributes.at("seam-mismatch"), "0");
+    EXPECT_EQ(attributes.at("triangles"), std::to_string(flat->surface.triangles.size()));
+    EXPECT_LT(std::stod(attributes.at("certificate")), 0.05);
+    std::vector<double> left(surface.triangles.size());
+    double capsMm2 = 0.0;
+    for (std::size_t t = 0; t < left.size(); ++t) {
+        left[t] = tests::areaMm2({surface.vertices, {surface.triangles[t]}});
+        capsMm2 += left[t];
+    }
+    capsMm2 -= tests::areaMm2(flat->surface);
+    for (std::size_t t = 0; t < flat->surface.triangles.size(); ++t) {
+        const auto source = std::size_t(flat->sourceTriangle[t]);
+        ASSERT_LT(source, left.size());
+        left[source] -= tests::areaMm2({flat->surface.vertices, {flat->surface.triangles[t]}});
+    }
+    const auto missing = std::ranges::count_if(left, [](double mm2) { return mm2 > 1e-6; });
+    EXPECT_LT(missing, 200);
+    EXPECT_GT(missing, 2);
+    EXPECT_NEAR(capsMm2, 2.0 * 18.0, 12.0);  // of rims of 15 mm each
+    EXPECT_LT(glm::distance(flat->cameras.front().positionMm, centerline.points.front().positionMm),
+              1e-9);
+    // The rectum, where the centerline begins, is at the bottom.
+    for (std::size_t v = 0; v < flat->flat.size(); ++v) {
+        if (flat->flat[v].y == 0.0) EXPECT_LT(flat->camera[v], 10);
+        if (flat->flat[v].y == flat->height)
+            EXPECT_GT(flat->camera[v], int(flat->cameras.size()) - 10);
+    }
 }
 
 TEST_F(Prepare, ProductsAreTheStagesOutputs) {
@@ -46,20 +84,23 @@ TEST_F(Prepare, ProductsAreTheStagesOutputs) {
     EXPECT_EQ(topology.eulerCharacteristic, 2);
     EXPECT_EQ(tube.attributes("surface").value().at("triangles"),
               std::to_string(surface.triangles.size()));
+    expectFlatMapOf(surface, centerline, tube);
 }
 
 TEST_F(Prepare, ChangedInputsRedoWhatComesFromThemAlone) {
     reused(options());
     ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(5.0)));
     EXPECT_EQ(reused(options()), redone({"segmentation", "mixture", "cleansing", "denoising",
-                                         "distance", "centerline", "surface"}));
+                                         "distance", "centerline", "surface", "flattening"}));
     writeScan(5.0);
     EXPECT_EQ(reused(options()), all(false));
     PrepareOptions coarser = options();
     coarser.surfaceErrorMm = 0.3;
-    EXPECT_EQ(reused(coarser), redone({"surface"}));
+    EXPECT_EQ(reused(coarser), redone({"surface", "flattening"}));
     coarser.threads = 1;
     EXPECT_EQ(reused(coarser), all(true));
+    coarser.areaWeight = 0.5;
+    EXPECT_EQ(reused(coarser), redone({"flattening"}));
 }
 
 TEST_F(Prepare, ANewScanLeavesNoProductOfTheOldOne) {
@@ -76,7 +117,7 @@ TEST_F(Prepare, UntilStopsAndTheNextRunGoesOn) {
     some.until = "distance";
     EXPECT_EQ(reused(some), all(false, {"import", "segmentation", "mixture", "cleansing",
                                         "denoising", "distance"}));
-    EXPECT_EQ(reused(options()), redone({"centerline", "surface"}));
+    EXPECT_EQ(reused(options()), redone({"centerline", "surface", "flattening"}));
 }
 
 // What a store of before this order of stages holds: the same names, made otherwise.
@@ -169,7 +210,8 @@ TEST_F(Prepare, WhatDenoisingAndTheSurfaceCameToIsNoted) {
     for (int run = 0; run < 2; ++run) {  // made, and reused
         const auto report = prepare(store(), "tube", options());
         ASSERT_TRUE(report) << describe(report.error());
-        for (const char* start : {"denoising: 0 handles cut, 0 cavities filled, ", "surface: "}) {
+        for (const char* start : {"denoising: 0 handles cut, 0 cavities filled, ",
+                                  "surface: ", "flattening: modulus "}) {
             EXPECT_TRUE(std::ranges::any_of(report->notes, [&](const std::string& note) {
                 return note.rfind(start, 0) == 0;
             })) << start;

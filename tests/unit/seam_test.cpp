@@ -38,6 +38,8 @@ void expectSheet(const TriMesh& tube, const PeriodicMap& uncut, const FlatMap& m
     for (const glm::dvec2& at : map.flat) {
         EXPECT_GE(at.x, 0.0);
         EXPECT_LE(at.x, 1.0);
+        EXPECT_GE(at.y, 0.0);
+        EXPECT_LE(at.y, map.height);
         left += at.x == 0.0;
         right += at.x == 1.0;
     }

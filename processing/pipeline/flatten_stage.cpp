@@ -1,0 +1,123 @@
+#include "flatten/camera_registration.h"
+#include "flatten/end_holes.h"
+#include "flatten/flattening.h"
+#include "pipeline/lumen_stages.h"
+#include "pipeline/product_attributes.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace haustra::pipeline {
+namespace {
+
+using store::Attributes;
+
+// Raise it whenever the flat map changes for the same input and options.
+constexpr int flatteningVersion = 1;
+// The chord at the centerline's ends that tells where it looks.
+constexpr double endWindowMm = 6.0;
+
+std::string spreadText(const flatten::Spread& spread) {
+    return exactText(spread.mean) + "," + exactText(spread.p95) + "," + exactText(spread.p999) +
+           "," + exactText(spread.max);
+}
+
+Result<flatten::PunchedTube> punch(const TriMesh& surface, const Centerline& centerline) {
+    if (centerline.points.empty())
+        return fail(ErrorKind::badInput, "the centerline has no ends to open the surface at");
+    const CenterlinePose first = poseAtArc(centerline, 0.0, endWindowMm),
+                         last = poseAtArc(centerline, centerline.lengthMm(), endWindowMm);
+    const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm},
+                     outwards[2] = {-first.tangent, last.tangent};
+    return flatten::punchEnds(surface, ends, outwards);
+}
+
+// Of each spread: mean, 95 %, 99.9 %, largest.
+void setDistortion(Attributes& attributes, const std::string& prefix,
+                   const flatten::Distortion& distortion) {
+    attributes[prefix + "angle-error-degrees"] = spreadText(distortion.angleErrorDegrees);
+    attributes[prefix + "angle-floor-degrees"] = exactText(distortion.angleFloorDegrees);
+    attributes[prefix + "dilatation"] = spreadText(distortion.dilatation);
+    attributes[prefix + "log-area-deviation"] = exactText(distortion.logAreaDeviation);
+    attributes[prefix + "area-range"] = exactText(distortion.areaRange);
+}
+
+std::string distortionNote(const flatten::Distortion& distortion) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "angles off by %.2f° in the mean (no map: below %.2f°), areas by a factor of %.2f",
+        distortion.angleErrorDegrees.mean, distortion.angleFloorDegrees,
+        std::exp(distortion.logAreaDeviation));
+    return text;
+}
+
+Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedTube& punched,
+                        double areaWeight) {
+    Attributes attributes{
+        {"modulus", exactText(flat.modulus)},
+        {"certificate", exactText(flat.certificate)},
+        {"area-weight", exactText(areaWeight)},
+        {"flips", std::to_string(flat.flips)},
+        {"seam", exactText(flat.seam)},
+        {"seam-mismatch", exactText(flat.seamMismatch)},
+        {"cap-area-mm2", exactText(punched.capAreaMm2[0]) + "," + exactText(punched.capAreaMm2[1])},
+        {"rim-length-mm",
+         exactText(punched.rimLengthMm[0]) + "," + exactText(punched.rimLengthMm[1])},
+        {"vertices", std::to_string(flat.map.surface.vertices.size())},
+        {"triangles", std::to_string(flat.map.surface.triangles.size())},
+        {"cameras", std::to_string(flat.map.cameras.size())}};
+    setDistortion(attributes, "", flat.distortion);
+    char start[80];
+    std::snprintf(start, sizeof start, "modulus %.3f (certificate %.1e), ", flat.modulus,
+                  flat.certificate);
+    const std::string flips = ", " + std::to_string(flat.flips) + " triangles flipped";
+    std::vector<std::string> notes{start + distortionNote(flat.distortion) + flips};
+    if (areaWeight > 0.0) {
+        setDistortion(attributes, "conformal-", flat.conformal);
+        notes.push_back("before areas were weighted: " + distortionNote(flat.conformal));
+    }
+    setNotes(attributes, notes);
+    return attributes;
+}
+
+}  // namespace
+
+Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& surfaceKey,
+                                  const ProductKey& centerlineKey) {
+    const StageMeter meter;
+    const PrepareOptions& options = preparation.options();
+    const ProductKey key =
+        store::makeKey("flattening", flatteningVersion,
+                       "area-weight=" + exactText(options.areaWeight), {surfaceKey, centerlineKey});
+    const auto make = [&](const Progress& progress) -> Result<void> {
+        store::Case& target = preparation.target();
+        const auto surface = target.readMesh(product::surface);
+        if (!surface) return tl::make_unexpected(surface.error());
+        const auto centerline = target.readCenterline(product::centerline);
+        if (!centerline) return tl::make_unexpected(centerline.error());
+        const auto punched = punch(*surface, *centerline);
+        if (!punched) return tl::make_unexpected(punched.error());
+        progress(0.1);
+        flatten::FlatteningOptions flattening;
+        flattening.areaWeight = options.areaWeight;
+        flattening.threads = options.threads;
+        flattening.progress = [&](double fraction) { progress(0.1 + 0.8 * fraction); };
+        auto flat = flatten::flattenTube(punched->tube, punched->firstLoop, flattening);
+        if (!flat) return tl::make_unexpected(flat.error());
+        for (std::int32_t& source : flat->map.sourceTriangle)
+            source = punched->sourceTriangle[std::size_t(source)];
+        flatten::CameraRegistrationOptions registration;
+        registration.threads = options.threads;
+        if (auto seen = flatten::registerCameras(flat->map, *centerline, registration); !seen)
+            return seen;
+        return target.publishFlatMap(product::flatMap, key, flat->map,
+                                     attributesOf(*flat, *punched, options.areaWeight),
+                                     madeFrom(product::flatMap));
+    };
+    return preparation.run({"flattening", key, {product::flatMap}}, meter, make).map([&] {
+        return key;
+    });
+}
+
+}  // namespace haustra::pipeline
