@@ -141,7 +141,7 @@ struct FlatView {
 struct FlatRay {
     double mostRayAngle, mostLightAngle, lampAhead, backMm, riseHu, depthMm;
 };
-inline constexpr FlatRay flatRay{0.8, 1.45, 0.5, 2.0, 200.0, 10.0};
+inline constexpr FlatRay flatRay{0.8, 1.25, 0.5, 2.0, 200.0, 10.0};
 
 /// Limits of a flattened view: the strip's length in circumferences, the enlargement, and how often
 /// one picture may show the circumference.
