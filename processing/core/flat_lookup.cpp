@@ -30,6 +30,10 @@ std::vector<glm::dvec3> inPlane(const std::vector<glm::dvec2>& flat) {
     return vertices;
 }
 
+bool finite(glm::dvec2 p) {
+    return std::isfinite(p.x) && std::isfinite(p.y);
+}
+
 struct FlatTriangle {
     std::array<glm::dvec2, 3> corners;
     double doubleArea;
@@ -185,6 +189,9 @@ WallPlace FlatLookup::nearest(glm::dvec3 positionMm) const {
 }
 
 WallPath FlatLookup::path(glm::dvec2 from, glm::dvec2 to) const {
+    if (!finite(from) || !finite(to) || std::abs(to.x - from.x) > mostTurns) return {};
+    const double turns = std::floor(from.x);
+    from.x -= turns, to.x -= turns;
     from.y = std::clamp(from.y, 0.0, map().height);
     to.y = std::clamp(to.y, 0.0, map().height);
 
@@ -235,8 +242,16 @@ WallPath FlatLookup::path(glm::dvec2 from, glm::dvec2 to) const {
 }
 
 double FlatLookup::areaMm2(const std::vector<glm::dvec2>& polygon) const {
+    const auto byX = [](glm::dvec2 a, glm::dvec2 b) { return a.x < b.x; };
+    if (polygon.empty() || !std::all_of(polygon.begin(), polygon.end(), finite)) return 0.0;
+    const auto [leftmost, rightmost] = std::minmax_element(polygon.begin(), polygon.end(), byX);
+    if (rightmost->x - leftmost->x > mostTurns) return 0.0;
+    const double turns = std::floor(leftmost->x);
+    std::vector<glm::dvec2> near = polygon;
+    for (glm::dvec2& corner : near)
+        corner.x -= turns;
     double sum = 0.0;
-    for (const Trapezoid& piece : evenOddTrapezoids(polygon)) {
+    for (const Trapezoid& piece : evenOddTrapezoids(near)) {
         const auto [left, right] = std::minmax({piece[0].x, piece[1].x, piece[2].x, piece[3].x});
         index_->forEachTurn(left, right, [&](double shift) {
             Trapezoid moved = piece;

@@ -39,6 +39,9 @@ public:
 
     const FlatMap& map() const;
 
+    /// The most circumferences that a line or polygon may span.
+    static constexpr double mostTurns = 64.0;
+
     /// The place at a flat coordinate; x is taken modulo 1. Empty where y is beyond the strip or
     /// either is not finite. Where rounding leaves a hair between two triangles, the nearer of
     /// them. O(log n) expected.
@@ -49,11 +52,13 @@ public:
 
     /// The 3-D curve of a straight line in the flat plane (x may leave [0, 1]: it wraps, and the
     /// line is not the shorter way round unless the ends say so). Points beyond the strip are
-    /// clamped to it; ends must be finite. O(triangles crossed).
+    /// clamped to it. Empty where an end is not finite, or the line runs around more than mostTurns
+    /// times. O(triangles crossed).
     WallPath path(glm::dvec2 from, glm::dvec2 to) const;
     /// Area on the surface, mm², of a closed polygon in the flat plane (x may leave [0, 1], the
     /// polygon must not wrap around the colon onto itself). Even–odd where it crosses itself; 0
-    /// where it has fewer than three corners. O(corners² + triangles met by it).
+    /// where it has fewer than three corners, one that is not finite, or is wider than mostTurns.
+    /// O(corners² + triangles met by it).
     double areaMm2(const std::vector<glm::dvec2>& polygon) const;
 
 private:

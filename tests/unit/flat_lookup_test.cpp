@@ -303,6 +303,23 @@ TEST(FlatLookup, PolygonsOfAnyShapeHaveTheirArea) {
     EXPECT_NEAR(lookup.areaMm2(circle), half, 2e-4 * half);
 }
 
+TEST(FlatLookup, NothingIsMeasuredWhereNothingCanBe) {
+    const FlatLookup lookup = lookupOf(foldedMap());
+    const double beyond = FlatLookup::mostTurns + 1.0;
+    for (const glm::dvec2 end :
+         {glm::dvec2(NAN, 1.0), {0.5, NAN}, {INFINITY, 1.0}, {beyond, 1.0}}) {
+        EXPECT_TRUE(lookup.path({0.0, 1.0}, end).pointsMm.empty());
+        EXPECT_TRUE(lookup.path(end, {0.0, 1.0}).pointsMm.empty());
+        EXPECT_EQ(lookup.areaMm2({{0.0, 1.0}, end, {0.3, 2.0}}), 0.0);
+    }
+    // Far away is not wide.
+    const double away = 1e6;
+    EXPECT_NEAR(lookup.path({away, 1.0}, {away + 0.4, 2.0}).lengthMm,
+                lookup.path({0.0, 1.0}, {0.4, 2.0}).lengthMm, 1e-6);
+    EXPECT_NEAR(lookup.areaMm2({{away, 1.0}, {away + 0.4, 1.0}, {away, 2.0}}),
+                lookup.areaMm2({{0.0, 1.0}, {0.4, 1.0}, {0.0, 2.0}}), 1e-4);
+}
+
 TEST(FlatLookup, WholeStripIsTheWholeSurface) {
     const FlatLookup lookup = lookupOf(foldedMap());
     double area = 0.0;
