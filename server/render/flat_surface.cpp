@@ -104,10 +104,10 @@ std::vector<shaders::FlatEye> eyes(const std::vector<FlatCamera>& cameras, glm::
     return result;
 }
 
-/// As many as leave room for the strip's length and the copies beside it in 31 bits.
+/// As many as leave 31 bits room for the strip's length and for the copies beside it.
 int unitsFor(double height) {
-    int units = 1 << 24;
-    while ((height + 2.0 * maxCircumferences) * units > double(1 << 30))
+    int units = 1 << 26;
+    while ((std::max(height, double(maxCircumferences)) + 2.0) * units > 0x1p31)
         units /= 2;
     return units;
 }
