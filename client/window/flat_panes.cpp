@@ -68,14 +68,14 @@ void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
 void drawZoomFrame(Ui& ui, const FlatArea& column, ImDrawList* list) {
     const panels::StripTour& tour = ui.reader.tour();
     const glm::dvec2 half = 0.5 * glm::dvec2(tour.paneSize()) / tour.window().pixelsPerUnit;
-    const float inset = ui.px(1);
+    const float left = column.area.min.x + ui.px(1), right = column.area.max.x - ui.px(1);
+    const bool allAround = half.x >= 0.5;
     for (const double turn : {-1.0, 0.0, 1.0}) {
         const glm::dvec2 center = tour.window().center + glm::dvec2(turn, 0.0);
         ImVec2 min = column.screen(center + half), max = column.screen(center - half);
-        min.x = std::max(min.x, column.area.min.x + inset);
-        max.x = std::min(max.x, column.area.max.x - inset);
-        const bool spans = half.x >= 0.5;  // then one copy is enough
-        if (min.x >= max.x || (spans && turn != 0.0)) continue;
+        min.x = allAround ? left : std::max(min.x, left);
+        max.x = allAround ? right : std::min(max.x, right);
+        if (min.x >= max.x || (allAround && turn != 0.0)) continue;
         list->AddRect(min, max, IM_COL32(0, 0, 0, 150), 0, 0, ui.px(3));
         list->AddRect(min, max, IM_COL32(255, 255, 255, 220), 0, 0, ui.px(1.2f));
     }

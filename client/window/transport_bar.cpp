@@ -152,7 +152,8 @@ void drawControls(Ui& ui) {
     sameRow(ui, 20);
     label(ui, "speed");
     float speed = float(flight.speedMmPerS());
-    ImGui::SetNextItemWidth(ui.px(130));
+    const float wide = ImGui::GetIO().DisplaySize.x < ui.px(1060) ? 84.0f : 130.0f;
+    ImGui::SetNextItemWidth(ui.px(wide));
     if (ImGui::SliderFloat("##speed", &speed, float(Flight::minSpeedMmPerS),
                            float(Flight::maxSpeedMmPerS), "", ImGuiSliderFlags_Logarithmic))
         flight.setSpeed(speed);
@@ -163,7 +164,7 @@ void drawControls(Ui& ui) {
     const auto& info = *reader.session().caseInfo();
     if (!info.transferFunctions.empty()) {
         sameRow(ui, 20);
-        combo(ui, "##transfer", "wall", 130, reader.transferFunction(), info.transferFunctions,
+        combo(ui, "##transfer", "wall", wide, reader.transferFunction(), info.transferFunctions,
               [&](const std::string& name) { reader.setTransferFunction(name); });
     }
     sameRow(ui, 20);
@@ -173,7 +174,7 @@ void drawControls(Ui& ui) {
         names.push_back(preset.name);
         if (preset.window == reader.window()) current = preset.name;
     }
-    combo(ui, "##window", "slices", 130, current, names, [&](const std::string& name) {
+    combo(ui, "##window", "slices", wide, current, names, [&](const std::string& name) {
         for (const WindowPreset& preset : windowPresets)
             if (name == preset.name) reader.setWindow(preset.window);
     });
