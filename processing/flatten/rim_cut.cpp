@@ -1,7 +1,5 @@
 #include "flatten/rim_cut.h"
 
-#include "mesh/halfedge_mesh.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -224,20 +222,9 @@ private:
         return true;
     }
 
-    /// False where the rim is not one loop of a manifold.
+    /// False where the rim is not one loop: where sheets of the surface meet at a vertex of the
+    /// rim, it goes on in two ways.
     bool orderRim() {
-        std::map<int, int> local;  // to numbers without gaps
-        TriMesh patch;
-        for (const glm::ivec3& t : made_.triangles) {
-            glm::ivec3 renumbered;
-            for (int c = 0; c < 3; ++c) {
-                const auto [found, isNew] = local.try_emplace(t[c], int(patch.vertices.size()));
-                if (isNew) patch.vertices.push_back(placeOf(t[c]));
-                renumbered[c] = found->second;
-            }
-            patch.triangles.push_back(renumbered);
-        }
-        if (!mesh::HalfedgeMesh::of(patch)) return false;
         // Edges of one triangle from rim to rim, the hole on their right.
         std::map<std::pair<int, int>, int> uses;
         for (const glm::ivec3& t : made_.triangles) {

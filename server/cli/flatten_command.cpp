@@ -78,7 +78,7 @@ void tell(const char* name, const flatten::Distortion& distortion) {
         "{:.2f}°, at most {:.1f}°\n",
         name, angle.mean, distortion.angleFloorDegrees, angle.p95, angle.p999, angle.max);
     fmt::print(
-        "{}dilatation {:.4f} in the mean, 99.9 % {:.3g}; magnification of areas: deviation "
+        "{}dilatation {:.5g} in the mean, 99.9 % {:.3g}; magnification of areas: deviation "
         "of its logarithm {:.3f}, range {:.3g}\n",
         name, stretch.mean, stretch.p999, distortion.logAreaDeviation, distortion.areaRange);
 }

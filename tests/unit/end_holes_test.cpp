@@ -7,10 +7,11 @@
 #include "handle_meshes.h"
 #include "mesh/halfedge_mesh.h"
 #include "mesh/mesh_file.h"
-#include "mesh_laws.h"
+#include "surface/handle_removal.h"
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -221,15 +222,26 @@ TEST(EndHoles, RefuseWhatHasNoTwoEnds) {
     EXPECT_FALSE(punchEnds(closed, ends, same));
 }
 
-TEST(EndHoles, OfARealColonLeaveATube) {
+TEST(EndHoles, LeaveATubeAnywhereOnARealColon) {
     HAUSTRA_REAL_DATA(file, "meshes/colon00090_genus1_100k.ply");
-    // It has a handle: a closed surface, but not one with two ends.
     const auto colon = mesh::readMesh(file).value();
-    const glm::dvec3 ends[2] = {{218.6, 269.2, 63.1}, {150.0, 200.0, 300.0}},
-                     none[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
-    const auto punched = punchEnds(colon, ends, none);
-    ASSERT_FALSE(punched);
-    EXPECT_NE(punched.error().message.find("genus 1"), std::string::npos);
+    const glm::dvec3 none[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
+    std::mt19937 random(6);
+    const auto place = [&] { return colon.vertices[random() % colon.vertices.size()]; };
+    // It has a handle: a closed surface, but not one with two ends.
+    const glm::dvec3 some[2] = {place(), place()};
+    const auto refused = punchEnds(colon, some, none);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("genus 1"), std::string::npos);
+
+    const TriMesh closed = surface::removeHandles(colon)->mesh;
+    for (int n = 0; n < 12; ++n) {
+        SCOPED_TRACE(n);
+        const glm::dvec3 ends[2] = {place(), place()};
+        const auto punched = punchEnds(closed, ends, none, {n % 2 ? 15.0 : 5.0});
+        ASSERT_TRUE(punched) << describe(punched.error());
+        expectTube(closed, *punched);
+    }
 }
 
 }  // namespace
