@@ -22,6 +22,30 @@ TEST_F(PrepareInputs, AMaskStandsAlone) {
     EXPECT_TRUE(meshTopology(tube.readMesh().value()).closed());
 }
 
+// A lumen too short for a hole at each end: one clear error, and nothing before it is lost.
+TEST_F(PrepareInputs, ALumenThatCannotBeFlattenedIsPreparedUpToItsSurface) {
+    Volume<std::uint8_t> stub = tubeMask(6.0);
+    for (std::size_t n = 0; n < stub.grid().voxelCount(); ++n) {
+        if (stub.grid().voxelAt(n).z > 10) stub.writable()[n] = 0;
+    }
+    ASSERT_TRUE(nifti::writeNifti(maskFile(), stub));
+    for (int run = 0; run < 2; ++run) {
+        const auto report = prepare(store(), "tube", options());
+        ASSERT_FALSE(report);
+        EXPECT_EQ(report.error().place, "case tube, flattening");
+        EXPECT_NE(report.error().message.find("hole"), std::string::npos)
+            << describe(report.error());
+        const auto tube = store().openCase("tube").value();
+        EXPECT_TRUE(tube.readMesh());
+        EXPECT_TRUE(tube.readCenterline());
+        EXPECT_FALSE(tube.find("flatmap"));
+    }
+    PrepareOptions some = options();
+    some.until = "surface";
+    EXPECT_EQ(reused(some), all(true, {"import", "segmentation", "mixture", "cleansing",
+                                       "denoising", "distance", "centerline", "surface"}));
+}
+
 TEST_F(PrepareInputs, AMaskWithoutASeriesIsOfTheCasesScan) {
     PrepareOptions import = options();
     import.until = "import";
