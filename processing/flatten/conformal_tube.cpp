@@ -50,16 +50,21 @@ double signedArea(const TriMesh& tube, const std::vector<std::int8_t>& cornerTur
     return area;
 }
 
-/// Unfolds flips, and straightens what is left of them and other slivers. Returns the number of
-/// vertices moved.
+/// Unfolds flips, and straightens what is left of them and other slivers; where a flip remains,
+/// again from there. Returns the number of vertices moved.
 int repair(PeriodicMap& map, const TriMesh& tube) {
     constexpr double kMostDilatation = 4.0;
-    constexpr int kSweeps = 20;
+    constexpr int kSweeps = 20, kMostRounds = 4;
     const VertexStars stars(tube);
-    std::vector<int> moved = unfold(map, tube, stars);
-    const std::vector<int> stretched = stretchedVertices(map, tube, stars, kMostDilatation);
-    relaxShapes(map, tube, stars, stretched, kSweeps);
-    moved.insert(moved.end(), stretched.begin(), stretched.end());
+    std::vector<int> moved;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const std::vector<int> unfolded = unfold(map, tube, stars);
+        if (round > 0 && unfolded.empty()) break;
+        const std::vector<int> stretched = stretchedVertices(map, tube, stars, kMostDilatation);
+        relaxShapes(map, tube, stars, stretched, kSweeps);
+        moved.insert(moved.end(), unfolded.begin(), unfolded.end());
+        moved.insert(moved.end(), stretched.begin(), stretched.end());
+    }
     std::sort(moved.begin(), moved.end());
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
     rotate(map, tube, 0.0);

@@ -44,8 +44,8 @@ struct ConformalTube {
 /// of the loop that becomes y = 0 (−1: the one with the lowest-numbered vertex). x grows so that
 /// triangles keep their orientation. Fails (badInput) where the mesh is not a connected manifold
 /// tube with two boundary loops, (noResult) where a triangle without area leaves the system
-/// singular. Byte-identical for any number of threads. Seconds for a million triangles, about 1 KiB
-/// a triangle.
+/// singular. Byte-identical for any number of threads. Seconds for a million triangles, about half
+/// a KiB a triangle.
 Result<ConformalTube> conformalTube(const TriMesh& tube, int firstLoop = -1,
                                     const ConformalTubeOptions& options = {});
 

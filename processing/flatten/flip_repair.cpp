@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -30,6 +32,44 @@ double halfTangent(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
     const double full = std::sqrt(glm::dot(p, p) * glm::dot(q, q));
     if (sine > 1e-6 * full) return (full - cosine) / sine;
     return cosine > 0.0 ? 1e-6 : 1e6;
+}
+
+/// Points p with dot(inward, p) > offset lie on the inner side.
+struct Line {
+    glm::dvec2 inward;
+    double offset;
+};
+
+/// The point whose least distance to the inner side of all lines is largest; none where that is not
+/// positive. There it is equally far from three of them.
+std::optional<glm::dvec2> farthestInside(const std::vector<Line>& lines) {
+    const auto clearance = [&](const glm::dvec2& p) {
+        double least = std::numeric_limits<double>::max();
+        for (const Line& line : lines)
+            least = std::min(least, glm::dot(line.inward, p) - line.offset);
+        return least;
+    };
+    std::optional<glm::dvec2> best;
+    double most = 0.0;
+    for (std::size_t a = 0; a < lines.size(); ++a) {
+        for (std::size_t b = a + 1; b < lines.size(); ++b) {
+            for (std::size_t c = b + 1; c < lines.size(); ++c) {
+                const glm::dvec2 ab = lines[a].inward - lines[b].inward,
+                                 ac = lines[a].inward - lines[c].inward;
+                const double determinant = ab.x * ac.y - ab.y * ac.x;
+                if (std::abs(determinant) < 1e-12) continue;
+                const double p = lines[a].offset - lines[b].offset,
+                             q = lines[a].offset - lines[c].offset;
+                const glm::dvec2 at =
+                    glm::dvec2(p * ac.y - q * ab.y, q * ab.x - p * ac.x) / determinant;
+                if (const double clear = clearance(at); clear > most) {
+                    most = clear;
+                    best = at;
+                }
+            }
+        }
+    }
+    return best;
 }
 
 class Repair {
@@ -83,8 +123,35 @@ private:
         }
     }
 
+    /// Moves v to the point within its star that is farthest from the star's sides; false where
+    /// there is none from which all of its triangles would be upright.
+    bool centre(int v) {
+        std::vector<Line> sides;
+        for (const int corner : stars_.of(v)) {
+            const auto t = std::size_t(corner / 3);
+            const int c = corner % 3;
+            const glm::dvec2 at = map_.corner(tube_, t, c);
+            const glm::dvec2 from = map_.corner(tube_, t, (c + 1) % 3) - at,
+                             to = map_.corner(tube_, t, (c + 2) % 3) - at;
+            const double length = glm::length(to - from);
+            if (!(length > 0.0)) return false;
+            const glm::dvec2 inward = glm::dvec2(from.y - to.y, to.x - from.x) / length;
+            sides.push_back({inward, glm::dot(inward, from)});
+        }
+        const auto step = farthestInside(sides);
+        if (step) map_.flat[std::size_t(v)] += *step;
+        return step.has_value();
+    }
+
     /// The vertices that were moved for triangle t; none where nothing got better.
     std::vector<int> mend(int t) {
+        for (int c = 0; c < 3; ++c) {
+            const int v = tube_.triangles[std::size_t(t)][c];
+            if (isOnRim(v)) continue;
+            const glm::dvec2 before = map_.flat[std::size_t(v)];
+            if (centre(v) && !isFlipped(map_, tube_, t)) return {v};
+            map_.flat[std::size_t(v)] = before;
+        }
         Patch patch;
         patch.rings = 0;
         add(patch, t);

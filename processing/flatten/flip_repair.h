@@ -9,12 +9,13 @@
 namespace haustra::flatten {
 
 /// An intrinsic triangulation can leave vertices of the surface's own triangles collinear or turned
-/// over. Around each flipped triangle the vertices of a patch are solved for with mean-value
-/// weights (Floater 2003), which are positive, so that a patch with a convex outline unfolds; where
-/// that does not help, the weights lean outwards, for blind fingers so long that doubles cannot
-/// tell their tips' vertices apart, and the patch is widened by rings of neighbours. A patch that
-/// gets no better is left alone. Rims do not move. x may leave [0, 1). Returns the vertices moved.
-/// O(n), beside small local systems.
+/// over. Where one vertex of a flipped triangle can move to where all its triangles are upright, it
+/// goes to the middle of these places. Else the vertices of a patch around it are solved for with
+/// mean-value weights (Floater 2003), which are positive, so that a patch with a convex outline
+/// unfolds; where that does not help, the weights lean outwards, for blind fingers so long that
+/// doubles cannot tell their tips' vertices apart, and the patch is widened by rings of neighbours.
+/// A patch that gets no better is left alone. Rims do not move. x may leave [0, 1). Returns the
+/// vertices moved. O(n), beside small local systems.
 std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars);
 
 }  // namespace haustra::flatten

