@@ -3,12 +3,14 @@
 #include "cleansing/local_means.h"
 #include "cleansing/menisci.h"
 #include "cleansing/refined_lumen.h"
+#include "cleansing/rim_smoothing.h"
 #include "cleansing/tagged_surroundings.h"
 #include "core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace haustra::cleansing {
 namespace {
@@ -80,8 +82,10 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
                 changed.push_back({n, shares[shell][m], mixture[n].air});
         }
     }
-    std::sort(changed.begin(), changed.end(),
-              [](const CleansedVoxel& a, const CleansedVoxel& b) { return a.index < b.index; });
+    const auto byIndex = [](const CleansedVoxel& a, const CleansedVoxel& b) {
+        return a.index < b.index;
+    };
+    std::sort(changed.begin(), changed.end(), byIndex);
     const auto out = cleansed.hu.writable();
     parallelFor(changed.size(), 1 << 14, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t m = begin; m < end; ++m) {
@@ -92,6 +96,16 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
             out[voxel.index] = std::int16_t(std::clamp(std::lround(hu), -1024L, 3071L));
         }
     });
+    // What the smoothing moves beside them may be wall, or air, from now on as well.
+    const std::size_t cleansedVoxels = changed.size();
+    for (const std::uint32_t n : smoothRim(cleansed.hu, labels, tissue, around, threads)) {
+        const CleansedVoxel voxel{n, 0, mixture[n].air};
+        const auto sorted = std::span(changed).first(cleansedVoxels);
+        if (!std::binary_search(sorted.begin(), sorted.end(), voxel, byIndex))
+            changed.push_back(voxel);
+    }
+    std::inplace_merge(changed.begin(), changed.begin() + std::ptrdiff_t(cleansedVoxels),
+                       changed.end(), byIndex);
     cleansed.lumen = refineLumen(cleansed.hu, tissue, means.airHu, labels, changed);
     return cleansed;
 }

@@ -21,7 +21,7 @@ constexpr int importVersion = 1;
 constexpr int segmentationVersion = 1;
 constexpr int maskVersion = 1;
 constexpr int mixtureVersion = 6;
-constexpr int cleansingVersion = 3;
+constexpr int cleansingVersion = 4;
 
 Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,
                                  const Volume<std::uint8_t>& labels, const Attributes& attributes) {

@@ -1,0 +1,174 @@
+#include "cleansing/rim_smoothing.h"
+
+#include "cleansing/ball.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace haustra::cleansing {
+namespace {
+
+constexpr double airReachMm = 2.1;      // the line's band: air and tagging are this near
+constexpr double flowMm2 = 0.5;         // time that the curvature acts
+constexpr double faintHuPerMm = 300.0;  // a slope that is no wall's face
+constexpr double roughHu = 150.0;       // what moves a voxel by more is no wall's shape
+constexpr double stableStep = 0.1;      // of the squared smallest spacing
+constexpr double besideWallHu = 150.0;  // how far from the wall's HU its blur is still seen
+
+using Neighbourhood = std::array<std::uint32_t, 27>;
+
+/// The wall passes a voxel or its neighbours.
+bool besideWall(const Volume<std::int16_t>& hu, glm::ivec3 v, double wallHu) {
+    int least = 32767, most = -32768;
+    for (int c = -1; c <= 1; ++c) {
+        for (int b = -1; b <= 1; ++b) {
+            for (int a = -1; a <= 1; ++a) {
+                const int there = hu.at(v + glm::ivec3(a, b, c));
+                least = std::min(least, there), most = std::max(most, there);
+            }
+        }
+    }
+    return least < wallHu + besideWallHu && most > wallHu - besideWallHu;
+}
+
+bool isInterior(const Grid& grid, glm::ivec3 v) {
+    return glm::all(glm::greaterThan(v, glm::ivec3(0))) &&
+           glm::all(glm::lessThan(v, grid.size - 1));
+}
+
+/// Of a symmetric matrix, the eigenvalue of the largest magnitude (Smith 1961).
+double strongestEigenvalue(double xx, double yy, double zz, double xy, double xz, double yz) {
+    const double mean = (xx + yy + zz) / 3.0;
+    const double a = xx - mean, b = yy - mean, c = zz - mean;
+    const double p = std::sqrt((a * a + b * b + c * c + 2.0 * (xy * xy + xz * xz + yz * yz)) / 6.0);
+    if (p < 1e-9) return mean;
+    const double determinant =
+        a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz);
+    const double angle = std::acos(std::clamp(determinant / (2.0 * p * p * p), -1.0, 1.0)) / 3.0;
+    const double most = mean + 2.0 * p * std::cos(angle),
+                 least = mean + 2.0 * p * std::cos(angle + 2.0 * std::numbers::pi / 3.0);
+    return std::abs(most) > std::abs(least) ? most : least;
+}
+
+/// Δf less its part along the gradient: |∇f| times the mean curvature of the level surface.
+/// Differences are per mm; `inverse` is 1 / spacing.
+double curvatureSpeed(const std::vector<float>& f, const Neighbourhood& at, glm::dvec3 inverse) {
+    const auto g = [&](int a, int b, int c) {
+        return double(f[at[std::size_t(13 + a + 3 * b + 9 * c)]]);
+    };
+    const double here = g(0, 0, 0);
+    const double x = 0.5 * inverse.x * (g(1, 0, 0) - g(-1, 0, 0)),
+                 y = 0.5 * inverse.y * (g(0, 1, 0) - g(0, -1, 0)),
+                 z = 0.5 * inverse.z * (g(0, 0, 1) - g(0, 0, -1));
+    const double xx = inverse.x * inverse.x * (g(1, 0, 0) + g(-1, 0, 0) - 2.0 * here),
+                 yy = inverse.y * inverse.y * (g(0, 1, 0) + g(0, -1, 0) - 2.0 * here),
+                 zz = inverse.z * inverse.z * (g(0, 0, 1) + g(0, 0, -1) - 2.0 * here);
+    const double xy = 0.25 * inverse.x * inverse.y *
+                      (g(1, 1, 0) + g(-1, -1, 0) - g(1, -1, 0) - g(-1, 1, 0)),
+                 xz = 0.25 * inverse.x * inverse.z *
+                      (g(1, 0, 1) + g(-1, 0, -1) - g(1, 0, -1) - g(-1, 0, 1)),
+                 yz = 0.25 * inverse.y * inverse.z *
+                      (g(0, 1, 1) + g(0, -1, -1) - g(0, 1, -1) - g(0, -1, 1));
+    const double along =
+        x * x * xx + y * y * yy + z * z * zz + 2.0 * (x * y * xy + x * z * xz + y * z * yz);
+    // On a thin sheet's crest the gradient says nothing: the strongest bending is across it.
+    const double faint = faintHuPerMm * faintHuPerMm;
+    return xx + yy + zz -
+           (along + faint * strongestEigenvalue(xx, yy, zz, xy, xz, yz)) /
+               (x * x + y * y + z * z + faint);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels,
+                                     const TissueModel& tissue, const TaggedSurroundings& around,
+                                     int threads) {
+    const Grid& grid = hu.grid();
+    const std::vector<glm::ivec3> reach = ballOffsets(grid, airReachMm);
+    const auto isAir = [&](std::size_t n) { return LumenLabel(labels[n]) == LumenLabel::air; };
+    std::vector<std::uint32_t> band;
+    for (const auto& shell : around.shells) {
+        std::vector<char> in(shell.size());
+        parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t m = begin; m < end; ++m) {
+                const glm::ivec3 v = grid.voxelAt(shell[m]);
+                in[m] = isInterior(grid, v) && besideWall(hu, v, tissue.airBelowHu) &&
+                        (isAir(shell[m]) ||
+                         !everywhere(grid, reach, v, [&](std::size_t n) { return !isAir(n); }));
+            }
+        });
+        for (std::size_t m = 0; m < shell.size(); ++m) {
+            if (in[m]) band.push_back(shell[m]);
+        }
+    }
+    std::sort(band.begin(), band.end());
+
+    // The band and all that touches it, by itself: it is a small part of the scan.
+    std::vector<std::uint32_t> voxels;
+    voxels.reserve(27 * band.size());
+    for (const std::uint32_t n : band) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        for (int k = 0; k < 27; ++k)
+            voxels.push_back(
+                std::uint32_t(grid.index(v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))));
+    }
+    std::sort(voxels.begin(), voxels.end());
+    voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+    std::vector<Neighbourhood> near(band.size());
+    std::vector<float> now(voxels.size());
+    for (std::size_t m = 0; m < voxels.size(); ++m)
+        now[m] = hu[voxels[m]];
+    parallelFor(band.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m) {
+            const glm::ivec3 v = grid.voxelAt(band[m]);
+            for (int k = 0; k < 27; ++k) {
+                const auto n =
+                    std::uint32_t(grid.index(v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+                near[m][std::size_t(k)] = std::uint32_t(
+                    std::lower_bound(voxels.begin(), voxels.end(), n) - voxels.begin());
+            }
+        }
+    });
+
+    const glm::dvec3 spacingMm = grid.spacingMm();
+    const double least = std::min({spacingMm.x, spacingMm.y, spacingMm.z});
+    const int steps = std::max(1, int(std::ceil(flowMm2 / (stableStep * least * least))));
+    const double step = flowMm2 / steps;
+    std::vector<float> next = now;
+    for (int s = 0; s < steps; ++s) {
+        parallelFor(band.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t m = begin; m < end; ++m) {
+                const std::uint32_t here = near[m][13];
+                next[here] =
+                    float(now[here] + step * curvatureSpeed(now, near[m], 1.0 / spacingMm));
+            }
+        });
+        std::swap(now, next);
+    }
+    // Only where something rough has gone, and a voxel or two around it: the rest stays as it was.
+    std::vector<char> rough(voxels.size(), 0), moves;
+    for (std::size_t m = 0; m < band.size(); ++m) {
+        if (std::abs(now[near[m][13]] - float(hu[band[m]])) <= roughHu) continue;
+        for (const std::uint32_t n : near[m])
+            rough[n] = 1;
+    }
+    moves = rough;
+    for (std::size_t m = 0; m < band.size(); ++m) {
+        if (!rough[near[m][13]]) continue;
+        for (const std::uint32_t n : near[m])
+            moves[n] = 1;
+    }
+    const auto out = hu.writable();
+    std::vector<std::uint32_t> moved;
+    for (std::size_t m = 0; m < band.size(); ++m) {
+        if (!moves[near[m][13]]) continue;
+        out[band[m]] = std::int16_t(std::clamp(std::lround(now[near[m][13]]), -1024L, 3071L));
+        moved.push_back(band[m]);
+    }
+    return moved;
+}
+
+}  // namespace haustra::cleansing
