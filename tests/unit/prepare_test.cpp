@@ -53,9 +53,12 @@ void expectFlatMapOf(const TriMesh& surface, const Centerline& centerline,
               1e-9);
     // The rectum, where the centerline begins, is at the bottom.
     for (std::size_t v = 0; v < flat->flat.size(); ++v) {
-        if (flat->flat[v].y == 0.0) EXPECT_LT(flat->camera[v], 10);
-        if (flat->flat[v].y == flat->height)
+        if (flat->flat[v].y == 0.0) {
+            EXPECT_LT(flat->camera[v], 10);
+        }
+        if (flat->flat[v].y == flat->height) {
             EXPECT_GT(flat->camera[v], int(flat->cameras.size()) - 10);
+        }
     }
 }
 

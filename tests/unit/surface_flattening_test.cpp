@@ -80,7 +80,9 @@ TEST(SurfaceFlattening, OfASphereIsTheTubeWithoutItsEnds) {
             if (flat->map.flat[v].y == flat->map.height) highest = flat->map.surface.vertices[v].z;
         }
         EXPECT_NEAR(std::abs(highest - lowest), 80.0, 3.0);
-        if (told) EXPECT_GT(lowest, highest);
+        if (told) {
+            EXPECT_GT(lowest, highest);
+        }
         // Mercator's map of the two caps, and the tube between them.
         const double rim = flat->punched->rimLengthMm[0] / (2.0 * std::numbers::pi);
         const double modulus =
