@@ -280,8 +280,10 @@ Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
     place.triangle = message.triangle();
     place.arcMm = message.arc_mm();
     place.cameraMm = vectorFrom(message.camera_mm());
-    const glm::dvec3 sum = glm::dvec3(place.flat, place.arcMm) + place.positionMm + place.cameraMm;
-    if (!std::isfinite(sum.x + sum.y + sum.z))
+    const glm::dvec3 sum = place.positionMm + place.cameraMm;
+    const bool inStrip = place.flat.x >= 0.0 && place.flat.x < 1.0 && place.flat.y >= 0.0 &&
+                         place.flat.y <= maxStripHeight;
+    if (!inStrip || !std::isfinite(sum.x + sum.y + sum.z + place.arcMm))
         return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
     return place;
 }

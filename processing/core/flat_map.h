@@ -10,6 +10,10 @@
 
 namespace haustra {
 
+/// What a flat map may reach: circumferences of height, and millimetres from the origin. Beyond
+/// these it is no colon's, and its squares no longer tell distances.
+inline constexpr double maxFlatHeight = 4096.0, maxWallMm = 1e6;
+
 /// One place on the centerline that the wall is looked at from (dissertation §4.3.1).
 struct FlatCamera {
     glm::dvec3 positionMm{0.0};  ///< LPS

@@ -13,6 +13,7 @@ namespace {
 
 // Of the time, where unifiedFlattening follows the conformal map.
 constexpr double conformalShare = 0.2;
+constexpr double mostUncertain = 0.5;  // certificate; a real colon's is 0.01
 
 /// Progress from `from` to `to` of the whole.
 Progress part(const Progress& whole, double from, double to) {
@@ -64,6 +65,13 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
         part(options.progress, 0.0, options.areaWeight > 0.0 ? conformalShare : 1.0);
     auto flat = conformalTube(tube, firstLoop, conformal);
     if (!flat) return tl::make_unexpected(flat.error());
+    // Energies that miss each other's inverse by half are of no map.
+    if (!(flat->certificate < mostUncertain)) {
+        return fail(
+            ErrorKind::noResult,
+            "the surface is pinched or too coarse somewhere: its conformal map cannot be told",
+            "flattening");
+    }
     Flattening made;
     made.modulus = flat->modulus;
     made.certificate = flat->certificate;

@@ -17,8 +17,9 @@ static_assert(sizeof(Camera) == flatMapCameraBytes);
 static_assert(sizeof(glm::dvec3) + sizeof(glm::dvec2) + sizeof(std::int32_t) == flatMapVertexBytes);
 static_assert(sizeof(glm::ivec3) + sizeof(std::int32_t) == flatMapTriangleBytes);
 
-bool isFinite(glm::dvec3 p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+bool isInReach(glm::dvec3 p) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= maxWallMm &&
+           !std::isnan(p.x + p.y + p.z);
 }
 
 // What is wrong with the map; nullptr where it is sound. Written so that NaN is wrong everywhere.
@@ -30,9 +31,9 @@ const char* flawOf(const FlatMap& map) {
     }
     if (map.surface.triangles.empty()) return "no triangle";
     if (map.cameras.empty()) return "no camera";
-    if (!(map.height > 0.0) || !std::isfinite(map.height)) return "a height that is none";
+    if (!(map.height > 0.0 && map.height <= maxFlatHeight)) return "a height that is none";
     for (const glm::dvec3& v : map.surface.vertices) {
-        if (!isFinite(v)) return "a vertex that is nowhere";
+        if (!isInReach(v)) return "a vertex that is nowhere";
     }
     for (const glm::dvec2& at : map.flat) {
         if (!(at.x >= 0.0 && at.x <= 1.0 && at.y >= 0.0 && at.y <= map.height))
@@ -53,7 +54,7 @@ const char* flawOf(const FlatMap& map) {
     }
     double lastArcMm = 0.0;
     for (const FlatCamera& camera : map.cameras) {
-        if (!isFinite(camera.positionMm) || !std::isfinite(camera.arcMm))
+        if (!isInReach(camera.positionMm) || !(camera.arcMm <= maxWallMm))
             return "a camera that is nowhere";
         if (camera.arcMm < lastArcMm) return "cameras that are not in order";
         lastArcMm = camera.arcMm;

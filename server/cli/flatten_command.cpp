@@ -104,6 +104,11 @@ void tell(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, double ar
     if (areaWeight > 0.0 && flat.strip) tell("conformal: ", flat.strip->conformal);
     tell("", flat.distortion);
     fmt::print("{} triangles flipped\n", flat.flips);
+    if (flat.shape.genus > 0 && flat.flips > 0) {
+        fmt::print(
+            "a small handle leaves the rest of a long surface no room that numbers can tell: "
+            "`haustra denoise` takes handles out\n");
+    }
 }
 
 Result<void> runFlatten(const Arguments& arguments) {
@@ -150,6 +155,10 @@ void checkNames(const Arguments& arguments) {
     std::error_code ignored;
     if (fs::equivalent(arguments.mesh, arguments.out, ignored))
         throw CLI::ValidationError("OUT", "the mesh would be replaced by its own cut surface");
+    const auto resolved = [&](const fs::path& file) { return fs::weakly_canonical(file, ignored); };
+    if (!arguments.report.empty() && (resolved(arguments.report) == resolved(arguments.mesh) ||
+                                      resolved(arguments.report) == resolved(arguments.out)))
+        throw CLI::ValidationError("--report", "the report would replace the mesh");
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "render/view.h"
 
+#include "core/flat_map.h"
+
 #include <algorithm>
 #include <cmath>
 

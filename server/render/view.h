@@ -122,9 +122,8 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
 ///  - It comes from the camera that the place is registered with. Where that line of sight would
 ///    meet the wall from behind or graze it, it is turned towards the wall's normal (mostRayAngle):
 ///    every place is seen from the lumen, and what is drawn lies at the place, not beside it.
-///  - It starts where the way back from the place, at most `backMm` long, is darkest, and looks
-///  back
-///    no farther than where the scan rises by `riseHu` again: no fold stands between.
+///  - It starts where the way back from the place, at most `backMm` long, is darkest, and
+///    looks back no farther than where the scan rises by `riseHu` again: no fold stands between.
 ///  - It ends `depthMm` behind the wall.
 /// The light falls from the camera's side as well, but from a lamp that hangs ahead of the camera
 /// by `lampAhead` times its distance to the wall: from the top of the picture, so that bumps and
@@ -145,7 +144,7 @@ inline constexpr FlatRay flatRay{0.8, 1.25, 0.5, 2.0, 200.0, 10.0};
 
 /// Limits of a flattened view: the strip's length in circumferences, the enlargement, and how often
 /// one picture may show the circumference.
-inline constexpr int maxFlatHeight = 4096, maxPixelsPerUnit = 1 << 18, maxCircumferences = 8;
+inline constexpr int maxPixelsPerUnit = 1 << 18, maxCircumferences = 8;
 
 /// Fails (badInput) where a window that is `width` pixels wide is not within the limits.
 Result<void> checkFlatWindow(const FlatWindow& window, int width);

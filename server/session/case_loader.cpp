@@ -19,10 +19,13 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
     auto prepared = render::prepareCase(files->ct, files->cleansed);
     if (!prepared) return tl::make_unexpected(prepared.error());
     if (files->flattened) {
-        auto wall = readWall(store, name);
-        if (!wall) return tl::make_unexpected(wall.error());
-        files->facts.wall = std::move(*wall);
-        prepared->flatMap = files->facts.wall->map;
+        // Without it the case can still be read.
+        if (auto wall = readWall(store, name)) {
+            files->facts.wall = std::move(*wall);
+            prepared->flatMap = files->facts.wall->map;
+        } else {
+            spdlog::warn("a case opens without its flattened views: {}", wall.error().message);
+        }
     }
     return renderer.upload(std::move(files->facts), std::move(*prepared));
 }

@@ -1,5 +1,7 @@
 #include "session/inputs.h"
 
+#include "core/flat_map.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,7 +47,7 @@ Result<render::Camera> cameraFrom(const protocol::SetCamera& message) {
 
 Result<glm::dvec2> flatPointFrom(const protocol::FlatPoint& message) {
     const glm::dvec2 point(message.x(), message.y());
-    if (!(std::abs(point.x) <= maxTurns && std::abs(point.y) <= render::maxFlatHeight))
+    if (!(std::abs(point.x) <= maxTurns && std::abs(point.y) <= maxFlatHeight))
         return refuse("a coordinate is not a number, or lies far beyond the strip", "flat");
     return point;
 }

@@ -23,7 +23,7 @@ Result<glm::dvec3> positionFrom(const protocol::Vec3& message);
 /// Position, directions and field of view as render::checkCamera has it.
 Result<render::Camera> cameraFrom(const protocol::SetCamera& message);
 
-/// Both finite, |x| at most maxTurns, |y| at most render::maxFlatHeight; x stays as it is.
+/// Both finite, |x| at most maxTurns, |y| at most maxFlatHeight; x stays as it is.
 Result<glm::dvec2> flatPointFrom(const protocol::FlatPoint& message);
 
 /// The window onto the strip, its x in [0, 1).

@@ -154,6 +154,14 @@ TEST(Flatten, RefusesWrongUsage) {
     const tests::TemporaryFolder folder;
     ASSERT_TRUE(mesh::writeMesh(folder.path() / "tube.ply", cylinder()));
     EXPECT_EQ(flatten({folder.path() / "tube.ply", folder.path() / "tube.ply"}).exitCode, 2);
+    for (const char* taken : {"tube.ply", "flat.obj"}) {
+        EXPECT_EQ(flatten({folder.path() / "tube.ply", folder.path() / "flat.obj", "--report",
+                           folder.path() / taken})
+                      .exitCode,
+                  2)
+            << taken;
+    }
+    EXPECT_TRUE(mesh::readMesh(folder.path() / "tube.ply"));
 }
 
 }  // namespace

@@ -146,6 +146,9 @@ TEST_F(FlatMapStore, AMapThatWouldBeReadOutsideItselfIsRefused) {
     const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
     const std::vector<std::function<void(FlatMap&)>> forgeries{
         [&](FlatMap& m) { m.height = nan; },
+        [&](FlatMap& m) { m.height = 1.01 * maxFlatHeight; },
+        [&](FlatMap& m) { m.surface.vertices[39].x = -1e160; },
+        [&](FlatMap& m) { m.cameras[8].positionMm.y = 2e6; },
         [&](FlatMap& m) { m.height = infinite; },
         [&](FlatMap& m) { m.height = 0.0; },
         [&](FlatMap& m) { m.height = -12.75; },

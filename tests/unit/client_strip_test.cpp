@@ -172,6 +172,14 @@ TEST(ClientStrip, OnlySoundStripsAreTakenFromAServer) {
     EXPECT_TRUE(placeFrom(place));
     place.mutable_position_mm()->set_y(nan);
     EXPECT_FALSE(placeFrom(place));
+    place.mutable_position_mm()->set_y(0.0);
+    for (const double beyond : {-0.1, 1.0, 1e17, nan}) {
+        place.mutable_flat()->set_x(beyond);
+        EXPECT_FALSE(placeFrom(place)) << beyond;
+    }
+    place.mutable_flat()->set_x(0.0);
+    place.mutable_flat()->set_y(1e17);
+    EXPECT_FALSE(placeFrom(place));
     protocol::FlatMeasure measure;
     EXPECT_TRUE(measureFrom(measure));
     measure.set_area_mm2(INFINITY);
