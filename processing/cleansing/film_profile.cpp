@@ -8,6 +8,8 @@
 namespace haustra::cleansing {
 namespace {
 
+constexpr double thinnestWallMm = 1.2;  // that holds a film, with air behind it
+
 double normalCdf(double x) {
     return 0.5 * std::erfc(-x * M_SQRT1_2);
 }
@@ -138,6 +140,8 @@ std::optional<FilmProfile> fitFilm(const LineSamples& samples, const FilmProfile
     const bool explained = std::isfinite(p.misfitHu) &&
                            p.misfitHu < std::max(3.0 * noiseSd, 0.06 * (p.taggedHu - p.airHu));
     if (!explained || p.thicknessMm() < 0.05 || p.thicknessMm() > thickestMm) return std::nullopt;
+    // Fluid lies on something: a dense sheet between air and air is a tube's wall, or a tablet's.
+    if (p.outerHu < half && p.wallMm - p.outerMm < thinnestWallMm) return std::nullopt;
     return p;
 }
 

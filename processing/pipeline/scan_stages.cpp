@@ -20,7 +20,7 @@ using store::Attributes;
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 1;
 constexpr int maskVersion = 1;
-constexpr int mixtureVersion = 6;
+constexpr int mixtureVersion = 7;
 constexpr int cleansingVersion = 4;
 
 Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,

@@ -2,27 +2,17 @@
 #include "core/flat_lookup.h"
 #include "end_to_end/flat_store.h"
 #include "end_to_end/run_program.h"
+#include "read_png.h"
 #include "render/strip_picture.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
-#include <png.h>
 
 namespace haustra::tests {
 namespace {
 
 using namespace render;
-
-Image readPng(const std::string& file) {
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    EXPECT_TRUE(png_image_begin_read_from_file(&png, file.c_str())) << file;
-    png.format = PNG_FORMAT_RGB;
-    Image image{int(png.width), int(png.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(png))};
-    EXPECT_TRUE(png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr)) << file;
-    return image;
-}
 
 /// Rows and columns from `corner` on.
 std::vector<std::uint8_t> part(const Image& image, glm::ivec2 corner, glm::ivec2 size) {

@@ -1,27 +1,17 @@
 // haustra render on a small store: which scan a picture shows, and the comparison.
 #include "end_to_end/run_program.h"
 #include "end_to_end/server_process.h"
+#include "read_png.h"
 #include "render/comparison.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
-#include <png.h>
 
 namespace haustra::tests {
 namespace {
 
 using render::Image;
-
-Image readPng(const std::string& file) {
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    EXPECT_TRUE(png_image_begin_read_from_file(&png, file.c_str())) << file;
-    png.format = PNG_FORMAT_RGB;
-    Image image{int(png.width), int(png.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(png))};
-    EXPECT_TRUE(png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr)) << file;
-    return image;
-}
 
 /// The columns from `left` on.
 Image columns(const Image& image, int left, int width) {
