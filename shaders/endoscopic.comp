@@ -10,5 +10,5 @@ void main() {
     vec2 inside = insideRange(ray);
     float tileStart = texelFetch(firstStep, pixel / u.lastBlock.w, 0).r;
     vec4 sum = march(ray, max(ceil(inside.x), tileStart), floor(inside.y));
-    if (all(lessThan(pixel, u.pictureSize.xy))) imageStore(picture, pixel, pixelColor(sum));
+    if (all(lessThan(pixel, imageSize(picture)))) imageStore(picture, pixel, pixelColor(sum));
 }

@@ -28,9 +28,9 @@ vec3 textureVector(vec3 patientMm) {
                 dot(u.textureRowZ.xyz, patientMm));
 }
 
-// Through picture coordinates (pixels; centres at halves). Samples lie at whole n from the eye.
+// Through coordinates in the band (pixels; centres at halves). Samples lie at whole n from the eye.
 Ray rayThrough(vec2 pixel) {
-    vec2 ndc = 2.0 * pixel / vec2(u.pictureSize.xy) - 1.0;
+    vec2 ndc = 2.0 * (pixel + vec2(0.0, u.pictureSize.w)) / vec2(u.pictureSize.xy) - 1.0;
     Ray ray;
     ray.directionMm = normalize(u.forwardMm.xyz + ndc.x * u.rightMm.xyz + ndc.y * u.downMm.xyz);
     ray.lightMm = ray.directionMm;

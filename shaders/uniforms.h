@@ -29,7 +29,7 @@ struct MarchUniforms {
     vec4 stepping;       ///< x: stepMm, y: opacity that ends a ray, z: most steps, w: headlight
                          ///< half-distance, mm
     vec4 light;          ///< x: ambient, y: diffuse, z: specular, w: shininess
-    ivec4 pictureSize;   ///< x, y: pixels, z: 1 shades
+    ivec4 pictureSize;   ///< x, y: pixels, z: 1 shades, w: first row of the band
     ivec4 lastBlock;     ///< xyz: highest block index, w: pixels along a cone tile's side
 };
 

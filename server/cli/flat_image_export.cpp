@@ -12,7 +12,7 @@
 namespace haustra::cli {
 
 void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
-    options.transferFunction = render::transferFunctionPresets().front();
+    options.transferFunction = render::opticsPresets().front();
     const auto group = command.add_option_group("flat-image", "Of flat-image alone:");
     group->add_option("--width", options.width, "Pixels of the colon's circumference")
         ->type_name("W")
@@ -25,7 +25,7 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
         ->check(CLI::Range(0.0, 0.5))
         ->capture_default_str();
     group->add_option("--transfer-function", options.transferFunction, "Colours")
-        ->check(CLI::IsMember(render::transferFunctionPresets()))
+        ->check(CLI::IsMember(render::opticsPresets()))
         ->capture_default_str();
     addThreadsOption(*group, options.threads);
 }
@@ -35,7 +35,7 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     auto map = source.readFlatMap();
     if (!map) return tl::make_unexpected(map.error());
     const double height = map->height;
-    auto function = render::transferFunctionPreset(options.transferFunction);
+    auto function = render::opticsPreset(options.transferFunction);
     if (!function) return tl::make_unexpected(function.error());
     const render::StripPicture picture{options.width, options.seamMargin, std::move(*function), {}};
     const auto size = render::stripPictureSize(picture, height);
@@ -48,7 +48,7 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     prepared->flatMap = std::make_shared<const FlatMap>(std::move(*map));
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
-    auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared), options.threads);
+    auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared), {.threads = options.threads});
     if (!renderer) return tl::make_unexpected(renderer.error());
 
     auto png = render::PngFile::create(file, size->x, size->y);

@@ -27,7 +27,7 @@ struct Arguments {
     std::string caseName, view = "endoscopic", direction = "antegrade";
     std::string product;  // empty: what the view shows by itself
     bool compare = false;
-    std::string preset = render::transferFunctionPresets().front();
+    std::string preset = render::opticsPresets().front();
     std::optional<double> arcMm;
     std::vector<glm::dvec3> positionMm;
     std::optional<glm::dvec2> flat;
@@ -38,17 +38,17 @@ struct Arguments {
     int threads = 0;
 };
 
-Result<render::EndoscopicView> endoscopicView(const Arguments& arguments,
-                                              const Centerline& centerline) {
-    auto preset = render::transferFunctionPreset(arguments.preset);
+Result<render::CameraView> endoscopicView(const Arguments& arguments,
+                                          const Centerline& centerline) {
+    auto preset = render::opticsPreset(arguments.preset);
     if (!preset) return tl::make_unexpected(preset.error());
     const CenterlineCamera onPath = cameraAtArc(
         centerline, rotationMinimizingUps(centerline, flightPreferredUp), *arguments.arcMm,
         arguments.direction == "antegrade" ? FlightDirection::antegrade
                                            : FlightDirection::retrograde);
-    render::EndoscopicView view;
+    render::CameraView view;
     view.camera = {onPath.positionMm, onPath.forward, onPath.up, arguments.fovDegrees};
-    view.transferFunction = std::move(*preset);
+    view.optics = std::move(*preset);
     return view;
 }
 
@@ -86,7 +86,7 @@ Result<glm::dvec2> flatCenter(const Arguments& arguments, const Centerline& cent
 Result<render::Image> drawFlattened(const Arguments& arguments, const Centerline& centerline,
                                     const std::shared_ptr<const FlatMap>& map,
                                     render::CaseRenderer& renderer) {
-    auto function = render::transferFunctionPreset(arguments.preset);
+    auto function = render::opticsPreset(arguments.preset);
     if (!function) return tl::make_unexpected(function.error());
     if (arguments.view == "flattened")
         return renderer.render(render::FlatOverview{std::move(*function), {}}, arguments.size.x,
@@ -150,7 +150,7 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
     auto renderer =
-        render::CaseRenderer::upload(**context, std::move(*prepared), arguments.threads);
+        render::CaseRenderer::upload(**context, std::move(*prepared), {.threads = arguments.threads});
     if (!renderer) return tl::make_unexpected(renderer.error());
     if (flatMap) return drawFlattened(arguments, centerline, flatMap, **renderer);
 
@@ -263,7 +263,7 @@ void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& argumen
     command
         .add_option("--transfer-function", arguments->preset,
                     "Colours of the endoscopic and flattened views")
-        ->check(CLI::IsMember(render::transferFunctionPresets()))
+        ->check(CLI::IsMember(render::opticsPresets()))
         ->capture_default_str();
     command
         .add_option_function<std::string>(

@@ -3,31 +3,38 @@
 
 #include "gpu/context.h"
 #include "render/prepared_case.h"
+#include "render/raycaster.h"
 #include "render/view.h"
 
 #include <memory>
 
 namespace haustra::render {
 
-/// Longest side of a picture, pixels.
-inline constexpr int maxPictureSide = 2048;
+/// How a case is drawn.
+struct RendererOptions {
+    /// Which raycaster draws camera views.
+    RaycasterKind raycaster = RaycasterKind::singlePass;
+    std::size_t gpuBudgetBytes = 0;  ///< for the volume's cells of objectOrder; 0: what there is
+    int threads = 0;                 ///< ≤ 0: all cores; changes no pixel
+};
 
 /// Holds one case's volumes on the GPU: the scan, for slices, and the cleansed scan, for the
 /// endoscopic view. Belongs to the thread that owns `context`; the context must be current there
 /// and outlive it. Equal inputs give equal pixels, whatever was drawn before.
 class CaseRenderer {
 public:
-    /// Copies what prepareCase made to the GPU. `threads` (≤ 0: all cores) changes no pixel. Fails
+    /// Copies what prepareCase made to the GPU. Fails
     /// where a side is longer than the device's 3-D textures allow (2048 in general) or its memory
     /// is short. Holds 2 bytes a voxel on the GPU, 4 where cleansing has changed the scan; 1/2 byte
     /// a voxel of main memory, and no volume.
     static Result<std::unique_ptr<CaseRenderer>> upload(gpu::Context& context,
-                                                        PreparedCase prepared, int threads = 0);
+                                                        PreparedCase prepared,
+                                                        RendererOptions options = {});
     /// Prepares the case (prepareCase; `cleansed` may be empty) and uploads it.
     static Result<std::unique_ptr<CaseRenderer>> create(gpu::Context& context,
                                                         const Volume<std::int16_t>& ct,
                                                         const Volume<std::int16_t>& cleansed,
-                                                        int threads = 0);
+                                                        RendererOptions options = {});
     ~CaseRenderer();
     CaseRenderer(const CaseRenderer&) = delete;
     CaseRenderer& operator=(const CaseRenderer&) = delete;
@@ -36,7 +43,7 @@ public:
     /// A new transfer function costs some 0.1 s for the leap map of a 512³ scan; the last four are
     /// kept, so that readers with different ones do not disturb each other. Fails on a bad view
     /// (badInput) or where the driver reports an error (device).
-    Result<Image> render(const EndoscopicView& view, int width, int height);
+    Result<Image> render(const CameraView& view, int width, int height);
     /// Slice of the scan that the view names, linearly interpolated; black outside it. Fails
     /// (badInput) where there is no cleansed scan.
     Result<Image> render(const SliceView& view, int width, int height);
@@ -44,6 +51,16 @@ public:
     /// The flattened wall. Fail (badInput) on a bad view or where the case has no flat map.
     Result<Image> render(const FlatView& view, int width, int height);
     Result<Image> render(const FlatOverview& view, int width, int height);
+
+    /// Some rows of a camera's picture, for a frame that is drawn in bands.
+    Result<void> render(const CameraView& view, const Band& band, Image& picture);
+
+    /// The raycaster that draws camera views, and another in its place: made when it is first
+    /// asked for, and kept. Fails where it cannot be made here.
+    RaycasterKind raycaster() const;
+    Result<void> use(RaycasterKind kind);
+    /// Of the last camera view.
+    std::vector<PassTime> passTimes() const;
 
     /// Bytes of GPU memory held.
     std::size_t gpuBytes() const;

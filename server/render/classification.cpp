@@ -7,11 +7,10 @@
 
 namespace haustra::render {
 
-Result<Classification> Classification::create(const TransferFunction& transferFunction,
-                                              double stepMm, bool leaping,
+Result<Classification> Classification::create(const Optics& optics, double stepMm, bool leaping,
                                               const BlockRanges& ranges, int threads) {
     using gpu::Filter, gpu::Texture, gpu::TexelFormat;
-    TransferTable table = makeTransferTable(transferFunction, stepMm);
+    TransferTable table = makeTransferTable(optics.transferFunction, stepMm);
     Result<Texture> tableTexture =
         Texture::create(1, {TransferTable::entries, 1, 1}, TexelFormat::rgba32f, Filter::linear,
                         "transfer function");
@@ -24,28 +23,21 @@ Result<Classification> Classification::create(const TransferFunction& transferFu
         leaping ? leapDistances(ranges, table, threads)
                 : std::vector<std::uint8_t>(ranges.lowHu.size(), 0);
     leapTexture->uploadSlices(0, ranges.size.z, distances.data());
-    return Classification(transferFunction, stepMm, leaping, std::move(table),
-                          std::move(*tableTexture), std::move(*leapTexture));
+    return Classification(optics, stepMm, leaping, std::move(table), std::move(*tableTexture),
+                          std::move(*leapTexture));
 }
 
-Classification::Classification(TransferFunction transferFunction, double stepMm, bool leaping,
-                               TransferTable table, gpu::Texture tableTexture,
-                               gpu::Texture leapTexture)
-    : transferFunction_(std::move(transferFunction)),
+Classification::Classification(Optics optics, double stepMm, bool leaping, TransferTable table,
+                               gpu::Texture tableTexture, gpu::Texture leapTexture)
+    : optics_(std::move(optics)),
       stepMm_(stepMm),
       leaping_(leaping),
       table_(std::move(table)),
       tableTexture_(std::move(tableTexture)),
       leapTexture_(std::move(leapTexture)) {}
 
-bool Classification::isFor(const TransferFunction& transferFunction, double stepMm,
-                           bool leaping) const {
-    const auto samePoint = [](const TransferFunctionPoint& a, const TransferFunctionPoint& b) {
-        return a.hu == b.hu && a.color == b.color && a.opacity == b.opacity;
-    };
-    const auto &mine = transferFunction_.points, &other = transferFunction.points;
-    return stepMm == stepMm_ && leaping == leaping_ &&
-           std::equal(mine.begin(), mine.end(), other.begin(), other.end(), samePoint);
+bool Classification::isFor(const Optics& optics, double stepMm, bool leaping) const {
+    return stepMm == stepMm_ && leaping == leaping_ && optics == optics_;
 }
 
 void Classification::bind() const {

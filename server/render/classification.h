@@ -12,19 +12,19 @@ namespace haustra::render {
 class Classification {
 public:
     /// Where `leaping` is false the map lets no ray leap. Cost: leapDistances and an upload.
-    static Result<Classification> create(const TransferFunction& transferFunction, double stepMm,
-                                         bool leaping, const BlockRanges& ranges, int threads);
+    static Result<Classification> create(const Optics& optics, double stepMm, bool leaping,
+                                         const BlockRanges& ranges, int threads);
 
-    bool isFor(const TransferFunction& transferFunction, double stepMm, bool leaping) const;
+    bool isFor(const Optics& optics, double stepMm, bool leaping) const;
     void bind() const;  ///< to the units of shaders/uniforms.h
 
     const TransferTable& table() const { return table_; }
     std::size_t gpuBytes() const { return tableTexture_.bytes() + leapTexture_.bytes(); }
 
 private:
-    Classification(TransferFunction transferFunction, double stepMm, bool leaping,
-                   TransferTable table, gpu::Texture tableTexture, gpu::Texture leapTexture);
-    TransferFunction transferFunction_;
+    Classification(Optics optics, double stepMm, bool leaping, TransferTable table,
+                   gpu::Texture tableTexture, gpu::Texture leapTexture);
+    Optics optics_;
     double stepMm_;
     bool leaping_;
     TransferTable table_;

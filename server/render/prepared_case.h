@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/flat_map.h"
+#include "core/tri_mesh.h"
 #include "core/volume.h"
 #include "render/leap_map.h"
 
@@ -22,6 +23,8 @@ struct PreparedCase {
     BlockRanges ranges;  ///< of the volume that the endoscopic view shows
     /// For the flattened views; empty where the case has none. prepareCase leaves it empty.
     std::shared_ptr<const FlatMap> flatMap;
+    /// The wall's mesh, for raycasters and views that use it; as with flatMap.
+    std::shared_ptr<const TriMesh> wall;
 
     const Volume<std::int16_t>& endoscopic() const { return cleansed.empty() ? ct : cleansed; }
 };

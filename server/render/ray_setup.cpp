@@ -13,9 +13,9 @@ double stepMm(const MarchOptions& march, const Grid& grid) {
     return march.stepVoxels * std::min(spacing.x, std::min(spacing.y, spacing.z));
 }
 
-shaders::MarchUniforms marchUniforms(const MarchOptions& march, const Grid& grid,
-                                     const TransferTable& table, glm::ivec3 blocks,
-                                     glm::ivec2 size) {
+shaders::MarchUniforms marchUniforms(const Optics& optics, const MarchOptions& march,
+                                     const Grid& grid, const TransferTable& table,
+                                     glm::ivec3 blocks, glm::ivec2 size) {
     const glm::dvec3 voxels(grid.size);
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     const double step = stepMm(march, grid);
@@ -42,18 +42,18 @@ shaders::MarchUniforms marchUniforms(const MarchOptions& march, const Grid& grid
                   storedRange * perHu / TransferTable::entries,
                   ((-storedOffset - table.firstHu) * perHu + 0.5) / TransferTable::entries);
     u.stepping = glm::vec4(step, terminationOpacity, std::ceil(diagonalMm / step) + 1.0,
-                           headlight.halfDepthMm);
-    u.light =
-        glm::vec4(headlight.ambient, headlight.diffuse, headlight.specular, headlight.shininess);
-    u.pictureSize = glm::ivec4(size, march.shading ? 1 : 0, 0);
+                           optics.light.halfDepthMm);
+    u.light = glm::vec4(optics.light.ambient, optics.light.diffuse, optics.light.specular,
+                        optics.light.shininess);
+    u.pictureSize = glm::ivec4(size, optics.shading ? 1 : 0, 0);
     u.lastBlock = glm::ivec4(blocks - 1, coneTile);
     return u;
 }
 
-shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& grid,
+shaders::MarchUniforms marchUniforms(const CameraView& view, const Grid& grid,
                                      const TransferTable& table, glm::ivec3 blocks,
                                      glm::ivec2 size) {
-    shaders::MarchUniforms u = marchUniforms(view.march, grid, table, blocks, size);
+    shaders::MarchUniforms u = marchUniforms(view.optics, view.march, grid, table, blocks, size);
     const glm::dvec3 forward = glm::normalize(view.camera.forward);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);

@@ -17,12 +17,12 @@ double stepMm(const MarchOptions& march, const Grid& grid);
 /// The uniform block of march.glsl for rays from anywhere, in a picture of `size` pixels; the
 /// fields of a camera are left zero. `blocks` is the leap map's size; `table` is made for this
 /// step.
-shaders::MarchUniforms marchUniforms(const MarchOptions& march, const Grid& grid,
-                                     const TransferTable& table, glm::ivec3 blocks,
-                                     glm::ivec2 size);
+shaders::MarchUniforms marchUniforms(const Optics& optics, const MarchOptions& march,
+                                     const Grid& grid, const TransferTable& table,
+                                     glm::ivec3 blocks, glm::ivec2 size);
 
 /// The same for a camera's rays. The view must have passed its checks.
-shaders::MarchUniforms marchUniforms(const EndoscopicView& view, const Grid& grid,
+shaders::MarchUniforms marchUniforms(const CameraView& view, const Grid& grid,
                                      const TransferTable& table, glm::ivec3 blocks,
                                      glm::ivec2 size);
 

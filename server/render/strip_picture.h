@@ -11,7 +11,7 @@ struct StripPicture {
     int pixelsPerCircumference = 400;
     /// How much of the circumference is repeated beyond the seam on either side, 0…0.5.
     double seamMargin = 0.0;
-    TransferFunction transferFunction;
+    Optics optics;
     MarchOptions march;
 };
 

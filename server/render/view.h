@@ -4,8 +4,10 @@
 #include "core/grid.h"
 #include "core/result.h"
 #include "core/strip_layout.h"
+#include "render/optics.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,40 +21,29 @@ struct Image {
     std::vector<std::uint8_t> rgb;
 };
 
-/// A perspective camera in patient space (LPS mm). The field of view is vertical. `forward` and
-/// `up` need not be unit or orthogonal, only finite and not parallel.
+/// How a camera's rays spread over its picture; y is the distance of a pixel from the picture's
+/// middle in half heights of the picture.
+enum class Lens {
+    perspective,   ///< tan θ = y · tan(fov / 2)
+    fisheye,       ///< θ = y · fov / 2, equidistant; black beyond θ = 180°
+    orthographic,  ///< rays are parallel, y · heightMm / 2 beside the camera
+};
+
+/// A camera in patient space (LPS mm). The field of view is vertical. `forward` and `up` need not
+/// be unit or orthogonal, only finite and not parallel.
 struct Camera {
     glm::dvec3 positionMm{0.0};
     glm::dvec3 forward{0.0, 0.0, 1.0};
     glm::dvec3 up{0.0, -1.0, 0.0};
-    double fovDegrees = 90.0;
+    double fovDegrees = 90.0;  ///< perspective 1…170, fisheye 1…360
+    Lens lens = Lens::perspective;
+    double heightMm = 100.0;  ///< of an orthographic picture, over 0
 };
 
 struct WindowLevel {
     double centerHu = 0.0;
     double widthHu = 2000.0;  ///< wide enough for colon reading: −1000…1000
 };
-
-/// One control point; between points colour and opacity are linear in HU. Opacity is for a
-/// step of 1 mm. Colours 0…1, not multiplied by opacity.
-struct TransferFunctionPoint {
-    double hu = 0.0;
-    glm::dvec3 color{1.0};
-    double opacity = 0.0;
-};
-
-/// 1-D, post-classification. Points sorted by HU, at least two. Below the first and above the last
-/// point these two go on. Two points at one HU make a step.
-struct TransferFunction {
-    std::vector<TransferFunctionPoint> points;
-};
-
-/// Built-in transfer functions: "mucosa" (opaque wall), "translucent".
-const std::vector<std::string>& transferFunctionPresets();
-Result<TransferFunction> transferFunctionPreset(const std::string& name);
-/// Sorts nothing and mends nothing: says what is wrong (2…256 points, HU −32768…32767 and not
-/// falling, colours and opacities 0…1).
-Result<void> checkTransferFunction(const TransferFunction& transferFunction);
 
 enum class View { endoscopic, axial, coronal, sagittal, flattened, flattenedZoom };
 Result<View> viewFromString(const std::string& text);
@@ -62,29 +53,28 @@ const char* toString(View view);
 struct MarchOptions {
     double stepVoxels = 0.5;        ///< sampling distance, in the smallest voxel spacing; 0.05…4
     bool emptySpaceLeaping = true;  ///< changes the time, never a pixel
-    bool shading = true;            ///< else the transfer function's colours, unlit
 };
 
-/// The lamp at the camera, in Blinn-Phong terms of linear light: at depth d mm a surface whose
-/// normal makes the angle a with the ray sends back
-/// (color·(ambient + diffuse·|cos a|) + specular·max(cos 2a, 0)^shininess) / (1 + (d /
-/// halfDepthMm)²).
-struct Headlight {
-    double halfDepthMm, ambient, diffuse, specular, shininess;
+/// What lies before the rays' ends, drawn by somebody else: a ray stops at its pixel's depth, and
+/// what it lets through is the backdrop's.
+struct Backdrop {
+    glm::ivec2 size{0};             ///< the whole picture's
+    std::vector<glm::vec4> pixels;  ///< rows from the top; rgb: linear light, w: mm along the ray
 };
-/// Mild fall-off, so that the far lumen stays readable; little gloss, as of a moist wall.
-inline constexpr Headlight headlight{65.0, 0.05, 0.95, 0.08, 20.0};
 
-/// A ray ends where its opacity has reached this, and then counts as opaque.
-inline constexpr double terminationOpacity = 0.95;
-
-struct EndoscopicView {
+/// What a camera sees of a volume.
+struct CameraView {
     Camera camera;
-    TransferFunction transferFunction;
+    Optics optics;
     MarchOptions march;
+    std::shared_ptr<const Backdrop> backdrop = nullptr;  ///< none: black, and no end
 };
 
-/// Says what is wrong with a camera: field of view 1…170°, directions finite and not parallel.
+/// Fails (badInput) where camera, optics or sampling are out of their bounds, or the backdrop is of
+/// another size.
+Result<void> checkCameraView(const CameraView& view, glm::ivec2 pictureSize);
+
+/// Says what is wrong with a camera: field of view, height, directions finite and not parallel.
 Result<void> checkCamera(const Camera& camera);
 
 /// Fails (badInput) where the sampling distance is out of range.
@@ -131,7 +121,7 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
 /// does not fall off. Beyond the seam the picture repeats; beyond the strip's ends it is black.
 struct FlatView {
     FlatWindow window;
-    TransferFunction transferFunction;
+    Optics optics;
     MarchOptions march;
 };
 
@@ -151,7 +141,7 @@ Result<void> checkFlatWindow(const FlatWindow& window, int width);
 
 /// The whole strip, laid out in columns (layOutStrip).
 struct FlatOverview {
-    TransferFunction transferFunction;
+    Optics optics;
     MarchOptions march;
 };
 

@@ -67,18 +67,17 @@ Result<void> checkView(protocol::View view) {
     return {};
 }
 
-Result<render::TransferFunction> transferFunctionFrom(
-    const protocol::SetTransferFunction& message) {
+Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message) {
     if (message.preset().empty() == message.points().empty())
         return refuse("either a preset or points are needed", "transfer function");
-    if (!message.preset().empty()) return render::transferFunctionPreset(message.preset());
-    render::TransferFunction function;
+    if (!message.preset().empty()) return render::opticsPreset(message.preset());
+    render::Optics optics;
     for (const auto& point : message.points())
-        function.points.push_back(
+        optics.transferFunction.points.push_back(
             {point.hu(), {point.red(), point.green(), point.blue()}, point.opacity()});
-    if (const auto checked = render::checkTransferFunction(function); !checked)
+    if (const auto checked = render::checkOptics(optics); !checked)
         return tl::make_unexpected(checked.error());
-    return function;
+    return optics;
 }
 
 Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,

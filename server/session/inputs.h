@@ -33,7 +33,7 @@ Result<FlatWindow> flatWindowFrom(const protocol::SetFlat& message);
 Result<void> checkView(protocol::View view);
 
 /// One of the presets by name, or a function by its points; not both.
-Result<render::TransferFunction> transferFunctionFrom(const protocol::SetTransferFunction& message);
+Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message);
 
 /// A camera's place with finite arc; the note is at most maxNoteBytes without control characters
 /// but line feed and tab; the key is 1 to maxClientKeyBytes of visible ASCII.

@@ -57,7 +57,7 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened) {
         ++sample;
     }
     message->set_patient_position(toString(opened.position));
-    for (const std::string& preset : render::transferFunctionPresets())
+    for (const std::string& preset : render::opticsPresets())
         message->add_transfer_functions(preset);
     message->set_cleansed(opened.cleansed);
     if (opened.wall) {

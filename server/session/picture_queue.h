@@ -22,7 +22,7 @@ using SessionId = std::uint64_t;
 struct PictureJob {
     SessionId session = 0;
     std::shared_ptr<const OpenCase> of;
-    std::variant<render::EndoscopicView, render::SliceView, render::FlatView, render::FlatOverview>
+    std::variant<render::CameraView, render::SliceView, render::FlatView, render::FlatOverview>
         view;
     int width = 0, height = 0;
     /// What the picture answers: viewport, codec, exact and sequence are set.

@@ -90,28 +90,25 @@ Result<void> Viewport::apply(const protocol::SetWindowLevel& message) {
 
 Result<void> Viewport::apply(const protocol::SetTransferFunction& message) {
     if (isSlice(view_)) return refuse("a slice takes no transfer function");
-    auto function = transferFunctionFrom(message);
-    if (!function) return tl::make_unexpected(function.error());
-    transferFunction_ = std::move(*function);
+    auto optics = opticsFrom(message);
+    if (!optics) return tl::make_unexpected(optics.error());
+    optics_ = std::move(*optics);
     return {};
 }
 
-std::variant<render::EndoscopicView, render::SliceView, render::FlatView, render::FlatOverview>
+std::variant<render::CameraView, render::SliceView, render::FlatView, render::FlatOverview>
 Viewport::view() const {
     if (isSlice(view_))
         return render::SliceView{planeOf(view_), *slicePositionMm_, zoom_, window_, scan_};
-    auto transferFunction =
-        transferFunction_
-            ? *transferFunction_
-            : *render::transferFunctionPreset(render::transferFunctionPresets().front());
-    if (view_ == protocol::FLATTENED) return render::FlatOverview{std::move(transferFunction), {}};
+    auto optics = optics_ ? *optics_ : *render::opticsPreset(render::opticsPresets().front());
+    if (view_ == protocol::FLATTENED) return render::FlatOverview{std::move(optics), {}};
     if (view_ == protocol::FLATTENED_ZOOM) {
         FlatWindow window = *flat_;
         const double least = double(width_) / render::maxCircumferences;
         window.pixelsPerUnit = std::max(window.pixelsPerUnit, least);
-        return render::FlatView{window, std::move(transferFunction), {}};
+        return render::FlatView{window, std::move(optics), {}};
     }
-    return render::EndoscopicView{*camera_, std::move(transferFunction), {}};
+    return render::CameraView{*camera_, std::move(optics), {}};
 }
 
 }  // namespace haustra::session

@@ -38,7 +38,7 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
     /// Only of one that is drawable.
-    std::variant<render::EndoscopicView, render::SliceView, render::FlatView, render::FlatOverview>
+    std::variant<render::CameraView, render::SliceView, render::FlatView, render::FlatOverview>
     view() const;
 
 private:
@@ -50,7 +50,7 @@ private:
     render::Scan scan_ = render::Scan::original;
     render::WindowLevel window_;
     std::optional<FlatWindow> flat_;
-    std::optional<render::TransferFunction> transferFunction_;  ///< none: the first preset
+    std::optional<render::Optics> optics_;  ///< none: the first preset
     bool moving_ = false;
 };
 

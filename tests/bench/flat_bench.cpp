@@ -31,7 +31,7 @@ double processorMilliseconds() {
 
 /// A hand that drags the window along and around the strip, at one enlargement after the other.
 Result<void> timeWindows(render::CaseRenderer& renderer, const FlatMap& map,
-                         const render::TransferFunction& function) {
+                         const render::Optics& function) {
     constexpr int side = 512, pictures = 60;
     for (const double pixels : {400.0, 1000.0, 2500.0, 6000.0}) {
         std::vector<double> times;
@@ -57,7 +57,7 @@ Result<void> timeWindows(render::CaseRenderer& renderer, const FlatMap& map,
 }
 
 Result<void> timeStrips(render::CaseRenderer& renderer, const FlatMap& map,
-                        const render::TransferFunction& function) {
+                        const render::Optics& function) {
     for (const int width : {400, 1600}) {
         const render::StripPicture picture{width, 0.0, function, {}};
         const double start = milliseconds(), processor = processorMilliseconds();
@@ -152,7 +152,7 @@ Result<void> bench(const std::string& store, const std::string& name, const std:
     auto map = source->readFlatMap();
     if (!map) return tl::make_unexpected(map.error());
     const auto shared = std::make_shared<const FlatMap>(std::move(*map));
-    const auto function = render::transferFunctionPreset(preset);
+    const auto function = render::opticsPreset(preset);
     if (!function) return tl::make_unexpected(function.error());
     auto prepared = render::prepareCase(*ct, *cleansed);
     if (!prepared) return tl::make_unexpected(prepared.error());

@@ -20,14 +20,14 @@ double areaMm2(const TriMesh& mesh, int triangle) {
                                         mesh.vertices[std::size_t(t.z)] - a));
 }
 
-class BallCut {
+class FieldCut {
 public:
-    BallCut(const TriMesh& tube, const mesh::HalfedgeMesh& edges, const flatten::PeriodicMap& map,
-            glm::dvec3 centerMm, double radiusMm)
-        : tube_(tube), edges_(edges), map_(map), center_(centerMm), radius_(radiusMm) {
+    FieldCut(const TriMesh& tube, const mesh::HalfedgeMesh& edges, const flatten::PeriodicMap& map,
+             const std::function<double(glm::dvec3)>& inside)
+        : tube_(tube), edges_(edges), map_(map), inside_(inside) {
         piece_.assign(tube.vertices.size(), -1);
         for (std::size_t v = 0; v < piece_.size(); ++v)
-            if (glm::distance(tube.vertices[v], centerMm) < radiusMm) piece_[v] = none;
+            if (inside(tube.vertices[v]) < 0.0) piece_[v] = none;
     }
 
     /// The vertices of the piece with the largest area get its number; −1 where there is none.
@@ -149,12 +149,16 @@ private:
         return -1;
     }
 
-    /// How far along h the ball's surface is.
+    /// How far along h, which leaves the piece, the field changes its sign.
     double shareInside(int h) const {
-        const glm::dvec3 a = tube_.vertices[std::size_t(edges_.origin(h))] - center_,
-                         d = tube_.vertices[std::size_t(edges_.target(h))] - center_ - a;
-        const double k = glm::dot(a, a) - radius_ * radius_, m = glm::dot(a, d), n = glm::dot(d, d);
-        return std::clamp((-m + std::sqrt(std::max(0.0, m * m - k * n))) / n, 0.0, 1.0);
+        const glm::dvec3 a = tube_.vertices[std::size_t(edges_.origin(h))],
+                         b = tube_.vertices[std::size_t(edges_.target(h))];
+        double low = 0.0, high = 1.0;
+        for (int round = 0; round < 32; ++round) {
+            const double middle = 0.5 * (low + high);
+            (inside_(glm::mix(a, b, middle)) < 0.0 ? low : high) = middle;
+        }
+        return 0.5 * (low + high);
     }
 
     glm::dvec2 flatAt(int h, double t) const {
@@ -166,17 +170,16 @@ private:
     const TriMesh& tube_;
     const mesh::HalfedgeMesh& edges_;
     const flatten::PeriodicMap& map_;
-    glm::dvec3 center_;
-    double radius_;
+    const std::function<double(glm::dvec3)>& inside_;
     std::vector<int> piece_;  ///< per vertex; −1: outside
 };
 
 }  // namespace
 
-std::optional<FlatOutline> outlineAround(const TriMesh& tube, const mesh::HalfedgeMesh& edges,
-                                         const flatten::PeriodicMap& map, glm::dvec3 centerMm,
-                                         double radiusMm) {
-    BallCut cut(tube, edges, map, centerMm, radiusMm);
+std::optional<FlatOutline> outlineOf(const TriMesh& tube, const mesh::HalfedgeMesh& edges,
+                                     const flatten::PeriodicMap& map,
+                                     const std::function<double(glm::dvec3)>& inside) {
+    FieldCut cut(tube, edges, map, inside);
     const int piece = cut.largestPiece();
     std::vector<std::vector<int>> borders;
     if (piece < 0 || !cut.borders(piece, borders)) return std::nullopt;

@@ -5,6 +5,7 @@
 #include "flatten/periodic_map.h"
 #include "mesh/halfedge_mesh.h"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -22,15 +23,13 @@ struct FlatOutline {
     double insideMm2 = 0.0;  ///< of the piece of surface that it is the border of
 };
 
-/// Where a ball of `radiusMm` around a polyp's centre cuts the surface: of the pieces of surface
-/// inside, the one with the largest area, and of that one's borders the one that encloses the rest
-/// in the plane. With the radius a tenth over the polyp's own, that is a flat or sessile polyp's
-/// foot on the wall, and a ring around a pedunculated one's stalk, or around its head where that
-/// touches the wall. Empty where nothing is inside, a border meets a rim of the tube, or the piece
-/// runs around the whole colon. Each edge is cut at most once.
-std::optional<FlatOutline> outlineAround(const TriMesh& tube, const mesh::HalfedgeMesh& edges,
-                                         const flatten::PeriodicMap& map, glm::dvec3 centerMm,
-                                         double radiusMm);
+/// Where a field cuts the surface: of the pieces of surface on which `inside` is negative, the one
+/// with the largest area, and of that one's borders the one that encloses the rest in the plane.
+/// Empty where nothing is inside, a border meets a rim of the tube, or the piece runs around the
+/// whole colon. `inside` need not be a distance; along each edge it is taken to change sign once.
+std::optional<FlatOutline> outlineOf(const TriMesh& tube, const mesh::HalfedgeMesh& edges,
+                                     const flatten::PeriodicMap& map,
+                                     const std::function<double(glm::dvec3)>& inside);
 
 struct OutlineShape {
     double area = 0.0;    ///< enclosed

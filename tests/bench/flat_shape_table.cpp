@@ -10,27 +10,26 @@
 #include "flatten/seam.h"
 #include "flatten/unified_flattening.h"
 #include "flatten_meshes.h"
+#include "phantom_polyps.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <random>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 using namespace haustra;
 
 namespace {
 
 struct Polyp {
-    std::string of, kind;
-    glm::dvec3 centerMm;
-    double diameterMm;
+    std::string of;  ///< the case
+    bench::PhantomPolyp truth;
+    const std::string& kind() const { return truth.finding.kind; }
 };
 
 struct Compared {
@@ -60,18 +59,9 @@ T need(Result<T> result) {
 }
 
 std::vector<Polyp> polypsOf(const std::string& file, const std::string& of) {
-    std::ifstream in(file);
-    const auto json = nlohmann::json::parse(in, nullptr, false);
-    if (json.is_discarded() || !json.contains("findings"))
-        stop({ErrorKind::badInput, "holds no findings", file});
     std::vector<Polyp> polyps;
-    for (const auto& finding : json["findings"]) {
-        const auto p = finding["position_mm"];
-        polyps.push_back({of,
-                          finding["kind"].get<std::string>(),
-                          {p[0], p[1], p[2]},
-                          finding["diameter_mm"].get<double>()});
-    }
+    for (auto& polyp : need(bench::polypsOfPhantom(file)))
+        polyps.push_back({of, std::move(polyp)});
     return polyps;
 }
 
@@ -124,20 +114,25 @@ flatten::PeriodicMap unified(const Study& study, double weight, int threads, dou
     return map;
 }
 
-std::vector<Compared> compare(const Study& study, const flatten::PeriodicMap& map, double reach) {
+std::vector<Compared> compare(const Study& study, const flatten::PeriodicMap& map) {
     std::vector<Compared> all;
     for (const Polyp& polyp : study.polyps) {
-        const auto outline = bench::outlineAround(study.tube.mesh, study.edges, map, polyp.centerMm,
-                                                  0.5 * reach * polyp.diameterMm);
+        // What is a loop in a plane in space, and what is draped over the wall.
+        const bool girth = polyp.kind() == "pedunculated";
+        const auto outline = bench::outlineOf(study.tube.mesh, study.edges, map,
+                                              girth ? polyp.truth.girth : polyp.truth.border);
         if (!outline) {
             fmt::print(stderr, "{}: no outline of the {:.1f} mm {} polyp\n", polyp.of,
-                       polyp.diameterMm, polyp.kind);
+                       polyp.truth.finding.diameterMm, polyp.kind());
             continue;
         }
-        // A ring around a stalk is one in space; what lies on the wall is unrolled with it.
-        const bool ring = polyp.kind == "pedunculated";
+        fmt::print(
+            stderr, "DBG {} {} {:.1f} space {:.2f} unrolled {:.2f} flat {:.2f}\n", polyp.of,
+            polyp.kind(), polyp.truth.finding.diameterMm, bench::shapeOf(outline->placesMm).aspect,
+            bench::shapeOf(outline->unrolledMm).aspect, bench::shapeOf(outline->flat).aspect);
         all.push_back(
-            {&polyp, ring ? bench::shapeOf(outline->placesMm) : bench::shapeOf(outline->unrolledMm),
+            {&polyp,
+             girth ? bench::shapeOf(outline->placesMm) : bench::shapeOf(outline->unrolledMm),
              bench::shapeOf(outline->flat), outline->insideMm2});
     }
     return all;
@@ -149,8 +144,9 @@ void printPolyps(const std::vector<Compared>& all) {
         "| --- | --- | --- | --- | --- | --- | --- |\n");
     for (const Compared& c : all) {
         fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} |\n", c.polyp->of,
-                   c.polyp->kind, c.polyp->diameterMm, std::sqrt(4.0 / M_PI * c.onSurface.area),
-                   c.onSurface.aspect, c.inPlane.aspect, 100.0 * c.off());
+                   c.polyp->kind(), c.polyp->truth.finding.diameterMm,
+                   std::sqrt(4.0 / M_PI * c.onSurface.area), c.onSurface.aspect, c.inPlane.aspect,
+                   100.0 * c.off());
     }
 }
 
@@ -161,7 +157,7 @@ void printSummary(const std::string& weight, const std::string& kind,
     int count = 0, kept = 0;
     double sum = 0.0, squares = 0.0, worst = 0.0;
     for (const Compared& c : all) {
-        if (kind != "all" && c.polyp->kind != kind) continue;
+        if (kind != "all" && c.polyp->kind() != kind) continue;
         ++count;
         kept += std::abs(c.off()) <= 0.1;
         worst = std::max(worst, std::abs(c.off()));
@@ -222,22 +218,19 @@ int main(int argc, char** argv) {
     std::string storeFolder;
     std::vector<std::string> cases, truths;
     std::vector<double> weights{0.1, 0.3, 0.5, 0.8, 1.0};
-    double reach = 1.1;
     int threads = 0;
     app.add_option("--store", storeFolder, "The case store's folder")->required();
     app.add_option("--case", cases, "Cases' names")->required();
-    app.add_option("--polyps", truths, "polyps.json of each case's phantom, in order");
+    app.add_option("--phantom", truths, "phantom.json of each case's phantom, in order");
     app.add_option("--weights", weights, "Area weights beside 0")->capture_default_str();
-    app.add_option("--reach", reach, "The outline's radius over the polyp's")
-        ->capture_default_str();
     app.add_option("--threads", threads, "Threads; 0 for all cores");
     CLI11_PARSE(app, argc, argv);
     if (!truths.empty() && truths.size() != cases.size())
-        stop({ErrorKind::badInput, "must be as many as the cases", "--polyps"});
+        stop({ErrorKind::badInput, "must be as many as the cases", "--phantom"});
 
     std::vector<Study> studies;
     for (std::size_t n = 0; n < cases.size(); ++n) {
-        auto tube = need(bench::tubeOfCase(storeFolder, cases[n], true));
+        auto tube = need(bench::tubeOfCase(storeFolder, cases[n], {.product = true}));
         auto edges = need(mesh::HalfedgeMesh::of(tube.mesh));
         auto made = need(flatten::conformalTube(tube.mesh));
         studies.push_back({std::move(tube), std::move(edges), std::move(made.map),
@@ -252,7 +245,7 @@ int main(int argc, char** argv) {
     for (const Study& study : studies) {
         const TriMesh& tube = study.tube.mesh;
         const auto add = [&](std::size_t n, const flatten::PeriodicMap& map) {
-            const auto found = compare(study, map, reach);
+            const auto found = compare(study, map);
             byWeight[n].insert(byWeight[n].end(), found.begin(), found.end());
         };
         printDistortion(study.tube.name, "conformal", tube, study.conformal, -1.0);

@@ -5,68 +5,31 @@
 #include "flatten/tube_topology.h"
 #include "flatten_cgal.h"
 #include "flatten_meshes.h"
+#include "flatten_race.h"
+#include "process_cost.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 using namespace haustra;
+using bench::Cost;
+using bench::Stopwatch;
 
 namespace {
 
 struct Settings {
     int threads = 0;
-    double plainSeconds = 0.0, jacobiSeconds = 0.0;  ///< allowed to conjugate gradients
+    bench::RaceOptions race;  ///< where it has rounds
     bool cgal = false;
     std::size_t arapTriangles = 0;  ///< as-rigid-as-possible up to this size
 };
-
-/// Wall and CPU seconds (user and system, all threads) since it was made.
-class Stopwatch {
-public:
-    struct Reading {
-        double wall, cpu;
-    };
-    Reading read() const {
-        const Reading now = clocks();
-        return {now.wall - start_.wall, now.cpu - start_.cpu};
-    }
-
-private:
-    static Reading clocks() {
-        rusage usage{};
-        getrusage(RUSAGE_SELF, &usage);
-        const auto seconds = [](const timeval& t) {
-            return double(t.tv_sec) + 1e-6 * double(t.tv_usec);
-        };
-        const auto wall = std::chrono::steady_clock::now().time_since_epoch();
-        return {std::chrono::duration<double>(wall).count(),
-                seconds(usage.ru_utime) + seconds(usage.ru_stime)};
-    }
-    Reading start_ = clocks();
-};
-
-/// Largest resident size of the process since resetPeak, MiB.
-double peakMiB() {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);) {
-        if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) / 1024.0;
-    }
-    return 0.0;
-}
-void resetPeak() {
-    std::ofstream("/proc/self/clear_refs") << "5";
-}
 
 void printHeader(const char* first) {
     fmt::print(
@@ -77,12 +40,11 @@ void printHeader(const char* first) {
         first);
 }
 
-void printRow(const std::string& name, const Stopwatch::Reading& time, double peak,
-              const flatten::Distortion& d) {
+void printRow(const std::string& name, const Cost& cost, const flatten::Distortion& d) {
     fmt::print(
         "| {} | {:.2f} | {:.2f} | {:.0f} | {:.3f} | {:.3f} | {:.2f} | {:.1f} | {:.1f} | {:.4f} | "
         "{:.3f} | {:.2f} | {:.3f} | {:.3g} | {} |\n",
-        name, time.wall, time.cpu, peak, d.angleErrorDegrees.mean, d.angleFloorDegrees,
+        name, cost.wallS, cost.cpuS(), cost.peakMiB, d.angleErrorDegrees.mean, d.angleFloorDegrees,
         d.angleErrorDegrees.p95, d.angleErrorDegrees.p999, d.angleErrorDegrees.max,
         d.dilatation.mean, d.dilatation.p999, d.dilatation.max, d.logAreaDeviation, d.areaRange,
         d.flips);
@@ -96,16 +58,16 @@ flatten::Distortion distortionOf(const TriMesh& mesh, const flatten::PeriodicMap
 
 struct Run {
     flatten::ConformalTube tube;
-    Stopwatch::Reading time{};
-    std::vector<std::pair<double, Stopwatch::Reading>> phases;  ///< progress at their ends
+    Cost cost;
+    std::vector<Cost> phases;  ///< at their ends
 };
 
 Run runTube(const TriMesh& mesh, flatten::ConformalTubeOptions options) {
     Run run;
     const Stopwatch watch;
-    options.progress = [&](double fraction) { run.phases.emplace_back(fraction, watch.read()); };
+    options.progress = [&](double) { run.phases.push_back(watch.read()); };
     auto made = flatten::conformalTube(mesh, -1, options);
-    run.time = watch.read();
+    run.cost = watch.read();
     if (!made) {
         fmt::print(stderr, "{}\n", describe(made.error()));
         std::exit(EXIT_FAILURE);
@@ -117,37 +79,14 @@ Run runTube(const TriMesh& mesh, flatten::ConformalTubeOptions options) {
 void printPhases(const Run& run) {
     static constexpr const char* names[] = {"topology", "Delaunay", "assembly and factor", "solve",
                                             "map and repair"};
-    Stopwatch::Reading before{};
+    Cost before;
     for (std::size_t n = 0; n < run.phases.size() && n < std::size(names); ++n) {
-        const Stopwatch::Reading& now = run.phases[n].second;
-        fmt::print("{}{} {:.3f} ({:.3f})", n == 0 ? "" : ", ", names[n], now.wall - before.wall,
-                   now.cpu - before.cpu);
+        const Cost& now = run.phases[n];
+        fmt::print("{}{} {:.3f} ({:.3f})", n == 0 ? "" : ", ", names[n], now.wallS - before.wallS,
+                   now.cpuS() - before.cpuS());
         before = now;
     }
     fmt::print(" s of wall (CPU)\n");
-}
-
-/// Conjugate gradients on the surface's own triangles, as the dissertation has them, ended after
-/// about `seconds` of wall time.
-void runIterative(const TriMesh& mesh, const Run& direct, flatten::Solver solver, double seconds,
-                  const std::string& name, const Settings& settings) {
-    flatten::ConformalTubeOptions options;
-    options.threads = settings.threads;
-    options.solver = solver;
-    options.intrinsicDelaunay = false;
-    options.repairFlips = false;
-    options.maxIterations = 40;
-    const double few = runTube(mesh, options).time.wall;
-    options.maxIterations = 240;
-    const double more = runTube(mesh, options).time.wall;
-    options.maxIterations = std::max(240, int(seconds / std::max(more - few, 1e-3) * 200.0));
-    const Run run = runTube(mesh, options);
-    printRow(fmt::format("{}, {} iterations{}", name, run.tube.iterations,
-                         run.tube.converged ? "" : ", not converged"),
-             run.time, 0.0, distortionOf(mesh, run.tube.map));
-    fmt::print(stderr, "{}: {:.1f} times our wall time, {:.1f} times our CPU time{}\n", name,
-               run.time.wall / direct.time.wall, run.time.cpu / direct.time.cpu,
-               run.tube.converged ? "" : ", and not converged");
 }
 
 /// The tube cut open along a shortest path from rim to rim.
@@ -186,12 +125,12 @@ Disc cutOpen(const TriMesh& tube) {
 void runCgal(const TriMesh& tube, double modulus, const Settings& settings) {
     const Disc disc = cutOpen(tube);
     const auto run = [&](bench::CgalMethod method, const char* name, double height) {
-        resetPeak();
         const Stopwatch watch;
         const bench::DiscMap made = bench::cgalMap(disc.mesh, method, disc.corners);
-        const Stopwatch::Reading time = watch.read();
+        const Cost cost = watch.read();
         if (!made.failure.empty()) {
-            fmt::print("| {} | {:.2f} | {:.2f} | {}\n", name, time.wall, time.cpu, made.failure);
+            fmt::print("| {} | {:.2f} | {:.2f} | {}\n", name, cost.wallS, cost.cpuS(),
+                       made.failure);
             return;
         }
         const auto at = [&](std::size_t t, int c) {
@@ -206,7 +145,7 @@ void runCgal(const TriMesh& tube, double modulus, const Settings& settings) {
                 return glm::dvec2(-place.x, place.y);
             });
         }
-        printRow(name, time, peakMiB(), distortion);
+        printRow(name, cost, distortion);
     };
     run(bench::CgalMethod::leastSquaresConformal, "CGAL LSCM, cut open", 1.0);
     run(bench::CgalMethod::discreteConformal, "CGAL discrete conformal to our rectangle", modulus);
@@ -217,9 +156,7 @@ void runCgal(const TriMesh& tube, double modulus, const Settings& settings) {
 void runAll(const bench::Tube& tube, const Settings& settings) {
     flatten::ConformalTubeOptions options;
     options.threads = settings.threads;
-    resetPeak();
     const Run direct = runTube(tube.mesh, options);
-    const double peak = peakMiB();
     const flatten::ConformalTube& made = direct.tube;
     fmt::print(
         "\n{}: {} triangles, modulus {:.6f}, certificate {:.2e}, {} negative weights, {} "
@@ -228,23 +165,15 @@ void runAll(const bench::Tube& tube, const Settings& settings) {
         made.flippedEdges, made.repaired);
     printPhases(direct);
     printHeader("map");
-    printRow("Cholesky, Delaunay, repaired", direct.time, peak, distortionOf(tube.mesh, made.map));
+    printRow("Cholesky, Delaunay, repaired", direct.cost, distortionOf(tube.mesh, made.map));
     options.repairFlips = false;
     const Run bare = runTube(tube.mesh, options);
-    printRow("not repaired", bare.time, 0.0, distortionOf(tube.mesh, bare.tube.map));
+    printRow("not repaired", bare.cost, distortionOf(tube.mesh, bare.tube.map));
     options.intrinsicDelaunay = false;
     const Run plain = runTube(tube.mesh, options);
-    printRow("the surface's own triangles", plain.time, 0.0,
-             distortionOf(tube.mesh, plain.tube.map));
-    if (settings.jacobiSeconds > 0.0) {
-        runIterative(tube.mesh, direct, flatten::Solver::jacobiConjugateGradient,
-                     settings.jacobiSeconds, "CG, Jacobi", settings);
-    }
-    if (settings.plainSeconds > 0.0) {
-        runIterative(tube.mesh, direct, flatten::Solver::conjugateGradient, settings.plainSeconds,
-                     "plain CG", settings);
-    }
+    printRow("the surface's own triangles", plain.cost, distortionOf(tube.mesh, plain.tube.map));
     if (settings.cgal) runCgal(tube.mesh, made.modulus, settings);
+    if (settings.race.rounds > 0) bench::raceIterations(tube, settings.race);
 }
 
 }  // namespace
@@ -254,35 +183,40 @@ int main(int argc, char** argv) {
     std::vector<std::string> files, cases;
     std::string storeFolder;
     double voxelMm = 0.0;
-    bool simplified = false;
+    bench::SurfaceChoice choice;
+    bool subdivide = false;
     Settings settings;
     app.add_option("meshes", files, "tubes, or closed surfaces that are punched");
     app.add_option("--generate-mm", voxelMm, "also a generated tube of this voxel size");
     app.add_option("--case", cases, "also the finest surface of a case")
         ->needs(app.add_option("--store", storeFolder, "the store's folder"));
-    app.add_flag("--simplified", simplified, "the cases' product `surface` in place of the finest");
-    app.add_option("--jacobi-seconds", settings.jacobiSeconds,
-                   "also conjugate gradients with the diagonal, for so long at most");
-    app.add_option("--plain-seconds", settings.plainSeconds, "also plain conjugate gradients");
+    app.add_flag("--simplified", choice.product, "the cases' product `surface` in its place");
+    app.add_option("--error-mm", choice.errorMm, "simplify the cases' finest surfaces so far");
+    app.add_flag("--subdivide", subdivide, "four triangles for each");
+    app.add_option("--race", settings.race.rounds,
+                   "also conjugate gradients, so many times each between our maps");
+    app.add_option("--race-seconds", settings.race.seconds, "for each at most")
+        ->capture_default_str();
     app.add_flag("--cgal", settings.cgal, "also CGAL's parameterizers");
     app.add_option("--arap-triangles", settings.arapTriangles,
                    "also CGAL's as-rigid-as-possible map up to so many triangles");
     app.add_option("--threads", settings.threads, "0: all cores")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
+    settings.race.threads = settings.threads;
 
     std::vector<std::function<Result<bench::Tube>()>> tubes;
     if (voxelMm > 0.0) tubes.push_back([&] { return bench::generatedTube(voxelMm); });
     for (const std::string& file : files)
         tubes.push_back([&] { return bench::tubeOfFile(file); });
     for (const std::string& name : cases)
-        tubes.push_back([&] { return bench::tubeOfCase(storeFolder, name, simplified); });
+        tubes.push_back([&] { return bench::tubeOfCase(storeFolder, name, choice); });
     for (const auto& make : tubes) {
         const auto tube = make();
         if (!tube) {
             fmt::print(stderr, "{}\n", describe(tube.error()));
             return EXIT_FAILURE;
         }
-        runAll(*tube, settings);
+        runAll(subdivide ? bench::subdivided(*tube) : *tube, settings);
     }
     return EXIT_SUCCESS;
 }

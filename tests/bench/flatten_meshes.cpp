@@ -6,15 +6,19 @@
 #include "mesh/mesh_file.h"
 #include "store/case_store.h"
 #include "surface/dual_contouring.h"
+#include "surface/simplification.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <queue>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace haustra::bench {
 namespace {
@@ -124,7 +128,7 @@ Result<Tube> tubeOfFile(const std::string& file) {
 }
 
 Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseName,
-                        bool simplified) {
+                        const SurfaceChoice& choice) {
     const auto opened = store::CaseStore::open(storeFolder, false).and_then([&](const auto& store) {
         return store.openCase(caseName);
     });
@@ -132,7 +136,7 @@ Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseN
     const auto centerline = opened->readCenterline();
     if (!centerline) return tl::make_unexpected(centerline.error());
     Result<TriMesh> closed;
-    if (simplified) {
+    if (choice.product) {
         closed = opened->readMesh("surface");
     } else {
         const auto lumen = opened->readVolume<std::uint8_t>("lumen");
@@ -143,13 +147,38 @@ Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseN
                                            : Volume<std::int16_t>(lumen->grid(), 0);
         if (!hu) return tl::make_unexpected(hu.error());
         closed = surface::contourLumen(*hu, *lumen, -400.0);
+        if (closed && choice.errorMm > 0.0) closed = surface::simplify(*closed, {choice.errorMm});
     }
     if (!closed) return tl::make_unexpected(closed.error());
     const CenterlinePose first = poseAtArc(*centerline, 0.0, 6.0),
                          last = poseAtArc(*centerline, centerline->lengthMm(), 6.0);
     const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm};
     const glm::dvec3 outwards[2] = {-first.tangent, last.tangent};
-    return punched(caseName + (simplified ? "" : ", finest"), *closed, ends, outwards);
+    const std::string which = choice.product         ? ", product"
+                              : choice.errorMm > 0.0 ? fmt::format(", {} mm", choice.errorMm)
+                                                     : ", finest";
+    return punched(caseName + which, *closed, ends, outwards);
+}
+
+Tube subdivided(const Tube& tube) {
+    Tube finer{tube.name + ", subdivided", {tube.mesh.vertices, {}}};
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+        const auto [at, isNew] =
+            middles.try_emplace(std::minmax(a, b), int(finer.mesh.vertices.size()));
+        if (isNew) {
+            finer.mesh.vertices.push_back(
+                0.5 * (tube.mesh.vertices[std::size_t(a)] + tube.mesh.vertices[std::size_t(b)]));
+        }
+        return at->second;
+    };
+    for (const glm::ivec3& t : tube.mesh.triangles) {
+        const glm::ivec3 m{middle(t.x, t.y), middle(t.y, t.z), middle(t.z, t.x)};
+        for (const glm::ivec3& quarter :
+             {glm::ivec3(t.x, m.x, m.z), glm::ivec3(t.y, m.y, m.x), glm::ivec3(t.z, m.z, m.y), m})
+            finer.mesh.triangles.push_back(quarter);
+    }
+    return finer;
 }
 
 }  // namespace haustra::bench

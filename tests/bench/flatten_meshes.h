@@ -21,9 +21,17 @@ Result<Tube> generatedTube(double voxelMm);
 /// apart along its edges.
 Result<Tube> tubeOfFile(const std::string& file);
 
-/// The finest surface of a case, contoured from its cleansed HU (else its CT) or, `simplified`, its
-/// product `surface`; punched at the ends of its centerline.
+/// Which surface of a case.
+struct SurfaceChoice {
+    bool product = false;  ///< its product `surface`; else one contoured from its cleansed HU or CT
+    double errorMm = 0.0;  ///< and simplified within this distance, where it is above 0
+};
+
+/// A case's surface punched at the ends of its centerline.
 Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseName,
-                        bool simplified);
+                        const SurfaceChoice& choice);
+
+/// Every triangle becomes four, of halved edges: the same surface, and the same angles.
+Tube subdivided(const Tube& tube);
 
 }  // namespace haustra::bench

@@ -33,7 +33,7 @@ Result<void> bench(const std::string& store, const std::string& name, const std:
     if (!cleansed) return tl::make_unexpected(cleansed.error());
     const auto centerline = source->readCenterline();
     if (!centerline) return tl::make_unexpected(centerline.error());
-    const auto function = render::transferFunctionPreset(preset);
+    const auto function = render::opticsPreset(preset);
     if (!function) return tl::make_unexpected(function.error());
 
     const auto context = gpu::Context::create();
@@ -53,9 +53,9 @@ Result<void> bench(const std::string& store, const std::string& name, const std:
             const double arcMm = centerline->lengthMm() * (std::max(i, 0) + 0.5) / places;
             const CenterlineCamera at =
                 cameraAtArc(*centerline, ups, arcMm, FlightDirection::antegrade);
-            render::EndoscopicView view;
+            render::CameraView view;
             view.camera = {at.positionMm, at.forward, at.up, 90.0};
-            view.transferFunction = *function;
+            view.optics = *function;
             const double start = milliseconds();
             if (const auto image = (*renderer)->render(view, size, size); !image)
                 return tl::make_unexpected(image.error());

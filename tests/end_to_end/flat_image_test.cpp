@@ -65,7 +65,7 @@ protected:
     }
     static std::string picture() { return folder_->path() / "picture.png"; }
     static FlatView view(glm::dvec2 center, double pixels, const char* preset = "mucosa") {
-        return {{center, pixels}, *transferFunctionPreset(preset), {}};
+        return {{center, pixels}, *opticsPreset(preset), {}};
     }
 
     static inline const FlatTube tube_{};
@@ -75,7 +75,7 @@ protected:
 };
 
 TEST_F(FlatImage, RenderDrawsWhatTheServerDoes) {
-    const FlatOverview overview{*transferFunctionPreset("mucosa"), {}};
+    const FlatOverview overview{*opticsPreset("mucosa"), {}};
     EXPECT_EQ(rendered({"--view", "flattened"}).rgb, renderer_->render(overview, 90, 70)->rgb);
     EXPECT_EQ(rendered({"--view", "flattened-zoom", "--flat", "0.2,0.7",
                         "--pixels-per-circumference", "300", "--transfer-function", "translucent"})

@@ -197,7 +197,7 @@ TEST_F(ServerFlatTest, PicturesAreTheRenderersOwnPixels) {
     auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared));
     ASSERT_TRUE(renderer);
     open();
-    const auto mucosa = *render::transferFunctionPreset("mucosa");
+    const auto mucosa = *render::opticsPreset("mucosa");
 
     client_->viewport(1, 5, protocol::FLATTENED_ZOOM, 150, 120);
     setFlat(2, 5, {-0.75, 0.4}, 220.0);
@@ -225,8 +225,7 @@ TEST_F(ServerFlatTest, PicturesAreTheRenderersOwnPixels) {
     client_->send(preset);
     picture = client_->picture();
     image = (*renderer)->render(
-        render::FlatView{{{0.25, 0.4}, 220.0}, *render::transferFunctionPreset("translucent"), {}},
-        150, 120);
+        render::FlatView{{{0.25, 0.4}, 220.0}, *render::opticsPreset("translucent"), {}}, 150, 120);
     ASSERT_TRUE(picture && image);
     EXPECT_EQ(picture->rgb, image->rgb);
 
@@ -234,9 +233,8 @@ TEST_F(ServerFlatTest, PicturesAreTheRenderersOwnPixels) {
     setFlat(6, 5, {0.5, 0.5}, 16.0);
     picture = client_->picture();
     image = (*renderer)->render(
-        render::FlatView{
-            {{0.5, 0.5}, 150.0 / 8}, *render::transferFunctionPreset("translucent"), {}},
-        150, 120);
+        render::FlatView{{{0.5, 0.5}, 150.0 / 8}, *render::opticsPreset("translucent"), {}}, 150,
+        120);
     ASSERT_TRUE(picture && image);
     EXPECT_EQ(picture->rgb, image->rgb);
 }

@@ -291,9 +291,9 @@ TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     ASSERT_TRUE(renderer);
 
     auto client = opened();
-    render::EndoscopicView endoscopic;
+    render::CameraView endoscopic;
     endoscopic.camera = {{-1.2, 2.2, 112.0}, {0.1, 0.2, 1.0}, {0.0, -1.0, 0.1}, 80.0};
-    endoscopic.transferFunction = *render::transferFunctionPreset("mucosa");
+    endoscopic.optics = *render::opticsPreset("mucosa");
     client->viewport(1, 0, protocol::ENDOSCOPIC, 531, 300);  // more than one tile
     client->camera(2, 0, {-1.2, 2.2, 112.0}, false, {0.1, 0.2, 1.0}, {0.0, -1.0, 0.1}, 80.0);
     auto picture = client->picture();
@@ -325,7 +325,7 @@ TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     preset.mutable_set_transfer_function()->set_preset("translucent");
     client->send(preset);
     picture = client->picture();
-    endoscopic.transferFunction = *render::transferFunctionPreset("translucent");
+    endoscopic.optics = *render::opticsPreset("translucent");
     image = (*renderer)->render(endoscopic, 531, 300);
     ASSERT_TRUE(picture && image);
     EXPECT_EQ(picture->header.sequence, 4u);

@@ -119,7 +119,7 @@ inline render::Image referenceFlat(const ReferenceWall& reference,
             append(image, marchRay(volume,
                                    {volume.grid().voxelFromPatientPoint(origin), linear * step,
                                     place->light},
-                                   view.transferFunction, view.march.shading, stepMm,
+                                   view.optics.transferFunction, view.optics.shading, stepMm,
                                    place->stepsBack + std::ceil(render::flatRay.depthMm / stepMm)));
         }
     }

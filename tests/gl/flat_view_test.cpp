@@ -25,10 +25,10 @@ protected:
         return made ? std::move(*made) : nullptr;
     }
     static FlatView view(glm::dvec2 center, double pixelsPerUnit,
-                         const TransferFunction& function = *transferFunctionPreset("mucosa")) {
+                         const Optics& optics = *opticsPreset("mucosa")) {
         FlatView view;
         view.window = {center, pixelsPerUnit};
-        view.transferFunction = function;
+        view.optics = optics;
         return view;
     }
     /// The part of a picture that begins at `corner`.
@@ -78,8 +78,8 @@ TEST_F(Flattened, EachPixelShowsItsPlace) {
                    400.0;
         });
         const auto renderer = upload(ramp, map);
-        FlatView window = view({0.4, 0.5 * tube.height()}, 150.0, vernier);
-        window.march.shading = false;
+        FlatView window = view({0.4, 0.5 * tube.height()}, 150.0, {vernier});
+        window.optics.shading = false;
         const glm::ivec2 size(150, 120);
         const Image image = draw(*renderer, window, size.x, size.y);
         double worst = 0.0;
@@ -108,11 +108,11 @@ TEST_F(Flattened, AgreesWithAPlainOneOnTheCpu) {
         const FlatMap map = tube.map(cells);
         const ReferenceWall reference(map);
         const auto renderer = upload(scan, map);
-        for (const std::string& preset : transferFunctionPresets()) {
+        for (const std::string& preset : opticsPresets()) {
             for (const auto& [center, pixels] : {std::pair(glm::dvec2(0.5, 0.4), 90.0),
                                                  {glm::dvec2(0.02, 0.0), 150.0},
                                                  {glm::dvec2(0.3, 0.55), 1500.0}}) {
-                const FlatView window = view(center, pixels, *transferFunctionPreset(preset));
+                const FlatView window = view(center, pixels, *opticsPreset(preset));
                 const Image image = draw(*renderer, window, 96, 64);
                 const Image plain = referenceFlat(reference, scan, window, {96, 64});
                 EXPECT_GE(psnr(image, plain), 45.0)
@@ -180,9 +180,9 @@ TEST_F(Flattened, GoesOnAcrossTheSeam) {
 TEST_F(Flattened, APlaceIsTheSameInEveryPicture) {
     const FlatTube tube = overhanging();
     const auto renderer = upload(tube.scan(), tube.map(cells));
-    for (const std::string& preset : transferFunctionPresets()) {
+    for (const std::string& preset : opticsPresets()) {
         for (const double pixels : {83.0, 400.0, 5000.0 / 3.0}) {
-            const FlatView whole = view({0.11, 0.4}, pixels, *transferFunctionPreset(preset));
+            const FlatView whole = view({0.11, 0.4}, pixels, *opticsPreset(preset));
             const glm::ivec2 size(211, 160);
             const Image image = draw(*renderer, whole, size.x, size.y);
             for (const glm::ivec2 corner : {glm::ivec2(0, 0), {37, 51}, {100, 3}}) {
@@ -201,8 +201,8 @@ TEST_F(Flattened, LeapingAndThreadsAndWhatWasDrawnBeforeChangeNoPixel) {
     const FlatTube tube = overhanging();
     const Volume<std::int16_t> scan = tube.scan();
     const auto one = upload(scan, tube.map(cells)), other = upload(scan, tube.map(cells));
-    for (const std::string& preset : transferFunctionPresets()) {
-        FlatView window = view({0.9, 0.5}, 170.0, *transferFunctionPreset(preset));
+    for (const std::string& preset : opticsPresets()) {
+        FlatView window = view({0.9, 0.5}, 170.0, *opticsPreset(preset));
         const Image image = draw(*one, window, 131, 90);
         draw(*other, view({0.2, 0.2}, 900.0), 64, 33);
         EXPECT_EQ(image.rgb, draw(*other, window, 131, 90).rgb);
@@ -284,14 +284,14 @@ TEST_F(Flattened, TheOverviewShowsItsColumns) {
     shape.foldMm = 1.5;
     const FlatTube tube(shape);
     const auto renderer = upload(tube.scan(), tube.map(cells));
-    const FlatOverview overview{*transferFunctionPreset("mucosa"), {}};
+    const FlatOverview overview{*opticsPreset("mucosa"), {}};
     const glm::ivec2 size(330, 150);
     const Image image = draw(*renderer, overview, size.x, size.y);
     const StripLayout layout = layOutStrip(tube.height(), size);
     ASSERT_GE(layout.columns.size(), 2u);
     std::vector<bool> drawn(std::size_t(size.x), false);
     for (const StripColumn& column : layout.columns) {
-        FlatView window{column.window, overview.transferFunction, {}};
+        FlatView window{column.window, overview.optics, {}};
         EXPECT_EQ(part(image, {column.left, 0}, column.size),
                   draw(*renderer, window, column.size.x, column.size.y).rgb);
         std::fill_n(drawn.begin() + column.left, column.size.x, true);
@@ -312,7 +312,7 @@ TEST_F(Flattened, SaysWhatIsWrong) {
     const FlatView good = view({0.5, 0.3}, 100.0);
     const auto without = renderer(scan);
     refused(without->render(good, 10, 10), "no flat map");
-    refused(without->render(FlatOverview{good.transferFunction, {}}, 10, 10), "no flat map");
+    refused(without->render(FlatOverview{good.optics, {}}, 10, 10), "no flat map");
 
     const auto drawing = upload(scan, tube.map({8, 8}));
     constexpr double notANumber = std::numeric_limits<double>::quiet_NaN();

@@ -20,12 +20,12 @@ TEST_F(Raycaster, AUniformSlabHasTheClosedFormOpacityForAnyStep) {
     const auto slab = renderer(Volume<std::int16_t>(grid, 100));
     for (const double opacity : {0.005, 0.02, 0.05}) {
         for (const double stepVoxels : {0.125, 0.25, 0.5, 1.0, 2.0}) {
-            EndoscopicView view;
+            CameraView view;
             view.camera = {
                 {8.0, 8.0, -0.25 - 10.0 + 0.25 * stepVoxels * 0.5}, {0, 0, 1}, {0, -1, 0}, 2.0};
-            view.transferFunction = everywhere(opacity);
+            view.optics.transferFunction = everywhere(opacity);
             view.march.stepVoxels = stepVoxels;
-            view.march.shading = false;
+            view.optics.shading = false;
             const Image image = draw(*slab, view, 9, 9);
             const double expected = 255.0 * displayedOf(1.0 - std::pow(1.0 - opacity, 40.0));
             EXPECT_NEAR(pixel(image, 4, 4), expected, 1.0)
@@ -43,11 +43,11 @@ TEST_F(Raycaster, ALinearRampIsLitByTheAngleBetweenItsGradientAndTheRay) {
     const glm::dvec3 aside = glm::normalize(glm::cross(towards, glm::dvec3(1, 0, 0)));
     for (const double angle : {0.0, 20.0, 40.0, 60.0, 75.0}) {
         const double a = glm::radians(angle);
-        EndoscopicView view;
+        CameraView view;
         const glm::dvec3 ray = std::cos(a) * towards + std::sin(a) * aside;
         const double distanceMm = 10.0;
         view.camera = {-distanceMm * ray, ray, glm::cross(towards, aside), 1.0};
-        view.transferFunction = surfaceAt(0.0);
+        view.optics.transferFunction = surfaceAt(0.0);
         view.march.stepVoxels = 0.05;
         const Image image = draw(*ramp, view, 5, 5);
         const double depth = distanceMm / headlight.halfDepthMm, facing = std::cos(a);
@@ -69,9 +69,9 @@ protected:
     Image picture(const Grid& grid) {
         const auto ball = renderer(
             sampled(grid, [](glm::dvec3 p) { return 60.0 * (radiusMm - glm::length(p)); }));
-        EndoscopicView view;
+        CameraView view;
         view.camera = {{0, 0, -distanceMm}, {0, 0, 1}, {0, -1, 0}, fovDegrees};
-        view.transferFunction = surfaceAt(0.0);
+        view.optics.transferFunction = surfaceAt(0.0);
         view.march.stepVoxels = 0.1;
         return draw(*ball, view, size, size);
     }
@@ -121,10 +121,10 @@ TEST_F(Sphere, LightFollowsTheAnalyticNormals) {
     }
 }
 
-std::vector<EndoscopicView> tubeViews() {
-    std::vector<EndoscopicView> views;
-    for (const auto& name : transferFunctionPresets()) {
-        const TransferFunction function = *transferFunctionPreset(name);
+std::vector<CameraView> tubeViews() {
+    std::vector<CameraView> views;
+    for (const auto& name : opticsPresets()) {
+        const Optics function = *opticsPreset(name);
         views.push_back({{{1.0, -2.0, -14.0}, {0.1, 0.05, 1.0}, {0, -1, 0}, 90.0}, function, {}});
         views.push_back({{{-3.0, 2.0, 8.0}, {-0.8, 0.3, -0.4}, {0, 0, 1}, 120.0}, function, {}});
         views.push_back({{{60.0, -55.0, -70.0}, {-0.6, 0.55, 0.7}, {0, 0, 1}, 40.0}, function, {}});
@@ -139,7 +139,7 @@ TEST_F(Raycaster, LeapingChangesNoPixel) {
                              axisAlignedGrid({50, 43, 64}, {1.0, 1.1, 0.6}, {-25, -24, -19})}) {
         const auto tube =
             renderer(sampled(grid, [&](glm::dvec3 p) { return foldedTube(p) + noise(random); }));
-        for (EndoscopicView view : tubeViews()) {
+        for (CameraView view : tubeViews()) {
             const Image leaping = draw(*tube, view, 150, 101);
             view.march.emptySpaceLeaping = false;
             EXPECT_EQ(leaping.rgb, draw(*tube, view, 150, 101).rgb);
@@ -151,7 +151,7 @@ TEST_F(Raycaster, AgreesWithAPlainOneOnTheCpu) {
     const Grid grid = obliqueGrid({61, 58, 47}, {0.7, 0.7, 1.0});
     const Volume<std::int16_t> volume = sampled(grid, foldedTube);
     const auto tube = renderer(volume);
-    for (const EndoscopicView& view : tubeViews()) {
+    for (const CameraView& view : tubeViews()) {
         const Image image = draw(*tube, view, 96, 64);
         EXPECT_GE(psnr(image, referenceEndoscopic(volume, view, 96, 64)), 45.0);
     }
@@ -162,7 +162,7 @@ TEST_F(Raycaster, EqualInputsGiveEqualPixels) {
         sampled(obliqueGrid({61, 58, 47}, {0.7, 0.7, 1.0}), foldedTube);
     std::vector<Image> first;
     const auto one = renderer(volume, {}, 1);
-    for (const EndoscopicView& view : tubeViews())
+    for (const CameraView& view : tubeViews())
         first.push_back(draw(*one, view, 120, 90));
     SliceView slice;
     slice.plane = View::coronal;
@@ -184,9 +184,9 @@ TEST_F(Raycaster, ShowsTheCleansedScanWhereThereIsOne) {
     const Volume<std::int16_t> ct = sampled(grid, [&](glm::dvec3 p) {
         return foldedTube(p) < -480.0 && p.y > 2.0 ? 700.0 : foldedTube(p);
     });
-    EndoscopicView down;
+    CameraView down;
     down.camera = {{0.0, -4.0, 0.0}, {0, 1, 0}, {0, 0, 1}, 60.0};
-    down.transferFunction = surfaceAt(-480.0);
+    down.optics.transferFunction = surfaceAt(-480.0);
     const Image level = draw(*renderer(ct), down, 31, 31);
     const Image wall = draw(*renderer(ct, dry), down, 31, 31);
     EXPECT_EQ(wall.rgb, draw(*renderer(dry), down, 31, 31).rgb);
@@ -197,10 +197,10 @@ TEST_F(Raycaster, ShowsTheCleansedScanWhereThereIsOne) {
 
 TEST_F(Raycaster, SaysWhatIsWrong) {
     const auto tube = renderer(sampled(axisAlignedGrid({20, 20, 20}, glm::dvec3(1.0)), foldedTube));
-    EndoscopicView good;
-    good.transferFunction = *transferFunctionPreset("mucosa");
+    CameraView good;
+    good.optics = *opticsPreset("mucosa");
     EXPECT_TRUE(tube->render(good, 16, 16));
-    const auto refuses = [&](const EndoscopicView& view, int width, int height, const char* words) {
+    const auto refuses = [&](const CameraView& view, int width, int height, const char* words) {
         const auto made = tube->render(view, width, height);
         ASSERT_FALSE(made) << words;
         EXPECT_EQ(made.error().kind, ErrorKind::badInput);
@@ -208,14 +208,14 @@ TEST_F(Raycaster, SaysWhatIsWrong) {
     };
     refuses(good, 0, 16, "0x16");
     refuses(good, 16, 2049, "16x2049");
-    EndoscopicView bad = good;
-    bad.transferFunction.points.resize(1);
+    CameraView bad = good;
+    bad.optics.transferFunction.points.resize(1);
     refuses(bad, 16, 16, "1 points");
     bad = good;
-    std::swap(bad.transferFunction.points[0].hu, bad.transferFunction.points[1].hu);
+    std::swap(bad.optics.transferFunction.points[0].hu, bad.optics.transferFunction.points[1].hu);
     refuses(bad, 16, 16, "lower HU");
     bad = good;
-    bad.transferFunction.points[1].opacity = std::nan("");
+    bad.optics.transferFunction.points[1].opacity = std::nan("");
     refuses(bad, 16, 16, "point 2");
     bad = good;
     bad.camera.up = bad.camera.forward;
@@ -248,9 +248,9 @@ TEST_F(Raycaster, ThinScansAndFarCamerasDraw) {
         const auto made =
             renderer(Volume<std::int16_t>(axisAlignedGrid(size, glm::dvec3(1.0)), 100));
         for (const double away : {0.0, -5.0, -1e4, -1e9}) {
-            EndoscopicView view;
+            CameraView view;
             view.camera.positionMm.z = away;
-            view.transferFunction = everywhere(0.5);
+            view.optics.transferFunction = everywhere(0.5);
             draw(*made, view, 20, 20);
         }
     }

@@ -84,8 +84,7 @@ inline void append(render::Image& image, glm::dvec3 color) {
 }
 
 inline render::Image referenceEndoscopic(const Volume<std::int16_t>& volume,
-                                         const render::EndoscopicView& view, int width,
-                                         int height) {
+                                         const render::CameraView& view, int width, int height) {
     const Grid& grid = volume.grid();
     const glm::dmat3 linear(grid.voxelFromPatient());
     const glm::dvec3 spacing = grid.spacingMm();
@@ -103,8 +102,9 @@ inline render::Image referenceEndoscopic(const Volume<std::int16_t>& volume,
             const double across = slope * (2.0 * (x + 0.5) - width) / height;
             const double upwards = slope * (height - 2.0 * (y + 0.5)) / height;
             const glm::dvec3 ray = glm::normalize(forward + across * right + upwards * up);
-            append(image, marchRay(volume, {eye, linear * ray * stepMm, ray}, view.transferFunction,
-                                   view.march.shading, stepMm, most));
+            append(image,
+                   marchRay(volume, {eye, linear * ray * stepMm, ray}, view.optics.transferFunction,
+                            view.optics.shading, stepMm, most));
         }
     }
     return image;

@@ -83,7 +83,7 @@ protected:
     std::unique_ptr<render::CaseRenderer> renderer(const Volume<std::int16_t>& ct,
                                                    const Volume<std::int16_t>& cleansed = {},
                                                    int threads = 0) {
-        auto made = render::CaseRenderer::create(*context, ct, cleansed, threads);
+        auto made = render::CaseRenderer::create(*context, ct, cleansed, {.threads = threads});
         if (!made) {
             ADD_FAILURE() << describe(made.error());
             return nullptr;

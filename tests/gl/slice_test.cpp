@@ -101,9 +101,9 @@ TEST_F(Slices, TheEndoscopeSeesThePatientsLeftAsASurgeonDoes) {
     const auto scan = renderer(sampled(grid, [](glm::dvec3 p) {
         return glm::distance(p, {15, 0, 20}) < 8.0 ? 500.0 : -1000.0;
     }));
-    EndoscopicView view;
+    CameraView view;
     view.camera = {{0, 0, -10}, {0, 0, 1}, {0, -1, 0}, 90.0};
-    view.transferFunction = surfaceAt(-200.0);
+    view.optics.transferFunction = surfaceAt(-200.0);
     const glm::dvec2 seen = whereSeen(draw(*scan, view, 64, 64));
     EXPECT_NEAR(seen.x, 0.5, 0.1);
     EXPECT_NEAR(seen.y, 0.0, 0.02);

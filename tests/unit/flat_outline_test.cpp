@@ -39,6 +39,10 @@ TEST(FlatOutline, EllipsesHaveTheirShape) {
     }
 }
 
+std::function<double(glm::dvec3)> ball(glm::dvec3 centerMm, double radiusMm) {
+    return [=](glm::dvec3 p) { return glm::distance(p, centerMm) - radiusMm; };
+}
+
 TriMesh cylinderMesh() {
     return tests::revolvedMesh(120, 100, 100.0, [](double) { return 20.0; });
 }
@@ -69,7 +73,7 @@ TEST(FlatOutline, HalfBallIsRoundOnTheSurfaceAndInThePlane) {
     const auto map = flatten::conformalTube(mesh);
     ASSERT_TRUE(map);
     const glm::dvec3 center = tests::cylinder(polyp.circumferenceMm)(0.98, 0.35);
-    const auto outline = outlineAround(mesh, *edges, map->map, center, 1.1 * polyp.ballMm);
+    const auto outline = outlineOf(mesh, *edges, map->map, ball(center, 1.1 * polyp.ballMm));
     ASSERT_TRUE(outline);
     for (const glm::dvec3& place : outline->placesMm)
         EXPECT_NEAR(glm::distance(place, center), 1.1 * polyp.ballMm, 1e-9);
@@ -85,10 +89,10 @@ TEST(FlatOutline, NothingWhereTheBallMeetsARimOrNoWall) {
     const auto edges = mesh::HalfedgeMesh::of(mesh);
     const auto map = flatten::conformalTube(mesh);
     ASSERT_TRUE(edges && map);
-    EXPECT_TRUE(outlineAround(mesh, *edges, map->map, {20.0, 0.0, 50.0}, 5.0));
-    EXPECT_FALSE(outlineAround(mesh, *edges, map->map, {20.0, 0.0, 2.0}, 5.0));
-    EXPECT_FALSE(outlineAround(mesh, *edges, map->map, {0.0, 0.0, 50.0}, 5.0));
-    EXPECT_FALSE(outlineAround(mesh, *edges, map->map, {0.0, 0.0, 50.0}, 25.0));
+    EXPECT_TRUE(outlineOf(mesh, *edges, map->map, ball({20.0, 0.0, 50.0}, 5.0)));
+    EXPECT_FALSE(outlineOf(mesh, *edges, map->map, ball({20.0, 0.0, 2.0}, 5.0)));
+    EXPECT_FALSE(outlineOf(mesh, *edges, map->map, ball({0.0, 0.0, 50.0}, 5.0)));
+    EXPECT_FALSE(outlineOf(mesh, *edges, map->map, ball({0.0, 0.0, 50.0}, 25.0)));
 }
 
 }  // namespace

@@ -11,12 +11,12 @@ namespace haustra::render {
 namespace {
 
 TEST(TransferFunction, PresetsPassTheirOwnCheck) {
-    for (const std::string& name : transferFunctionPresets()) {
-        const auto preset = transferFunctionPreset(name);
+    for (const std::string& name : opticsPresets()) {
+        const auto preset = opticsPreset(name);
         ASSERT_TRUE(preset) << name;
-        EXPECT_TRUE(checkTransferFunction(*preset)) << name;
+        EXPECT_TRUE(checkOptics(*preset)) << name;
     }
-    const auto unknown = transferFunctionPreset("bone");
+    const auto unknown = opticsPreset("bone");
     ASSERT_FALSE(unknown);
     EXPECT_NE(unknown.error().message.find("mucosa"), std::string::npos);
 }

@@ -1,0 +1,95 @@
+#include "render/gl_scene.h"
+
+#include "core/parallel.h"
+#include "render/ray_setup.h"
+#include "render/stored_value.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+// Each holds a leap map, a byte for eight voxels.
+constexpr std::size_t classificationsKept = 4;
+
+}  // namespace
+
+Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
+                                  const char* what) {
+    const glm::ivec3 size = volume.grid().size;
+    Result<gpu::Texture> texture =
+        gpu::Texture::create(3, size, gpu::TexelFormat::r16, gpu::Filter::linear, what);
+    if (!texture) return texture;
+    // By slabs, so that the copy in the texture's encoding stays small.
+    const std::size_t slice = std::size_t(size.x) * std::size_t(size.y);
+    const int slab = std::max(1, int((std::size_t(16) << 20) / slice));
+    std::vector<std::uint16_t> encoded;
+    for (int z = 0; z < size.z; z += slab) {
+        const int count = std::min(slab, size.z - z);
+        encoded.resize(slice * std::size_t(count));
+        const std::int16_t* from = volume.voxels().data() + slice * std::size_t(z);
+        parallelFor(encoded.size(), 1 << 20, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                encoded[i] = encodeHu(from[i]);
+        });
+        texture->uploadSlices(z, count, encoded.data());
+    }
+    return texture;
+}
+
+Result<std::unique_ptr<GlScene>> GlScene::upload(gpu::Context& context,
+                                                 std::shared_ptr<const Scene> scene, int threads) {
+    auto volume = uploadVolume(scene->volume, threads, "scan on the GPU");
+    if (!volume) return tl::make_unexpected(volume.error());
+    auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
+    if (!block) return tl::make_unexpected(block.error());
+    return std::unique_ptr<GlScene>(
+        new GlScene(context, std::move(scene), threads, std::move(*volume), std::move(*block)));
+}
+
+GlScene::GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int threads,
+                 gpu::Texture volume, gpu::UniformBuffer marchBlock)
+    : context_(context),
+      scene_(std::move(scene)),
+      threads_(threads),
+      volume_(std::move(volume)),
+      marchBlock_(std::move(marchBlock)) {}
+
+Result<const Classification*> GlScene::classification(const Optics& optics,
+                                                      const MarchOptions& march) {
+    if (auto sound = checkOptics(optics); !sound) return tl::make_unexpected(sound.error());
+    if (auto sound = checkMarch(march); !sound) return tl::make_unexpected(sound.error());
+    const double step = stepMm(march, scene_->grid());
+    const auto wanted = [&](const Classification& one) {
+        return one.isFor(optics, step, march.emptySpaceLeaping);
+    };
+    if (const auto found = std::find_if(recent_.begin(), recent_.end(), wanted);
+        found != recent_.end()) {
+        std::rotate(found, found + 1, recent_.end());
+        return &recent_.back();
+    }
+    if (recent_.size() == classificationsKept) recent_.erase(recent_.begin());
+    Result<Classification> made =
+        Classification::create(optics, step, march.emptySpaceLeaping, scene_->ranges, threads_);
+    if (!made) return tl::make_unexpected(made.error());
+    recent_.push_back(std::move(*made));
+    return &recent_.back();
+}
+
+void GlScene::bind(const shaders::MarchUniforms& uniforms, const Classification& classified) {
+    marchBlock_.write(uniforms);
+    marchBlock_.bind(shaders::uniformBinding);
+    volume_.bind(shaders::volumeUnit);
+    classified.bind();
+}
+
+std::size_t GlScene::gpuBytes() const {
+    std::size_t bytes = volume_.bytes();
+    for (const Classification& one : recent_)
+        bytes += one.gpuBytes();
+    return bytes;
+}
+
+}  // namespace haustra::render

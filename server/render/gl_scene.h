@@ -1,0 +1,54 @@
+// A scene on the GPU, whole, as the raycasters that need all of it there share it.
+#pragma once
+
+#include "gpu/buffer.h"
+#include "gpu/context.h"
+#include "gpu/texture.h"
+#include "render/classification.h"
+#include "render/scene.h"
+#include "render/view.h"
+#include "shaders/uniforms.h"
+
+#include <memory>
+#include <vector>
+
+namespace haustra::render {
+
+/// HU as a 3-D texture of 16-bit fractions (stored_value.h). Fails where a side is longer than the
+/// device's textures allow or its memory is short; `what` names the volume in that message.
+Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
+                                  const char* what);
+
+/// The volume's texture, the uniform block of march.glsl, and the classifications lately asked for.
+/// Belongs to the thread of the context, which must be current and outlive it.
+class GlScene {
+public:
+    /// 2 bytes a voxel on the GPU. Fails as uploadVolume does.
+    static Result<std::unique_ptr<GlScene>> upload(gpu::Context& context,
+                                                   std::shared_ptr<const Scene> scene, int threads);
+
+    const Scene& scene() const { return *scene_; }
+    gpu::Context& context() { return context_; }
+
+    /// Made, or found among those lately used: readers of one case may differ in their colours. The
+    /// last four are kept; a new one costs some 0.1 s for a 512³ scan. Fails (badInput) on bad
+    /// optics or sampling. Valid until the next call.
+    Result<const Classification*> classification(const Optics& optics, const MarchOptions& march);
+    /// Binds the volume, what makes it visible, and how rays run through it: all that march()
+    /// reads.
+    void bind(const shaders::MarchUniforms& uniforms, const Classification& classified);
+    const gpu::Texture& volume() const { return volume_; }
+    std::size_t gpuBytes() const;
+
+private:
+    GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int threads,
+            gpu::Texture volume, gpu::UniformBuffer marchBlock);
+    gpu::Context& context_;
+    std::shared_ptr<const Scene> scene_;
+    int threads_;
+    gpu::Texture volume_;
+    gpu::UniformBuffer marchBlock_;
+    std::vector<Classification> recent_;  // the latest used last
+};
+
+}  // namespace haustra::render

@@ -1,0 +1,86 @@
+// The optical model of every raycaster: what a sample of the volume sends to the eye and keeps from
+// it (dissertation §5.1). No GL here.
+#pragma once
+
+#include "core/result.h"
+
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra::render {
+
+/// One control point; between points colour and opacity are linear in HU. Opacity is for a way of
+/// 1 mm. Colours 0…1 as displayed (sRGB), not multiplied by opacity.
+struct TransferFunctionPoint {
+    double hu = 0.0;
+    glm::dvec3 color{1.0};
+    double opacity = 0.0;
+    bool operator==(const TransferFunctionPoint&) const = default;
+};
+
+/// What a 2-D transfer function shows where the volume is this steep.
+struct GradientRow {
+    double gradientHuPerMm = 0.0;
+    std::vector<TransferFunctionPoint> points;
+    bool operator==(const GradientRow&) const = default;
+};
+
+/// Points sorted by HU, at least two. Below the first and above the last point these two go on. Two
+/// points at one HU make a step.
+struct TransferFunction {
+    /// 1-D; of a 2-D one, the row at gradient magnitude 0.
+    std::vector<TransferFunctionPoint> points;
+    /// Empty of a 1-D one. Else density × gradient magnitude: further rows, at growing gradient
+    /// magnitudes over 0; between rows colour and opacity are linear in the magnitude, and the last
+    /// row goes on.
+    std::vector<GradientRow> rows;
+    bool operator==(const TransferFunction&) const = default;
+};
+
+/// How a ray's samples make its pixel.
+enum class Composition {
+    emissionAbsorption,  ///< front to back, equation 5.1; opaque walls and translucent tissue alike
+    maximumIntensity,    ///< the colour times the 1-mm opacity of the greatest value along the ray
+    /// The place where the 1-mm opacity first reaches firstHitOpacity, found between samples by
+    /// bisection; opaque, lit there, and black where there is none.
+    firstHit,
+};
+
+/// The lamp at the camera, in Blinn-Phong terms of linear light: at depth d mm a surface whose
+/// normal makes the angle a with the ray sends back
+/// (color·(ambient + diffuse·|cos a|) + specular·max(cos 2a, 0)^shininess) / (1 + (d /
+/// halfDepthMm)²).
+struct Headlight {
+    double halfDepthMm, ambient, diffuse, specular, shininess;
+    bool operator==(const Headlight&) const = default;
+};
+/// Mild fall-off, so that the far lumen stays readable; little gloss, as of a moist wall.
+inline constexpr Headlight headlight{65.0, 0.05, 0.95, 0.08, 20.0};
+
+/// A ray ends where its opacity has reached this, and then counts as opaque.
+inline constexpr double terminationOpacity = 0.95;
+inline constexpr double firstHitOpacity = 0.5;
+
+struct Optics {
+    TransferFunction transferFunction;
+    Composition composition = Composition::emissionAbsorption;
+    /// The transfer function is integrated over the values between two samples instead of looked
+    /// up at each [Engel et al. 2001]; not of a 2-D one.
+    bool preIntegrated = false;
+    bool shading = true;  ///< else the transfer function's colours, unlit
+    Headlight light = headlight;
+    bool operator==(const Optics&) const = default;
+};
+
+/// Names of the presets, the default ("mucosa") first.
+const std::vector<std::string>& opticsPresets();
+Result<Optics> opticsPreset(const std::string& name);
+
+/// Sort nothing and mend nothing: say what is wrong (2…256 points, HU −32768…32767 and not
+/// falling, colours and opacities 0…1; at most 64 rows at growing magnitudes; …).
+Result<void> checkTransferFunction(const TransferFunction& transferFunction);
+Result<void> checkOptics(const Optics& optics);
+
+}  // namespace haustra::render

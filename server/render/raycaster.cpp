@@ -1,0 +1,51 @@
+#include "render/raycaster.h"
+
+namespace haustra::render {
+
+const char* toString(RaycasterKind kind) {
+    switch (kind) {
+        case RaycasterKind::native:
+            return "native";
+        case RaycasterKind::singlePass:
+            return "single-pass";
+        case RaycasterKind::polygonAssisted:
+            return "polygon-assisted";
+        case RaycasterKind::objectOrder:
+            return "object-order";
+        case RaycasterKind::hybrid:
+            return "hybrid";
+    }
+    return "";
+}
+
+Result<RaycasterKind> raycasterFromString(const std::string& text) {
+    std::string names;
+    for (const RaycasterKind kind :
+         {RaycasterKind::native, RaycasterKind::singlePass, RaycasterKind::polygonAssisted,
+          RaycasterKind::objectOrder, RaycasterKind::hybrid}) {
+        if (text == toString(kind)) return kind;
+        names += std::string(names.empty() ? "" : ", ") + toString(kind);
+    }
+    return fail(ErrorKind::badInput, "no raycaster named '" + text + "' (" + names + ")");
+}
+
+Result<void> checkPictureSize(glm::ivec2 size) {
+    if (size.x >= 1 && size.y >= 1 && size.x <= maxPictureSide && size.y <= maxPictureSide)
+        return {};
+    return fail(ErrorKind::badInput, "a picture of " + std::to_string(size.x) + "x" +
+                                         std::to_string(size.y) +
+                                         " pixels is not within 1x1 to 2048x2048");
+}
+
+Result<void> checkBand(const Band& band, const Image& picture) {
+    const glm::ivec2 size = band.pictureSize;
+    if (auto sound = checkPictureSize(size); !sound) return sound;
+    if (band.rows < 1 || band.firstRow < 0 || band.rows > size.y - band.firstRow)
+        return fail(ErrorKind::badInput, "the band leaves the picture");
+    if (picture.width != size.x || picture.height != size.y ||
+        picture.rgb.size() != 3 * std::size_t(size.x) * std::size_t(size.y))
+        return fail(ErrorKind::badInput, "the picture is not of the band's size");
+    return {};
+}
+
+}  // namespace haustra::render

@@ -1,0 +1,26 @@
+// What raycasters draw: immutable, in main memory or mapped from a product.
+#pragma once
+
+#include "core/flat_map.h"
+#include "core/tri_mesh.h"
+#include "core/volume.h"
+#include "render/leap_map.h"
+
+#include <cstdint>
+#include <memory>
+
+namespace haustra::render {
+
+/// One volume and what goes with it. Shared by raycasters and threads.
+struct Scene {
+    Volume<std::int16_t> volume;  ///< HU; what rays are cast into
+    BlockRanges ranges;           ///< of `volume`
+    /// The wall's mesh, for the polygon-assisted raycaster and the overview, and the same wall's
+    /// flat map; either may be missing.
+    std::shared_ptr<const TriMesh> wall;
+    std::shared_ptr<const FlatMap> flatMap;
+
+    const Grid& grid() const { return volume.grid(); }
+};
+
+}  // namespace haustra::render
