@@ -95,6 +95,36 @@ struct CaseRenderer::Impl {
         return readPicture(errorsBefore);
     }
 
+    Result<Image> drawSlice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
+                            glm::ivec2 size) {
+        const int errorsBefore = context.errorCount();
+        const bool cleansed = scan == Scan::cleansed;
+        if (cleansed && !hasCleansed)
+            return fail(ErrorKind::badInput, "the case has no cleansed scan", "slice");
+        if (auto made = makePicture(size); !made) return tl::make_unexpected(made.error());
+
+        const glm::dmat4 voxelFromPatient = grid().voxelFromPatient();
+        const glm::dvec3 voxels(grid().size);
+        const auto textureVector = [&](glm::dvec3 mm) {
+            return glm::dvec3(voxelFromPatient * glm::dvec4(mm, 0.0)) / voxels;
+        };
+        SliceUniforms u{};
+        u.originTexture = glm::vec4(
+            (glm::dvec3(voxelFromPatient * glm::dvec4(placement.topLeftMm, 1.0)) + 0.5) / voxels,
+            0.0);
+        u.rightTexture = glm::vec4(textureVector(placement.rightMm), 0.0);
+        u.downTexture = glm::vec4(textureVector(placement.downMm), 0.0);
+        u.window = glm::vec4(storedRange / window.widthHu,
+                             0.5 - (storedOffset + window.centerHu) / window.widthHu, 0, 0);
+        u.pictureSize = glm::ivec4(size, 0, 0);
+        sliceBlock.write(u);
+        sliceBlock.bind(shaders::uniformBinding);
+        (!cleansed && ct ? *ct : glScene->volume()).bind(shaders::volumeUnit);
+        picture->bindImage(shaders::pictureImage);
+        slice.dispatch(size);
+        return readPicture(errorsBefore);
+    }
+
     Result<void> checkFlat() const {
         if (flat) return {};
         return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
@@ -129,7 +159,7 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context
     }
     auto scene = std::make_shared<const Scene>(Scene{prepared.endoscopic().share(),
                                                      std::move(prepared.ranges), prepared.wall,
-                                                     prepared.flatMap});
+                                                     prepared.flatMap, prepared.path});
     auto glScene = GlScene::upload(context, scene, options.threads);
     if (!glScene) return tl::make_unexpected(glScene.error());
     Result<ComputeProgram> slice = ComputeProgram::create(
@@ -199,38 +229,19 @@ Result<Image> CaseRenderer::render(const CameraView& view, int width, int height
 }
 
 Result<Image> CaseRenderer::render(const SliceView& view, int width, int height) {
-    Impl& my = *impl_;
-    const int errorsBefore = my.context.errorCount();
-    if (Result<void> sound = checkPictureSize({width, height}); !sound)
+    if (auto sound = checkPictureSize({width, height}); !sound)
         return tl::make_unexpected(sound.error());
-    const bool cleansed = view.scan == Scan::cleansed;
-    if (cleansed && !my.hasCleansed)
-        return fail(ErrorKind::badInput, "the case has no cleansed scan", "slice");
-    const Result<SlicePlacement> placement = placeSlice(view, my.grid(), width, height);
+    const auto placement = placeSlice(view, impl_->grid(), width, height);
     if (!placement) return tl::make_unexpected(placement.error());
-    const glm::ivec2 size(width, height);
-    if (Result<void> made = my.makePicture(size); !made) return tl::make_unexpected(made.error());
+    return impl_->drawSlice(*placement, view.window, view.scan, {width, height});
+}
 
-    const glm::dmat4 voxelFromPatient = my.grid().voxelFromPatient();
-    const glm::dvec3 voxels(my.grid().size);
-    const auto textureVector = [&](glm::dvec3 mm) {
-        return glm::dvec3(voxelFromPatient * glm::dvec4(mm, 0.0)) / voxels;
-    };
-    SliceUniforms u{};
-    u.originTexture = glm::vec4(
-        (glm::dvec3(voxelFromPatient * glm::dvec4(placement->topLeftMm, 1.0)) + 0.5) / voxels, 0.0);
-    u.rightTexture = glm::vec4(textureVector(placement->rightMm), 0.0);
-    u.downTexture = glm::vec4(textureVector(placement->downMm), 0.0);
-    const WindowLevel& window = view.window;
-    u.window = glm::vec4(storedRange / window.widthHu,
-                         0.5 - (storedOffset + window.centerHu) / window.widthHu, 0, 0);
-    u.pictureSize = glm::ivec4(size, 0, 0);
-    my.sliceBlock.write(u);
-    my.sliceBlock.bind(shaders::uniformBinding);
-    (!cleansed && my.ct ? *my.ct : my.glScene->volume()).bind(shaders::volumeUnit);
-    my.picture->bindImage(shaders::pictureImage);
-    my.slice.dispatch(size);
-    return my.readPicture(errorsBefore);
+Result<Image> CaseRenderer::render(const ObliqueView& view, int width, int height) {
+    if (auto sound = checkPictureSize({width, height}); !sound)
+        return tl::make_unexpected(sound.error());
+    const auto placement = placeSlice(view, width, height);
+    if (!placement) return tl::make_unexpected(placement.error());
+    return impl_->drawSlice(*placement, view.window, view.scan, {width, height});
 }
 
 Result<Image> CaseRenderer::render(const FlatView& view, int width, int height) {

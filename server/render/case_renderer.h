@@ -44,9 +44,10 @@ public:
     /// kept, so that readers with different ones do not disturb each other. Fails on a bad view
     /// (badInput) or where the driver reports an error (device).
     Result<Image> render(const CameraView& view, int width, int height);
-    /// Slice of the scan that the view names, linearly interpolated; black outside it. Fails
+    /// Slice of the scan that the view names, linearly interpolated; black outside it. Fail
     /// (badInput) where there is no cleansed scan.
     Result<Image> render(const SliceView& view, int width, int height);
+    Result<Image> render(const ObliqueView& view, int width, int height);
 
     /// The flattened wall. Fail (badInput) on a bad view or where the case has no flat map.
     Result<Image> render(const FlatView& view, int width, int height);

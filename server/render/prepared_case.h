@@ -1,6 +1,7 @@
 // What a case's renderer is made from, computed without a GPU.
 #pragma once
 
+#include "core/centerline.h"
 #include "core/flat_map.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
@@ -25,6 +26,8 @@ struct PreparedCase {
     std::shared_ptr<const FlatMap> flatMap;
     /// The wall's mesh, for raycasters and views that use it; as with flatMap.
     std::shared_ptr<const TriMesh> wall;
+    /// The path through the colon, for the overview; as with flatMap.
+    std::shared_ptr<const Centerline> path;
 
     const Volume<std::int16_t>& endoscopic() const { return cleansed.empty() ? ct : cleansed; }
 };

@@ -1,6 +1,7 @@
 // What raycasters draw: immutable, in main memory or mapped from a product.
 #pragma once
 
+#include "core/centerline.h"
 #include "core/flat_map.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
@@ -19,6 +20,7 @@ struct Scene {
     /// flat map; either may be missing.
     std::shared_ptr<const TriMesh> wall;
     std::shared_ptr<const FlatMap> flatMap;
+    std::shared_ptr<const Centerline> path;  ///< for the overview; may be missing
 
     const Grid& grid() const { return volume.grid(); }
 };

@@ -33,6 +33,12 @@ struct Axes {
     glm::dvec3 right, down;
 };
 
+Result<void> checkWindow(const WindowLevel& window) {
+    if (window.widthHu >= 1.0 && window.widthHu <= 65536.0 && std::abs(window.centerHu) <= 65536.0)
+        return {};
+    return fail(ErrorKind::badInput, "the window's centre or width is out of range", "slice");
+}
+
 Axes axesOf(View plane) {
     switch (plane) {
         case View::coronal:
@@ -98,11 +104,12 @@ Result<void> checkFlatWindow(const FlatWindow& window, int width) {
 
 Result<View> viewFromString(const std::string& text) {
     for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
-                            View::flattened, View::flattenedZoom})
+                            View::flattened, View::flattenedZoom, View::oblique, View::overview})
         if (text == toString(view)) return view;
     return fail(ErrorKind::badInput,
                 "no view named '" + text +
-                    "' (endoscopic, axial, coronal, sagittal, flattened, flattened-zoom)");
+                    "' (endoscopic, axial, coronal, sagittal, flattened, flattened-zoom, "
+                    "oblique, overview)");
 }
 
 const char* toString(View view) {
@@ -119,6 +126,10 @@ const char* toString(View view) {
             return "flattened";
         case View::flattenedZoom:
             return "flattened-zoom";
+        case View::oblique:
+            return "oblique";
+        case View::overview:
+            return "overview";
     }
     return "";
 }
@@ -131,9 +142,7 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
         return fail(ErrorKind::badInput, "the position is not finite", "slice");
     if (!(view.zoom >= 1.0 && view.zoom <= 64.0))
         return fail(ErrorKind::badInput, "the zoom is not within 1 to 64", "slice");
-    if (!(view.window.widthHu >= 1.0 && view.window.widthHu <= 65536.0) ||
-        !(std::abs(view.window.centerHu) <= 65536.0))
-        return fail(ErrorKind::badInput, "the window's centre or width is out of range", "slice");
+    if (auto sound = checkWindow(view.window); !sound) return tl::make_unexpected(sound.error());
     if (width <= 0 || height <= 0)
         return fail(ErrorKind::badInput, "the picture has no pixels", "slice");
 
@@ -150,6 +159,40 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
     return SlicePlacement{
         center - pixelMm * (0.5 * (width - 1) * right + 0.5 * (height - 1) * down), pixelMm * right,
         pixelMm * down};
+}
+
+Result<SlicePlacement> placeSlice(const ObliqueView& view, int width, int height) {
+    Camera plane{view.positionMm, view.forward, view.up};
+    plane.lens = Lens::orthographic;
+    if (auto sound = checkCamera(plane); !sound) return tl::make_unexpected(sound.error());
+    if (!(view.heightMm >= minObliqueMm && view.heightMm <= maxObliqueMm))
+        return fail(ErrorKind::badInput, "the slice's height is not within 1 to 2000 mm", "slice");
+    if (auto sound = checkWindow(view.window); !sound) return tl::make_unexpected(sound.error());
+    if (width <= 0 || height <= 0)
+        return fail(ErrorKind::badInput, "the picture has no pixels", "slice");
+
+    const double pixelMm = view.heightMm / height;
+    const glm::dvec3 forward = glm::normalize(view.forward);
+    const glm::dvec3 right = pixelMm * glm::normalize(glm::cross(forward, view.up));
+    const glm::dvec3 down = glm::cross(forward, right);
+    return SlicePlacement{view.positionMm - 0.5 * (width - 1) * right - 0.5 * (height - 1) * down,
+                          right, down};
+}
+
+Result<void> checkOverview(const OverviewView& view) {
+    if (auto sound = checkCamera(view.camera); !sound) return sound;
+    if (view.camera.lens == Lens::fisheye)
+        return fail(ErrorKind::badInput, "an overview is not seen through a fisheye lens",
+                    "overview");
+    if (view.reader)
+        if (auto sound = checkCamera(*view.reader); !sound) return sound;
+    if (view.bookmarksMm.size() > maxOverviewBookmarks)
+        return fail(ErrorKind::badInput,
+                    "more than " + std::to_string(maxOverviewBookmarks) + " bookmarks", "overview");
+    if (!std::all_of(view.bookmarksMm.begin(), view.bookmarksMm.end(), finite))
+        return fail(ErrorKind::badInput, "a bookmark's coordinate is not a finite number",
+                    "overview");
+    return {};
 }
 
 double windowed(double hu, const WindowLevel& window) {

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,16 @@ struct WindowLevel {
     double widthHu = 2000.0;  ///< wide enough for colon reading: −1000…1000
 };
 
-enum class View { endoscopic, axial, coronal, sagittal, flattened, flattenedZoom };
+enum class View {
+    endoscopic,
+    axial,
+    coronal,
+    sagittal,
+    flattened,
+    flattenedZoom,
+    oblique,
+    overview,
+};
 Result<View> viewFromString(const std::string& text);
 const char* toString(View view);
 
@@ -105,6 +115,42 @@ struct SlicePlacement {
 /// Fails unless the plane is a slice, zoom and window are in range, and width and height positive.
 /// Slices are planes of patient space also where the grid is oblique.
 Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height);
+
+/// A slice in any direction, as an orthographic camera at `positionMm` sees the plane before it:
+/// `positionMm` is in the picture's middle, the picture's right is forward × up. Looking along the
+/// colon's path it is the lumen's cross-section, the way the endoscopic view shows it.
+struct ObliqueView {
+    glm::dvec3 positionMm{0.0};
+    glm::dvec3 forward{0.0, 0.0, 1.0};  ///< as of a camera: not parallel to `up`, any length
+    glm::dvec3 up{0.0, -1.0, 0.0};
+    double heightMm = 60.0;  ///< of the picture, minObliqueMm…maxObliqueMm
+    WindowLevel window;
+    Scan scan = Scan::original;
+};
+inline constexpr double minObliqueMm = 1.0, maxObliqueMm = 2000.0;
+
+/// Fails (badInput) on directions that span no plane, height or window out of range, or a picture
+/// without pixels.
+Result<SlicePlacement> placeSlice(const ObliqueView& view, int width, int height);
+
+/// The colon from outside (dissertation §6.3.2), within the body: the wall's mesh, lit; the path in
+/// it, where the reader is, and bookmarks, which show through what stands before them; the scan
+/// around it, ray-cast.
+struct OverviewView {
+    Camera camera;  ///< perspective or orthographic
+    /// The reader's camera: a cone that opens forwards.
+    std::optional<Camera> reader;
+    std::vector<glm::dvec3> bookmarksMm;  ///< balls; at most maxOverviewBookmarks
+    bool path = true;
+    bool body = true;
+    Optics optics;  ///< of the body: translucent
+    MarchOptions march;
+};
+inline constexpr std::size_t maxOverviewBookmarks = 1024;
+
+/// Fails (badInput) where the camera is not sound or has a fisheye lens, a place is not finite, or
+/// there are too many.
+Result<void> checkOverview(const OverviewView& view);
 
 /// A window onto the flattened wall (dissertation §4.3.2). Each pixel's place on the surface is
 /// interpolated from the flat map's triangle that covers it, at whatever enlargement, and a ray

@@ -109,6 +109,54 @@ TEST_F(Slices, TheEndoscopeSeesThePatientsLeftAsASurgeonDoes) {
     EXPECT_NEAR(seen.y, 0.0, 0.02);
 }
 
+TEST_F(Slices, ObliquePixelsAreARampsValueWhereTheyLie) {
+    // A linear function of the place: interpolation returns it exactly, in whichever grid.
+    const glm::dvec3 slope(3.0, -2.0, 4.5);
+    const auto ramp = [&](glm::dvec3 p) { return 100.0 + glm::dot(slope, p); };
+    for (const Grid& grid : {axisAlignedGrid({60, 60, 60}, glm::dvec3(1.0), glm::dvec3(-30.0)),
+                             obliqueGrid({60, 60, 60}, {0.8, 0.9, 1.1})}) {
+        const auto scan = renderer(sampled(grid, ramp));
+        const glm::dvec3 middle = grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size - 1));
+        const ObliqueView view{middle + glm::dvec3(2.0, -1.0, 0.5),
+                               {1.0, 2.0, -0.5},
+                               {0.3, -1.0, 2.0},
+                               18.0,
+                               {ramp(middle), 400.0}};
+        const int width = 64, height = 36;
+        const Image image = draw(*scan, view, width, height);
+        const glm::dvec3 forward = glm::normalize(view.forward);
+        const glm::dvec3 right = glm::normalize(glm::cross(forward, view.up));
+        const glm::dvec3 up = glm::cross(right, forward);
+        EXPECT_GT(glm::dot(up, view.up), 0.0);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                // Half a millimetre a pixel, the position in the picture's middle.
+                const glm::dvec3 mm = view.positionMm + 0.5 * (x + 0.5 - 0.5 * width) * right -
+                                      0.5 * (y + 0.5 - 0.5 * height) * up;
+                // Voxels hold whole HU: half of one is a third of a grey value.
+                ASSERT_NEAR(pixel(image, x, y), windowed(ramp(mm), view.window), 0.9)
+                    << x << " " << y;
+            }
+    }
+}
+
+TEST_F(Slices, AnObliqueSliceShowsWhatTheCameraHasOnItsRight) {
+    // The cross-section of a tube ahead: a marker on the camera's right and one above it.
+    const Grid grid = axisAlignedGrid({41, 41, 41}, glm::dvec3(2.0), glm::dvec3(-40.0));
+    const glm::dvec3 forward(0.0, 1.0, 0.2), up(0.1, 0.0, 1.0);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, up));
+    for (const auto& [direction, expected] :
+         {std::pair{right, glm::dvec2(0.5, 0.0)},
+          {glm::cross(right, glm::normalize(forward)), {0.0, -0.5}}}) {
+        const auto scan = renderer(sampled(grid, [&, d = direction](glm::dvec3 p) {
+            return glm::distance(p, 15.0 * d) < 5.0 ? 1000.0 : -1000.0;
+        }));
+        const glm::dvec2 seen =
+            whereSeen(draw(*scan, ObliqueView{{}, forward, up, 60.0, {0.0, 2000.0}}, 64, 64));
+        EXPECT_NEAR(glm::distance(seen, expected), 0.0, 0.03);
+    }
+}
+
 TEST_F(Slices, ShowTheScanUnlessTheCleansedOneIsAskedFor) {
     const Grid grid = axisAlignedGrid({16, 16, 16}, glm::dvec3(1.0));
     const Volume<std::int16_t> ct(grid, 600), air(grid, 540), same(grid, 600);
@@ -142,6 +190,20 @@ TEST_F(Slices, SayWhatIsWrong) {
     EXPECT_FALSE(scan->render(view, 8, 8));
     view = {};
     EXPECT_FALSE(scan->render(view, 4096, 8));
+
+    ObliqueView oblique;
+    EXPECT_TRUE(scan->render(oblique, 8, 8));
+    EXPECT_FALSE(scan->render(oblique, 0, 8));
+    oblique.scan = Scan::cleansed;
+    EXPECT_FALSE(scan->render(oblique, 8, 8));
+    oblique = {};
+    oblique.up = -3.0 * oblique.forward;
+    EXPECT_FALSE(scan->render(oblique, 8, 8));
+    for (const double height : {0.0, -5.0, 1e9, std::nan("")}) {
+        oblique = {};
+        oblique.heightMm = height;
+        EXPECT_FALSE(scan->render(oblique, 8, 8)) << height;
+    }
 }
 
 }  // namespace

@@ -50,9 +50,10 @@ TEST(TransferTable, NothingOutsideTheVisibleRangeHasOpacity) {
 }
 
 TEST(View, NamesGoThereAndBack) {
-    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal})
+    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
+                            View::flattened, View::flattenedZoom, View::oblique, View::overview})
         EXPECT_EQ(*viewFromString(toString(view)), view);
-    EXPECT_FALSE(viewFromString("oblique"));
+    EXPECT_FALSE(viewFromString("sideways"));
 }
 
 TEST(Camera, ChecksItsFieldOfViewAndDirections) {
@@ -61,6 +62,25 @@ TEST(Camera, ChecksItsFieldOfViewAndDirections) {
     EXPECT_FALSE(checkCamera({{0, 0, 0}, {0, 2, 0}, {0, -1, 0}, 90.0}));
     EXPECT_FALSE(checkCamera({{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 180.0}));
     EXPECT_FALSE(checkCamera({{0, NAN, 0}, {0, 0, 1}, {0, 1, 0}, 90.0}));
+}
+
+TEST(Overview, ChecksWhatItShows) {
+    OverviewView view;
+    view.optics = *opticsPreset("translucent");
+    view.reader = Camera{};
+    view.bookmarksMm = {{1, 2, 3}};
+    EXPECT_TRUE(checkOverview(view));
+    view.camera.lens = Lens::fisheye;
+    EXPECT_FALSE(checkOverview(view));
+    view.camera.lens = Lens::orthographic;
+    EXPECT_TRUE(checkOverview(view));
+    view.reader->up = view.reader->forward;
+    EXPECT_FALSE(checkOverview(view));
+    view.reader.reset();
+    view.bookmarksMm.push_back({0, NAN, 0});
+    EXPECT_FALSE(checkOverview(view));
+    view.bookmarksMm.assign(maxOverviewBookmarks + 1, glm::dvec3(0.0));
+    EXPECT_FALSE(checkOverview(view));
 }
 
 class Placement : public testing::Test {
