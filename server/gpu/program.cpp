@@ -143,4 +143,22 @@ void RasterProgram::draw(const Texture& target, glm::ivec2 background, const Sto
     glBindVertexArray(0);
 }
 
+void RasterProgram::drawNearest(const RasterTarget& target, const StorageBuffer& indices, int first,
+                                int count) const {
+    glVertexArrayElementBuffer(vertexArray_, indices.id_);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer_);
+    glBindVertexArray(vertexArray_);
+    glUseProgram(program_);
+    glViewport(0, 0, target.size().x, target.size().y);
+    glEnable(GL_DEPTH_TEST);
+    if (count > 0) {
+        const auto* offset = reinterpret_cast<const void*>(std::size_t(first) * 3 * sizeof(GLuint));
+        glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, offset);
+    }
+    glDisable(GL_DEPTH_TEST);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBindVertexArray(0);
+}
+
 }  // namespace haustra::gpu

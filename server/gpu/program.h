@@ -3,6 +3,7 @@
 
 #include "core/result.h"
 #include "gpu/buffer.h"
+#include "gpu/raster_target.h"
 #include "gpu/texture.h"
 
 #include <initializer_list>
@@ -35,7 +36,7 @@ private:
     glm::ivec2 groupSize_{1};
 };
 
-/// Draws triangles into an integer texture. A vertex is known by its index alone: the vertex shader
+/// Draws triangles. A vertex is known by its index alone: the vertex shader
 /// reads what it needs from storage blocks at gl_VertexID. Belongs to the thread of the context in
 /// which it was made, which must be current when it dies. Move-only.
 class RasterProgram {
@@ -54,6 +55,13 @@ public:
     /// to later reads. gl_PrimitiveID counts from `first`.
     void draw(const Texture& target, glm::ivec2 background, const StorageBuffer& indices, int first,
               int count, int copies) const;
+
+    /// Draws the triangles [first, first + count) of `indices` into `target` as it is, whichever
+    /// way they wind; of those that cover a pixel the nearest stays, and what stood there before
+    /// counts as one of them. What it draws is visible to later reads. gl_PrimitiveID counts from
+    /// `first`.
+    void drawNearest(const RasterTarget& target, const StorageBuffer& indices, int first,
+                     int count) const;
 
 private:
     RasterProgram() = default;

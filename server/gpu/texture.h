@@ -54,6 +54,7 @@ public:
 
 private:
     friend class RasterProgram;
+    friend class RasterTarget;
     Texture() = default;
     unsigned id_ = 0;
     int dimensions_ = 0;

@@ -1,0 +1,58 @@
+// Colours for places of the wall: detected polyps, regions covered or not (dissertation §6.3.1).
+#pragma once
+
+#include "core/result.h"
+#include "render/raycaster.h"
+#include "render/view.h"
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra::render {
+
+/// A picture of the whole strip, laid out as the exported flat image is without a seam margin: its
+/// columns run towards −x once around the colon, its rows towards −y, the cecum up. Each pixel
+/// colours the places of the wall whose flat coordinate lies in it, without interpolation.
+/// Immutable once a view has it; any number of threads.
+struct WallPaint {
+    glm::ivec2 size{0};
+    std::vector<glm::u8vec4> pixels;  ///< rows from the top; rgb: sRGB, a: how much it covers
+    double height = 0.0;              ///< the strip's, circumferences
+
+    /// The colour at a flat coordinate, x modulo 1; nothing (all 0) beyond the strip's ends.
+    glm::u8vec4 at(glm::dvec2 flat) const;
+};
+
+/// Longest side of a paint, pixels.
+inline constexpr int maxPaintSide = 1 << 15;
+
+/// Fails (badInput) where there are no pixels, or not as many as its size says, a side is over
+/// maxPaintSide, or the height is none of a strip.
+Result<void> checkWallPaint(const WallPaint& paint);
+
+/// A PNG file, of any kind of pixel: without an alpha channel it covers all of the wall. `height`
+/// is the strip's. Fails (badInput) where the file is no PNG or too large.
+Result<std::shared_ptr<const WallPaint>> readWallPaint(const std::filesystem::path& file,
+                                                       double height);
+
+/// Which place of the wall a pixel sees first.
+struct WallPixel {
+    glm::vec2 flat{0.0f};
+    float depthMm = -1.0f;  ///< as a backdrop's: along the ray, or from an orthographic camera's
+                            ///< plane; negative where the pixel sees no wall
+    float padding = 0.0f;
+    bool seen() const { return depthMm >= 0.0f; }
+};
+
+/// Tints the band of a finished picture: in linear light a painted pixel keeps its brightest
+/// component, which is the wall's light, and takes its colour from the paint, as far as the paint
+/// covers it. So it works on whatever drew the picture. `seen` is the band's, rows from the top;
+/// pixels that see no wall, and places without paint, stay as they are to the bit. O(pixels).
+void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band,
+          Image& picture);
+
+}  // namespace haustra::render
