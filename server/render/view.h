@@ -72,12 +72,17 @@ struct Backdrop {
     std::vector<glm::vec4> pixels;  ///< rows from the top; rgb: linear light, w: mm along the ray
 };
 
+struct WallPaint;
+
 /// What a camera sees of a volume.
 struct CameraView {
     Camera camera;
     Optics optics;
     MarchOptions march;
     std::shared_ptr<const Backdrop> backdrop = nullptr;  ///< none: black, and no end
+    /// Colours the wall in the finished picture (wall_paint.h), which is CaseRenderer's work; the
+    /// case must have a flat map. None: no colour.
+    std::shared_ptr<const WallPaint> paint = nullptr;
 };
 
 /// Fails (badInput) where camera, optics or sampling are out of their bounds, or the backdrop is of
