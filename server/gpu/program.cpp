@@ -89,6 +89,13 @@ void ComputeProgram::dispatch(glm::ivec2 threads) const {
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
+void ComputeProgram::dispatchGroups(int groups) const {
+    const int rows = (groups + groupsInRow - 1) / groupsInRow;
+    glUseProgram(id_);
+    glDispatchCompute(GLuint(rows > 1 ? groupsInRow : groups), GLuint(rows), 1);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
 Result<RasterProgram> RasterProgram::create(
     const char* what, std::initializer_list<std::string_view> vertexPieces,
     std::initializer_list<std::string_view> fragmentPieces) {

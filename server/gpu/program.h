@@ -29,6 +29,10 @@ public:
     /// Runs groups that cover `threads`, then makes their image writes visible to later reads of
     /// any kind.
     void dispatch(glm::ivec2 threads) const;
+    /// Runs at least `groups` groups, in rows of at most groupsInRow; the rest of the last row runs
+    /// too, and has nothing to do.
+    void dispatchGroups(int groups) const;
+    static constexpr int groupsInRow = 32768;
 
 private:
     ComputeProgram() = default;

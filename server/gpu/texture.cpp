@@ -1,5 +1,7 @@
 #include "gpu/texture.h"
 
+#include "gpu/streaming.h"
+
 #include <string>
 #include <utility>
 
@@ -103,6 +105,21 @@ void Texture::uploadSlices(int firstZ, int countZ, const void* texels) {
                         texels);
 }
 
+void Texture::uploadBox(glm::ivec3 corner, glm::ivec3 size, const MappedBuffer& texels,
+                        std::size_t offset) {
+    const Layout layout = layoutOf(format_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, texels.id_);
+    glTextureSubImage3D(id_, 0, corner.x, corner.y, corner.z, size.x, size.y, size.z, layout.format,
+                        layout.type, reinterpret_cast<const void*>(offset));
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+void Texture::clear() {
+    const Layout layout = layoutOf(format_);
+    glClearTexImage(id_, 0, layout.format, layout.type, nullptr);
+}
+
 void Texture::upload(const void* texels) {
     const Layout layout = layoutOf(format_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -123,7 +140,7 @@ void Texture::bind(unsigned unit) const {
 }
 
 void Texture::bindImage(unsigned unit) const {
-    glBindImageTexture(unit, id_, 0, dimensions_ == 3, 0, GL_WRITE_ONLY,
+    glBindImageTexture(unit, id_, 0, dimensions_ == 3, 0, GL_READ_WRITE,
                        layoutOf(format_).internal);
 }
 

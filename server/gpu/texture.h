@@ -9,6 +9,8 @@
 
 namespace haustra::gpu {
 
+class MappedBuffer;
+
 enum class TexelFormat {
     r16,      ///< one 16-bit fraction, 0…1
     r8ui,     ///< one byte, integer
@@ -39,6 +41,12 @@ public:
     /// Writes `texels`: slices [firstZ, firstZ + countZ) of a 3-D texture, tightly packed in the
     /// texture's own format, x fastest.
     void uploadSlices(int firstZ, int countZ, const void* texels);
+    /// Writes the box of `size` texels at `corner` of a 3-D texture, when the GPU gets there, from
+    /// `offset` on in `texels`, which must not change before a fence after this has passed.
+    void uploadBox(glm::ivec3 corner, glm::ivec3 size, const MappedBuffer& texels,
+                   std::size_t offset);
+    /// Sets every texel to zero.
+    void clear();
     /// Writes the whole of a 1-D or 2-D texture.
     void upload(const void* texels);
     /// Reads the whole texture back, tightly packed. `bytes` must be bytes().
@@ -46,7 +54,7 @@ public:
 
     /// As a sampler2D etc. with layout(binding = unit).
     void bind(unsigned unit) const;
-    /// As a writable image with layout(binding = unit).
+    /// As an image, to read and write, with layout(binding = unit).
     void bindImage(unsigned unit) const;
 
     glm::ivec3 size() const { return size_; }
