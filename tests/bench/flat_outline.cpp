@@ -217,8 +217,9 @@ OutlineShape shapeOf(const std::vector<glm::dvec2>& polygon) {
     return {std::abs(area), std::sqrt((mean + half) / std::max(mean - half, 1e-300))};
 }
 
-OutlineShape shapeOf(const std::vector<glm::dvec3>& curve) {
-    if (curve.size() < 3) return {};
+std::vector<glm::dvec2> fromAbove(const std::vector<glm::dvec3>& curve) {
+    std::vector<glm::dvec2> seen;
+    if (curve.size() < 3) return seen;
     glm::dvec3 vectorArea(0.0);
     for (std::size_t n = 1; n + 1 < curve.size(); ++n)
         vectorArea += glm::cross(curve[n] - curve[0], curve[n + 1] - curve[0]);
@@ -226,10 +227,34 @@ OutlineShape shapeOf(const std::vector<glm::dvec3>& curve) {
     const glm::dvec3 u = glm::normalize(
         glm::cross(along, std::abs(along.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
     const glm::dvec3 v = glm::cross(along, u);
-    std::vector<glm::dvec2> seen;
     for (const glm::dvec3& p : curve)
         seen.push_back({glm::dot(p - curve[0], u), glm::dot(p - curve[0], v)});
-    return shapeOf(seen);
+    return seen;
+}
+
+double stretchBetween(const std::vector<glm::dvec2>& from, const std::vector<glm::dvec2>& to) {
+    const std::size_t count = from.size();
+    if (count < 3) return 1.0;
+    std::vector<double> weight(count);
+    double sum = 0.0;
+    glm::dvec2 fromMiddle(0.0), toMiddle(0.0);
+    for (std::size_t n = 0; n < count; ++n) {
+        weight[n] = glm::distance(from[n], from[(n + 1) % count]) +
+                    glm::distance(from[n], from[(n + count - 1) % count]);
+        sum += weight[n];
+        fromMiddle += weight[n] * from[n];
+        toMiddle += weight[n] * to[n];
+    }
+    fromMiddle /= sum, toMiddle /= sum;
+    glm::dmat2 both(0.0), own(0.0);
+    for (std::size_t n = 0; n < count; ++n) {
+        both += weight[n] * glm::outerProduct(to[n] - toMiddle, from[n] - fromMiddle);
+        own += weight[n] * glm::outerProduct(from[n] - fromMiddle, from[n] - fromMiddle);
+    }
+    const glm::dmat2 map = both * glm::inverse(own);
+    const double conformal = 0.5 * std::hypot(map[0][0] + map[1][1], map[0][1] - map[1][0]),
+                 rest = 0.5 * std::hypot(map[0][0] - map[1][1], map[0][1] + map[1][0]);
+    return (conformal + rest) / std::abs(conformal - rest);
 }
 
 }  // namespace haustra::bench

@@ -38,7 +38,13 @@ struct OutlineShape {
 
 /// Of what a simple polygon in the plane encloses.
 OutlineShape shapeOf(const std::vector<glm::dvec2>& polygon);
-/// Of a closed curve in space, seen along its vector area: whence it encloses the most.
-OutlineShape shapeOf(const std::vector<glm::dvec3>& curve);
+
+/// A closed curve in space as seen along its vector area: whence it encloses the most. Millimetres.
+std::vector<glm::dvec2> fromAbove(const std::vector<glm::dvec3>& curve);
+
+/// Of the linear map that takes `from` to `to` with the least squares, point for point, each for
+/// the length of `from` around it: its greater over its lesser stretch, ≥ 1. Unlike two aspects, it
+/// also tells a shape that lies across its own. Of equally many points; 1 where there are under 3.
+double stretchBetween(const std::vector<glm::dvec2>& from, const std::vector<glm::dvec2>& to);
 
 }  // namespace haustra::bench

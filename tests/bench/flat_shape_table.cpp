@@ -35,6 +35,7 @@ struct Polyp {
 struct Compared {
     const Polyp* polyp;
     bench::OutlineShape onSurface, inPlane;
+    double stretch;  ///< from one to the other
     double areaMm2;  ///< of the surface inside
     double off() const { return inPlane.aspect / onSurface.aspect - 1.0; }
 };
@@ -117,7 +118,7 @@ flatten::PeriodicMap unified(const Study& study, double weight, int threads, dou
 std::vector<Compared> compare(const Study& study, const flatten::PeriodicMap& map) {
     std::vector<Compared> all;
     for (const Polyp& polyp : study.polyps) {
-        // What is a loop in a plane in space, and what is draped over the wall.
+        // A loop in a plane of space, or one draped over the wall.
         const bool girth = polyp.kind() == "pedunculated";
         const auto outline = bench::outlineOf(study.tube.mesh, study.edges, map,
                                               girth ? polyp.truth.girth : polyp.truth.border);
@@ -126,27 +127,23 @@ std::vector<Compared> compare(const Study& study, const flatten::PeriodicMap& ma
                        polyp.truth.finding.diameterMm, polyp.kind());
             continue;
         }
-        fmt::print(
-            stderr, "DBG {} {} {:.1f} space {:.2f} unrolled {:.2f} flat {:.2f}\n", polyp.of,
-            polyp.kind(), polyp.truth.finding.diameterMm, bench::shapeOf(outline->placesMm).aspect,
-            bench::shapeOf(outline->unrolledMm).aspect, bench::shapeOf(outline->flat).aspect);
-        all.push_back(
-            {&polyp,
-             girth ? bench::shapeOf(outline->placesMm) : bench::shapeOf(outline->unrolledMm),
-             bench::shapeOf(outline->flat), outline->insideMm2});
+        const auto own = girth ? bench::fromAbove(outline->placesMm) : outline->unrolledMm;
+        all.push_back({&polyp, bench::shapeOf(own), bench::shapeOf(outline->flat),
+                       bench::stretchBetween(own, outline->flat), outline->insideMm2});
     }
     return all;
 }
 
 void printPolyps(const std::vector<Compared>& all) {
     fmt::print(
-        "\n| case | polyp | mm | outline mm | aspect on the surface | in the plane | off % |\n"
-        "| --- | --- | --- | --- | --- | --- | --- |\n");
+        "\n| case | polyp | mm | outline mm | aspect on the surface | in the plane | off % "
+        "| stretch | shown at ‰ of the circumference |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (const Compared& c : all) {
-        fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} |\n", c.polyp->of,
-                   c.polyp->kind(), c.polyp->truth.finding.diameterMm,
+        fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} | {:.2f} | {:.1f} |\n",
+                   c.polyp->of, c.polyp->kind(), c.polyp->truth.finding.diameterMm,
                    std::sqrt(4.0 / M_PI * c.onSurface.area), c.onSurface.aspect, c.inPlane.aspect,
-                   100.0 * c.off());
+                   100.0 * c.off(), c.stretch, 1000.0 * std::sqrt(4.0 / M_PI * c.inPlane.area));
     }
 }
 
@@ -154,20 +151,22 @@ void printPolyps(const std::vector<Compared>& all) {
 /// of the square root of flat area over area.
 void printSummary(const std::string& weight, const std::string& kind,
                   const std::vector<Compared>& all) {
-    int count = 0, kept = 0;
+    int count = 0, kept = 0, alike = 0;
     double sum = 0.0, squares = 0.0, worst = 0.0;
     for (const Compared& c : all) {
         if (kind != "all" && c.polyp->kind() != kind) continue;
         ++count;
         kept += std::abs(c.off()) <= 0.1;
+        alike += c.stretch <= 1.1;
         worst = std::max(worst, std::abs(c.off()));
         const double zoom = 0.5 * std::log(c.inPlane.area / c.areaMm2);
         sum += zoom, squares += zoom * zoom;
     }
     if (count == 0) return;
     const double deviation = std::sqrt(std::max(0.0, squares / count - sum * sum / count / count));
-    fmt::print("| {} | {} | {} | {} ({:.0f} %) | {:.0f} | {:.0f} |\n", weight, kind, count, kept,
-               100.0 * kept / count, 100.0 * worst, 100.0 * (std::exp(deviation) - 1.0));
+    fmt::print("| {} | {} | {} | {} ({:.0f} %) | {:.0f} | {} | {:.0f} |\n", weight, kind, count,
+               kept, 100.0 * kept / count, 100.0 * worst, alike,
+               100.0 * (std::exp(deviation) - 1.0));
 }
 
 /// 10,000 random pixels of a strip 1600 wide, to the surface and back.
@@ -269,8 +268,8 @@ int main(int argc, char** argv) {
     if (truths.empty()) return 0;
     printPolyps(byWeight[0]);
     fmt::print(
-        "\n| area weight | polyps | count | aspect within 10 % | worst % | spread of scale % "
-        "|\n| --- | --- | --- | --- | --- | --- |\n");
+        "\n| area weight | polyps | count | aspect within 10 % | worst % | stretch within 1.1 "
+        "| spread of scale % |\n| --- | --- | --- | --- | --- | --- | --- |\n");
     for (std::size_t n = 0; n < byWeight.size(); ++n) {
         for (const char* kind : {"all", "sessile", "flat", "pedunculated"})
             printSummary(fmt::format("{}", n == 0 ? 0.0 : weights[n - 1]), kind, byWeight[n]);

@@ -32,11 +32,32 @@ TEST(FlatOutline, EllipsesHaveTheirShape) {
         EXPECT_NEAR(flat.area, 6.0 * std::numbers::pi, 1e-2);
         const glm::dvec3 u = glm::normalize(glm::dvec3(1.0, 2.0, -1.0)),
                          v = glm::normalize(glm::cross(u, glm::dvec3(0.3, 0.1, 1.0)));
-        const auto tilted =
-            shapeOf(ellipse<glm::dvec3>(3.0, 2.0, turn, [&](auto p) { return p.x * u + p.y * v; }));
+        const auto tilted = shapeOf(fromAbove(
+            ellipse<glm::dvec3>(3.0, 2.0, turn, [&](auto p) { return p.x * u + p.y * v; })));
         EXPECT_NEAR(tilted.aspect, 1.5, 1e-6);
         EXPECT_NEAR(tilted.area, 6.0 * std::numbers::pi, 1e-2);
     }
+}
+
+// Two ellipses of one shape: turned and grown they are alike, across each other they are not.
+TEST(FlatOutline, StretchKnowsWhichWayAShapeLies) {
+    const auto from = ellipse<glm::dvec2>(3.0, 2.0, 0.3, [](auto p) { return p; });
+    const auto to = [&](glm::dmat2 map) {
+        std::vector<glm::dvec2> places;
+        for (const glm::dvec2 p : from)
+            places.push_back(map * p + glm::dvec2(5.0, -8.0));
+        return places;
+    };
+    for (const double turn : {0.0, 0.7, 2.5}) {
+        const glm::dmat2 turned(std::cos(turn), std::sin(turn), -std::sin(turn), std::cos(turn));
+        EXPECT_NEAR(stretchBetween(from, to(0.01 * turned)), 1.0, 1e-9);
+        EXPECT_NEAR(stretchBetween(from, to(turned * glm::dmat2(1.2, 0.0, 0.0, 1.0))), 1.2, 1e-9);
+        // Seen from behind.
+        EXPECT_NEAR(stretchBetween(from, to(turned * glm::dmat2(-1.0, 0.0, 0.0, 1.0))), 1.0, 1e-9);
+    }
+    const auto across = ellipse<glm::dvec2>(2.0, 3.0, 0.3, [](auto p) { return p; });
+    EXPECT_NEAR(shapeOf(across).aspect, shapeOf(from).aspect, 1e-9);
+    EXPECT_NEAR(stretchBetween(from, across), 2.25, 1e-6);
 }
 
 std::function<double(glm::dvec3)> ball(glm::dvec3 centerMm, double radiusMm) {
