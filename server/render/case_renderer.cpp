@@ -5,6 +5,7 @@
 #include "gpu/texture.h"
 #include "render/flat_painter.h"
 #include "render/gl_scene.h"
+#include "render/overview_painter.h"
 #include "render/picture_readback.h"
 #include "render/ray_setup.h"
 #include "render/single_pass_raycaster.h"
@@ -50,6 +51,7 @@ struct CaseRenderer::Impl {
     std::map<RaycasterKind, std::unique_ptr<Raycaster>> raycasters;  // made when asked for
     RaycasterKind used = RaycasterKind::singlePass;
     std::optional<gpu::Texture> picture;
+    std::unique_ptr<OverviewPainter> overview = nullptr;  // made when asked for
 
     const Grid& grid() const { return scene->grid(); }
 
@@ -273,12 +275,23 @@ Result<Image> CaseRenderer::render(const FlatOverview& view, int width, int heig
     return overview;
 }
 
+Result<Image> CaseRenderer::render(const OverviewView& view, int width, int height) {
+    Impl& my = *impl_;
+    if (!my.overview) {
+        auto made = OverviewPainter::create(my.context, my.scene);
+        if (!made) return tl::make_unexpected(made.error());
+        my.overview = std::move(*made);
+    }
+    return my.overview->draw(view, {width, height}, *my.raycasters.at(my.used));
+}
+
 std::size_t CaseRenderer::gpuBytes() const {
     const Impl& my = *impl_;
     std::size_t bytes = my.glScene->gpuBytes();
     for (const std::optional<gpu::Texture>* texture : {&my.ct, &my.picture})
         if (*texture) bytes += (*texture)->bytes();
     if (my.flat) bytes += my.flat->gpuBytes();
+    if (my.overview) bytes += my.overview->gpuBytes();
     for (const auto& [kind, raycaster] : my.raycasters)
         bytes += raycaster->gpuBytes();
     return bytes;

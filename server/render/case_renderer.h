@@ -53,6 +53,10 @@ public:
     Result<Image> render(const FlatView& view, int width, int height);
     Result<Image> render(const FlatOverview& view, int width, int height);
 
+    /// The colon from outside; the body is drawn by raycaster(). What the case has not (its wall,
+    /// its path) is left out. Fails as the other views do.
+    Result<Image> render(const OverviewView& view, int width, int height);
+
     /// Some rows of a camera's picture, for a frame that is drawn in bands.
     Result<void> render(const CameraView& view, const Band& band, Image& picture);
 

@@ -39,6 +39,7 @@ struct Camera {
     double fovDegrees = 90.0;  ///< perspective 1…170, fisheye 1…360
     Lens lens = Lens::perspective;
     double heightMm = 100.0;  ///< of an orthographic picture, over 0
+    bool operator==(const Camera&) const = default;
 };
 
 struct WindowLevel {
@@ -63,6 +64,7 @@ const char* toString(View view);
 struct MarchOptions {
     double stepVoxels = 0.5;        ///< sampling distance, in the smallest voxel spacing; 0.05…4
     bool emptySpaceLeaping = true;  ///< changes the time, never a pixel
+    bool operator==(const MarchOptions&) const = default;
 };
 
 /// What lies before the rays' ends, drawn by somebody else: a ray stops at its pixel's depth, and
