@@ -25,6 +25,13 @@ tl::unexpected<Error> severalFans() {
     return fail(ErrorKind::badInput, "the mesh is not manifold: sheets meet at one vertex");
 }
 
+tl::unexpected<Error> tangledEdge() {
+    return fail(
+        ErrorKind::badInput,
+        "the mesh is not manifold: triangles meet at an edge that cannot lie on one surface, "
+        "or are turned against each other");
+}
+
 }  // namespace
 
 Result<HalfedgeMesh> HalfedgeMesh::of(const TriMesh& mesh) {
@@ -45,22 +52,20 @@ Result<HalfedgeMesh> HalfedgeMesh::of(const TriMesh& mesh) {
     for (std::size_t h = 0; h < halfedges; ++h)
         leaving[at[made.origin_[h]]++] = int(h);
 
-    for (int h = 0; h < int(halfedges); ++h) {
-        const int a = made.origin(h), b = made.target(h);
-        made.lengthMm_[h] =
-            glm::distance(mesh.vertices[std::min(a, b)], mesh.vertices[std::max(a, b)]);
-        int same = 0, back = 0;
-        for (int i = first[a]; i < first[a + 1]; ++i)
-            same += made.target(leaving[i]) == b;
-        for (int i = first[b]; i < first[b + 1]; ++i) {
-            if (made.target(leaving[i]) != a) continue;
-            ++back;
-            made.opposite_[h] = leaving[i];
+    // Of the half-edges that leave the vertex at hand, the one to each neighbour.
+    std::vector<int> leads(mesh.vertices.size(), -1);
+    for (int v = 0; v < made.vertexCount(); ++v) {
+        for (int i = first[v]; i < first[v + 1]; ++i) {
+            int& to = leads[made.target(leaving[i])];
+            if (to >= 0 && made.origin(to) == v) return tangledEdge();
+            to = leaving[i];
         }
-        if (same != 1 || back > 1) {
-            return fail(ErrorKind::badInput,
-                        "the mesh is not manifold: triangles meet at an edge that cannot lie on "
-                        "one surface, or are turned against each other");
+        for (int i = first[v]; i < first[v + 1]; ++i) {
+            const int arriving = previous(leaving[i]), from = made.origin(arriving);
+            if (leads[from] >= 0 && made.origin(leads[from]) == v)
+                made.opposite_[arriving] = leads[from];
+            made.lengthMm_[arriving] =
+                glm::distance(mesh.vertices[std::min(v, from)], mesh.vertices[std::max(v, from)]);
         }
     }
     if (!made.findOutgoing()) return severalFans();

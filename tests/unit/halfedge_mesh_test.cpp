@@ -1,6 +1,9 @@
 #include "mesh/halfedge_mesh.h"
 
+#include "flat_meshes.h"
 #include "tube_meshes.h"
+
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -79,6 +82,54 @@ TEST(HalfedgeMesh, RefusesPartsThatDoNotFit) {
     Parts loose = parts;
     loose.opposite.assign(loose.opposite.size(), -1);
     EXPECT_FALSE(glue(loose));
+}
+
+TEST(HalfedgeMesh, OppositesRunBetweenTheSameVerticesAndAreAllFound) {
+    const TriMesh closed = tests::capsule(10.0, 20.0, 12);
+    for (const TriMesh& surface : {tube, closed}) {
+        const HalfedgeMesh mesh = *HalfedgeMesh::of(surface);
+        for (int h = 0; h < mesh.halfedgeCount(); ++h) {
+            int expected = -1;
+            for (int g = 0; g < mesh.halfedgeCount(); ++g) {
+                if (mesh.origin(g) == mesh.target(h) && mesh.target(g) == mesh.origin(h))
+                    expected = g;
+            }
+            ASSERT_EQ(mesh.opposite(h), expected) << h;
+            ASSERT_EQ(mesh.lengthMm(h),
+                      glm::distance(surface.vertices[std::size_t(mesh.origin(h))],
+                                    surface.vertices[std::size_t(mesh.target(h))]));
+        }
+    }
+}
+
+TEST(HalfedgeMesh, RefusesEdgesThatLieOnNoSurface) {
+    const std::vector<glm::dvec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+    const auto of = [&](const std::vector<glm::ivec3>& triangles) {
+        return HalfedgeMesh::of(TriMesh{corners, triangles});
+    };
+    EXPECT_TRUE(of({{0, 1, 2}, {1, 0, 3}}));
+    EXPECT_FALSE(of({{0, 1, 2}, {0, 1, 3}})) << "turned against each other";
+    EXPECT_FALSE(of({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}})) << "three at an edge";
+    EXPECT_FALSE(of({{0, 1, 2}, {1, 0, 3}, {1, 0, 4}})) << "three at an edge";
+    EXPECT_FALSE(of({{0, 1, 2}, {0, 1, 2}})) << "twice the same";
+    EXPECT_FALSE(of({{0, 1, 2}, {0, 3, 4}})) << "two fans";
+}
+
+TEST(HalfedgeMesh, TakesAFanOfManyTriangles) {
+    constexpr int blades = 400'000;  // their square is more than a test has time for
+    TriMesh fan;
+    fan.vertices.push_back({0.0, 0.0, 1.0});
+    for (int n = 0; n < blades; ++n) {
+        const double angle = 6.283185307179586 * n / blades;
+        fan.vertices.push_back({std::cos(angle), std::sin(angle), 0.0});
+        fan.triangles.push_back({0, 1 + n, 1 + (n + 1) % blades});
+    }
+    const auto mesh = HalfedgeMesh::of(fan);
+    ASSERT_TRUE(mesh);
+    for (int n = 0; n < blades; ++n) {
+        EXPECT_EQ(mesh->opposite(3 * n + 2), 3 * ((n + 1) % blades));
+        EXPECT_EQ(mesh->opposite(3 * n + 1), -1);
+    }
 }
 
 }  // namespace
