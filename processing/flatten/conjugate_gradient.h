@@ -1,6 +1,7 @@
 // The tube's harmonic problems by iteration: what Cholesky is measured beside.
 #pragma once
 
+#include "flatten/cotangent_laplacian.h"
 #include "flatten/tube_solver.h"
 
 namespace haustra::flatten {
@@ -11,6 +12,17 @@ struct IterationOptions {
     int maxIterations = 0;     ///< of each system; 0: twice its unknowns
     int threads = 0;           ///< the two systems are solved side by side where there are two
 };
+
+struct IteratedVector {
+    std::vector<double> x;
+    int iterations = 0;
+    bool converged = true;
+};
+
+/// Conjugate gradients from 0 on a symmetric system that is positive definite, or only semidefinite
+/// where `right` is in its range. One thread.
+IteratedVector conjugateGradient(const SymmetricMatrix& matrix, const std::vector<double>& right,
+                                 const IterationOptions& options);
 
 struct IteratedSolution {
     TubeSolution values;
