@@ -5,6 +5,7 @@
 #include "cli/text_files.h"
 #include "core/centerline.h"
 #include "core/flat_lookup.h"
+#include "core/wall_camera.h"
 #include "gpu/context.h"
 #include "render/case_renderer.h"
 #include "render/comparison.h"
@@ -39,15 +40,11 @@ struct Arguments {
 };
 
 Result<render::CameraView> endoscopicView(const Arguments& arguments,
-                                          const Centerline& centerline) {
+                                          const CenterlineCamera& from) {
     auto preset = render::opticsPreset(arguments.preset);
     if (!preset) return tl::make_unexpected(preset.error());
-    const CenterlineCamera onPath = cameraAtArc(
-        centerline, rotationMinimizingUps(centerline, flightPreferredUp), *arguments.arcMm,
-        arguments.direction == "antegrade" ? FlightDirection::antegrade
-                                           : FlightDirection::retrograde);
     render::CameraView view;
-    view.camera = {onPath.positionMm, onPath.forward, onPath.up, arguments.fovDegrees};
+    view.camera = {from.positionMm, from.forward, from.up, arguments.fovDegrees};
     view.optics = std::move(*preset);
     return view;
 }
@@ -68,19 +65,34 @@ Result<CaseScans> readScans(const Arguments& arguments, const store::Case& sourc
     return CaseScans{std::move(*ct), {}};
 }
 
-/// The middle of the zoomed window: as given, or the place of the wall nearest to a point.
-Result<glm::dvec2> flatCenter(const Arguments& arguments, const Centerline& centerline,
-                              const std::shared_ptr<const FlatMap>& map) {
+/// The place of the wall that is given, or the nearest to the point that is.
+Result<WallPlace> wallPlace(const Arguments& arguments, const Centerline& centerline,
+                            const FlatLookup& lookup) {
     if (arguments.flat) {
-        if (arguments.flat->y >= 0.0 && arguments.flat->y <= map->height) return *arguments.flat;
-        return fail(ErrorKind::badInput,
-                    fmt::format("the strip runs from 0 to {:.3f} circumferences", map->height),
-                    fmt::format("--flat {},{}", arguments.flat->x, arguments.flat->y));
+        if (const auto place = lookup.at(*arguments.flat)) return *place;
+        return fail(
+            ErrorKind::badInput,
+            fmt::format("the strip runs from 0 to {:.3f} circumferences", lookup.map().height),
+            fmt::format("--flat {},{}", arguments.flat->x, arguments.flat->y));
     }
-    const glm::dvec3 point = arguments.positionMm.empty()
-                                 ? poseAtArc(centerline, *arguments.arcMm).point.positionMm
-                                 : arguments.positionMm.front();
-    return FlatLookup(map).nearest(point).flat;
+    return lookup.nearest(arguments.positionMm.empty()
+                              ? poseAtArc(centerline, *arguments.arcMm).point.positionMm
+                              : arguments.positionMm.front());
+}
+
+/// On the centerline, or turned from it to a place of the wall or a point near one.
+Result<CenterlineCamera> camera(const Arguments& arguments, const Centerline& centerline,
+                                const std::shared_ptr<const FlatMap>& map) {
+    if (arguments.arcMm) {
+        return cameraAtArc(centerline, rotationMinimizingUps(centerline, flightPreferredUp),
+                           *arguments.arcMm,
+                           arguments.direction == "antegrade" ? FlightDirection::antegrade
+                                                              : FlightDirection::retrograde);
+    }
+    return wallPlace(arguments, centerline, FlatLookup(map)).map([&](const WallPlace& place) {
+        return cameraTowards(*map, place,
+                             arguments.flat ? place.positionMm : arguments.positionMm.front());
+    });
 }
 
 Result<render::Image> drawFlattened(const Arguments& arguments, const Centerline& centerline,
@@ -91,9 +103,9 @@ Result<render::Image> drawFlattened(const Arguments& arguments, const Centerline
     if (arguments.view == "flattened")
         return renderer.render(render::FlatOverview{std::move(*function), {}}, arguments.size.x,
                                arguments.size.y);
-    const auto center = flatCenter(arguments, centerline, map);
+    const auto center = wallPlace(arguments, centerline, FlatLookup(map));
     if (!center) return tl::make_unexpected(center.error());
-    const FlatWindow window{*center, arguments.pixelsPerCircumference};
+    const FlatWindow window{center->flat, arguments.pixelsPerCircumference};
     return renderer.render(render::FlatView{window, std::move(*function), {}}, arguments.size.x,
                            arguments.size.y);
 }
@@ -139,7 +151,7 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
         mixture = std::move(*read);
     }
     std::shared_ptr<const FlatMap> flatMap;
-    if (isFlattened(arguments)) {
+    if (isFlattened(arguments) || (!isSlice(arguments) && !arguments.arcMm)) {
         auto read = source.readFlatMap();
         if (!read) return tl::make_unexpected(read.error());
         flatMap = std::make_shared<const FlatMap>(std::move(*read));
@@ -149,13 +161,15 @@ Result<render::Image> draw(const Arguments& arguments, const store::Case& source
     prepared->flatMap = flatMap;
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
-    auto renderer =
-        render::CaseRenderer::upload(**context, std::move(*prepared), {.threads = arguments.threads});
+    auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared),
+                                                 {.threads = arguments.threads});
     if (!renderer) return tl::make_unexpected(renderer.error());
-    if (flatMap) return drawFlattened(arguments, centerline, flatMap, **renderer);
+    if (isFlattened(arguments)) return drawFlattened(arguments, centerline, flatMap, **renderer);
 
     if (*plane == render::View::endoscopic) {
-        const auto view = endoscopicView(arguments, centerline);
+        const auto from = camera(arguments, centerline, flatMap);
+        if (!from) return tl::make_unexpected(from.error());
+        const auto view = endoscopicView(arguments, *from);
         if (!view) return tl::make_unexpected(view.error());
         return (*renderer)->render(*view, arguments.size.x, arguments.size.y);
     }
@@ -217,7 +231,8 @@ void addFlatOptions(CLI::App& command, const std::shared_ptr<Arguments>& argumen
                 arguments->flat = glm::dvec2((*numbers)[0], (*numbers)[1]);
             },
             "The middle of flattened-zoom on the strip, in circumferences: X around the colon, Y "
-            "from the rectum; in place of --arc-mm")
+            "from the rectum; in place of --arc-mm. Or the place of the wall that the endoscopic "
+            "view looks at, as with --position")
         ->type_name("X,Y");
     command
         .add_option("--pixels-per-circumference", arguments->pixelsPerCircumference,
@@ -250,10 +265,14 @@ void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& argumen
                     "shows, or "
                     "the one whose nearest place on the wall is in the middle of flattened-zoom")
         ->type_name("A");
-    addPointsOption(command, "--position", arguments->positionMm,
-                    "The point (LPS, mm) of a slice or of flattened-zoom, in place of --arc-mm");
+    addPointsOption(
+        command, "--position", arguments->positionMm,
+        "The point (LPS, mm) of a slice or of flattened-zoom, in place of --arc-mm. The endoscopic "
+        "view looks at it from where the flat map registers the place of the wall nearest to it "
+        "with the centerline, turned as flattened-zoom is: the cecum up");
     addFlatOptions(command, arguments);
-    command.add_option("--direction", arguments->direction, "Which way the camera looks")
+    command
+        .add_option("--direction", arguments->direction, "Which way the camera on --arc-mm looks")
         ->check(CLI::IsMember({"antegrade", "retrograde"}))
         ->capture_default_str();
     command.add_option("--fov", arguments->fovDegrees, "Vertical field of view of the camera")
@@ -299,13 +318,10 @@ Command addRender(CLI::App& program) {
     addThreadsOption(*command, arguments->threads);
     command->callback([arguments] {
         const std::string& view = arguments->view;
-        if (view == "endoscopic" && !arguments->positionMm.empty()) {
-            throw CLI::ValidationError("--position", "the endoscopic view is placed by --arc-mm");
-        }
         if (!isSlice(*arguments) && arguments->compare)
             throw CLI::ValidationError("--compare", "compares slices; give --view");
-        if (arguments->flat && view != "flattened-zoom")
-            throw CLI::ValidationError("--flat", "places --view flattened-zoom");
+        if (arguments->flat && isSlice(*arguments))
+            throw CLI::ValidationError("--flat", "places flattened-zoom and endoscopic");
         if (arguments->positionMm.size() > 1)
             throw CLI::ValidationError("--position", "given more than once");
         const int places = (arguments->arcMm ? 1 : 0) + int(arguments->positionMm.size()) +
@@ -313,12 +329,11 @@ Command addRender(CLI::App& program) {
         if (view == "flattened" && places > 0)
             throw CLI::ValidationError("--view",
                                        "flattened shows the whole strip and takes no place");
-        if (view == "flattened-zoom" && places > 1)
-            throw CLI::ValidationError("--flat", "the place is given in two ways");
+        if (!isSlice(*arguments) && places > 1)
+            throw CLI::ValidationError("--view", "the place is given in two ways");
         if (view != "flattened" && places == 0) {
-            throw CLI::RequiredError(view == "endoscopic"       ? "--arc-mm"
-                                     : view == "flattened-zoom" ? "--flat, --arc-mm or --position"
-                                                                : "--arc-mm or --position");
+            throw CLI::RequiredError(isSlice(*arguments) ? "--arc-mm or --position"
+                                                         : "--flat, --arc-mm or --position");
         }
     });
     return {command, [arguments] { return runRender(*arguments); }};

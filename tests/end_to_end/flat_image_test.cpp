@@ -1,5 +1,5 @@
 // haustra render and export of the flattened wall, on a tube whose map is known.
-#include "core/flat_lookup.h"
+#include "core/wall_camera.h"
 #include "end_to_end/flat_store.h"
 #include "end_to_end/run_program.h"
 #include "read_png.h"
@@ -91,6 +91,26 @@ TEST_F(FlatImage, RenderDrawsWhatTheServerDoes) {
               renderer_->render(view(lookup.nearest(onPath).flat, 512.0), 90, 70)->rgb);
 }
 
+// The place that flattened-zoom has in its middle, from the colon's path.
+TEST_F(FlatImage, TheEndoscopicViewFacesAPlaceOfTheWall) {
+    const auto map = std::make_shared<const FlatMap>(tube_.map());
+    const FlatLookup lookup(map);
+    const auto towards = [&](const WallPlace& place, glm::dvec3 point) {
+        const CenterlineCamera from = cameraTowards(*map, place, point);
+        CameraView view;
+        view.camera = {from.positionMm, from.forward, from.up, view.camera.fovDegrees};
+        view.optics = *opticsPreset("mucosa");
+        return renderer_->render(view, 90, 70)->rgb;
+    };
+    const WallPlace place = *lookup.at({0.2, 0.7});
+    const auto facing = rendered({"--view", "endoscopic", "--flat", "0.2,0.7"}).rgb;
+    EXPECT_EQ(facing, towards(place, place.positionMm));
+    EXPECT_NE(facing, rendered({"--view", "endoscopic", "--flat", "0.7,0.7"}).rgb);
+    const glm::dvec3 point(3.0, 4.0, 30.0);
+    EXPECT_EQ(rendered({"--view", "endoscopic", "--position", "3,4,30"}).rgb,
+              towards(lookup.nearest(point), point));
+}
+
 TEST_F(FlatImage, TheStripIsOfOnePieceAndFillsThePicture) {
     // Wider than one picture of the renderer, and longer than one band.
     const int width = 2100, rows = int(std::lround(tube_.height() * width));
@@ -132,6 +152,10 @@ TEST_F(FlatImage, SaysWhatIsWrong) {
     says(render({"--view", "flattened", "--arc-mm", "3"}), 2, "takes no place");
     says(render({"--view", "axial", "--flat", "0.5,0.5", "--arc-mm", "3"}), 2, "--flat");
     says(render({"--view", "flattened-zoom", "--flat", "1,2,3"}), 2, "X,Y");
+    says(render({"--view", "endoscopic"}), 2, "--flat, --arc-mm or --position");
+    says(render({"--position=1,2,3", "--arc-mm", "3"}), 2, "two ways");
+    says(render({"--flat", "0.5,99"}), 1, "circumferences");
+    says(run({"render", "scan", "--position=1,2,3", "--out", picture()}), 1, "flatmap");
     says(run({"export", smallCaseName, "flat-image", folder_->path() / "picture.jpg"}), 2, ".png");
     says(run({"export", smallCaseName, "ct", folder_->path() / "ct.nii", "--width", "9"}), 2,
          "flat-image");
