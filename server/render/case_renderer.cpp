@@ -7,9 +7,11 @@
 #include "render/gl_scene.h"
 #include "render/overview_painter.h"
 #include "render/picture_readback.h"
+#include "render/polygon_assisted_raycaster.h"
 #include "render/ray_setup.h"
 #include "render/single_pass_raycaster.h"
 #include "render/stored_value.h"
+#include "render/wall_index.h"
 #include "shaders/shader_source.h"
 #include "shaders/uniforms.h"
 
@@ -52,6 +54,7 @@ struct CaseRenderer::Impl {
     RaycasterKind used = RaycasterKind::singlePass;
     std::optional<gpu::Texture> picture;
     std::unique_ptr<OverviewPainter> overview = nullptr;  // made when asked for
+    std::optional<WallIndex> wallIndex = std::nullopt;    // made when asked for
 
     const Grid& grid() const { return scene->grid(); }
 
@@ -59,6 +62,8 @@ struct CaseRenderer::Impl {
         switch (kind) {
             case RaycasterKind::singlePass:
                 return asRaycaster(SinglePassRaycaster::create(glScene));
+            case RaycasterKind::polygonAssisted:
+                return asRaycaster(PolygonAssistedRaycaster::create(glScene, options.threads));
             default:
                 return fail(ErrorKind::device,
                             std::string("no ") + toString(kind) + " raycaster is built in");
@@ -218,7 +223,30 @@ std::vector<PassTime> CaseRenderer::passTimes() const {
 }
 
 Result<void> CaseRenderer::render(const CameraView& view, const Band& band, Image& picture) {
-    return impl_->raycasters.at(impl_->used)->render(view, band, picture);
+    if (view.paint) {
+        if (auto sound = checkWallPaint(*view.paint); !sound) return sound;
+        if (!impl_->flat) return fail(ErrorKind::badInput, "the case has no flat map", "wall paint");
+    }
+    if (auto drawn = impl_->raycasters.at(impl_->used)->render(view, band, picture); !drawn)
+        return drawn;
+    if (!view.paint) return {};
+    const auto seen = wallSeen(view.camera, band);
+    if (!seen) return tl::make_unexpected(seen.error());
+    tint(*seen, *view.paint, band, picture);
+    return {};
+}
+
+Result<std::vector<WallPixel>> CaseRenderer::wallSeen(const Camera& camera, const Band& band) {
+    Impl& my = *impl_;
+    if (auto sound = checkCamera(camera); !sound) return tl::make_unexpected(sound.error());
+    if (auto sound = checkBand(band); !sound) return tl::make_unexpected(sound.error());
+    if (!my.flat) return fail(ErrorKind::badInput, "the case has no flat map", "wall index");
+    if (!my.wallIndex) {
+        auto made = WallIndex::create();
+        if (!made) return tl::make_unexpected(made.error());
+        my.wallIndex = std::move(*made);
+    }
+    return my.wallIndex->find(my.context, my.flat->surface(), camera, band);
 }
 
 Result<Image> CaseRenderer::render(const CameraView& view, int width, int height) {
@@ -292,6 +320,7 @@ std::size_t CaseRenderer::gpuBytes() const {
         if (*texture) bytes += (*texture)->bytes();
     if (my.flat) bytes += my.flat->gpuBytes();
     if (my.overview) bytes += my.overview->gpuBytes();
+    if (my.wallIndex) bytes += my.wallIndex->gpuBytes();
     for (const auto& [kind, raycaster] : my.raycasters)
         bytes += raycaster->gpuBytes();
     return bytes;

@@ -5,6 +5,7 @@
 #include "render/prepared_case.h"
 #include "render/raycaster.h"
 #include "render/view.h"
+#include "render/wall_paint.h"
 
 #include <memory>
 
@@ -59,6 +60,10 @@ public:
 
     /// Some rows of a camera's picture, for a frame that is drawn in bands.
     Result<void> render(const CameraView& view, const Band& band, Image& picture);
+
+    /// Which place of the wall each of the band's pixels sees first, rows from the top. Fails
+    /// (badInput) on a bad camera or band, or where the case has no flat map.
+    Result<std::vector<WallPixel>> wallSeen(const Camera& camera, const Band& band);
 
     /// The raycaster that draws camera views, and another in its place: made when it is first
     /// asked for, and kept. Fails where it cannot be made here.

@@ -22,6 +22,7 @@ public:
     static Result<FlatPainter> create(const FlatMap& map, const Grid& grid);
 
     double height() const { return surface_.height(); }
+    const FlatSurface& surface() const { return surface_; }
     /// Finds which triangle covers each pixel of a picture of `size`. The window must have passed
     /// its check.
     Result<void> findTriangles(const FlatWindow& window, glm::ivec2 size);

@@ -25,6 +25,7 @@ public:
     static Result<FlatSurface> upload(const FlatMap& map, glm::dvec3 originMm);
 
     double height() const { return height_; }
+    glm::dvec3 originMm() const { return originMm_; }
     int cameraCount() const { return cameraCount_; }
     /// Flat coordinates are stored as whole numbers of 1 / unitsPerCircumference, a power of two.
     int unitsPerCircumference() const { return unitsPerCircumference_; }
@@ -32,6 +33,7 @@ public:
     /// A range that holds every triangle with a place in lowY … highY. O(log n).
     TriangleRange trianglesWithin(double lowY, double highY) const;
     const gpu::StorageBuffer& triangles() const { return triangles_; }
+    int triangleCount() const { return int(mapTriangle_.size()); }
     /// The number in the map of the GPU's triangle.
     int mapTriangle(int triangle) const { return mapTriangle_[std::size_t(triangle)]; }
     void bind() const;  ///< to the bindings of shaders/uniforms.h
@@ -44,6 +46,7 @@ private:
     std::vector<int> mapTriangle_;
     std::vector<double> lowestY_;        // of each triangle: rising
     std::vector<double> highestYSoFar_;  // of all triangles up to each: rising
+    glm::dvec3 originMm_{0.0};
     double height_ = 0.0;
     int cameraCount_ = 0, unitsPerCircumference_ = 0;
 };

@@ -37,11 +37,16 @@ Result<void> checkPictureSize(glm::ivec2 size) {
                                          " pixels is not within 1x1 to 2048x2048");
 }
 
-Result<void> checkBand(const Band& band, const Image& picture) {
-    const glm::ivec2 size = band.pictureSize;
-    if (auto sound = checkPictureSize(size); !sound) return sound;
-    if (band.rows < 1 || band.firstRow < 0 || band.rows > size.y - band.firstRow)
+Result<void> checkBand(const Band& band) {
+    if (auto sound = checkPictureSize(band.pictureSize); !sound) return sound;
+    if (band.rows < 1 || band.firstRow < 0 || band.rows > band.pictureSize.y - band.firstRow)
         return fail(ErrorKind::badInput, "the band leaves the picture");
+    return {};
+}
+
+Result<void> checkBand(const Band& band, const Image& picture) {
+    if (auto sound = checkBand(band); !sound) return sound;
+    const glm::ivec2 size = band.pictureSize;
     if (picture.width != size.x || picture.height != size.y ||
         picture.rgb.size() != 3 * std::size_t(size.x) * std::size_t(size.y))
         return fail(ErrorKind::badInput, "the picture is not of the band's size");

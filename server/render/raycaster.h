@@ -38,6 +38,7 @@ inline constexpr int maxPictureSide = 2048;
 /// Fail (badInput) where a picture has no pixels or a side over maxPictureSide; where a band is
 /// empty or leaves the picture, or the picture is not allocated at its size.
 Result<void> checkPictureSize(glm::ivec2 size);
+Result<void> checkBand(const Band& band);
 Result<void> checkBand(const Band& band, const Image& picture);
 
 /// How long a part of the last band took, by the clock of whoever did it.

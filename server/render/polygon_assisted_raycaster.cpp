@@ -1,0 +1,181 @@
+#include "render/polygon_assisted_raycaster.h"
+
+#include "render/picture_readback.h"
+#include "render/ray_setup.h"
+#include "render/wall_projection.h"
+#include "shaders/shader_source.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+/// Faces cost more than the rays that they shorten when there are more of them than of the mesh's
+/// own triangles.
+constexpr std::size_t mostBlocksBefore = 200000;
+
+Result<void> checkWall(const Scene& scene) {
+    const auto bad = [](const char* what) { return fail(ErrorKind::badInput, what, "wall"); };
+    if (!scene.wall) return bad("the case has no mesh of the wall");
+    const int count = int(scene.wall->vertices.size());
+    for (const glm::ivec3& t : scene.wall->triangles)
+        if (std::min({t.x, t.y, t.z}) < 0 || std::max({t.x, t.y, t.z}) >= count)
+            return bad("has triangles of vertices that it has not");
+    if (scene.wall->triangles.empty() || !meshTopology(*scene.wall).closed())
+        return bad("the mesh is not closed");
+    return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PolygonAssistedRaycaster>> PolygonAssistedRaycaster::create(
+    std::shared_ptr<GlScene> scene, int threads) {
+    using gpu::ComputeProgram, gpu::RasterProgram, gpu::UniformBuffer, shaders::shaderSource;
+    if (auto sound = checkWall(scene->scene()); !sound) return tl::make_unexpected(sound.error());
+    const auto structs = shaderSource("uniforms.h"), march = shaderSource("march.glsl"),
+               own = shaderSource("wall_uniforms.h"), wall = shaderSource("wall.glsl");
+    auto cone = ComputeProgram::create("cone_start.comp",
+                                       {structs, march, shaderSource("cone_start.comp")});
+    if (!cone) return tl::make_unexpected(cone.error());
+    auto cast = ComputeProgram::create(
+        "endoscopic.comp",
+        {structs, march, shaderSource("picture.glsl"), shaderSource("endoscopic.comp")});
+    if (!cast) return tl::make_unexpected(cast.error());
+    auto entry =
+        RasterProgram::create("wall_entry", {structs, own, wall, shaderSource("wall_entry.vert")},
+                              {structs, own, wall, shaderSource("wall_entry.frag")});
+    if (!entry) return tl::make_unexpected(entry.error());
+    auto block = UniformBuffer::create(sizeof(shaders::WallUniforms));
+    if (!block) return tl::make_unexpected(block.error());
+    WallEntry around(scene->scene());
+    auto mesh = upload(around.wall());
+    if (!mesh) return tl::make_unexpected(mesh.error());
+    return std::unique_ptr<PolygonAssistedRaycaster>(new PolygonAssistedRaycaster(
+        std::move(scene), threads,
+        Programs{std::move(*cone), std::move(*cast), std::move(*entry), std::move(*block)},
+        std::move(around), std::move(*mesh)));
+}
+
+PolygonAssistedRaycaster::PolygonAssistedRaycaster(std::shared_ptr<GlScene> scene, int threads,
+                                                   Programs programs, WallEntry wall, Mesh mesh)
+    : scene_(std::move(scene)),
+      threads_(threads),
+      programs_(std::move(programs)),
+      wall_(std::move(wall)),
+      mesh_(std::move(mesh)) {}
+
+Result<PolygonAssistedRaycaster::Mesh> PolygonAssistedRaycaster::upload(
+    const EntryTriangles& triangles) {
+    using gpu::StorageBuffer;
+    auto places = StorageBuffer::create(std::span<const glm::vec4>(triangles.places), "wall");
+    if (!places) return tl::make_unexpected(places.error());
+    auto indices = StorageBuffer::create(std::span<const glm::ivec3>(triangles.triangles), "wall");
+    if (!indices) return tl::make_unexpected(indices.error());
+    return Mesh{std::move(*places), std::move(*indices), int(triangles.triangles.size())};
+}
+
+Result<void> PolygonAssistedRaycaster::findBefore(const Optics& optics, double stepMm,
+                                                  const TransferTable& table) {
+    if (before_ && before_->stepMm == stepMm && before_->optics == optics) return {};
+    Before before;
+    before.optics = optics;
+    before.stepMm = stepMm;
+    before.visible = wall_.visibleBefore(scene_->scene().ranges, table, threads_);
+    before.count =
+        std::size_t(std::count(before.visible.begin(), before.visible.end(), std::uint8_t(1)));
+    before.tooMany = before.count > mostBlocksBefore;
+    if (before.count > 0 && !before.tooMany) {
+        const EntryTriangles faces = wall_.faces(before.visible);
+        if (!faces.triangles.empty()) {
+            auto uploaded = upload(faces);
+            if (!uploaded) return tl::make_unexpected(uploaded.error());
+            before.faces = std::move(*uploaded);
+        }
+    }
+    before_ = std::move(before);
+    return {};
+}
+
+bool PolygonAssistedRaycaster::mayBeginAtMesh(const CameraView& view) const {
+    // Not every ray of an orthographic camera begins where the camera is.
+    return view.march.emptySpaceLeaping && view.camera.lens == Lens::perspective &&
+           !before_->tooMany && wall_.isClear(view.camera.positionMm, before_->visible);
+}
+
+Result<void> PolygonAssistedRaycaster::makeTargets(glm::ivec2 size) {
+    if (target_ && glm::ivec2(target_->size()) == size) return {};
+    using gpu::Filter, gpu::RasterTarget, gpu::Texture, gpu::TexelFormat;
+    auto target = Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
+    if (!target) return tl::make_unexpected(target.error());
+    auto tiles = Texture::create(2, {(size + coneTile - 1) / coneTile, 1}, TexelFormat::r32f,
+                                 Filter::nearest, "cone pass");
+    if (!tiles) return tl::make_unexpected(tiles.error());
+    auto starts = RasterTarget::create(size, TexelFormat::r32f, "rays' beginnings");
+    if (!starts) return tl::make_unexpected(starts.error());
+    target_ = std::move(*target);
+    firstStepOfTile_ = std::move(*tiles);
+    firstStep_ = std::move(*starts);
+    return {};
+}
+
+void PolygonAssistedRaycaster::drawEntry(const CameraView& view, const Band& band, double stepMm) {
+    const Grid& grid = scene_->scene().grid();
+    shaders::WallUniforms u = wallProjection(
+        view.camera, band, grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size) - 0.5));
+    u.lensDown.w = float(1.0 / stepMm);
+    programs_.block.write(u);
+    programs_.block.bind(shaders::wallUniformBinding);
+    firstStep_->clear(glm::vec4(0.0f));
+    const auto draw = [&](const Mesh& mesh) {
+        mesh.places.bind(shaders::wallVertexBinding);
+        programs_.entry.drawNearest(*firstStep_, mesh.triangles, 0, mesh.count);
+    };
+    draw(mesh_);
+    if (before_->faces) draw(*before_->faces);
+}
+
+Result<void> PolygonAssistedRaycaster::render(const CameraView& view, const Band& band,
+                                              Image& picture) {
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    const int errorsBefore = scene_->context().errorCount();
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
+    if (auto made = makeTargets(size); !made) return made;
+    const auto classified = scene_->classification(view.optics, view.march);
+    if (!classified) return tl::make_unexpected(classified.error());
+    const Scene& scene = scene_->scene();
+    const double step = stepMm(view.march, scene.grid());
+    if (auto found = findBefore(view.optics, step, (*classified)->table()); !found) return found;
+    beganAtMesh_ = mayBeginAtMesh(view);
+
+    shaders::MarchUniforms uniforms = marchUniforms(view, scene.grid(), (*classified)->table(),
+                                                    scene.ranges.size, band.pictureSize);
+    uniforms.pictureSize.w = band.firstRow;
+    if (beganAtMesh_) {
+        drawEntry(view, band, step);
+        uniforms.lastBlock.w = 1;  // a first step for each pixel
+        scene_->bind(uniforms, **classified);
+        firstStep_->texture().bind(shaders::startUnit);
+    } else {
+        scene_->bind(uniforms, **classified);
+        firstStepOfTile_->bindImage(shaders::startImage);
+        programs_.coneStart.dispatch((size + coneTile - 1) / coneTile);
+        firstStepOfTile_->bind(shaders::startUnit);
+    }
+    target_->bindImage(shaders::pictureImage);
+    programs_.cast.dispatch(size);
+    return readBack(scene_->context(), *target_, errorsBefore, band.firstRow, picture);
+}
+
+std::size_t PolygonAssistedRaycaster::gpuBytes() const {
+    std::size_t bytes = mesh_.places.bytes() + mesh_.triangles.bytes();
+    if (before_ && before_->faces)
+        bytes += before_->faces->places.bytes() + before_->faces->triangles.bytes();
+    if (target_) bytes += target_->bytes() + firstStepOfTile_->bytes() + firstStep_->bytes();
+    return bytes;
+}
+
+}  // namespace haustra::render

@@ -1,0 +1,20 @@
+// How a camera projects the wall's triangles.
+#pragma once
+
+#include "render/raycaster.h"
+#include "render/view.h"
+#include "shaders/wall_uniforms.h"
+
+namespace haustra::render {
+
+/// The raster pass of a band as a perspective or orthographic camera sees it: pixel by pixel the
+/// rays of the raycasters. Millimetres of vertices are counted from `originMm`. Nothing nearer than
+/// a tenth of a millimetre is drawn, nor beyond 10 m.
+shaders::WallUniforms wallProjection(const Camera& camera, const Band& band, glm::dvec3 originMm);
+
+/// One side of a cube around the camera, for lenses that bend straight lines: 0…5, the first ahead
+/// and the last behind. The lens's fields are the camera's own.
+shaders::WallUniforms cubeSide(const Camera& camera, const Band& band, glm::dvec3 originMm,
+                               int side);
+
+}  // namespace haustra::render
