@@ -1,8 +1,7 @@
 // The tube's harmonic problems by iteration: what Cholesky is measured beside.
 #pragma once
 
-#include "flatten/cotangent_laplacian.h"
-#include "flatten/tube_solver.h"
+#include "flatten/tube_systems.h"
 
 namespace haustra::flatten {
 

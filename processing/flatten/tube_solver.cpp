@@ -1,7 +1,7 @@
 #include "flatten/tube_solver.h"
 
+#include "core/parallel.h"
 #include "flatten/blas_threads.h"
-#include "flatten/cotangent_laplacian.h"
 #include "flatten/sparse_cholesky.h"
 
 #include <algorithm>
@@ -17,6 +17,9 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
+
+// Rim and ring together; where two factors are as fast as one with dense blocks of this side.
+constexpr std::size_t mostDense = 2000;
 
 /// Which vertices are eliminated where. The last vertex of the second rim is held at 0 in v.
 struct Dissection {
@@ -76,6 +79,21 @@ Dissection dissect(const IntrinsicMesh& mesh, const TubeTopology& topology, std:
             (rimOf[at] != 0 ? made.rim : made.inside)[half].push_back(v);
     }
     return made;
+}
+
+/// Unknowns of a half that are kept dense.
+std::size_t denseSide(const Dissection& parts, int half) {
+    return parts.between.size() + parts.rim[half].size();
+}
+
+/// Calls work(0) and work(1), at once where that is safe.
+template <class Work>
+void sideBySide(int threads, const Work& work) {
+    const int atOnce = useSingleThreadedBlas() ? threads : 1;
+    parallelFor(2, 1, atOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            work(n);
+    });
 }
 
 /// One half's unknowns: the vertices inside, those on its rim, and those between the halves.
@@ -177,26 +195,14 @@ private:
     Matrix own_, betweenBetween_, betweenRim_, complementU_, complementV_;
 };
 
-}  // namespace
-
-Result<TubeSolution> solveTube(const IntrinsicMesh& mesh, const TubeTopology& topology,
-                               std::size_t vertices, int threads,
-                               const std::function<void()>& factored) {
-    TubeSolution found{std::vector<double>(vertices, 0.0), std::vector<double>(vertices, 0.0)};
-    for (const int v : topology.rims[1])
-        found.u[std::size_t(v)] = 1.0;
-    const Dissection parts = dissect(mesh, topology, vertices);
+Result<TubeSolution> solveByHalves(const IntrinsicMesh& mesh, const TubeTopology& topology,
+                                   std::size_t vertices, const Dissection& parts, int threads,
+                                   const std::function<void()>& factored) {
+    TubeSolution found = heldValues(topology, vertices);
     Half halves[] = {{mesh, parts.inside[0], parts.rim[0], parts.between},
                      {mesh, parts.inside[1], parts.rim[1], parts.between}};
     Result<void> outcomes[2];
-    const int atOnce = useSingleThreadedBlas() ? threads : 1;
-    const auto side = [&](const auto& work) {
-        parallelFor(2, 1, atOnce, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n)
-                work(n);
-        });
-    };
-    side([&](std::size_t n) { outcomes[n] = halves[n].eliminate(found.u); });
+    sideBySide(threads, [&](std::size_t n) { outcomes[n] = halves[n].eliminate(found.u); });
     for (const auto& outcome : outcomes) {
         if (!outcome) return tl::make_unexpected(outcome.error());
     }
@@ -204,7 +210,7 @@ Result<TubeSolution> solveTube(const IntrinsicMesh& mesh, const TubeTopology& to
     Vector between[2];
     if (!parts.between.empty()) {
         bool solved[2] = {false, false};
-        side([&](std::size_t n) {
+        sideBySide(threads, [&](std::size_t n) {
             // Both halves hold the entries between; they count once.
             const Matrix system =
                 n == 0 ? halves[0].complementU() + halves[1].complementU() - halves[0].own()
@@ -217,13 +223,56 @@ Result<TubeSolution> solveTube(const IntrinsicMesh& mesh, const TubeTopology& to
         });
         if (!solved[0] || !solved[1]) return singularSystem();
     }
-    side([&](std::size_t n) { halves[n].substitute(between[0], between[1], found); });
+    sideBySide(threads,
+               [&](std::size_t n) { halves[n].substitute(between[0], between[1], found); });
     for (std::size_t n = 0; n < parts.between.size(); ++n) {
         const auto vertex = std::size_t(parts.between[n]);
         found.u[vertex] = between[0][Eigen::Index(n)];
         found.v[vertex] = between[1][Eigen::Index(n)];
     }
     return found;
+}
+
+Result<TubeSolution> solveSeparately(const IntrinsicMesh& mesh, const TubeTopology& topology,
+                                     std::size_t vertices, int threads,
+                                     const std::function<void()>& factored) {
+    TubeSolution found = heldValues(topology, vertices);
+    TubeSystem systems[2];
+    std::optional<SparseCholesky> factors[2];
+    Result<void> outcomes[2];
+    sideBySide(threads, [&](std::size_t n) {
+        systems[n] =
+            tubeSystem(mesh, topology, vertices, n == 0 ? TubeFunction::u : TubeFunction::v);
+        if (systems[n].vertexOf.empty()) return;
+        auto made = SparseCholesky::of(systems[n].matrix);
+        systems[n].matrix = {};
+        if (made)
+            factors[n] = std::move(*made);
+        else
+            outcomes[n] = tl::make_unexpected(made.error());
+    });
+    for (const auto& outcome : outcomes) {
+        if (!outcome) return tl::make_unexpected(outcome.error());
+    }
+    if (factored) factored();
+    sideBySide(threads, [&](std::size_t n) {
+        if (!factors[n]) return;
+        systems[n].place(factors[n]->solve(std::move(systems[n].right)),
+                         n == 0 ? found.u : found.v);
+    });
+    return found;
+}
+
+}  // namespace
+
+Result<TubeSolution> solveTube(const IntrinsicMesh& mesh, const TubeTopology& topology,
+                               std::size_t vertices, int threads,
+                               const std::function<void()>& factored, Elimination elimination) {
+    const Dissection parts = dissect(mesh, topology, vertices);
+    const bool isLong = std::max(denseSide(parts, 0), denseSide(parts, 1)) > mostDense;
+    if (elimination == Elimination::separately || (elimination == Elimination::suited && isLong))
+        return solveSeparately(mesh, topology, vertices, threads, factored);
+    return solveByHalves(mesh, topology, vertices, parts, threads, factored);
 }
 
 }  // namespace haustra::flatten

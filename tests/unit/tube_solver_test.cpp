@@ -231,6 +231,33 @@ TEST(TubeSolver, AgreesWithIteration) {
     }
 }
 
+TEST(TubeSolver, SolvesTubesWithLongRimsAsItDoesOthers) {
+    struct Tube {
+        int around, along;
+    };
+    for (const auto [around, along] : {Tube{40, 60}, Tube{900, 12}, Tube{1600, 3}, Tube{7, 1}}) {
+        const TriMesh mesh = shakenTube(around, along, 5);
+        Prepared tube = prepare(mesh);
+        makeDelaunay(tube.intrinsic);
+        const auto solved = [&](Elimination elimination, int threads) {
+            return solveTube(tube.intrinsic, tube.topology, mesh.vertices.size(), threads, {},
+                             elimination);
+        };
+        const auto halves = solved(Elimination::byHalves, 2),
+                   separate = solved(Elimination::separately, 2);
+        ASSERT_TRUE(halves && separate);
+        for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+            EXPECT_NEAR(separate->u[v], halves->u[v], 1e-11) << around;
+            EXPECT_NEAR(separate->v[v], halves->v[v], 1e-10) << around;
+        }
+        const auto alone = solved(Elimination::separately, 1);
+        EXPECT_EQ(alone->u, separate->u);
+        EXPECT_EQ(alone->v, separate->v);
+        const auto suited = solved(Elimination::suited, 2);
+        EXPECT_EQ(suited->v, (around > 1000 ? separate : halves)->v) << around;
+    }
+}
+
 /// A cylinder unrolled, of which some vertices are pulled away.
 TEST(FlipRepair, RestoresAMapThatKeepsShapes) {
     const int around = 20, along = 20;
