@@ -1,0 +1,53 @@
+// Rays among cells (dissertation §5.2): which samples of a ray belong to a cell, and what is in it.
+layout(std140, binding = 3) uniform CellBlock { CellUniforms cells; };
+
+// The first n beyond the face before cell k + side, where a ray's coordinate is `start` at n = 0.
+// `precise`: two cells must find the same number for the face between them.
+float faceAt(float k, float start, float inverseStep) {
+    precise float n = ceil((k - start) * inverseStep);
+    return n;
+}
+
+// The samples of the ray that belong to the cell: first, and one after the last. Each sample
+// belongs to one cell: to the one that the ray is in when it has passed a face at or before it.
+// The outermost cells hold what is beyond them.
+vec2 samplesInCell(Ray ray, ivec3 cell) {
+    vec3 start = cells.eye.w == 1.0 ? cells.eye.xyz : ray.origin * cells.cellsPerUnit.xyz + cells.cellsPerUnit.w;
+    vec3 step = ray.step * cells.cellsPerUnit.xyz;
+    step = mix(step, vec3(1e-12), equal(step, vec3(0.0)));
+    vec3 inverse = 1.0 / step;
+    vec2 samples = vec2(0.0, 1e30);
+    for (int axis = 0; axis < 3; ++axis) {
+        float low = cell[axis] == 0 ? -1e30 * sign(step[axis])
+                                    : faceAt(float(cell[axis]), start[axis], inverse[axis]);
+        float high = cell[axis] == cells.lastCell[axis]
+                         ? 1e30 * sign(step[axis])
+                         : faceAt(float(cell[axis] + 1), start[axis], inverse[axis]);
+        samples = vec2(max(samples.x, min(low, high)), min(samples.y, max(low, high)));
+    }
+    return samples;
+}
+
+// Places in a slot lie on a lattice of 1/4096 voxel: then all that follows is exact, whichever slot
+// the cell is in, for the atlas has sides of powers of two.
+vec3 inSlot(vec3 position, CellInSlot cell) {
+    precise vec3 voxel = position * cells.voxels.xyz;
+    return floor((voxel - cell.corner.xyz) * 4096.0 + 0.5) * (1.0 / 4096.0);
+}
+vec3 atlasPlace(vec3 inSlot, CellInSlot cell) { return (inSlot + cell.slot.xyz) * cells.atlasPerVoxel.xyz; }
+
+float storedInSlot(vec3 place, CellInSlot cell) {
+    return textureLod(volume, atlasPlace(place, cell), 0.0).r;
+}
+float storedIn(CellInSlot cell, vec3 position) { return storedInSlot(inSlot(position, cell), cell); }
+
+// As gradientAt; what would be read beyond the slot has no weight, and is not another cell's.
+vec3 gradientIn(CellInSlot cell, vec3 position) {
+    vec3 place = inSlot(position, cell);
+    vec3 low = max(place - 1.0, 0.5);
+    vec3 high = min(place + 1.0, cells.voxels.w - 0.5);
+    vec3 differences = vec3(storedInSlot(vec3(high.x, place.yz), cell) - storedInSlot(vec3(low.x, place.yz), cell),
+                            storedInSlot(vec3(place.x, high.y, place.z), cell) - storedInSlot(vec3(place.x, low.y, place.z), cell),
+                            storedInSlot(vec3(place.xy, high.z), cell) - storedInSlot(vec3(place.xy, low.z), cell));
+    return differences * cells.voxels.xyz;
+}
