@@ -1,0 +1,48 @@
+// A scene as the CPU's raycasters read it.
+#pragma once
+
+#include "render/lately_used.h"
+#include "render/native/packet_scene.h"
+#include "render/native/tile_workers.h"
+#include "render/scene.h"
+#include "render/transfer_table.h"
+#include "render/view.h"
+
+#include <memory>
+#include <vector>
+
+namespace haustra::render {
+
+/// The volume where it lies, the classifications lately asked for, and the threads that draw.
+/// Belongs to one thread.
+class NativeScene {
+public:
+    /// `threads` ≤ 0: all cores; changes no pixel.
+    NativeScene(std::shared_ptr<const Scene> scene, int threads);
+
+    const Scene& scene() const { return *scene_; }
+    TileWorkers& workers() { return workers_; }
+
+    /// The transfer function's table for one step length, and the leap map that follows from it.
+    struct Classified {
+        Optics optics;
+        double stepMm = 0.0;
+        bool leaping = true;
+        TransferTable table;
+        std::vector<std::uint8_t> leap;  ///< with three bytes behind the last block
+    };
+    /// As GlScene's. Fails (badInput) on bad optics or sampling. Valid until the next call.
+    Result<const Classified*> classification(const Optics& optics, const MarchOptions& march);
+
+    /// All that packets read; valid as long as `classified`.
+    PacketScene packetScene(const shaders::MarchUniforms& uniforms,
+                            const Classified& classified) const;
+
+private:
+    std::shared_ptr<const Scene> scene_;
+    std::vector<std::int16_t> twice_;  // each voxel, of a volume that is one voxel wide
+    TileWorkers workers_;
+    LatelyUsed<Classified> recent_;
+};
+
+}  // namespace haustra::render

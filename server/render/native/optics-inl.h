@@ -1,0 +1,158 @@
+// The optical model (render/optics.h) for a packet of samples or segments: shaders/optics.glsl in
+// vectors, with values in HU and normals in HU differences.
+#if defined(HAUSTRA_OPTICS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAUSTRA_OPTICS_INL_H
+#undef HAUSTRA_OPTICS_INL_H
+#else
+#define HAUSTRA_OPTICS_INL_H
+#endif
+
+#include "render/native/lattice-inl.h"
+#include "render/native/packet_scene.h"
+#include "render/transfer_table.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace haustra::render {
+namespace HWY_NAMESPACE {
+
+struct Color {
+    VF r, g, b, a;
+};
+
+HWY_INLINE Color mix(const Color& a, const Color& b, VF share) {
+    return {mix(a.r, b.r, share), mix(a.g, b.g, share), mix(a.b, b.b, share), mix(a.a, b.a, share)};
+}
+
+/// Entries of a table of four floats each, and how far between it and the next.
+struct Entry {
+    VI bytes;
+    VF share;
+};
+HWY_INLINE Entry entryAt(VF at) {
+    constexpr float last = float(TransferTable::entries - 1);
+    const VF inside = clamped(at, 0.0f, last);
+    const VF low = hn::Min(hn::Floor(inside), set(last - 1.0f));
+    return {hn::ShiftLeft<4>(hn::ConvertTo(i, low)), hn::Sub(inside, low)};
+}
+HWY_INLINE Color lookedUp(const float* table, const Entry& entry) {
+    const auto channel = [&](int c) HWY_ATTR {
+        return mix(hn::GatherOffset(f, table + c, entry.bytes),
+                   hn::GatherOffset(f, table + c + 4, entry.bytes), entry.share);
+    };
+    return {channel(0), channel(1), channel(2), channel(3)};
+}
+
+/// HU to entries of the table, not clamped.
+HWY_INLINE VF entryOf(const PacketScene& scene, VF hu) {
+    return hn::MulAdd(hu, set(scene.entriesPerHu), set(scene.firstEntry));
+}
+
+/// Colour and opacity of samples by a 1-D transfer function.
+HWY_INLINE Color classified(const PacketScene& scene, VF hu) {
+    return lookedUp(scene.table, entryAt(entryOf(scene, hu)));
+}
+/// By a 2-D one; `slope` is the length of the normal.
+HWY_INLINE Color classified(const PacketScene& scene, VF hu, VF slope) {
+    constexpr int rowBytes = 16 * TransferTable::entries;
+    const float last = float(scene.rows - 1);
+    const VF row = clamped(hn::Mul(slope, set(scene.rowsPerSlope)), 0.0f, last);
+    const VF low = hn::Min(hn::Floor(row), set(last - 1.0f));
+    const Entry entry = entryAt(entryOf(scene, hu));
+    const VI first =
+        hn::Add(entry.bytes, hn::Mul(hn::ConvertTo(i, low), hn::Set(i, std::int32_t(rowBytes))));
+    const VI second = hn::Add(first, hn::Set(i, std::int32_t(rowBytes)));
+    return mix(lookedUp(scene.table, {first, entry.share}),
+               lookedUp(scene.table, {second, entry.share}), hn::Sub(row, low));
+}
+
+/// The integral up to entries; beyond the table its ends go on.
+HWY_INLINE Color integralTo(const PacketScene& scene, VF entry) {
+    const Color within = lookedUp(scene.integrals, entryAt(entry));
+    const VF under = hn::Min(entry, hn::Zero(f));
+    const VF over = hn::Max(hn::Sub(entry, set(float(TransferTable::entries - 1))), hn::Zero(f));
+    const auto onward = [&](VF sum, int c) HWY_ATTR {
+        return hn::MulAdd(under, set(scene.u.integralBelow[c]),
+                          hn::MulAdd(over, set(scene.u.integralAbove[c]), sum));
+    };
+    return {onward(within.r, 0), onward(within.g, 1), onward(within.b, 2), onward(within.a, 3)};
+}
+
+/// Colour and opacity of segments between two samples [Engel et al. 2001].
+HWY_INLINE Color classifiedSegment(const PacketScene& scene, VF front, VF back) {
+    const VF a = entryOf(scene, front), b = entryOf(scene, back);
+    const VF half = set(0.5f), zero = hn::Zero(f);
+    const VF middle = hn::Mul(half, hn::Add(a, b));
+    // Values closer than an entry count as an entry apart, lest their difference drown in rounding.
+    const VF reach = hn::Mul(half, hn::Max(hn::AbsDiff(b, a), set(1.0f)));
+    const Color to = integralTo(scene, hn::Add(middle, reach));
+    const Color from = integralTo(scene, hn::Sub(middle, reach));
+    const VF depth = hn::Max(hn::Sub(to.a, from.a), zero);
+    const VF perDepth = hn::Div(set(1.0f), hn::Max(depth, set(1e-20f)));
+    const auto mean = [&](VF upper, VF lower) HWY_ATTR {
+        return hn::Mul(hn::Max(hn::Sub(upper, lower), zero), perDepth);
+    };
+    const VF passing = hn::Exp(f, hn::Neg(hn::Div(depth, hn::Add(reach, reach))));
+    return {mean(to.r, from.r), mean(to.g, from.g), mean(to.b, from.b),
+            hn::Sub(set(1.0f), passing)};
+}
+
+/// Whether values may be visible, or first hit; of a 2-D table, at some gradient.
+HWY_INLINE MF mayShow(const PacketScene& scene, VF hu) {
+    return hn::And(hn::Gt(hu, set(scene.visibleAboveHu)), hn::Lt(hu, set(scene.visibleBelowHu)));
+}
+/// The same of segments.
+HWY_INLINE MF mayShow(const PacketScene& scene, VF front, VF back) {
+    return hn::And(hn::Gt(hn::Max(front, back), set(scene.visibleAboveHu)),
+                   hn::Lt(hn::Min(front, back), set(scene.visibleBelowHu)));
+}
+
+/// Differences over two voxels, in the patient: a gradient transforms by the inverse transpose of
+/// patientFromVoxel. Twice as long as the slope in HU a millimetre.
+HWY_INLINE V3 normalOf(const PacketScene& scene, V3 gradient) {
+    const auto component = [&](int axis) HWY_ATTR {
+        return hn::MulAdd(gradient.x, set(scene.voxelFromMm[0][axis]),
+                          hn::MulAdd(gradient.y, set(scene.voxelFromMm[1][axis]),
+                                     hn::Mul(gradient.z, set(scene.voxelFromMm[2][axis]))));
+    };
+    return {component(0), component(1), component(2)};
+}
+
+/// A lamp, seen from where it hangs, `n` steps away; colours are linear light, `lightMm` is unit.
+HWY_INLINE Color shaded(const PacketScene& scene, const Color& color, V3 normal, V3 lightMm, VF n) {
+    const VF slope = dot(normal, normal), one = set(1.0f);
+    // Both faces are lit. Where the volume is flat there is no surface, and nothing to shade.
+    const VF least = set(4e-11f);
+    const MF steep = hn::Gt(slope, least);
+    const VF facing = hn::IfThenElse(
+        steep, hn::Div(hn::Abs(dot(normal, lightMm)), hn::Sqrt(hn::Max(slope, least))), one);
+    const glm::vec4 light = scene.u.light;
+    const VF depth = hn::Mul(n, set(scene.u.stepping.x / scene.u.stepping.w));
+    const VF falloff = hn::Div(one, hn::MulAdd(depth, depth, one));
+    const VF mirror = hn::MulSub(hn::Add(facing, facing), facing, one);
+    const VF highlight =
+        hn::IfThenElseZero(steep, hn::Mul(set(light.z), power(mirror, set(light.w))));
+    const VF matt = hn::MulAdd(set(light.y), facing, set(light.x));
+    const auto lit = [&](VF c)
+                         HWY_ATTR { return hn::Mul(falloff, hn::MulAdd(c, matt, highlight)); };
+    return {lit(color.r), lit(color.g), lit(color.b), color.a};
+}
+
+/// Front to back, equation 5.1: `sum` with what lies behind it, where `wanted`.
+HWY_INLINE Color behind(const Color& sum, const Color& here, MF wanted) {
+    const VF share = hn::IfThenElseZero(wanted, hn::Mul(hn::Sub(set(1.0f), sum.a), here.a));
+    return {hn::MulAdd(share, here.r, sum.r), hn::MulAdd(share, here.g, sum.g),
+            hn::MulAdd(share, here.b, sum.b), hn::Add(sum.a, share)};
+}
+
+/// sRGB's transfer curve (IEC 61966-2-1), 0…255.
+HWY_INLINE VI displayed(VF linear) {
+    const VF c = clamped(linear, 0.0f, 1.0f);
+    const VF curved = hn::MulSub(set(1.055f), power(c, set(1.0f / 2.4f)), set(0.055f));
+    const VF value = hn::IfThenElse(hn::Gt(c, set(0.0031308f)), curved, hn::Mul(c, set(12.92f)));
+    return hn::NearestInt(hn::Mul(value, set(255.0f)));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace haustra::render
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,52 @@
+// What ray packets read: plain numbers and pointers, the same for every vector width.
+#pragma once
+
+#include "render/optics.h"
+#include "shaders/uniforms.h"
+
+#include <cstdint>
+
+namespace haustra::render {
+
+/// A volume, its leap map and its transfer table. Voxel coordinates have their centres at integers.
+struct PacketScene {
+    const std::int16_t* voxels = nullptr;
+    std::int32_t size[3] = {0, 0, 0};  ///< at least 2 along x: voxels are read in pairs
+    std::int64_t rowStride = 0, sliceStride = 0;
+    /// Bytes; three more may be read behind the last.
+    const std::uint8_t* leap = nullptr;
+    std::int32_t lastBlock[3] = {0, 0, 0};
+    Composition composition = Composition::emissionAbsorption;
+    bool shading = true;
+    const float* table = nullptr;  ///< rgba, rows of TransferTable::entries each
+    int rows = 1;
+    const float* integrals = nullptr;  ///< of pre-integrated optics, TransferTable::entries
+    float entriesPerHu = 1.0f, firstEntry = 0.0f;  ///< HU -> entry
+    float rowsPerSlope = 0.0f;                     ///< length of a normal (optics-inl.h) -> row
+    float visibleAboveHu = 0.0f, visibleBelowHu = 0.0f;
+    float lastVisibleHu = 0.0f;  ///< from here on the table goes on unchanged
+    float voxelFromMm[3][3];     ///< rows: a patient vector becomes voxels
+    shaders::MarchUniforms u;
+
+    /// Whether byte offsets of voxels need more than 32 bits.
+    bool isFar() const { return sliceStride * size[2] > (std::int64_t(1) << 31) - 1; }
+};
+
+/// Rows of one picture that camera packets draw.
+struct PacketPicture {
+    int firstRow = 0, endRow = 0;
+    std::uint8_t* rgb = nullptr;          ///< the whole picture's
+    const glm::vec4* backdrop = nullptr;  ///< the whole picture's, or null
+};
+
+/// What camera packets do on this machine's vector units.
+struct CameraPackets {
+    /// Pixels along the sides of the stretch that one call draws.
+    int tileWidth = 0, tileHeight = 0;
+    /// Draws what of the picture lies in the tile at (x, y), counted in tiles.
+    void (*cast)(const PacketScene& scene, const PacketPicture& picture, int x, int y) = nullptr;
+};
+/// The widest that this machine has; any thread.
+CameraPackets cameraPackets();
+
+}  // namespace haustra::render

@@ -1,0 +1,49 @@
+// Threads that draw the tiles of one picture after another.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace haustra::render {
+
+/// Threads that wait between pictures. Each begins with its own stretch of the tiles, so that
+/// neighbouring tiles share a core's cache, and takes half of somebody's rest when it has done.
+class TileWorkers {
+public:
+    /// `threads` in all, with the one that calls run(); ≤ 0: all cores.
+    explicit TileWorkers(int threads);
+    ~TileWorkers();
+    TileWorkers(const TileWorkers&) = delete;
+    TileWorkers& operator=(const TileWorkers&) = delete;
+
+    int threads() const { return int(rests_.size()); }
+    /// Calls body(tile) once for each of 0 … tiles − 1, and returns when all have returned. The
+    /// body must not throw, and must not depend on order or thread. One thread calls run at a time.
+    void run(int tiles, const std::function<void(int tile)>& body);
+
+private:
+    /// Tiles not begun yet: the first in the upper half, the end in the lower.
+    struct alignas(64) Rest {
+        std::atomic<std::uint64_t> range{0};
+    };
+    void serve(std::size_t self);
+    void work(std::size_t self);
+    bool steal(std::size_t self);
+
+    std::vector<Rest> rests_;
+    std::mutex mutex_;
+    std::condition_variable begin_, done_;
+    const std::function<void(int)>* body_ = nullptr;
+    std::uint64_t round_ = 0;
+    std::size_t working_ = 0;
+    bool ending_ = false;
+    std::vector<std::thread> threads_;  // last: they use the rest
+};
+
+}  // namespace haustra::render
