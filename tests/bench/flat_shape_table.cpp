@@ -134,16 +134,13 @@ std::vector<Compared> compare(const Study& study, const flatten::PeriodicMap& ma
     return all;
 }
 
-void printPolyps(const std::vector<Compared>& all) {
-    fmt::print(
-        "\n| case | polyp | mm | outline mm | aspect on the surface | in the plane | off % "
-        "| stretch | shown at ‰ of the circumference |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+void printPolyps(const std::string& weight, const std::vector<Compared>& all) {
     for (const Compared& c : all) {
-        fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} | {:.2f} | {:.1f} |\n",
-                   c.polyp->of, c.polyp->kind(), c.polyp->truth.finding.diameterMm,
-                   std::sqrt(4.0 / M_PI * c.onSurface.area), c.onSurface.aspect, c.inPlane.aspect,
-                   100.0 * c.off(), c.stretch, 1000.0 * std::sqrt(4.0 / M_PI * c.inPlane.area));
+        fmt::print(
+            "| {} | {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} | {:.2f} | {:.1f} |\n",
+            weight, c.polyp->of, c.polyp->kind(), c.polyp->truth.finding.diameterMm,
+            std::sqrt(4.0 / M_PI * c.onSurface.area), c.onSurface.aspect, c.inPlane.aspect,
+            100.0 * c.off(), c.stretch, 1000.0 * std::sqrt(4.0 / M_PI * c.inPlane.area));
     }
 }
 
@@ -266,12 +263,20 @@ int main(int argc, char** argv) {
     for (const Study& study : studies)
         printRoundTrip(study);
     if (truths.empty()) return 0;
-    printPolyps(byWeight[0]);
+    const auto name = [&](std::size_t n) {
+        return fmt::format("{}", n == 0 ? 0.0 : weights[n - 1]);
+    };
+    fmt::print(
+        "\n| area weight | case | polyp | mm | outline mm | aspect on the surface | in the plane "
+        "| off % | stretch | shown at ‰ of the circumference |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    for (std::size_t n = 0; n < byWeight.size(); ++n)
+        printPolyps(name(n), byWeight[n]);
     fmt::print(
         "\n| area weight | polyps | count | aspect within 10 % | worst % | stretch within 1.1 "
         "| spread of scale % |\n| --- | --- | --- | --- | --- | --- | --- |\n");
     for (std::size_t n = 0; n < byWeight.size(); ++n) {
         for (const char* kind : {"all", "sessile", "flat", "pedunculated"})
-            printSummary(fmt::format("{}", n == 0 ? 0.0 : weights[n - 1]), kind, byWeight[n]);
+            printSummary(name(n), kind, byWeight[n]);
     }
 }
