@@ -71,14 +71,17 @@ vec2 stepsBack(vec3 wall, vec3 step) {
     float back = 0.0;
     float visible = 0.0;
     bool open = true;
+    float before = least;
     for (float n = 1.0; open && n <= flatWindow.ray.x; n += 1.0) {
         float stored = textureLod(volume, wall - n * step, 0.0).r;
         open = stored < least + flatWindow.ray.y;
         back = stored < least ? n : back;
         least = min(stored, least);
-        visible = stored > u.visibleRange.x && stored < u.visibleRange.y ? n : visible;
+        visible = mayShow(before, stored) ? n : visible;
+        before = stored;
     }
-    return vec2(back, back - min(visible, back));
+    // One more, where the segment to the first that is visible begins.
+    return vec2(back, back - min(visible + 1.0, back));
 }
 
 void main() {
@@ -98,5 +101,5 @@ void main() {
     vec2 inside = insideRange(ray);
     float end = triangle.x < 0 ? -1.0 : min(floor(inside.y), start.x + flatWindow.ray.z);
     vec4 sum = march(ray, max(ceil(inside.x), start.y), end);
-    if (all(lessThan(pixel, u.pictureSize.xy))) imageStore(picture, pixel, pixelColor(sum));
+    if (all(lessThan(pixel, u.pictureSize.xy))) imageStore(picture, pixel, pixelColor(sum, vec3(0.0)));
 }

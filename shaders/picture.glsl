@@ -1,9 +1,11 @@
 // What the entry points that cast a ray for each pixel share.
-// sRGB's transfer curve (IEC 61966-2-1).
-vec3 displayed(vec3 linear) {
-    vec3 c = clamp(linear, 0.0, 1.0);
-    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
-}
+#ifndef BACKDROP
+#define BACKDROP 0
+#endif
+#if BACKDROP
+// Linear colour, and the millimetres at which a ray ends; rows as in the picture.
+layout(binding = 7) uniform sampler2D backdrop;
+#endif
 
 // Eight neighbouring lanes, a vector unit's width in software, take four pixels by two: rays that
 // stay together share their loops.
@@ -11,9 +13,11 @@ ivec2 pixelOfLane(uint lane) {
     return ivec2((lane & 3u) | ((lane >> 1) & 4u), ((lane >> 2) & 1u) | ((lane >> 3) & 6u));
 }
 
-// The displayed colour of a ray's sum, over black.
-vec4 pixelColor(vec4 sum) {
-    // A ray that was ended early counts as opaque, or its pixel would be darker than its neighbours.
-    vec3 color = sum.a >= u.stepping.y ? sum.rgb / sum.a : sum.rgb;
-    return vec4(displayed(color), 1.0);
+// What lies behind a pixel of the band.
+vec4 backdropOf(ivec2 pixel) {
+#if BACKDROP
+    return texelFetch(backdrop, pixel + ivec2(0, u.pictureSize.w), 0);
+#else
+    return vec4(0.0, 0.0, 0.0, 1e30);
+#endif
 }

@@ -17,7 +17,9 @@ using ivec4 = glm::ivec4;
 struct MarchUniforms {
     vec4 eyeTexture;  ///< xyz: camera
     vec4 forwardMm;   ///< xyz: unit view axis in patient space
-    vec4 rightMm;  ///< xyz: patient vector from the picture's centre to its right edge at depth 1
+    vec4 rightMm;  ///< xyz: patient vector from the picture's centre to its right edge: at depth 1
+                   ///< (perspective), as long as its angle in radians (fisheye), or the way
+                   ///< itself (orthographic)
     vec4 downMm;   ///< xyz: likewise to its bottom edge
     vec4 textureRowX;    ///< rows of textureFromPatient's linear part: a patient vector (mm)
     vec4 textureRowY;    ///<   becomes a texture-space vector
@@ -29,8 +31,13 @@ struct MarchUniforms {
     vec4 stepping;       ///< x: stepMm, y: opacity that ends a ray, z: most steps, w: headlight
                          ///< half-distance, mm
     vec4 light;          ///< x: ambient, y: diffuse, z: specular, w: shininess
-    ivec4 pictureSize;   ///< x, y: pixels, z: 1 shades, w: first row of the band
-    ivec4 lastBlock;     ///< xyz: highest block index, w: pixels along a cone tile's side
+    ivec4 pictureSize;  ///< x, y: pixels, z: lens (render::Lens in order), w: first row of the band
+    ivec4 lastBlock;    ///< xyz: highest block index, w: pixels along a cone tile's side
+    vec4 slopes;  ///< x, y: length of a normal as gradientAt gives it -> the table's row coordinate
+                  ///< (scale, bias); z: stored value from which the table goes on unchanged;
+                  ///< w: opacity of a first hit
+    vec4 integralBelow;  ///< what the integral table grows by per entry below its first entry
+    vec4 integralAbove;  ///<   and above its last
 };
 
 /// One slice. Voxel coordinates, centres at integers.
@@ -72,9 +79,10 @@ struct FlatEye {
 
 #ifdef __cplusplus
 static_assert(sizeof(vec4) == 16 && sizeof(ivec4) == 16);
-static_assert(sizeof(MarchUniforms) == 14 * 16);
+static_assert(sizeof(MarchUniforms) == 17 * 16);
 static_assert(offsetof(MarchUniforms, stepping) == 10 * 16);
 static_assert(offsetof(MarchUniforms, lastBlock) == 13 * 16);
+static_assert(offsetof(MarchUniforms, integralAbove) == 16 * 16);
 static_assert(sizeof(SliceUniforms) == 5 * 16);
 static_assert(offsetof(SliceUniforms, pictureSize) == 4 * 16);
 static_assert(sizeof(dvec2) == 16 && sizeof(FlatUniforms) == 6 * 16);
@@ -85,7 +93,7 @@ static_assert(sizeof(FlatVertex) == 3 * 16 && sizeof(FlatEye) == 2 * 16);
 inline constexpr unsigned uniformBinding = 0, flatUniformBinding = 1;
 inline constexpr unsigned flatVertexBinding = 0, flatTriangleBinding = 1, flatCameraBinding = 2;
 inline constexpr unsigned volumeUnit = 0, leapUnit = 1, tableUnit = 2, startUnit = 3,
-                          triangleUnit = 4;
+                          triangleUnit = 4, integralUnit = 5, gradientUnit = 6, backdropUnit = 7;
 inline constexpr unsigned pictureImage = 0, startImage = 1;
 }  // namespace haustra::shaders
 #endif

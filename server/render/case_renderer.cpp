@@ -98,7 +98,9 @@ struct CaseRenderer::Impl {
             **classified);
         if (auto found = flat->findTriangles(window, size); !found)
             return tl::make_unexpected(found.error());
-        flat->castRays(stepMm(march, grid()), *picture);
+        const MarchVariant variant = MarchVariant::of(optics, false, false);
+        if (auto cast = flat->castRays(variant, stepMm(march, grid()), *picture); !cast)
+            return tl::make_unexpected(cast.error());
         return readPicture(errorsBefore);
     }
 

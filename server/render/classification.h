@@ -5,6 +5,8 @@
 #include "render/leap_map.h"
 #include "render/transfer_table.h"
 
+#include <optional>
+
 namespace haustra::render {
 
 /// The transfer function's table for one step length, and the leap map that follows from it.
@@ -19,16 +21,19 @@ public:
     void bind() const;  ///< to the units of shaders/uniforms.h
 
     const TransferTable& table() const { return table_; }
-    std::size_t gpuBytes() const { return tableTexture_.bytes() + leapTexture_.bytes(); }
+    std::size_t gpuBytes() const;
 
 private:
     Classification(Optics optics, double stepMm, bool leaping, TransferTable table,
-                   gpu::Texture tableTexture, gpu::Texture leapTexture);
+                   gpu::Texture tableTexture, std::optional<gpu::Texture> integralTexture,
+                   gpu::Texture leapTexture);
     Optics optics_;
     double stepMm_;
     bool leaping_;
     TransferTable table_;
-    gpu::Texture tableTexture_, leapTexture_;
+    gpu::Texture tableTexture_;
+    std::optional<gpu::Texture> integralTexture_;  // of pre-integrated optics
+    gpu::Texture leapTexture_;
 };
 
 }  // namespace haustra::render

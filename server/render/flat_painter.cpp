@@ -45,22 +45,17 @@ Result<FlatPainter> FlatPainter::create(const FlatMap& map, const Grid& grid) {
         "flat_triangles", {structs, flatMap, shaderSource("flat_triangles.vert")},
         {structs, flatMap, shaderSource("flat_triangles.frag")});
     if (!triangles) return tl::make_unexpected(triangles.error());
-    auto rays = gpu::ComputeProgram::create(
-        "flattened.comp", {structs, shaderSource("march.glsl"), shaderSource("picture.glsl"),
-                           flatMap, shaderSource("flattened.comp")});
-    if (!rays) return tl::make_unexpected(rays.error());
     auto block = gpu::UniformBuffer::create(sizeof(shaders::FlatUniforms));
     if (!block) return tl::make_unexpected(block.error());
-    return FlatPainter(std::move(*surface), std::move(*triangles), std::move(*rays),
-                       std::move(*block));
+    FlatPainter made(std::move(*surface), std::move(*triangles), std::move(*block));
+    // A driver that refuses the text is found here, not in a reader's session.
+    if (auto rays = made.rays_.program({}); !rays) return tl::make_unexpected(rays.error());
+    return made;
 }
 
 FlatPainter::FlatPainter(FlatSurface surface, gpu::RasterProgram triangles,
-                         gpu::ComputeProgram rays, gpu::UniformBuffer block)
-    : surface_(std::move(surface)),
-      triangles_(std::move(triangles)),
-      rays_(std::move(rays)),
-      block_(std::move(block)) {}
+                         gpu::UniformBuffer block)
+    : surface_(std::move(surface)), triangles_(std::move(triangles)), block_(std::move(block)) {}
 
 Result<void> FlatPainter::findTriangles(const FlatWindow& window, glm::ivec2 size) {
     if (!triangleOfPixel_ || glm::ivec2(triangleOfPixel_->size()) != size) {
@@ -94,7 +89,10 @@ std::vector<int> FlatPainter::triangleOfPixel() const {
     return triangles;
 }
 
-void FlatPainter::castRays(double stepMm, const gpu::Texture& picture) {
+Result<void> FlatPainter::castRays(const MarchVariant& variant, double stepMm,
+                                   const gpu::Texture& picture) {
+    const auto rays = rays_.program(variant);
+    if (!rays) return tl::make_unexpected(rays.error());
     uniforms_.ray = glm::vec4(std::ceil(flatRay.backMm / stepMm), flatRay.riseHu / storedRange,
                               std::ceil(flatRay.depthMm / stepMm), 0.0);
     block_.write(uniforms_);
@@ -102,7 +100,8 @@ void FlatPainter::castRays(double stepMm, const gpu::Texture& picture) {
     surface_.bind();
     triangleOfPixel_->bind(shaders::triangleUnit);
     picture.bindImage(shaders::pictureImage);
-    rays_.dispatch(glm::ivec2(picture.size()));
+    (*rays)->dispatch(glm::ivec2(picture.size()));
+    return {};
 }
 
 std::size_t FlatPainter::gpuBytes() const {

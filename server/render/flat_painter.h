@@ -5,6 +5,7 @@
 #include "gpu/program.h"
 #include "gpu/texture.h"
 #include "render/flat_surface.h"
+#include "render/march_variant.h"
 #include "render/view.h"
 #include "shaders/uniforms.h"
 
@@ -30,16 +31,15 @@ public:
     std::vector<int> triangleOfPixel() const;
     /// Casts the rays of the window that findTriangles was given last, into the whole of `picture`,
     /// which has the same size. The volume, its classification and the block of march.glsl must be
-    /// bound; `stepMm` is that block's.
-    void castRays(double stepMm, const gpu::Texture& picture);
+    /// bound; `stepMm` is that block's. Fails (device) where the driver refuses the variant's text.
+    Result<void> castRays(const MarchVariant& variant, double stepMm, const gpu::Texture& picture);
     std::size_t gpuBytes() const;
 
 private:
-    FlatPainter(FlatSurface surface, gpu::RasterProgram triangles, gpu::ComputeProgram rays,
-                gpu::UniformBuffer block);
+    FlatPainter(FlatSurface surface, gpu::RasterProgram triangles, gpu::UniformBuffer block);
     FlatSurface surface_;
     gpu::RasterProgram triangles_;
-    gpu::ComputeProgram rays_;
+    MarchPrograms rays_{"flattened.comp", {"flat_map.glsl"}};
     gpu::UniformBuffer block_;
     shaders::FlatUniforms uniforms_{};
     std::optional<gpu::Texture> triangleOfPixel_;

@@ -60,7 +60,7 @@ GlScene::GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int 
 Result<const Classification*> GlScene::classification(const Optics& optics,
                                                       const MarchOptions& march) {
     if (auto sound = checkOptics(optics); !sound) return tl::make_unexpected(sound.error());
-    if (auto sound = checkMarch(march); !sound) return tl::make_unexpected(sound.error());
+    if (auto sound = checkMarch(march, optics); !sound) return tl::make_unexpected(sound.error());
     const double step = stepMm(march, scene_->grid());
     const auto wanted = [&](const Classification& one) {
         return one.isFor(optics, step, march.emptySpaceLeaping);
@@ -85,8 +85,23 @@ void GlScene::bind(const shaders::MarchUniforms& uniforms, const Classification&
     classified.bind();
 }
 
+Result<void> GlScene::bindBackdrop(const std::shared_ptr<const Backdrop>& backdrop) {
+    if (backdrop != backdrop_) {
+        if (!backdropTexture_ || glm::ivec2(backdropTexture_->size()) != backdrop->size) {
+            auto made = gpu::Texture::create(2, {backdrop->size, 1}, gpu::TexelFormat::rgba32f,
+                                             gpu::Filter::nearest, "backdrop");
+            if (!made) return tl::make_unexpected(made.error());
+            backdropTexture_ = std::move(*made);
+        }
+        backdropTexture_->upload(backdrop->pixels.data());
+        backdrop_ = backdrop;
+    }
+    backdropTexture_->bind(shaders::backdropUnit);
+    return {};
+}
+
 std::size_t GlScene::gpuBytes() const {
-    std::size_t bytes = volume_.bytes();
+    std::size_t bytes = volume_.bytes() + (backdropTexture_ ? backdropTexture_->bytes() : 0);
     for (const Classification& one : recent_)
         bytes += one.gpuBytes();
     return bytes;

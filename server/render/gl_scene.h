@@ -10,6 +10,7 @@
 #include "shaders/uniforms.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace haustra::render {
@@ -37,6 +38,9 @@ public:
     /// Binds the volume, what makes it visible, and how rays run through it: all that march()
     /// reads.
     void bind(const shaders::MarchUniforms& uniforms, const Classification& classified);
+    /// Binds what lies behind the volume, for shaders compiled with a backdrop. Held until another
+    /// is bound. Fails where the device has no room.
+    Result<void> bindBackdrop(const std::shared_ptr<const Backdrop>& backdrop);
     const gpu::Texture& volume() const { return volume_; }
     std::size_t gpuBytes() const;
 
@@ -49,6 +53,8 @@ private:
     gpu::Texture volume_;
     gpu::UniformBuffer marchBlock_;
     std::vector<Classification> recent_;  // the latest used last
+    std::shared_ptr<const Backdrop> backdrop_;
+    std::optional<gpu::Texture> backdropTexture_;  // of backdrop_
 };
 
 }  // namespace haustra::render

@@ -6,76 +6,79 @@ namespace haustra::render {
 
 namespace {
 
-bool finite(glm::dvec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+using Points = std::vector<TransferFunctionPoint>;
+
+constexpr std::size_t mostPoints = 256, mostRows = 64;
+constexpr double steepestHuPerMm = 65536.0;
+
+tl::unexpected<Error> refuse(const std::string& what) {
+    return fail(ErrorKind::badInput, what, "transfer function");
+}
+
+bool isColor(glm::dvec3 color) {
+    // Written so that what is not a number is no colour.
+    return glm::all(glm::greaterThanEqual(color, glm::dvec3(0.0))) &&
+           glm::all(glm::lessThanEqual(color, glm::dvec3(1.0)));
+}
+
+/// `row` is empty, or says which row's points these are.
+Result<void> checkPoints(const Points& points, const std::string& row) {
+    if (points.size() < 2 || points.size() > mostPoints)
+        return refuse(row + std::to_string(points.size()) + " points, where 2 to 256 are needed");
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const TransferFunctionPoint& point = points[i];
+        const std::string at = row + "point " + std::to_string(i + 1);
+        if (!(point.hu >= -32768.0 && point.hu <= 32767.0))
+            return refuse(at + " has HU outside -32768 to 32767");
+        if (!(point.opacity >= 0.0 && point.opacity <= 1.0))
+            return refuse(at + " has an opacity outside 0 to 1");
+        if (!isColor(point.color)) return refuse(at + " has a colour outside 0 to 1");
+        if (i > 0 && point.hu < points[i - 1].hu)
+            return refuse(at + " has a lower HU than the point before");
+    }
+    if (!(points.back().hu > points.front().hu)) return refuse(row + "all points have the same HU");
+    return {};
+}
+
+Result<void> checkLight(const Headlight& light) {
+    const auto within = [](double value, double least, double most) {
+        return value >= least && value <= most;
+    };
+    const auto bad = [](const char* what) { return fail(ErrorKind::badInput, what, "light"); };
+    if (!within(light.halfDepthMm, 0.01, 1e9))
+        return bad("the half depth is not within 0.01 to 1000000000 mm");
+    if (!within(light.ambient, 0.0, 10.0) || !within(light.diffuse, 0.0, 10.0) ||
+        !within(light.specular, 0.0, 10.0))
+        return bad("the ambient, diffuse or specular share is not within 0 to 10");
+    if (!within(light.shininess, 1.0, 1000.0)) return bad("the shininess is not within 1 to 1000");
+    return {};
 }
 
 }  // namespace
 
-const std::vector<std::string>& opticsPresets() {
-    static const std::vector<std::string> names = {"mucosa", "translucent"};
-    return names;
-}
-
-Result<Optics> opticsPreset(const std::string& name) {
-    // The mucosa's surface in a blurred scan lies midway between air and soft tissue; the ramp
-    // ends before, so that thin folds stay closed.
-    if (name == "mucosa") {
-        return Optics{{{
-                           {-750.0, {0.86, 0.49, 0.42}, 0.0},
-                           {-550.0, {0.93, 0.59, 0.51}, 0.97},
-                           {-350.0, {0.96, 0.67, 0.58}, 0.9999},
-                           {50.0, {0.90, 0.50, 0.44}, 0.9999},
-                           {250.0, {0.98, 0.91, 0.78}, 0.9999},
-                       },
-                       {}}};
-    }
-    // A veil at the wall, clear fat, and whatever is denser behind: what a fold hides.
-    if (name == "translucent") {
-        return Optics{{{
-                           {-850.0, {0.75, 0.55, 0.50}, 0.0},
-                           {-550.0, {0.92, 0.62, 0.52}, 0.14},
-                           {-250.0, {0.95, 0.66, 0.55}, 0.14},
-                           {-130.0, {0.95, 0.75, 0.50}, 0.0},
-                           {-20.0, {0.85, 0.40, 0.34}, 0.0},
-                           {60.0, {0.82, 0.30, 0.26}, 0.30},
-                           {180.0, {0.98, 0.92, 0.80}, 0.90},
-                       },
-                       {}}};
-    }
-    return fail(ErrorKind::badInput,
-                "no transfer function named '" + name + "' (mucosa, translucent)");
-}
-
 Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
-    const auto& points = transferFunction.points;
-    const auto bad = [](std::size_t at, const char* what) {
-        return fail(ErrorKind::badInput, "point " + std::to_string(at + 1) + " " + what,
-                    "transfer function");
-    };
-    if (points.size() < 2 || points.size() > 256)
-        return fail(ErrorKind::badInput,
-                    std::to_string(points.size()) + " points, where 2 to 256 are needed",
-                    "transfer function");
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const TransferFunctionPoint& point = points[i];
-        if (!(point.hu >= -32768.0 && point.hu <= 32767.0))
-            return bad(i, "has HU outside -32768 to 32767");
-        if (!(point.opacity >= 0.0 && point.opacity <= 1.0))
-            return bad(i, "has an opacity outside 0 to 1");
-        if (!finite(point.color) || glm::any(glm::lessThan(point.color, glm::dvec3(0.0))) ||
-            glm::any(glm::greaterThan(point.color, glm::dvec3(1.0))))
-            return bad(i, "has a colour outside 0 to 1");
-        if (i > 0 && point.hu < points[i - 1].hu)
-            return bad(i, "has a lower HU than the point before");
+    if (auto sound = checkPoints(transferFunction.points, ""); !sound) return sound;
+    if (transferFunction.rows.size() > mostRows)
+        return refuse(std::to_string(transferFunction.rows.size()) +
+                      " rows, where at most 64 are allowed");
+    double before = 0.0;
+    for (std::size_t i = 0; i < transferFunction.rows.size(); ++i) {
+        const GradientRow& row = transferFunction.rows[i];
+        const std::string at = "row " + std::to_string(i + 1);
+        if (!(row.gradientHuPerMm > before && row.gradientHuPerMm <= steepestHuPerMm))
+            return refuse(at +
+                          " has a gradient magnitude not over the row before's, or over 65536");
+        before = row.gradientHuPerMm;
+        if (auto sound = checkPoints(row.points, at + ": "); !sound) return sound;
     }
-    if (!(points.back().hu > points.front().hu))
-        return fail(ErrorKind::badInput, "all points have the same HU", "transfer function");
     return {};
 }
 
 Result<void> checkOptics(const Optics& optics) {
-    return checkTransferFunction(optics.transferFunction);
+    if (auto sound = checkTransferFunction(optics.transferFunction); !sound) return sound;
+    if (optics.preIntegrated && !optics.transferFunction.rows.empty())
+        return refuse("a transfer function with gradient rows cannot be pre-integrated");
+    return checkLight(optics.light);
 }
 
 }  // namespace haustra::render

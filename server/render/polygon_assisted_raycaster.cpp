@@ -35,15 +35,12 @@ Result<std::unique_ptr<PolygonAssistedRaycaster>> PolygonAssistedRaycaster::crea
     std::shared_ptr<GlScene> scene, int threads) {
     using gpu::ComputeProgram, gpu::RasterProgram, gpu::UniformBuffer, shaders::shaderSource;
     if (auto sound = checkWall(scene->scene()); !sound) return tl::make_unexpected(sound.error());
-    const auto structs = shaderSource("uniforms.h"), march = shaderSource("march.glsl"),
+    const auto structs = shaderSource("uniforms.h"), optics = shaderSource("optics.glsl"),
+               march = shaderSource("march.glsl"),
                own = shaderSource("wall_uniforms.h"), wall = shaderSource("wall.glsl");
     auto cone = ComputeProgram::create("cone_start.comp",
-                                       {structs, march, shaderSource("cone_start.comp")});
+                                       {structs, optics, march, shaderSource("cone_start.comp")});
     if (!cone) return tl::make_unexpected(cone.error());
-    auto cast = ComputeProgram::create(
-        "endoscopic.comp",
-        {structs, march, shaderSource("picture.glsl"), shaderSource("endoscopic.comp")});
-    if (!cast) return tl::make_unexpected(cast.error());
     auto entry =
         RasterProgram::create("wall_entry", {structs, own, wall, shaderSource("wall_entry.vert")},
                               {structs, own, wall, shaderSource("wall_entry.frag")});
@@ -55,7 +52,7 @@ Result<std::unique_ptr<PolygonAssistedRaycaster>> PolygonAssistedRaycaster::crea
     if (!mesh) return tl::make_unexpected(mesh.error());
     return std::unique_ptr<PolygonAssistedRaycaster>(new PolygonAssistedRaycaster(
         std::move(scene), threads,
-        Programs{std::move(*cone), std::move(*cast), std::move(*entry), std::move(*block)},
+        Programs{std::move(*cone), MarchPrograms("endoscopic.comp"), std::move(*entry), std::move(*block)},
         std::move(around), std::move(*mesh)));
 }
 
@@ -154,6 +151,12 @@ Result<void> PolygonAssistedRaycaster::render(const CameraView& view, const Band
     shaders::MarchUniforms uniforms = marchUniforms(view, scene.grid(), (*classified)->table(),
                                                     scene.ranges.size, band.pictureSize);
     uniforms.pictureSize.w = band.firstRow;
+    const auto cast =
+        programs_.cast.program(MarchVariant::of(view.optics, false, view.backdrop != nullptr));
+    if (!cast) return tl::make_unexpected(cast.error());
+    if (view.backdrop) {
+        if (auto bound = scene_->bindBackdrop(view.backdrop); !bound) return bound;
+    }
     if (beganAtMesh_) {
         drawEntry(view, band, step);
         uniforms.lastBlock.w = 1;  // a first step for each pixel
@@ -166,7 +169,7 @@ Result<void> PolygonAssistedRaycaster::render(const CameraView& view, const Band
         firstStepOfTile_->bind(shaders::startUnit);
     }
     target_->bindImage(shaders::pictureImage);
-    programs_.cast.dispatch(size);
+    (*cast)->dispatch(size);
     return readBack(scene_->context(), *target_, errorsBefore, band.firstRow, picture);
 }
 

@@ -5,6 +5,7 @@
 #include "gpu/program.h"
 #include "gpu/raster_target.h"
 #include "render/gl_scene.h"
+#include "render/march_variant.h"
 #include "render/raycaster.h"
 #include "render/wall_entry.h"
 
@@ -49,7 +50,8 @@ private:
         bool tooMany = false;
     };
     struct Programs {
-        gpu::ComputeProgram coneStart, cast;
+        gpu::ComputeProgram coneStart;
+        MarchPrograms cast;
         gpu::RasterProgram entry;
         gpu::UniformBuffer block;
     };

@@ -45,8 +45,15 @@ shaders::MarchUniforms marchUniforms(const Optics& optics, const MarchOptions& m
                            optics.light.halfDepthMm);
     u.light = glm::vec4(optics.light.ambient, optics.light.diffuse, optics.light.specular,
                         optics.light.shininess);
-    u.pictureSize = glm::ivec4(size, optics.shading ? 1 : 0, 0);
+    u.pictureSize = glm::ivec4(size, 0, 0);
     u.lastBlock = glm::ivec4(blocks - 1, coneTile);
+    // A normal as long as the slope over two voxels, in stored fractions a millimetre.
+    const double rowsPerSlope =
+        table.rows > 1 ? 0.5 * storedRange * (table.rows - 1) / table.lastRowHuPerMm : 0.0;
+    u.slopes = glm::vec4(rowsPerSlope / table.rows, 0.5 / table.rows,
+                         limit(std::min(table.lastHu, 32767.0)), firstHitOpacity);
+    u.integralBelow = table.integralBelow;
+    u.integralAbove = table.integralAbove;
     return u;
 }
 
@@ -57,15 +64,18 @@ shaders::MarchUniforms marchUniforms(const CameraView& view, const Grid& grid,
     const glm::dvec3 forward = glm::normalize(view.camera.forward);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
-    const double halfHeight = std::tan(glm::radians(0.5 * view.camera.fovDegrees));
-    const double halfWidth = halfHeight * size.x / size.y;
+    const double aspect = double(size.x) / size.y, fov = glm::radians(view.camera.fovDegrees);
+    const double halfHeight = view.camera.lens == Lens::perspective ? std::tan(0.5 * fov)
+                              : view.camera.lens == Lens::fisheye   ? 0.5 * fov
+                                                                    : 0.5 * view.camera.heightMm;
     const glm::dvec3 voxels(grid.size);
     u.eyeTexture =
         glm::vec4((grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels, 0.0);
     u.forwardMm = glm::vec4(forward, 0.0);
-    u.rightMm = glm::vec4(right * halfWidth, 0.0);
+    u.rightMm = glm::vec4(right * halfHeight * aspect, 0.0);
     u.downMm = glm::vec4(-up * halfHeight, 0.0);
-    // No ray inside the volume is longer than the way from the eye to the farthest corner.
+    u.pictureSize.z = int(view.camera.lens);
+    // No ray inside the volume is longer than the way from the camera to the farthest corner.
     double farthestMm = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);

@@ -10,22 +10,21 @@ namespace haustra::render {
 
 Result<std::unique_ptr<SinglePassRaycaster>> SinglePassRaycaster::create(
     std::shared_ptr<GlScene> scene) {
-    using gpu::ComputeProgram, shaders::shaderSource;
-    const auto structs = shaderSource("uniforms.h"), march = shaderSource("march.glsl");
-    auto cone = ComputeProgram::create("cone_start.comp",
-                                       {structs, march, shaderSource("cone_start.comp")});
+    using shaders::shaderSource;
+    auto cone = gpu::ComputeProgram::create(
+        "cone_start.comp", {shaderSource("uniforms.h"), shaderSource("optics.glsl"),
+                            shaderSource("march.glsl"), shaderSource("cone_start.comp")});
     if (!cone) return tl::make_unexpected(cone.error());
-    auto cast = ComputeProgram::create(
-        "endoscopic.comp",
-        {structs, march, shaderSource("picture.glsl"), shaderSource("endoscopic.comp")});
-    if (!cast) return tl::make_unexpected(cast.error());
-    return std::unique_ptr<SinglePassRaycaster>(
-        new SinglePassRaycaster(std::move(scene), std::move(*cone), std::move(*cast)));
+    std::unique_ptr<SinglePassRaycaster> made(
+        new SinglePassRaycaster(std::move(scene), std::move(*cone)));
+    // A driver that refuses the text is found here, not in a reader's session.
+    if (auto cast = made->cast_.program({}); !cast) return tl::make_unexpected(cast.error());
+    return made;
 }
 
 SinglePassRaycaster::SinglePassRaycaster(std::shared_ptr<GlScene> scene,
-                                         gpu::ComputeProgram coneStart, gpu::ComputeProgram cast)
-    : scene_(std::move(scene)), coneStart_(std::move(coneStart)), cast_(std::move(cast)) {}
+                                         gpu::ComputeProgram coneStart)
+    : scene_(std::move(scene)), coneStart_(std::move(coneStart)) {}
 
 Result<void> SinglePassRaycaster::makeTargets(glm::ivec2 size) {
     if (target_ && glm::ivec2(target_->size()) == size) return {};
@@ -41,6 +40,16 @@ Result<void> SinglePassRaycaster::makeTargets(glm::ivec2 size) {
 }
 
 Result<void> SinglePassRaycaster::render(const CameraView& view, const Band& band, Image& picture) {
+    return cast(nullptr, view, band, picture);
+}
+
+Result<void> SinglePassRaycaster::renderFrom(const gpu::Texture& firstSteps, const CameraView& view,
+                                             const Band& band, Image& picture) {
+    return cast(&firstSteps, view, band, picture);
+}
+
+Result<void> SinglePassRaycaster::cast(const gpu::Texture* firstSteps, const CameraView& view,
+                                       const Band& band, Image& picture) {
     if (auto sound = checkBand(band, picture); !sound) return sound;
     if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
     const int errorsBefore = scene_->context().errorCount();
@@ -52,13 +61,31 @@ Result<void> SinglePassRaycaster::render(const CameraView& view, const Band& ban
     shaders::MarchUniforms uniforms = marchUniforms(view, scene.grid(), (*classified)->table(),
                                                     scene.ranges.size, band.pictureSize);
     uniforms.pictureSize.w = band.firstRow;
+    if (firstSteps) uniforms.lastBlock.w = 1;
+    const auto rays = cast_.program(MarchVariant::of(view.optics, false, view.backdrop != nullptr));
+    if (!rays) return tl::make_unexpected(rays.error());
     scene_->bind(uniforms, **classified);
-    firstStep_->bindImage(shaders::startImage);
-    coneStart_.dispatch((size + coneTile - 1) / coneTile);
-    firstStep_->bind(shaders::startUnit);
+    if (view.backdrop) {
+        if (auto bound = scene_->bindBackdrop(view.backdrop); !bound) return bound;
+    }
+    timestamps_.restart();
+    timestamps_.mark();
+    if (!firstSteps) {
+        firstStep_->bindImage(shaders::startImage);
+        coneStart_.dispatch((size + coneTile - 1) / coneTile);
+    }
+    timestamps_.mark();
+    (firstSteps ? *firstSteps : *firstStep_).bind(shaders::startUnit);
     target_->bindImage(shaders::pictureImage);
-    cast_.dispatch(size);
+    (*rays)->dispatch(size);
+    timestamps_.mark();
     return readBack(scene_->context(), *target_, errorsBefore, band.firstRow, picture);
+}
+
+std::vector<PassTime> SinglePassRaycaster::passTimes() const {
+    const std::vector<double> ms = timestamps_.betweenMs();
+    if (ms.size() != 2) return {};
+    return {{"cone", ms[0]}, {"cast", ms[1]}};
 }
 
 std::size_t SinglePassRaycaster::gpuBytes() const {

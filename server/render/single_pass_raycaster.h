@@ -3,10 +3,14 @@
 
 #include "gpu/program.h"
 #include "gpu/texture.h"
+#include "gpu/timestamps.h"
 #include "render/gl_scene.h"
+#include "render/march_variant.h"
 #include "render/raycaster.h"
 
+#include <memory>
 #include <optional>
+#include <vector>
 
 namespace haustra::render {
 
@@ -18,15 +22,23 @@ public:
 
     RaycasterKind kind() const override { return RaycasterKind::singlePass; }
     Result<void> render(const CameraView& view, const Band& band, Image& picture) override;
-    std::size_t gpuBytes() const override;  ///< without the scene's
+    /// The same where somebody else has found from which step on each pixel's ray must be examined:
+    /// `firstSteps`, r32f, of the band's size. No cone pass is made.
+    Result<void> renderFrom(const gpu::Texture& firstSteps, const CameraView& view,
+                            const Band& band, Image& picture);
+    std::size_t gpuBytes() const override;             ///< without the scene's
+    std::vector<PassTime> passTimes() const override;  ///< "cone" and "cast", by the GPU's clock
 
 private:
-    SinglePassRaycaster(std::shared_ptr<GlScene> scene, gpu::ComputeProgram coneStart,
-                        gpu::ComputeProgram cast);
+    SinglePassRaycaster(std::shared_ptr<GlScene> scene, gpu::ComputeProgram coneStart);
     Result<void> makeTargets(glm::ivec2 size);
+    Result<void> cast(const gpu::Texture* firstSteps, const CameraView& view, const Band& band,
+                      Image& picture);
     std::shared_ptr<GlScene> scene_;
-    gpu::ComputeProgram coneStart_, cast_;
+    gpu::ComputeProgram coneStart_;
+    MarchPrograms cast_{"endoscopic.comp"};
     std::optional<gpu::Texture> target_, firstStep_;
+    gpu::Timestamps timestamps_;
 };
 
 }  // namespace haustra::render

@@ -78,10 +78,17 @@ Result<void> checkMarch(const MarchOptions& march) {
     return fail(ErrorKind::badInput, "the sampling distance is not within 0.05 to 4 voxels");
 }
 
+Result<void> checkMarch(const MarchOptions& march, const Optics& optics) {
+    if (optics.preIntegrated && march.stepVoxels > longestPreIntegratedStep)
+        return fail(ErrorKind::badInput,
+                    "the sampling distance of a pre-integrated transfer function is over a voxel");
+    return checkMarch(march);
+}
+
 Result<void> checkCameraView(const CameraView& view, glm::ivec2 pictureSize) {
     if (auto sound = checkCamera(view.camera); !sound) return sound;
     if (auto sound = checkOptics(view.optics); !sound) return sound;
-    if (auto sound = checkMarch(view.march); !sound) return sound;
+    if (auto sound = checkMarch(view.march, view.optics); !sound) return sound;
     if (view.backdrop &&
         (view.backdrop->size != pictureSize ||
          view.backdrop->pixels.size() != std::size_t(pictureSize.x) * std::size_t(pictureSize.y)))

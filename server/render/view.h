@@ -94,8 +94,9 @@ Result<void> checkCameraView(const CameraView& view, glm::ivec2 pictureSize);
 /// Says what is wrong with a camera: field of view, height, directions finite and not parallel.
 Result<void> checkCamera(const Camera& camera);
 
-/// Fails (badInput) where the sampling distance is out of range.
+/// Fails (badInput) where the sampling distance is out of range, for these optics too.
 Result<void> checkMarch(const MarchOptions& march);
+Result<void> checkMarch(const MarchOptions& march, const Optics& optics);
 
 /// Which of a case's two scans a slice shows.
 enum class Scan { original, cleansed };

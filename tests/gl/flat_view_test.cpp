@@ -108,7 +108,7 @@ TEST_F(Flattened, AgreesWithAPlainOneOnTheCpu) {
         const FlatMap map = tube.map(cells);
         const ReferenceWall reference(map);
         const auto renderer = upload(scan, map);
-        for (const std::string& preset : opticsPresets()) {
+        for (const char* preset : {"mucosa", "translucent"}) {
             for (const auto& [center, pixels] : {std::pair(glm::dvec2(0.5, 0.4), 90.0),
                                                  {glm::dvec2(0.02, 0.0), 150.0},
                                                  {glm::dvec2(0.3, 0.55), 1500.0}}) {
@@ -180,7 +180,7 @@ TEST_F(Flattened, GoesOnAcrossTheSeam) {
 TEST_F(Flattened, APlaceIsTheSameInEveryPicture) {
     const FlatTube tube = overhanging();
     const auto renderer = upload(tube.scan(), tube.map(cells));
-    for (const std::string& preset : opticsPresets()) {
+    for (const char* preset : {"mucosa", "translucent"}) {
         for (const double pixels : {83.0, 400.0, 5000.0 / 3.0}) {
             const FlatView whole = view({0.11, 0.4}, pixels, *opticsPreset(preset));
             const glm::ivec2 size(211, 160);
@@ -201,7 +201,7 @@ TEST_F(Flattened, LeapingAndThreadsAndWhatWasDrawnBeforeChangeNoPixel) {
     const FlatTube tube = overhanging();
     const Volume<std::int16_t> scan = tube.scan();
     const auto one = upload(scan, tube.map(cells)), other = upload(scan, tube.map(cells));
-    for (const std::string& preset : opticsPresets()) {
+    for (const char* preset : {"mucosa", "translucent"}) {
         FlatView window = view({0.9, 0.5}, 170.0, *opticsPreset(preset));
         const Image image = draw(*one, window, 131, 90);
         draw(*other, view({0.2, 0.2}, 900.0), 64, 33);

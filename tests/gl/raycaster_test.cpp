@@ -123,7 +123,7 @@ TEST_F(Sphere, LightFollowsTheAnalyticNormals) {
 
 std::vector<CameraView> tubeViews() {
     std::vector<CameraView> views;
-    for (const auto& name : opticsPresets()) {
+    for (const char* name : {"mucosa", "translucent"}) {
         const Optics function = *opticsPreset(name);
         views.push_back({{{1.0, -2.0, -14.0}, {0.1, 0.05, 1.0}, {0, -1, 0}, 90.0}, function, {}});
         views.push_back({{{-3.0, 2.0, 8.0}, {-0.8, 0.3, -0.4}, {0, 0, 1}, 120.0}, function, {}});

@@ -20,7 +20,7 @@ Volume<std::int16_t> randomVolume(glm::ivec3 size, unsigned seed, double dense) 
 }
 
 const TransferTable& mucosa() {
-    static const TransferTable table = makeTransferTable(opticsPreset("mucosa")->transferFunction, 0.5);
+    static const TransferTable table = makeTransferTable(*opticsPreset("mucosa"), 0.5);
     return table;
 }
 

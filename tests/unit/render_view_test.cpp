@@ -16,7 +16,7 @@ TEST(TransferFunction, PresetsPassTheirOwnCheck) {
         ASSERT_TRUE(preset) << name;
         EXPECT_TRUE(checkOptics(*preset)) << name;
     }
-    const auto unknown = opticsPreset("bone");
+    const auto unknown = opticsPreset("marble");
     ASSERT_FALSE(unknown);
     EXPECT_NE(unknown.error().message.find("mucosa"), std::string::npos);
 }
@@ -24,8 +24,8 @@ TEST(TransferFunction, PresetsPassTheirOwnCheck) {
 TEST(TransferTable, OpacityOfManyShortStepsIsThatOfOneLong) {
     const TransferFunction function{
         {{-100.0, {1, 1, 1}, 0.0}, {0.0, {1, 0, 0}, 0.3}, {200.0, {0, 0, 1}, 0.9}}};
-    const TransferTable whole = makeTransferTable(function, 1.0),
-                        quarter = makeTransferTable(function, 0.25);
+    const TransferTable whole = makeTransferTable({function}, 1.0),
+                        quarter = makeTransferTable({function}, 0.25);
     for (std::size_t i = 0; i < whole.rgba.size(); i += 97)
         EXPECT_NEAR(1.0 - std::pow(1.0 - quarter.rgba[i].a, 4.0), whole.rgba[i].a, 1e-5);
 }
@@ -35,7 +35,7 @@ TEST(TransferTable, NothingOutsideTheVisibleRangeHasOpacity) {
                                      {-700.0, {1, 1, 1}, 0.0},
                                      {-500.0, {1, 1, 1}, 0.5},
                                      {300.0, {1, 1, 1}, 0.0}}};
-    const TransferTable table = makeTransferTable(function, 0.5);
+    const TransferTable table = makeTransferTable({function}, 0.5);
     const double entryHu = 1300.0 / (TransferTable::entries - 1);
     EXPECT_NEAR(table.visibleAboveHu, -700.0, entryHu);
     EXPECT_NEAR(table.visibleBelowHu, 300.0, entryHu);
@@ -45,8 +45,8 @@ TEST(TransferTable, NothingOutsideTheVisibleRangeHasOpacity) {
     EXPECT_FALSE(table.anyVisible(302.0, 3000.0));
     EXPECT_TRUE(table.anyVisible(-2000.0, 3000.0));
     const TransferFunction open{{{-100.0, {1, 1, 1}, 0.1}, {100.0, {1, 1, 1}, 0.1}}};
-    EXPECT_TRUE(std::isinf(makeTransferTable(open, 1.0).visibleAboveHu));
-    EXPECT_TRUE(makeTransferTable(open, 1.0).anyVisible(-5000.0, -4000.0));
+    EXPECT_TRUE(std::isinf(makeTransferTable({open}, 1.0).visibleAboveHu));
+    EXPECT_TRUE(makeTransferTable({open}, 1.0).anyVisible(-5000.0, -4000.0));
 }
 
 TEST(View, NamesGoThereAndBack) {
