@@ -28,7 +28,7 @@ TransferTable stepTable(double fromHu, double stepMm = 0.5) {
                    {fromHu - 1.0, glm::dvec3(1.0), 0.0},
                    {fromHu, glm::dvec3(1.0), 1.0},
                    {fromHu + 100.0, glm::dvec3(1.0), 1.0}};
-    return makeTransferTable(step, stepMm);
+    return makeTransferTable({step}, stepMm);
 }
 
 const glm::ivec3 sizes[] = {{33, 20, 17}, {1, 1, 1}, {2, 9, 70}, {64, 65, 66}, {129, 3, 5}};
