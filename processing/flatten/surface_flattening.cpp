@@ -204,8 +204,10 @@ Result<SurfaceFlattening> flattenSurface(const TriMesh& mesh,
                     "the mesh has " + std::to_string(parts) + " parts; one is flattened");
     }
     if (genus == 0 && loops == 1) {
-        return fail(ErrorKind::badInput,
-                    "the mesh is a disc, with one boundary loop: there is no way around it");
+        return fail(
+            ErrorKind::badInput,
+            "the mesh is a disc, of genus 0 with one boundary loop: only what one can go around "
+            "is flattened, a tube, a closed surface or one with handles");
     }
     const auto flattened = [&]() -> Result<void> {
         if (genus == 0 && loops == 2) return flattenStrip(made, mesh, -1, options);

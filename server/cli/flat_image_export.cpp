@@ -2,12 +2,17 @@
 
 #include "cli/arguments.h"
 #include "cli/case_scans.h"
+#include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "gpu/context.h"
 #include "render/png_file.h"
 #include "render/strip_picture.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace haustra::cli {
 
@@ -38,6 +43,15 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     auto function = render::opticsPreset(options.transferFunction);
     if (!function) return tl::make_unexpected(function.error());
     const render::StripPicture picture{options.width, options.seamMargin, std::move(*function), {}};
+    const double widest = std::min(double(render::maxPixelsPerUnit),
+                                   std::floor(double(render::maxStripRows) / height));
+    if (options.width > widest) {
+        return fail(ErrorKind::badInput,
+                    fmt::format("a strip {:.4g} circumferences long fits a picture up to --width "
+                                "{:.0f}",
+                                height, widest),
+                    "flat image");
+    }
     const auto size = render::stripPictureSize(picture, height);
     if (!size) return tl::make_unexpected(size.error());
 
@@ -48,17 +62,21 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     prepared->flatMap = std::make_shared<const FlatMap>(std::move(*map));
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
-    auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared), {.threads = options.threads});
+    auto renderer =
+        render::CaseRenderer::upload(**context, std::move(*prepared), {.threads = options.threads});
     if (!renderer) return tl::make_unexpected(renderer.error());
 
+    const Interruption interruption;  // outlives the picture, which then takes back what it wrote
     auto png = render::PngFile::create(file, size->x, size->y);
     if (!png) return tl::make_unexpected(png.error());
     ProgressBar bar;
     int rows = 0;
     return render::drawStrip(**renderer, picture, height,
-                             [&](const render::Image& band) {
+                             [&](const render::Image& band) -> Result<void> {
                                  rows += band.height;
                                  bar.show("flat image", double(rows) / size->y);
+                                 if (interruption.came())
+                                     return fail(ErrorKind::io, "interrupted", file.string());
                                  return png->append(band);
                              })
         .and_then([&] { return png->finish(); });

@@ -26,6 +26,7 @@ struct Arguments {
     fs::path mesh, out, report;
     std::vector<glm::dvec3> endsMm;
     flatten::SurfaceFlatteningOptions options;
+    const CLI::App* command = nullptr;
 };
 
 Json spreadOf(const flatten::Spread& spread) {
@@ -71,6 +72,10 @@ Json reportOf(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, doubl
     return report;
 }
 
+std::string counted(auto count, const char* one) {
+    return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
 void tell(const char* name, const flatten::Distortion& distortion) {
     const flatten::Spread &angle = distortion.angleErrorDegrees, &stretch = distortion.dilatation;
     fmt::print(
@@ -84,8 +89,9 @@ void tell(const char* name, const flatten::Distortion& distortion) {
 }
 
 void tell(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, double areaWeight) {
-    fmt::print("genus {}, {} boundary loops, {} triangles\n", flat.shape.genus,
-               flat.shape.boundaryLoops, mesh.triangles.size());
+    fmt::print("genus {}, {}, {}\n", flat.shape.genus,
+               counted(flat.shape.boundaryLoops, "boundary loop"),
+               counted(mesh.triangles.size(), "triangle"));
     if (flat.punched) {
         fmt::print("ends opened: {:.1f} and {:.1f} mm² with rims of {:.1f} and {:.1f} mm\n",
                    flat.punched->capAreaMm2[0], flat.punched->capAreaMm2[1],
@@ -98,17 +104,39 @@ void tell(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, double ar
         fmt::print("period ratio {:.6f} + {:.6f} i, certificate {:.2e}\n", flat.tau->real(),
                    flat.tau->imag(), flat.certificate);
     } else {
-        fmt::print("a holomorphic form with {} zeros, certificate {:.2e}\n", flat.formZeros,
-                   flat.certificate);
+        fmt::print("a holomorphic form with {}, certificate {:.2e}\n",
+                   counted(flat.formZeros, "zero"), flat.certificate);
     }
     if (areaWeight > 0.0 && flat.strip) tell("conformal: ", flat.strip->conformal);
     tell("", flat.distortion);
-    fmt::print("{} triangles flipped\n", flat.flips);
+    fmt::print("{} flipped\n", counted(flat.flips, "triangle"));
     if (flat.shape.genus > 0 && flat.flips > 0) {
         fmt::print(
             "a small handle leaves the rest of a long surface no room that numbers can tell: "
             "`haustra denoise` takes handles out\n");
     }
+}
+
+/// Throws what wrong usage is where an option says nothing about a surface of this shape.
+Result<void> checkApplies(const TriMesh& mesh, const Arguments& arguments) {
+    const auto given = [&](const char* option) { return arguments.command->count(option) > 0; };
+    if (!given("--ends") && !given("--rim-mm") && !given("--area-weight")) return {};
+    const auto shape = flatten::shapeOf(mesh);
+    if (!shape) return fail(shape.error().kind, shape.error().message, arguments.mesh.string());
+    const auto [parts, genus, loops] = *shape;
+    const bool isSphere = genus == 0 && loops == 0,
+               isStrip = isSphere || (genus == 0 && loops == 2);
+    const std::string has =
+        fmt::format(", and the mesh has genus {} and {}", genus, counted(loops, "boundary loop"));
+    for (const char* option : {"--ends", "--rim-mm"}) {
+        if (given(option) && !isSphere)
+            throw CLI::ValidationError(option, "is for a closed surface of genus 0" + has);
+    }
+    if (given("--area-weight") && !isStrip) {
+        throw CLI::ValidationError("--area-weight",
+                                   "is for a tube or a closed surface of genus 0" + has);
+    }
+    return {};
 }
 
 Result<void> runFlatten(const Arguments& arguments) {
@@ -118,6 +146,7 @@ Result<void> runFlatten(const Arguments& arguments) {
     }
     const auto mesh = mesh::readMesh(arguments.mesh);
     if (!mesh) return tl::make_unexpected(mesh.error());
+    if (auto applies = checkApplies(*mesh, arguments); !applies) return applies;
     flatten::SurfaceFlatteningOptions options = arguments.options;
     if (!arguments.endsMm.empty()) options.endsMm = {arguments.endsMm[0], arguments.endsMm[1]};
     const auto flat = [&] {
@@ -171,8 +200,10 @@ Command addFlatten(CLI::App& program) {
         "Map a triangle mesh conformally to the plane: a tube, with two boundary loops, to a "
         "rectangle whose left and right sides are one seam; a closed surface of genus 0 likewise, "
         "once a small hole is made at each of its ends; a torus to the parallelogram of its "
-        "periods; any other by a holomorphic form on a fundamental domain. Prints genus, boundary "
-        "loops, modulus (length over circumference) or period ratio, its certificate, and the "
+        "periods; any other but a disc by a holomorphic form on a fundamental domain. Prints "
+        "genus, "
+        "boundary loops, modulus (length over circumference) or period ratio, its certificate, and "
+        "the "
         "distortion of angles and areas.");
     command->add_option("MESH", arguments->mesh, "The mesh: .ply, .obj, .off or .stl, in mm")
         ->required();
@@ -200,6 +231,7 @@ Command addFlatten(CLI::App& program) {
     command->add_option("--report", arguments->report, "Write all figures as JSON")
         ->type_name("FILE.json");
     addThreadsOption(*command, options.threads);
+    arguments->command = command;
     command->callback([arguments] { checkNames(*arguments); });
     return {command, [arguments] { return runFlatten(*arguments); }};
 }

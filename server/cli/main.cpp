@@ -40,13 +40,14 @@ int runProgram(int argc, char** argv) {
         haustra::cli::addDenoise(program), haustra::cli::addFlatten(program)};
     try {
         program.parse(argc, argv);
+        for (const auto& command : commands) {
+            if (!command.app->parsed()) continue;
+            const auto done = command.run();
+            return done ? exitDone : failed(haustra::describe(done.error()));
+        }
     } catch (const CLI::ParseError& error) {
+        // Some options are known to be wrong only once a file has been read.
         return program.exit(error) == 0 ? exitDone : exitUsage;
-    }
-    for (const auto& command : commands) {
-        if (!command.app->parsed()) continue;
-        const auto done = command.run();
-        return done ? exitDone : failed(haustra::describe(done.error()));
     }
     return exitUsage;
 }

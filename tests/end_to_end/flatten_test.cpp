@@ -164,5 +164,40 @@ TEST(Flatten, RefusesWrongUsage) {
     EXPECT_TRUE(mesh::readMesh(folder.path() / "tube.ply"));
 }
 
+TEST(Flatten, RefusesOptionsThatSayNothingAboutTheSurface) {
+    const tests::TemporaryFolder folder;
+    const fs::path out = folder.path() / "flat.obj";
+    ASSERT_TRUE(mesh::writeMesh(folder.path() / "tube.ply", cylinder()));
+    ASSERT_TRUE(mesh::writeMesh(folder.path() / "torus.ply", tests::torusMesh(30.0, 10.0, 24, 12)));
+    const Arguments ends{"--ends", "0,0,1", "0,0,2"}, rim{"--rim-mm", "9"},
+        weight{"--area-weight", "0.5"};
+    const auto run = [&](const char* name, const Arguments& more) {
+        Arguments arguments{folder.path() / name, out};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return flatten(arguments);
+    };
+    for (const auto& [name, more] : std::vector<std::pair<const char*, Arguments>>{
+             {"tube.ply", ends}, {"tube.ply", rim}, {"torus.ply", ends}, {"torus.ply", weight}}) {
+        const auto outcome = run(name, more);
+        EXPECT_EQ(outcome.exitCode, 2) << name << outcome.err;
+        EXPECT_EQ(lineCount(outcome.err), 1u) << outcome.err;
+        EXPECT_NE(outcome.err.find(more.front() + ": is for "), std::string::npos) << outcome.err;
+        EXPECT_FALSE(fs::exists(out));
+    }
+    EXPECT_EQ(run("tube.ply", {"--area-weight", "0"}).exitCode, 0);
+}
+
+TEST(Flatten, CountsOneThingAsOne) {
+    const tests::TemporaryFolder folder;
+    const fs::path in = folder.path() / "open.ply";
+    TriMesh open = tests::torusMesh(30.0, 10.0, 24, 12);  // less a triangle
+    open.triangles.pop_back();
+    ASSERT_TRUE(mesh::writeMesh(in, open));
+    const auto outcome = flatten({in, folder.path() / "flat.obj"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("genus 1, 1 boundary loop, 575 triangles\n"), std::string::npos)
+        << outcome.out;
+}
+
 }  // namespace
 }  // namespace haustra

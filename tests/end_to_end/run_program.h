@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@ namespace haustra::tests {
 
 struct Outcome {
     int exitCode = -1;  ///< −1 where a signal ended it
+    int signal = 0;     ///< that signal
     std::string out, err;
 };
 
@@ -53,9 +55,9 @@ private:
     std::filesystem::path path_;
 };
 
-/// Runs a program to its end, or kills it (SIGKILL) after `killAfter`.
+/// Runs a program to its end; `meanwhile` is called with its process once it has started.
 inline Outcome runProgram(const std::string& program, const std::vector<std::string>& arguments,
-                          std::optional<std::chrono::microseconds> killAfter = std::nullopt) {
+                          const std::function<void(pid_t)>& meanwhile) {
     const TemporaryFolder folder;
     const std::string outFile = folder.path() / "out", errFile = folder.path() / "err";
     const std::string path = programPath(program);
@@ -71,14 +73,21 @@ inline Outcome runProgram(const std::string& program, const std::vector<std::str
         ::execv(path.c_str(), argv.data());
         ::_exit(127);
     }
-    if (killAfter) {
-        std::this_thread::sleep_for(*killAfter);
-        ::kill(child, SIGKILL);
-    }
+    meanwhile(child);
     int status = 0;
     ::waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, fileContent(outFile),
-            fileContent(errFile)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            WIFSIGNALED(status) ? WTERMSIG(status) : 0, fileContent(outFile), fileContent(errFile)};
+}
+
+/// Runs a program to its end, or kills it (SIGKILL) after `killAfter`.
+inline Outcome runProgram(const std::string& program, const std::vector<std::string>& arguments,
+                          std::optional<std::chrono::microseconds> killAfter = std::nullopt) {
+    return runProgram(program, arguments, [&](pid_t child) {
+        if (!killAfter) return;
+        std::this_thread::sleep_for(*killAfter);
+        ::kill(child, SIGKILL);
+    });
 }
 
 /// The small phantom that CTest makes before the tests that ask for it (FIXTURES phantom).
