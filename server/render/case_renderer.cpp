@@ -5,6 +5,7 @@
 #include "gpu/texture.h"
 #include "render/flat_painter.h"
 #include "render/gl_scene.h"
+#include "render/object_order/object_order_raycaster.h"
 #include "render/overview_painter.h"
 #include "render/picture_readback.h"
 #include "render/polygon_assisted_raycaster.h"
@@ -64,6 +65,10 @@ struct CaseRenderer::Impl {
                 return asRaycaster(SinglePassRaycaster::create(glScene));
             case RaycasterKind::polygonAssisted:
                 return asRaycaster(PolygonAssistedRaycaster::create(glScene, options.threads));
+            case RaycasterKind::objectOrder:
+                return asRaycaster(ObjectOrderRaycaster::create(
+                    context, scene,
+                    {.budgetBytes = options.gpuBudgetBytes, .threads = options.threads}));
             default:
                 return fail(ErrorKind::device,
                             std::string("no ") + toString(kind) + " raycaster is built in");
