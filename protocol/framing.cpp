@@ -1,5 +1,7 @@
 #include "protocol/framing.h"
 
+#include <array>
+
 namespace haustra::protocol {
 namespace {
 
@@ -31,7 +33,7 @@ tl::unexpected<Error> malformed(std::string message) {
 }
 
 constexpr std::uint8_t lastFlag = 1, exactFlag = 2;
-constexpr std::size_t reservedBytes = 16;
+constexpr std::size_t reservedBytes = 10;
 
 }  // namespace
 
@@ -81,6 +83,10 @@ void appendTileHeader(std::vector<std::uint8_t>& out, const TileHeader& header) 
     append(out, header.renderMicroseconds);
     append(out, header.encodeMicroseconds);
     append(out, header.queueMicroseconds);
+    append(out, header.raycaster);
+    append(out, std::uint8_t(0));
+    append(out, header.viewportWidth);
+    append(out, header.viewportHeight);
     out.insert(out.end(), reservedBytes, 0);
 }
 
@@ -101,6 +107,10 @@ Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes) {
     header.renderMicroseconds = reader.take<std::uint32_t>();
     header.encodeMicroseconds = reader.take<std::uint32_t>();
     header.queueMicroseconds = reader.take<std::uint32_t>();
+    header.raycaster = reader.take<std::uint8_t>();
+    reader.take<std::uint8_t>();
+    header.viewportWidth = reader.take<std::uint16_t>();
+    header.viewportHeight = reader.take<std::uint16_t>();
     header.last = flags & lastFlag;
     header.exact = flags & exactFlag;
 
@@ -119,7 +129,17 @@ Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes) {
         header.y + header.height > header.pictureHeight) {
         return malformed("a tile lies outside its picture");
     }
+    if (header.viewportWidth > maxViewportPixels || header.viewportHeight > maxViewportPixels ||
+        (header.viewportWidth > 0 && header.viewportWidth < header.pictureWidth) ||
+        (header.viewportHeight > 0 && header.viewportHeight < header.pictureHeight))
+        return malformed("a tile's picture does not fit into its viewport");
     return header;
+}
+
+const char* raycasterName(std::uint8_t number) {
+    constexpr std::array names{"",      "native", "single-pass", "polygon-assisted", "object-order",
+                               "hybrid"};
+    return number < names.size() ? names[number] : "";
 }
 
 }  // namespace haustra::protocol

@@ -45,7 +45,8 @@ enum class TileCodec : std::uint8_t { jpeg = 1, lossless = 2 };
 /// Fixed header of a tile's payload, followed by the codec's bytes. On the wire 56 bytes:
 /// viewport u8, codec u8, flags u8 (bit 0: last tile of its picture; bit 1: exact still), 0 u8,
 /// picture u32, sequence u64, pictureWidth u16, pictureHeight u16, x u16, y u16, width u16,
-/// height u16, renderMicroseconds u32, encodeMicroseconds u32, queueMicroseconds u32, 16 bytes 0.
+/// height u16, renderMicroseconds u32, encodeMicroseconds u32, queueMicroseconds u32, raycaster u8,
+/// 0 u8, viewportWidth u16, viewportHeight u16, 10 bytes 0.
 struct TileHeader {
     std::uint8_t viewport = 0;
     TileCodec codec = TileCodec::jpeg;
@@ -57,12 +58,20 @@ struct TileHeader {
     std::uint16_t x = 0, y = 0, width = 0, height = 0;
     std::uint32_t renderMicroseconds = 0, encodeMicroseconds = 0;
     std::uint32_t queueMicroseconds = 0;  ///< from the input's arrival to the start of rendering
+    std::uint8_t raycaster = 0;           ///< that drew it (raycasterName); 0: none of them
+    /// The viewport that the picture fills; where it is coarse, larger than the picture. 0: not
+    /// told, as large as the picture.
+    std::uint16_t viewportWidth = 0, viewportHeight = 0;
+    bool coarse() const { return viewportWidth > pictureWidth || viewportHeight > pictureHeight; }
 };
 inline constexpr std::size_t tileHeaderBytes = 56;
 
 void appendTileHeader(std::vector<std::uint8_t>& out, const TileHeader& header);
 /// Fails unless the tile lies within its picture and the picture within the bounds.
 Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes);
+
+/// "native" 1, "single-pass" 2, "polygon-assisted" 3, "object-order" 4, "hybrid" 5; else "".
+const char* raycasterName(std::uint8_t number);
 
 /// Lossless pictures: the MED (LOCO-I) prediction residual of a reversible colour transform,
 /// zstd-compressed (METHODS §3). `rgb` is width·height·3 bytes.

@@ -176,6 +176,7 @@ struct Connection::Impl {
         hello.mutable_hello()->set_protocol_version(protocol::protocolVersion);
         hello.mutable_hello()->add_capabilities("jpeg");
         hello.mutable_hello()->add_capabilities("lossless");
+        hello.mutable_hello()->add_capabilities("coarse");
         hello.mutable_hello()->set_software(options.software);
         co_await asio::async_write(*stream, asio::buffer(frameOf(hello)), asio::use_awaitable);
         ServerMessage answer;

@@ -20,10 +20,14 @@ using haustra::Result;
 
 constexpr int exitDone = 0, exitFailed = 1, exitUsage = 2;
 
+const char* const automatic = "auto";
+
 struct Arguments {
     haustra::net::ServerOptions server;
     fs::path certificate, key, portFile;
     std::string listen = toString(haustra::net::ListenAddress{}), logLevel = "info";
+    std::string raycaster = automatic;
+    double gpuBudgetMb = 0.0;
 };
 
 int failed(const std::string& what) {
@@ -67,6 +71,21 @@ void addOptions(CLI::App& program, Arguments& arguments) {
         ->type_name("N")
         ->check(CLI::Range(1, 64))
         ->capture_default_str();
+    program
+        .add_option("--raycaster", arguments.raycaster,
+                    "What draws camera views: auto tries those that work on this machine when a "
+                    "case is opened, for at most half a second, and takes the fastest; or native, "
+                    "single-pass, polygon-assisted, object-order, hybrid")
+        ->type_name("KIND")
+        ->capture_default_str();
+    program
+        .add_option("--gpu-budget", arguments.gpuBudgetMb,
+                    "GPU memory for all cases together, in MiB; one that does not fit makes those "
+                    "that nobody reads any more go, then is drawn from cells that come and go "
+                    "within what is left. 0: what the device has")
+        ->type_name("MB")
+        ->check(CLI::Range(0.0, 1048576.0))
+        ->capture_default_str();
     program.add_option("--log-level", arguments.logLevel, "How much to log, on standard error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
         ->capture_default_str();
@@ -109,6 +128,13 @@ int runProgram(int argc, char** argv) {
         auto listen = haustra::net::parseListenAddress(arguments.listen);
         if (!listen) throw CLI::ValidationError("--listen", listen.error().message);
         arguments.server.listen = std::move(*listen);
+        if (arguments.raycaster != automatic) {
+            const auto kind = haustra::render::raycasterFromString(arguments.raycaster);
+            if (!kind) throw CLI::ValidationError("--raycaster", kind.error().message);
+            arguments.server.drawing.raycaster = *kind;
+        }
+        arguments.server.drawing.gpuBudgetBytes =
+            std::size_t(arguments.gpuBudgetMb * double(1 << 20));
         if (!arguments.certificate.empty())
             arguments.server.identity = {arguments.certificate, arguments.key};
     } catch (const CLI::ParseError& error) {

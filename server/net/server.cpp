@@ -104,7 +104,7 @@ Result<void> Server::Impl::start() {
     fingerprint = certificateFingerprint(tls);
     auto bookmarks = records::BookmarkStore::open(options.store / "records.sqlite3");
     if (!bookmarks) return tl::make_unexpected(bookmarks.error());
-    auto rendering = session::RenderThread::start();
+    auto rendering = session::RenderThread::start(options.drawing);
     if (!rendering) return tl::make_unexpected(rendering.error());
     auto encoding = session::EncoderThreads::start(options.encoders);
     if (!encoding) return tl::make_unexpected(encoding.error());

@@ -4,6 +4,7 @@
 #include "core/result.h"
 #include "net/identity.h"
 #include "net/listen_address.h"
+#include "session/gpu_cases.h"
 
 #include <filesystem>
 #include <memory>
@@ -17,7 +18,8 @@ struct ServerOptions {
     ListenAddress listen;
     std::optional<Identity> identity;  ///< none: the store's own, made on first start
     int maxSessions = 32;
-    int encoders = 1;      ///< threads
+    int encoders = 1;  ///< threads
+    session::DrawingOptions drawing;
     std::string software;  ///< name and version, for the welcome
 };
 

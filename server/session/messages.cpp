@@ -60,6 +60,13 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened) {
     for (const std::string& preset : render::opticsPresets())
         message->add_transfer_functions(preset);
     message->set_cleansed(opened.cleansed);
+    message->set_raycaster(toString(opened.raycaster));
+    for (const render::RaycasterTrial& trial : opened.trials) {
+        auto* tried = message->add_trials();
+        tried->set_raycaster(toString(trial.kind));
+        if (!trial.ms.empty()) tried->set_median_ms(trial.medianMs());
+        tried->set_failure(trial.failure);
+    }
     if (opened.wall) {
         auto* flat = message->mutable_flat();
         flat->set_height(opened.wall->map->height);

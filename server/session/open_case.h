@@ -3,12 +3,14 @@
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
+#include "render/raycaster_choice.h"
 #include "session/wall.h"
 #include "store/case_store.h"
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace haustra::session {
 
@@ -21,6 +23,9 @@ struct OpenCase {
     Centerline centerline;             ///< empty where the case has none yet
     bool cleansed = false;             ///< the endoscopic view shows the cleansed scan, slices can
     std::shared_ptr<const Wall> wall;  ///< empty where the case has not been flattened
+    /// What draws its camera views, and what was measured to choose it (nothing where it was not).
+    render::RaycasterKind raycaster = render::RaycasterKind::singlePass;
+    std::vector<render::RaycasterTrial> trials;
 };
 
 /// The case's volumes, memory-mapped, beside what is known of it. Its wall has not been read.

@@ -23,6 +23,7 @@ void PictureStream::setCase(std::shared_ptr<const OpenCase> opened) {
 
 void PictureStream::stop() {
     setCase(nullptr);
+    renderer_.end(session_);
     stopped_ = true;
 }
 
@@ -95,12 +96,7 @@ void PictureStream::atRest(std::size_t id) {
 
 void PictureStream::schedule() {
     if (stopped_ || !case_) return;
-    if (rendering_) {
-        // Newer than what still waits in the line: take its place.
-        Slot& slot = slots_[*rendering_];
-        if (slot.due && renderer_.replace(makeJob(*rendering_))) slot.due = false;
-        return;
-    }
+    if (rendering_) return overtake();
     if (held_ || !unsent_.empty()) return;
     for (std::size_t n = 1; n <= slots_.size(); ++n) {
         const std::size_t id = (lastDrawn_ + n) % slots_.size();
@@ -109,6 +105,22 @@ void PictureStream::schedule() {
         lastDrawn_ = id;
         rendering_ = id;
         renderer_.submit(makeJob(id));
+        return;
+    }
+}
+
+// Newer than what waits in the line or is under way: take its place. A hand that moves does not
+// wait for the still of another viewport either.
+void PictureStream::overtake() {
+    const std::size_t before = *rendering_;
+    for (std::size_t n = 0; n < slots_.size(); ++n) {
+        const std::size_t id = (before + n) % slots_.size();
+        Slot& slot = slots_[id];
+        if (!slot.due || (id != before && !slot.viewport.moving())) continue;
+        if (!renderer_.replace(makeJob(id))) continue;
+        slot.due = false;
+        if (id != before) slots_[before].due = true;
+        rendering_ = lastDrawn_ = id;
         return;
     }
 }
@@ -122,11 +134,15 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.width = slot.viewport.width();
     job.height = slot.viewport.height();
     job.inputAt = slot.inputAt;
-    const bool exact = !slot.viewport.moving() || !jpeg_;
+    job.moving = slot.viewport.moving();
+    const bool exact = !job.moving || !jpeg_;
+    job.coarse = coarse_ && !exact;
     job.header.viewport = std::uint8_t(id);
     job.header.codec = exact ? protocol::TileCodec::lossless : protocol::TileCodec::jpeg;
     job.header.exact = exact;
     job.header.sequence = slot.sequence;
+    job.header.viewportWidth = std::uint16_t(job.width);
+    job.header.viewportHeight = std::uint16_t(job.height);
     job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_](
                    const protocol::TileHeader& header, Result<render::Image> image) {
         asio::post(io, [weak, ofCase, header, image = std::move(image)]() mutable {

@@ -36,6 +36,8 @@ public:
 
     /// False: the client takes lossless tiles alone.
     void setJpeg(bool accepted) { jpeg_ = accepted; }
+    /// True: moving pictures may be smaller than their viewport.
+    void setCoarse(bool accepted) { coarse_ = accepted; }
     /// From here on pictures are of this case (null: of none). Closes all viewports; pictures of
     /// the case before do not appear any more.
     void setCase(std::shared_ptr<const OpenCase> opened);
@@ -63,6 +65,7 @@ private:
     void awaitRest(const protocol::TileHeader& sent);
     void atRest(std::size_t id);
     void schedule();
+    void overtake();
     PictureJob makeJob(std::size_t id);
     void rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
                   Result<render::Image> image);
@@ -83,7 +86,7 @@ private:
     Outlet outlet_;
     std::shared_ptr<const OpenCase> case_;
     std::uint64_t caseNumber_ = 0;  // counts setCase: tells old pictures from new ones
-    bool jpeg_ = true, stopped_ = false;
+    bool jpeg_ = true, coarse_ = false, stopped_ = false;
 
     std::array<Slot, protocol::maxViewports> slots_;
     std::size_t lastDrawn_ = 0;

@@ -1,24 +1,45 @@
 #include "session/render_thread.h"
 
 #include "gpu/context.h"
-#include "render/case_renderer.h"
 #include "session/guarded.h"
 
 #include <algorithm>
 #include <condition_variable>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <optional>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 namespace haustra::session {
 namespace {
 
-std::uint32_t microsecondsBetween(Clock::time_point from, Clock::time_point to) {
-    const auto count = std::chrono::duration_cast<std::chrono::microseconds>(to - from).count();
-    return std::uint32_t(std::clamp<std::int64_t>(count, 0, UINT32_MAX));
+double msBetween(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+std::uint32_t microseconds(double ms) {
+    return std::uint32_t(std::clamp(1e3 * ms, 0.0, double(UINT32_MAX)));
+}
+
+// The band's rows of the frame's picture, in the size that the frame is drawn in.
+Result<void> draw(render::CaseRenderer& renderer, Frame& frame, const render::Band& band) {
+    const glm::ivec2 size = frame.size;
+    const AnyView view = size.x == frame.job.width
+                             ? frame.job.view
+                             : scaledView(frame.job.view, frame.job.width, size.x);
+    if (const auto* camera = std::get_if<render::CameraView>(&view)) {
+        if (frame.picture.rgb.empty())
+            frame.picture = {
+                size.x, size.y,
+                std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+        return renderer.render(*camera, band, frame.picture);
+    }
+    auto image =
+        std::visit([&](const auto& any) { return renderer.render(any, size.x, size.y); }, view);
+    if (!image) return tl::make_unexpected(image.error());
+    frame.picture = std::move(*image);
+    return {};
 }
 
 }  // namespace
@@ -28,141 +49,101 @@ struct RenderThread::Shared {
     std::condition_variable wake;
     // All guarded by mutex.
     std::function<void(Drawing&)> errand;  // of the loader, which waits for its end
-    PictureQueue pictures;
+    FrameScheduler frames;
     bool caseLeft = false;  // the last session of some case is gone
     bool stopping = false;
 };
 
 // What lives on the render thread, from its start to its end.
 struct RenderThread::Drawing {
-    struct Entry {
-        std::string name, content;
-        std::shared_ptr<const Wall> wall;  // facts that are read anew have none
-        std::weak_ptr<const OpenCase> of;
-        std::optional<Clock::time_point> leftAt;  // since when nobody has it open
-        std::unique_ptr<render::CaseRenderer> renderer;
-    };
-
     std::shared_ptr<Shared> shared;
     std::unique_ptr<gpu::Context> context;
-    std::vector<Entry> cases;
+    GpuCases cases;
 
     void run() {
+        // An errand is followed by as many milliseconds of pictures, where there are any.
+        double owedMs = 0.0;
         std::unique_lock lock(shared->mutex);
         for (;;) {
             const auto called = [&] {
                 return shared->stopping || shared->caseLeft || shared->errand ||
-                       !shared->pictures.empty();
+                       !shared->frames.empty();
             };
-            if (const auto until = nextRelease())
+            if (const auto until = cases.nextRelease())
                 shared->wake.wait_until(lock, *until, called);
             else
                 shared->wake.wait(lock, called);
             if (shared->stopping) return;
             shared->caseLeft = false;
-            auto errand = std::exchange(shared->errand, nullptr);
-            auto job = errand ? std::nullopt : shared->pictures.take();
+            auto turn =
+                shared->errand && owedMs <= 0.0 ? std::nullopt : shared->frames.next(Clock::now());
+            auto errand = turn ? nullptr : std::exchange(shared->errand, nullptr);
             lock.unlock();
-            releaseLeft(Clock::now());
-            if (errand) errand(*this);
-            if (job) draw(*job);
-            job.reset();  // may be a case's last user, so not under the lock
+            const auto start = Clock::now();
+            cases.releaseLeft(start);
+            if (errand) {
+                errand(*this);
+                owedMs = msBetween(start, Clock::now());
+            }
+            if (turn) {
+                drawTurn(*turn);
+                owedMs -= msBetween(start, Clock::now());
+            }
+            turn.reset();  // may be a case's last user, so not under the lock
             lock.lock();
         }
     }
 
-    std::optional<Clock::time_point> nextRelease() const {
-        std::optional<Clock::time_point> first;
-        for (const Entry& entry : cases)
-            if (entry.leftAt && (!first || *entry.leftAt + keptAfterUse < *first))
-                first = *entry.leftAt + keptAfterUse;
-        return first;
-    }
-
-    void releaseLeft(Clock::time_point now) {
-        for (Entry& entry : cases)
-            if (!entry.leftAt && entry.of.expired()) entry.leftAt = now;
-        std::erase_if(cases, [&](const Entry& entry) {
-            return entry.leftAt && now >= *entry.leftAt + keptAfterUse;
-        });
-    }
-
-    // The pointer of which sessions hold copies.
-    std::shared_ptr<const OpenCase> lend(OpenCase facts) const {
-        return {new OpenCase(std::move(facts)),
-                [queues = std::weak_ptr<Shared>(shared)](const OpenCase* left) {
-                    delete left;
-                    if (const auto alive = queues.lock()) {
-                        const std::lock_guard lock(alive->mutex);
-                        alive->caseLeft = true;
-                        alive->wake.notify_one();
-                    }
-                }};
-    }
-
-    std::shared_ptr<const OpenCase> find(const OpenCase& facts) {
-        for (Entry& entry : cases) {
-            if (entry.name != facts.name || entry.content != facts.content) continue;
-            if (auto of = entry.of.lock()) return of;
-            OpenCase again = facts;
-            again.wall = entry.wall;
-            auto of = lend(std::move(again));
-            entry.of = of;
-            entry.leftAt.reset();
-            return of;
-        }
-        return nullptr;
-    }
-
-    Result<std::shared_ptr<const OpenCase>> upload(OpenCase facts, render::PreparedCase prepared) {
-        std::erase_if(cases, [](const Entry& entry) { return entry.of.expired(); });
+    void drawTurn(const FrameScheduler::Turn& turn) {
+        Frame& frame = *turn.frame;
         const auto start = Clock::now();
-        auto renderer = render::CaseRenderer::upload(*context, std::move(prepared));
-        if (!renderer) return tl::make_unexpected(renderer.error());
-        spdlog::info("a case is on the GPU: {} MiB, copied in {:.1f} s",
-                     (*renderer)->gpuBytes() >> 20,
-                     1e-6 * microsecondsBetween(start, Clock::now()));
-        Entry entry{facts.name, facts.content, facts.wall, {}, {}, std::move(*renderer)};
-        auto of = lend(std::move(facts));
-        entry.of = of;
-        cases.push_back(std::move(entry));
-        return of;
-    }
-
-    void draw(PictureJob& job) {
-        const auto entry = std::find_if(cases.begin(), cases.end(), [&](const Entry& candidate) {
-            return candidate.of.lock() == job.of;
+        render::CaseRenderer* const renderer = cases.rendererOf(frame.job.of);
+        auto drawn = guarded([&]() -> Result<void> {
+            if (!renderer) return fail(ErrorKind::device, "the case is not on the GPU", "render");
+            return draw(*renderer, frame, turn.band);
         });
-        if (entry == cases.end()) {
-            return job.done(job.header, fail(ErrorKind::device, "the case is not on the GPU"));
+        const auto end = Clock::now();
+        using Outcome = FrameScheduler::Outcome;
+        Outcome outcome = Outcome::unwanted;
+        {
+            const std::lock_guard lock(shared->mutex);
+            if (drawn)
+                outcome = shared->frames.drawn(turn, msBetween(start, end), end);
+            else if (shared->frames.failed(turn))
+                outcome = Outcome::finished;
         }
-        const auto start = Clock::now();
-        auto image = guarded([&] {
-            return std::visit(
-                [&](const auto& view) {
-                    return entry->renderer->render(view, job.width, job.height);
-                },
-                job.view);
-        });
-        protocol::TileHeader header = job.header;
-        header.queueMicroseconds = microsecondsBetween(job.inputAt, start);
-        header.renderMicroseconds = microsecondsBetween(start, Clock::now());
-        job.done(header, std::move(image));
+        if (outcome != Outcome::finished) return;
+        protocol::TileHeader header = frame.job.header;
+        header.queueMicroseconds = microseconds(msBetween(frame.job.inputAt, frame.begunAt));
+        header.renderMicroseconds = microseconds(frame.spentMs);
+        if (renderer && std::holds_alternative<render::CameraView>(frame.job.view))
+            header.raycaster = std::uint8_t(1 + int(renderer->raycaster()));
+        if (drawn)
+            frame.job.done(header, std::move(frame.picture));
+        else
+            frame.job.done(header, tl::make_unexpected(drawn.error()));
     }
 };
 
-Result<std::unique_ptr<RenderThread>> RenderThread::start() {
+Result<std::unique_ptr<RenderThread>> RenderThread::start(DrawingOptions options) {
     std::unique_ptr<RenderThread> self(new RenderThread);
     self->shared_ = std::make_shared<Shared>();
     std::promise<Result<std::string>> started;
     auto rendererName = started.get_future();
-    self->thread_ = std::thread([&started, shared = self->shared_] {
+    self->thread_ = std::thread([&started, options, shared = self->shared_] {
         auto context = gpu::Context::create();
         if (!context) return started.set_value(tl::make_unexpected(context.error()));
-        Drawing drawing{shared, std::move(*context), {}};
-        started.set_value(drawing.context->renderer());
+        gpu::Context& made = **context;
+        const auto caseLeft = [weak = std::weak_ptr<Shared>(shared)] {
+            if (const auto alive = weak.lock()) {
+                const std::lock_guard lock(alive->mutex);
+                alive->caseLeft = true;
+                alive->wake.notify_one();
+            }
+        };
+        Drawing drawing{shared, std::move(*context), GpuCases(made, options, caseLeft)};
+        started.set_value(made.renderer());
         drawing.run();
-        drawing.cases.clear();  // before the context that they need
     });
     auto name = rendererName.get();
     if (!name) return tl::make_unexpected(name.error());
@@ -200,34 +181,49 @@ void RenderThread::runThere(std::function<void(Drawing&)> errand) {
 
 std::shared_ptr<const OpenCase> RenderThread::find(const OpenCase& facts) {
     std::shared_ptr<const OpenCase> found;
-    runThere([&](Drawing& drawing) { found = drawing.find(facts); });
+    runThere([&](Drawing& drawing) { found = drawing.cases.find(facts); });
     return found;
 }
 
 Result<std::shared_ptr<const OpenCase>> RenderThread::upload(OpenCase facts,
                                                              render::PreparedCase prepared) {
+    Result<void> there;
+    runThere([&](Drawing& drawing) {
+        there = drawing.cases.upload(std::move(facts), std::move(prepared));
+    });
+    if (!there) return tl::make_unexpected(there.error());
+    for (bool more = true; more;)
+        runThere([&](Drawing& drawing) { more = drawing.cases.tryRaycaster(); });
     Result<std::shared_ptr<const OpenCase>> opened;
-    runThere(
-        [&](Drawing& drawing) { opened = drawing.upload(std::move(facts), std::move(prepared)); });
+    runThere([&](Drawing& drawing) { opened = drawing.cases.opened(); });
     return opened;
 }
 
+// What the scheduler gives up is destroyed after the lock is let go.
+
 void RenderThread::submit(PictureJob job) {
-    std::optional<PictureJob> dropped;  // destroyed after the lock is let go
+    FrameScheduler::GivenUp givenUp;
     const std::lock_guard lock(shared_->mutex);
-    dropped = shared_->pictures.add(std::move(job));
+    givenUp = shared_->frames.add(std::move(job));
     shared_->wake.notify_one();
 }
 
 bool RenderThread::replace(PictureJob job) {
+    FrameScheduler::GivenUp givenUp;
     const std::lock_guard lock(shared_->mutex);
-    return shared_->pictures.replace(job);
+    return shared_->frames.replace(job, givenUp);
 }
 
 void RenderThread::withdraw(SessionId session) {
-    std::optional<PictureJob> dropped;  // destroyed after the lock is let go
+    FrameScheduler::GivenUp givenUp;
     const std::lock_guard lock(shared_->mutex);
-    dropped = shared_->pictures.withdraw(session);
+    givenUp = shared_->frames.withdraw(session);
+}
+
+void RenderThread::end(SessionId session) {
+    FrameScheduler::GivenUp givenUp;
+    const std::lock_guard lock(shared_->mutex);
+    givenUp = shared_->frames.end(session);
 }
 
 }  // namespace haustra::session

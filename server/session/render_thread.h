@@ -2,10 +2,10 @@
 #pragma once
 
 #include "render/prepared_case.h"
+#include "session/frame_scheduler.h"
+#include "session/gpu_cases.h"
 #include "session/open_case.h"
-#include "session/picture_queue.h"
 
-#include <chrono>
 #include <memory>
 #include <string>
 #include <thread>
@@ -17,7 +17,7 @@ namespace haustra::session {
 class RenderThread {
 public:
     /// Makes the context; fails where there is none to be had.
-    static Result<std::unique_ptr<RenderThread>> start();
+    static Result<std::unique_ptr<RenderThread>> start(DrawingOptions options);
     /// Drops what waits, and joins. CaseLoader has ended.
     ~RenderThread();
     RenderThread(const RenderThread&) = delete;
@@ -25,20 +25,24 @@ public:
 
     const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
 
-    /// For how long a renderer is kept after the last copy of its case's pointer is gone, unless
-    /// another case is uploaded meanwhile.
-    static constexpr std::chrono::seconds keptAfterUse{30};
     /// The case of these products where it has a renderer, with its wall, else empty. One thread,
-    /// the loader's, calls this and upload; both wait for the picture under way.
+    /// the loader's, calls this and upload; both wait for the band under way.
     std::shared_ptr<const OpenCase> find(const OpenCase& facts);
-    /// Copies a case to the GPU: some tenths of a second, in which no picture is drawn.
+    /// Copies a case to the GPU: some tenths of a second, in which no picture is drawn. Then, for
+    /// half a second at most of the GPU's time, finds the raycaster that draws it fastest, picture
+    /// by picture in turn with those of the sessions.
     Result<std::shared_ptr<const OpenCase>> upload(OpenCase facts, render::PreparedCase prepared);
 
     /// The session has no other job here, or does not want it any more.
     void submit(PictureJob job);
-    /// Exchanges the waiting job for `job`; false where it no longer waits (or never did).
+    /// Lets `job` overtake the session's job by FrameScheduler's rules; false where it may not, or
+    /// there is none. The overtaken job's `done` is not called.
     bool replace(PictureJob job);
+    /// The session's job is not wanted any more; its `done` is not called unless it is already
+    /// under way to it.
     void withdraw(SessionId session);
+    /// And nothing else will come from it.
+    void end(SessionId session);
 
 private:
     struct Shared;
@@ -46,7 +50,7 @@ private:
     void runThere(std::function<void(Drawing&)> errand);
     RenderThread() = default;
 
-    std::shared_ptr<Shared> shared_;  // the queues; OpenCase's deleter refers to them too
+    std::shared_ptr<Shared> shared_;  // the queues
     std::string renderer_;
     std::thread thread_;
 };

@@ -138,12 +138,14 @@ void Session::handle(const protocol::Hello& hello) {
     if (!can("lossless"))
         return end(ErrorReport::VERSION, "a client without \"lossless\" cannot show exact stills");
     pictures_->setJpeg(can("jpeg"));
+    pictures_->setCoarse(can("coarse"));
     state_ = State::ready;
     ServerMessage answer;
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
     welcome->add_capabilities("jpeg");
     welcome->add_capabilities("lossless");
+    welcome->add_capabilities("coarse");
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
     send(answer);

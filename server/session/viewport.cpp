@@ -96,8 +96,7 @@ Result<void> Viewport::apply(const protocol::SetTransferFunction& message) {
     return {};
 }
 
-std::variant<render::CameraView, render::SliceView, render::FlatView, render::FlatOverview>
-Viewport::view() const {
+AnyView Viewport::view() const {
     if (isSlice(view_))
         return render::SliceView{planeOf(view_), *slicePositionMm_, zoom_, window_, scan_};
     auto optics = optics_ ? *optics_ : *render::opticsPreset(render::opticsPresets().front());

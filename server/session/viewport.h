@@ -3,11 +3,10 @@
 
 #include "core/result.h"
 #include "protocol/haustra.pb.h"
-#include "render/view.h"
+#include "session/picture_job.h"
 
 #include <cstdint>
 #include <optional>
-#include <variant>
 
 namespace haustra::session {
 
@@ -38,8 +37,7 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
     /// Only of one that is drawable.
-    std::variant<render::CameraView, render::SliceView, render::FlatView, render::FlatOverview>
-    view() const;
+    AnyView view() const;
 
 private:
     protocol::View view_ = protocol::ENDOSCOPIC;

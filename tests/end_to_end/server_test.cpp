@@ -92,6 +92,18 @@ TEST_F(ServerTest, WelcomesListsAndOpens) {
     EXPECT_EQ(facts.patient_position(), toString(PatientPosition::supine));
     EXPECT_EQ(facts.transfer_functions(0), "mucosa");
     EXPECT_TRUE(facts.cleansed());
+    // The raycaster is the fastest of those that were tried.
+    double least = INFINITY;
+    std::string fastest;
+    for (const auto& trial : facts.trials()) {
+        EXPECT_NE(trial.failure().empty(), trial.median_ms() == 0.0) << trial.raycaster();
+        if (trial.median_ms() == 0.0 || trial.median_ms() >= least) continue;
+        least = trial.median_ms();
+        fastest = trial.raycaster();
+    }
+    EXPECT_EQ(facts.raycaster(), fastest);
+    EXPECT_NE(server_->log().find("it is drawn by the " + fastest + " raycaster"),
+              std::string::npos);
 }
 
 TEST_F(ServerTest, ACaseWithoutCenterlineShowsItsSlices) {
@@ -283,6 +295,38 @@ TEST_F(ServerTest, AClientWithoutJpegGetsLosslessWhileMoving) {
     EXPECT_EQ(picture->header.codec, protocol::TileCodec::lossless);
 }
 
+// A viewport so large that its pictures cannot be in time: small while it moves, for who takes them
+// so, and whole at rest.
+TEST_F(ServerTest, MovingPicturesAreCoarseOnlyForWhoTakesThemSo) {
+    for (const bool takesCoarse : {true, false}) {
+        auto client = connected();
+        std::vector<std::string> capabilities{"jpeg", "lossless"};
+        if (takesCoarse) capabilities.push_back("coarse");
+        ASSERT_TRUE(client->hello(protocol::protocolVersion, capabilities)->has_welcome());
+        ASSERT_TRUE(client->openCase(smallCaseName)->has_case_opened());
+        client->viewport(1, 0, protocol::ENDOSCOPIC, 2048, 2000);
+        std::uint64_t sequence = 1;
+        for (int n = 0; n < 4; ++n) {
+            client->camera(++sequence, 0, {-1.2, 2.2, 110.0 + n}, true);
+            const auto picture = client->picture();
+            ASSERT_TRUE(picture);
+            const auto& header = picture->header;
+            EXPECT_EQ(header.viewportWidth, 2048);
+            EXPECT_EQ(header.viewportHeight, 2000);
+            EXPECT_TRUE(takesCoarse || header.pictureWidth == 2048);
+        }
+        for (;;) {
+            const auto picture = client->picture();
+            ASSERT_TRUE(picture) << "no exact still at rest";
+            if (!picture->header.exact) continue;
+            EXPECT_EQ(picture->header.sequence, sequence);
+            EXPECT_EQ(picture->header.pictureWidth, 2048);
+            EXPECT_EQ(picture->header.pictureHeight, 2000);
+            break;
+        }
+    }
+}
+
 TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     const SmallCase truth = makeSmallCase();
     auto context = gpu::Context::create();
@@ -301,6 +345,11 @@ TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     EXPECT_TRUE(picture->header.exact);
     EXPECT_EQ(picture->header.sequence, 2u);
     EXPECT_EQ(picture->header.pictureWidth, 531);
+    EXPECT_FALSE(picture->header.coarse());
+    const std::uint8_t drawnBy = picture->header.raycaster;
+    ASSERT_STRNE(protocol::raycasterName(drawnBy), "");
+    const auto kind = render::raycasterFromString(protocol::raycasterName(drawnBy));
+    ASSERT_TRUE(kind && (*renderer)->use(*kind)) << int(drawnBy);
     auto image = (*renderer)->render(endoscopic, 531, 300);
     ASSERT_TRUE(image);
     EXPECT_EQ(picture->rgb, image->rgb);

@@ -33,6 +33,9 @@ TileHeader someTile() {
     header.renderMicroseconds = 1;
     header.encodeMicroseconds = 0xffffffff;
     header.queueMicroseconds = 0x10203;
+    header.raycaster = 5;
+    header.viewportWidth = 2048;
+    header.viewportHeight = 1500;
     return header;
 }
 
@@ -102,6 +105,10 @@ TEST(TileHeader, ComesBackFieldByField) {
     EXPECT_EQ(in->renderMicroseconds, out.renderMicroseconds);
     EXPECT_EQ(in->encodeMicroseconds, out.encodeMicroseconds);
     EXPECT_EQ(in->queueMicroseconds, out.queueMicroseconds);
+    EXPECT_EQ(in->raycaster, out.raycaster);
+    EXPECT_EQ(in->viewportWidth, out.viewportWidth);
+    EXPECT_EQ(in->viewportHeight, out.viewportHeight);
+    EXPECT_TRUE(in->coarse());
 }
 
 // PROTOCOL.md §5 fixes the offsets: another implementation must find the same fields.
@@ -116,7 +123,8 @@ TEST(TileHeader, FieldsLieWhereTheTableSays) {
     EXPECT_EQ(bytes[28], 1);
     EXPECT_EQ(Bytes(bytes.begin() + 32, bytes.begin() + 36), (Bytes{255, 255, 255, 255}));
     EXPECT_EQ(Bytes(bytes.begin() + 36, bytes.begin() + 40), (Bytes{3, 2, 1, 0}));
-    EXPECT_EQ(Bytes(bytes.begin() + 40, bytes.end()), Bytes(16, 0));
+    EXPECT_EQ(Bytes(bytes.begin() + 40, bytes.begin() + 46), (Bytes{5, 0, 0, 8, 0xdc, 5}));
+    EXPECT_EQ(Bytes(bytes.begin() + 46, bytes.end()), Bytes(10, 0));
 }
 
 TEST(TileHeader, EveryTruncationIsRefused) {
@@ -141,6 +149,9 @@ TEST(TileHeader, ATileOutsideItsPictureIsRefused) {
     EXPECT_TRUE(refused([](TileHeader& h) { h.height = 300; }));
     EXPECT_TRUE(refused([](TileHeader& h) { h.x = 1537; }));
     EXPECT_TRUE(refused([](TileHeader& h) { h.x = 65535, h.width = 65535; }));
+    EXPECT_TRUE(refused([](TileHeader& h) { h.viewportHeight = 299; }));
+    EXPECT_TRUE(refused([](TileHeader& h) { h.viewportWidth = 2049; }));
+    EXPECT_FALSE(refused([](TileHeader& h) { h.viewportWidth = h.viewportHeight = 0; }));
 }
 
 TEST(TileHeader, WhateverIsAcceptedLiesWithinItsPicture) {
@@ -159,6 +170,14 @@ TEST(TileHeader, WhateverIsAcceptedLiesWithinItsPicture) {
         ASSERT_LE(std::max(header->pictureWidth, header->pictureHeight), maxViewportPixels);
     }
     EXPECT_GT(accepted, 1000);
+}
+
+TEST(TileHeader, RaycastersHaveNames) {
+    EXPECT_STREQ(raycasterName(0), "");
+    EXPECT_STREQ(raycasterName(1), "native");
+    EXPECT_STREQ(raycasterName(5), "hybrid");
+    for (int number = 6; number < 256; ++number)
+        EXPECT_STREQ(raycasterName(std::uint8_t(number)), "");
 }
 
 // The notes that readers write must be text; protobuf is relied on to refuse anything else.

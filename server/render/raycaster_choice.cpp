@@ -1,0 +1,99 @@
+#include "render/raycaster_choice.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace haustra::render {
+
+double RaycasterTrial::medianMs() const {
+    auto sorted = ms;
+    const auto middle = sorted.begin() + std::ptrdiff_t((sorted.size() - 1) / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    return *middle;
+}
+
+RaycasterChoice::RaycasterChoice(const std::vector<RaycasterKind>& candidates, ChoiceLimits limits)
+    : warm_(candidates.size()), limits_(limits) {
+    for (const RaycasterKind kind : candidates)
+        trials_.push_back({kind, {}, {}});
+}
+
+bool RaycasterChoice::hopeless(const RaycasterTrial& trial) const {
+    return std::any_of(trials_.begin(), trials_.end(), [&](const RaycasterTrial& other) {
+        return !other.ms.empty() && !trial.ms.empty() &&
+               trial.medianMs() > limits_.hopeless * other.medianMs();
+    });
+}
+
+// First every candidate gets one timed picture, in order; then rounds.
+std::optional<std::size_t> RaycasterChoice::due() const {
+    const bool late = spentMs_ >= limits_.totalMs;
+    std::optional<std::size_t> least;
+    for (std::size_t n = 0; n < trials_.size(); ++n) {
+        const RaycasterTrial& trial = trials_[n];
+        if (!trial.failure.empty()) continue;
+        if (trial.ms.empty()) {
+            // Late, nobody new is tried, unless nobody has been timed.
+            if (!late || warm_[n] || !fastest()) return n;
+            continue;
+        }
+        if (late || int(trial.ms.size()) >= limits_.rounds || hopeless(trial)) continue;
+        if (!least || trial.ms.size() < trials_[*least].ms.size()) least = n;
+    }
+    return least;
+}
+
+std::optional<RaycasterChoice::Next> RaycasterChoice::next() const {
+    const auto n = due();
+    if (!n) return std::nullopt;
+    return Next{trials_[*n].kind, int(trials_[*n].ms.size()), bool(warm_[*n])};
+}
+
+void RaycasterChoice::took(double ms) {
+    const auto n = due();
+    if (!n) return;
+    spentMs_ += ms;
+    if (warm_[*n])
+        trials_[*n].ms.push_back(ms);
+    else
+        warm_[*n] = true;
+}
+
+void RaycasterChoice::failed(std::string why) {
+    const auto n = due();
+    if (!n) return;
+    trials_[*n].failure = why.empty() ? "it cannot draw here" : std::move(why);
+    trials_[*n].ms.clear();
+}
+
+std::optional<RaycasterKind> RaycasterChoice::fastest() const {
+    const RaycasterTrial* best = nullptr;
+    for (const RaycasterTrial& trial : trials_)
+        if (!trial.ms.empty() && (!best || trial.medianMs() < best->medianMs())) best = &trial;
+    if (!best) return std::nullopt;
+    return best->kind;
+}
+
+std::vector<RaycasterKind> raycasterCandidates(bool softwareDevice) {
+    using enum RaycasterKind;
+    if (softwareDevice) return {native, singlePass, polygonAssisted, hybrid, objectOrder};
+    return {singlePass, polygonAssisted, hybrid, objectOrder, native};
+}
+
+std::string describe(const std::vector<RaycasterTrial>& trials) {
+    std::string text;
+    for (const RaycasterTrial& trial : trials) {
+        if (!text.empty()) text += ", ";
+        text += toString(trial.kind);
+        if (trial.ms.empty()) {
+            text += trial.failure.empty() ? ": not tried" : ": " + trial.failure;
+            continue;
+        }
+        char ms[32];
+        std::snprintf(ms, sizeof ms, " %.1f ms", trial.medianMs());
+        text += ms;
+    }
+    return text;
+}
+
+}  // namespace haustra::render

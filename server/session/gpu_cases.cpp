@@ -1,0 +1,221 @@
+#include "session/gpu_cases.h"
+
+#include "session/guarded.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace haustra::session {
+namespace {
+
+constexpr int trialSide = 256;  // pixels of the pictures that find the fastest raycaster
+
+double msSince(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+std::size_t mib(std::size_t bytes) {
+    return bytes >> 20;
+}
+
+// Along the path where there is one, as a reader flies; else from the middle of the scan.
+std::vector<render::CameraView> trialViews(const OpenCase& facts, int count) {
+    const auto optics = render::opticsPreset(render::opticsPresets().front());
+    std::vector<render::CameraView> views;
+    const auto ups = rotationMinimizingUps(facts.centerline, flightPreferredUp);
+    for (int n = 0; n < count; ++n) {
+        render::CameraView view;
+        if (optics) view.optics = *optics;
+        if (facts.centerline.points.empty()) {
+            view.camera.positionMm =
+                facts.grid.patientFromVoxelPoint(0.5 * glm::dvec3(facts.grid.size));
+        } else {
+            const double arc = facts.centerline.lengthMm() * (n + 0.5) / count;
+            const auto pose = cameraAtArc(facts.centerline, ups, arc, FlightDirection::antegrade);
+            view.camera = {pose.positionMm, pose.forward, pose.up};
+        }
+        views.push_back(std::move(view));
+    }
+    return views;
+}
+
+// What a renderer holds of a case in whole: its volumes.
+std::size_t wholeBytes(const render::PreparedCase& prepared) {
+    const bool two = !prepared.cleansed.empty() &&
+                     prepared.cleansed.voxels().data() != prepared.ct.voxels().data();
+    return prepared.ct.grid().voxelCount() * sizeof(std::int16_t) * (two ? 2 : 1);
+}
+
+}  // namespace
+
+Room makeRoom(const std::vector<HeldCase>& held, std::size_t budgetBytes, std::size_t bytes) {
+    Room room;
+    std::vector<std::size_t> left;
+    std::size_t used = 0;
+    for (std::size_t n = 0; n < held.size(); ++n) {
+        used += held[n].bytes;
+        if (!held[n].open) left.push_back(n);
+    }
+    if (budgetBytes == 0) return {std::move(left), std::numeric_limits<std::size_t>::max()};
+    std::stable_sort(left.begin(), left.end(),
+                     [&](std::size_t a, std::size_t b) { return held[a].leftAt < held[b].leftAt; });
+    for (const std::size_t n : left) {
+        if (used <= budgetBytes && budgetBytes - used >= bytes) break;
+        used -= held[n].bytes;
+        room.released.push_back(n);
+    }
+    std::sort(room.released.begin(), room.released.end());
+    room.freeBytes = budgetBytes > used ? budgetBytes - used : 0;
+    return room;
+}
+
+GpuCases::GpuCases(gpu::Context& context, DrawingOptions options, std::function<void()> left)
+    : context_(context),
+      options_(options),
+      left_(std::make_shared<const std::function<void()>>(std::move(left))) {}
+
+// The pointer of which sessions hold copies.
+std::shared_ptr<const OpenCase> GpuCases::lend(const OpenCase& facts) const {
+    return {new OpenCase(facts),
+            [left = std::weak_ptr<const std::function<void()>>(left_)](const OpenCase* of) {
+                delete of;
+                if (const auto alive = left.lock()) (*alive)();
+            }};
+}
+
+std::shared_ptr<const OpenCase> GpuCases::find(const OpenCase& facts) {
+    for (Entry& entry : cases_) {
+        if (entry.facts.name != facts.name || entry.facts.content != facts.content) continue;
+        if (auto of = entry.of.lock()) return of;
+        auto of = lend(entry.facts);
+        entry.of = of;
+        entry.leftAt.reset();
+        return of;
+    }
+    return nullptr;
+}
+
+render::CaseRenderer* GpuCases::rendererOf(const std::shared_ptr<const OpenCase>& of) {
+    const auto entry = std::find_if(cases_.begin(), cases_.end(), [&](const Entry& candidate) {
+        return candidate.of.lock() == of;
+    });
+    return entry == cases_.end() ? nullptr : entry->renderer.get();
+}
+
+// ---- memory -------------------------------------------------------------------------------------
+
+std::optional<Clock::time_point> GpuCases::nextRelease() const {
+    std::optional<Clock::time_point> first;
+    for (const Entry& entry : cases_)
+        if (entry.leftAt && (!first || *entry.leftAt + keptAfterUse < *first))
+            first = *entry.leftAt + keptAfterUse;
+    return first;
+}
+
+void GpuCases::releaseLeft(Clock::time_point now) {
+    for (Entry& entry : cases_)
+        if (!entry.leftAt && entry.of.expired()) entry.leftAt = now;
+    std::erase_if(cases_, [&](const Entry& entry) {
+        return entry.leftAt && now >= *entry.leftAt + keptAfterUse;
+    });
+}
+
+Result<std::unique_ptr<render::CaseRenderer>> GpuCases::makeRenderer(
+    render::PreparedCase prepared) {
+    releaseLeft(Clock::now());
+    std::vector<HeldCase> held;
+    for (const Entry& entry : cases_)
+        held.push_back({entry.renderer->gpuBytes(), !entry.leftAt,
+                        entry.leftAt.value_or(Clock::time_point{})});
+    const std::size_t whole = wholeBytes(prepared);
+    const Room room = makeRoom(held, options_.gpuBudgetBytes, whole);
+    for (auto gone = room.released.rbegin(); gone != room.released.rend(); ++gone)
+        cases_.erase(cases_.begin() + std::ptrdiff_t(*gone));
+
+    render::RendererOptions how;
+    if (options_.raycaster) how.raycaster = *options_.raycaster;
+    if (options_.gpuBudgetBytes > 0) how.gpuBudgetBytes = room.freeBytes;
+    if (whole > room.freeBytes && !options_.raycaster)
+        how.raycaster = render::RaycasterKind::objectOrder;
+    auto renderer = render::CaseRenderer::upload(context_, std::move(prepared), how);
+    if (!renderer) return renderer;
+    if ((*renderer)->gpuBytes() > room.freeBytes)
+        return fail(ErrorKind::device,
+                    "the GPU has no room for the case: it needs " +
+                        std::to_string(mib((*renderer)->gpuBytes())) + " MiB, and " +
+                        std::to_string(mib(room.freeBytes)) + " of " +
+                        std::to_string(mib(options_.gpuBudgetBytes)) + " MiB are free",
+                    "render");
+    return renderer;
+}
+
+// ---- opening ------------------------------------------------------------------------------------
+
+Result<void> GpuCases::upload(OpenCase facts, render::PreparedCase prepared) {
+    opening_.reset();
+    const bool whole =
+        options_.gpuBudgetBytes == 0 || wholeBytes(prepared) <= options_.gpuBudgetBytes;
+    const auto start = Clock::now();
+    auto renderer = makeRenderer(std::move(prepared));
+    if (!renderer) return tl::make_unexpected(renderer.error());
+    spdlog::info("a case is on the GPU: {} MiB, copied in {:.1f} s", mib((*renderer)->gpuBytes()),
+                 1e-3 * msSince(start));
+    const bool choose = !options_.raycaster && whole &&
+                        (*renderer)->raycaster() != render::RaycasterKind::objectOrder;
+    opening_.emplace(Opening{{std::move(facts), {}, {}, std::move(*renderer)}, {}, {}});
+    if (choose) {
+        const render::ChoiceLimits limits;
+        opening_->choice.emplace(render::raycasterCandidates(context_.software()), limits);
+        opening_->views = trialViews(opening_->entry.facts, limits.rounds);
+    }
+    return {};
+}
+
+bool GpuCases::tryRaycaster() {
+    if (!opening_ || !opening_->choice) return false;
+    Opening& my = *opening_;
+    const auto next = my.choice->next();
+    if (!next) return false;
+    const auto start = Clock::now();
+    auto drawn = guarded([&]() -> Result<render::Image> {
+        if (auto used = my.entry.renderer->use(next->kind); !used)
+            return tl::make_unexpected(used.error());
+        const auto& view = my.views[std::size_t(next->round) % my.views.size()];
+        return my.entry.renderer->render(view, trialSide, trialSide);
+    });
+    if (drawn)
+        my.choice->took(msSince(start));
+    else
+        my.choice->failed(drawn.error().message);
+    return true;
+}
+
+Result<std::shared_ptr<const OpenCase>> GpuCases::opened() {
+    if (!opening_) return fail(ErrorKind::device, "no case is being opened", "render");
+    Opening my = std::move(*opening_);
+    opening_.reset();
+    render::CaseRenderer& renderer = *my.entry.renderer;
+    OpenCase& facts = my.entry.facts;
+    if (my.choice) {
+        facts.trials = my.choice->trials();
+        const auto fastest = my.choice->fastest();
+        if (!fastest)
+            return fail(ErrorKind::device,
+                        "no raycaster can draw the case: " + describe(facts.trials), "render");
+        if (auto used = renderer.use(*fastest); !used) return tl::make_unexpected(used.error());
+        spdlog::info("it is drawn by the {} raycaster: {} for {}x{} pixels", toString(*fastest),
+                     describe(facts.trials), trialSide, trialSide);
+    } else {
+        spdlog::info("it is drawn by the {} raycaster", toString(renderer.raycaster()));
+    }
+    facts.raycaster = renderer.raycaster();
+    auto of = lend(facts);
+    my.entry.of = of;
+    cases_.push_back(std::move(my.entry));
+    return of;
+}
+
+}  // namespace haustra::session

@@ -1,0 +1,44 @@
+// A picture that a session has asked for.
+#pragma once
+
+#include "core/result.h"
+#include "protocol/framing.h"
+#include "render/view.h"
+#include "session/open_case.h"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <variant>
+
+namespace haustra::session {
+
+using Clock = std::chrono::steady_clock;
+using SessionId = std::uint64_t;
+
+using AnyView = std::variant<render::CameraView, render::SliceView, render::ObliqueView,
+                             render::FlatView, render::FlatOverview>;
+
+/// One picture to draw. Immutable once it waits.
+struct PictureJob {
+    SessionId session = 0;
+    std::shared_ptr<const OpenCase> of;
+    AnyView view;
+    int width = 0, height = 0;
+    bool moving = false;  ///< the hand moves: soon there will be a newer one
+    bool coarse = false;  ///< the client takes it smaller than width × height
+    /// What the picture answers: viewport, codec, exact and sequence are set.
+    protocol::TileHeader header;
+    Clock::time_point inputAt;  ///< when its newest input arrived
+    /// Called on the render thread with the job's own header, filled in.
+    std::function<void(const protocol::TileHeader&, Result<render::Image>)> done;
+};
+
+/// Whether a picture of this view can be drawn some rows at a time (render::Band).
+bool inBands(const AnyView& view);
+/// Whether a smaller picture of this view shows the same, coarser; slices are drawn in no time.
+bool canBeCoarse(const AnyView& view);
+/// The view as it is to be drawn into a picture of another width, which shows the same.
+AnyView scaledView(AnyView view, int fromWidth, int toWidth);
+
+}  // namespace haustra::session
