@@ -13,6 +13,7 @@ struct Orbit {
     double azimuthDegrees = 0.0;
     double elevationDegrees = 0.0;  ///< −90: from the feet; 90: from above the head
     double heightMm = 500.0;        ///< of the picture
+    bool operator==(const Orbit&) const = default;
 };
 
 /// Where the camera stands; the directions are unit and orthogonal.

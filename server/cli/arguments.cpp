@@ -25,8 +25,8 @@ std::optional<std::vector<double>> parseNumbers(const std::string& text, char se
     return numbers;
 }
 
-void addStoreOption(CLI::App& command, std::filesystem::path& store) {
-    command.add_option("--store", store, "The case store's folder")
+CLI::Option* addStoreOption(CLI::App& command, std::filesystem::path& store) {
+    return command.add_option("--store", store, "The case store's folder")
         ->type_name("DIR")
         ->envname("HAUSTRA_STORE")
         ->required();

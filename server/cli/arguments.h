@@ -19,8 +19,8 @@ namespace haustra::cli {
 std::optional<std::vector<double>> parseNumbers(const std::string& text, char separator,
                                                 std::size_t count);
 
-/// --store DIR, or $HAUSTRA_STORE; wrong usage without either.
-void addStoreOption(CLI::App& command, std::filesystem::path& store);
+/// --store DIR, or $HAUSTRA_STORE; wrong usage without either, unless the option is told otherwise.
+CLI::Option* addStoreOption(CLI::App& command, std::filesystem::path& store);
 
 /// --threads N, 0 for all cores.
 void addThreadsOption(CLI::App& command, int& threads);

@@ -1,17 +1,26 @@
-// haustra render: one picture of a case, as the server draws it.
+// haustra render: one picture of a case, as the server draws it, or of a scan from a file.
 #include "cli/arguments.h"
 #include "cli/case_scans.h"
 #include "cli/commands.h"
+#include "cli/input_volume.h"
+#include "cli/render_arguments.h"
+#include "cli/render_camera.h"
 #include "cli/text_files.h"
 #include "core/centerline.h"
 #include "core/flat_lookup.h"
+#include "core/orbit.h"
 #include "core/wall_camera.h"
 #include "gpu/context.h"
 #include "render/case_renderer.h"
 #include "render/comparison.h"
+#include "render/optics_presets.h"
 #include "render/png_file.h"
+#include "render/wall_paint.h"
 #include "store/case_store.h"
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -22,51 +31,44 @@ namespace haustra::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using render::Lens, render::View;
 
-struct Arguments {
-    fs::path store, out;
-    std::string caseName, view = "endoscopic", direction = "antegrade";
-    std::string product;  // empty: what the view shows by itself
-    bool compare = false;
-    std::string preset = render::opticsPresets().front();
-    std::optional<double> arcMm;
-    std::vector<glm::dvec3> positionMm;
-    std::optional<glm::dvec2> flat;
-    double pixelsPerCircumference = FlatWindow{}.pixelsPerUnit;
-    double fovDegrees = render::Camera{}.fovDegrees, zoom = 1.0;
-    glm::ivec2 size{512, 512};
-    render::WindowLevel window;
-    int threads = 0;
+/// What the case has, as far as the picture needs it.
+struct Products {
+    Centerline centerline;
+    std::shared_ptr<const FlatMap> flatMap;
+    std::shared_ptr<const TriMesh> wall;
+    CaseScans scans;
+    Volume<TissueFractions> mixture;
 };
 
-Result<render::CameraView> endoscopicView(const Arguments& arguments,
-                                          const CenterlineCamera& from) {
-    auto preset = render::opticsPreset(arguments.preset);
+Result<render::Optics> opticsOf(const RenderArguments& arguments, const char* otherwise) {
+    const std::string name = arguments.optics.empty() ? otherwise : arguments.optics;
+    if (fs::path(name).extension() != ".json") return render::opticsPreset(name);
+    std::ifstream file(name, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    if (!file) return fail(ErrorKind::io, "the file cannot be read", name);
+    auto preset = render::parsePreset(text, name);
     if (!preset) return tl::make_unexpected(preset.error());
-    render::CameraView view;
-    view.camera = {from.positionMm, from.forward, from.up, arguments.fovDegrees};
-    view.optics = std::move(*preset);
-    return view;
+    return std::move(preset->optics);
 }
 
-bool isFlattened(const Arguments& arguments) {
-    return arguments.view == "flattened" || arguments.view == "flattened-zoom";
-}
-bool isSlice(const Arguments& arguments) {
-    return arguments.view != "endoscopic" && !isFlattened(arguments);
+render::MarchOptions marchOf(const RenderArguments& arguments) {
+    render::MarchOptions march;
+    march.stepVoxels = arguments.stepVoxels;
+    return march;
 }
 
-Result<CaseScans> readScans(const Arguments& arguments, const store::Case& source) {
-    const bool cleansedIsAsked = arguments.compare || arguments.product == "cleansed";
-    if (cleansedIsAsked || (!isSlice(arguments) && arguments.product.empty()))
-        return readCaseScans(source, cleansedIsAsked);
-    auto ct = source.readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    return CaseScans{std::move(*ct), {}};
+double fovOf(const RenderArguments& arguments, double ofPerspective) {
+    return arguments.fovDegrees.value_or(arguments.lens == Lens::fisheye ? 180.0 : ofPerspective);
+}
+
+double aspectOf(const RenderArguments& arguments) {
+    return double(arguments.size.x) / arguments.size.y;
 }
 
 /// The place of the wall that is given, or the nearest to the point that is.
-Result<WallPlace> wallPlace(const Arguments& arguments, const Centerline& centerline,
+Result<WallPlace> wallPlace(const RenderArguments& arguments, const Centerline& centerline,
                             const FlatLookup& lookup) {
     if (arguments.flat) {
         if (const auto place = lookup.at(*arguments.flat)) return *place;
@@ -81,7 +83,7 @@ Result<WallPlace> wallPlace(const Arguments& arguments, const Centerline& center
 }
 
 /// On the centerline, or turned from it to a place of the wall or a point near one.
-Result<CenterlineCamera> camera(const Arguments& arguments, const Centerline& centerline,
+Result<CenterlineCamera> camera(const RenderArguments& arguments, const Centerline& centerline,
                                 const std::shared_ptr<const FlatMap>& map) {
     if (arguments.arcMm) {
         return cameraAtArc(centerline, rotationMinimizingUps(centerline, flightPreferredUp),
@@ -95,19 +97,116 @@ Result<CenterlineCamera> camera(const Arguments& arguments, const Centerline& ce
     });
 }
 
-Result<render::Image> drawFlattened(const Arguments& arguments, const Centerline& centerline,
-                                    const std::shared_ptr<const FlatMap>& map,
+/// Placed by --eye, or outside.
+render::Camera freeCamera(const RenderArguments& arguments, const Grid& grid) {
+    const auto& [eye, look, up] = std::tie(arguments.eyeMm, arguments.lookMm, arguments.up);
+    render::Camera camera = cameraOutside(
+        grid, {arguments.azimuthDegrees, arguments.elevationDegrees}, arguments.lens,
+        fovOf(arguments, eye.empty() ? 30.0 : render::Camera{}.fovDegrees), aspectOf(arguments));
+    if (!eye.empty()) {
+        const glm::dvec3 target = look.empty()
+                                      ? grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size - 1))
+                                      : look.front();
+        camera.positionMm = eye.front();
+        camera.forward = target - eye.front();
+        camera.up = uprightFor(camera.forward);
+    }
+    if (!up.empty()) camera.up = up.front();
+    if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
+    return camera;
+}
+
+Result<render::Image> drawCamera(const RenderArguments& arguments, const render::Camera& camera,
+                                 std::shared_ptr<const render::WallPaint> paint,
+                                 render::CaseRenderer& renderer) {
+    auto optics = opticsOf(arguments, "mucosa");
+    if (!optics) return tl::make_unexpected(optics.error());
+    render::CameraView view{camera, std::move(*optics), marchOf(arguments)};
+    view.paint = std::move(paint);
+    return renderer.render(view, arguments.size.x, arguments.size.y);
+}
+
+Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Products& products,
+                                     render::CaseRenderer& renderer) {
+    const auto from = camera(arguments, products.centerline, products.flatMap);
+    if (!from) return tl::make_unexpected(from.error());
+    std::shared_ptr<const render::WallPaint> paint;
+    if (!arguments.paint.empty()) {
+        auto read = render::readWallPaint(arguments.paint, products.flatMap->height);
+        if (!read) return tl::make_unexpected(read.error());
+        paint = std::move(*read);
+    }
+    render::Camera camera{from->positionMm, from->forward, from->up,
+                          fovOf(arguments, render::Camera{}.fovDegrees), arguments.lens};
+    if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
+    return drawCamera(arguments, camera, std::move(paint), renderer);
+}
+
+Result<render::Image> drawFlattened(const RenderArguments& arguments, const Products& products,
                                     render::CaseRenderer& renderer) {
-    auto function = render::opticsPreset(arguments.preset);
-    if (!function) return tl::make_unexpected(function.error());
-    if (arguments.view == "flattened")
-        return renderer.render(render::FlatOverview{std::move(*function), {}}, arguments.size.x,
-                               arguments.size.y);
-    const auto center = wallPlace(arguments, centerline, FlatLookup(map));
+    auto optics = opticsOf(arguments, "mucosa");
+    if (!optics) return tl::make_unexpected(optics.error());
+    const auto [width, height] = std::pair(arguments.size.x, arguments.size.y);
+    if (arguments.shown() == View::flattened)
+        return renderer.render(render::FlatOverview{std::move(*optics), marchOf(arguments)}, width,
+                               height);
+    const auto center = wallPlace(arguments, products.centerline, FlatLookup(products.flatMap));
     if (!center) return tl::make_unexpected(center.error());
     const FlatWindow window{center->flat, arguments.pixelsPerCircumference};
-    return renderer.render(render::FlatView{window, std::move(*function), {}}, arguments.size.x,
-                           arguments.size.y);
+    return renderer.render(render::FlatView{window, std::move(*optics), marchOf(arguments)}, width,
+                           height);
+}
+
+Result<render::Image> drawOverview(const RenderArguments& arguments, const Products& products,
+                                   render::CaseRenderer& renderer) {
+    auto optics = opticsOf(arguments, "body");
+    if (!optics) return tl::make_unexpected(optics.error());
+    glm::dvec3 low(INFINITY), high(-INFINITY);
+    for (const glm::dvec3 vertex : products.wall->vertices) {
+        low = glm::min(low, vertex);
+        high = glm::max(high, vertex);
+    }
+    Orbit orbit = orbitAround(low, high, aspectOf(arguments));
+    orbit.azimuthDegrees = arguments.azimuthDegrees;
+    orbit.elevationDegrees = arguments.elevationDegrees;
+    if (arguments.heightMm) orbit.heightMm = *arguments.heightMm;
+    const OrbitPose pose = poseOf(orbit);
+    render::OverviewView view;
+    view.camera = {pose.positionMm, pose.forward, pose.up};
+    view.camera.lens = Lens::orthographic;
+    view.camera.heightMm = orbit.heightMm;
+    view.bookmarksMm = arguments.marksMm;
+    view.body = arguments.body;
+    view.optics = std::move(*optics);
+    view.march = marchOf(arguments);
+    if (arguments.arcMm) {
+        const auto reader = camera(arguments, products.centerline, {});
+        if (!reader) return tl::make_unexpected(reader.error());
+        view.reader = render::Camera{reader->positionMm, reader->forward, reader->up};
+    }
+    return renderer.render(view, arguments.size.x, arguments.size.y);
+}
+
+Result<render::Image> drawOblique(const RenderArguments& arguments, const Centerline& centerline,
+                                  const render::WindowLevel& window, render::Scan scan,
+                                  render::CaseRenderer& renderer) {
+    render::ObliqueView view;
+    view.window = window;
+    view.scan = scan;
+    view.heightMm = arguments.heightMm.value_or(view.heightMm);
+    if (arguments.arcMm) {
+        const auto from = camera(arguments, centerline, {});
+        if (!from) return tl::make_unexpected(from.error());
+        view.positionMm = from->positionMm;
+        view.forward = from->forward;
+        view.up = from->up;
+    } else {
+        view.positionMm = arguments.positionMm.front();
+        view.forward = arguments.lookMm.front() - view.positionMm;
+        view.up = uprightFor(view.forward);
+    }
+    if (!arguments.up.empty()) view.up = arguments.up.front();
+    return renderer.render(view, arguments.size.x, arguments.size.y);
 }
 
 /// Before, classification and after, each as a slice of its own would be.
@@ -124,218 +223,160 @@ Result<render::Image> compare(render::CaseRenderer& renderer,
     return render::sideBySide({std::move(*before), std::move(*tissues), std::move(*after)});
 }
 
-Result<render::Image> draw(const Arguments& arguments, const store::Case& source) {
-    const auto plane = render::viewFromString(arguments.view);
-    if (!plane) return tl::make_unexpected(plane.error());
-    Centerline centerline;
-    if (arguments.arcMm) {
-        auto read = source.readCenterline();
-        if (!read) return tl::make_unexpected(read.error());
-        if (read->points.empty())
+Result<render::Image> drawSlice(const RenderArguments& arguments, const Products& products,
+                                const render::WindowLevel& window, render::CaseRenderer& renderer) {
+    render::SliceView slice{arguments.shown(), {}, arguments.zoom, window};
+    slice.positionMm = arguments.positionMm.empty()
+                           ? poseAtArc(products.centerline, *arguments.arcMm).point.positionMm
+                           : arguments.positionMm.front();
+    if (arguments.compare) return compare(renderer, products.mixture, slice, arguments.size);
+    if (arguments.product == "cleansed") slice.scan = render::Scan::cleansed;
+    return renderer.render(slice, arguments.size.x, arguments.size.y);
+}
+
+Result<CaseScans> readScans(const RenderArguments& arguments, const store::Case& source) {
+    const bool cleansedIsAsked = arguments.compare || arguments.product == "cleansed";
+    if (cleansedIsAsked || (arguments.castsRays() && arguments.product.empty()))
+        return readCaseScans(source, cleansedIsAsked);
+    auto ct = source.readVolume<std::int16_t>("ct");
+    if (!ct) return tl::make_unexpected(ct.error());
+    return CaseScans{std::move(*ct), {}};
+}
+
+template <class T>
+Result<void> keep(Result<T> read, T& in) {
+    if (!read) return tl::make_unexpected(read.error());
+    in = std::move(*read);
+    return {};
+}
+template <class T>
+Result<void> keep(Result<T> read, std::shared_ptr<const T>& in) {
+    if (!read) return tl::make_unexpected(read.error());
+    in = std::make_shared<const T>(std::move(*read));
+    return {};
+}
+
+/// Before the GPU has work: a case may lack what the picture needs.
+Result<Products> readProducts(const RenderArguments& arguments, const store::Case& source) {
+    const View view = arguments.shown();
+    const bool isFree = arguments.view == "camera";
+    Products products;
+    if (arguments.arcMm || view == View::overview) {
+        if (auto read = keep(source.readCenterline(), products.centerline); !read)
+            return tl::make_unexpected(read.error());
+        if (products.centerline.points.empty())
             return fail(ErrorKind::noResult, "the centerline is empty", source.name());
-        centerline = std::move(*read);
-        const double length = centerline.lengthMm();
+    }
+    if (arguments.arcMm) {
+        const double length = products.centerline.lengthMm();
         if (!(*arguments.arcMm >= 0.0 && *arguments.arcMm <= length)) {
             return fail(ErrorKind::badInput,
                         fmt::format("the centerline runs from 0 to {:.1f} mm", length),
                         fmt::format("--arc-mm {}", *arguments.arcMm));
         }
     }
-    const auto scans = readScans(arguments, source);
-    if (!scans) return tl::make_unexpected(scans.error());
-    // Before the GPU has work: a case may have no mixture.
-    Volume<TissueFractions> mixture;
-    if (arguments.compare) {
-        auto read = source.readVolume<TissueFractions>("mixture");
-        if (!read) return tl::make_unexpected(read.error());
-        mixture = std::move(*read);
-    }
-    std::shared_ptr<const FlatMap> flatMap;
-    if (isFlattened(arguments) || (!isSlice(arguments) && !arguments.arcMm)) {
-        auto read = source.readFlatMap();
-        if (!read) return tl::make_unexpected(read.error());
-        flatMap = std::make_shared<const FlatMap>(std::move(*read));
-    }
-    auto prepared = render::prepareCase(scans->ct, scans->cleansed, arguments.threads);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    prepared->flatMap = flatMap;
+    if (auto read = keep(readScans(arguments, source), products.scans); !read)
+        return tl::make_unexpected(read.error());
+    if (arguments.compare)
+        if (auto read = keep(source.readVolume<TissueFractions>("mixture"), products.mixture);
+            !read)
+            return tl::make_unexpected(read.error());
+    const bool onWall = view == View::endoscopic && !isFree && !arguments.arcMm;
+    if (arguments.isFlattened() || onWall || !arguments.paint.empty())
+        if (auto read = keep(source.readFlatMap(), products.flatMap); !read)
+            return tl::make_unexpected(read.error());
+    if (view == View::overview ||
+        (arguments.castsRays() && arguments.raycaster == render::RaycasterKind::polygonAssisted))
+        if (auto read = keep(source.readMesh(), products.wall); !read)
+            return tl::make_unexpected(read.error());
+    return products;
+}
+
+/// Makes a renderer for `prepared` and has `draw` use it.
+Result<render::Image> drawWith(
+    const RenderArguments& arguments, render::PreparedCase prepared,
+    const std::function<Result<render::Image>(render::CaseRenderer&)>& draw) {
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
-    auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared),
-                                                 {.threads = arguments.threads});
+    render::RendererOptions options;
+    if (arguments.castsRays()) options.raycaster = arguments.raycaster;
+    options.gpuBudgetBytes = std::size_t(arguments.gpuBudgetMb * 1048576.0);
+    options.threads = arguments.threads;
+    auto renderer = render::CaseRenderer::upload(**context, std::move(prepared), options);
     if (!renderer) return tl::make_unexpected(renderer.error());
-    if (isFlattened(arguments)) return drawFlattened(arguments, centerline, flatMap, **renderer);
-
-    if (*plane == render::View::endoscopic) {
-        const auto from = camera(arguments, centerline, flatMap);
-        if (!from) return tl::make_unexpected(from.error());
-        const auto view = endoscopicView(arguments, *from);
-        if (!view) return tl::make_unexpected(view.error());
-        return (*renderer)->render(*view, arguments.size.x, arguments.size.y);
-    }
-    render::SliceView slice{*plane, {}, arguments.zoom, arguments.window};
-    slice.positionMm = arguments.positionMm.empty()
-                           ? poseAtArc(centerline, *arguments.arcMm).point.positionMm
-                           : arguments.positionMm.front();
-    if (arguments.compare) return compare(**renderer, mixture, slice, arguments.size);
-    if (arguments.product == "cleansed") slice.scan = render::Scan::cleansed;
-    return (*renderer)->render(slice, arguments.size.x, arguments.size.y);
+    return draw(**renderer);
 }
 
-Result<void> runRender(const Arguments& arguments) {
-    if (auto fit = checkOutputFile(arguments.out); !fit) return fit;
+Result<render::Image> drawCase(const RenderArguments& arguments) {
     const auto source = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
-        return s.openCase(arguments.caseName);
+        return s.openCase(arguments.input);
     });
     if (!source) return tl::make_unexpected(source.error());
-    const auto image = draw(arguments, *source);
+    const auto products = readProducts(arguments, *source);
+    if (!products) return tl::make_unexpected(products.error());
+    const CaseScans& scans = products->scans;
+    auto prepared = render::prepareCase(scans.ct, scans.cleansed, arguments.threads);
+    if (!prepared) return tl::make_unexpected(prepared.error());
+    prepared->flatMap = products->flatMap;
+    prepared->wall = products->wall;
+    if (!products->centerline.points.empty())
+        prepared->path = std::make_shared<const Centerline>(products->centerline);
+    const Grid grid = scans.ct.grid();
+    return drawWith(arguments, std::move(*prepared), [&](render::CaseRenderer& renderer) {
+        const auto window = arguments.window.value_or(render::WindowLevel{});
+        const auto scan =
+            arguments.product == "cleansed" ? render::Scan::cleansed : render::Scan::original;
+        if (arguments.isFlattened()) return drawFlattened(arguments, *products, renderer);
+        if (arguments.shown() == View::overview)
+            return drawOverview(arguments, *products, renderer);
+        if (arguments.shown() == View::oblique)
+            return drawOblique(arguments, products->centerline, window, scan, renderer);
+        if (arguments.isSlice()) return drawSlice(arguments, *products, window, renderer);
+        if (arguments.view == "camera")
+            return drawCamera(arguments, freeCamera(arguments, grid), nullptr, renderer);
+        return drawEndoscopic(arguments, *products, renderer);
+    });
+}
+
+Result<render::Image> drawScan(const RenderArguments& arguments) {
+    auto volume = readInputVolume(arguments.input, arguments.spacingMm, arguments.threads);
+    if (!volume) return tl::make_unexpected(volume.error());
+    const Grid grid = volume->grid();
+    render::WindowLevel window;
+    if (arguments.window) {
+        window = *arguments.window;
+    } else {
+        const auto [low, high] = std::ranges::minmax(volume->voxels());
+        window = {0.5 * (low + high), std::max(1.0, double(high) - low)};
+    }
+    auto prepared = render::prepareCase(*volume, {}, arguments.threads);
+    if (!prepared) return tl::make_unexpected(prepared.error());
+    return drawWith(arguments, std::move(*prepared), [&](render::CaseRenderer& renderer) {
+        if (arguments.isSlice()) return drawSlice(arguments, {}, window, renderer);
+        if (arguments.shown() == View::oblique)
+            return drawOblique(arguments, {}, window, render::Scan::original, renderer);
+        return drawCamera(arguments, freeCamera(arguments, grid), nullptr, renderer);
+    });
+}
+
+Result<void> runRender(const RenderArguments& arguments) {
+    if (auto fit = checkOutputFile(arguments.out); !fit) return fit;
+    const auto image = arguments.isScan() ? drawScan(arguments) : drawCase(arguments);
     if (!image) return tl::make_unexpected(image.error());
     return render::writePng(arguments.out, *image);
-}
-
-void addPictureOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
-    command
-        .add_option_function<std::string>(
-            "--size",
-            [arguments](const std::string& text) {
-                const auto sides = parseNumbers(text, 'x', 2);
-                for (int axis = 0; axis < 2; ++axis) {
-                    const double side = sides ? (*sides)[axis] : 0.0;
-                    if (!(side >= 1.0 && side <= render::maxPictureSide) || side != int(side)) {
-                        throw CLI::ValidationError(
-                            "--size", "\"" + text + "\" is not WxH with sides of 1 to " +
-                                          std::to_string(render::maxPictureSide));
-                    }
-                    arguments->size[axis] = int(side);
-                }
-            },
-            "Pixels; with --compare, of each of the three")
-        ->type_name("WxH")
-        ->default_str("512x512");
-    command.add_option("--out", arguments->out, "The picture; replaced in one step")
-        ->type_name("FILE.png")
-        ->check([](const std::string& name) {
-            return fs::path(name).extension() == ".png" ? std::string()
-                                                        : "\"" + name + "\" does not end in .png";
-        })
-        ->required();
-}
-
-void addFlatOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
-    command
-        .add_option_function<std::string>(
-            "--flat",
-            [arguments](const std::string& text) {
-                const auto numbers = parseNumbers(text, ',', 2);
-                if (!numbers) throw CLI::ValidationError("--flat", "\"" + text + "\" is not X,Y");
-                arguments->flat = glm::dvec2((*numbers)[0], (*numbers)[1]);
-            },
-            "The middle of flattened-zoom on the strip, in circumferences: X around the colon, Y "
-            "from the rectum; in place of --arc-mm. Or the place of the wall that the endoscopic "
-            "view looks at, as with --position")
-        ->type_name("X,Y");
-    command
-        .add_option("--pixels-per-circumference", arguments->pixelsPerCircumference,
-                    "Enlargement of flattened-zoom")
-        ->type_name("P")
-        ->check(CLI::Range(1.0, double(render::maxPixelsPerUnit)))
-        ->capture_default_str();
-}
-
-void addViewOptions(CLI::App& command, const std::shared_ptr<Arguments>& arguments) {
-    command.add_option("--view", arguments->view, "What to draw")
-        ->check(CLI::IsMember(
-            {"endoscopic", "axial", "coronal", "sagittal", "flattened", "flattened-zoom"}))
-        ->capture_default_str();
-    auto* product =
-        command
-            .add_option("--product", arguments->product,
-                        "Which scan to draw; else a slice shows ct, the other views cleansed where "
-                        "the case has it")
-            ->check(CLI::IsMember({"ct", "cleansed"}));
-    command
-        .add_flag("--compare", arguments->compare,
-                  "A slice three times, side by side: ct, the mixture by colours (air red, soft "
-                  "tissue green, bone and tagged material blue, air meeting tagged material pink), "
-                  "cleansed")
-        ->excludes(product);
-    command
-        .add_option("--arc-mm", arguments->arcMm,
-                    "Where on the centerline, from the rectum: the camera, the point that a slice "
-                    "shows, or "
-                    "the one whose nearest place on the wall is in the middle of flattened-zoom")
-        ->type_name("A");
-    addPointsOption(
-        command, "--position", arguments->positionMm,
-        "The point (LPS, mm) of a slice or of flattened-zoom, in place of --arc-mm. The endoscopic "
-        "view looks at it from where the flat map registers the place of the wall nearest to it "
-        "with the centerline, turned as flattened-zoom is: the cecum up");
-    addFlatOptions(command, arguments);
-    command
-        .add_option("--direction", arguments->direction, "Which way the camera on --arc-mm looks")
-        ->check(CLI::IsMember({"antegrade", "retrograde"}))
-        ->capture_default_str();
-    command.add_option("--fov", arguments->fovDegrees, "Vertical field of view of the camera")
-        ->type_name("DEGREES")
-        ->check(CLI::Range(1.0, 170.0))
-        ->capture_default_str();
-    command
-        .add_option("--transfer-function", arguments->preset,
-                    "Colours of the endoscopic and flattened views")
-        ->check(CLI::IsMember(render::opticsPresets()))
-        ->capture_default_str();
-    command
-        .add_option_function<std::string>(
-            "--window",
-            [arguments](const std::string& text) {
-                const auto numbers = parseNumbers(text, ',', 2);
-                if (!numbers || !((*numbers)[1] > 0.0)) {
-                    throw CLI::ValidationError("--window", "\"" + text + "\" is not CENTER,WIDTH");
-                }
-                arguments->window = {(*numbers)[0], (*numbers)[1]};
-            },
-            "Grey values of a slice, HU")
-        ->type_name("C,W")
-        ->default_str("0,2000");
-    command.add_option("--zoom", arguments->zoom, "Enlargement of a slice")
-        ->type_name("Z")
-        ->check(CLI::Range(1.0, 64.0))
-        ->capture_default_str();
 }
 
 }  // namespace
 
 Command addRender(CLI::App& program) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<RenderArguments>();
     CLI::App* command = program.add_subcommand(
         "render",
-        "Draw one picture of a case: a camera in the colon, a slice of the scan, or the flattened "
-        "wall.");
-    command->add_option("CASE", arguments->caseName, "The case's name")->required();
-    addStoreOption(*command, arguments->store);
-    addViewOptions(*command, arguments);
-    addPictureOptions(*command, arguments);
-    addThreadsOption(*command, arguments->threads);
-    command->callback([arguments] {
-        const std::string& view = arguments->view;
-        if (!isSlice(*arguments) && arguments->compare)
-            throw CLI::ValidationError("--compare", "compares slices; give --view");
-        if (arguments->flat && isSlice(*arguments))
-            throw CLI::ValidationError("--flat", "places flattened-zoom and endoscopic");
-        if (arguments->positionMm.size() > 1)
-            throw CLI::ValidationError("--position", "given more than once");
-        const int places = (arguments->arcMm ? 1 : 0) + int(arguments->positionMm.size()) +
-                           (arguments->flat ? 1 : 0);
-        if (view == "flattened" && places > 0)
-            throw CLI::ValidationError("--view",
-                                       "flattened shows the whole strip and takes no place");
-        if (!isSlice(*arguments) && places > 1)
-            throw CLI::ValidationError("--view", "the place is given in two ways");
-        if (view != "flattened" && places == 0) {
-            throw CLI::RequiredError(isSlice(*arguments) ? "--arc-mm or --position"
-                                                         : "--flat, --arc-mm or --position");
-        }
-    });
+        "Draw one picture. Of a case: a camera in the colon or anywhere, the colon from outside, a "
+        "slice of the scan in any direction, or the flattened wall. Of a scan from a file: from "
+        "outside or anywhere, or a slice.");
+    addRenderOptions(*command, *arguments);
+    command->callback([arguments] { checkUsage(*arguments); });
     return {command, [arguments] { return runRender(*arguments); }};
 }
 

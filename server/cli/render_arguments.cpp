@@ -1,0 +1,321 @@
+#include "cli/render_arguments.h"
+
+#include "cli/arguments.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace haustra::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using render::Lens, render::View;
+
+const std::string camera = "camera";  // of View::endoscopic, placed by --eye
+
+/// An option whose text `read` turns into a value; false: it is not `form`.
+CLI::Option* addText(CLI::App& command, const std::string& name, const std::string& form,
+                     const std::string& description, std::function<bool(const std::string&)> read) {
+    return command
+        .add_option_function<std::string>(
+            name,
+            [=](const std::string& text) {
+                if (!read(text))
+                    throw CLI::ValidationError(name, "\"" + text + "\" is not " + form);
+            },
+            description)
+        ->type_name(form);
+}
+
+CLI::Option* addPoint(CLI::App& command, const std::string& name, std::vector<glm::dvec3>& point,
+                      const std::string& description) {
+    return addPointsOption(command, name, point, description);
+}
+
+void addPlaceOptions(CLI::App& command, RenderArguments& my) {
+    command
+        .add_option("--arc-mm", my.arcMm,
+                    "Where on the centerline, from the rectum: the endoscopic camera, the point "
+                    "that a slice shows, the lumen's cross-section of oblique, the reader in the "
+                    "overview, or the point whose nearest place on the wall is in the middle of "
+                    "flattened-zoom")
+        ->type_name("A");
+    addPoint(command, "--position", my.positionMm,
+             "The point (LPS, mm) of a slice, of oblique or of flattened-zoom, in place of "
+             "--arc-mm. The endoscopic view looks at it from where the flat map registers the "
+             "place of the wall nearest to it with the centerline, turned as flattened-zoom is: "
+             "the cecum up");
+    addText(command, "--flat", "X,Y",
+            "The middle of flattened-zoom on the strip, in circumferences: X around the colon, Y "
+            "from the rectum; in place of --arc-mm. Or the place of the wall that the endoscopic "
+            "view looks at, as with --position",
+            [&my](const std::string& text) {
+                const auto numbers = parseNumbers(text, ',', 2);
+                if (numbers) my.flat = glm::dvec2((*numbers)[0], (*numbers)[1]);
+                return numbers.has_value();
+            });
+    command
+        .add_option("--pixels-per-circumference", my.pixelsPerCircumference,
+                    "Enlargement of flattened-zoom")
+        ->type_name("P")
+        ->check(CLI::Range(1.0, double(render::maxPixelsPerUnit)))
+        ->capture_default_str();
+    command.add_option("--direction", my.direction, "Which way the camera on --arc-mm looks")
+        ->check(CLI::IsMember({"antegrade", "retrograde"}))
+        ->capture_default_str();
+}
+
+void addCameraOptions(CLI::App& command, RenderArguments& my) {
+    addPoint(command, "--eye", my.eyeMm,
+             "Where the camera of --view camera is (LPS, mm); without it, outside, with all of "
+             "the scan in the picture");
+    addPoint(command, "--look", my.lookMm,
+             "The point it looks at; the scan's middle. Of oblique with --position: a point "
+             "straight before the slice");
+    addPoint(command, "--up", my.up,
+             "The direction that is up in the picture; the patient's head, or the front where the "
+             "camera looks along the patient");
+    command
+        .add_option("--azimuth", my.azimuthDegrees,
+                    "Of a camera outside, and of the overview: from the patient's front (0), left "
+                    "(90) or back (180)")
+        ->type_name("DEGREES")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->capture_default_str();
+    command
+        .add_option("--elevation", my.elevationDegrees,
+                    "Likewise, how far from above; negative from the feet")
+        ->type_name("DEGREES")
+        ->check(CLI::Range(-90.0, 90.0))
+        ->capture_default_str();
+    command
+        .add_option_function<std::string>(
+            "--lens",
+            [&my](const std::string& name) {
+                my.lens = name == "fisheye"        ? Lens::fisheye
+                          : name == "orthographic" ? Lens::orthographic
+                                                   : Lens::perspective;
+            },
+            "How the camera's rays spread: a fisheye shows equal angles as equal lengths")
+        ->check(CLI::IsMember({"perspective", "fisheye", "orthographic"}))
+        ->default_str("perspective");
+    command
+        .add_option("--fov", my.fovDegrees,
+                    "Vertical field of view: perspective 1 to 170 (90; 30 of a camera outside), "
+                    "fisheye 1 to 360 (180)")
+        ->type_name("DEGREES")
+        ->check(CLI::Range(1.0, 360.0));
+    command
+        .add_option("--height-mm", my.heightMm,
+                    "How much an orthographic camera (all of the scan), oblique (60) or the "
+                    "overview (all of the colon) shows from top to bottom")
+        ->type_name("H")
+        ->check(CLI::Range(render::minObliqueMm, render::maxObliqueMm));
+}
+
+void addDrawingOptions(CLI::App& command, RenderArguments& my) {
+    std::string names;
+    for (const std::string& name : render::opticsPresets())
+        names += (names.empty() ? "" : ", ") + name;
+    command
+        .add_option("--tf,--transfer-function", my.optics,
+                    "Colours, opacities and light of what rays meet: a preset (" + names +
+                        ") or a preset's file; mucosa, and body around the overview's colon")
+        ->type_name("NAME|FILE.json")
+        ->check([](const std::string& text) {
+            const auto& presets = render::opticsPresets();
+            if (fs::path(text).extension() == ".json" ||
+                std::find(presets.begin(), presets.end(), text) != presets.end())
+                return std::string();
+            return "\"" + text + "\" is neither a preset nor the name of a .json file";
+        });
+    addText(command, "--raycaster", "KIND",
+            "What casts the rays: single-pass, native (the CPU), polygon-assisted, object-order "
+            "or hybrid",
+            [&my](const std::string& text) {
+                const auto kind = render::raycasterFromString(text);
+                if (kind) my.raycaster = *kind;
+                return kind.has_value();
+            })
+        ->default_str("single-pass");
+    command
+        .add_option("--gpu-budget", my.gpuBudgetMb,
+                    "GPU memory for the scan in the object-order raycaster, MB; 0: what there is")
+        ->type_name("MB")
+        ->check(CLI::Range(0.0, 1e7))
+        ->capture_default_str();
+    command.add_option("--step", my.stepVoxels, "Distance of samples on a ray, in voxels")
+        ->type_name("V")
+        ->check(CLI::Range(0.05, 4.0))
+        ->capture_default_str();
+    command
+        .add_option("--paint", my.paint,
+                    "A picture of the whole strip, as flat-image is without a seam margin, that "
+                    "colours the endoscopic view's wall")
+        ->type_name("FILE.png");
+    addPointsOption(command, "--mark", my.marksMm,
+                    "A ball in the overview (LPS, mm); may be given again and again");
+    command.add_flag("!--no-body", my.body, "Leave out the body around the overview's colon");
+    addText(command, "--window", "C,W",
+            "Grey values of a slice, HU (0,2000; of a scan from a file, all of its values)",
+            [&my](const std::string& text) {
+                const auto numbers = parseNumbers(text, ',', 2);
+                if (!numbers || !((*numbers)[1] > 0.0)) return false;
+                my.window = {(*numbers)[0], (*numbers)[1]};
+                return true;
+            });
+    command.add_option("--zoom", my.zoom, "Enlargement of a slice")
+        ->type_name("Z")
+        ->check(CLI::Range(1.0, 64.0))
+        ->capture_default_str();
+}
+
+void addPictureOptions(CLI::App& command, RenderArguments& my) {
+    addText(command, "--size", "WxH",
+            "Pixels, at most " + std::to_string(render::maxPictureSide) +
+                " a side; with --compare, of each of the three",
+            [&my](const std::string& text) {
+                const auto sides = parseNumbers(text, 'x', 2);
+                for (int axis = 0; axis < 2; ++axis) {
+                    const double side = sides ? (*sides)[std::size_t(axis)] : 0.0;
+                    if (!(side >= 1.0 && side <= render::maxPictureSide) || side != int(side))
+                        return false;
+                    my.size[axis] = int(side);
+                }
+                return true;
+            })
+        ->default_str("512x512");
+    command.add_option("--out", my.out, "The picture; replaced in one step")
+        ->type_name("FILE.png")
+        ->check([](const std::string& name) {
+            return fs::path(name).extension() == ".png" ? std::string()
+                                                        : "\"" + name + "\" does not end in .png";
+        })
+        ->required();
+}
+
+[[noreturn]] void wrong(const std::string& option, const std::string& what) {
+    throw CLI::ValidationError(option, what);
+}
+
+void checkPlace(const RenderArguments& my) {
+    const bool outside = my.view == camera || (my.view.empty() && my.isScan());
+    const View view = my.shown();
+    const int places = (my.arcMm ? 1 : 0) + int(my.positionMm.size()) + (my.flat ? 1 : 0);
+    if (my.positionMm.size() > 1) wrong("--position", "given more than once");
+    for (const auto& [name, points] :
+         {std::pair("--eye", &my.eyeMm), {"--look", &my.lookMm}, {"--up", &my.up}})
+        if (points->size() > 1) wrong(name, "given more than once");
+    if (!my.eyeMm.empty() && !outside) wrong("--eye", "places --view camera");
+    if (!my.lookMm.empty() && my.eyeMm.empty() && view != View::oblique)
+        wrong("--look", "needs --eye");
+    if (my.flat && (my.isSlice() || view == View::oblique || view == View::overview))
+        wrong("--flat", "places flattened-zoom and endoscopic");
+    if (view == View::flattened && places > 0)
+        wrong("--view", "flattened shows the whole strip and takes no place");
+    if (outside && places > 0) wrong("--view", "camera is placed by --eye and --look");
+    if (view == View::overview && (!my.positionMm.empty() || my.flat))
+        wrong("--view", "overview takes no place but the reader's, --arc-mm");
+    if (view == View::oblique && !my.positionMm.empty() && my.lookMm.empty())
+        throw CLI::RequiredError("--look");
+    if (!my.isSlice() && places > 1) wrong("--view", "the place is given in two ways");
+    if (places == 0 && !outside && view != View::flattened && view != View::overview)
+        throw CLI::RequiredError(my.isSlice() || view == View::oblique
+                                     ? "--arc-mm or --position"
+                                     : "--flat, --arc-mm or --position");
+}
+
+}  // namespace
+
+bool RenderArguments::isScan() const {
+    const std::string& name = input;
+    return name.find('/') != std::string::npos || name.ends_with(".nii") ||
+           name.ends_with(".nii.gz");
+}
+
+View RenderArguments::shown() const {
+    if (view.empty() || view == camera) return View::endoscopic;
+    return *render::viewFromString(view);
+}
+
+bool RenderArguments::isSlice() const {
+    const View kind = shown();
+    return kind == View::axial || kind == View::coronal || kind == View::sagittal;
+}
+
+bool RenderArguments::isFlattened() const {
+    return shown() == View::flattened || shown() == View::flattenedZoom;
+}
+
+bool RenderArguments::castsRays() const {
+    return !isSlice() && shown() != View::oblique;
+}
+
+void addRenderOptions(CLI::App& command, RenderArguments& my) {
+    command
+        .add_option("INPUT", my.input,
+                    "A case's name; or a scan: FILE.nii, FILE.nii.gz, or a FOLDER/ of DICOM files "
+                    "or of PNG slices (its name with a slash)")
+        ->required();
+    addStoreOption(command, my.store)->required(false);
+    command
+        .add_option("--view", my.view,
+                    "What to draw; without it endoscopic, and camera of a scan, which has no other "
+                    "than slices and oblique")
+        ->check(CLI::IsMember({"endoscopic", "camera", "overview", "oblique", "axial", "coronal",
+                               "sagittal", "flattened", "flattened-zoom"}));
+    auto* product =
+        command
+            .add_option("--product", my.product,
+                        "Which scan to draw; else a slice shows ct, the other views cleansed where "
+                        "the case has it")
+            ->check(CLI::IsMember({"ct", "cleansed"}));
+    command
+        .add_flag("--compare", my.compare,
+                  "A slice three times, side by side: ct, the mixture by colours (air red, soft "
+                  "tissue green, bone and tagged material blue, air meeting tagged material pink), "
+                  "cleansed")
+        ->excludes(product);
+    addPlaceOptions(command, my);
+    addCameraOptions(command, my);
+    addDrawingOptions(command, my);
+    addText(command, "--spacing", "X,Y,Z",
+            "Millimetres between pixels and between slices of a folder of PNG slices. The first "
+            "slice, by the numbers in the names, is the lowest; with a negative Z, the highest",
+            [&my](const std::string& text) {
+                const auto numbers = parseNumbers(text, ',', 3);
+                if (!numbers) return false;
+                my.spacingMm = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+                return my.spacingMm.x > 0.0 && my.spacingMm.y > 0.0 && my.spacingMm.z != 0.0;
+            })
+        ->default_str("1,1,1");
+    addPictureOptions(command, my);
+    addThreadsOption(command, my.threads);
+}
+
+void checkUsage(const RenderArguments& my) {
+    const View view = my.shown();
+    if (my.isScan()) {
+        if (my.view == "endoscopic" || my.isFlattened() || view == View::overview)
+            wrong("--view", my.view + " shows a case, not a scan");
+        if (my.compare || !my.product.empty()) wrong("--product", "a scan has no products");
+        if (my.arcMm || my.flat) wrong("--arc-mm", "a scan has no centerline");
+        if (view == View::endoscopic && my.optics.empty()) throw CLI::RequiredError("--tf");
+    } else if (my.store.empty()) {
+        throw CLI::RequiredError("--store");
+    }
+    if (!my.isSlice() && my.compare) wrong("--compare", "compares slices; give --view");
+    if (my.lens != Lens::perspective && view != View::endoscopic)
+        wrong("--lens", "is for the endoscopic view and camera");
+    if (my.fovDegrees && my.lens == Lens::perspective && *my.fovDegrees > 170.0)
+        wrong("--fov", "a perspective sees 170 degrees at most");
+    if (!my.marksMm.empty() && view != View::overview) wrong("--mark", "is for the overview");
+    if (!my.paint.empty() && (my.view != "endoscopic" && !my.view.empty()))
+        wrong("--paint", "is for the endoscopic view");
+    checkPlace(my);
+}
+
+}  // namespace haustra::cli

@@ -1,0 +1,69 @@
+// What `haustra render` can be told.
+#pragma once
+
+#include "core/flat_map.h"
+#include "render/raycaster.h"
+#include "render/view.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace haustra::cli {
+
+/// As parsed and checked by themselves; what depends on the input is checked when it is read.
+struct RenderArguments {
+    std::string input;  ///< a case's name, or a scan's path
+    std::filesystem::path store, out;
+    std::string view;     ///< empty: endoscopic of a case, camera of a scan
+    std::string product;  ///< empty: what the view shows by itself
+    bool compare = false;
+
+    std::optional<double> arcMm;
+    std::vector<glm::dvec3> positionMm;
+    std::optional<glm::dvec2> flat;
+    std::string direction = "antegrade";
+    double pixelsPerCircumference = FlatWindow{}.pixelsPerUnit;
+
+    std::vector<glm::dvec3> eyeMm, lookMm, up;  ///< at most one each
+    double azimuthDegrees = 0.0, elevationDegrees = 0.0;
+    render::Lens lens = render::Lens::perspective;
+    std::optional<double> fovDegrees, heightMm;
+
+    std::vector<glm::dvec3> marksMm;
+    bool body = true;
+
+    std::string optics;  ///< a preset's name or a file; empty: the view's own
+    std::filesystem::path paint;
+    render::RaycasterKind raycaster = render::RaycasterKind::singlePass;
+    double gpuBudgetMb = 0.0;
+    double stepVoxels = render::MarchOptions{}.stepVoxels;
+
+    std::optional<render::WindowLevel> window;
+    double zoom = 1.0;
+    glm::ivec2 size{512, 512};
+    glm::dvec3 spacingMm{1.0};  ///< of a scan in pictures
+    int threads = 0;
+
+    /// The input is a file or folder: it has a slash, or ends in .nii or .nii.gz.
+    bool isScan() const;
+    /// The view, with its default.
+    render::View shown() const;
+    bool isSlice() const;  ///< axial, coronal or sagittal
+    bool isFlattened() const;
+    bool castsRays() const;  ///< the raycaster draws at least a part of it
+};
+
+/// Adds all options to `command`; wrong usage throws CLI's errors when it is parsed, or when
+/// checkUsage is called after that.
+void addRenderOptions(CLI::App& command, RenderArguments& arguments);
+void checkUsage(const RenderArguments& arguments);
+
+}  // namespace haustra::cli
