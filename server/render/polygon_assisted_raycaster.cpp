@@ -1,6 +1,5 @@
 #include "render/polygon_assisted_raycaster.h"
 
-#include "render/picture_readback.h"
 #include "render/ray_setup.h"
 #include "render/wall_projection.h"
 #include "shaders/shader_source.h"
@@ -33,34 +32,36 @@ Result<void> checkWall(const Scene& scene) {
 
 Result<std::unique_ptr<PolygonAssistedRaycaster>> PolygonAssistedRaycaster::create(
     std::shared_ptr<GlScene> scene, int threads) {
-    using gpu::ComputeProgram, gpu::RasterProgram, gpu::UniformBuffer, shaders::shaderSource;
+    using shaders::shaderSource;
     if (auto sound = checkWall(scene->scene()); !sound) return tl::make_unexpected(sound.error());
-    const auto structs = shaderSource("uniforms.h"), optics = shaderSource("optics.glsl"),
-               march = shaderSource("march.glsl"),
-               own = shaderSource("wall_uniforms.h"), wall = shaderSource("wall.glsl");
-    auto cone = ComputeProgram::create("cone_start.comp",
-                                       {structs, optics, march, shaderSource("cone_start.comp")});
-    if (!cone) return tl::make_unexpected(cone.error());
-    auto entry =
-        RasterProgram::create("wall_entry", {structs, own, wall, shaderSource("wall_entry.vert")},
-                              {structs, own, wall, shaderSource("wall_entry.frag")});
+    auto rays = SinglePassRaycaster::create(scene);
+    if (!rays) return tl::make_unexpected(rays.error());
+    const auto structs = shaderSource("uniforms.h"), own = shaderSource("wall_uniforms.h"),
+               wall = shaderSource("wall.glsl");
+    auto entry = gpu::RasterProgram::create("wall_entry",
+                                            {structs, own, wall, shaderSource("wall_entry.vert")},
+                                            {structs, own, wall, shaderSource("wall_entry.frag")});
     if (!entry) return tl::make_unexpected(entry.error());
-    auto block = UniformBuffer::create(sizeof(shaders::WallUniforms));
+    auto block = gpu::UniformBuffer::create(sizeof(shaders::WallUniforms));
     if (!block) return tl::make_unexpected(block.error());
     WallEntry around(scene->scene());
     auto mesh = upload(around.wall());
     if (!mesh) return tl::make_unexpected(mesh.error());
-    return std::unique_ptr<PolygonAssistedRaycaster>(new PolygonAssistedRaycaster(
-        std::move(scene), threads,
-        Programs{std::move(*cone), MarchPrograms("endoscopic.comp"), std::move(*entry), std::move(*block)},
-        std::move(around), std::move(*mesh)));
+    return std::unique_ptr<PolygonAssistedRaycaster>(
+        new PolygonAssistedRaycaster(std::move(scene), threads, std::move(*rays), std::move(*entry),
+                                     std::move(*block), std::move(around), std::move(*mesh)));
 }
 
 PolygonAssistedRaycaster::PolygonAssistedRaycaster(std::shared_ptr<GlScene> scene, int threads,
-                                                   Programs programs, WallEntry wall, Mesh mesh)
+                                                   std::unique_ptr<SinglePassRaycaster> rays,
+                                                   gpu::RasterProgram entry,
+                                                   gpu::UniformBuffer block, WallEntry wall,
+                                                   Mesh mesh)
     : scene_(std::move(scene)),
       threads_(threads),
-      programs_(std::move(programs)),
+      rays_(std::move(rays)),
+      entry_(std::move(entry)),
+      block_(std::move(block)),
       wall_(std::move(wall)),
       mesh_(std::move(mesh)) {}
 
@@ -102,82 +103,59 @@ bool PolygonAssistedRaycaster::mayBeginAtMesh(const CameraView& view) const {
            !before_->tooMany && wall_.isClear(view.camera.positionMm, before_->visible);
 }
 
-Result<void> PolygonAssistedRaycaster::makeTargets(glm::ivec2 size) {
-    if (target_ && glm::ivec2(target_->size()) == size) return {};
-    using gpu::Filter, gpu::RasterTarget, gpu::Texture, gpu::TexelFormat;
-    auto target = Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
-    if (!target) return tl::make_unexpected(target.error());
-    auto tiles = Texture::create(2, {(size + coneTile - 1) / coneTile, 1}, TexelFormat::r32f,
-                                 Filter::nearest, "cone pass");
-    if (!tiles) return tl::make_unexpected(tiles.error());
-    auto starts = RasterTarget::create(size, TexelFormat::r32f, "rays' beginnings");
-    if (!starts) return tl::make_unexpected(starts.error());
-    target_ = std::move(*target);
-    firstStepOfTile_ = std::move(*tiles);
-    firstStep_ = std::move(*starts);
-    return {};
-}
-
-void PolygonAssistedRaycaster::drawEntry(const CameraView& view, const Band& band, double stepMm) {
+Result<void> PolygonAssistedRaycaster::drawEntry(const CameraView& view, const Band& band,
+                                                 double stepMm) {
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
+    if (!firstStep_ || firstStep_->size() != size) {
+        auto made = gpu::RasterTarget::create(size, gpu::TexelFormat::r32f, "rays' beginnings");
+        if (!made) return tl::make_unexpected(made.error());
+        firstStep_ = std::move(*made);
+    }
     const Grid& grid = scene_->scene().grid();
     shaders::WallUniforms u = wallProjection(
         view.camera, band, grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size) - 0.5));
     u.lensDown.w = float(1.0 / stepMm);
-    programs_.block.write(u);
-    programs_.block.bind(shaders::wallUniformBinding);
+    block_.write(u);
+    block_.bind(shaders::wallUniformBinding);
     firstStep_->clear(glm::vec4(0.0f));
     const auto draw = [&](const Mesh& mesh) {
         mesh.places.bind(shaders::wallVertexBinding);
-        programs_.entry.drawNearest(*firstStep_, mesh.triangles, 0, mesh.count);
+        entry_.drawNearest(*firstStep_, mesh.triangles, 0, mesh.count);
     };
     draw(mesh_);
     if (before_->faces) draw(*before_->faces);
+    return {};
 }
 
 Result<void> PolygonAssistedRaycaster::render(const CameraView& view, const Band& band,
                                               Image& picture) {
     if (auto sound = checkBand(band, picture); !sound) return sound;
     if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
-    const int errorsBefore = scene_->context().errorCount();
-    const glm::ivec2 size(band.pictureSize.x, band.rows);
-    if (auto made = makeTargets(size); !made) return made;
+    timestamps_.restart();
+    timestamps_.mark();
     const auto classified = scene_->classification(view.optics, view.march);
     if (!classified) return tl::make_unexpected(classified.error());
-    const Scene& scene = scene_->scene();
-    const double step = stepMm(view.march, scene.grid());
+    const double step = stepMm(view.march, scene_->scene().grid());
     if (auto found = findBefore(view.optics, step, (*classified)->table()); !found) return found;
     beganAtMesh_ = mayBeginAtMesh(view);
+    if (!beganAtMesh_) return rays_->render(view, band, picture);
+    if (auto drawn = drawEntry(view, band, step); !drawn) return drawn;
+    timestamps_.mark();
+    return rays_->renderFrom(firstStep_->texture(), view, band, picture);
+}
 
-    shaders::MarchUniforms uniforms = marchUniforms(view, scene.grid(), (*classified)->table(),
-                                                    scene.ranges.size, band.pictureSize);
-    uniforms.pictureSize.w = band.firstRow;
-    const auto cast =
-        programs_.cast.program(MarchVariant::of(view.optics, false, view.backdrop != nullptr));
-    if (!cast) return tl::make_unexpected(cast.error());
-    if (view.backdrop) {
-        if (auto bound = scene_->bindBackdrop(view.backdrop); !bound) return bound;
-    }
-    if (beganAtMesh_) {
-        drawEntry(view, band, step);
-        uniforms.lastBlock.w = 1;  // a first step for each pixel
-        scene_->bind(uniforms, **classified);
-        firstStep_->texture().bind(shaders::startUnit);
-    } else {
-        scene_->bind(uniforms, **classified);
-        firstStepOfTile_->bindImage(shaders::startImage);
-        programs_.coneStart.dispatch((size + coneTile - 1) / coneTile);
-        firstStepOfTile_->bind(shaders::startUnit);
-    }
-    target_->bindImage(shaders::pictureImage);
-    (*cast)->dispatch(size);
-    return readBack(scene_->context(), *target_, errorsBefore, band.firstRow, picture);
+std::vector<PassTime> PolygonAssistedRaycaster::passTimes() const {
+    std::vector<PassTime> times = rays_->passTimes();
+    if (const std::vector<double> ms = timestamps_.betweenMs(); beganAtMesh_ && ms.size() == 1)
+        times.insert(times.begin(), {"mesh", ms.front()});
+    return times;
 }
 
 std::size_t PolygonAssistedRaycaster::gpuBytes() const {
-    std::size_t bytes = mesh_.places.bytes() + mesh_.triangles.bytes();
+    std::size_t bytes = mesh_.places.bytes() + mesh_.triangles.bytes() + rays_->gpuBytes();
     if (before_ && before_->faces)
         bytes += before_->faces->places.bytes() + before_->faces->triangles.bytes();
-    if (target_) bytes += target_->bytes() + firstStepOfTile_->bytes() + firstStep_->bytes();
+    if (firstStep_) bytes += firstStep_->bytes();
     return bytes;
 }
 

@@ -7,6 +7,7 @@
 #include "render/gl_scene.h"
 #include "render/march_variant.h"
 #include "render/raycaster.h"
+#include "render/single_pass_raycaster.h"
 #include "render/wall_entry.h"
 
 #include <optional>
@@ -28,7 +29,8 @@ public:
 
     RaycasterKind kind() const override { return RaycasterKind::polygonAssisted; }
     Result<void> render(const CameraView& view, const Band& band, Image& picture) override;
-    std::size_t gpuBytes() const override;  ///< without the scene's
+    std::size_t gpuBytes() const override;             ///< without the scene's
+    std::vector<PassTime> passTimes() const override;  ///< "mesh", and the single pass's
     /// Whether the last band's rays began at the mesh.
     bool beganAtMesh() const { return beganAtMesh_; }
     /// Blocks that stand visible before the mesh, in the last view's colours.
@@ -49,29 +51,24 @@ private:
         std::optional<Mesh> faces;  // where there are any, and not too many
         bool tooMany = false;
     };
-    struct Programs {
-        gpu::ComputeProgram coneStart;
-        MarchPrograms cast;
-        gpu::RasterProgram entry;
-        gpu::UniformBuffer block;
-    };
-
-    PolygonAssistedRaycaster(std::shared_ptr<GlScene> scene, int threads, Programs programs,
-                             WallEntry wall, Mesh mesh);
+    PolygonAssistedRaycaster(std::shared_ptr<GlScene> scene, int threads,
+                             std::unique_ptr<SinglePassRaycaster> rays, gpu::RasterProgram entry,
+                             gpu::UniformBuffer block, WallEntry wall, Mesh mesh);
     static Result<Mesh> upload(const EntryTriangles& triangles);
     Result<void> findBefore(const Optics& optics, double stepMm, const TransferTable& table);
     bool mayBeginAtMesh(const CameraView& view) const;
-    Result<void> makeTargets(glm::ivec2 size);
-    void drawEntry(const CameraView& view, const Band& band, double stepMm);
+    Result<void> drawEntry(const CameraView& view, const Band& band, double stepMm);
 
     std::shared_ptr<GlScene> scene_;
     int threads_;
-    Programs programs_;
+    std::unique_ptr<SinglePassRaycaster> rays_;
+    gpu::RasterProgram entry_;
+    gpu::UniformBuffer block_;
     WallEntry wall_;
     Mesh mesh_;
     std::optional<Before> before_;  // of the last view
-    std::optional<gpu::Texture> target_, firstStepOfTile_;
     std::optional<gpu::RasterTarget> firstStep_;
+    gpu::Timestamps timestamps_;
     bool beganAtMesh_ = false;
 };
 

@@ -43,6 +43,7 @@ const std::map<std::string, Names>& allowed() {
         {"shaders", {}},
         {"server/gpu", {}},
         {"server/render", {"gpu", "shaders"}},
+        {"server/render/hybrid", {"gpu", "render", "shaders"}},
         {"server/encode", {"render", "protocol"}},
         {"server/records", {}},
         {"server/session", {"gpu", "render", "encode", "records", "store", "protocol"}},

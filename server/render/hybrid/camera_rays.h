@@ -1,0 +1,32 @@
+// A camera's rays on the CPU.
+#pragma once
+
+#include "core/grid.h"
+#include "render/min_max_octree.h"
+#include "render/view.h"
+
+#include <optional>
+
+namespace haustra::render {
+
+/// The rays of shaders/march.glsl in voxel coordinates; t counts samples from the eye or from an
+/// orthographic camera's plane. In double precision: they lie within a hundredth of a voxel of the
+/// shaders'. Immutable; any number of threads.
+class CameraRays {
+public:
+    /// The view must have passed its checks.
+    CameraRays(const CameraView& view, const Grid& grid, glm::ivec2 pictureSize);
+
+    /// Through a pixel's centre; none where a fisheye's picture shows nothing.
+    std::optional<VoxelRay> through(glm::ivec2 pixel) const;
+
+private:
+    Lens lens_;
+    glm::dvec3 eye_;                     // voxel coordinates
+    glm::dmat3 voxelFromMm_;             // of vectors
+    glm::dvec3 forward_, right_, down_;  // mm; to the picture's edges, of a fisheye in radians
+    glm::dvec2 size_;
+    double stepMm_;
+};
+
+}  // namespace haustra::render

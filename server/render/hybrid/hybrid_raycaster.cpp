@@ -1,0 +1,256 @@
+#include "render/hybrid/hybrid_raycaster.h"
+
+#include "gpu/streaming.h"
+#include "gpu/timestamps.h"
+#include "render/hybrid/camera_rays.h"
+#include "render/hybrid/quad_list.h"
+#include "render/hybrid/ray_tiles.h"
+#include "render/march_variant.h"
+#include "render/native/tile_workers.h"
+#include "render/picture_readback.h"
+#include "render/ray_setup.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+/// As the shaders have them.
+constexpr unsigned quadBinding = 0, spanBinding = 1, raysImage = 1;
+/// Rows of tiles that are determined before their first slab is cast.
+constexpr int tileRowsAtOnce = 4;
+/// Quads of a work group, and as many groups to a row of them as any device takes.
+constexpr int quadsPerGroup = 16, groupsPerRow = 1024, groupThreads = 64;
+
+double nowMs() {
+    return std::chrono::duration<double, std::milli>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+/// The octree as one view's colours show it.
+struct Classified {
+    Optics optics;
+    double stepMm;
+    ClassifiedOctree octree;
+    bool anyOpaque;
+};
+
+bool anyOpaqueLeaf(const ClassifiedOctree& octree) {
+    const glm::ivec3 size = octree.nodes(0);
+    for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x)
+                if (octree.at(0, {x, y, z}) == NodeClass::opaque) return true;
+    return false;
+}
+
+}  // namespace
+
+struct HybridRaycaster::Impl {
+    std::shared_ptr<GlScene> scene;
+    HybridOptions options;
+    TileWorkers workers;
+    MinMaxOctree octree;
+    MarchPrograms slabs{"hybrid_slab.comp"}, finish{"cell_picture.comp"};
+    HybridBalance balance;
+    std::optional<Classified> classified;  // of the last view
+    std::optional<gpu::Texture> rays, target;
+    std::optional<gpu::MappedBuffer> spans;
+    std::optional<QuadLists> lists;
+    gpu::Timestamps timestamps;  // before and after each pass of the GPU
+    HybridStats stats;
+
+    Impl(std::shared_ptr<GlScene> made, HybridOptions chosen)
+        : scene(std::move(made)),
+          options(chosen),
+          workers(chosen.threads),
+          octree(MinMaxOctree::fromLeaves(scene->scene().ranges, blockSide,
+                                          scene->scene().grid().size)) {}
+
+    const Classified& classify(const Optics& optics, double stepMm, const TransferTable& table) {
+        if (!classified || classified->stepMm != stepMm || !(classified->optics == optics)) {
+            ClassifiedOctree made(octree, table, options.threads);
+            const bool opaque =
+                optics.composition != Composition::maximumIntensity && anyOpaqueLeaf(made);
+            classified.emplace(Classified{optics, stepMm, std::move(made), opaque});
+        }
+        return *classified;
+    }
+
+    Result<void> makeTargets(glm::ivec2 size);
+    /// Casts the list of quads; `samples` of a slab, or 0.
+    void cast(const gpu::ComputeProgram& program, int quads, int samples);
+    /// Casts slab after slab until no quad goes on, then what is left.
+    void castAll(const gpu::ComputeProgram& program, RayTiles& tiles, int tilesPerRow);
+};
+
+Result<void> HybridRaycaster::Impl::makeTargets(glm::ivec2 size) {
+    if (target && glm::ivec2(target->size()) == size) return {};
+    using gpu::Filter, gpu::Texture, gpu::TexelFormat;
+    auto sums = Texture::create(2, {size, 1}, TexelFormat::rgba32f, Filter::nearest, "rays");
+    if (!sums) return tl::make_unexpected(sums.error());
+    auto made = Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
+    if (!made) return tl::make_unexpected(made.error());
+    auto memory = gpu::MappedBuffer::create(
+        sizeof(RaySpan) * std::size_t(size.x) * std::size_t(size.y), "ends of rays");
+    if (!memory) return tl::make_unexpected(memory.error());
+    const glm::ivec2 tiles = (size + RayTiles::tileSide - 1) / RayTiles::tileSide;
+    auto quads = QuadLists::create(tiles.x * tiles.y * RayTiles::quadsPerTile);
+    if (!quads) return tl::make_unexpected(quads.error());
+    rays = std::move(*sums);
+    target = std::move(*made);
+    spans = std::move(*memory);
+    lists = std::move(*quads);
+    return {};
+}
+
+void HybridRaycaster::Impl::cast(const gpu::ComputeProgram& program, int quads, int samples) {
+    if (quads == 0) return;
+    lists->bind(quadBinding, quads, samples);
+    const int groups = (quads + quadsPerGroup - 1) / quadsPerGroup;
+    timestamps.mark();
+    program.dispatch({groupThreads * std::min(groups, groupsPerRow),
+                      (groups + groupsPerRow - 1) / groupsPerRow});
+    timestamps.mark();
+    lists->given();
+}
+
+void HybridRaycaster::Impl::castAll(const gpu::ComputeProgram& program, RayTiles& tiles,
+                                    int tilesPerRow) {
+    const auto timed = [&](const auto& work) {
+        const double before = nowMs();
+        work();
+        stats.cpuMs += nowMs() - before;
+    };
+    std::span<glm::uvec2> list;
+    int listed = 0;
+    const auto append = [&](int tile, QuadState state) {
+        tiles.forEach(tile, state, [&](glm::ivec2 quad, int before) {
+            list[std::size_t(listed++)] = {unsigned(quad.x) | unsigned(quad.y) << 16,
+                                           unsigned(before)};
+        });
+    };
+    std::vector<int> active;
+    const int atOnce = tileRowsAtOnce * tilesPerRow;
+    for (int first = 0; first < tiles.tiles(); first += atOnce) {
+        const int count = std::min(atOnce, tiles.tiles() - first);
+        list = lists->begin();
+        listed = 0;
+        timed([&] {
+            workers.run(count, [&](int i) { tiles.determine(first + i); });
+            for (int tile = first; tile < first + count; ++tile) {
+                if (tiles.liveQuads(tile) == 0) continue;
+                append(tile, QuadState::live);
+                active.push_back(tile);
+            }
+        });
+        cast(program, listed, RayTiles::slabSamples);
+        stats.quadsCast += listed;
+    }
+    for (int slab = 0; !active.empty(); ++slab) {
+        ++stats.passes;
+        list = lists->begin();
+        listed = 0;
+        timed([&] {
+            workers.run(int(active.size()),
+                        [&](int i) { tiles.follow(active[std::size_t(i)], slab); });
+            std::erase_if(active, [&](int tile) { return tiles.liveQuads(tile) == 0; });
+            for (const int tile : active)
+                append(tile, QuadState::live);
+        });
+        cast(program, listed, RayTiles::slabSamples);
+        stats.quadsCast += listed;
+    }
+    list = lists->begin();
+    listed = 0;
+    for (int tile = 0; tile < tiles.tiles(); ++tile)
+        append(tile, QuadState::hole);
+    stats.quadsFilled = listed;
+    cast(program, listed, 0);
+}
+
+Result<std::unique_ptr<HybridRaycaster>> HybridRaycaster::create(std::shared_ptr<GlScene> scene,
+                                                                 HybridOptions options) {
+    std::unique_ptr<HybridRaycaster> made(
+        new HybridRaycaster(std::make_unique<Impl>(std::move(scene), options)));
+    // A driver that refuses the text is found here, not in a reader's session.
+    for (MarchPrograms* programs : {&made->impl_->slabs, &made->impl_->finish})
+        if (auto one = programs->program({}); !one) return tl::make_unexpected(one.error());
+    return made;
+}
+
+HybridRaycaster::HybridRaycaster(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+HybridRaycaster::~HybridRaycaster() = default;
+
+Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, Image& picture) {
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    Impl& my = *impl_;
+    const int errorsBefore = my.scene->context().errorCount();
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
+    if (auto made = my.makeTargets(size); !made) return made;
+    const auto onGpu = my.scene->classification(view.optics, view.march);
+    if (!onGpu) return tl::make_unexpected(onGpu.error());
+    const Scene& scene = my.scene->scene();
+    const TransferTable& table = (*onGpu)->table();
+    const double step = stepMm(view.march, scene.grid());
+    const Classified& classified = my.classify(view.optics, step, table);
+    const MarchVariant variant = MarchVariant::of(view.optics, false, view.backdrop != nullptr);
+    const auto slab = my.slabs.program(variant);
+    if (!slab) return tl::make_unexpected(slab.error());
+    const auto finish = my.finish.program(variant);
+    if (!finish) return tl::make_unexpected(finish.error());
+
+    shaders::MarchUniforms uniforms =
+        marchUniforms(view, scene.grid(), table, scene.ranges.size, band.pictureSize);
+    uniforms.pictureSize.w = band.firstRow;
+    my.scene->bind(uniforms, **onGpu);
+    if (view.backdrop) {
+        if (auto bound = my.scene->bindBackdrop(view.backdrop); !bound) return bound;
+    }
+    my.stats = {};
+    my.stats.controls = my.options.controls.value_or(my.balance.controls());
+    my.timestamps.restart();
+    my.rays->clear();
+    my.rays->bindImage(raysImage);
+    my.spans->bind(spanBinding, 0, my.spans->bytes());
+    const CameraRays rays(view, scene.grid(), band.pictureSize);
+    const RayMedium medium{scene.volume, classified.octree, table, classified.anyOpaque,
+                           variant.preIntegrated ? 2 : 1};
+    const std::span<RaySpan> spans(reinterpret_cast<RaySpan*>(my.spans->data()),
+                                   std::size_t(size.x) * std::size_t(size.y));
+    RayTiles tiles(rays, medium, band, view.backdrop.get(), step, my.stats.controls, spans);
+    my.stats.quads = ((size.x + 1) / 2) * ((size.y + 1) / 2);
+    my.castAll(**slab, tiles, (size.x + RayTiles::tileSide - 1) / RayTiles::tileSide);
+
+    my.target->bindImage(shaders::pictureImage);
+    (*finish)->dispatch(size);
+    if (auto read = readBack(my.scene->context(), *my.target, errorsBefore, band.firstRow, picture);
+        !read)
+        return read;
+    const std::vector<double> between = my.timestamps.betweenMs();
+    for (std::size_t i = 0; i < between.size(); i += 2)
+        my.stats.gpuMs += between[i];
+    if (!my.options.controls) my.balance.drew(my.stats.cpuMs, my.stats.gpuMs);
+    return {};
+}
+
+const HybridStats& HybridRaycaster::stats() const {
+    return impl_->stats;
+}
+
+std::vector<PassTime> HybridRaycaster::passTimes() const {
+    return {{"cpu", impl_->stats.cpuMs}, {"slabs", impl_->stats.gpuMs}};
+}
+
+std::size_t HybridRaycaster::gpuBytes() const {
+    const Impl& my = *impl_;
+    if (!my.target) return 0;
+    return my.rays->bytes() + my.target->bytes() + my.spans->bytes() + my.lists->bytes();
+}
+
+}  // namespace haustra::render
