@@ -19,15 +19,18 @@ struct RendererOptions {
     int threads = 0;                 ///< ≤ 0: all cores; changes no pixel
 };
 
-/// Holds one case's volumes on the GPU: the scan, for slices, and the cleansed scan, for the
-/// endoscopic view. Belongs to the thread that owns `context`; the context must be current there
-/// and outlive it. Equal inputs give equal pixels, whatever was drawn before.
+/// Draws one case's volumes: the scan, for slices, and the cleansed scan, for the endoscopic view.
+/// The native raycaster reads them where they are, and so do slices and flattened views while it or
+/// the object-order one is used; the others have them copied to the GPU when first used. Belongs to
+/// the thread that owns `context`; the context must be current there and outlive it. Equal inputs
+/// give equal pixels, whatever was drawn before.
 class CaseRenderer {
 public:
-    /// Copies what prepareCase made to the GPU. Fails
-    /// where a side is longer than the device's 3-D textures allow (2048 in general) or its memory
-    /// is short. Holds 2 bytes a voxel on the GPU, 4 where cleansing has changed the scan; 1/2 byte
-    /// a voxel of main memory, and no volume.
+    /// Takes what prepareCase made, and what `options.raycaster` needs on the GPU: nothing
+    /// (native), its budget (object-order), or 2 bytes a voxel, 4 where cleansing has changed the
+    /// scan. Fails where a side is longer than the device's 3-D textures allow (2048 in general) or
+    /// its memory is short, (badInput) where the flat map is not sound. Holds handles on the
+    /// volumes, and 1/2 byte a voxel of main memory.
     static Result<std::unique_ptr<CaseRenderer>> upload(gpu::Context& context,
                                                         PreparedCase prepared,
                                                         RendererOptions options = {});

@@ -8,38 +8,16 @@
 
 namespace haustra::render {
 
-namespace {
-
-/// The lattice's phase is kept to this part of a pixel, so that windows whose centres differ by
-/// whole pixels share one lattice in spite of rounding.
-constexpr double phasesPerPixel = 65536.0;
-
-shaders::FlatUniforms flatUniforms(const FlatWindow& window, glm::ivec2 size,
-                                   const FlatSurface& surface, TriangleRange triangles) {
-    const double pixels = window.pixelsPerUnit, units = surface.unitsPerCircumference();
-    // Pixel (i, j) shows the flat coordinate (edge − (i, j) − ½) / pixels.
-    const glm::dvec2 middle(window.center.x - std::floor(window.center.x), window.center.y);
-    const glm::dvec2 edge =
-        glm::round((middle * pixels + 0.5 * glm::dvec2(size)) * phasesPerPixel) / phasesPerPixel;
-    const glm::dvec2 lattice = glm::floor(edge);
-    shaders::FlatUniforms u{};
-    u.phase = edge - lattice;
-    u.scale = {units / pixels, pixels / units};
-    const int firstCopy = int(std::floor((edge.x - size.x) / pixels));
-    u.lattice = glm::ivec4(glm::ivec2(lattice), surface.unitsPerCircumference(), firstCopy);
-    u.picture = glm::ivec4(size, triangles.first, surface.cameraCount() - 1);
-    u.angles = glm::vec4(flatRay.mostRayAngle, flatRay.mostLightAngle, flatRay.lampAhead, 0.0);
-    return u;
+Result<FlatPainter> FlatPainter::create(const FlatMap& map, const Grid& grid) {
+    const auto geometry = FlatGeometry::of(map, grid);
+    if (!geometry) return tl::make_unexpected(geometry.error());
+    auto surface = FlatSurface::upload(*geometry);
+    if (!surface) return tl::make_unexpected(surface.error());
+    return create(std::make_shared<const FlatSurface>(std::move(*surface)));
 }
 
-}  // namespace
-
-Result<FlatPainter> FlatPainter::create(const FlatMap& map, const Grid& grid) {
+Result<FlatPainter> FlatPainter::create(std::shared_ptr<const FlatSurface> surface) {
     using shaders::shaderSource;
-    // The centre of texture space.
-    auto surface =
-        FlatSurface::upload(map, grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size) - 0.5));
-    if (!surface) return tl::make_unexpected(surface.error());
     const auto structs = shaderSource("uniforms.h"), flatMap = shaderSource("flat_map.glsl");
     auto triangles = gpu::RasterProgram::create(
         "flat_triangles", {structs, flatMap, shaderSource("flat_triangles.vert")},
@@ -47,13 +25,13 @@ Result<FlatPainter> FlatPainter::create(const FlatMap& map, const Grid& grid) {
     if (!triangles) return tl::make_unexpected(triangles.error());
     auto block = gpu::UniformBuffer::create(sizeof(shaders::FlatUniforms));
     if (!block) return tl::make_unexpected(block.error());
-    FlatPainter made(std::move(*surface), std::move(*triangles), std::move(*block));
+    FlatPainter made(std::move(surface), std::move(*triangles), std::move(*block));
     // A driver that refuses the text is found here, not in a reader's session.
     if (auto rays = made.rays_.program({}); !rays) return tl::make_unexpected(rays.error());
     return made;
 }
 
-FlatPainter::FlatPainter(FlatSurface surface, gpu::RasterProgram triangles,
+FlatPainter::FlatPainter(std::shared_ptr<const FlatSurface> surface, gpu::RasterProgram triangles,
                          gpu::UniformBuffer block)
     : surface_(std::move(surface)), triangles_(std::move(triangles)), block_(std::move(block)) {}
 
@@ -64,17 +42,13 @@ Result<void> FlatPainter::findTriangles(const FlatWindow& window, glm::ivec2 siz
         if (!made) return tl::make_unexpected(made.error());
         triangleOfPixel_ = std::move(*made);
     }
-    const double halfHeight = (0.5 * size.y + 1.0) / window.pixelsPerUnit;
-    const TriangleRange triangles =
-        surface_.trianglesWithin(window.center.y - halfHeight, window.center.y + halfHeight);
-    uniforms_ = flatUniforms(window, size, surface_, triangles);
+    const FlatLattice lattice = surface_->geometry().lattice(window, size);
+    uniforms_ = lattice.uniforms;
     block_.write(uniforms_);
     block_.bind(shaders::flatUniformBinding);
-    surface_.bind();
-    const double rightmost = double(uniforms_.lattice.x) + uniforms_.phase.x;
-    const int lastCopy = int(std::floor(rightmost / window.pixelsPerUnit));
-    triangles_.draw(*triangleOfPixel_, {-1, 0}, surface_.triangles(), triangles.first,
-                    triangles.count, lastCopy - uniforms_.lattice.w + 1);
+    surface_->bind();
+    triangles_.draw(*triangleOfPixel_, {-1, 0}, surface_->triangles(), lattice.triangles.first,
+                    lattice.triangles.count, lattice.copies);
     return {};
 }
 
@@ -85,7 +59,7 @@ std::vector<int> FlatPainter::triangleOfPixel() const {
     triangleOfPixel_->read(found.data(), triangleOfPixel_->bytes());
     std::vector<int> triangles;
     for (const glm::ivec2 one : found)
-        triangles.push_back(one.x < 0 ? -1 : surface_.mapTriangle(one.x));
+        triangles.push_back(one.x < 0 ? -1 : surface_->geometry().mapTriangle(one.x));
     return triangles;
 }
 
@@ -97,7 +71,7 @@ Result<void> FlatPainter::castRays(const MarchVariant& variant, double stepMm,
                               std::ceil(flatRay.depthMm / stepMm), 0.0);
     block_.write(uniforms_);
     block_.bind(shaders::flatUniformBinding);
-    surface_.bind();
+    surface_->bind();
     triangleOfPixel_->bind(shaders::triangleUnit);
     picture.bindImage(shaders::pictureImage);
     (*rays)->dispatch(glm::ivec2(picture.size()));
@@ -105,7 +79,7 @@ Result<void> FlatPainter::castRays(const MarchVariant& variant, double stepMm,
 }
 
 std::size_t FlatPainter::gpuBytes() const {
-    return surface_.gpuBytes() + (triangleOfPixel_ ? triangleOfPixel_->bytes() : 0);
+    return triangleOfPixel_ ? triangleOfPixel_->bytes() : 0;
 }
 
 }  // namespace haustra::render

@@ -9,6 +9,7 @@
 #include "render/view.h"
 #include "shaders/uniforms.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,12 +19,11 @@ namespace haustra::render {
 /// Belongs to the thread of the context.
 class FlatPainter {
 public:
-    /// The flat map of a case whose volumes are on `grid`. Fails as FlatSurface::upload does, and
-    /// where the shaders do not compile.
+    /// The flat map of a case whose volumes are on `grid`. Fails as FlatGeometry::of and
+    /// FlatSurface::upload do, and where the shaders do not compile.
     static Result<FlatPainter> create(const FlatMap& map, const Grid& grid);
+    static Result<FlatPainter> create(std::shared_ptr<const FlatSurface> surface);
 
-    double height() const { return surface_.height(); }
-    const FlatSurface& surface() const { return surface_; }
     /// Finds which triangle covers each pixel of a picture of `size`. The window must have passed
     /// its check.
     Result<void> findTriangles(const FlatWindow& window, glm::ivec2 size);
@@ -33,11 +33,12 @@ public:
     /// which has the same size. The volume, its classification and the block of march.glsl must be
     /// bound; `stepMm` is that block's. Fails (device) where the driver refuses the variant's text.
     Result<void> castRays(const MarchVariant& variant, double stepMm, const gpu::Texture& picture);
-    std::size_t gpuBytes() const;
+    std::size_t gpuBytes() const;  ///< without the surface's
 
 private:
-    FlatPainter(FlatSurface surface, gpu::RasterProgram triangles, gpu::UniformBuffer block);
-    FlatSurface surface_;
+    FlatPainter(std::shared_ptr<const FlatSurface> surface, gpu::RasterProgram triangles,
+                gpu::UniformBuffer block);
+    std::shared_ptr<const FlatSurface> surface_;
     gpu::RasterProgram triangles_;
     MarchPrograms rays_{"flattened.comp", {"flat_map.glsl"}};
     gpu::UniformBuffer block_;

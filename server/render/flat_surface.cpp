@@ -1,151 +1,33 @@
 #include "render/flat_surface.h"
 
-#include "render/view.h"
-#include "render/wall_normals.h"
 #include "shaders/uniforms.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <span>
 #include <utility>
 
 namespace haustra::render {
 
-namespace {
-
-bool finite(glm::dvec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-Result<void> checkFlatMap(const FlatMap& map) {
-    const auto bad = [](const char* what) { return fail(ErrorKind::badInput, what, "flat map"); };
-    const auto& [vertices, triangles] = map.surface;
-    const int count = int(vertices.size()), cameras = int(map.cameras.size());
-    if (triangles.empty() || cameras == 0) return bad("has no triangles or no cameras");
-    if (map.flat.size() != vertices.size() || map.camera.size() != vertices.size())
-        return bad("has not one flat coordinate and one camera for each vertex");
-    if (!(map.height > 0.0 && map.height <= maxFlatHeight))
-        return bad("is too long or has no height");
-    // A hair of rounding may stand out over the strip.
-    const auto onStrip = [&](glm::dvec2 flat) {
-        return flat.x >= -0.5 && flat.x <= 1.5 && flat.y >= -0.5 && flat.y <= map.height + 0.5;
-    };
-    if (!std::all_of(map.flat.begin(), map.flat.end(), onStrip))
-        return bad("has flat coordinates beyond the strip");
-    const auto known = [&](glm::ivec3 t) {
-        return std::min({t.x, t.y, t.z}) >= 0 && std::max({t.x, t.y, t.z}) < count;
-    };
-    if (!std::all_of(triangles.begin(), triangles.end(), known))
-        return bad("has triangles of vertices that it has not");
-    const auto registered = [&](std::int32_t camera) { return camera >= 0 && camera < cameras; };
-    if (!std::all_of(map.camera.begin(), map.camera.end(), registered))
-        return bad("names cameras that it has not");
-    const auto placed = [](const FlatCamera& camera) {
-        return finite(camera.positionMm) && std::isfinite(camera.arcMm);
-    };
-    if (!std::all_of(vertices.begin(), vertices.end(), finite) ||
-        !std::all_of(map.cameras.begin(), map.cameras.end(), placed))
-        return bad("has coordinates that are not finite");
-    return {};
-}
-
-/// Cameras, and the way along the colon: their chord over `chordMm` to either side.
-std::vector<shaders::FlatEye> eyes(const std::vector<FlatCamera>& cameras, glm::dvec3 originMm) {
-    constexpr double chordMm = 8.0;
-    std::vector<shaders::FlatEye> result;
-    std::size_t before = 0, after = 0;
-    for (const FlatCamera& camera : cameras) {
-        while (cameras[before].arcMm < camera.arcMm - chordMm)
-            ++before;
-        while (after + 1 < cameras.size() && cameras[after].arcMm < camera.arcMm + chordMm)
-            ++after;
-        const glm::dvec3 chord = cameras[after].positionMm - cameras[before].positionMm;
-        const double length = glm::length(chord);
-        const glm::dvec3 ahead = length > 0.0 ? chord / length : glm::dvec3(0.0);
-        result.push_back({glm::vec4(camera.positionMm - originMm, 0.0), glm::vec4(ahead, 0.0)});
-    }
-    return result;
-}
-
-/// As many as leave 31 bits room for the strip's length and for the copies beside it.
-int unitsFor(double height) {
-    int units = 1 << 26;
-    while ((std::max(height, double(maxCircumferences)) + 2.0) * units > 0x1p31)
-        units /= 2;
-    return units;
-}
-
-}  // namespace
-
-Result<FlatSurface> FlatSurface::upload(const FlatMap& map, glm::dvec3 originMm) {
-    if (Result<void> sound = checkFlatMap(map); !sound) return tl::make_unexpected(sound.error());
-    const int units = unitsFor(map.height);
-    const std::vector<glm::dvec3> normals = inwardNormals(map.surface);
-    std::vector<shaders::FlatVertex> vertices(map.flat.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const glm::ivec2 flat(glm::round(map.flat[i] * double(units)));
-        vertices[i] = {glm::ivec4(flat, 0, 0),
-                       glm::vec4(map.surface.vertices[i] - originMm, map.camera[i]),
-                       glm::vec4(normals[i], 0.0)};
-    }
-
-    const auto& triangles = map.surface.triangles;
-    const auto flatY = [&](int triangle, int corner) {
-        return map.flat[std::size_t(triangles[std::size_t(triangle)][corner])].y;
-    };
-    std::vector<double> lowest(triangles.size()), highest(triangles.size());
-    for (int t = 0; t < int(triangles.size()); ++t) {
-        std::tie(lowest[std::size_t(t)], highest[std::size_t(t)]) =
-            std::minmax({flatY(t, 0), flatY(t, 1), flatY(t, 2)});
-    }
-    std::vector<int> order(triangles.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
-        return std::pair(lowest[std::size_t(a)], a) < std::pair(lowest[std::size_t(b)], b);
-    });
-    std::vector<glm::ivec3> sorted;
-    std::vector<double> lowestSorted, highestSoFar;
-    for (const int t : order) {
-        sorted.push_back(triangles[std::size_t(t)]);
-        lowestSorted.push_back(lowest[std::size_t(t)]);
-        const double before = highestSoFar.empty() ? -INFINITY : highestSoFar.back();
-        highestSoFar.push_back(std::max(before, highest[std::size_t(t)]));
-    }
-    const std::vector<shaders::FlatEye> cameras = eyes(map.cameras, originMm);
-
+Result<FlatSurface> FlatSurface::upload(std::shared_ptr<const FlatGeometry> geometry) {
     using gpu::StorageBuffer;
-    auto vertexBuffer =
-        StorageBuffer::create(std::span<const shaders::FlatVertex>(vertices), "flat map");
-    if (!vertexBuffer) return tl::make_unexpected(vertexBuffer.error());
-    auto triangleBuffer = StorageBuffer::create(std::span<const glm::ivec3>(sorted), "flat map");
-    if (!triangleBuffer) return tl::make_unexpected(triangleBuffer.error());
-    auto cameraBuffer =
-        StorageBuffer::create(std::span<const shaders::FlatEye>(cameras), "flat map");
-    if (!cameraBuffer) return tl::make_unexpected(cameraBuffer.error());
-    FlatSurface surface(std::move(*vertexBuffer), std::move(*triangleBuffer),
-                        std::move(*cameraBuffer));
-    surface.mapTriangle_ = std::move(order);
-    surface.lowestY_ = std::move(lowestSorted);
-    surface.highestYSoFar_ = std::move(highestSoFar);
-    surface.originMm_ = originMm;
-    surface.height_ = map.height;
-    surface.cameraCount_ = int(cameras.size());
-    surface.unitsPerCircumference_ = units;
-    return surface;
+    auto vertices = StorageBuffer::create(
+        std::span<const shaders::FlatVertex>(geometry->vertices()), "flat map");
+    if (!vertices) return tl::make_unexpected(vertices.error());
+    auto triangles =
+        StorageBuffer::create(std::span<const glm::ivec3>(geometry->triangles()), "flat map");
+    if (!triangles) return tl::make_unexpected(triangles.error());
+    auto cameras =
+        StorageBuffer::create(std::span<const shaders::FlatEye>(geometry->cameras()), "flat map");
+    if (!cameras) return tl::make_unexpected(cameras.error());
+    return FlatSurface(std::move(geometry), std::move(*vertices), std::move(*triangles),
+                       std::move(*cameras));
 }
 
-FlatSurface::FlatSurface(gpu::StorageBuffer vertices, gpu::StorageBuffer triangles,
-                         gpu::StorageBuffer cameras)
-    : vertices_(std::move(vertices)),
+FlatSurface::FlatSurface(std::shared_ptr<const FlatGeometry> geometry, gpu::StorageBuffer vertices,
+                         gpu::StorageBuffer triangles, gpu::StorageBuffer cameras)
+    : geometry_(std::move(geometry)),
+      vertices_(std::move(vertices)),
       triangles_(std::move(triangles)),
       cameras_(std::move(cameras)) {}
-
-TriangleRange FlatSurface::trianglesWithin(double lowY, double highY) const {
-    const auto first = std::lower_bound(highestYSoFar_.begin(), highestYSoFar_.end(), lowY) -
-                       highestYSoFar_.begin();
-    const auto last = std::upper_bound(lowestY_.begin(), lowestY_.end(), highY) - lowestY_.begin();
-    return {int(first), int(std::max(last - first, std::ptrdiff_t(0)))};
-}
 
 void FlatSurface::bind() const {
     vertices_.bind(shaders::flatVertexBinding);

@@ -59,8 +59,7 @@ HWY_NOINLINE Rays raysAlong(const PacketScene& scene, V3 aside) {
     }
     rays.lightMm = rays.directionMm;
     rays.step = scaled(voxelVector(scene, rays.directionMm), set(u.stepping.x));
-    rays.inverseStep = {reciprocalOrLarge(rays.step.x), reciprocalOrLarge(rays.step.y),
-                        reciprocalOrLarge(rays.step.z)};
+    setInverseStep(rays);
     return rays;
 }
 HWY_INLINE Rays raysThrough(const PacketScene& scene, VF x, VF y) {
@@ -138,28 +137,6 @@ HWY_INLINE Color backdropOf(const PacketScene& scene, const PacketPicture& pictu
             hn::LoadU(f, pixels[3])};
 }
 
-HWY_INLINE void store(const PacketScene& scene, const PacketPicture& picture, const Bytes& bytes,
-                      int left, int top) {
-    for (int lane = 0; lane < lanes; ++lane) {
-        const int x = left + lane % packetWidth, y = top + lane / packetWidth;
-        if (x >= scene.u.pictureSize.x || y < picture.firstRow || y >= picture.endRow) continue;
-        std::uint8_t* rgb =
-            picture.rgb + 3 * (std::int64_t(y) * scene.u.pictureSize.x + std::int64_t(x));
-        rgb[0] = std::uint8_t(bytes.r[lane]);
-        rgb[1] = std::uint8_t(bytes.g[lane]);
-        rgb[2] = std::uint8_t(bytes.b[lane]);
-    }
-}
-
-/// Offsets of a packet's pixels.
-HWY_INLINE VF laneX() {
-    return hn::ConvertTo(f, hn::And(hn::Iota(i, 0), hn::Set(i, packetWidth - 1)));
-}
-HWY_INLINE VF laneY() {
-    constexpr int shift = packetWidth == 4 ? 2 : packetWidth == 2 ? 1 : 0;
-    return hn::ConvertTo(f, hn::ShiftRight<shift>(hn::Iota(i, 0)));
-}
-
 template <class Voxels>
 HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<Voxels>& lattice,
                            const PacketPicture& picture, float start, int left, int top) {
@@ -174,7 +151,8 @@ HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<Voxels>& latt
                             hn::IfThenElse(isInPicture(scene, aside), end, set(-1.0f)));
     Bytes bytes;
     pixelColors(scene, sum, backdrop, bytes);
-    store(scene, picture, bytes, left, top);
+    storePixels(picture.rgb, scene.u.pictureSize.x, picture.firstRow, picture.endRow, bytes, left,
+                top);
 }
 
 template <class Voxels>

@@ -33,6 +33,15 @@ constexpr int lanes = int(hn::MaxLanes(f));
 constexpr int packetWidth = lanes >= 8 ? 4 : lanes >= 2 ? 2 : 1;
 constexpr int packetHeight = lanes / packetWidth;
 
+/// Offsets of a packet's pixels.
+HWY_INLINE VF laneX() {
+    return hn::ConvertTo(f, hn::And(hn::Iota(i, 0), hn::Set(i, packetWidth - 1)));
+}
+HWY_INLINE VF laneY() {
+    constexpr int shift = packetWidth == 4 ? 2 : packetWidth == 2 ? 1 : 0;
+    return hn::ConvertTo(f, hn::ShiftRight<shift>(hn::Iota(i, 0)));
+}
+
 struct V3 {
     VF x, y, z;
 };

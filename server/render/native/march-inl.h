@@ -21,6 +21,11 @@ struct Rays {
     V3 inverseStep;   // 1 / step, large where it is 0
 };
 
+HWY_INLINE void setInverseStep(Rays& rays) {
+    rays.inverseStep = {reciprocalOrLarge(rays.step.x), reciprocalOrLarge(rays.step.y),
+                        reciprocalOrLarge(rays.step.z)};
+}
+
 HWY_INLINE V3 voxelVector(const PacketScene& scene, V3 mm) {
     return {dot(scene.voxelFromMm[0], mm), dot(scene.voxelFromMm[1], mm),
             dot(scene.voxelFromMm[2], mm)};
@@ -123,7 +128,7 @@ HWY_INLINE Search searched(const PacketScene& scene, const Lattice<Voxels>& latt
 /// and opacity along rays from n = `first` to `last`.
 template <class Voxels>
 HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<Voxels>& lattice,
-                              const Rays& rays, VF first, VF last) {
+                                const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f);
     Color sum{zero, zero, zero, zero};
     VF n = first;
@@ -150,7 +155,7 @@ HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<Voxels>&
 /// ends lies in a block that may be visible.
 template <class Voxels>
 HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<Voxels>& lattice,
-                               const Rays& rays, VF first, VF last) {
+                                 const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
     Color sum{zero, zero, zero, zero};
     VF n = first, front = zero, frontDistance = one;
@@ -204,7 +209,7 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<Voxels>
 /// The greatest value. The leap map lets rays leap over what lies below the first visible one.
 template <class Voxels>
 HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<Voxels>& lattice,
-                              const Rays& rays, VF first, VF last) {
+                                const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f);
     VF greatest = set(-32768.0f), n = first;
     MF active = hn::Le(n, last);
@@ -232,7 +237,7 @@ HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<Voxels>&
 /// The place where opacity first is enough, found between samples by bisection.
 template <class Voxels>
 HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<Voxels>& lattice,
-                               const Rays& rays, VF first, VF last) {
+                                 const Rays& rays, VF first, VF last) {
     constexpr int bisections = 8;
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
     const VF enough = set(scene.u.slopes.w);
@@ -288,8 +293,8 @@ HWY_INLINE Color march(const PacketScene& scene, const Lattice<Voxels>& lattice,
 struct Bytes {
     std::int32_t r[lanes], g[lanes], b[lanes];
 };
-HWY_MAYBE_UNUSED static HWY_NOINLINE void pixelColors(const PacketScene& scene, const Color& sum, const Color& backdrop,
-                            Bytes& bytes) {
+HWY_MAYBE_UNUSED static HWY_NOINLINE void pixelColors(const PacketScene& scene, const Color& sum,
+                                                      const Color& backdrop, Bytes& bytes) {
     const VF through = hn::Sub(set(1.0f), sum.a);
     // A ray that was ended early counts as opaque, or its pixel would be darker than its
     // neighbours.
@@ -304,6 +309,19 @@ HWY_MAYBE_UNUSED static HWY_NOINLINE void pixelColors(const PacketScene& scene, 
     hn::StoreU(shown(sum.r, backdrop.r), i, bytes.r);
     hn::StoreU(shown(sum.g, backdrop.g), i, bytes.g);
     hn::StoreU(shown(sum.b, backdrop.b), i, bytes.b);
+}
+
+/// Into a picture `width` pixels wide, whose rows [firstRow, endRow) are drawn.
+HWY_INLINE void storePixels(std::uint8_t* rgb, int width, int firstRow, int endRow,
+                            const Bytes& bytes, int left, int top) {
+    for (int lane = 0; lane < lanes; ++lane) {
+        const int x = left + lane % packetWidth, y = top + lane / packetWidth;
+        if (x >= width || y < firstRow || y >= endRow) continue;
+        std::uint8_t* pixel = rgb + 3 * (std::int64_t(y) * width + x);
+        pixel[0] = std::uint8_t(bytes.r[lane]);
+        pixel[1] = std::uint8_t(bytes.g[lane]);
+        pixel[2] = std::uint8_t(bytes.b[lane]);
+    }
 }
 
 }  // namespace HWY_NAMESPACE

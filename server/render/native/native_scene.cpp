@@ -23,9 +23,21 @@ std::vector<std::int16_t> doubledRows(const Volume<std::int16_t>& volume) {
 
 }  // namespace
 
+PacketVolume::PacketVolume(Volume<std::int16_t> volume)
+    : volume_(std::move(volume)), twice_(doubledRows(volume_)) {}
+
+void PacketVolume::describe(PacketScene& scene) const {
+    const glm::ivec3 size = volume_.grid().size;
+    for (int axis = 0; axis < 3; ++axis)
+        scene.size[axis] = size[axis];
+    scene.voxels = twice_.empty() ? volume_.voxels().data() : twice_.data();
+    scene.rowStride = twice_.empty() ? size.x : 2;
+    scene.sliceStride = scene.rowStride * size.y;
+}
+
 NativeScene::NativeScene(std::shared_ptr<const Scene> scene, int threads)
     : scene_(std::move(scene)),
-      twice_(doubledRows(scene_->volume)),
+      volume_(scene_->volume.share()),
       workers_(threads),
       recent_(classificationsKept) {}
 
@@ -54,17 +66,14 @@ PacketScene NativeScene::packetScene(const shaders::MarchUniforms& uniforms,
                                      const Classified& classified) const {
     const Grid& grid = scene_->grid();
     PacketScene packet;
-    packet.voxels = twice_.empty() ? scene_->volume.voxels().data() : twice_.data();
+    volume_.describe(packet);
     const glm::ivec3 lastBlock = scene_->ranges.size - 1;
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     for (int axis = 0; axis < 3; ++axis) {
-        packet.size[axis] = grid.size[axis];
         packet.lastBlock[axis] = lastBlock[axis];
         for (int c = 0; c < 3; ++c)
             packet.voxelFromMm[axis][c] = float(voxelFromPatient[c][axis]);
     }
-    packet.rowStride = twice_.empty() ? grid.size.x : 2;
-    packet.sliceStride = packet.rowStride * grid.size.y;
     packet.leap = classified.leap.data();
     const TransferTable& table = classified.table;
     packet.composition = classified.optics.composition;

@@ -13,7 +13,20 @@
 
 namespace haustra::render {
 
-/// The volume where it lies, the classifications lately asked for, and the threads that draw.
+/// A volume that packets read where it lies.
+class PacketVolume {
+public:
+    explicit PacketVolume(Volume<std::int16_t> volume);
+    const Volume<std::int16_t>& volume() const { return volume_; }
+    /// Sets what tells of voxels; valid as long as this lives.
+    void describe(PacketScene& scene) const;
+
+private:
+    Volume<std::int16_t> volume_;
+    std::vector<std::int16_t> twice_;  // each voxel, of a volume that is one voxel wide
+};
+
+/// The volume, the classifications lately asked for, and the threads that draw.
 /// Belongs to one thread.
 class NativeScene {
 public:
@@ -21,6 +34,7 @@ public:
     NativeScene(std::shared_ptr<const Scene> scene, int threads);
 
     const Scene& scene() const { return *scene_; }
+    const PacketVolume& volume() const { return volume_; }
     TileWorkers& workers() { return workers_; }
 
     /// The transfer function's table for one step length, and the leap map that follows from it.
@@ -40,7 +54,7 @@ public:
 
 private:
     std::shared_ptr<const Scene> scene_;
-    std::vector<std::int16_t> twice_;  // each voxel, of a volume that is one voxel wide
+    PacketVolume volume_;
     TileWorkers workers_;
     LatelyUsed<Classified> recent_;
 };

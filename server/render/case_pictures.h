@@ -1,0 +1,28 @@
+// Slices and flattened views of a case, whoever draws them.
+#pragma once
+
+#include "render/view.h"
+
+#include <cstddef>
+
+namespace haustra::render {
+
+/// Belongs to one thread. Equal views give equal pixels; two implementations give the same to
+/// within a level or so.
+class CasePictures {
+public:
+    virtual ~CasePictures() = default;
+    CasePictures() = default;
+    CasePictures(const CasePictures&) = delete;
+    CasePictures& operator=(const CasePictures&) = delete;
+
+    /// What is asked for must have passed its checks: sizes, windows, that the case has a cleansed
+    /// scan or a flat map. Fail (badInput) on bad optics or sampling, (device) where a driver
+    /// reports an error.
+    virtual Result<Image> slice(const SlicePlacement& placement, const WindowLevel& window,
+                                Scan scan, glm::ivec2 size) = 0;
+    virtual Result<Image> flat(const FlatView& view, glm::ivec2 size) = 0;
+    virtual std::size_t gpuBytes() const { return 0; }
+};
+
+}  // namespace haustra::render

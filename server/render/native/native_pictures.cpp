@@ -1,0 +1,54 @@
+#include "render/native/native_pictures.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+constexpr int stripeRows = 16;
+
+}  // namespace
+
+Result<std::unique_ptr<NativePictures>> NativePictures::create(
+    std::shared_ptr<NativeScene> scene, Volume<std::int16_t> ct,
+    std::shared_ptr<const FlatGeometry> geometry) {
+    std::unique_ptr<NativePictures> made(new NativePictures(scene, std::move(ct)));
+    if (!geometry) return made;
+    auto flat = NativeFlatPainter::create(std::move(scene), std::move(geometry));
+    if (!flat) return tl::make_unexpected(flat.error());
+    made->flat_ = std::move(*flat);
+    return made;
+}
+
+NativePictures::NativePictures(std::shared_ptr<NativeScene> scene, Volume<std::int16_t> ct)
+    : scene_(std::move(scene)), ct_(std::move(ct)), drawSlice_(slicePackets()) {}
+
+Result<Image> NativePictures::slice(const SlicePlacement& placement, const WindowLevel& window,
+                                    Scan scan, glm::ivec2 size) {
+    PacketScene packets;
+    (scan == Scan::cleansed ? scene_->volume() : ct_).describe(packets);
+    const Grid& grid = ct_.volume().grid();
+    const glm::dmat3 linear(grid.voxelFromPatient());
+    const PacketSlice slice{grid.voxelFromPatientPoint(placement.topLeftMm),
+                            linear * placement.rightMm,
+                            linear * placement.downMm,
+                            float(1.0 / window.widthHu),
+                            float(0.5 - window.centerHu / window.widthHu),
+                            size.x};
+    Image image{size.x, size.y,
+                std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+    scene_->workers().run((size.y + stripeRows - 1) / stripeRows, [&](int stripe) {
+        const int first = stripe * stripeRows;
+        drawSlice_(packets, slice, first, std::min(first + stripeRows, size.y), image.rgb.data());
+    });
+    return image;
+}
+
+Result<Image> NativePictures::flat(const FlatView& view, glm::ivec2 size) {
+    if (!flat_) return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
+    return flat_->draw(view, size);
+}
+
+}  // namespace haustra::render

@@ -1,0 +1,75 @@
+#include "render/native/slice_packets.h"
+
+// This text is compiled once for each vector unit, by an include that must come before others.
+// clang-format off
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/native/slice_packets.cpp"
+#include <hwy/foreach_target.h>
+#include "render/native/march-inl.h"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace haustra::render {
+namespace HWY_NAMESPACE {
+
+namespace {
+
+template <class Voxels>
+void drawRows(const PacketScene& scene, const PacketSlice& slice, int firstRow, int endRow,
+              std::uint8_t* rgb) {
+    const Lattice<Voxels> lattice(scene);
+    const auto vector = [&](glm::vec3 v) HWY_ATTR { return V3{set(v.x), set(v.y), set(v.z)}; };
+    const V3 origin = vector(slice.origin), right = vector(slice.right), down = vector(slice.down);
+    for (int top = firstRow; top < endRow; top += packetHeight) {
+        for (int left = 0; left < slice.width; left += packetWidth) {
+            const V3 place = along(along(origin, hn::Add(laneX(), set(float(left))), right),
+                                   hn::Add(laneY(), set(float(top))), down);
+            const auto within = [&](VF p, int axis) HWY_ATTR {
+                return hn::And(hn::Ge(p, set(-0.5f)),
+                               hn::Le(p, set(float(scene.size[axis]) - 0.5f)));
+            };
+            const MF inside =
+                hn::And(within(place.x, 0), hn::And(within(place.y, 1), within(place.z, 2)));
+            Bytes bytes{};
+            if (any(inside)) {
+                const VF hu = lattice.value(onlyWhere(inside, place));
+                const VF grey =
+                    clamped(hn::MulAdd(hu, set(slice.perHu), set(slice.atZero)), 0.0f, 1.0f);
+                hn::StoreU(hn::NearestInt(hn::IfThenElseZero(inside, hn::Mul(grey, set(255.0f)))),
+                           i, bytes.r);
+                for (int lane = 0; lane < lanes; ++lane)
+                    bytes.g[lane] = bytes.b[lane] = bytes.r[lane];
+            }
+            storePixels(rgb, slice.width, firstRow, endRow, bytes, left, top);
+        }
+    }
+}
+
+void drawSlice(const PacketScene& scene, const PacketSlice& slice, int firstRow, int endRow,
+               std::uint8_t* rgb) {
+    if (scene.isFar()) return drawRows<FarVoxels>(scene, slice, firstRow, endRow, rgb);
+    drawRows<NearVoxels>(scene, slice, firstRow, endRow, rgb);
+}
+
+DrawSlice drawer() {
+    return drawSlice;
+}
+
+}  // namespace
+
+}  // namespace HWY_NAMESPACE
+}  // namespace haustra::render
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace haustra::render {
+
+HWY_EXPORT(drawer);
+
+DrawSlice slicePackets() {
+    return HWY_DYNAMIC_DISPATCH(drawer)();
+}
+
+}  // namespace haustra::render
+#endif
