@@ -15,8 +15,10 @@ class ObjectOrder : public Drawing {
 protected:
     std::shared_ptr<const Scene> sceneOf(Volume<std::int16_t> volume) {
         BlockRanges ranges = blockRanges(volume, 2);
-        return std::make_shared<const Scene>(
-            Scene{std::move(volume), std::move(ranges), nullptr, nullptr});
+        Scene scene;
+        scene.volume = std::move(volume);
+        scene.ranges = std::move(ranges);
+        return std::make_shared<const Scene>(std::move(scene));
     }
     std::unique_ptr<Raycaster> singlePass(std::shared_ptr<const Scene> scene) {
         auto onGpu = GlScene::upload(*context, std::move(scene), 2);
@@ -39,12 +41,15 @@ protected:
     }
 };
 
-Grid tubeGrid() { return obliqueGrid({117, 98, 87}, {0.4, 0.5, 0.6}); }
+Grid tubeGrid() {
+    return obliqueGrid({117, 98, 87}, {0.4, 0.5, 0.6});
+}
 
 /// From inside, from outside at faces, edges and corners, along cells' faces, by every lens.
 std::vector<Camera> cameras() {
     std::vector<Camera> all;
-    const auto add = [&](glm::dvec3 from, glm::dvec3 along, double fov, Lens lens = Lens::perspective) {
+    const auto add = [&](glm::dvec3 from, glm::dvec3 along, double fov,
+                         Lens lens = Lens::perspective) {
         all.push_back({from, along, glm::dvec3(0.1, -1.0, 0.3), fov, lens, 50.0});
     };
     add({1.0, -2.0, -14.0}, {0.1, 0.05, 1.0}, 90.0);
@@ -85,24 +90,108 @@ std::vector<std::pair<std::string, Optics>> models() {
 TEST_F(ObjectOrder, ShowsWhatTheSinglePassShows) {
     const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
     const auto whole = singlePass(scene);
-    for (const int side : {16, 64}) {
-        const auto cells = objectOrder(scene, {.cellSide = side});
-        for (const auto& [name, optics] : models()) {
-            int number = 0;
-            for (const Camera& camera : cameras()) {
-                const CameraView view{camera, optics, {}};
-                const Image expected = cast(*whole, view, 120, 88);
-                const Image image = cast(*cells, view, 120, 88);
-                int apart = 0;
-                for (std::size_t i = 0; i < image.rgb.size(); ++i)
-                    apart += std::abs(image.rgb[i] - expected.rgb[i]) > 2;
-                EXPECT_GE(psnr(image, expected), 55.0)
-                    << name << ", camera " << number << ", side " << side << ": " << apart
-                    << " differ";
-                ++number;
-            }
+    const auto small = objectOrder(scene, {.cellSide = 16}), large = objectOrder(scene, {});
+    for (const auto& [name, optics] : models()) {
+        int number = 0;
+        for (const Camera& camera : cameras()) {
+            const CameraView view{camera, optics, {}};
+            const Image expected = cast(*whole, view, 72, 53);
+            for (ObjectOrderRaycaster* cells : {small.get(), large.get()})
+                EXPECT_GE(psnr(cast(*cells, view, 72, 53), expected), 45.0)
+                    << name << ", camera " << number;
+            ++number;
         }
     }
+}
+
+/// A view of the tube in an aura: many cells show something.
+CameraView misty(const Camera& camera) {
+    CameraView view{camera, *opticsPreset("mucosa"), {}};
+    view.optics.transferFunction = {{{-1100.0, glm::dvec3(0.4, 0.6, 0.9), 0.01},
+                                     {-300.0, glm::dvec3(0.9, 0.6, 0.5), 0.02},
+                                     {40.0, glm::dvec3(0.9, 0.5, 0.4), 0.2}}};
+    return view;
+}
+
+TEST_F(ObjectOrder, NoPixelDependsOnTheBudgetOnWhatWasDrawnBeforeOrOnBands) {
+    const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
+    const auto roomy = objectOrder(scene, {.cellSide = 16});
+    // Room for four cells of the many in a picture, and for one.
+    const auto tight = objectOrder(scene, {.cellSide = 16, .budgetBytes = 64 * 64 * 32 * 2});
+    const auto single = objectOrder(scene, {.cellSide = 16, .budgetBytes = 32 * 32 * 32 * 2});
+    EXPECT_EQ(tight->gpuBytes() - single->gpuBytes(), std::size_t(64 * 64 * 32 - 32 * 32 * 32) * 2);
+    std::vector<Image> first;
+    for (const Camera& camera : cameras()) {
+        first.push_back(cast(*roomy, misty(camera), 72, 53));
+        EXPECT_EQ(first.back().rgb, cast(*tight, misty(camera), 72, 53).rgb);
+        EXPECT_GT(tight->residency().uploaded, tight->residency().resident);
+        EXPECT_EQ(tight->residency().bytesMoved,
+                  std::size_t(tight->residency().uploaded) * 19 * 19 * 19 * 2);
+    }
+    EXPECT_EQ(first[0].rgb, cast(*single, misty(cameras()[0]), 72, 53).rgb);
+    // Again, the other way round; then in bands.
+    const auto all = cameras();
+    for (std::size_t i = all.size(); i-- > 0;)
+        EXPECT_EQ(first[i].rgb, cast(*roomy, misty(all[i]), 72, 53).rgb);
+    for (const std::size_t i : {0, 6, 8}) {
+        Image banded{72, 53, std::vector<std::uint8_t>(3u * 72 * 53)};
+        for (int row = 0; row < 53; row += 13)
+            ASSERT_TRUE(
+                roomy->render(misty(all[i]), {{72, 53}, row, std::min(13, 53 - row)}, banded));
+        EXPECT_EQ(first[i].rgb, banded.rgb);
+    }
+}
+
+TEST_F(ObjectOrder, CellsStayAndOnlyWhatIsSeenIsBrought) {
+    const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
+    const auto cells = objectOrder(scene, {.cellSide = 16});
+    const CameraView inside{cameras()[0], *opticsPreset("mucosa"), {}};
+    cast(*cells, inside, 64, 64);
+    const ResidencyStats first = cells->residency();
+    EXPECT_GT(first.uploaded, 0);
+    EXPECT_EQ(first.uploaded, first.visited);
+    EXPECT_LE(first.visited, first.inView);
+    EXPECT_LT(first.inView, first.nonEmpty);
+    EXPECT_LT(first.nonEmpty, first.cells);
+    EXPECT_EQ(first.cells, 8 * 7 * 6);
+    cast(*cells, inside, 64, 64);
+    EXPECT_EQ(cells->residency().uploaded, 0);
+    EXPECT_EQ(cells->residency().visited, first.visited);
+    // Air alone: nothing to show.
+    CameraView nothing = inside;
+    nothing.optics.transferFunction = {
+        {{3000.0, glm::dvec3(1.0), 0.0}, {3001.0, glm::dvec3(1.0), 1.0}}};
+    for (const std::uint8_t value : cast(*cells, nothing, 16, 16).rgb)
+        ASSERT_EQ(value, 0);
+    EXPECT_EQ(cells->residency().nonEmpty, 0);
+}
+
+TEST_F(ObjectOrder, EndsRaysAtTheBackdropAndShowsItBehind) {
+    const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
+    const auto whole = singlePass(scene);
+    const auto cells = objectOrder(scene, {.cellSide = 16});
+    auto backdrop = std::make_shared<Backdrop>();
+    backdrop->size = {60, 44};
+    for (int i = 0; i < 60 * 44; ++i)
+        backdrop->pixels.push_back({0.1f, 0.3f, 0.05f, 8.0f + float(i % 60)});
+    for (CameraView view : {misty(cameras()[0]), misty(cameras()[3]), misty(cameras()[8])}) {
+        view.backdrop = backdrop;
+        const Image image = cast(*cells, view, 60, 44);
+        EXPECT_GE(psnr(image, cast(*whole, view, 60, 44)), 55.0);
+        view.backdrop = nullptr;
+        EXPECT_NE(image.rgb, cast(*cells, view, 60, 44).rgb);
+    }
+}
+
+TEST_F(ObjectOrder, SaysWhatIsWrong) {
+    const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
+    const auto odd = ObjectOrderRaycaster::create(*context, scene, {.cellSide = 48});
+    ASSERT_FALSE(odd);
+    EXPECT_EQ(odd.error().kind, ErrorKind::badInput);
+    EXPECT_NE(odd.error().message.find("48"), std::string::npos);
+    const auto poor = ObjectOrderRaycaster::create(*context, scene, {.budgetBytes = 1000});
+    ASSERT_FALSE(poor);
+    EXPECT_EQ(poor.error().kind, ErrorKind::device);
 }
 
 }  // namespace

@@ -22,9 +22,11 @@ namespace {
 
 constexpr std::size_t classificationsKept = 4;
 
-/// Voxels along a leaf of the octree, whose map of distances lets rays leap inside cells.
+/// Voxels along a leaf of the octree, whose map of distances lets rays leap inside cells: the
+/// smaller, the better they leap, and the more memory the map takes.
 int leafSideOf(const Grid& grid) {
-    return grid.voxelCount() > std::size_t(1) << 31 ? 8 : 4;
+    const std::size_t voxels = grid.voxelCount();
+    return voxels <= std::size_t(1) << 28 ? 2 : voxels <= std::size_t(1) << 31 ? 4 : 8;
 }
 
 /// Voxels beyond the cell's own that a sample in it may read, but for interpolation: a voxel for
@@ -45,12 +47,12 @@ struct Shown {
 };
 
 /// Cells with something visible in them, or (where samples show together with the one before
-/// them) within a leaf, which is longer than a step.
+/// them) within `reach` leaves, a step or more.
 std::vector<std::uint8_t> neededCells(const ClassifiedOctree& octree, const CellGrid& cells,
-                                      int leafSide, bool segments) {
+                                      int leafSide, int reach) {
     std::vector<std::uint8_t> needed(std::size_t(cells.cells()), 0);
     const glm::ivec3 leaves = octree.nodes(0), last = cells.count() - 1;
-    const int reach = segments ? 1 : 0, leavesInCell = cells.side / leafSide;
+    const int leavesInCell = cells.side / leafSide;
     glm::ivec3 leaf;
     for (leaf.z = 0; leaf.z < leaves.z; ++leaf.z)
         for (leaf.y = 0; leaf.y < leaves.y; ++leaf.y)
@@ -103,8 +105,9 @@ struct ObjectOrderRaycaster::Impl {
         Shown fresh{std::move(*made), {}};
         if (leaping) {
             const ClassifiedOctree classes(octree, fresh.classified.table(), options.threads);
-            fresh.needed = neededCells(classes, cells, octree.leafSide(),
-                                       MarchVariant::of(optics, false, false).preIntegrated);
+            const bool segments = MarchVariant::of(optics, false, false).preIntegrated;
+            const int reach = segments ? int(std::ceil(march.stepVoxels / octree.leafSide())) : 0;
+            fresh.needed = neededCells(classes, cells, octree.leafSide(), reach);
         } else {
             fresh.needed.assign(std::size_t(cells.cells()), 1);
         }
@@ -206,13 +209,18 @@ Result<std::unique_ptr<ObjectOrderRaycaster>> ObjectOrderRaycaster::create(
             ErrorKind::badInput,
             "cells are of 16, 32, 64 or 128 voxels a side, not " + std::to_string(options.cellSide),
             "object-order raycaster");
+    if (options.leafSide < 0 || options.leafSide > options.cellSide ||
+        (options.leafSide > 0 && options.cellSide % options.leafSide != 0))
+        return fail(ErrorKind::badInput, "cells do not consist of whole leaves",
+                    "object-order raycaster");
     auto projector = CellProjector::create();
     if (!projector) return tl::make_unexpected(projector.error());
     auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
     if (!block) return tl::make_unexpected(block.error());
     const Grid& grid = scene->grid();
     auto source = std::make_shared<ScanCells>(scene->volume.share());
-    auto octree = MinMaxOctree::build(scene->volume, leafSideOf(grid), options.threads);
+    const int leafSide = options.leafSide ? options.leafSide : leafSideOf(grid);
+    auto octree = MinMaxOctree::build(scene->volume, leafSide, options.threads);
     const CellGrid cells{grid.size, options.cellSide};
     std::unique_ptr<ObjectOrderRaycaster> made(new ObjectOrderRaycaster(std::unique_ptr<Impl>(
         new Impl{context, std::move(scene), options, cells, std::move(source), std::move(octree),

@@ -13,6 +13,7 @@ namespace haustra::render {
 struct ObjectOrderOptions {
     int cellSide = 64;            ///< voxels; one of cellSides (cell_grid.h)
     std::size_t budgetBytes = 0;  ///< of GPU memory for cells; 0: as much as they need
+    int leafSide = 0;             ///< voxels; a cell's side is a multiple; 0: by the volume's size
     int threads = 0;              ///< that read cells (≤ 0: all cores); changes no pixel
 };
 
@@ -35,7 +36,8 @@ class ObjectOrderRaycaster final : public Raycaster {
 public:
     /// Reads the volume once, in order. Of the scene's ranges it takes no notice. Fails (badInput)
     /// on a cell side that cannot be chosen, (device) where the budget holds no cell or the device
-    /// has no room. Holds 5/64 bytes a voxel of main memory, or 5/512 of volumes over 2³¹ voxels.
+    /// has no room. Holds 5 / leafSide³ bytes a voxel of main memory, and 1 / leafSide³ on the GPU:
+    /// leaves have 2 voxels a side, 4 over 2²⁸ voxels, 8 over 2³¹.
     static Result<std::unique_ptr<ObjectOrderRaycaster>> create(gpu::Context& context,
                                                                 std::shared_ptr<const Scene> scene,
                                                                 ObjectOrderOptions options = {});
