@@ -77,11 +77,12 @@ glm::dvec4 extinctionOf(glm::dvec4 here, double stepMm) {
     return {linearLight(glm::dvec3(here)) * extinction, extinction};
 }
 
-/// Fills the integrals; says for each entry whether extinction borders on it.
+/// Fills the integrals. Marks of every two neighbouring entries with extinction between them one,
+/// not the first or last of the table: beyond it there may be none.
 std::vector<bool> integrate(TransferTable& table, const Points& points, double stepMm) {
     // Midpoints of quarters see what is thinner than an entry.
     constexpr int parts = 4;
-    std::vector<bool> borders(TransferTable::entries, false);
+    std::vector<bool> shown(TransferTable::entries, false);
     RisingLookup lookup(points);
     table.integrals.assign(TransferTable::entries, glm::vec4(0.0f));
     glm::dvec4 sum(0.0);
@@ -90,13 +91,13 @@ std::vector<bool> integrate(TransferTable& table, const Points& points, double s
             const double hu = huOfEntry(table, i - 1 + (part + 0.5) / parts);
             const glm::dvec4 here = extinctionOf(lookup.at(hu), stepMm);
             sum += here / double(parts);
-            if (here.a > 0.0) borders[std::size_t(i) - 1] = borders[std::size_t(i)] = true;
+            if (here.a > 0.0) shown[std::size_t(std::min(i, TransferTable::entries - 2))] = true;
         }
         table.integrals[std::size_t(i)] = glm::vec4(sum);
     }
     table.integralBelow = extinctionOf({points.front().color, points.front().opacity}, stepMm);
     table.integralAbove = extinctionOf({points.back().color, points.back().opacity}, stepMm);
-    return borders;
+    return shown;
 }
 
 bool canShow(const TransferTable& table, const Optics& optics, int entry) {
@@ -110,14 +111,14 @@ bool canShow(const TransferTable& table, const Optics& optics, int entry) {
     return false;
 }
 
-/// `borders` as integrate gives it, or empty.
-void findVisible(TransferTable& table, const Optics& optics, const std::vector<bool>& borders) {
+/// `shown` as integrate gives it, or empty.
+void findVisible(TransferTable& table, const Optics& optics, const std::vector<bool>& shown) {
     table.visibleBefore.assign(TransferTable::entries + 1, 0);
     int first = TransferTable::entries, last = -1;
     for (int i = 0; i < TransferTable::entries; ++i) {
         // What is denser than something visible can be a ray's greatest value.
         const bool visible = canShow(table, optics, i) ||
-                             (!borders.empty() && borders[std::size_t(i)]) ||
+                             (!shown.empty() && shown[std::size_t(i)]) ||
                              (optics.composition == Composition::maximumIntensity && last >= 0);
         table.visibleBefore[std::size_t(i) + 1] =
             table.visibleBefore[std::size_t(i)] + (visible ? 1 : 0);
@@ -154,9 +155,9 @@ TransferTable makeTransferTable(const Optics& optics, double stepMm) {
         table.rgba.resize(TransferTable::entries);
         fillRow(table, 0, function.points, function.points, 0.0, opacityExponent);
     }
-    std::vector<bool> borders;
-    if (absorbs && optics.preIntegrated) borders = integrate(table, function.points, stepMm);
-    findVisible(table, optics, borders);
+    std::vector<bool> shown;
+    if (absorbs && optics.preIntegrated) shown = integrate(table, function.points, stepMm);
+    findVisible(table, optics, shown);
     return table;
 }
 
