@@ -24,9 +24,9 @@ CameraRays::CameraRays(const CameraView& view, const Grid& grid, glm::ivec2 pict
     down_ *= half;
 }
 
-std::optional<VoxelRay> CameraRays::through(glm::ivec2 pixel) const {
-    const glm::dvec2 place = 2.0 * (glm::dvec2(pixel) + 0.5) / size_ - 1.0;
-    const glm::dvec3 aside = place.x * right_ + place.y * down_;
+std::optional<VoxelRay> CameraRays::through(glm::dvec2 place) const {
+    const glm::dvec2 ndc = 2.0 * place / size_ - 1.0;
+    const glm::dvec3 aside = ndc.x * right_ + ndc.y * down_;
     glm::dvec3 origin = eye_, direction = forward_;
     if (lens_ == Lens::perspective) {
         direction = glm::normalize(forward_ + aside);

@@ -17,8 +17,15 @@ public:
     /// The view must have passed its checks.
     CameraRays(const CameraView& view, const Grid& grid, glm::ivec2 pictureSize);
 
-    /// Through a pixel's centre; none where a fisheye's picture shows nothing.
-    std::optional<VoxelRay> through(glm::ivec2 pixel) const;
+    /// Through a place of the picture (pixels; centres at halves); none where a fisheye's shows
+    /// nothing.
+    std::optional<VoxelRay> through(glm::dvec2 place) const;
+    /// Through a pixel's centre.
+    std::optional<VoxelRay> through(glm::ivec2 pixel) const {
+        return through(glm::dvec2(pixel) + 0.5);
+    }
+    /// Whether rays spread from one point, evenly over the picture.
+    bool perspective() const { return lens_ == Lens::perspective; }
 
 private:
     Lens lens_;

@@ -1,6 +1,7 @@
 #include "render/hybrid/ray_tiles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace haustra::render {
@@ -50,7 +51,66 @@ RayTiles::RayTiles(const CameraRays& rays, const RayMedium& medium, const Band& 
       live_(std::size_t(tiles()), 0),
       whole_(std::size_t(tiles()), 0) {}
 
-RaySpan RayTiles::span(glm::ivec2 pixel) const {
+double RayTiles::beamStart(glm::ivec2 corner) const {
+    // Rays of other lenses do not begin at one point, or bend between a beam's corners.
+    if (!rays_.perspective()) return 0.0;
+    const glm::dvec2 low(corner + glm::ivec2(0, band_.firstRow));
+    const VoxelRay axis = *rays_.through(low + 0.5 * beamSide);
+    // How fast the corners' rays leave the axis; others stay within this but for their curvature.
+    double spread = 0.0;
+    for (int at = 0; at < 4; ++at) {
+        const glm::dvec2 place = low + double(beamSide) * glm::dvec2(at & 1, at >> 1);
+        const glm::dvec3 aside = glm::abs(rays_.through(place)->direction - axis.direction);
+        spread = std::max(spread, std::max(aside.x, std::max(aside.y, aside.z)));
+    }
+    spread *= 1.05;
+    const glm::dvec3 along = glm::abs(axis.direction);
+    const double speed = std::max(along.x, std::max(along.y, along.z)) + spread;
+    const ClassifiedOctree& octree = medium_.octree;
+    const int leafSide = blockSide;
+    const glm::dvec3 size(medium_.volume.grid().size);
+    // Whether all nodes of a level within `reach` of a place are empty; there are none outside.
+    const auto clear = [&](int level, glm::dvec3 place, double reach) {
+        const double side = double(leafSide << level);
+        const glm::ivec3 last = octree.nodes(level) - 1;
+        if (glm::any(glm::lessThan(place + reach, glm::dvec3(-0.5))) ||
+            glm::any(glm::greaterThan(place - reach, size - 0.5)))
+            return true;
+        const glm::ivec3 from = glm::clamp(glm::ivec3(glm::floor((place - reach) / side)),
+                                           glm::ivec3(0), last),
+                         to = glm::clamp(glm::ivec3(glm::floor((place + reach) / side)),
+                                         glm::ivec3(0), last);
+        for (int z = from.z; z <= to.z; ++z)
+            for (int y = from.y; y <= to.y; ++y)
+                for (int x = from.x; x <= to.x; ++x)
+                    if (octree.at(level, {x, y, z}) != NodeClass::empty) return false;
+        return true;
+    };
+    double n = 0.0;
+    int level = octree.levels() - 1;
+    while (n < mostSamples) {
+        const glm::dvec3 place = axis.at(n);
+        const double width = n * spread + 0.1;
+        const double room = 0.5 * (leafSide << level);
+        // Wide beams among small nodes would have to look at many.
+        if (width > 2.0 * room) return n;
+        if (clear(level, place, width + room)) {
+            n += room / speed;
+            level = std::min(level + 1, octree.levels() - 1);
+            // Beyond the volume there is nothing to come.
+            const glm::dvec3 ahead = axis.direction;
+            for (int side = 0; side < 3; ++side)
+                if ((ahead[side] >= 0.0 && place[side] - width > size[side] + room) ||
+                    (ahead[side] <= 0.0 && place[side] + width < -1.0 - room))
+                    if (std::abs(ahead[side]) >= spread) return n;
+        } else if (level-- == 0) {
+            return n;
+        }
+    }
+    return n;
+}
+
+RaySpan RayTiles::span(glm::ivec2 pixel, double from) const {
     const glm::ivec2 inPicture = pixel + glm::ivec2(0, band_.firstRow);
     const auto ray = rays_.through(inPicture);
     if (!ray) return {};
@@ -63,7 +123,7 @@ RaySpan RayTiles::span(glm::ivec2 pixel) const {
     const ClassifiedOctree& octree = medium_.octree;
     const int levels = octree.levels();
     const auto entry =
-        octree.firstNonEmpty(*ray, 0.0, to, std::min(controls_.entryLevel, levels - 1));
+        octree.firstNonEmpty(*ray, from, to, std::min(controls_.entryLevel, levels - 1));
     if (!entry) return {};
     RaySpan span;
     span.first = controls_.toBoundary
@@ -120,9 +180,18 @@ bool RayTiles::endsWithin(const VoxelRay& ray, double from, double to) const {
 void RayTiles::determine(int tile) {
     const glm::ivec2 size(band_.pictureSize.x, band_.rows);
     int live = 0, whole = 0;
+    constexpr int beams = tileSide / beamSide;
+    std::array<double, beams * beams> from{};
+    for (int beam = 0; beam < beams * beams; ++beam) {
+        const glm::ivec2 corner =
+            2 * place(tile, 0) + beamSide * glm::ivec2(beam % beams, beam / beams);
+        if (corner.x < size.x && corner.y < size.y) from[std::size_t(beam)] = beamStart(corner);
+    }
     for (int quad = 0; quad < quadsPerTile; ++quad) {
         const std::size_t at = std::size_t(tile) * quadsPerTile + std::size_t(quad);
         const glm::ivec2 corner = 2 * place(tile, quad);
+        const glm::ivec2 inTile = (corner - 2 * place(tile, 0)) / beamSide;
+        const double start = from[std::size_t(inTile.x + beams * inTile.y)];
         if (corner.x >= size.x || corner.y >= size.y) continue;
         std::uint8_t ended = 0;
         for (int ray = 0; ray < 4; ++ray) {
@@ -131,7 +200,7 @@ void RayTiles::determine(int tile) {
                 ended = std::uint8_t(ended | 1 << ray);
                 continue;
             }
-            const RaySpan found = span(pixel);
+            const RaySpan found = span(pixel, start);
             spans_[std::size_t(pixel.y) * std::size_t(size.x) + std::size_t(pixel.x)] = found;
             if (found.last < found.first) ended = std::uint8_t(ended | 1 << ray);
         }

@@ -79,11 +79,15 @@ public:
 
 private:
     static constexpr std::uint8_t allEnded = 15, outside = 255;
+    static constexpr int beamSide = 8;
     glm::ivec2 place(int tile, int quad) const {
         const glm::ivec2 corner(tile % tiles_.x, tile / tiles_.x);
         return corner * quadsPerSide + glm::ivec2(quad % quadsPerSide, quad / quadsPerSide);
     }
-    RaySpan span(glm::ivec2 pixel) const;
+    /// Up to which sample none of a beam's rays can meet anything: those through a square of
+    /// pixels, beamSide along its side.
+    double beamStart(glm::ivec2 corner) const;
+    RaySpan span(glm::ivec2 pixel, double from) const;
     float firstVisible(const VoxelRay& ray, double from, double to) const;
     bool endsWithin(const VoxelRay& ray, double from, double to) const;
     void leaveToFilling(int tile);
