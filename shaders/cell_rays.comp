@@ -19,7 +19,45 @@ bool isLive(vec4 sum) {
 
 // As march(), from `begin` to `end` alone; `first` is the ray's first sample in the volume, where
 // nothing is before it.
-#if COMPOSITION == EMISSION_ABSORPTION && !PRE_INTEGRATED
+#if COLOR_CELLS
+// Voxels have colours of their own, as displayed, and opacity for 1 mm.
+vec3 linearOf(vec3 displayed) {
+    vec3 c = clamp(displayed, 0.0, 1.0);
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+vec4 marchCell(CellInSlot cell, Ray ray, vec4 sum, float first, float begin, float end) {
+    vec3 inverseBlockStep = inverseBlockStepOf(ray);
+    float n = begin;
+    while (n <= end && sum.a < u.stepping.y) {
+        vec3 position;
+        vec4 texel = vec4(0.0);
+        bool searching;
+        do {
+            position = ray.origin + n * ray.step;
+            ivec3 block = blockAt(position);
+            float distance = float(texelFetch(leapDistance, block, 0).r);
+            float advance = 1.0;
+            searching = n <= end;
+            if (distance > 0.0) {
+                advance = stepsToLeave(position, block, distance, inverseBlockStep);
+            } else {
+                texel = texelInSlot(inSlot(position, cell), cell);
+                searching = searching && !(texel.a > 0.0);
+            }
+            n += searching ? advance : 0.0;
+        } while (searching);
+        vec3 color = linearOf(texel.rgb);
+#if SHADING
+        color = shade(color, normalOf(gradientIn(cell, position)), ray.lightMm, n);
+#endif
+        float opacity = 1.0 - pow(max(1.0 - texel.a, 0.0), u.stepping.x);
+        sum = behind(sum, color, n <= end ? opacity : 0.0);
+        n += 1.0;
+    }
+    return sum;
+}
+#elif COMPOSITION == EMISSION_ABSORPTION && !PRE_INTEGRATED
 vec4 marchCell(CellInSlot cell, Ray ray, vec4 sum, float first, float begin, float end) {
     vec3 inverseBlockStep = inverseBlockStepOf(ray);
     float n = begin;

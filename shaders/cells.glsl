@@ -1,4 +1,7 @@
 // Rays among cells (dissertation §5.2): which samples of a ray belong to a cell, and what is in it.
+#ifndef COLOR_CELLS
+#define COLOR_CELLS 0
+#endif
 layout(std140, binding = 3) uniform CellBlock { CellUniforms cells; };
 
 // The first n beyond the face before cell k + side, where a ray's coordinate is `start` at n = 0.
@@ -36,8 +39,15 @@ vec3 inSlot(vec3 position, CellInSlot cell) {
 }
 vec3 atlasPlace(vec3 inSlot, CellInSlot cell) { return (inSlot + cell.slot.xyz) * cells.atlasPerVoxel.xyz; }
 
+vec4 texelInSlot(vec3 place, CellInSlot cell) { return textureLod(volume, atlasPlace(place, cell), 0.0); }
+
+// The value whose gradient makes surfaces: of colour volumes, the opacity.
 float storedInSlot(vec3 place, CellInSlot cell) {
-    return textureLod(volume, atlasPlace(place, cell), 0.0).r;
+#if COLOR_CELLS
+    return texelInSlot(place, cell).a;
+#else
+    return texelInSlot(place, cell).r;
+#endif
 }
 float storedIn(CellInSlot cell, vec3 position) { return storedInSlot(inSlot(position, cell), cell); }
 

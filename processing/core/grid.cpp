@@ -33,15 +33,15 @@ bool sameGrid(const Grid& a, const Grid& b) {
 
 Result<void> checkGrid(const Grid& grid, const std::string& place) {
     for (int axis = 0; axis < 3; ++axis) {
-        if (grid.size[axis] < 1 || grid.size[axis] > 4096) {
+        if (grid.size[axis] < 1 || grid.size[axis] > maxGridSide) {
             return fail(ErrorKind::badInput,
                         "the volume has " + std::to_string(grid.size[axis]) + " voxels along axis " +
-                            std::to_string(axis) + "; 1 to 4096 are read",
+                            std::to_string(axis) + "; 1 to " + std::to_string(maxGridSide) + " are read",
                         place);
         }
     }
-    if (grid.voxelCount() > (std::size_t(1) << 33)) {
-        return fail(ErrorKind::badInput, "the volume has more than 2^33 voxels", place);
+    if (grid.voxelCount() > maxGridVoxels) {
+        return fail(ErrorKind::badInput, "the volume has more than 2^36 voxels", place);
     }
     const glm::dmat4& m = grid.patientFromVoxel;
     for (int column = 0; column < 4; ++column) {

@@ -51,7 +51,12 @@ Grid axisAlignedGrid(glm::ivec3 size, glm::dvec3 spacingMm, glm::dvec3 originMm 
 /// Same size and the same affine to within 1e-4 mm at the farthest corner.
 bool sameGrid(const Grid& a, const Grid& b);
 
-/// Fails unless every extent is 1…4096, there are at most 2^33 voxels, and the affine is finite
+/// Longest side and most voxels of a grid that is read: what a file format can say, and far more
+/// than a disk holds. Whoever allocates first makes sure that the file is large enough.
+inline constexpr int maxGridSide = 32767;
+inline constexpr std::size_t maxGridVoxels = std::size_t(1) << 36;
+
+/// Fails unless every extent is 1…maxGridSide, there are at most maxGridVoxels, and the affine is finite
 /// and invertible with an affine last row. Everything that reads a grid from a file calls this.
 Result<void> checkGrid(const Grid& grid, const std::string& place);
 

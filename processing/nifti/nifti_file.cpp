@@ -240,6 +240,32 @@ Result<void> readValuesOf(short datatype, MaybeGzipFile& stream, bool swapped,
         place);
 }
 
+/// An image whose values come next in its stream.
+struct OpenImage {
+    MaybeGzipFile stream;
+    nifti_1_header header;
+    bool swapped;
+    Grid grid;
+};
+
+Result<OpenImage> openImage(const std::filesystem::path& file) {
+    const std::string place = file.string();
+    auto stream = MaybeGzipFile::open(file);
+    if (!stream) return tl::make_unexpected(stream.error());
+    bool swapped = false;
+    const auto header = readHeader(*stream, swapped, place);
+    if (!header) return tl::make_unexpected(header.error());
+    const auto grid = gridOf(*header, place);
+    if (!grid) return tl::make_unexpected(grid.error());
+    if (auto skipped = skipToData(*stream, *header, place); !skipped)
+        return tl::make_unexpected(skipped.error());
+    int bytesPerVoxel = 0, swapSize = 0;
+    nifti_datatype_sizes(header->datatype, &bytesPerVoxel, &swapSize);
+    if (grid->voxelCount() * std::size_t(bytesPerVoxel) > stream->mostBytes())
+        return fail(ErrorKind::badInput, "the file is truncated", place);
+    return OpenImage{std::move(*stream), *header, swapped, *grid};
+}
+
 template <class T>
 constexpr short datatypeOf() {
     if constexpr (std::is_same_v<T, std::uint8_t>) return NIFTI_TYPE_UINT8;
@@ -295,30 +321,55 @@ Result<void> writeImage(const std::filesystem::path& file, const nifti_1_header&
 
 template <class T>
 Result<Volume<T>> readNifti(const std::filesystem::path& file) try {
-    const std::string place = file.string();
-    auto stream = MaybeGzipFile::open(file);
-    if (!stream) return tl::make_unexpected(stream.error());
-    bool swapped = false;
-    const auto header = readHeader(*stream, swapped, place);
-    if (!header) return tl::make_unexpected(header.error());
-    const auto grid = gridOf(*header, place);
-    if (!grid) return tl::make_unexpected(grid.error());
-    if (auto skipped = skipToData(*stream, *header, place); !skipped)
-        return tl::make_unexpected(skipped.error());
-    int bytesPerVoxel = 0, swapSize = 0;
-    nifti_datatype_sizes(header->datatype, &bytesPerVoxel, &swapSize);
-    if (grid->voxelCount() * std::size_t(bytesPerVoxel) > stream->mostBytes())
-        return fail(ErrorKind::badInput, "the file is truncated", place);
-    Volume<T> volume(*grid);
-    if (auto read = readValuesOf<T>(header->datatype, *stream, swapped, scalingOf(*header),
-                                    volume.writable(), place);
+    auto image = openImage(file);
+    if (!image) return tl::make_unexpected(image.error());
+    Volume<T> volume(image->grid);
+    if (auto read = readValuesOf<T>(image->header.datatype, image->stream, image->swapped,
+                                    scalingOf(image->header), volume.writable(), file.string());
         !read) {
         return tl::make_unexpected(read.error());
     }
-    if (auto whole = stream->finish(); !whole) return tl::make_unexpected(whole.error());
+    if (auto whole = image->stream.finish(); !whole) return tl::make_unexpected(whole.error());
     return volume;
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "there is not enough memory for the volume", file.string());
+}
+
+Result<ColorImage> readColorNifti(const std::filesystem::path& file) try {
+    auto image = openImage(file);
+    if (!image) return tl::make_unexpected(image.error());
+    const short datatype = image->header.datatype;
+    if (datatype != NIFTI_TYPE_RGB24 && datatype != NIFTI_TYPE_RGBA32)
+        return fail(ErrorKind::unsupported,
+                    std::string("a colour image is RGB24 or RGBA32, not ") +
+                        nifti_datatype_string(datatype),
+                    file.string());
+    ColorImage color{Volume<Rgba>(image->grid), datatype == NIFTI_TYPE_RGBA32};
+    const std::span<Rgba> voxels = color.voxels.writable();
+    const std::size_t channels = color.hasOpacity ? 4 : 3;
+    std::vector<std::uint8_t> stored(channels * std::min(voxelsAtOnce, voxels.size()));
+    for (std::size_t at = 0; at < voxels.size(); at += voxelsAtOnce) {
+        const std::size_t count = std::min(voxelsAtOnce, voxels.size() - at);
+        const auto room = std::as_writable_bytes(std::span(stored).first(channels * count));
+        if (auto read = image->stream.read(room); !read) return tl::make_unexpected(read.error());
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::uint8_t* of = &stored[channels * n];
+            voxels[at + n] = {of[0], of[1], of[2], color.hasOpacity ? of[3] : std::uint8_t(255)};
+        }
+    }
+    if (auto whole = image->stream.finish(); !whole) return tl::make_unexpected(whole.error());
+    return color;
+} catch (const std::bad_alloc&) {
+    return fail(ErrorKind::io, "there is not enough memory for the volume", file.string());
+}
+
+Result<void> writeColorNifti(const std::filesystem::path& file, const Volume<Rgba>& volume) {
+    const auto voxels = std::as_bytes(volume.voxels());
+    const ByteSource body{voxels.size(), [&](std::size_t offset, std::span<std::byte> room) {
+                              return voxels.subspan(offset, room.size());
+                          }};
+    return writeImage(file, headerOf(volume.grid(), NIFTI_TYPE_RGBA32, sizeof(Rgba), 1),
+                      volume.grid(), body);
 }
 
 template <class T>

@@ -2,6 +2,7 @@
 // rows of the affine change sign on the way in and out.
 #pragma once
 
+#include "core/rgba.h"
 #include "core/tissue.h"
 #include "core/volume.h"
 
@@ -27,6 +28,16 @@ Result<Volume<T>> readNifti(const std::filesystem::path& file);
 /// name beside `file` and renamed. The same volume gives the same bytes.
 template <class T>
 Result<void> writeNifti(const std::filesystem::path& file, const Volume<T>& volume);
+
+/// Reads a colour image of 8 bits a channel, with or without opacity (RGB24, RGBA32), as readNifti
+/// reads others. Fails (unsupported) where it is of another type.
+struct ColorImage {
+    Volume<Rgba> voxels;
+    bool hasOpacity = false;  ///< else it is 255 everywhere
+};
+Result<ColorImage> readColorNifti(const std::filesystem::path& file);
+/// As RGBA32; as writeNifti otherwise.
+Result<void> writeColorNifti(const std::filesystem::path& file, const Volume<Rgba>& volume);
 
 /// Writes a mixture as one 4-D uint8 image: all voxels' air, then their soft tissue, then their
 /// tagged material, in 255ths that sum to 255. As writeNifti otherwise; takes a few MB. readNifti

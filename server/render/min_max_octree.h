@@ -8,7 +8,9 @@
 #include "render/transfer_table.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -29,6 +31,10 @@ public:
     /// same for any number of threads (≤ 0: all cores); holds 5 / leafSide³ bytes a voxel. leafSide
     /// is minLeafSide…maxLeafSide, and the volume has at least one voxel.
     static MinMaxOctree build(const Volume<std::int16_t>& volume, int leafSide, int threads);
+    /// The same of values that are made when they are asked for: row(y, z, values) fills a row of
+    /// voxels; from any thread, some rows more than once.
+    using Row = std::function<void(int y, int z, std::span<std::int16_t> values)>;
+    static MinMaxOctree build(glm::ivec3 voxels, const Row& row, int leafSide, int threads);
     /// The same from leaves that are known already: `leaves` as `build` makes them.
     static MinMaxOctree fromLeaves(BlockRanges leaves, int leafSide, glm::ivec3 voxels);
 

@@ -128,6 +128,47 @@ void expectRoundTrip(const fs::path& file, const Grid& grid) {
     EXPECT_TRUE(std::ranges::equal(read->voxels(), volume.voxels()));
 }
 
+TEST_F(Nifti, ColoursComeBackWithTheirOpacityAndWithoutItAreOpaque) {
+    Volume<Rgba> volume(obliqueGrid({7, 5, 3}));
+    std::uint8_t next = 0;
+    for (Rgba& voxel : volume.writable()) {
+        voxel = {next, std::uint8_t(next + 1), std::uint8_t(2 * next), std::uint8_t(255 - next)};
+        next = std::uint8_t(next + 3);
+    }
+    for (const char* name : {"color.nii", "color.nii.gz"}) {
+        ASSERT_TRUE(nifti::writeColorNifti(folder / name, volume));
+        const auto back = nifti::readColorNifti(folder / name);
+        ASSERT_TRUE(back) << describe(back.error());
+        EXPECT_TRUE(back->hasOpacity);
+        EXPECT_TRUE(std::equal(volume.voxels().begin(), volume.voxels().end(),
+                               back->voxels.voxels().begin()));
+        EXPECT_FALSE(readNifti<std::uint8_t>(folder / name));
+    }
+    // RGB24: three bytes a voxel.
+    std::vector<char> bytes = bytesOf(folder / "color.nii");
+    const std::int16_t rgb24 = 128, bits = 24;
+    std::memcpy(bytes.data() + 70, &rgb24, 2);
+    std::memcpy(bytes.data() + 72, &bits, 2);
+    std::vector<char> three(bytes.begin(), bytes.begin() + 352);
+    for (const Rgba& voxel : volume.voxels())
+        three.insert(three.end(), {char(voxel.r), char(voxel.g), char(voxel.b)});
+    put(folder / "rgb.nii", three);
+    const auto back = nifti::readColorNifti(folder / "rgb.nii");
+    ASSERT_TRUE(back) << describe(back.error());
+    EXPECT_FALSE(back->hasOpacity);
+    for (std::size_t i = 0; i < volume.voxels().size(); ++i) {
+        const Rgba is = volume[i];
+        EXPECT_EQ(back->voxels[i], (Rgba{is.r, is.g, is.b, 255}));
+    }
+    three.pop_back();
+    put(folder / "short.nii", three);
+    EXPECT_FALSE(nifti::readColorNifti(folder / "short.nii"));
+    ASSERT_TRUE(writeNifti(folder / "grey.nii", pattern<std::uint8_t>(obliqueGrid({2, 2, 2}))));
+    const auto grey = nifti::readColorNifti(folder / "grey.nii");
+    ASSERT_FALSE(grey);
+    EXPECT_EQ(grey.error().kind, ErrorKind::unsupported);
+}
+
 TEST_F(Nifti, RoundTripIsExact) {
     for (const char* name : {"a.nii", "a.nii.gz"}) {
         for (const Grid& grid : {axisAlignedGrid({5, 6, 7}, {0.7, 0.8, 1.5}, {-20, 30, 40}),

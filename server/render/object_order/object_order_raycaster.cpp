@@ -4,16 +4,12 @@
 #include "render/lately_used.h"
 #include "render/march_variant.h"
 #include "render/min_max_octree.h"
-#include "render/object_order/cell_pool.h"
-#include "render/object_order/cell_projector.h"
-#include "render/picture_readback.h"
+#include "render/object_order/cell_raycaster.h"
 #include "render/ray_setup.h"
-#include "shaders/uniforms.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <optional>
+#include <string>
 #include <utility>
 
 namespace haustra::render {
@@ -21,13 +17,6 @@ namespace haustra::render {
 namespace {
 
 constexpr std::size_t classificationsKept = 4;
-
-/// Voxels along a leaf of the octree, whose map of distances lets rays leap inside cells: the
-/// smaller, the better they leap, and the more memory the map takes.
-int leafSideOf(const Grid& grid) {
-    const std::size_t voxels = grid.voxelCount();
-    return voxels <= std::size_t(1) << 28 ? 2 : voxels <= std::size_t(1) << 31 ? 4 : 8;
-}
 
 /// Voxels beyond the cell's own that a sample in it may read, but for interpolation: a voxel for
 /// gradients; and up to the sample before, where that enters too.
@@ -38,13 +27,6 @@ int borderOf(const Optics& optics, const MarchOptions& march) {
         optics.composition == Composition::emissionAbsorption && optics.preIntegrated;
     return segments ? std::max(before, 1) : 1;
 }
-
-/// A volume as one transfer function shows it: what rays look up, and the cells that they need.
-struct Shown {
-    Classification classified;
-    std::vector<std::uint8_t> needed;
-    int count = 0;
-};
 
 /// Cells with something visible in them, or (where samples show together with the one before
 /// them) within `reach` leaves, a step or more.
@@ -68,93 +50,40 @@ std::vector<std::uint8_t> neededCells(const ClassifiedOctree& octree, const Cell
     return needed;
 }
 
-double msSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-        .count();
-}
-
 }  // namespace
 
 struct ObjectOrderRaycaster::Impl {
-    gpu::Context& context;
     std::shared_ptr<const Scene> scene;
-    ObjectOrderOptions options;
-    CellGrid cells;
-    std::shared_ptr<const CellSource> source;
+    int threads;
     MinMaxOctree octree;
-    CellProjector projector;
-    gpu::UniformBuffer marchBlock;
-    LatelyUsed<Shown> shown{classificationsKept};
+    CellRaycaster cells;
+    LatelyUsed<ShownCells> shown{classificationsKept};
     MarchPrograms cast{"cell_rays.comp", {"cell_uniforms.h", "cells.glsl"}};
     MarchPrograms resolve{"cell_picture.comp"};
-    std::unique_ptr<CellPool> pool = nullptr;
-    std::optional<gpu::Texture> picture = std::nullopt, backdrop = std::nullopt;
-    std::shared_ptr<const Backdrop> bound = nullptr;  // what `backdrop` holds
-    ResidencyStats stats = {};
-    std::vector<PassTime> times = {};
 
-    Result<const Shown*> classify(const Optics& optics, const MarchOptions& march) {
+    Result<const ShownCells*> classify(const Optics& optics, const MarchOptions& march) {
         const double step = stepMm(march, scene->grid());
         const bool leaping = march.emptySpaceLeaping;
-        if (const Shown* known = shown.find(
-                [&](const Shown& one) { return one.classified.isFor(optics, step, leaping); }))
+        if (const ShownCells* known = shown.find(
+                [&](const ShownCells& one) { return one.classified.isFor(optics, step, leaping); }))
             return known;
         shown.makeRoom();
-        auto made = Classification::create(optics, step, leaping, octree.level(0), options.threads);
+        auto made = Classification::create(optics, step, leaping, octree.level(0), threads);
         if (!made) return tl::make_unexpected(made.error());
-        Shown fresh{std::move(*made), {}};
+        ShownCells fresh{std::move(*made), {}};
         if (leaping) {
-            const ClassifiedOctree classes(octree, fresh.classified.table(), options.threads);
+            const ClassifiedOctree classes(octree, fresh.classified.table(), threads);
             const bool segments = MarchVariant::of(optics, false, false).preIntegrated;
             const int reach = segments ? int(std::ceil(march.stepVoxels / octree.leafSide())) : 0;
-            fresh.needed = neededCells(classes, cells, octree.leafSide(), reach);
+            fresh.needed = neededCells(classes, cells.cells(), octree.leafSide(), reach);
         } else {
-            fresh.needed.assign(std::size_t(cells.cells()), 1);
+            fresh.needed.assign(std::size_t(cells.cells().cells()), 1);
         }
         fresh.count = int(std::count(fresh.needed.begin(), fresh.needed.end(), 1));
         return shown.keep(std::move(fresh));
     }
 
-    Result<void> makePool(int border) {
-        if (pool && pool->border() == border) return {};
-        pool.reset();
-        auto made = CellPool::create(source, cells, border, options.budgetBytes, options.threads);
-        if (!made) return tl::make_unexpected(made.error());
-        pool = std::move(*made);
-        return {};
-    }
-
-    Result<void> makeTargets(const CameraView& view, glm::ivec2 size) {
-        using gpu::Filter, gpu::Texture, gpu::TexelFormat;
-        if (!picture || glm::ivec2(picture->size()) != size) {
-            auto made =
-                Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
-            if (!made) return tl::make_unexpected(made.error());
-            picture = std::move(*made);
-        }
-        if (!view.backdrop || view.backdrop == bound) return {};
-        auto made = Texture::create(2, {view.backdrop->size, 1}, TexelFormat::rgba32f,
-                                    Filter::nearest, "backdrop");
-        if (!made) return tl::make_unexpected(made.error());
-        backdrop = std::move(*made);
-        backdrop->upload(view.backdrop->pixels.data());
-        bound = view.backdrop;
-        return {};
-    }
-
-    /// The eye among the cells, as the GPU is to see it: the source cell must be the same there.
-    glm::vec4 eyeInCells(const CameraView& view) const {
-        const glm::dvec3 eye = scene->grid().voxelFromPatientPoint(view.camera.positionMm);
-        return glm::vec4(eye / double(cells.side),
-                         view.camera.lens == Lens::orthographic ? 0.0 : 1.0);
-    }
-
     Result<void> render(const CameraView& view, const Band& band, Image& image) {
-        const int errorsBefore = context.errorCount();
-        const auto start = std::chrono::steady_clock::now();
-        const glm::ivec2 size(band.pictureSize.x, band.rows);
-        if (auto made = makeTargets(view, size); !made) return made;
-        if (auto made = makePool(borderOf(view.optics, view.march)); !made) return made;
         const auto seen = classify(view.optics, view.march);
         if (!seen) return tl::make_unexpected(seen.error());
         const auto variant = MarchVariant::of(view.optics, false, view.backdrop != nullptr);
@@ -162,47 +91,12 @@ struct ObjectOrderRaycaster::Impl {
         if (!casting) return tl::make_unexpected(casting.error());
         const auto resolving = resolve.program(variant);
         if (!resolving) return tl::make_unexpected(resolving.error());
-
-        const std::vector<PlannedCell> planned =
-            planFrame(cells, (*seen)->needed, scene->grid(), view.camera, band.pictureSize,
-                      band.firstRow, band.rows);
-        stats = {};
-        stats.cells = cells.cells();
-        stats.nonEmpty = (*seen)->count;
-        stats.inView = int(planned.size());
-        const double planMs = msSince(start);
-
-        if (auto begun = projector.begin(size, cells, eyeInCells(view)); !begun) return begun;
-        bind(view, band, **seen);
-        projector.project(planned, cells, *pool, **casting, stats);
-        const double castMs = msSince(start) - planMs;
-
-        projector.rays().bindImage(shaders::rayImage);
-        picture->bindImage(shaders::pictureImage);
-        (*resolving)->dispatch(size);
-        auto read = readBack(context, *picture, errorsBefore, band.firstRow, image);
-        times = {{"plan", planMs},
-                 {"cells", castMs},
-                 {"picture", msSince(start) - planMs - castMs},
-                 {"waiting for cells", stats.waitedMs}};
-        return read;
-    }
-
-    void bind(const CameraView& view, const Band& band, const Shown& seen) {
-        shaders::MarchUniforms u = marchUniforms(view, scene->grid(), seen.classified.table(),
-                                                 octree.level(0).size, band.pictureSize);
-        const double side = octree.leafSide();
-        u.blocksPerUnit = glm::vec4(glm::dvec3(cells.voxels) / side, -0.5 / side);
-        u.pictureSize.w = band.firstRow;
-        marchBlock.write(u);
-        marchBlock.bind(shaders::uniformBinding);
-        seen.classified.bind();
-        if (view.backdrop) backdrop->bind(shaders::backdropUnit);
+        return cells.render(view, band, **seen, borderOf(view.optics, view.march), **casting,
+                            **resolving, image);
     }
 };
 
-Result<std::unique_ptr<ObjectOrderRaycaster>> ObjectOrderRaycaster::create(
-    gpu::Context& context, std::shared_ptr<const Scene> scene, ObjectOrderOptions options) {
+Result<void> checkObjectOrder(const ObjectOrderOptions& options) {
     if (std::find(std::begin(cellSides), std::end(cellSides), options.cellSide) ==
         std::end(cellSides))
         return fail(
@@ -213,20 +107,28 @@ Result<std::unique_ptr<ObjectOrderRaycaster>> ObjectOrderRaycaster::create(
         (options.leafSide > 0 && options.cellSide % options.leafSide != 0))
         return fail(ErrorKind::badInput, "cells do not consist of whole leaves",
                     "object-order raycaster");
-    auto projector = CellProjector::create();
-    if (!projector) return tl::make_unexpected(projector.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
-    if (!block) return tl::make_unexpected(block.error());
+    return {};
+}
+
+int leafSideOf(const ObjectOrderOptions& options, glm::ivec3 voxels) {
+    if (options.leafSide) return options.leafSide;
+    const double count = double(voxels.x) * voxels.y * voxels.z;
+    return count <= double(1 << 28) ? 2 : count <= double(1u << 31) ? 4 : 8;
+}
+
+Result<std::unique_ptr<ObjectOrderRaycaster>> ObjectOrderRaycaster::create(
+    gpu::Context& context, std::shared_ptr<const Scene> scene, ObjectOrderOptions options) {
+    if (auto sound = checkObjectOrder(options); !sound) return tl::make_unexpected(sound.error());
     const Grid& grid = scene->grid();
-    auto source = std::make_shared<ScanCells>(scene->volume.share());
-    const int leafSide = options.leafSide ? options.leafSide : leafSideOf(grid);
+    const int leafSide = leafSideOf(options, grid.size);
     auto octree = MinMaxOctree::build(scene->volume, leafSide, options.threads);
-    const CellGrid cells{grid.size, options.cellSide};
+    auto cells =
+        CellRaycaster::create(context, grid, std::make_shared<ScanCells>(scene->volume.share()),
+                              options, octree.level(0).size, leafSide);
+    if (!cells) return tl::make_unexpected(cells.error());
     std::unique_ptr<ObjectOrderRaycaster> made(new ObjectOrderRaycaster(std::unique_ptr<Impl>(
-        new Impl{context, std::move(scene), options, cells, std::move(source), std::move(octree),
-                 std::move(*projector), std::move(*block)})));
-    // A budget without room, or a driver that refuses the text, is found here.
-    if (auto room = made->impl_->makePool(1); !room) return tl::make_unexpected(room.error());
+        new Impl{std::move(scene), options.threads, std::move(octree), std::move(*cells)})));
+    // A driver that refuses the text is found here.
     if (auto cast = made->impl_->cast.program({}); !cast) return tl::make_unexpected(cast.error());
     return made;
 }
@@ -242,21 +144,18 @@ Result<void> ObjectOrderRaycaster::render(const CameraView& view, const Band& ba
 }
 
 std::size_t ObjectOrderRaycaster::gpuBytes() const {
-    const Impl& my = *impl_;
-    std::size_t bytes = my.projector.gpuBytes() + (my.pool ? my.pool->gpuBytes() : 0);
-    for (const auto* texture : {&my.picture, &my.backdrop})
-        if (*texture) bytes += (*texture)->bytes();
-    for (const Shown& one : my.shown.all())
+    std::size_t bytes = impl_->cells.gpuBytes();
+    for (const ShownCells& one : impl_->shown.all())
         bytes += one.classified.gpuBytes();
     return bytes;
 }
 
 std::vector<PassTime> ObjectOrderRaycaster::passTimes() const {
-    return impl_->times;
+    return impl_->cells.passTimes();
 }
 
 const ResidencyStats& ObjectOrderRaycaster::residency() const {
-    return impl_->stats;
+    return impl_->cells.residency();
 }
 
 }  // namespace haustra::render

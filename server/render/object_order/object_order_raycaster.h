@@ -17,6 +17,12 @@ struct ObjectOrderOptions {
     int threads = 0;              ///< that read cells (≤ 0: all cores); changes no pixel
 };
 
+/// Fails (badInput) on sides that cannot be chosen.
+Result<void> checkObjectOrder(const ObjectOrderOptions& options);
+/// Voxels along a leaf of the octree, whose map of distances lets rays leap inside cells: the
+/// smaller, the better they leap, and the more memory the map takes.
+int leafSideOf(const ObjectOrderOptions& options, glm::ivec3 voxels);
+
 /// What a picture has needed of the volume.
 struct ResidencyStats {
     int cells = 0;               ///< of the volume

@@ -1,0 +1,199 @@
+#include "render/object_order/labelled_raycaster.h"
+
+#include "render/lately_used.h"
+#include "render/march_variant.h"
+#include "render/min_max_octree.h"
+#include "render/object_order/cell_raycaster.h"
+#include "render/ray_setup.h"
+#include "shaders/shader_source.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+/// Colours, with the opacity of voxels that are not shown taken away.
+class ColorCells final : public CellSource {
+public:
+    explicit ColorCells(std::shared_ptr<const LabelledColorVolume> volume)
+        : volume_(std::move(volume)) {}
+
+    /// While nobody reads.
+    void show(std::vector<std::int16_t> labels) { labels_ = std::move(labels); }
+    bool isShown(std::int16_t label) const {
+        return labels_.empty() || std::binary_search(labels_.begin(), labels_.end(), label);
+    }
+    std::uint8_t opacityAt(std::size_t voxel) const {
+        return isShown(volume_->labelAt(voxel)) ? volume_->color[voxel].a : std::uint8_t(0);
+    }
+
+    gpu::TexelFormat format() const override { return gpu::TexelFormat::rgba8; }
+    std::size_t texelBytes() const override { return sizeof(Rgba); }
+    void read(const VoxelBox& box, std::byte* texels) const override {
+        auto* out = reinterpret_cast<Rgba*>(texels);
+        const Grid& grid = volume_->grid();
+        const glm::ivec2 inside = insideOfRow(box, grid.size);
+        forEachRow(box, grid.size, [&](int y, int z, std::size_t texel) {
+            const std::size_t from = grid.index(box.corner.x + inside.x, y, z);
+            Rgba* row = out + texel;
+            for (int x = inside.x; x < inside.y; ++x) {
+                const std::size_t voxel = from + std::size_t(x - inside.x);
+                row[x] = volume_->color[voxel];
+                row[x].a = opacityAt(voxel);
+            }
+            std::fill(row, row + inside.x, row[inside.x]);
+            std::fill(row + inside.y, row + box.side, row[inside.y - 1]);
+        });
+    }
+
+private:
+    std::shared_ptr<const LabelledColorVolume> volume_;
+    std::vector<std::int16_t> labels_;  // sorted; empty: all
+};
+
+/// What the leap map is made with: every opacity above zero shows.
+Optics opacityRamp(Optics optics) {
+    optics.transferFunction = {{{0.0, glm::dvec3(1.0), 0.0}, {255.0, glm::dvec3(1.0), 1.0}}, {}};
+    optics.composition = Composition::emissionAbsorption;
+    optics.preIntegrated = false;
+    return optics;
+}
+
+}  // namespace
+
+struct LabelledRaycaster::Impl {
+    std::shared_ptr<const LabelledColorVolume> volume;
+    std::shared_ptr<ColorCells> source;
+    ObjectOrderOptions options;
+    CellRaycaster cells;
+    std::vector<std::vector<std::int16_t>> labelsOfCell;
+    std::optional<MinMaxOctree> octree = std::nullopt;  // of the opacities that show
+    LatelyUsed<ShownCells> shown{1};
+    std::vector<std::pair<MarchVariant, gpu::ComputeProgram>> casts = {};
+    MarchPrograms resolve{"cell_picture.comp"};
+
+    Result<void> choose(std::vector<std::int16_t> labels) {
+        std::sort(labels.begin(), labels.end());
+        for (const std::int16_t label : labels)
+            if (std::none_of(labelsOfCell.begin(), labelsOfCell.end(), [&](const auto& list) {
+                    return std::binary_search(list.begin(), list.end(), label);
+                }))
+                return fail(ErrorKind::noResult, "no voxel has the label " + std::to_string(label),
+                            "colour volume");
+        // Nothing is read before the next picture.
+        cells.forget();
+        shown = LatelyUsed<ShownCells>(1);
+        source->show(std::move(labels));
+        const Grid& grid = volume->grid();
+        const auto row = [&](int y, int z, std::span<std::int16_t> values) {
+            const std::size_t from = grid.index(0, y, z);
+            for (std::size_t x = 0; x < values.size(); ++x)
+                values[x] = source->opacityAt(from + x);
+        };
+        octree =
+            MinMaxOctree::build(grid.size, row, leafSideOf(options, grid.size), options.threads);
+        return {};
+    }
+
+    Result<const ShownCells*> classify(const Optics& optics, const MarchOptions& march) {
+        const double step = stepMm(march, volume->grid());
+        const bool leaping = march.emptySpaceLeaping;
+        if (const ShownCells* known = shown.find(
+                [&](const ShownCells& one) { return one.classified.isFor(optics, step, leaping); }))
+            return known;
+        auto made =
+            Classification::create(optics, step, leaping, octree->level(0), options.threads);
+        if (!made) return tl::make_unexpected(made.error());
+        shown.makeRoom();
+        ShownCells fresh{std::move(*made), std::vector<std::uint8_t>(labelsOfCell.size(), 0)};
+        int level = 0;
+        while (octree->sideAt(level) < options.cellSide)
+            ++level;
+        const BlockRanges& ofCells = octree->level(std::min(level, octree->levels() - 1));
+        for (std::size_t i = 0; i < labelsOfCell.size(); ++i) {
+            const bool listed =
+                std::any_of(labelsOfCell[i].begin(), labelsOfCell[i].end(),
+                            [&](std::int16_t label) { return source->isShown(label); });
+            fresh.needed[i] = listed && ofCells.highHu[i] > 0;
+        }
+        fresh.count = int(std::count(fresh.needed.begin(), fresh.needed.end(), 1));
+        return shown.keep(std::move(fresh));
+    }
+
+    Result<const gpu::ComputeProgram*> cast(const MarchVariant& variant) {
+        for (const auto& [known, program] : casts)
+            if (known == variant) return &program;
+        using shaders::shaderSource;
+        const std::string defines = variant.defines() + "#define COLOR_CELLS 1\n";
+        auto program = gpu::ComputeProgram::create(
+            "cell_rays.comp", {defines, shaderSource("uniforms.h"), shaderSource("optics.glsl"),
+                               shaderSource("march.glsl"), shaderSource("picture.glsl"),
+                               shaderSource("cell_uniforms.h"), shaderSource("cells.glsl"),
+                               shaderSource("cell_rays.comp")});
+        if (!program) return tl::make_unexpected(program.error());
+        casts.reserve(4);  // shading and backdrop, each on or off: pointers stay valid
+        casts.emplace_back(variant, std::move(*program));
+        return &casts.back().second;
+    }
+};
+
+Result<std::unique_ptr<LabelledRaycaster>> LabelledRaycaster::create(
+    gpu::Context& context, std::shared_ptr<const LabelledColorVolume> volume,
+    ObjectOrderOptions options) {
+    if (auto sound = checkObjectOrder(options); !sound) return tl::make_unexpected(sound.error());
+    auto source = std::make_shared<ColorCells>(volume);
+    const Grid& grid = volume->grid();
+    const int leafSide = leafSideOf(options, grid.size);
+    const glm::ivec3 leaves = glm::max((grid.size - 1 + leafSide - 1) / leafSide, glm::ivec3(1));
+    auto cells = CellRaycaster::create(context, grid, source, options, leaves, leafSide);
+    if (!cells) return tl::make_unexpected(cells.error());
+    auto labels = labelsOfCells(*volume, options.cellSide, options.threads);
+    std::unique_ptr<LabelledRaycaster> made(new LabelledRaycaster(std::unique_ptr<Impl>(new Impl{
+        std::move(volume), std::move(source), options, std::move(*cells), std::move(labels)})));
+    if (auto all = made->choose({}); !all) return tl::make_unexpected(all.error());
+    return made;
+}
+
+LabelledRaycaster::LabelledRaycaster(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+LabelledRaycaster::~LabelledRaycaster() = default;
+
+Result<void> LabelledRaycaster::choose(std::vector<std::int16_t> labels) {
+    return impl_->choose(std::move(labels));
+}
+
+Result<void> LabelledRaycaster::render(const CameraView& asked, const Band& band, Image& picture) {
+    CameraView view = asked;
+    view.optics = opacityRamp(asked.optics);
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    const auto seen = impl_->classify(view.optics, view.march);
+    if (!seen) return tl::make_unexpected(seen.error());
+    const auto variant = MarchVariant::of(view.optics, false, view.backdrop != nullptr);
+    const auto cast = impl_->cast(variant);
+    if (!cast) return tl::make_unexpected(cast.error());
+    const auto resolve = impl_->resolve.program(variant);
+    if (!resolve) return tl::make_unexpected(resolve.error());
+    return impl_->cells.render(view, band, **seen, 1, **cast, **resolve, picture);
+}
+
+std::size_t LabelledRaycaster::gpuBytes() const {
+    std::size_t bytes = impl_->cells.gpuBytes();
+    for (const ShownCells& one : impl_->shown.all())
+        bytes += one.classified.gpuBytes();
+    return bytes;
+}
+
+std::vector<PassTime> LabelledRaycaster::passTimes() const {
+    return impl_->cells.passTimes();
+}
+
+const ResidencyStats& LabelledRaycaster::residency() const {
+    return impl_->cells.residency();
+}
+
+}  // namespace haustra::render
