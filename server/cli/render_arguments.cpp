@@ -147,10 +147,23 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         ->type_name("MB")
         ->check(CLI::Range(0.0, 1e7))
         ->capture_default_str();
-    command.add_option("--step", my.stepVoxels, "Distance of samples on a ray, in voxels")
+    auto* labels = command
+                       .add_option("--labels", my.labels,
+                                   "The input is a colour volume (NIfTI, RGB24 or RGBA32), and "
+                                   "this its voxels' labels on the same grid; drawn in object "
+                                   "order by its own colours")
+                       ->type_name("FILE.nii.gz");
+    command
+        .add_option("--label", my.shownLabels,
+                    "Show what has this label alone; may be given again and again")
+        ->type_name("N")
+        ->needs(labels)
+        ->check(CLI::Range(-32768, 32767));
+    command
+        .add_option("--step", my.stepVoxels,
+                    "Distance of samples on a ray, in voxels (0.5; 1 in the overview)")
         ->type_name("V")
-        ->check(CLI::Range(0.05, 4.0))
-        ->capture_default_str();
+        ->check(CLI::Range(0.05, 4.0));
     command
         .add_option("--paint", my.paint,
                     "A picture of the whole strip, as flat-image is without a seam margin, that "
@@ -303,7 +316,12 @@ void checkUsage(const RenderArguments& my) {
             wrong("--view", my.view + " shows a case, not a scan");
         if (my.compare || !my.product.empty()) wrong("--product", "a scan has no products");
         if (my.arcMm || my.flat) wrong("--arc-mm", "a scan has no centerline");
-        if (view == View::endoscopic && my.optics.empty()) throw CLI::RequiredError("--tf");
+        if (view == View::endoscopic && my.optics.empty() && my.labels.empty())
+            throw CLI::RequiredError("--tf");
+        if (view != View::endoscopic && !my.labels.empty())
+            wrong("--labels", "is for a camera's view");
+    } else if (!my.labels.empty()) {
+        wrong("--labels", "is for a colour volume from a file");
     } else if (my.store.empty()) {
         throw CLI::RequiredError("--store");
     }

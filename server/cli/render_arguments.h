@@ -44,7 +44,9 @@ struct RenderArguments {
     std::filesystem::path paint;
     render::RaycasterKind raycaster = render::RaycasterKind::singlePass;
     double gpuBudgetMb = 0.0;
-    double stepVoxels = render::MarchOptions{}.stepVoxels;
+    std::filesystem::path labels;      ///< of a colour volume's voxels
+    std::vector<int> shownLabels;      ///< empty: all
+    std::optional<double> stepVoxels;  ///< empty: the view's own
 
     std::optional<render::WindowLevel> window;
     double zoom = 1.0;

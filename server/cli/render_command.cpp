@@ -3,8 +3,10 @@
 #include "cli/case_scans.h"
 #include "cli/commands.h"
 #include "cli/input_volume.h"
+#include "cli/labelled_input.h"
 #include "cli/render_arguments.h"
 #include "cli/render_camera.h"
+#include "cli/render_parts.h"
 #include "cli/text_files.h"
 #include "core/centerline.h"
 #include "core/flat_lookup.h"
@@ -13,14 +15,12 @@
 #include "gpu/context.h"
 #include "render/case_renderer.h"
 #include "render/comparison.h"
-#include "render/optics_presets.h"
+#include "render/object_order/labelled_raycaster.h"
 #include "render/png_file.h"
 #include "render/wall_paint.h"
 #include "store/case_store.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -41,31 +41,6 @@ struct Products {
     CaseScans scans;
     Volume<TissueFractions> mixture;
 };
-
-Result<render::Optics> opticsOf(const RenderArguments& arguments, const char* otherwise) {
-    const std::string name = arguments.optics.empty() ? otherwise : arguments.optics;
-    if (fs::path(name).extension() != ".json") return render::opticsPreset(name);
-    std::ifstream file(name, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(file), {});
-    if (!file) return fail(ErrorKind::io, "the file cannot be read", name);
-    auto preset = render::parsePreset(text, name);
-    if (!preset) return tl::make_unexpected(preset.error());
-    return std::move(preset->optics);
-}
-
-render::MarchOptions marchOf(const RenderArguments& arguments) {
-    render::MarchOptions march;
-    march.stepVoxels = arguments.stepVoxels;
-    return march;
-}
-
-double fovOf(const RenderArguments& arguments, double ofPerspective) {
-    return arguments.fovDegrees.value_or(arguments.lens == Lens::fisheye ? 180.0 : ofPerspective);
-}
-
-double aspectOf(const RenderArguments& arguments) {
-    return double(arguments.size.x) / arguments.size.y;
-}
 
 /// The place of the wall that is given, or the nearest to the point that is.
 Result<WallPlace> wallPlace(const RenderArguments& arguments, const Centerline& centerline,
@@ -95,25 +70,6 @@ Result<CenterlineCamera> camera(const RenderArguments& arguments, const Centerli
         return cameraTowards(*map, place,
                              arguments.flat ? place.positionMm : arguments.positionMm.front());
     });
-}
-
-/// Placed by --eye, or outside.
-render::Camera freeCamera(const RenderArguments& arguments, const Grid& grid) {
-    const auto& [eye, look, up] = std::tie(arguments.eyeMm, arguments.lookMm, arguments.up);
-    render::Camera camera = cameraOutside(
-        grid, {arguments.azimuthDegrees, arguments.elevationDegrees}, arguments.lens,
-        fovOf(arguments, eye.empty() ? 30.0 : render::Camera{}.fovDegrees), aspectOf(arguments));
-    if (!eye.empty()) {
-        const glm::dvec3 target = look.empty()
-                                      ? grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size - 1))
-                                      : look.front();
-        camera.positionMm = eye.front();
-        camera.forward = target - eye.front();
-        camera.up = uprightFor(camera.forward);
-    }
-    if (!up.empty()) camera.up = up.front();
-    if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
-    return camera;
 }
 
 Result<render::Image> drawCamera(const RenderArguments& arguments, const render::Camera& camera,
@@ -178,7 +134,7 @@ Result<render::Image> drawOverview(const RenderArguments& arguments, const Produ
     view.bookmarksMm = arguments.marksMm;
     view.body = arguments.body;
     view.optics = std::move(*optics);
-    view.march = marchOf(arguments);
+    view.march = marchOf(arguments, view.march);
     if (arguments.arcMm) {
         const auto reader = camera(arguments, products.centerline, {});
         if (!reader) return tl::make_unexpected(reader.error());
@@ -359,9 +315,35 @@ Result<render::Image> drawScan(const RenderArguments& arguments) {
     });
 }
 
+Result<render::Image> drawLabelled(const RenderArguments& arguments) {
+    auto volume = readLabelledColor(arguments.input, arguments.labels, arguments.threads);
+    if (!volume) return tl::make_unexpected(volume.error());
+    auto context = gpu::Context::create();
+    if (!context) return tl::make_unexpected(context.error());
+    auto raycaster = render::LabelledRaycaster::create(
+        **context, *volume,
+        {.budgetBytes = std::size_t(arguments.gpuBudgetMb * 1048576.0),
+         .threads = arguments.threads});
+    if (!raycaster) return tl::make_unexpected(raycaster.error());
+    if (auto chosen =
+            (*raycaster)->choose({arguments.shownLabels.begin(), arguments.shownLabels.end()});
+        !chosen)
+        return tl::make_unexpected(chosen.error());
+    render::CameraView view{freeCamera(arguments, (*volume)->grid()), {}, marchOf(arguments)};
+    view.optics.light.halfDepthMm = 1e6;  // the camera's distance darkens nothing
+    const glm::ivec2 size = arguments.size;
+    render::Image image{size.x, size.y,
+                        std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+    if (auto drawn = (*raycaster)->render(view, render::Band::whole(size.x, size.y), image); !drawn)
+        return tl::make_unexpected(drawn.error());
+    return image;
+}
+
 Result<void> runRender(const RenderArguments& arguments) {
     if (auto fit = checkOutputFile(arguments.out); !fit) return fit;
-    const auto image = arguments.isScan() ? drawScan(arguments) : drawCase(arguments);
+    const auto image = !arguments.labels.empty() ? drawLabelled(arguments)
+                       : arguments.isScan()      ? drawScan(arguments)
+                                                 : drawCase(arguments);
     if (!image) return tl::make_unexpected(image.error());
     return render::writePng(arguments.out, *image);
 }

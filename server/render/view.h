@@ -152,7 +152,8 @@ struct OverviewView {
     bool path = true;
     bool body = true;
     Optics optics;  ///< of the body: translucent
-    MarchOptions march;
+    /// The body is a soft shadow: samples a voxel apart show all of it.
+    MarchOptions march{.stepVoxels = 1.0};
 };
 inline constexpr std::size_t maxOverviewBookmarks = 1024;
 
