@@ -80,6 +80,9 @@ struct CaseRenderer::Impl {
             nativeScene = std::make_shared<NativeScene>(scene, options.threads);
             return keep(NativePictures::create(nativeScene, ct.share(), flatGeometry));
         }
+        if (auto fits = checkScanSide(grid(), std::min(maxScanSide, gpu::maxTextureSide3d()));
+            !fits)
+            return fits;
         auto made = GlScene::upload(context, scene, options.threads);
         if (!made) return tl::make_unexpected(made.error());
         glScene = std::move(*made);
@@ -116,8 +119,11 @@ struct CaseRenderer::Impl {
     }
 
     Result<void> checkFlat() const {
-        if (flatGeometry) return {};
-        return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
+        if (flatGeometry && !scene->ranges.lowHu.empty()) return {};
+        return fail(ErrorKind::badInput,
+                    flatGeometry ? "so large a scan has no flattened views"
+                                 : "the case has no flat map",
+                    "flattened view");
     }
 };
 
@@ -134,10 +140,6 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context
                                                            PreparedCase prepared,
                                                            RendererOptions options) {
     const Grid grid = prepared.ct.grid();
-    if (Result<void> fits = checkScanSide(grid, std::min(maxScanSide, gpu::maxTextureSide3d()));
-        !fits)
-        return tl::make_unexpected(fits.error());
-
     const int errorsBefore = context.errorCount();
     auto scene = std::make_shared<const Scene>(Scene{prepared.endoscopic().share(),
                                                      std::move(prepared.ranges), prepared.wall,
@@ -168,6 +170,9 @@ RaycasterKind CaseRenderer::raycaster() const {
 Result<void> CaseRenderer::use(RaycasterKind kind) {
     Impl& my = *impl_;
     if (!my.raycasters.contains(kind)) {
+        if (my.scene->ranges.lowHu.empty() && kind != RaycasterKind::objectOrder)
+            return fail(ErrorKind::device,
+                        "only the object-order raycaster draws so large a scan", "render");
         if (auto made = my.makePictures(kind); !made) return made;
         auto made = my.makeRaycaster(kind);
         if (!made) return tl::make_unexpected(made.error());

@@ -11,7 +11,7 @@ Result<void> checkScanSide(const Grid& grid, int most) {
     return fail(ErrorKind::device,
                 "a scan of " + std::to_string(size.x) + "x" + std::to_string(size.y) + "x" +
                     std::to_string(size.z) + " voxels has a side over " + std::to_string(most) +
-                    ", the longest that is drawn",
+                    ", the longest that is drawn from one texture",
                 "render");
 }
 
@@ -22,9 +22,6 @@ Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct,
         return tl::make_unexpected(sound.error());
     if (!cleansed.empty() && !sameGrid(grid, cleansed.grid()))
         return fail(ErrorKind::badInput, "the cleansed scan is not on the scan's grid", "render");
-    if (Result<void> fits = checkScanSide(grid, maxScanSide); !fits)
-        return tl::make_unexpected(fits.error());
-
     PreparedCase prepared;
     prepared.ct = ct.share();
     if (!cleansed.empty()) {
@@ -32,7 +29,8 @@ Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct,
         const bool unchanged = std::equal(before.begin(), before.end(), after.begin());
         prepared.cleansed = (unchanged ? ct : cleansed).share();
     }
-    prepared.ranges = blockRanges(prepared.endoscopic(), threads);
+    if (grid.voxelCount() <= maxRangedVoxels)
+        prepared.ranges = blockRanges(prepared.endoscopic(), threads);
     return prepared;
 }
 

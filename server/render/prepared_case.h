@@ -12,8 +12,11 @@
 
 namespace haustra::render {
 
-/// Longest side of a scan that is drawn, voxels; a device may allow less.
+/// Longest side of a scan that is drawn from a texture of its own, voxels; a device may allow less.
 inline constexpr int maxScanSide = 2048;
+/// Most voxels of a scan whose blocks' ranges are kept: with more, it may not fit into main memory
+/// either, and only the object-order raycaster draws it.
+inline constexpr std::size_t maxRangedVoxels = std::size_t(1) << 31;
 
 /// A case's volumes, and what takes long to compute from them.
 struct PreparedCase {
@@ -21,7 +24,8 @@ struct PreparedCase {
     /// The scan after digital cleansing, which the endoscopic view shows; empty where there is
     /// none. Where cleansing has changed nothing, this is `ct`, in the same memory.
     Volume<std::int16_t> cleansed;
-    BlockRanges ranges;  ///< of the volume that the endoscopic view shows
+    /// Of the volume that the endoscopic view shows; empty where it has more than maxRangedVoxels.
+    BlockRanges ranges;
     /// For the flattened views; empty where the case has none. prepareCase leaves it empty.
     std::shared_ptr<const FlatMap> flatMap;
     /// The wall's mesh, for raycasters and views that use it; as with flatMap.
@@ -33,8 +37,8 @@ struct PreparedCase {
 };
 
 /// Takes handles on `ct` and `cleansed` (which may be empty), HU on the same grid. `threads` (≤ 0:
-/// all cores) changes no value. Fails (badInput) where the grids are not sound or not the same,
-/// (device) where a side is too long. O(voxels), under a second for 512³; reads every page of
+/// all cores) changes no value. Fails (badInput) where the grids are not sound or not the same.
+/// O(voxels), under a second for 512³; reads every page of
 /// memory-mapped volumes, and adds 1/2 byte a voxel of main memory. Any thread.
 Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct,
                                  const Volume<std::int16_t>& cleansed, int threads = 0);

@@ -195,18 +195,20 @@ void flightTable(gpu::Context& context, std::shared_ptr<const Scene> scene,
     std::unique_ptr<ObjectOrderRaycaster> roomy;
     if (compare)
         roomy = orEnd(ObjectOrderRaycaster::create(context, scene, {.cellSide = cellSide}));
-    std::vector<double> times, moved, waited, roomyTimes;
+    std::vector<double> times, cpuTimes, moved, waited, roomyTimes, roomyCpuTimes;
     int differ = 0, most = 0;
     draw(*bounded, views[0], glm::ivec2(64));  // compiles
     for (const CameraView& view : views) {
         const Drawn drawn = draw(*bounded, view, glm::ivec2(side));
         times.push_back(drawn.ms);
+        cpuTimes.push_back(drawn.cpuMs);
         moved.push_back(double(bounded->residency().bytesMoved) / (1 << 20));
         waited.push_back(bounded->residency().waitedMs);
         most = std::max(most, bounded->residency().visited);
         if (!compare) continue;
         const Drawn whole = draw(*roomy, view, glm::ivec2(side));
         roomyTimes.push_back(whole.ms);
+        roomyCpuTimes.push_back(whole.cpuMs);
         differ += whole.image.rgb != drawn.image.rgb;
     }
     const ResidencyStats& stats = bounded->residency();
@@ -225,9 +227,20 @@ void flightTable(gpu::Context& context, std::shared_ptr<const Scene> scene,
         "{:.2f}, worst {:.1f}\n",
         quantile(moved, 0.5), quantile(moved, 0.95), quantile(moved, 1.0), quantile(waited, 0.5),
         quantile(waited, 1.0));
-    if (compare)
-        fmt::print("  all resident ({} slots): median {:.1f} ms; pictures that differ: {} of {}\n",
-                   roomy->residency().resident, quantile(roomyTimes, 0.5), differ, views.size());
+    const auto cpu = [](const char* what, const std::vector<double>& ms) {
+        fmt::print(
+            "  {} CPU ms a frame: median {:.1f}, p95 {:.1f}, worst {:.1f} = {:.2f} medians\n", what,
+            quantile(ms, 0.5), quantile(ms, 0.95), quantile(ms, 1.0),
+            quantile(ms, 1.0) / quantile(ms, 0.5));
+    };
+    cpu("bounded:", cpuTimes);
+    if (!compare) return;
+    cpu("all resident:", roomyCpuTimes);
+    fmt::print(
+        "  all resident ({} slots): median {:.1f} ms, worst {:.2f} medians; pictures that "
+        "differ: {} of {}\n",
+        roomy->residency().resident, quantile(roomyTimes, 0.5),
+        quantile(roomyTimes, 1.0) / quantile(roomyTimes, 0.5), differ, views.size());
 }
 
 /// The case's volume over and over along z, every second time upside down so that it fits.

@@ -183,6 +183,28 @@ TEST_F(ObjectOrder, EndsRaysAtTheBackdropAndShowsItBehind) {
     }
 }
 
+TEST_F(ObjectOrder, DrawsCasesThatNoTextureHolds) {
+    // Longer than the device's textures: near its end it looks like that end alone.
+    const auto tube = [](glm::dvec3 p) { return foldedTube({p.x, p.y, 0.1 * p.z}); };
+    const Grid grid = axisAlignedGrid({40, 36, 2100}, glm::dvec3(1.0), {-19.5, -17.5, 0.0});
+    const Grid end = axisAlignedGrid({40, 36, 300}, glm::dvec3(1.0), {-19.5, -17.5, 1800.0});
+    auto made =
+        CaseRenderer::create(*context, sampled(grid, tube), {},
+                             {.raycaster = RaycasterKind::objectOrder, .gpuBudgetBytes = 8 << 20});
+    ASSERT_TRUE(made) << describe(made.error());
+    const auto cut = renderer(sampled(end, tube));
+    const CameraView view{
+        {{1.0, 2.0, 1950.0}, {0.2, 0.1, 1.0}, {0, -1, 0}, 90.0}, *opticsPreset("mucosa"), {}};
+    EXPECT_GE(psnr(draw(**made, view, 80, 60), draw(*cut, view, 80, 60)), 45.0);
+    const SliceView slice{View::axial, {0.0, 0.0, 2050.0}, 1.0, {}};
+    EXPECT_GE(psnr(draw(**made, slice, 40, 36), draw(*cut, slice, 40, 36)), 45.0);
+    EXPECT_LT((*made)->gpuBytes(), std::size_t(40) << 20);
+    const auto whole = (*made)->use(RaycasterKind::singlePass);
+    ASSERT_FALSE(whole);
+    EXPECT_EQ(whole.error().kind, ErrorKind::device);
+    EXPECT_TRUE((*made)->render(view, 16, 16));
+}
+
 TEST_F(ObjectOrder, SaysWhatIsWrong) {
     const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
     const auto odd = ObjectOrderRaycaster::create(*context, scene, {.cellSide = 48});
