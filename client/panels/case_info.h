@@ -3,11 +3,13 @@
 
 #include "core/centerline.h"
 #include "core/grid.h"
+#include "core/orbit.h"
 #include "panels/flat_strip.h"
 #include "panels/flight.h"
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -18,8 +20,18 @@ namespace haustra::panels {
 inline constexpr int minViewportPixels = 16;
 
 /// The whole flattened strip, and a window onto it, are views of cases that have been flattened.
-enum class View { endoscopic, axial, coronal, sagittal, flattened, flattenedZoom };
-inline constexpr int viewCount = 6;
+/// Oblique: a slice across the gaze. Overview: the colon from outside.
+enum class View {
+    endoscopic,
+    axial,
+    coronal,
+    sagittal,
+    flattened,
+    flattenedZoom,
+    oblique,
+    overview,
+};
+inline constexpr int viewCount = 8;
 inline bool isSlice(View view) {
     return view == View::axial || view == View::coronal || view == View::sagittal;
 }
@@ -35,6 +47,25 @@ struct Slice {
     double zoom = 1.0;
     bool cleansed = false;  ///< of the scan after digital cleansing
     bool operator==(const Slice&) const = default;
+};
+
+/// The plane that a camera at `positionMm` would see before it, without perspective.
+struct Oblique {
+    glm::dvec3 positionMm{0.0};
+    glm::dvec3 forward{0.0, 0.0, 1.0}, up{0.0, -1.0, 0.0};
+    double heightMm = 60.0;  ///< of the picture
+    bool cleansed = false;
+    bool operator==(const Oblique&) const = default;
+};
+
+/// The colon from outside, and what is marked on it.
+inline constexpr std::size_t maxMarkedBookmarks = 1024;
+struct Overview {
+    Orbit orbit;
+    std::optional<Camera> reader;
+    std::vector<glm::dvec3> bookmarksMm;
+    bool body = true;  ///< shows around the colon
+    bool operator==(const Overview&) const = default;
 };
 
 struct WindowLevel {
@@ -60,5 +91,15 @@ struct Bookmark {
     std::string clientKey;  ///< chosen by the client: the same bookmark sent twice is kept once
     bool acknowledged() const { return id != 0; }
 };
+
+/// A control point of a transfer function; opacity is for a way of 1 mm.
+struct TransferPoint {
+    double hu = 0.0;
+    glm::dvec3 color{1.0};
+    double opacity = 0.0;
+    bool operator==(const TransferPoint&) const = default;
+};
+/// One of the server's presets by its name, or points.
+using TransferFunction = std::variant<std::string, std::vector<TransferPoint>>;
 
 }  // namespace haustra::panels

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haustra::panels {
 namespace {
@@ -22,6 +23,23 @@ Camera turned(Camera camera, double yawDegrees, double pitchDegrees) {
 }
 
 }  // namespace
+
+std::optional<glm::dvec2> seenAt(const Camera& camera, glm::dvec3 pointMm) {
+    const glm::dvec3 to = pointMm - camera.positionMm;
+    const double depth = glm::dot(to, camera.forward);
+    const glm::dvec2 aside(glm::dot(to, rightOf(camera)), -glm::dot(to, camera.up));
+    const double half = glm::radians(0.5 * camera.fovDegrees), sine = glm::length(aside);
+    glm::dvec2 place(0.0);
+    if (camera.fisheye) {
+        if (sine > 0.0) place = aside / sine * std::atan2(sine, depth) / half;
+    } else if (depth > 0.0) {
+        place = aside / (depth * std::tan(half));
+    } else {
+        return std::nullopt;
+    }
+    if (!(glm::length(place) < 4.0)) return std::nullopt;
+    return 0.5 * place;
+}
 
 const char* toString(FlightDirection direction) {
     return direction == FlightDirection::antegrade ? "antegrade" : "retrograde";
@@ -59,8 +77,16 @@ void Flight::setSpeed(double mmPerS) {
 }
 
 void Flight::setFov(double degrees) {
-    fovDegrees_ = std::clamp(degrees, 10.0, 150.0);
+    fovDegrees_ = std::clamp(degrees, 10.0, fisheye_ ? 240.0 : 150.0);
     freeCamera_.fovDegrees = fovDegrees_;
+}
+
+void Flight::setFisheye(bool fisheye) {
+    if (fisheye == fisheye_) return;
+    fisheye_ = fisheye;
+    std::swap(fovDegrees_, otherFovDegrees_);
+    freeCamera_.fovDegrees = fovDegrees_;
+    freeCamera_.fisheye = fisheye_;
 }
 
 void Flight::look(double yawDegrees, double pitchDegrees) {
@@ -110,6 +136,7 @@ void Flight::goTo(const Camera& camera, double arcMm) {
     }
     freeCamera_ = camera;
     freeCamera_.fovDegrees = fovDegrees_;
+    freeCamera_.fisheye = fisheye_;
     free_ = true;
 }
 
@@ -148,7 +175,7 @@ void Flight::lookAlong(glm::dvec3 direction) {
 // The camera that looks straight along the path.
 Camera Flight::straightCamera() const {
     const CenterlineCamera camera = cameraAtArc(centerline_, ups_, arcMm_, direction_);
-    return {camera.positionMm, camera.forward, camera.up, fovDegrees_};
+    return {camera.positionMm, camera.forward, camera.up, fovDegrees_, fisheye_};
 }
 
 Camera Flight::centerlineCamera() const {

@@ -4,21 +4,28 @@
 
 #include "core/centerline.h"
 
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 namespace haustra::panels {
 
-/// A perspective camera in patient space (LPS mm): unit forward and up, orthogonal; the field of
-/// view is vertical.
+/// A camera in patient space (LPS mm): unit forward and up, orthogonal; the field of view is
+/// vertical. A fisheye shows equal angles as equal lengths, a perspective their tangents.
 struct Camera {
     glm::dvec3 positionMm{0.0};
     glm::dvec3 forward{0.0, 0.0, 1.0};
     glm::dvec3 up{0.0, -1.0, 0.0};
     double fovDegrees = 90.0;
+    bool fisheye = false;
     bool operator==(const Camera&) const = default;
 };
+
+/// Where in a picture, in its heights from the middle, x to the right and y down, a camera sees a
+/// point; nothing where it cannot: behind a perspective's plane, or a picture's height and more
+/// away.
+std::optional<glm::dvec2> seenAt(const Camera& camera, glm::dvec3 pointMm);
 
 /// `forward` goes where the camera faces, `backward` the other way without turning round.
 enum class Motion { paused, forward, backward };
@@ -44,7 +51,11 @@ public:
     void setMotion(Motion motion);
     void setDirection(FlightDirection direction) { direction_ = direction; }
     void setSpeed(double mmPerS);
+    /// Between 10 and 150 degrees; of a fisheye, up to 240.
     void setFov(double degrees);
+    /// Each lens keeps a field of view of its own: 90 degrees, of a fisheye 180, until it is set.
+    void setFisheye(bool fisheye);
+    bool isFisheye() const { return fisheye_; }
 
     /// Turns the view: positive yaw to the right, positive pitch up. On the centerline it adds to
     /// an offset from the direction of flight, in free flight it turns the camera itself.
@@ -86,6 +97,8 @@ private:
     std::vector<glm::dvec3> ups_;
     double arcMm_ = 0.0, yawDegrees_ = 0.0, pitchDegrees_ = 0.0;
     double speedMmPerS_ = defaultSpeedMmPerS, fovDegrees_ = 90.0;
+    double otherFovDegrees_ = 180.0;  // of the lens that is not on
+    bool fisheye_ = false;
     FlightDirection direction_ = FlightDirection::antegrade;
     Motion motion_ = Motion::paused;
     bool free_ = false;

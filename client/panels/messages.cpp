@@ -11,6 +11,10 @@ void set(protocol::Vec3* out, glm::dvec3 v) {
     out->set_z(v.z);
 }
 
+protocol::Lens lensCode(const Camera& camera) {
+    return camera.fisheye ? protocol::FISHEYE : protocol::PERSPECTIVE;
+}
+
 constexpr double maxStripHeight = 4096.0;
 
 glm::dvec3 vectorFrom(const protocol::Vec3& v) {
@@ -31,6 +35,10 @@ protocol::View viewCode(View view) {
             return protocol::FLATTENED;
         case View::flattenedZoom:
             return protocol::FLATTENED_ZOOM;
+        case View::oblique:
+            return protocol::OBLIQUE;
+        case View::overview:
+            return protocol::OVERVIEW;
     }
     return protocol::VIEW_UNSPECIFIED;
 }
@@ -110,13 +118,17 @@ const char* toString(View view) {
             return "flattened";
         case View::flattenedZoom:
             return "flattened-zoom";
+        case View::oblique:
+            return "oblique";
+        case View::overview:
+            return "overview";
     }
     return "";
 }
 
 std::optional<View> viewFromString(const std::string& text) {
     for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
-                            View::flattened, View::flattenedZoom})
+                            View::flattened, View::flattenedZoom, View::oblique, View::overview})
         if (text == toString(view)) return view;
     return std::nullopt;
 }
@@ -143,6 +155,50 @@ protocol::ClientMessage cameraMessage(std::uint64_t sequence, int viewport, cons
     set(body->mutable_forward(), camera.forward);
     set(body->mutable_up(), camera.up);
     body->set_fov_degrees(camera.fovDegrees);
+    body->set_lens(lensCode(camera));
+    body->set_moving(moving);
+    return message;
+}
+
+protocol::ClientMessage obliqueMessage(std::uint64_t sequence, int viewport, const Oblique& oblique,
+                                       bool moving) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_oblique();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    set(body->mutable_position_mm(), oblique.positionMm);
+    set(body->mutable_forward(), oblique.forward);
+    set(body->mutable_up(), oblique.up);
+    body->set_height_mm(oblique.heightMm);
+    body->set_cleansed(oblique.cleansed);
+    body->set_moving(moving);
+    return message;
+}
+
+protocol::ClientMessage overviewMessage(std::uint64_t sequence, int viewport,
+                                        const Overview& overview, bool moving) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_overview();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    const OrbitPose pose = poseOf(overview.orbit);
+    protocol::Camera* camera = body->mutable_camera();
+    set(camera->mutable_position_mm(), pose.positionMm);
+    set(camera->mutable_forward(), pose.forward);
+    set(camera->mutable_up(), pose.up);
+    camera->set_lens(protocol::ORTHOGRAPHIC);
+    camera->set_height_mm(overview.orbit.heightMm);
+    body->set_hide_body(!overview.body);
+    if (const auto& reader = overview.reader) {
+        protocol::Camera* marked = body->mutable_reader();
+        set(marked->mutable_position_mm(), reader->positionMm);
+        set(marked->mutable_forward(), reader->forward);
+        set(marked->mutable_up(), reader->up);
+        marked->set_fov_degrees(reader->fovDegrees);
+        marked->set_lens(lensCode(*reader));
+    }
+    for (const glm::dvec3 place : overview.bookmarksMm)
+        set(body->add_bookmarks_mm(), place);
     body->set_moving(moving);
     return message;
 }
@@ -184,12 +240,21 @@ protocol::ClientMessage windowMessage(std::uint64_t sequence, int viewport,
 }
 
 protocol::ClientMessage transferMessage(std::uint64_t sequence, int viewport,
-                                        const std::string& preset) {
+                                        const TransferFunction& function) {
     protocol::ClientMessage message;
     auto* body = message.mutable_set_transfer_function();
     body->set_sequence(sequence);
     body->set_viewport(std::uint32_t(viewport));
-    body->set_preset(preset);
+    if (const auto* preset = std::get_if<std::string>(&function)) body->set_preset(*preset);
+    if (const auto* points = std::get_if<std::vector<TransferPoint>>(&function))
+        for (const TransferPoint& point : *points) {
+            auto* out = body->add_points();
+            out->set_hu(point.hu);
+            out->set_red(point.color.r);
+            out->set_green(point.color.g);
+            out->set_blue(point.color.b);
+            out->set_opacity(point.opacity);
+        }
     return message;
 }
 

@@ -17,10 +17,14 @@ protocol::ClientMessage sliceMessage(std::uint64_t sequence, int viewport, const
 /// Of View::flattened the window is ignored.
 protocol::ClientMessage flatMessage(std::uint64_t sequence, int viewport, const FlatWindow& window,
                                     bool moving);
+protocol::ClientMessage obliqueMessage(std::uint64_t sequence, int viewport, const Oblique& oblique,
+                                       bool moving);
+protocol::ClientMessage overviewMessage(std::uint64_t sequence, int viewport,
+                                        const Overview& overview, bool moving);
 protocol::ClientMessage windowMessage(std::uint64_t sequence, int viewport,
                                       const WindowLevel& window);
 protocol::ClientMessage transferMessage(std::uint64_t sequence, int viewport,
-                                        const std::string& preset);
+                                        const TransferFunction& function);
 protocol::ClientMessage bookmarkMessage(std::uint64_t request, const Bookmark& bookmark);
 protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec2 flat);
 protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec3 positionMm);

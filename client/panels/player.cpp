@@ -23,6 +23,8 @@ void count(ActionReport& report, const Arrival& arrival, Clock::time_point asked
     report.renderMicroseconds.push_back(picture.renderMicroseconds);
     report.encodeMicroseconds.push_back(picture.encodeMicroseconds);
     report.queueMicroseconds.push_back(picture.queueMicroseconds);
+    report.raycaster = protocol::raycasterName(picture.raycaster);
+    report.coarse += picture.coarse;
     report.bytes += picture.wireBytes;
 }
 
@@ -124,7 +126,13 @@ Player::OpenViewport& Player::open(int viewport, View view, int width, int heigh
     if (const auto& strip = session_.caseInfo()->flat)
         window = windowAround(strip->yAtArc(flight_.arcMm()), std::nullopt, width);
     session_.setViewport(viewport, view, width, height);
-    return viewports_[viewport] = {view, width, height, Slice{flight_.camera().positionMm}, window};
+    return viewports_[viewport] = {view,
+                                   width,
+                                   height,
+                                   Slice{flight_.camera().positionMm},
+                                   window,
+                                   obliqueAtCamera(),
+                                   overviewFromFront(width, height)};
 }
 
 Player::OpenViewport& Player::open(int viewport, View view, std::optional<glm::ivec2> size) {
@@ -139,6 +147,8 @@ std::uint64_t Player::ask(int id, bool moving) {
     const OpenViewport& viewport = viewports_.at(id);
     if (viewport.view == View::endoscopic) return session_.setCamera(id, flight_.camera(), moving);
     if (isFlat(viewport.view)) return session_.setFlat(id, viewport.window, moving);
+    if (viewport.view == View::oblique) return session_.setOblique(id, viewport.oblique, moving);
+    if (viewport.view == View::overview) return session_.setOverview(id, viewport.overview, moving);
     return session_.setSlice(id, viewport.slice, moving);
 }
 
@@ -169,6 +179,7 @@ Status Player::run(const GoAction& action, ActionReport&) {
     if (action.fraction) flight_.goTo(*action.fraction * flight_.centerline().lengthMm());
     flight_.setLook(action.yawDegrees.value_or(flight_.yawDegrees()),
                     action.pitchDegrees.value_or(flight_.pitchDegrees()));
+    if (action.fisheye) flight_.setFisheye(*action.fisheye);
     if (action.fovDegrees) flight_.setFov(*action.fovDegrees);
     return {};
 }
@@ -195,7 +206,7 @@ Status Player::run(const WindowAction& action, ActionReport&) {
 
 Status Player::run(const TransferAction& action, ActionReport&) {
     if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
-    session_.setTransferFunction(action.viewport, action.preset);
+    session_.setTransferFunction(action.viewport, action.function);
     return awaitBookmarkList();
 }
 

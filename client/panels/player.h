@@ -29,6 +29,8 @@ private:
         int width, height;
         Slice slice;
         FlatWindow window;
+        Oblique oblique;
+        Overview overview;
     };
     /// A way past equally spaced positions, each of which is asked for and measured.
     struct Course {
@@ -43,6 +45,8 @@ private:
     Status run(const FlyAction&, ActionReport&);
     Status run(const StillAction&, ActionReport&);
     Status run(const SliceAction&, ActionReport&);
+    Status run(const ObliqueAction&, ActionReport&);
+    Status run(const OverviewAction&, ActionReport&);
     Status run(const FlatAction&, ActionReport&);
     Status run(const StripAction&, ActionReport&);
     Status run(const FlyOverAction&, ActionReport&);
@@ -63,6 +67,8 @@ private:
     OpenViewport& open(int viewport, View view, std::optional<glm::ivec2> size);
     Status mustBeOpen(int viewport);
     Status mustBeFlattened();
+    Oblique obliqueAtCamera() const;
+    Overview overviewFromFront(int width, int height) const;
     FlatWindow windowAround(double y, std::optional<double> pixelsPerCircumference,
                             int width) const;
     std::uint64_t ask(int viewport, bool moving);

@@ -1,5 +1,6 @@
 #include "panels/reader.h"
 
+#include "panels/overview_map.h"
 #include "panels/slice_map.h"
 
 #include <algorithm>
@@ -11,9 +12,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::array<View, viewCount> views = {View::endoscopic, View::axial,
-                                               View::coronal,    View::sagittal,
-                                               View::flattened,  View::flattenedZoom};
+constexpr std::array<View, viewCount> views = {
+    View::endoscopic, View::axial,         View::coronal, View::sagittal,
+    View::flattened,  View::flattenedZoom, View::oblique, View::overview};
+// What hands do to a curve reaches the server so often.
+constexpr auto curveInterval = milliseconds(50);
+// The flattened views take long: they show a curve that rests.
+constexpr auto curveRest = milliseconds(350);
 constexpr std::size_t at(View view) {
     return std::size_t(view);
 }
@@ -36,7 +41,9 @@ Reader::Reader(link::ConnectionOptions options, std::string caseName)
               ViewPacer(milliseconds(115), milliseconds(135)),
               // The strip changes with its pane and colours alone.
               ViewPacer(milliseconds(250), milliseconds(250)),
-              ViewPacer(milliseconds(15), milliseconds(120))} {}
+              ViewPacer(milliseconds(15), milliseconds(120)),
+              ViewPacer(milliseconds(115), milliseconds(140)),
+              ViewPacer(milliseconds(60), milliseconds(145))} {}
 
 void Reader::update(double seconds) {
     session_.poll(milliseconds(0));
@@ -46,6 +53,7 @@ void Reader::update(double seconds) {
     wall_.update(*case_);
     takePicked();
     travel(seconds);
+    sendCurve(Clock::now());
     askForViews(Clock::now());
 }
 
@@ -69,6 +77,9 @@ void Reader::caseOpened() {
     sliceFocusMm_ = flight_.camera().positionMm;
     sliceZoom_ = 1.0;
     slicesCleansed_ = false;
+    obliqueAheadMm_ = 0.0;
+    obliqueHeightMm_ = Oblique{}.heightMm;
+    resetOverview();
     pictures_ = {};
     pictureCounts_ = {};
     openSizes_ = {};
@@ -76,7 +87,9 @@ void Reader::caseOpened() {
         asked.clear();
     latencies_.clear();
     transferFunction_ = case_->transferFunctions.empty() ? "" : case_->transferFunctions.front();
-    for (const View view : {View::axial, View::coronal, View::sagittal})
+    curveChangedAt_.reset();
+    curveIsNew_ = false;
+    for (const View view : {View::axial, View::coronal, View::sagittal, View::oblique})
         session_.setWindowLevel(int(view), window_);
     for (ViewPacer& pacer : pacers_)
         pacer.touch();
@@ -94,6 +107,8 @@ void Reader::takePictures() {
         }
         if (answered) shownSlices_[n] = answered->slice;
         if (answered && n == at(View::flattenedZoom)) shownWindow_ = answered->window;
+        if (answered && n == at(View::oblique)) shownOblique_ = answered->oblique;
+        if (answered && n == at(View::overview)) shownOrbit_ = answered->orbit;
         if (n == at(View::endoscopic)) pictureTimes_.push_back(arrival.decodedAt);
         if (answered && answered->moving) {
             const double ms =
@@ -116,6 +131,7 @@ void Reader::setPaneSize(View view, glm::ivec2 pixels) {
     if (size == paneSizes_[at(view)]) return;
     paneSizes_[at(view)] = size;
     if (view == View::flattenedZoom) tour_.setPaneSize(size);
+    if (view == View::overview && !orbitIsOwn_) resetOverview();
     pacers_[at(view)].touch();
 }
 
@@ -125,7 +141,8 @@ bool Reader::inUse(View view) const {
 }
 
 void Reader::openPane(View view, bool moving) {
-    const bool scales = view == View::endoscopic || view == View::flattenedZoom;
+    const bool scales =
+        view == View::endoscopic || view == View::flattenedZoom || view == View::overview;
     const glm::ivec2 size =
         scaled(paneSizes_[at(view)], moving && scales ? details_[at(view)].scale() : 1.0);
     if (size == openSizes_[at(view)]) return;
@@ -205,6 +222,10 @@ bool Reader::changed(View view, bool cameraMoved) const {
         case View::flattenedZoom:
             return tour_.window().center != askedWindow_.center ||
                    tour_.window().pixelsPerUnit != askedWindow_.pixelsPerUnit;
+        case View::oblique:
+            return !(oblique() == askedOblique_);
+        case View::overview:
+            return !(orbit_ == askedOrbit_);
         default:
             return !(slice(view) == askedSlices_[at(view)]);
     }
@@ -225,7 +246,10 @@ void Reader::askForViews(Clock::time_point now) {
         openPane(view, moving);
         if (isSlice(view)) askedSlices_[n] = slice(view);
         if (view == View::flattenedZoom) askedWindow_ = tour_.window();
-        asked_[n].push_back({ask(view, moving), now, slice(view), tour_.window(), moving});
+        if (view == View::oblique) askedOblique_ = oblique();
+        if (view == View::overview) askedOrbit_ = orbit_;
+        asked_[n].push_back(
+            {ask(view, moving), now, slice(view), tour_.window(), oblique(), orbit_, moving});
         if (asked_[n].size() > 256) asked_[n].pop_front();
     }
 }
@@ -233,6 +257,11 @@ void Reader::askForViews(Clock::time_point now) {
 std::uint64_t Reader::ask(View view, bool moving) {
     if (view == View::endoscopic) return session_.setCamera(int(view), lastCamera_, moving);
     if (isSlice(view)) return session_.setSlice(int(view), slice(view), moving);
+    if (view == View::oblique) return session_.setOblique(int(view), oblique(), moving);
+    // The window itself marks reader and bookmarks: they move without a new picture. While the
+    // hand turns the colon it is alone: where there is no GPU, the body takes a second.
+    if (view == View::overview)
+        return session_.setOverview(int(view), {orbit_, {}, {}, showsBody_ && !moving}, moving);
     FlatWindow window = tour_.window();
     window.pixelsPerUnit *= double(openSizes_[at(view)].x) / paneSizes_[at(view)].x;
     return session_.setFlat(int(view), window, moving);
@@ -260,6 +289,49 @@ void Reader::setSlicesCleansed(bool cleansed) {
     slicesCleansed_ = cleansed && case_ && case_->cleansed;
 }
 
+Oblique Reader::oblique() const {
+    const Camera camera = flight_.camera();
+    return {camera.positionMm + obliqueAheadMm_ * camera.forward, camera.forward, camera.up,
+            obliqueHeightMm_, slicesCleansed_};
+}
+
+void Reader::scrollOblique(double mm) {
+    obliqueAheadMm_ = std::clamp(obliqueAheadMm_ + mm, -50.0, 200.0);
+}
+
+void Reader::zoomOblique(double factor) {
+    obliqueHeightMm_ = std::clamp(obliqueHeightMm_ / factor, 10.0, 400.0);
+}
+
+void Reader::turnOverview(double azimuthDegrees, double elevationDegrees) {
+    orbit_.azimuthDegrees = std::remainder(orbit_.azimuthDegrees + azimuthDegrees, 360.0);
+    orbit_.elevationDegrees = std::clamp(orbit_.elevationDegrees + elevationDegrees, -90.0, 90.0);
+    orbitIsOwn_ = true;
+}
+
+void Reader::zoomOverview(double factor) {
+    orbit_.heightMm = std::clamp(orbit_.heightMm / factor, 20.0, 1500.0);
+    orbitIsOwn_ = true;
+}
+
+void Reader::resetOverview() {
+    orbitIsOwn_ = false;
+    if (!case_) return;
+    const glm::dvec2 size = glm::max(paneSizes_[at(View::overview)], glm::ivec2(1));
+    orbit_ = orbitOf(case_->centerline, size.x / size.y);
+    if (!case_->centerline.points.empty()) return;
+    // Without a path, all of the scan.
+    const Grid& grid = case_->grid;
+    const glm::dvec3 a = grid.patientFromVoxelPoint(glm::dvec3(0.0)),
+                     b = grid.patientFromVoxelPoint(glm::dvec3(grid.size - 1));
+    orbit_ = orbitAround(glm::min(a, b), glm::max(a, b), size.x / size.y);
+}
+
+void Reader::setShowsBody(bool shows) {
+    showsBody_ = shows;
+    pacers_[at(View::overview)].touch();
+}
+
 void Reader::goNear(glm::dvec3 patientMm) {
     if (!case_ || case_->centerline.points.empty()) return;
     setMotion(Motion::paused);
@@ -271,7 +343,7 @@ void Reader::setWindow(WindowLevel window) {
     window.centerHu = std::clamp(window.centerHu, -2000.0, 4000.0);
     if (window == window_) return;
     window_ = window;
-    for (const View view : {View::axial, View::coronal, View::sagittal}) {
+    for (const View view : {View::axial, View::coronal, View::sagittal, View::oblique}) {
         session_.setWindowLevel(int(view), window_);
         pacers_[at(view)].touch();
     }
@@ -279,11 +351,37 @@ void Reader::setWindow(WindowLevel window) {
 
 void Reader::setTransferFunction(const std::string& preset) {
     transferFunction_ = preset;
-    for (const View view : views) {
-        if (isSlice(view) || (isFlat(view) && !hasStrip())) continue;
+    curveChangedAt_.reset();
+    curveIsNew_ = false;
+    for (const View view : {View::endoscopic, View::flattened, View::flattenedZoom}) {
+        if (isFlat(view) && !hasStrip()) continue;
         session_.setTransferFunction(int(view), preset);
         pacers_[at(view)].touch();
     }
+}
+
+void Reader::setCurve(TransferCurve curve) {
+    curve_ = std::move(curve);
+    transferFunction_.clear();
+    curveIsNew_ = true;
+    curveChangedAt_ = Clock::now();
+}
+
+void Reader::sendCurve(Clock::time_point now) {
+    const auto show = [&](View view) {
+        session_.setTransferFunction(int(view), curve_.points());
+        pacers_[at(view)].touch();
+    };
+    if (curveIsNew_ && !(curveSentAt_ && now < *curveSentAt_ + curveInterval)) {
+        show(View::endoscopic);
+        curveIsNew_ = false;
+        curveSentAt_ = now;
+    }
+    if (!curveChangedAt_ || now < *curveChangedAt_ + curveRest) return;
+    curveChangedAt_.reset();
+    if (hasStrip())
+        for (const View view : {View::flattened, View::flattenedZoom})
+            show(view);
 }
 
 void Reader::addBookmark(std::string note) {
@@ -307,7 +405,7 @@ double Reader::picturesPerSecond() const {
 
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
-    if (motion() != Motion::paused || wall_.waits()) return true;
+    if (motion() != Motion::paused || wall_.waits() || curveChangedAt_) return true;
     return std::any_of(views.begin(), views.end(),
                        [&](View view) { return inUse(view) && pacers_[at(view)].owes(); });
 }

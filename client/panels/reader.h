@@ -6,6 +6,7 @@
 #include "panels/pacing.h"
 #include "panels/session.h"
 #include "panels/strip_tour.h"
+#include "panels/transfer_curve.h"
 #include "panels/wall_questions.h"
 
 #include <memory>
@@ -13,7 +14,8 @@
 namespace haustra::panels {
 
 /// Belongs to one thread. Viewport numbers are those of View: 0 endoscopic, 1 axial, 2 coronal,
-/// 3 sagittal, 4 flattened, 5 flattened zoom; the last two only where the case has been flattened.
+/// 3 sagittal, 4 flattened, 5 flattened zoom, 6 oblique, 7 overview; 4 and 5 only where the case
+/// has been flattened.
 class Reader {
 public:
     Reader(link::ConnectionOptions options, std::string caseName);
@@ -42,6 +44,19 @@ public:
     /// Flies to the point of the centerline nearest to `patientMm`.
     void goNear(glm::dvec3 patientMm);
 
+    /// The slice across the gaze, so far ahead of the camera as it was scrolled to.
+    Oblique oblique() const;
+    void scrollOblique(double mm);
+    void zoomOblique(double factor);
+
+    /// The colon from outside: turned by degrees, enlarged, or from the front again.
+    const Orbit& orbit() const { return orbit_; }
+    void turnOverview(double azimuthDegrees, double elevationDegrees);
+    void zoomOverview(double factor);
+    void resetOverview();
+    bool showsBody() const { return showsBody_; }
+    void setShowsBody(bool shows);
+
     bool hasStrip() const { return case_ && case_->flat; }
     /// The window of the zoom view. It follows the camera along the colon; moving it leaves the
     /// camera, but for the fly-over, which the camera follows.
@@ -64,8 +79,13 @@ public:
 
     const WindowLevel& window() const { return window_; }
     void setWindow(WindowLevel window);
+    /// A preset's name, or empty where it is the curve.
     const std::string& transferFunction() const { return transferFunction_; }
     void setTransferFunction(const std::string& preset);
+    /// The wall in colours and opacities of one's own: shown from when it is first changed, in the
+    /// endoscopic view while it changes and in the flattened ones when it rests.
+    const TransferCurve& curve() const { return curve_; }
+    void setCurve(TransferCurve curve);
 
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
@@ -78,6 +98,9 @@ public:
     /// The slice that the newest picture of a slice view shows; it lags behind slice().
     const Slice& shownSlice(View view) const { return shownSlices_[std::size_t(view)]; }
 
+    /// Likewise of the oblique view, and of the overview.
+    const Oblique& shownOblique() const { return shownOblique_; }
+    const Orbit& shownOrbit() const { return shownOrbit_; }
     /// The window that the newest picture of the zoom view shows, in pixels of its pane.
     const FlatWindow& shownWindow() const { return shownWindow_; }
 
@@ -93,6 +116,8 @@ private:
         Clock::time_point at;
         Slice slice;
         FlatWindow window;
+        Oblique oblique;
+        Orbit orbit;
         bool moving;
     };
 
@@ -105,6 +130,7 @@ private:
     void askForViews(Clock::time_point now);
     std::uint64_t ask(View view, bool moving);
     void openPane(View view, bool moving);
+    void sendCurve(Clock::time_point now);
 
     Session session_;
     std::shared_ptr<const CaseInfo> case_;
@@ -120,11 +146,20 @@ private:
     bool slicesCleansed_ = false;
     WindowLevel window_;
     std::string transferFunction_;
+    TransferCurve curve_;
+    std::optional<Clock::time_point> curveChangedAt_, curveSentAt_;  // until it is shown everywhere
+    bool curveIsNew_ = false;                                        // to the endoscopic view
+
+    double obliqueAheadMm_ = 0.0, obliqueHeightMm_ = Oblique{}.heightMm;
+    Orbit orbit_;
+    bool orbitIsOwn_ = false, showsBody_ = true;  // own: turned by the reader
 
     std::array<glm::ivec2, viewCount> paneSizes_{};
     std::array<glm::ivec2, viewCount> openSizes_{};
     std::array<Slice, viewCount> askedSlices_{}, shownSlices_{};
     FlatWindow askedWindow_, shownWindow_;
+    Oblique askedOblique_, shownOblique_;
+    Orbit askedOrbit_, shownOrbit_;
     std::array<ViewPacer, viewCount> pacers_;
     std::array<std::deque<Asked>, viewCount> asked_;
     std::array<tiles::Picture, viewCount> pictures_;

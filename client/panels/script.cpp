@@ -41,7 +41,14 @@ GoAction readGo(Fields& in) {
     if (in.has("pitch_deg"))
         action.pitchDegrees =
             in.number("pitch_deg", -Flight::maxPitchDegrees, Flight::maxPitchDegrees);
-    if (in.has("fov_deg")) action.fovDegrees = in.number("fov_deg", 10.0, 150.0);
+    if (in.has("lens")) {
+        const std::string text = in.text("lens");
+        if (text != "perspective" && text != "fisheye")
+            Fields::refuse("lens", "must be perspective or fisheye");
+        action.fisheye = text == "fisheye";
+    }
+    if (in.has("fov_deg"))
+        action.fovDegrees = in.number("fov_deg", 10.0, action.fisheye.value_or(false) ? 240 : 150);
     return action;
 }
 
@@ -83,6 +90,38 @@ FlatAction readFlat(Fields& in) {
         Fields::refuse("arc_mm", "and \"center\" exclude each other");
     if (in.has("pixels_per_circumference"))
         action.pixelsPerCircumference = in.number("pixels_per_circumference", 16.0, 65536.0);
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+ObliqueAction readOblique(Fields& in) {
+    ObliqueAction action;
+    if (in.has("position_mm")) action.positionMm = in.position("position_mm");
+    if (in.has("forward")) action.forward = in.position("forward");
+    if (in.has("up")) action.up = in.position("up");
+    if (action.forward.has_value() != action.up.has_value())
+        Fields::refuse("up", "and \"forward\" go together");
+    if (action.forward && !(glm::length(glm::cross(*action.forward, *action.up)) > 0.0))
+        Fields::refuse("up", "is along \"forward\"");
+    if (in.has("ahead_mm")) action.aheadMm = in.number("ahead_mm", -1000.0, 1000.0);
+    if (in.has("height_mm")) action.heightMm = in.number("height_mm", 1.0, 2000.0);
+    if (in.has("cleansed")) action.cleansed = in.flag("cleansed");
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+OverviewAction readOverview(Fields& in) {
+    OverviewAction action;
+    if (in.has("azimuth_deg")) action.azimuthDegrees = in.number("azimuth_deg", -360.0, 360.0);
+    if (in.has("elevation_deg")) action.elevationDegrees = in.number("elevation_deg", -90.0, 90.0);
+    if (in.has("height_mm")) action.heightMm = in.number("height_mm", 1.0, 5000.0);
+    if (in.has("reader")) action.reader = in.flag("reader");
+    if (in.has("bookmarks")) action.bookmarks = in.flag("bookmarks");
+    if (in.has("body")) action.body = in.flag("body");
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
     if (in.has("png")) action.png = in.fileName("png", ".png");
@@ -141,7 +180,12 @@ WindowAction readWindow(Fields& in) {
 TransferAction readTransfer(Fields& in) {
     TransferAction action;
     if (in.has("viewport")) action.viewport = in.viewport();
-    action.preset = in.text("preset");
+    if (in.has("preset") == in.has("points"))
+        Fields::refuse("preset", "or \"points\" is needed, not both");
+    if (in.has("preset"))
+        action.function = in.text("preset");
+    else
+        action.function = in.transferPoints("points");
     return action;
 }
 
@@ -179,6 +223,10 @@ Action readAction(const std::string& line) {
         action.body = readStill(in);
     else if (action.name == "slice")
         action.body = readSlice(in);
+    else if (action.name == "oblique")
+        action.body = readOblique(in);
+    else if (action.name == "overview")
+        action.body = readOverview(in);
     else if (action.name == "flat")
         action.body = readFlat(in);
     else if (action.name == "strip")

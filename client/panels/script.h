@@ -20,6 +20,7 @@ struct GoAction {
     std::optional<double> arcMm, fraction;  ///< at most one; neither: stay
     std::optional<FlightDirection> direction;
     std::optional<double> yawDegrees, pitchDegrees, fovDegrees;
+    std::optional<bool> fisheye;
 };
 struct FlyAction {
     std::optional<double> fromMm, toMm;  ///< default: the whole centerline, in flight direction
@@ -45,6 +46,24 @@ struct FlatAction {
     std::optional<double> arcMm;       ///< at most one of both; neither: around the camera
     std::optional<double> pixelsPerCircumference;  ///< default: all around fits
     int viewport = int(View::flattenedZoom);
+    std::optional<glm::ivec2> size;
+    std::string png;
+};
+struct ObliqueAction {
+    std::optional<glm::dvec3> positionMm;   ///< default: where the camera is
+    std::optional<glm::dvec3> forward, up;  ///< default: the camera's; both or neither
+    double aheadMm = 0.0;                   ///< moved along forward
+    double heightMm = Oblique{}.heightMm;
+    bool cleansed = false;
+    int viewport = int(View::oblique);
+    std::optional<glm::ivec2> size;
+    std::string png;
+};
+struct OverviewAction {
+    double azimuthDegrees = 0.0, elevationDegrees = 0.0;
+    std::optional<double> heightMm;  ///< default: all of the colon
+    bool reader = true, bookmarks = true, body = true;
+    int viewport = int(View::overview);
     std::optional<glm::ivec2> size;
     std::string png;
 };
@@ -77,7 +96,7 @@ struct WindowAction {
 };
 struct TransferAction {
     int viewport = 0;
-    std::string preset;
+    TransferFunction function;
 };
 struct BookmarkAction {
     std::string note;
@@ -93,9 +112,10 @@ struct WaitAction {
 struct Action {
     int line = 0;
     std::string name;  ///< the value of "do"
-    std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, FlatAction, StripAction,
-                 FlyOverAction, LocateAction, MeasureAction, WindowAction, TransferAction,
-                 BookmarkAction, BookmarksAction, WaitAction>
+    std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, ObliqueAction,
+                 OverviewAction, FlatAction, StripAction, FlyOverAction, LocateAction,
+                 MeasureAction, WindowAction, TransferAction, BookmarkAction, BookmarksAction,
+                 WaitAction>
         body;
 };
 

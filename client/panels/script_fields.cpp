@@ -10,6 +10,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double maxPositionMm = 1e5, maxTurns = 32.0, maxStripHeight = 4096.0;
+constexpr std::size_t maxTransferPoints = 256;
 
 std::string span(double low, double high) {
     const auto text = [](double v) {
@@ -102,6 +103,23 @@ glm::dvec3 Fields::position(const char* key) {
     return {p[0], p[1], p[2]};
 }
 
+std::vector<TransferPoint> Fields::transferPoints(const char* key) {
+    asked_.insert(key);
+    const json& list = at(key);
+    if (!list.is_array() || list.size() < 2 || list.size() > maxTransferPoints)
+        refuse(key, "must be a list of 2 to " + std::to_string(maxTransferPoints) +
+                        " points [hu, red, green, blue, opacity]");
+    std::vector<TransferPoint> points;
+    for (const json& item : list) {
+        const auto p = numbersOf(key, item, 5, -32768.0, 32767.0);
+        if (!points.empty() && p[0] < points.back().hu) refuse(key, "must not fall in HU");
+        for (std::size_t n = 1; n < 5; ++n)
+            if (p[n] < 0.0 || p[n] > 1.0) refuse(key, "has a colour or opacity beyond 0 to 1");
+        points.push_back({p[0], {p[1], p[2], p[3]}, p[4]});
+    }
+    return points;
+}
+
 glm::ivec2 Fields::size(const char* key) {
     const auto values = numbers(key, 2, minViewportPixels, protocol::maxViewportPixels);
     return {int(values[0]), int(values[1])};
@@ -110,7 +128,9 @@ glm::ivec2 Fields::size(const char* key) {
 View Fields::view(const char* key) {
     const auto found = viewFromString(text(key));
     if (!found)
-        refuse(key, "must be endoscopic, axial, coronal, sagittal, flattened or flattened-zoom");
+        refuse(key,
+               "must be endoscopic, axial, coronal, sagittal, flattened, flattened-zoom, oblique "
+               "or overview");
     return *found;
 }
 

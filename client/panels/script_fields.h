@@ -33,6 +33,8 @@ public:
     glm::dvec2 flat(const char* key);
     std::vector<glm::dvec2> flats(const char* key, std::size_t least, std::size_t most);
     glm::dvec3 position(const char* key);
+    /// Each [hu, red, green, blue, opacity].
+    std::vector<TransferPoint> transferPoints(const char* key);
     glm::ivec2 size(const char* key);
     View view(const char* key);
     int viewport();

@@ -60,6 +60,8 @@ json jsonOf(const ActionReport& action) {
         out["server_median_us"] = {{"queue", summarize(action.queueMicroseconds).p50},
                                    {"render", summarize(action.renderMicroseconds).p50},
                                    {"encode", summarize(action.encodeMicroseconds).p50}};
+        if (!action.raycaster.empty()) out["raycaster"] = action.raycaster;
+        out["coarse_pictures"] = action.coarse;
         out["latencies_ms"] = json::array();
         for (const double ms : action.latencyMs)
             out["latencies_ms"].push_back(rounded(ms));

@@ -25,6 +25,8 @@ struct ActionReport {
     std::string file;  ///< written by the action, if any
     std::vector<double> latencyMs, decodeMs;
     std::vector<std::uint32_t> renderMicroseconds, encodeMicroseconds, queueMicroseconds;
+    std::string raycaster;    ///< that drew the newest of them; empty: none of the raycasters
+    int coarse = 0;           ///< of them, that were smaller than their viewport
     std::uint64_t bytes = 0;  ///< tile payloads of the pictures counted here
     int positions = 0;        ///< cameras sent, of a fly action
     bool pipelined = false;

@@ -223,6 +223,10 @@ void Session::sayWhatWaited(int viewport, const ViewportState& state) {
     if (state.slice)
         connection_.send(sliceMessage(++sequence_, viewport, *state.slice, state.moving));
     if (state.flat) connection_.send(flatMessage(++sequence_, viewport, *state.flat, state.moving));
+    if (state.oblique)
+        connection_.send(obliqueMessage(++sequence_, viewport, *state.oblique, state.moving));
+    if (state.overview)
+        connection_.send(overviewMessage(++sequence_, viewport, *state.overview, state.moving));
 }
 
 std::uint64_t Session::setCamera(int viewport, const Camera& camera, bool moving) {
@@ -249,6 +253,22 @@ std::uint64_t Session::setFlat(int viewport, const FlatWindow& window, bool movi
     return sequence_;
 }
 
+std::uint64_t Session::setOblique(int viewport, const Oblique& oblique, bool moving) {
+    ViewportState& state = viewports_[viewport];
+    state.oblique = oblique;
+    state.moving = moving;
+    sendInput(state, obliqueMessage(++sequence_, viewport, oblique, moving));
+    return sequence_;
+}
+
+std::uint64_t Session::setOverview(int viewport, const Overview& overview, bool moving) {
+    ViewportState& state = viewports_[viewport];
+    state.overview = overview;
+    state.moving = moving;
+    sendInput(state, overviewMessage(++sequence_, viewport, overview, moving));
+    return sequence_;
+}
+
 std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
     ViewportState& state = viewports_[viewport];
     state.window = window;
@@ -256,10 +276,10 @@ std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
     return sequence_;
 }
 
-std::uint64_t Session::setTransferFunction(int viewport, const std::string& preset) {
+std::uint64_t Session::setTransferFunction(int viewport, const TransferFunction& function) {
     ViewportState& state = viewports_[viewport];
-    state.transferFunction = preset;
-    sendInput(state, transferMessage(++sequence_, viewport, preset));
+    state.transferFunction = function;
+    sendInput(state, transferMessage(++sequence_, viewport, function));
     return sequence_;
 }
 

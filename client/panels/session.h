@@ -59,8 +59,10 @@ public:
     std::uint64_t setCamera(int viewport, const Camera& camera, bool moving);
     std::uint64_t setSlice(int viewport, const Slice& slice, bool moving);
     std::uint64_t setFlat(int viewport, const FlatWindow& window, bool moving);
+    std::uint64_t setOblique(int viewport, const Oblique& oblique, bool moving);
+    std::uint64_t setOverview(int viewport, const Overview& overview, bool moving);
     std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
-    std::uint64_t setTransferFunction(int viewport, const std::string& preset);
+    std::uint64_t setTransferFunction(int viewport, const TransferFunction& function);
 
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
     std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
@@ -99,8 +101,10 @@ private:
         std::optional<Camera> camera;
         std::optional<Slice> slice;
         std::optional<FlatWindow> flat;
+        std::optional<Oblique> oblique;
+        std::optional<Overview> overview;
         std::optional<WindowLevel> window;
-        std::optional<std::string> transferFunction;
+        std::optional<TransferFunction> transferFunction;
         bool moving = false;
     };
     struct Owed {

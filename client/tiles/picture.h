@@ -17,6 +17,8 @@ struct Picture {
     std::size_t wireBytes = 0;   ///< payload bytes of all its tiles
     double decodeMs = 0.0;       ///< time that decoding its tiles took
     std::uint32_t renderMicroseconds = 0, encodeMicroseconds = 0, queueMicroseconds = 0;
+    std::uint8_t raycaster = 0;  ///< that drew it (protocol::raycasterName)
+    bool coarse = false;         ///< smaller than its viewport, over which it is to be stretched
 };
 
 }  // namespace haustra::tiles

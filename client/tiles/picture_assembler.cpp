@@ -16,6 +16,8 @@ void PictureAssembler::begin(const protocol::TileHeader& header) {
     picture_.number = header.picture;
     picture_.sequence = header.sequence;
     picture_.exact = header.exact;
+    picture_.raycaster = header.raycaster;
+    picture_.coarse = header.coarse();
     covered_.assign(pixels, 0);
     uncovered_ = pixels;
     newest_ = header.picture;
@@ -28,7 +30,8 @@ Result<std::optional<Picture>> PictureAssembler::add(const DecodedTile& tile) {
     if (header.picture < newest_ || (header.picture == newest_ && !open_)) return std::nullopt;
     if (header.picture > newest_) begin(header);
     if (header.pictureWidth != picture_.width || header.pictureHeight != picture_.height ||
-        header.sequence != picture_.sequence || header.exact != picture_.exact)
+        header.sequence != picture_.sequence || header.exact != picture_.exact ||
+        header.raycaster != picture_.raycaster || header.coarse() != picture_.coarse)
         return fail(
             ErrorKind::badInput,
             "a tile contradicts the other tiles of picture " + std::to_string(header.picture),

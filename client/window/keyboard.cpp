@@ -91,6 +91,18 @@ void handleLetter(Ui& ui, ImWchar letter) {
         case 'T':
             nextTransferFunction(reader);
             break;
+        case 'g':
+        case 'G':
+            ui.showTransfer = !ui.showTransfer;
+            break;
+        case 'i':
+        case 'I':
+            flight.setFisheye(!flight.isFisheye());
+            break;
+        case 'y':
+        case 'Y':
+            reader.setShowsBody(!reader.showsBody());
+            break;
         case 'v':
         case 'V':
             if (reader.hasStrip())

@@ -19,17 +19,20 @@ Layout layOut(const Ui& ui, ImVec2 size) {
         const float y = top + float(n) * (sliceHigh + gap);
         *slices[n] = {{0, y}, {sliceWide, y + sliceHigh}};
     }
-    float right = size.x;
-    if (ui.showBookmarks) {
-        right -= ui.px(236);
-        layout.bookmarks = {{right, top}, {size.x, bottom}};
-    }
+    float right = size.x - std::clamp(size.x * 0.19f, ui.px(200), ui.px(460));
+    const float listHigh = ui.showBookmarks ? high * 0.28f : 0.0f;
+    const float overviewHigh = (high - listHigh) * 0.56f;
+    const float obliqueTop = top + overviewHigh + gap;
+    const float obliqueBottom = bottom - listHigh - (ui.showBookmarks ? gap : 0);
+    layout.overview = {{right, top}, {size.x, top + overviewHigh}};
+    layout.oblique = {{right, obliqueTop}, {size.x, obliqueBottom}};
+    if (ui.showBookmarks) layout.bookmarks = {{right, bottom - listHigh}, {size.x, bottom}};
     const float left = sliceWide + gap;
+    right -= gap;
     if (!ui.reader.hasStrip()) {
-        layout.endoscopic = {{left, top}, {right - (ui.showBookmarks ? gap : 0), bottom}};
+        layout.endoscopic = {{left, top}, {right, bottom}};
         return layout;
     }
-    if (ui.showBookmarks) right -= gap;
     const float stripWide = std::clamp((right - left) * 0.34f, ui.px(200), ui.px(460));
     layout.strip = {{right - stripWide, top}, {right, bottom}};
     right -= stripWide + gap;

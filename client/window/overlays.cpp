@@ -23,7 +23,9 @@ constexpr Key flightKeys[] = {
     {"B", "bookmark this place"},
     {"Shift B", "bookmark with a note"},
     {"P  N", "previous, next bookmark"},
-    {"T", "next look of the wall"},
+    {"T  G", "next look of the wall; a look of one's own"},
+    {"I", "fisheye, which sees all around, or not"},
+    {"Y", "overview: with the body, or the colon alone"},
     {"V", "fly over the flattened wall, or along the path"},
     {"L  O", "measure a line, an outline on the flattened wall"},
     {"X", "slices: as scanned, or cleansed"},
@@ -38,6 +40,9 @@ constexpr Key mouseKeys[] = {
     {"drag a slice", "window (across) and centre (up, down)"},
     {"wheel on a slice", "scroll; with Ctrl zoom; with Shift ×10"},
     {"double-click a slice", "fly to the nearest point of the path"},
+    {"drag the overview", "turn it; wheel: enlarge; right: from the front"},
+    {"click the overview", "go to that place, or bookmark"},
+    {"wheel across the gaze", "the slice ahead; with Ctrl zoom"},
     {"track below", "go to that place"},
     {"click the strip", "go to that place of the wall; drag: look it over"},
     {"click the wall", "look at that place in all views"},
@@ -108,7 +113,7 @@ void drawNotices(Ui& ui, Rect area) {
 void drawHelp(Ui& ui, Rect area) {
     ImDrawList* list = ImGui::GetForegroundDrawList();
     list->AddRectFilled(area.min, area.max, color::shade);
-    const ImVec2 size(ui.px(960), ui.px(590));
+    const ImVec2 size(ui.px(960), ui.px(660));
     const ImVec2 min((area.min.x + area.max.x - size.x) / 2,
                      (area.min.y + area.max.y - size.y) / 2);
     const ImVec2 max(min.x + size.x, min.y + size.y);

@@ -41,6 +41,14 @@ glm::ivec2 framebufferSize(Rect area) {
     return {std::max(1, int(area.size().x * scale.x)), std::max(1, int(area.size().y * scale.y))};
 }
 
+void dragWindow(panels::Reader& reader, ImVec2 moved) {
+    panels::WindowLevel window = reader.window();
+    const double stepHu = std::max(1.0, window.widthHu / 400.0);
+    window.widthHu += moved.x * stepHu;
+    window.centerHu += moved.y * stepHu;
+    reader.setWindow(window);
+}
+
 void drawPickedCross(Ui& ui, ImDrawList* list, ImVec2 p) {
     const float inner = ui.px(4), outer = ui.px(10);
     for (const ImVec2 way : {ImVec2(1, 0), ImVec2(-1, 0), ImVec2(0, 1), ImVec2(0, -1)}) {

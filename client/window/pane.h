@@ -14,6 +14,8 @@ void drawPicture(Ui& ui, panels::View view, Rect area, ImDrawList* list);
 /// while the mouse is over it.
 bool pane(Ui& ui, const char* id, Rect area);
 glm::ivec2 framebufferSize(Rect area);
+/// A drag across a slice: the window's width; up and down: its centre.
+void dragWindow(panels::Reader& reader, ImVec2 moved);
 /// The mark of the place on the wall that the reader has picked.
 void drawPickedCross(Ui& ui, ImDrawList* list, ImVec2 p);
 

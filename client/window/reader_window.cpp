@@ -33,6 +33,8 @@ void drawEverything(Ui& ui) {
             drawStripPane(ui, layout.strip);
             drawZoomPane(ui, layout.zoom);
         }
+        drawOverviewPane(ui, layout.overview);
+        drawObliquePane(ui, layout.oblique);
         if (ui.showBookmarks) drawBookmarkPanel(ui, layout.bookmarks);
         drawTransportBar(ui, layout.transport);
     } else {
@@ -41,6 +43,7 @@ void drawEverything(Ui& ui) {
     drawNotices(ui, ui.reader.isOpen() ? layout.endoscopic : layout.middle);
     if (ui.showHelp) drawHelp(ui, {{0, 0}, ImGui::GetIO().DisplaySize});
     ImGui::End();
+    if (ui.showTransfer && ui.reader.isOpen()) drawTransferPanel(ui, layout.endoscopic);
 }
 
 // Turns what happened in the session since the last frame into notices.
@@ -72,8 +75,9 @@ bool readyForScreenshot(const panels::Reader& reader, const WindowOptions& optio
     const panels::Phase phase = reader.session().phase();
     bool waiting = phase == panels::Phase::connecting;
     if (phase == panels::Phase::open && reader.motion() == panels::Motion::paused)
-        for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
-                                View::flattened, View::flattenedZoom})
+        for (const View view :
+             {View::endoscopic, View::axial, View::coronal, View::sagittal, View::flattened,
+              View::flattenedZoom, View::oblique, View::overview})
             waiting = waiting ||
                       (!reader.picture(view).exact && (reader.hasStrip() || !panels::isFlat(view)));
     return !waiting || elapsed > due + std::chrono::seconds(20);
@@ -98,7 +102,6 @@ Result<void> run(WindowOptions options) {
     panels::Reader reader(options.connection, options.caseName);
     Ui ui{reader, window.fonts(), float(window.scale()),
           link::toString(options.connection.address)};
-    ui.showBookmarks = options.width >= int(ui.px(1400));
     Watcher watcher;
 
     const auto start = Clock::now();

@@ -48,6 +48,8 @@ Fonts applyTheme(double scale) {
     set(ImGuiCol_WindowBg, color::background);
     set(ImGuiCol_ChildBg, color::bar);
     set(ImGuiCol_PopupBg, color::bar);
+    set(ImGuiCol_TitleBg, color::bar);
+    set(ImGuiCol_TitleBgActive, color::raised);
     set(ImGuiCol_Border, color::border);
     set(ImGuiCol_Text, color::text);
     set(ImGuiCol_TextDisabled, color::muted);

@@ -69,8 +69,13 @@ void drawTopBar(Ui& ui, Rect area) {
         right = drawFigure(ui, list, right, middle, "hand to picture",
                            format("%.0f ms, p95 %.0f", latency.p50, latency.p95),
                            latency.p95 > 150.0 ? color::bookmark : color::text);
-    drawFigure(ui, list, right, middle, "pictures/s", format("%.0f", ui.reader.picturesPerSecond()),
-               color::text);
+    right = drawFigure(ui, list, right, middle, "pictures/s",
+                       format("%.0f", ui.reader.picturesPerSecond()), color::text);
+    const tiles::Picture& shown = ui.reader.picture(panels::View::endoscopic);
+    const std::string raycaster = protocol::raycasterName(shown.raycaster);
+    if (!raycaster.empty())
+        drawFigure(ui, list, right, middle, raycaster.c_str(),
+                   format("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);
 }
 
 }  // namespace haustra::window

@@ -164,9 +164,14 @@ void drawControls(Ui& ui) {
     const auto& info = *reader.session().caseInfo();
     if (!info.transferFunctions.empty()) {
         sameRow(ui, 20);
-        combo(ui, "##transfer", "wall", wide, reader.transferFunction(), info.transferFunctions,
+        const std::string& preset = reader.transferFunction();
+        combo(ui, "##transfer", "wall", wide, preset.empty() ? "own" : preset,
+              info.transferFunctions,
               [&](const std::string& name) { reader.setTransferFunction(name); });
     }
+    sameRow(ui);
+    if (ImGui::Button("…##curve")) ui.showTransfer = !ui.showTransfer;
+    tooltip("Colours and opacities (G)");
     sameRow(ui, 20);
     std::vector<std::string> names;
     std::string current = "own";

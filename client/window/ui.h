@@ -31,7 +31,8 @@ struct Ui {
     std::string serverName;
     std::array<PictureTexture, panels::viewCount> textures{};
     std::deque<Notice> notices{};
-    bool showHelp = false, showBookmarks = true, focusNote = false;
+    bool showHelp = false, showBookmarks = true, focusNote = false, showTransfer = false;
+    int curvePoint = -1;  ///< of the transfer function: which the hand has chosen
     std::array<char, 256> note{};
     double drag = 0.0;  ///< pixels that the mouse moved since it was pressed on a pane
     DrawingTool tool = DrawingTool::none;  ///< what a drag on the flattened wall does
@@ -55,6 +56,11 @@ void drawSlicePane(Ui& ui, panels::View view, Rect area);
 /// The whole flattened strip, and the window onto it.
 void drawStripPane(Ui& ui, Rect area);
 void drawZoomPane(Ui& ui, Rect area);
+/// The colon from outside, and the slice across the gaze.
+void drawOverviewPane(Ui& ui, Rect area);
+void drawObliquePane(Ui& ui, Rect area);
+/// A window of its own over `area`, while Ui::showTransfer.
+void drawTransferPanel(Ui& ui, Rect area);
 void drawTransportBar(Ui& ui, Rect area);
 void drawBookmarkPanel(Ui& ui, Rect area);
 void drawNotices(Ui& ui, Rect area);

@@ -13,17 +13,13 @@ using panels::View;
 
 // Where the picked place is seen, or would be but for what is in front of it.
 void drawPicked(Ui& ui, const panels::WallPlace& place, Rect area, ImDrawList* list) {
-    const panels::Camera camera = ui.reader.flight().camera();
-    const glm::dvec3 to = place.positionMm - camera.positionMm;
-    const double depth = glm::dot(to, camera.forward);
-    if (depth <= 0.0) return;
-    const double scale =
-        0.5 * area.size().y / std::tan(glm::radians(0.5 * camera.fovDegrees)) / depth;
-    const glm::dvec3 right = glm::cross(camera.forward, camera.up);
+    const auto seen = panels::seenAt(ui.reader.flight().camera(), place.positionMm);
+    if (!seen) return;
+    const float high = area.size().y;
     list->PushClipRect(area.min, area.max, true);
     drawPickedCross(ui, list,
-                    {(area.min.x + area.max.x) / 2 + float(glm::dot(to, right) * scale),
-                     (area.min.y + area.max.y) / 2 - float(glm::dot(to, camera.up) * scale)});
+                    {(area.min.x + area.max.x) / 2 + float(seen->x) * high,
+                     (area.min.y + area.max.y) / 2 + float(seen->y) * high});
     list->PopClipRect();
 }
 
@@ -79,13 +75,7 @@ const char* title(View view) {
 void handleSliceMouse(Ui& ui, View view, const panels::SliceMap& map, double pixelsPerPicturePixel,
                       Rect area, bool hovered) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsItemActive() && ui.drag > ui.px(3)) {
-        panels::WindowLevel window = ui.reader.window();
-        const double stepHu = std::max(1.0, window.widthHu / 400.0);
-        window.widthHu += io.MouseDelta.x * stepHu;
-        window.centerHu += io.MouseDelta.y * stepHu;
-        ui.reader.setWindow(window);
-    }
+    if (ImGui::IsItemActive() && ui.drag > ui.px(3)) dragWindow(ui.reader, io.MouseDelta);
     if (!hovered) return;
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
         const glm::dvec2 pixel((io.MousePos.x - area.min.x) / pixelsPerPicturePixel - 0.5,

@@ -2,6 +2,7 @@
 // pinning, refusals, lost links.
 #include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
+#include "panels/overview_map.h"
 #include "panels/script_player.h"
 
 #include <fstream>
@@ -161,6 +162,31 @@ TEST_F(ClientHeadless, TheFlattenedWallIsSeenLocatedAndMeasured) {
         ASSERT_TRUE(refused.failure) << action;
         EXPECT_NE(refused.failure->message.find("has not been flattened"), std::string::npos);
     }
+}
+
+TEST_F(ClientHeadless, TheViewsFromOutsideAndAcrossTheGazeAreTheServers) {
+    FakeServer server;
+    const auto report = play(optionsFor(server), R"({"do":"go","arc_mm":80}
+{"do":"oblique","ahead_mm":12,"size":[90,70],"png":"ahead.png"}
+{"do":"oblique","position_mm":[1,2,3],"forward":[0,2,0],"up":[0,0,1],"cleansed":true,"png":"placed.png"}
+{"do":"overview","azimuth_deg":90,"size":[120,100],"png":"left.png"}
+{"do":"overview","reader":false,"bookmarks":false,"body":false,"png":"alone.png"}
+{"do":"transfer","points":[[-700,1,0,0,0],[-500,1,0,0,0.9]]})");
+    ASSERT_FALSE(report.failure) << describe(*report.failure);
+    const Centerline path = FakeServer::centerline();
+    const auto camera = cameraAtArc(path, rotationMinimizingUps(path, flightPreferredUp), 80.0,
+                                    FlightDirection::antegrade);
+    int width = 0, height = 0;
+    EXPECT_EQ(readPng("ahead.png", width, height),
+              tests::syntheticPicture(90, 70, camera.positionMm + 12.0 * camera.forward, 0.0));
+    EXPECT_EQ(readPng("placed.png", width, height),
+              tests::syntheticPicture(90, 70, {1, 2, 3}, tests::cleansedShiftHu));
+    Orbit orbit = orbitOf(path, 1.2);
+    EXPECT_EQ(readPng("alone.png", width, height),
+              tests::syntheticPicture(120, 100, poseOf(orbit).positionMm, 0.0));
+    orbit.azimuthDegrees = 90.0;
+    EXPECT_EQ(readPng("left.png", width, height),
+              tests::syntheticPicture(120, 100, poseOf(orbit).positionMm, camera.positionMm.z));
 }
 
 TEST_F(ClientHeadless, AFlyOverMeasuresEachPosition) {

@@ -72,6 +72,60 @@ protected:
     std::unique_ptr<Reader> reader_;
 };
 
+TEST_F(ClientReader, TheOverviewStandsStillWhileTheReaderFliesAndTurnsByHand) {
+    reader_->setPaneSize(View::overview, {120, 100});
+    reader_->setPaneSize(View::oblique, {80, 60});
+    ASSERT_TRUE(runUntil([&] {
+        return allAtRest() && reader_->picture(View::overview).exact &&
+               reader_->picture(View::oblique).exact;
+    }));
+    const auto expectBoth = [&] {
+        EXPECT_EQ(reader_->picture(View::overview).rgb,
+                  tests::syntheticPicture(120, 100, poseOf(reader_->orbit()).positionMm, 0.0));
+        EXPECT_EQ(reader_->shownOrbit(), reader_->orbit());
+        EXPECT_EQ(reader_->picture(View::oblique).rgb,
+                  tests::syntheticPicture(80, 60, reader_->oblique().positionMm,
+                                          reader_->window().centerHu));
+        EXPECT_EQ(reader_->shownOblique(), reader_->oblique());
+    };
+    expectBoth();
+    const auto overviews = reader_->pictureCount(View::overview);
+    reader_->flight().goTo(70.0);
+    reader_->scrollOblique(8.0);
+    ASSERT_TRUE(runUntil([&] { return reader_->shownOblique() == reader_->oblique(); }));
+    ASSERT_TRUE(runUntil([&] { return allAtRest() && reader_->picture(View::oblique).exact; }));
+    EXPECT_EQ(reader_->pictureCount(View::overview), overviews);
+    reader_->turnOverview(40.0, -200.0);
+    EXPECT_EQ(reader_->orbit().elevationDegrees, -90.0);
+    reader_->zoomOverview(2.0);
+    ASSERT_TRUE(runUntil([&] {
+        return reader_->shownOrbit() == reader_->orbit() && reader_->picture(View::overview).exact;
+    }));
+    expectBoth();
+    reader_->resetOverview();
+    EXPECT_EQ(reader_->orbit().azimuthDegrees, 0.0);
+}
+
+TEST_F(ClientReader, ACurveIsShownWhileTheHandMovesItAndReplacesThePreset) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    EXPECT_EQ(reader_->transferFunction(), "mucosa");
+    for (int n = 0; n < 30; ++n) {
+        TransferCurve curve = reader_->curve();
+        curve.move(1, -560.0 + n, 0.5);
+        reader_->setCurve(curve);
+        reader_->update(0.01);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    EXPECT_EQ(reader_->transferFunction(), "");
+    EXPECT_TRUE(reader_->restless());
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    EXPECT_TRUE(reader_->session().takeRefusals().empty());
+    reader_->setTransferFunction("translucent");
+    EXPECT_EQ(reader_->transferFunction(), "translucent");
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    EXPECT_TRUE(reader_->session().takeRefusals().empty());
+}
+
 class ClientReaderWithALossyLink : public ClientReader {
 protected:
     static Misbehaviour dropping() {

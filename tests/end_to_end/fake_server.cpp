@@ -283,13 +283,27 @@ struct FakeServer::Impl {
                                                   set.pixels_per_circumference()));
                     break;
                 }
+                case ClientMessage::kSetOblique: {
+                    const auto& set = message.set_oblique();
+                    sendPicture(stream, ++pictures, set, viewports, pointOf(set.position_mm()),
+                                set.cleansed() ? cleansedShiftHu : 0.0);
+                    break;
+                }
+                case ClientMessage::kSetOverview: {
+                    const auto& set = message.set_overview();
+                    sendPicture(stream, ++pictures, set, viewports,
+                                pointOf(set.camera().position_mm()),
+                                set.has_reader() ? set.reader().position_mm().z() : 0.0);
+                    break;
+                }
                 case ClientMessage::kLocateFlat:
                 case ClientMessage::kLocatePoint:
                 case ClientMessage::kMeasureFlat:
                     if (!misbehaviour.silentAboutTheWall) write(stream, aboutFakeWall(message));
                     break;
                 case ClientMessage::kSetTransferFunction:
-                    if (message.set_transfer_function().preset() != "mucosa" &&
+                    if (message.set_transfer_function().points_size() == 0 &&
+                        message.set_transfer_function().preset() != "mucosa" &&
                         message.set_transfer_function().preset() != "translucent") {
                         answer.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);
                         answer.mutable_error()->set_message("no such transfer function");
