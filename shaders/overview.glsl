@@ -4,6 +4,12 @@ in vec4 placeMm;
 in vec3 normal;
 in vec3 color;
 
+// sRGB's transfer curve (IEC 61966-2-1).
+vec3 displayed(vec3 linear) {
+    vec3 c = clamp(linear, 0.0, 1.0);
+    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
+}
+
 vec3 viewDirection() { return u.eye.w > 0.5 ? normalize(placeMm.xyz - u.eye.xyz) : u.forward.xyz; }
 
 // Millimetres along the pixel's ray, as a backdrop counts them.

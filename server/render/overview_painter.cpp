@@ -4,6 +4,7 @@
 #include "shaders/shader_source.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -106,26 +107,28 @@ shaders::OverviewUniforms uniformsOf(const OverviewView& view, const Scene& scen
     return u;
 }
 
-std::vector<glm::vec4> read(const gpu::RasterTarget& target) {
-    std::vector<glm::vec4> pixels(std::size_t(target.size().x) * std::size_t(target.size().y));
-    target.texture().read(pixels.data(), pixels.size() * sizeof(glm::vec4));
+template <class Texel>
+std::vector<Texel> read(const gpu::RasterTarget& target) {
+    std::vector<Texel> pixels(std::size_t(target.size().x) * std::size_t(target.size().y));
+    target.texture().read(pixels.data(), pixels.size() * sizeof(Texel));
     return pixels;
 }
 
 /// combine(the fine pixels of one pixel) of each, rows from the top.
-template <class Combine>
-std::vector<glm::vec4> reduced(const std::vector<glm::vec4>& fine, glm::ivec2 size, int side,
+template <class Texel, class Combine>
+std::vector<glm::vec4> reduced(const std::vector<Texel>& fine, glm::ivec2 size, int side,
                                Combine&& combine) {
     std::vector<glm::vec4> pixels;
     pixels.reserve(std::size_t(size.x) * std::size_t(size.y));
-    std::vector<glm::vec4> parts(std::size_t(side) * std::size_t(side));
+    std::array<Texel, fineSide * fineSide> parts;
+    const auto count = std::size_t(side) * std::size_t(side);
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
             for (int i = 0; i < side * side; ++i)
                 parts[std::size_t(i)] =
                     fine[std::size_t(y * side + i / side) * std::size_t(size.x * side) +
                          std::size_t(x * side + i % side)];
-            pixels.push_back(combine(std::span<const glm::vec4>(parts)));
+            pixels.push_back(combine(std::span<const Texel>(parts).first(count)));
         }
     return pixels;
 }
@@ -139,11 +142,13 @@ glm::vec4 meanWall(std::span<const glm::vec4> parts) {
     return mean;
 }
 
-/// Mean colour, multiplied by how much of the pixel shows it.
-glm::vec4 meanMark(std::span<const glm::vec4> parts) {
+/// Mean colour as displayed, multiplied by how much of the pixel shows it.
+glm::vec4 meanMark(std::span<const glm::u8vec4> parts) {
     glm::vec4 sum(0.0f);
-    for (const glm::vec4& part : parts)
-        sum += glm::vec4(part.w * glm::vec3(part), part.w) / float(parts.size());
+    for (const glm::u8vec4 part : parts) {
+        const glm::vec4 mark = glm::vec4(part) / 255.0f;
+        sum += glm::vec4(mark.w * glm::vec3(mark), mark.w) / float(parts.size());
+    }
     return sum;
 }
 
@@ -197,10 +202,11 @@ bool OverviewPainter::shows(const OverviewView& view, glm::ivec2 size) const {
 Result<void> OverviewPainter::makeTargets(glm::ivec2 size) {
     const int side = std::int64_t(size.x) * size.y <= finePixels ? fineSide : 1;
     if (wallTarget_ && wallTarget_->size() == side * size) return {};
-    const auto format = gpu::TexelFormat::rgba32f;
-    auto wall = gpu::RasterTarget::create(side * size, format, "wall from outside");
+    using gpu::TexelFormat;
+    auto wall = gpu::RasterTarget::create(side * size, TexelFormat::rgba32f, "wall from outside");
     if (!wall) return tl::make_unexpected(wall.error());
-    auto marks = gpu::RasterTarget::create(side * size, format, "marks on the overview");
+    auto marks =
+        gpu::RasterTarget::create(side * size, TexelFormat::rgba8, "marks on the overview");
     if (!marks) return tl::make_unexpected(marks.error());
     wallTarget_ = std::move(*wall);
     marksTarget_ = std::move(*marks);
@@ -216,7 +222,8 @@ Result<Image> OverviewPainter::drawGround(const OverviewView& view, glm::ivec2 s
     }
     auto wall = std::make_shared<Backdrop>();
     wall->size = size;
-    wall->pixels = reduced(read(*wallTarget_), size, wallTarget_->size().x / size.x, meanWall);
+    wall->pixels =
+        reduced(read<glm::vec4>(*wallTarget_), size, wallTarget_->size().x / size.x, meanWall);
     Image picture{size.x, size.y, std::vector<std::uint8_t>(3 * wall->pixels.size())};
     if (!view.body) {
         for (std::size_t i = 0; i < picture.rgb.size(); ++i)
@@ -243,14 +250,13 @@ Result<void> OverviewPainter::addMarks(const OverviewView& view, Image& picture)
 
     const glm::ivec2 size(picture.width, picture.height);
     const auto marks =
-        reduced(read(*marksTarget_), size, marksTarget_->size().x / size.x, meanMark);
+        reduced(read<glm::u8vec4>(*marksTarget_), size, marksTarget_->size().x / size.x, meanMark);
     for (std::size_t i = 0; i < marks.size(); ++i) {
         const double shown = marks[i].w;
         if (shown <= 0.0) continue;
         for (int channel = 0; channel < 3; ++channel) {
             std::uint8_t& byte = picture.rgb[3 * i + std::size_t(channel)];
-            byte = byteOf((1.0 - shown) * byte / 255.0 +
-                          shown * displayed(double(marks[i][channel]) / shown));
+            byte = byteOf((1.0 - shown) * byte / 255.0 + double(marks[i][channel]));
         }
     }
     return {};
