@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace haustra::render {
 
@@ -36,30 +37,34 @@ inline constexpr std::array<HybridControls, 9> hybridLadder = {{
     {0, true, 0, 0.0},
 }};
 
-/// Which rung to stand on. The CPU's and the GPU's time for a picture, each smoothed over
-/// `patience` pictures, are compared: where the CPU takes more than `tolerance` times as long as
-/// the GPU, the next pictures stand one rung lower, and where the GPU does, one higher. Where
-/// neither does, or the ladder ends, the rung is kept; where a rung has too much work for the one
-/// and its neighbour for the other, that of the two whose longer time is shorter. It is left again
-/// when the times have changed by `stirring` in proportion to each other. Belongs to one thread.
+/// Which rung to stand on, by what pictures have cost on average over `patience` of them. Where the
+/// CPU takes more than `tolerance` times as long as the GPU, the next pictures stand one rung
+/// lower; where the GPU does, one higher; where neither does, one lower for a trial: there is less
+/// work in all. A step that has made pictures faster by `gain` is followed by another in its
+/// direction; one that has not is taken back, and there the balance stays until the two times have
+/// changed by `stirring` in proportion to each other. (The dissertation compares the two times
+/// alone. Where the GPU is the CPU's own cores, as with a software device, equal times are no
+/// optimum: there the picture's time leads to the rung with the least work in all.) Belongs to one
+/// thread.
 class HybridBalance {
 public:
     static constexpr int patience = 4;
-    static constexpr double tolerance = 1.25, stirring = 1.6;
+    static constexpr double tolerance = 1.25, gain = 0.02, stirring = 1.6;
 
     explicit HybridBalance(int rung = 3) : rung_(rung) {}
 
     int rung() const { return rung_; }
     const HybridControls& controls() const { return hybridLadder[std::size_t(rung_)]; }
-    /// Of a picture that was drawn with controls().
-    void drew(double cpuMs, double gpuMs);
+    /// Of a picture that was drawn with controls(): the CPU's part, the GPU's, and from its
+    /// beginning to its end.
+    void drew(double cpuMs, double gpuMs, double pictureMs);
 
 private:
     struct Seen {
-        double cpuMs = 0.0, gpuMs = 0.0;
-        double longer() const { return cpuMs > gpuMs ? cpuMs : gpuMs; }
+        double cpuMs = 0.0, gpuMs = 0.0, pictureMs = 0.0;
+        double ratio() const;
     };
-    void moveTo(int rung, Seen from);
+    void step(int direction, const Seen& here);
 
     int rung_;
     int pictures_ = 0;  // on this rung

@@ -212,6 +212,7 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     if (view.backdrop) {
         if (auto bound = my.scene->bindBackdrop(view.backdrop); !bound) return bound;
     }
+    const double began = nowMs();
     my.stats = {};
     my.stats.controls = my.options.controls.value_or(my.balance.controls());
     my.timestamps.restart();
@@ -235,7 +236,8 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     const std::vector<double> between = my.timestamps.betweenMs();
     for (std::size_t i = 0; i < between.size(); i += 2)
         my.stats.gpuMs += between[i];
-    if (!my.options.controls) my.balance.drew(my.stats.cpuMs, my.stats.gpuMs);
+    if (!my.options.controls)
+        my.balance.drew(my.stats.cpuMs, my.stats.gpuMs, nowMs() - began);
     return {};
 }
 
