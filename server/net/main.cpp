@@ -24,7 +24,7 @@ const char* const automatic = "auto";
 
 struct Arguments {
     haustra::net::ServerOptions server;
-    fs::path certificate, key, portFile;
+    fs::path certificate, key, portFile, presets;
     std::string listen = toString(haustra::net::ListenAddress{}), logLevel = "info";
     std::string raycaster = automatic;
     double gpuBudgetMb = 0.0;
@@ -73,7 +73,7 @@ void addOptions(CLI::App& program, Arguments& arguments) {
         ->capture_default_str();
     program
         .add_option("--raycaster", arguments.raycaster,
-                    "What draws camera views: auto tries those that work on this machine when a "
+                    "What draws: auto tries those that work on this machine when a "
                     "case is opened, for at most half a second, and takes the fastest; or native, "
                     "single-pass, polygon-assisted, object-order, hybrid")
         ->type_name("KIND")
@@ -82,10 +82,15 @@ void addOptions(CLI::App& program, Arguments& arguments) {
         .add_option("--gpu-budget", arguments.gpuBudgetMb,
                     "GPU memory for all cases together, in MiB; one that does not fit makes those "
                     "that nobody reads any more go, then is drawn from cells that come and go "
-                    "within what is left. 0: what the device has")
+                    "within what is left, or from main memory. 0: what the device has")
         ->type_name("MB")
         ->check(CLI::Range(0.0, 1048576.0))
         ->capture_default_str();
+    program
+        .add_option("--presets", arguments.presets,
+                    "Transfer functions for clients beside the built-in ones: a folder of *.json "
+                    "files, as those in server/render/presets")
+        ->type_name("DIR");
     program.add_option("--log-level", arguments.logLevel, "How much to log, on standard error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
         ->capture_default_str();
@@ -128,6 +133,7 @@ int runProgram(int argc, char** argv) {
         auto listen = haustra::net::parseListenAddress(arguments.listen);
         if (!listen) throw CLI::ValidationError("--listen", listen.error().message);
         arguments.server.listen = std::move(*listen);
+        if (!arguments.presets.empty()) arguments.server.presets = arguments.presets;
         if (arguments.raycaster != automatic) {
             const auto kind = haustra::render::raycasterFromString(arguments.raycaster);
             if (!kind) throw CLI::ValidationError("--raycaster", kind.error().message);

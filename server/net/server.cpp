@@ -81,6 +81,7 @@ struct Server::Impl {
     std::unique_ptr<session::CaseLoader> loader;  // after the renderer, which it uses
     std::unique_ptr<session::EncoderThreads> encoders;
     std::unique_ptr<session::WallThread> walls;
+    render::PresetLibrary presets;
     std::optional<session::Services> services;
 
     std::set<std::shared_ptr<Connection>> connections;
@@ -89,10 +90,22 @@ struct Server::Impl {
     bool stopping = false;
 
     Result<void> start();
+    Result<void> readPresets();
     void accept();
     void serve(tcp::socket socket);
     void stop();
 };
+
+Result<void> Server::Impl::readPresets() {
+    presets.presets = render::builtInPresets();
+    if (!options.presets) return {};
+    auto read = render::readPresets(*options.presets);
+    if (!read) return tl::make_unexpected(read.error());
+    presets = std::move(*read);
+    for (const Error& refused : presets.refused)
+        spdlog::warn("a preset is not used: {}", describe(refused));
+    return {};
+}
 
 Result<void> Server::Impl::start() {
     auto cases = store::CaseStore::open(options.store, false);
@@ -104,6 +117,7 @@ Result<void> Server::Impl::start() {
     fingerprint = certificateFingerprint(tls);
     auto bookmarks = records::BookmarkStore::open(options.store / "records.sqlite3");
     if (!bookmarks) return tl::make_unexpected(bookmarks.error());
+    if (auto read = readPresets(); !read) return read;
     auto rendering = session::RenderThread::start(options.drawing);
     if (!rendering) return tl::make_unexpected(rendering.error());
     auto encoding = session::EncoderThreads::start(options.encoders);
@@ -115,8 +129,8 @@ Result<void> Server::Impl::start() {
     renderer = std::move(*rendering);
     encoders = std::move(*encoding);
     walls = session::WallThread::start();
-    services.emplace(
-        session::Services{*renderer, *loader, *encoders, *records, *walls, options.software});
+    services.emplace(session::Services{*renderer, *loader, *encoders, *records, *walls, presets,
+                                       options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);
     signals.async_wait([this](const asio::error_code& error, int) {

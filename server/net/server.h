@@ -20,7 +20,8 @@ struct ServerOptions {
     int maxSessions = 32;
     int encoders = 1;  ///< threads
     session::DrawingOptions drawing;
-    std::string software;  ///< name and version, for the welcome
+    std::optional<std::filesystem::path> presets;  ///< folder of more than the built-in ones
+    std::string software;                          ///< name and version, for the welcome
 };
 
 /// server/THREADS.md draws its threads. Belongs to the thread that made it.

@@ -182,6 +182,18 @@ Result<void> CaseRenderer::use(RaycasterKind kind) {
     return {};
 }
 
+void CaseRenderer::keepOnlyUsed() {
+    Impl& my = *impl_;
+    std::erase_if(my.raycasters, [&](const auto& made) { return made.first != my.used; });
+    if (picturesOnCpu(my.used)) {
+        my.glPictures.reset();
+        my.glScene.reset();
+    } else {
+        my.nativePictures.reset();
+        my.nativeScene.reset();
+    }
+}
+
 std::vector<PassTime> CaseRenderer::passTimes() const {
     return impl_->raycasters.at(impl_->used)->passTimes();
 }

@@ -72,6 +72,8 @@ public:
     /// asked for, and kept. Fails where it cannot be made here.
     RaycasterKind raycaster() const;
     Result<void> use(RaycasterKind kind);
+    /// Lets go of the raycasters that are not used, and of what only they needed.
+    void keepOnlyUsed();
     /// Of the last camera view.
     std::vector<PassTime> passTimes() const;
 

@@ -27,6 +27,14 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
             spdlog::warn("a case opens without its flattened views: {}", wall.error().message);
         }
     }
+    if (files->surface) {
+        if (auto surface = readSurface(store, name))
+            prepared->wall = std::move(*surface);
+        else
+            spdlog::warn("a case's overview has no colon: {}", surface.error().message);
+    }
+    if (!files->facts.centerline.points.empty())
+        prepared->path = std::make_shared<const Centerline>(files->facts.centerline);
     return renderer.upload(std::move(files->facts), std::move(*prepared));
 }
 

@@ -9,6 +9,9 @@
 #include <spdlog/spdlog.h>
 
 namespace haustra::session {
+
+using render::RaycasterKind;
+
 namespace {
 
 constexpr int trialSide = 256;  // pixels of the pictures that find the fastest raycaster
@@ -40,6 +43,10 @@ std::vector<render::CameraView> trialViews(const OpenCase& facts, int count) {
         views.push_back(std::move(view));
     }
     return views;
+}
+
+bool needsWhole(RaycasterKind kind) {
+    return kind != RaycasterKind::native && kind != RaycasterKind::objectOrder;
 }
 
 // What a renderer holds of a case in whole: its volumes.
@@ -123,8 +130,7 @@ void GpuCases::releaseLeft(Clock::time_point now) {
     });
 }
 
-Result<std::unique_ptr<render::CaseRenderer>> GpuCases::makeRenderer(
-    render::PreparedCase prepared) {
+Result<GpuCases::Made> GpuCases::makeRenderer(render::PreparedCase prepared) {
     releaseLeft(Clock::now());
     std::vector<HeldCase> held;
     for (const Entry& entry : cases_)
@@ -135,42 +141,44 @@ Result<std::unique_ptr<render::CaseRenderer>> GpuCases::makeRenderer(
     for (auto gone = room.released.rbegin(); gone != room.released.rend(); ++gone)
         cases_.erase(cases_.begin() + std::ptrdiff_t(*gone));
 
+    // Whoever is chosen later, the native raycaster costs nothing to begin with.
+    const RaycasterKind kind = options_.raycaster.value_or(RaycasterKind::native);
     render::RendererOptions how;
-    if (options_.raycaster) how.raycaster = *options_.raycaster;
+    how.raycaster = kind;
     if (options_.gpuBudgetBytes > 0) how.gpuBudgetBytes = room.freeBytes;
-    if (whole > room.freeBytes && !options_.raycaster)
-        how.raycaster = render::RaycasterKind::objectOrder;
-    auto renderer = render::CaseRenderer::upload(context_, std::move(prepared), how);
-    if (!renderer) return renderer;
-    if ((*renderer)->gpuBytes() > room.freeBytes)
+    const bool fits = whole <= room.freeBytes;
+    if (!fits && needsWhole(kind))
         return fail(ErrorKind::device,
-                    "the GPU has no room for the case: it needs " +
-                        std::to_string(mib((*renderer)->gpuBytes())) + " MiB, and " +
-                        std::to_string(mib(room.freeBytes)) + " of " +
+                    "the GPU has no room for the case: it needs " + std::to_string(mib(whole)) +
+                        " MiB, and " + std::to_string(mib(room.freeBytes)) + " of " +
                         std::to_string(mib(options_.gpuBudgetBytes)) + " MiB are free",
                     "render");
-    return renderer;
+    auto renderer = render::CaseRenderer::upload(context_, std::move(prepared), how);
+    if (!renderer) return tl::make_unexpected(renderer.error());
+    return Made{std::move(*renderer), fits};
+}
+
+std::vector<RaycasterKind> GpuCases::candidates(bool fits) const {
+    auto kinds = render::raycasterCandidates(context_.software());
+    if (options_.gpuBudgetBytes == 0) return kinds;
+    // Within a budget cells make sense where the whole does not fit, and nothing else does.
+    std::erase_if(kinds, [&](RaycasterKind kind) {
+        return fits ? kind == RaycasterKind::objectOrder : needsWhole(kind);
+    });
+    return kinds;
 }
 
 // ---- opening ------------------------------------------------------------------------------------
 
 Result<void> GpuCases::upload(OpenCase facts, render::PreparedCase prepared) {
     opening_.reset();
-    const bool whole =
-        options_.gpuBudgetBytes == 0 || wholeBytes(prepared) <= options_.gpuBudgetBytes;
-    const auto start = Clock::now();
-    auto renderer = makeRenderer(std::move(prepared));
-    if (!renderer) return tl::make_unexpected(renderer.error());
-    spdlog::info("a case is on the GPU: {} MiB, copied in {:.1f} s", mib((*renderer)->gpuBytes()),
-                 1e-3 * msSince(start));
-    const bool choose = !options_.raycaster && whole &&
-                        (*renderer)->raycaster() != render::RaycasterKind::objectOrder;
-    opening_.emplace(Opening{{std::move(facts), {}, {}, std::move(*renderer)}, {}, {}});
-    if (choose) {
-        const render::ChoiceLimits limits;
-        opening_->choice.emplace(render::raycasterCandidates(context_.software()), limits);
-        opening_->views = trialViews(opening_->entry.facts, limits.rounds);
-    }
+    auto made = makeRenderer(std::move(prepared));
+    if (!made) return tl::make_unexpected(made.error());
+    opening_.emplace(Opening{{std::move(facts), {}, {}, std::move(made->renderer)}, {}, {}});
+    if (options_.raycaster) return {};
+    const render::ChoiceLimits limits;
+    opening_->choice.emplace(candidates(made->fits), limits);
+    opening_->views = trialViews(opening_->entry.facts, limits.rounds);
     return {};
 }
 
@@ -206,12 +214,13 @@ Result<std::shared_ptr<const OpenCase>> GpuCases::opened() {
             return fail(ErrorKind::device,
                         "no raycaster can draw the case: " + describe(facts.trials), "render");
         if (auto used = renderer.use(*fastest); !used) return tl::make_unexpected(used.error());
-        spdlog::info("it is drawn by the {} raycaster: {} for {}x{} pixels", toString(*fastest),
-                     describe(facts.trials), trialSide, trialSide);
-    } else {
-        spdlog::info("it is drawn by the {} raycaster", toString(renderer.raycaster()));
+        renderer.keepOnlyUsed();
     }
     facts.raycaster = renderer.raycaster();
+    spdlog::info("a case is ready: {} MiB on the GPU, drawn by the {} raycaster{}{}",
+                 mib(renderer.gpuBytes()), toString(facts.raycaster),
+                 facts.trials.empty() ? "" : ", of " + describe(facts.trials),
+                 facts.trials.empty() ? "" : " for " + std::to_string(trialSide) + "² pixels");
     auto of = lend(facts);
     my.entry.of = of;
     cases_.push_back(std::move(my.entry));

@@ -50,12 +50,12 @@ public:
     /// The case of these products where it is here, else empty.
     std::shared_ptr<const OpenCase> find(const OpenCase& facts);
 
-    /// Copies a case to the GPU, as the one that is being opened. Where the budget has no room for
-    /// the whole volume, it is drawn from cells that come and go (objectOrder). Fails (device)
-    /// where there is no room for that either.
+    /// Takes a case, as the one that is being opened, and copies to the GPU what a raycaster that
+    /// was named needs there. Fails (device) where the budget has no room for that.
     Result<void> upload(OpenCase facts, render::PreparedCase prepared);
-    /// Draws one picture of the case that is being opened to find its raycaster; false where
-    /// nothing is left to try.
+    /// Draws one picture of the case that is being opened to find its raycaster: of those that fit
+    /// into the budget; where the whole volume does not, of those that draw it from cells that come
+    /// and go, or from main memory. False where nothing is left to try.
     bool tryRaycaster();
     /// The case that was being opened: from now on it can be drawn, and find finds it.
     Result<std::shared_ptr<const OpenCase>> opened();
@@ -80,7 +80,12 @@ private:
         std::vector<render::CameraView> views;
     };
 
-    Result<std::unique_ptr<render::CaseRenderer>> makeRenderer(render::PreparedCase prepared);
+    struct Made {
+        std::unique_ptr<render::CaseRenderer> renderer;
+        bool fits;  ///< there is room for the whole volume
+    };
+    Result<Made> makeRenderer(render::PreparedCase prepared);
+    std::vector<render::RaycasterKind> candidates(bool fits) const;
     std::shared_ptr<const OpenCase> lend(const OpenCase& facts) const;
 
     gpu::Context& context_;

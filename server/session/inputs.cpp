@@ -16,6 +16,53 @@ glm::dvec3 vectorFrom(const protocol::Vec3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
+// Of a SetCamera or a Camera.
+template <class Message>
+Result<render::Camera> soundCamera(const Message& message) {
+    const auto position = positionFrom(message.position_mm());
+    if (!position) return tl::make_unexpected(position.error());
+    render::Camera camera{*position, vectorFrom(message.forward()), vectorFrom(message.up())};
+    switch (message.lens()) {
+        case protocol::PERSPECTIVE:
+            break;
+        case protocol::FISHEYE:
+            camera.lens = render::Lens::fisheye;
+            break;
+        case protocol::ORTHOGRAPHIC:
+            camera.lens = render::Lens::orthographic;
+            camera.heightMm = message.height_mm();
+            break;
+        default:
+            return refuse("there is no such lens", "camera");
+    }
+    // The field of view of an orthographic camera has no meaning, and keeps its default.
+    if (camera.lens != render::Lens::orthographic) camera.fovDegrees = message.fov_degrees();
+    if (const auto checked = render::checkCamera(camera); !checked)
+        return tl::make_unexpected(checked.error());
+    return camera;
+}
+
+template <class Points>
+std::vector<render::TransferFunctionPoint> pointsFrom(const Points& points) {
+    std::vector<render::TransferFunctionPoint> made;
+    for (const protocol::TransferFunctionPoint& point : points)
+        made.push_back({point.hu(), {point.red(), point.green(), point.blue()}, point.opacity()});
+    return made;
+}
+
+Result<render::Composition> compositionFrom(protocol::Composition composition) {
+    switch (composition) {
+        case protocol::EMISSION_ABSORPTION:
+            return render::Composition::emissionAbsorption;
+        case protocol::MAXIMUM_INTENSITY:
+            return render::Composition::maximumIntensity;
+        case protocol::FIRST_HIT:
+            return render::Composition::firstHit;
+        default:
+            return refuse("there is no such composition", "transfer function");
+    }
+}
+
 bool isControl(char c) {
     const auto code = static_cast<unsigned char>(c);
     return (code < 0x20 && c != '\n' && c != '\t') || code == 0x7f;
@@ -36,13 +83,49 @@ Result<glm::dvec3> positionFrom(const protocol::Vec3& message) {
 }
 
 Result<render::Camera> cameraFrom(const protocol::SetCamera& message) {
+    return soundCamera(message);
+}
+
+Result<render::Camera> cameraFrom(const protocol::Camera& message) {
+    return soundCamera(message);
+}
+
+Result<render::ObliqueView> obliqueFrom(const protocol::SetOblique& message) {
     const auto position = positionFrom(message.position_mm());
     if (!position) return tl::make_unexpected(position.error());
-    const render::Camera camera{*position, vectorFrom(message.forward()), vectorFrom(message.up()),
-                                message.fov_degrees()};
-    if (const auto checked = render::checkCamera(camera); !checked)
+    render::ObliqueView view;
+    view.positionMm = *position;
+    view.forward = vectorFrom(message.forward());
+    view.up = vectorFrom(message.up());
+    view.heightMm = message.height_mm();
+    view.scan = message.cleansed() ? render::Scan::cleansed : render::Scan::original;
+    if (const auto placed = render::placeSlice(view, minViewportPixels, minViewportPixels); !placed)
+        return tl::make_unexpected(placed.error());
+    return view;
+}
+
+Result<render::OverviewView> overviewFrom(const protocol::SetOverview& message) {
+    render::OverviewView view;
+    const auto camera = cameraFrom(message.camera());
+    if (!camera) return tl::make_unexpected(camera.error());
+    view.camera = *camera;
+    if (message.has_reader()) {
+        const auto reader = cameraFrom(message.reader());
+        if (!reader) return tl::make_unexpected(reader.error());
+        view.reader = *reader;
+    }
+    if (std::size_t(message.bookmarks_mm_size()) > render::maxOverviewBookmarks)
+        return refuse("there are too many bookmarks", "overview");
+    for (const protocol::Vec3& bookmark : message.bookmarks_mm()) {
+        const auto position = positionFrom(bookmark);
+        if (!position) return tl::make_unexpected(position.error());
+        view.bookmarksMm.push_back(*position);
+    }
+    view.path = !message.hide_path();
+    view.body = !message.hide_body();
+    if (const auto checked = render::checkOverview(view); !checked)
         return tl::make_unexpected(checked.error());
-    return camera;
+    return view;
 }
 
 Result<glm::dvec2> flatPointFrom(const protocol::FlatPoint& message) {
@@ -67,14 +150,25 @@ Result<void> checkView(protocol::View view) {
     return {};
 }
 
-Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message) {
+Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message,
+                                  const render::PresetLibrary& presets) {
     if (message.preset().empty() == message.points().empty())
         return refuse("either a preset or points are needed", "transfer function");
-    if (!message.preset().empty()) return render::opticsPreset(message.preset());
+    if (!message.preset().empty()) {
+        const render::OpticsPreset* preset = presets.find(message.preset());
+        if (!preset) return refuse("there is no such preset", "transfer function");
+        return preset->optics;
+    }
     render::Optics optics;
-    for (const auto& point : message.points())
-        optics.transferFunction.points.push_back(
-            {point.hu(), {point.red(), point.green(), point.blue()}, point.opacity()});
+    const auto composition = compositionFrom(message.composition());
+    if (!composition) return tl::make_unexpected(composition.error());
+    optics.composition = *composition;
+    optics.preIntegrated = message.pre_integrated();
+    optics.shading = !message.unlit();
+    optics.transferFunction.points = pointsFrom(message.points());
+    for (const protocol::GradientRow& row : message.rows())
+        optics.transferFunction.rows.push_back(
+            {row.gradient_hu_per_mm(), pointsFrom(row.points())});
     if (const auto checked = render::checkOptics(optics); !checked)
         return tl::make_unexpected(checked.error());
     return optics;

@@ -4,6 +4,7 @@
 #include "core/result.h"
 #include "protocol/haustra.pb.h"
 #include "records/bookmarks.h"
+#include "render/optics_presets.h"
 #include "render/view.h"
 
 #include <string>
@@ -20,8 +21,15 @@ inline constexpr double minPixelsPerCircumference = 16.0, maxPixelsPerCircumfere
 /// Each coordinate finite and at most maxCoordinateMm from the origin.
 Result<glm::dvec3> positionFrom(const protocol::Vec3& message);
 
-/// Position, directions and field of view as render::checkCamera has it.
+/// Position, directions, lens and field of view or height as render::checkCamera has it.
 Result<render::Camera> cameraFrom(const protocol::SetCamera& message);
+Result<render::Camera> cameraFrom(const protocol::Camera& message);
+
+/// The plane, without window; as render::placeSlice has it.
+Result<render::ObliqueView> obliqueFrom(const protocol::SetOblique& message);
+
+/// What is shown, without optics; as render::checkOverview has it.
+Result<render::OverviewView> overviewFrom(const protocol::SetOverview& message);
 
 /// Both finite, |x| at most maxTurns, |y| at most maxFlatHeight; x stays as it is.
 Result<glm::dvec2> flatPointFrom(const protocol::FlatPoint& message);
@@ -32,8 +40,9 @@ Result<FlatWindow> flatWindowFrom(const protocol::SetFlat& message);
 /// Fails where there is no such view.
 Result<void> checkView(protocol::View view);
 
-/// One of the presets by name, or a function by its points; not both.
-Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message);
+/// One of the presets by name, or optics by their parts; not both.
+Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message,
+                                  const render::PresetLibrary& presets);
 
 /// A camera's place with finite arc; the note is at most maxNoteBytes without control characters
 /// but line feed and tab; the key is 1 to maxClientKeyBytes of visible ASCII.

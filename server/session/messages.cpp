@@ -38,7 +38,8 @@ protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std
     return answer;
 }
 
-protocol::ServerMessage caseOpenedMessage(const OpenCase& opened) {
+protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
+                                          const render::PresetLibrary& presets) {
     protocol::ServerMessage answer;
     auto* message = answer.mutable_case_opened();
     message->set_name(opened.name);
@@ -57,8 +58,8 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened) {
         ++sample;
     }
     message->set_patient_position(toString(opened.position));
-    for (const std::string& preset : render::opticsPresets())
-        message->add_transfer_functions(preset);
+    for (const render::OpticsPreset& preset : presets.presets)
+        message->add_transfer_functions(preset.name);
     message->set_cleansed(opened.cleansed);
     message->set_raycaster(toString(opened.raycaster));
     for (const render::RaycasterTrial& trial : opened.trials) {

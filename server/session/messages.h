@@ -3,6 +3,7 @@
 
 #include "protocol/haustra.pb.h"
 #include "records/bookmarks.h"
+#include "render/optics_presets.h"
 #include "session/open_case.h"
 
 #include <cstdint>
@@ -17,7 +18,8 @@ std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message);
 protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std::string& message,
                                      bool fatal, std::uint64_t request = 0);
 
-protocol::ServerMessage caseOpenedMessage(const OpenCase& opened);
+protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
+                                          const render::PresetLibrary& presets);
 
 void fill(protocol::Bookmark& message, const records::Bookmark& bookmark);
 

@@ -31,12 +31,23 @@ Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& nam
             files.facts.centerline = std::move(*centerline);
         } else if (entry.product == "flatmap") {
             files.flattened = true;
+        } else if (entry.product == "surface") {
+            files.surface = true;
         } else if (entry.product != "ct") {
             continue;
         }
         files.facts.content += entry.product + ':' + entry.key.hex + ' ';
     }
     return files;
+}
+
+Result<std::shared_ptr<const TriMesh>> readSurface(const store::CaseStore& store,
+                                                   const std::string& name) {
+    const auto source = store.openCase(name);
+    if (!source) return tl::make_unexpected(source.error());
+    auto mesh = source->readMesh("surface");
+    if (!mesh) return tl::make_unexpected(mesh.error());
+    return std::make_shared<const TriMesh>(std::move(*mesh));
 }
 
 Result<std::shared_ptr<const Wall>> readWall(const store::CaseStore& store,

@@ -3,6 +3,7 @@
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
+#include "core/tri_mesh.h"
 #include "render/raycaster_choice.h"
 #include "session/wall.h"
 #include "store/case_store.h"
@@ -23,7 +24,7 @@ struct OpenCase {
     Centerline centerline;             ///< empty where the case has none yet
     bool cleansed = false;             ///< the endoscopic view shows the cleansed scan, slices can
     std::shared_ptr<const Wall> wall;  ///< empty where the case has not been flattened
-    /// What draws its camera views, and what was measured to choose it (nothing where it was not).
+    /// What draws it, and what was measured to choose it (nothing where it was not).
     render::RaycasterKind raycaster = render::RaycasterKind::singlePass;
     std::vector<render::RaycasterTrial> trials;
 };
@@ -34,11 +35,16 @@ struct CaseFiles {
     Volume<std::int16_t> ct;
     Volume<std::int16_t> cleansed;  ///< empty where the case has none yet
     bool flattened = false;         ///< there is a flat map
+    bool surface = false;           ///< there is the wall's mesh
 };
 
 /// Reads product "ct" of a case and, where they are there, "cleansed" and "centerline". Fails
 /// (notFound) where there is no such case. Maps the volumes, reads no voxel.
 Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& name);
+
+/// Reads product "surface", the wall's mesh.
+Result<std::shared_ptr<const TriMesh>> readSurface(const store::CaseStore& store,
+                                                   const std::string& name);
 
 /// Reads product "flatmap" and makes it ready for questions: about a second for a million
 /// triangles, and some hundred bytes for each.

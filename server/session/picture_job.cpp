@@ -8,6 +8,7 @@ bool inBands(const AnyView& view) {
 
 bool canBeCoarse(const AnyView& view) {
     return std::holds_alternative<render::CameraView>(view) ||
+           std::holds_alternative<render::OverviewView>(view) ||
            std::holds_alternative<render::FlatView>(view);
 }
 

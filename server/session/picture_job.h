@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 using SessionId = std::uint64_t;
 
 using AnyView = std::variant<render::CameraView, render::SliceView, render::ObliqueView,
-                             render::FlatView, render::FlatOverview>;
+                             render::OverviewView, render::FlatView, render::FlatOverview>;
 
 /// One picture to draw. Immutable once it waits.
 struct PictureJob {

@@ -5,11 +5,13 @@
 namespace haustra::session {
 
 PictureStream::PictureStream(SessionId session, asio::any_io_executor io, RenderThread& renderer,
-                             EncoderThreads& encoders, Outlet outlet)
+                             EncoderThreads& encoders, const render::PresetLibrary& presets,
+                             Outlet outlet)
     : session_(session),
       io_(std::move(io)),
       renderer_(renderer),
       encoders_(encoders),
+      presets_(presets),
       outlet_(std::move(outlet)) {}
 
 void PictureStream::setCase(std::shared_ptr<const OpenCase> opened) {
@@ -39,7 +41,8 @@ Result<void> PictureStream::input(const Input& message) {
     Slot& slot = slots_[message.viewport()];
     if (!std::is_same_v<Input, protocol::SetViewport> && !slot.viewport.isOpen())
         return fail(ErrorKind::unsupported, "the viewport is not open", "viewport");
-    if constexpr (std::is_same_v<Input, protocol::SetSlice>) {
+    if constexpr (std::is_same_v<Input, protocol::SetSlice> ||
+                  std::is_same_v<Input, protocol::SetOblique>) {
         if (message.cleansed() && !(case_ && case_->cleansed))
             return fail(ErrorKind::badInput, "the case has no cleansed scan", "viewport");
     }
@@ -47,7 +50,12 @@ Result<void> PictureStream::input(const Input& message) {
         if (isFlat(message.view()) && !(case_ && case_->wall))
             return fail(ErrorKind::badInput, "the case has not been flattened", "viewport");
     }
-    if (auto applied = slot.viewport.apply(message); !applied) return applied;
+    Result<void> applied;
+    if constexpr (std::is_same_v<Input, protocol::SetTransferFunction>)
+        applied = slot.viewport.apply(message, presets_);
+    else
+        applied = slot.viewport.apply(message);
+    if (!applied) return applied;
     slot.sequence = message.sequence();
     changed(message.viewport());
     return {};
@@ -55,6 +63,8 @@ Result<void> PictureStream::input(const Input& message) {
 template Result<void> PictureStream::input(const protocol::SetViewport&);
 template Result<void> PictureStream::input(const protocol::SetCamera&);
 template Result<void> PictureStream::input(const protocol::SetSlice&);
+template Result<void> PictureStream::input(const protocol::SetOblique&);
+template Result<void> PictureStream::input(const protocol::SetOverview&);
 template Result<void> PictureStream::input(const protocol::SetFlat&);
 template Result<void> PictureStream::input(const protocol::SetWindowLevel&);
 template Result<void> PictureStream::input(const protocol::SetTransferFunction&);
@@ -130,7 +140,7 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     PictureJob job;
     job.session = session_;
     job.of = case_;
-    job.view = slot.viewport.view();
+    job.view = slot.viewport.view(presets_);
     job.width = slot.viewport.width();
     job.height = slot.viewport.height();
     job.inputAt = slot.inputAt;

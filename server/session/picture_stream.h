@@ -32,7 +32,7 @@ public:
         std::function<void(const Error& error)> failed;              ///< a picture was lost
     };
     PictureStream(SessionId session, asio::any_io_executor io, RenderThread& renderer,
-                  EncoderThreads& encoders, Outlet outlet);
+                  EncoderThreads& encoders, const render::PresetLibrary& presets, Outlet outlet);
 
     /// False: the client takes lossless tiles alone.
     void setJpeg(bool accepted) { jpeg_ = accepted; }
@@ -42,7 +42,8 @@ public:
     /// the case before do not appear any more.
     void setCase(std::shared_ptr<const OpenCase> opened);
 
-    /// SetViewport, SetCamera, SetSlice, SetFlat, SetWindowLevel, SetTransferFunction. Fails
+    /// SetViewport, SetCamera, SetSlice, SetOblique, SetOverview, SetFlat, SetWindowLevel,
+    /// SetTransferFunction. Fails
     /// (badInput) and changes nothing but the sequence where the message is out of bounds,
     /// (unsupported) where the viewport is not open.
     template <class Input>
@@ -83,6 +84,7 @@ private:
     asio::any_io_executor io_;
     RenderThread& renderer_;
     EncoderThreads& encoders_;
+    const render::PresetLibrary& presets_;
     Outlet outlet_;
     std::shared_ptr<const OpenCase> case_;
     std::uint64_t caseNumber_ = 0;  // counts setCase: tells old pictures from new ones

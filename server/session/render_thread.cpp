@@ -116,8 +116,7 @@ struct RenderThread::Drawing {
         protocol::TileHeader header = frame.job.header;
         header.queueMicroseconds = microseconds(msBetween(frame.job.inputAt, frame.begunAt));
         header.renderMicroseconds = microseconds(frame.spentMs);
-        if (renderer && std::holds_alternative<render::CameraView>(frame.job.view))
-            header.raycaster = std::uint8_t(1 + int(renderer->raycaster()));
+        if (renderer) header.raycaster = std::uint8_t(1 + int(renderer->raycaster()));
         if (drawn)
             frame.job.done(header, std::move(frame.picture));
         else

@@ -49,7 +49,7 @@ std::shared_ptr<Session> Session::create(SessionId id, asio::any_io_executor io,
         if (const auto session = weak.lock()) session->report(error);
     };
     self->pictures_ = std::make_shared<PictureStream>(id, io, services.renderer, services.encoders,
-                                                      std::move(outlet));
+                                                      services.presets, std::move(outlet));
     return self;
 }
 
@@ -82,6 +82,10 @@ void Session::dispatch(const ClientMessage& message) {
             return handleInput(message.set_camera());
         case ClientMessage::kSetSlice:
             return handleInput(message.set_slice());
+        case ClientMessage::kSetOblique:
+            return handleInput(message.set_oblique());
+        case ClientMessage::kSetOverview:
+            return handleInput(message.set_overview());
         case ClientMessage::kSetFlat:
             return handleInput(message.set_flat());
         case ClientMessage::kLocateFlat:
@@ -210,7 +214,7 @@ void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
     case_ = std::move(*result);
     pictures_->setCase(case_);
     spdlog::info("session {} has a case open", id_);
-    send(caseOpenedMessage(*case_));
+    send(caseOpenedMessage(*case_, services_.presets));
 }
 
 template <class Input>

@@ -27,7 +27,8 @@ struct Services {
     EncoderThreads& encoders;
     RecordsThread& records;
     WallThread& walls;
-    std::string software;  ///< name and version, for the welcome
+    const render::PresetLibrary& presets;  ///< not empty
+    std::string software;                  ///< name and version, for the welcome
 };
 
 /// The session's side of a connection. Called on the io thread.

@@ -65,6 +65,24 @@ Result<void> Viewport::apply(const protocol::SetSlice& message) {
     return {};
 }
 
+Result<void> Viewport::apply(const protocol::SetOblique& message) {
+    if (view_ != protocol::OBLIQUE) return refuse("only an oblique view takes an oblique slice");
+    auto oblique = obliqueFrom(message);
+    if (!oblique) return tl::make_unexpected(oblique.error());
+    oblique_ = *oblique;
+    moving_ = message.moving();
+    return {};
+}
+
+Result<void> Viewport::apply(const protocol::SetOverview& message) {
+    if (view_ != protocol::OVERVIEW) return refuse("only an overview shows the colon from outside");
+    auto overview = overviewFrom(message);
+    if (!overview) return tl::make_unexpected(overview.error());
+    overview_ = std::move(*overview);
+    moving_ = message.moving();
+    return {};
+}
+
 Result<void> Viewport::apply(const protocol::SetFlat& message) {
     if (!isFlat(view_)) return refuse("this view shows no strip");
     if (view_ == protocol::FLATTENED_ZOOM) {
@@ -79,7 +97,7 @@ Result<void> Viewport::apply(const protocol::SetFlat& message) {
 }
 
 Result<void> Viewport::apply(const protocol::SetWindowLevel& message) {
-    if (!isSlice(view_)) return refuse("only slices take a window");
+    if (!isSlice(view_) && view_ != protocol::OBLIQUE) return refuse("only slices take a window");
     const protocol::WindowLevel& window = message.window();
     if (!(std::abs(window.center_hu()) <= 65536.0) ||
         !(window.width_hu() >= 1.0 && window.width_hu() <= 65536.0))
@@ -88,18 +106,33 @@ Result<void> Viewport::apply(const protocol::SetWindowLevel& message) {
     return {};
 }
 
-Result<void> Viewport::apply(const protocol::SetTransferFunction& message) {
-    if (isSlice(view_)) return refuse("a slice takes no transfer function");
-    auto optics = opticsFrom(message);
+Result<void> Viewport::apply(const protocol::SetTransferFunction& message,
+                             const render::PresetLibrary& presets) {
+    if (isSlice(view_) || view_ == protocol::OBLIQUE)
+        return refuse("a slice takes no transfer function");
+    auto optics = opticsFrom(message, presets);
     if (!optics) return tl::make_unexpected(optics.error());
     optics_ = std::move(*optics);
     return {};
 }
 
-AnyView Viewport::view() const {
+AnyView Viewport::view(const render::PresetLibrary& presets) const {
     if (isSlice(view_))
         return render::SliceView{planeOf(view_), *slicePositionMm_, zoom_, window_, scan_};
-    auto optics = optics_ ? *optics_ : *render::opticsPreset(render::opticsPresets().front());
+    if (view_ == protocol::OBLIQUE) {
+        render::ObliqueView oblique = *oblique_;
+        oblique.window = window_;
+        return oblique;
+    }
+    const render::OpticsPreset* usual =
+        view_ == protocol::OVERVIEW ? presets.find(bodyPreset) : nullptr;
+    if (!usual) usual = &presets.presets.front();
+    auto optics = optics_.value_or(usual->optics);
+    if (view_ == protocol::OVERVIEW) {
+        render::OverviewView overview = *overview_;
+        overview.optics = std::move(optics);
+        return overview;
+    }
     if (view_ == protocol::FLATTENED) return render::FlatOverview{std::move(optics), {}};
     if (view_ == protocol::FLATTENED_ZOOM) {
         FlatWindow window = *flat_;

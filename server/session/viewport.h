@@ -3,6 +3,7 @@
 
 #include "core/result.h"
 #include "protocol/haustra.pb.h"
+#include "render/optics_presets.h"
 #include "session/picture_job.h"
 
 #include <cstdint>
@@ -14,6 +15,9 @@ inline bool isFlat(protocol::View view) {
     return view == protocol::FLATTENED || view == protocol::FLATTENED_ZOOM;
 }
 
+/// The preset that an overview shows the body with, where the server has one of this name.
+inline constexpr char bodyPreset[] = "body";
+
 /// A plain value. Each apply() checks a message against PROTOCOL.md §4 and changes the viewport,
 /// or fails (badInput) and leaves it as it was. Sequence, viewport number and whether the case has
 /// a cleansed scan or has been flattened are the caller's.
@@ -23,21 +27,26 @@ public:
     Result<void> apply(const protocol::SetViewport& message);
     Result<void> apply(const protocol::SetCamera& message);
     Result<void> apply(const protocol::SetSlice& message);
+    Result<void> apply(const protocol::SetOblique& message);
+    Result<void> apply(const protocol::SetOverview& message);
     Result<void> apply(const protocol::SetFlat& message);
     Result<void> apply(const protocol::SetWindowLevel& message);
-    Result<void> apply(const protocol::SetTransferFunction& message);
+    Result<void> apply(const protocol::SetTransferFunction& message,
+                       const render::PresetLibrary& presets);
 
     bool isOpen() const { return width_ > 0; }
     /// Open, and it has been told where to look.
-    bool isDrawable() const { return isOpen() && (camera_ || slicePositionMm_ || flat_); }
+    bool isDrawable() const {
+        return isOpen() && (camera_ || slicePositionMm_ || oblique_ || overview_ || flat_);
+    }
     /// The newest camera, slice or place said that more would follow, and rest() has not been
     /// called.
     bool moving() const { return moving_; }
     void rest() { moving_ = false; }
     int width() const { return width_; }
     int height() const { return height_; }
-    /// Only of one that is drawable.
-    AnyView view() const;
+    /// Only of one that is drawable. `presets`: what it is shown by where it was told nothing.
+    AnyView view(const render::PresetLibrary& presets) const;
 
 private:
     protocol::View view_ = protocol::ENDOSCOPIC;
@@ -47,8 +56,10 @@ private:
     double zoom_ = 1.0;
     render::Scan scan_ = render::Scan::original;
     render::WindowLevel window_;
+    std::optional<render::ObliqueView> oblique_;
+    std::optional<render::OverviewView> overview_;
     std::optional<FlatWindow> flat_;
-    std::optional<render::Optics> optics_;  ///< none: the first preset
+    std::optional<render::Optics> optics_;  ///< none: a preset
     bool moving_ = false;
 };
 

@@ -205,6 +205,9 @@ TEST_F(ServerFlatTest, PicturesAreTheRenderersOwnPixels) {
     ASSERT_TRUE(picture);
     EXPECT_TRUE(picture->header.exact);
     EXPECT_EQ(picture->header.sequence, 2u);
+    const auto kind =
+        render::raycasterFromString(protocol::raycasterName(picture->header.raycaster));
+    ASSERT_TRUE(kind && (*renderer)->use(*kind));
     auto image = (*renderer)->render(render::FlatView{{{0.25, 0.4}, 220.0}, mucosa, {}}, 150, 120);
     ASSERT_TRUE(image);
     EXPECT_EQ(picture->rgb, image->rgb);
@@ -297,7 +300,7 @@ TEST_F(ServerFlatTest, HostileValuesAreRefusedAndTheSessionGoesOn) {
     expectRefusal(*client_->answer(), ErrorReport::BAD_VALUE);
     client_->slice(++n, 4, {0, 0, 30}, 1.0, false);
     expectRefusal(*client_->answer(), ErrorReport::BAD_VALUE);
-    client_->viewport(++n, 6, protocol::View(7), 64, 64);
+    client_->viewport(++n, 6, protocol::View(99), 64, 64);
     expectRefusal(*client_->answer(), ErrorReport::BAD_VALUE);
 
     for (const glm::dvec2 bad : {glm::dvec2(nan, 0.1),

@@ -60,9 +60,9 @@ protected:
         const auto answer = client.answer();
         return answer && answer->has_case_opened();
     }
-    /// How often a case was copied to the GPU.
+    /// How often a case was made ready to be drawn.
     int uploads() const {
-        const std::string log = server_->log(), line = "a case is on the GPU";
+        const std::string log = server_->log(), line = "a case is ready";
         int count = 0;
         for (auto at = log.find(line); at != std::string::npos; at = log.find(line, at + 1))
             ++count;
@@ -149,6 +149,69 @@ TEST_F(Opening, ARendererOutlivesItsLastSessionUntilAnotherCaseComes) {
     EXPECT_EQ(uploads(), 2);
     openAndLeave(smallCaseName);
     EXPECT_EQ(uploads(), 3);
+}
+
+/// The small case in whole is 4 bytes for each of 48·44·56 voxels: half a MiB.
+class Budget : public ::testing::Test {
+protected:
+    void start(std::vector<std::string> arguments) {
+        makeSmallStore(folder_.path());
+        server_ = std::make_unique<ServerProcess>(folder_.path(), std::move(arguments));
+        client_ = std::make_unique<TestClient>(server_->port());
+        EXPECT_TRUE(client_->hello()->has_welcome());
+    }
+    TemporaryFolder folder_;
+    std::unique_ptr<ServerProcess> server_;
+    std::unique_ptr<TestClient> client_;
+};
+
+TEST_F(Budget, WhatDoesNotFitIsDrawnAllTheSame) {
+    start({"--gpu-budget", "0.25"});
+    const auto opened = client_->openCase(smallCaseName);
+    ASSERT_TRUE(opened && opened->has_case_opened());
+    for (const auto& trial : opened->case_opened().trials())
+        EXPECT_TRUE(trial.raycaster() == "native" || trial.raycaster() == "object-order")
+            << trial.raycaster();
+    EXPECT_EQ(opened->case_opened().trials_size(), 2);
+    client_->viewport(1, 0, protocol::ENDOSCOPIC, 64, 64);
+    client_->camera(2, 0, {-1.2, 2.2, 112.0}, false);
+    EXPECT_TRUE(client_->picture());
+}
+
+TEST_F(Budget, ANamedRaycasterThatHasNoRoomIsAClearRefusalAndOthersGoOn) {
+    // Room for the bare scan, at 2 bytes a voxel.
+    start({"--gpu-budget", "0.3", "--raycaster", "single-pass"});
+    auto reader = std::make_unique<TestClient>(server_->port());
+    EXPECT_TRUE(reader->hello()->has_welcome());
+    ASSERT_TRUE(reader->openCase("scan")->has_case_opened());
+    const auto refused = client_->openCase(smallCaseName);
+    ASSERT_TRUE(refused && refused->has_error());
+    EXPECT_EQ(refused->error().code(), ErrorReport::INTERNAL);
+    EXPECT_NE(refused->error().message().find("no room"), std::string::npos)
+        << refused->error().message();
+    reader->viewport(1, 0, protocol::AXIAL, 64, 64);
+    reader->slice(2, 0, {-1.2, 2.2, 112.0}, 1.0, false);
+    EXPECT_TRUE(reader->picture());
+}
+
+TEST_F(Budget, WhatNobodyReadsGoesOnlyWhenItsRoomIsWanted) {
+    start({"--gpu-budget", "64", "--raycaster", "single-pass"});
+    const auto openAndLeave = [&](const std::string& name) {
+        ASSERT_TRUE(client_->openCase(name)->has_case_opened());
+        EXPECT_TRUE(client_->openCase("nobody")->has_error());
+    };
+    const auto readied = [&] {
+        const std::string log = server_->log(), line = "a case is ready";
+        int count = 0;
+        for (auto at = log.find(line); at != std::string::npos; at = log.find(line, at + 1))
+            ++count;
+        return count;
+    };
+    openAndLeave("scan");
+    openAndLeave(smallCaseName);
+    openAndLeave("scan");
+    openAndLeave(smallCaseName);
+    EXPECT_EQ(readied(), 2) << "both fit";
 }
 
 // What waits of a case that is left may be its last user: its end must not wait for itself.
