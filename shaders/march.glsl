@@ -14,7 +14,7 @@ layout(binding = 0) uniform sampler3D volume;
 // Per block of voxels, the Chebyshev distance in blocks to the nearest that may be visible.
 layout(binding = 1) uniform usampler3D leapDistance;
 #if GRADIENT_TEXTURE
-// Differences of the voxels' neighbours.
+// Differences of the voxels' neighbours, times 32768 (gradients.comp).
 layout(binding = 6) uniform sampler3D gradients;
 #endif
 
@@ -102,7 +102,10 @@ float storedAt(vec3 position) { return textureLod(volume, position, 0.0).r; }
 // Differences over two voxels along each axis, per texture coordinate of one.
 vec3 gradientAt(vec3 position) {
 #if GRADIENT_TEXTURE
-    return textureLod(gradients, position, 0.0).rgb / u.voxelTexture.xyz;
+    // Beyond the outermost voxels' centres only one of the two values still changes.
+    vec3 beyond = abs(position - 0.5) / u.voxelTexture.xyz - (0.5 / u.voxelTexture.xyz - 0.5);
+    return textureLod(gradients, position, 0.0).rgb * (1.0 - clamp(beyond, 0.0, 1.0)) /
+           (32768.0 * u.voxelTexture.xyz);
 #else
     vec3 dx = vec3(u.voxelTexture.x, 0.0, 0.0);
     vec3 dy = vec3(0.0, u.voxelTexture.y, 0.0);

@@ -94,6 +94,6 @@ inline constexpr unsigned uniformBinding = 0, flatUniformBinding = 1;
 inline constexpr unsigned flatVertexBinding = 0, flatTriangleBinding = 1, flatCameraBinding = 2;
 inline constexpr unsigned volumeUnit = 0, leapUnit = 1, tableUnit = 2, startUnit = 3,
                           triangleUnit = 4, integralUnit = 5, gradientUnit = 6, backdropUnit = 7;
-inline constexpr unsigned pictureImage = 0, startImage = 1;
+inline constexpr unsigned pictureImage = 0, startImage = 1, gradientImage = 2;
 }  // namespace haustra::shaders
 #endif

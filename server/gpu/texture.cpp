@@ -26,6 +26,8 @@ Layout layoutOf(TexelFormat format) {
             return {GL_R32F, GL_RED, GL_FLOAT, 4};
         case TexelFormat::rgba8:
             return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case TexelFormat::rgba16f:
+            return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
         case TexelFormat::rgba32f:
             return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
         case TexelFormat::rg32i:

@@ -16,6 +16,7 @@ enum class TexelFormat {
     r8ui,     ///< one byte, integer
     r32f,     ///< one float
     rgba8,    ///< four bytes, 0…1
+    rgba16f,  ///< four half floats
     rgba32f,  ///< four floats
     rg32i,    ///< two integers
 };

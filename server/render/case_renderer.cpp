@@ -83,7 +83,8 @@ struct CaseRenderer::Impl {
         if (auto fits = checkScanSide(grid(), std::min(maxScanSide, gpu::maxTextureSide3d()));
             !fits)
             return fits;
-        auto made = GlScene::upload(context, scene, options.threads);
+        auto made = GlScene::upload(context, scene, options.threads,
+                                    options.gradientBudgetBytes);
         if (!made) return tl::make_unexpected(made.error());
         glScene = std::move(*made);
         if (flatGeometry)

@@ -16,6 +16,8 @@ struct RendererOptions {
     /// Which raycaster draws camera views.
     RaycasterKind raycaster = RaycasterKind::singlePass;
     std::size_t gpuBudgetBytes = 0;  ///< for the volume's cells of objectOrder; 0: what there is
+    /// Gradients are kept on the GPU where 8 bytes a voxel are within it (GlScene::hasGradients).
+    std::size_t gradientBudgetBytes = 0;
     int threads = 0;                 ///< ≤ 0: all cores; changes no pixel
 };
 

@@ -103,7 +103,7 @@ Result<Image> GlPictures::flat(const FlatView& view, glm::ivec2 size) {
                  **classified);
     if (auto found = flat_->findTriangles(view.window, size); !found)
         return tl::make_unexpected(found.error());
-    const MarchVariant variant = MarchVariant::of(view.optics, false, false);
+    const MarchVariant variant = MarchVariant::of(view.optics, scene_->hasGradients(view.optics), false);
     if (auto cast = flat_->castRays(variant, stepMm(view.march, scene.grid()), *picture_); !cast)
         return tl::make_unexpected(cast.error());
     return readPicture(errorsBefore);

@@ -1,8 +1,11 @@
 #include "render/gl_scene.h"
 
 #include "core/parallel.h"
+#include "gpu/program.h"
+#include "render/march_variant.h"
 #include "render/ray_setup.h"
 #include "render/stored_value.h"
+#include "shaders/shader_source.h"
 
 #include <algorithm>
 #include <utility>
@@ -40,20 +43,24 @@ Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int thread
 }
 
 Result<std::unique_ptr<GlScene>> GlScene::upload(gpu::Context& context,
-                                                 std::shared_ptr<const Scene> scene, int threads) {
+                                                 std::shared_ptr<const Scene> scene, int threads,
+                                                 std::size_t gradientBudgetBytes) {
     auto volume = uploadVolume(scene->volume, threads, "scan on the GPU");
     if (!volume) return tl::make_unexpected(volume.error());
     auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
     if (!block) return tl::make_unexpected(block.error());
-    return std::unique_ptr<GlScene>(
-        new GlScene(context, std::move(scene), threads, std::move(*volume), std::move(*block)));
+    return std::unique_ptr<GlScene>(new GlScene(context, std::move(scene), threads,
+                                                gradientBudgetBytes, std::move(*volume),
+                                                std::move(*block)));
 }
 
 GlScene::GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int threads,
-                 gpu::Texture volume, gpu::UniformBuffer marchBlock)
+                 std::size_t gradientBudgetBytes, gpu::Texture volume,
+                 gpu::UniformBuffer marchBlock)
     : context_(context),
       scene_(std::move(scene)),
       threads_(threads),
+      gradientBudgetBytes_(gradientBudgetBytes),
       volume_(std::move(volume)),
       marchBlock_(std::move(marchBlock)) {}
 
@@ -82,7 +89,33 @@ void GlScene::bind(const shaders::MarchUniforms& uniforms, const Classification&
     marchBlock_.write(uniforms);
     marchBlock_.bind(shaders::uniformBinding);
     volume_.bind(shaders::volumeUnit);
+    if (gradients_) gradients_->bind(shaders::gradientUnit);
     classified.bind();
+}
+
+bool GlScene::hasGradients(const Optics& optics) {
+    if (gradients_ || !MarchVariant::of(optics, true, false).gradientTexture)
+        return gradients_.has_value();
+    if (8 * scene_->grid().voxelCount() > gradientBudgetBytes_) return false;
+    if (auto made = makeGradients())
+        gradients_ = std::move(*made);
+    else
+        gradientBudgetBytes_ = 0;
+    return gradients_.has_value();
+}
+
+Result<gpu::Texture> GlScene::makeGradients() {
+    const glm::ivec3 size = scene_->grid().size;
+    auto program =
+        gpu::ComputeProgram::create("gradients.comp", {shaders::shaderSource("gradients.comp")});
+    if (!program) return tl::make_unexpected(program.error());
+    auto made =
+        gpu::Texture::create(3, size, gpu::TexelFormat::rgba16f, gpu::Filter::linear, "gradients");
+    if (!made) return made;
+    volume_.bind(shaders::volumeUnit);
+    made->bindImage(shaders::gradientImage);
+    program->dispatch({size.x, size.y});
+    return made;
 }
 
 Result<void> GlScene::bindBackdrop(const std::shared_ptr<const Backdrop>& backdrop) {
@@ -101,7 +134,8 @@ Result<void> GlScene::bindBackdrop(const std::shared_ptr<const Backdrop>& backdr
 }
 
 std::size_t GlScene::gpuBytes() const {
-    std::size_t bytes = volume_.bytes() + (backdropTexture_ ? backdropTexture_->bytes() : 0);
+    std::size_t bytes = volume_.bytes() + (backdropTexture_ ? backdropTexture_->bytes() : 0) +
+                        (gradients_ ? gradients_->bytes() : 0);
     for (const Classification& one : recent_)
         bytes += one.gpuBytes();
     return bytes;

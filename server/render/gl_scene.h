@@ -24,9 +24,11 @@ Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int thread
 /// Belongs to the thread of the context, which must be current and outlive it.
 class GlScene {
 public:
-    /// 2 bytes a voxel on the GPU. Fails as uploadVolume does.
+    /// 2 bytes a voxel on the GPU, and those of the gradients if they are at most
+    /// `gradientBudgetBytes`. Fails as uploadVolume does.
     static Result<std::unique_ptr<GlScene>> upload(gpu::Context& context,
-                                                   std::shared_ptr<const Scene> scene, int threads);
+                                                   std::shared_ptr<const Scene> scene, int threads,
+                                                   std::size_t gradientBudgetBytes = 0);
 
     const Scene& scene() const { return *scene_; }
     gpu::Context& context() { return context_; }
@@ -41,17 +43,25 @@ public:
     /// Binds what lies behind the volume, for shaders compiled with a backdrop. Held until another
     /// is bound. Fails where the device has no room.
     Result<void> bindBackdrop(const std::shared_ptr<const Backdrop>& backdrop);
+    /// Whether gradients are read from a texture, which is made here when the first optics ask that
+    /// need it: where its 8 bytes a voxel are within the budget and the device has them. Then
+    /// bind() binds it, and shaders may be compiled for it (march_variant.h); else they compute
+    /// gradients from six values.
+    bool hasGradients(const Optics& optics);
     const gpu::Texture& volume() const { return volume_; }
     std::size_t gpuBytes() const;
 
 private:
     GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int threads,
-            gpu::Texture volume, gpu::UniformBuffer marchBlock);
+            std::size_t gradientBudgetBytes, gpu::Texture volume, gpu::UniformBuffer marchBlock);
+    Result<gpu::Texture> makeGradients();
     gpu::Context& context_;
     std::shared_ptr<const Scene> scene_;
     int threads_;
+    std::size_t gradientBudgetBytes_;  // 0 also after a failure
     gpu::Texture volume_;
     gpu::UniformBuffer marchBlock_;
+    std::optional<gpu::Texture> gradients_;
     std::vector<Classification> recent_;  // the latest used last
     std::shared_ptr<const Backdrop> backdrop_;
     std::optional<gpu::Texture> backdropTexture_;  // of backdrop_

@@ -62,7 +62,8 @@ Result<void> SinglePassRaycaster::cast(const gpu::Texture* firstSteps, const Cam
                                                     scene.ranges.size, band.pictureSize);
     uniforms.pictureSize.w = band.firstRow;
     if (firstSteps) uniforms.lastBlock.w = 1;
-    const auto rays = cast_.program(MarchVariant::of(view.optics, false, view.backdrop != nullptr));
+    const auto rays = cast_.program(
+        MarchVariant::of(view.optics, scene_->hasGradients(view.optics), view.backdrop != nullptr));
     if (!rays) return tl::make_unexpected(rays.error());
     scene_->bind(uniforms, **classified);
     if (view.backdrop) {

@@ -116,11 +116,11 @@ inline render::Image referenceFlat(const ReferenceWall& reference,
             }
             const glm::dvec3 step = stepMm * place->direction;
             const glm::dvec3 origin = place->positionMm - place->stepsBack * step;
-            append(image, marchRay(volume,
-                                   {volume.grid().voxelFromPatientPoint(origin), linear * step,
-                                    place->light},
-                                   view.optics.transferFunction, view.optics.shading, stepMm,
-                                   place->stepsBack + std::ceil(render::flatRay.depthMm / stepMm)));
+            const ReferenceMarcher marcher(
+                volume, {volume.grid().voxelFromPatientPoint(origin), linear * step, place->light},
+                view.optics, stepMm);
+            append(image,
+                   marcher.pixel(place->stepsBack + std::ceil(render::flatRay.depthMm / stepMm)));
         }
     }
     return image;

@@ -19,8 +19,16 @@ TEST_F(Raycaster, AUniformSlabHasTheClosedFormOpacityForAnyStep) {
     const Grid grid = axisAlignedGrid({33, 33, 80}, glm::dvec3(0.5));
     const auto slab = renderer(Volume<std::int16_t>(grid, 100));
     for (const double opacity : {0.005, 0.02, 0.05}) {
-        for (const double stepVoxels : {0.125, 0.25, 0.5, 1.0, 2.0}) {
+        for (const auto& [stepVoxels, preIntegrated] : {std::pair(0.125, false),
+                                                        {0.25, false},
+                                                        {0.5, false},
+                                                        {1.0, false},
+                                                        {2.0, false},
+                                                        {0.125, true},
+                                                        {0.5, true},
+                                                        {1.0, true}}) {
             CameraView view;
+            view.optics.preIntegrated = preIntegrated;
             view.camera = {
                 {8.0, 8.0, -0.25 - 10.0 + 0.25 * stepVoxels * 0.5}, {0, 0, 1}, {0, -1, 0}, 2.0};
             view.optics.transferFunction = everywhere(opacity);
