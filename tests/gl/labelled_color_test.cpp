@@ -202,6 +202,14 @@ TEST(ColorOpacity, FollowsTheEyesColourDifferences) {
         EXPECT_EQ(made[i].a, x == 5 || x == 6 ? expected : labelled);
         EXPECT_EQ(made[i].r, color[i].r);
     }
+    const double lightness = luvOf({90, 60, 50}).x;
+    ASSERT_LT(lightness, 40.0);
+    ASSERT_GT(luvOf({140, 60, 50}).x, lightness + 1.0);
+    ColorOpacity blind = rule;
+    blind.dark = lightness + 0.5;
+    const Volume<Rgba> bright = withColorOpacity(color, labels, blind, 2);
+    EXPECT_EQ(bright[grid.index(5, 2, 2)].a, 0);
+    EXPECT_EQ(bright[grid.index(6, 2, 2)].a, expected);
     const Volume<Rgba> again = withColorOpacity(color, labels, rule, 1);
     EXPECT_TRUE(std::equal(made.voxels().begin(), made.voxels().end(), again.voxels().begin()));
 }

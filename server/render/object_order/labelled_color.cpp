@@ -85,9 +85,12 @@ Volume<Rgba> withColorOpacity(const Volume<Rgba>& color, const Volume<std::int16
                         std::sqrt(double(glm::dot(dx, dx) + glm::dot(dy, dy) + glm::dot(dz, dz)));
                     const std::size_t voxel = grid.index(x, y, z);
                     const bool labelled = !labels.empty() && labels[voxel] != 0;
+                    const bool isDark = luv[1][at(x, y)].x < float(rule.dark);
                     const double opacity =
-                        std::max(rule.gain * std::pow(length / rule.atDifference, rule.exponent),
-                                 labelled ? rule.least : 0.0);
+                        isDark ? 0.0
+                               : std::max(rule.gain *
+                                              std::pow(length / rule.atDifference, rule.exponent),
+                                          labelled ? rule.least : 0.0);
                     Rgba is = color[voxel];
                     is.a = std::uint8_t(std::lround(255.0 * std::clamp(opacity, 0.0, 1.0)));
                     voxels[voxel] = is;

@@ -36,13 +36,14 @@ struct ColorOpacity {
     double gain = 1.0;           ///< opacity where colours differ by `atDifference`
     double atDifference = 40.0;  ///< ΔE*uv over two voxels
     double exponent = 2.0;
+    double dark = 15.0;  ///< L* of what is clear, as the block around a body that is sliced
 };
 
 /// Opacity by how fast the colour changes in the eye's terms, after Ebert et al. 2002 ("Designing
 /// effective transfer functions for volume rendering from photographic volumes"): the length of
 /// the gradient of L*u*v*, by central differences, its axes' differences together; gain · (length /
-/// atDifference)^exponent, at most 1. What is of one colour is clear but for `least`. The colours
-/// stay. O(voxels), the same for any number of threads.
+/// atDifference)^exponent, at most 1. What is of one colour is clear but for `least`, and what is
+/// darker than `dark` is clear. The colours stay. O(voxels), the same for any number of threads.
 Volume<Rgba> withColorOpacity(const Volume<Rgba>& color, const Volume<std::int16_t>& labels,
                               const ColorOpacity& rule, int threads);
 
