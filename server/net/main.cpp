@@ -74,7 +74,7 @@ void addOptions(CLI::App& program, Arguments& arguments) {
     program
         .add_option("--raycaster", arguments.raycaster,
                     "What draws: auto tries those that work on this machine when a "
-                    "case is opened, for at most half a second, and takes the fastest; or native, "
+                    "case is opened, for a moment, and takes the fastest; or native, "
                     "single-pass, polygon-assisted, object-order, hybrid")
         ->type_name("KIND")
         ->capture_default_str();

@@ -27,14 +27,14 @@ bool RaycasterChoice::hopeless(const RaycasterTrial& trial) const {
 
 // First every candidate gets one timed picture, in order; then rounds.
 std::optional<std::size_t> RaycasterChoice::due() const {
-    const bool late = spentMs_ >= limits_.totalMs;
+    const bool late = timedMs_ >= limits_.timedMs;
     std::optional<std::size_t> least;
     for (std::size_t n = 0; n < trials_.size(); ++n) {
         const RaycasterTrial& trial = trials_[n];
         if (!trial.failure.empty()) continue;
         if (trial.ms.empty()) {
             // Late, nobody new is tried, unless nobody has been timed.
-            if (!late || warm_[n] || !fastest()) return n;
+            if (warm_[n] || !fastest() || (!late && makingMs_ < limits_.makingMs)) return n;
             continue;
         }
         if (late || int(trial.ms.size()) >= limits_.rounds || hopeless(trial)) continue;
@@ -52,7 +52,7 @@ std::optional<RaycasterChoice::Next> RaycasterChoice::next() const {
 void RaycasterChoice::took(double ms) {
     const auto n = due();
     if (!n) return;
-    spentMs_ += ms;
+    (warm_[*n] ? timedMs_ : makingMs_) += ms;
     if (warm_[*n])
         trials_[*n].ms.push_back(ms);
     else

@@ -12,9 +12,10 @@ namespace haustra::render {
 
 /// How long a choice may take, and how sure it shall be.
 struct ChoiceLimits {
-    double totalMs = 500.0;  ///< of all pictures together; the one under way is finished
-    int rounds = 4;          ///< timed pictures of a candidate
-    double hopeless = 3.0;   ///< a candidate so many times slower than the best is tried no more
+    double timedMs = 500.0;    ///< of all timed pictures; the one under way is finished
+    double makingMs = 2000.0;  ///< of those that do not count, with which candidates are made
+    int rounds = 4;            ///< timed pictures of a candidate
+    double hopeless = 3.0;     ///< a candidate so many times slower than the best is tried no more
 };
 
 /// One candidate, and what trying it has shown.
@@ -60,7 +61,7 @@ private:
     std::vector<RaycasterTrial> trials_;
     std::vector<bool> warm_;  // has drawn the picture that does not count
     ChoiceLimits limits_;
-    double spentMs_ = 0.0;
+    double timedMs_ = 0.0, makingMs_ = 0.0;
 };
 
 /// The raycasters to try, the preferred first: the native one on a device that draws in software,

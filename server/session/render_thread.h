@@ -28,9 +28,8 @@ public:
     /// The case of these products where it has a renderer, with its wall, else empty. One thread,
     /// the loader's, calls this and upload; both wait for the band under way.
     std::shared_ptr<const OpenCase> find(const OpenCase& facts);
-    /// Copies a case to the GPU: some tenths of a second, in which no picture is drawn. Then, for
-    /// half a second at most of the GPU's time, finds the raycaster that draws it fastest, picture
-    /// by picture in turn with those of the sessions.
+    /// Copies a case to the GPU: some tenths of a second, in which no picture is drawn. Then finds
+    /// the raycaster that draws it fastest, picture by picture in turn with those of the sessions.
     Result<std::shared_ptr<const OpenCase>> upload(OpenCase facts, render::PreparedCase prepared);
 
     /// The session has no other job here, or does not want it any more.

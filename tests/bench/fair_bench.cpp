@@ -43,7 +43,7 @@ double median(std::vector<double> values) {
 }
 
 // Each camera is sent when the picture of the one before has come.
-Flown fly(std::uint16_t port, const std::string& caseName, const Reader& reader, double startArc,
+Flown fly(std::uint16_t port, const std::string& caseName, const Reader& reader, int start,
           double warmUpSeconds, double seconds) {
     TestClient client(port);
     std::vector<std::string> capabilities{"jpeg", "lossless"};
@@ -60,9 +60,9 @@ Flown fly(std::uint16_t port, const std::string& caseName, const Reader& reader,
     Flown flown;
     const auto begun = Clock::now();
     const int ahead = 20;
-    double sample = startArc * (samples - ahead - 1);
+    double sample = start % (samples - ahead - 1);
     for (std::uint64_t sequence = 2; secondsSince(begun) < warmUpSeconds + seconds; ++sequence) {
-        sample += 0.5;
+        sample += 1.0;
         if (sample >= samples - ahead - 1) sample = 0.0;
         const auto at = [&](int n) {
             return TestClient::Vector{path[5 * n], path[5 * n + 1], path[5 * n + 2]};
@@ -96,7 +96,8 @@ void run(const char* title, std::uint16_t port, const std::string& caseName,
     std::vector<std::thread> threads;
     for (std::size_t n = 0; n < readers.size(); ++n)
         threads.emplace_back([&, n] {
-            flown[n] = fly(port, caseName, readers[n], 0.1 + 0.8 * double(n) / 8.0, 3.0, seconds);
+            // One behind the other, so that all see the same places.
+            flown[n] = fly(port, caseName, readers[n], 200 + 5 * int(n), 3.0, seconds);
         });
     for (std::thread& thread : threads)
         thread.join();
