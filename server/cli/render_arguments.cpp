@@ -171,7 +171,8 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         ->type_name("FILE.png");
     addPointsOption(command, "--mark", my.marksMm,
                     "A ball in the overview (LPS, mm); may be given again and again");
-    command.add_flag("!--no-body", my.body, "Leave out the body around the overview's colon");
+    command.add_flag_callback(
+        "--no-body", [&my] { my.body = false; }, "Leave out the body around the overview's colon");
     addText(command, "--window", "C,W",
             "Grey values of a slice, HU (0,2000; of a scan from a file, all of its values)",
             [&my](const std::string& text) {
