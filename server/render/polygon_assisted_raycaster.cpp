@@ -12,9 +12,8 @@ namespace haustra::render {
 
 namespace {
 
-/// Faces cost more than the rays that they shorten when there are more of them than of the mesh's
-/// own triangles.
-constexpr std::size_t mostBlocksBefore = 200000;
+/// With more, their faces cost more than the rays that they shorten.
+constexpr std::size_t mostBlocksBefore = 100000;
 
 Result<void> checkWall(const Scene& scene) {
     const auto bad = [](const char* what) { return fail(ErrorKind::badInput, what, "wall"); };

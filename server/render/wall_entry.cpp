@@ -16,7 +16,7 @@ constexpr std::array<glm::ivec3, 6> neighbours = {
 
 }  // namespace
 
-WallEntry::WallEntry(const Scene& scene)
+WallEntry::WallEntry(const Scene& scene, double marginMm)
     : blocks_(scene.ranges.size),
       voxelFromPatient_(scene.grid().voxelFromPatient()),
       patientFromVoxel_(scene.grid().patientFromVoxel),

@@ -26,13 +26,14 @@ struct EntryTriangles {
 /// only leaves fewer such blocks. Immutable; any number of threads.
 class WallEntry {
 public:
-    /// The mesh lies within a simplification's error of the wall, but what a transfer function
-    /// shows begins up to the width of the scanner's blur before it.
-    static constexpr double marginMm = 2.0;
+    /// What a transfer function shows begins up to the width of the scanner's blur before the mesh,
+    /// and the blocks that the moved mesh touches should be empty. Of the margins tried on a real
+    /// colon (METHODS.md) this leaves the fewest blocks before it.
+    static constexpr double defaultMarginMm = 4.0;
 
     /// The scene must have a closed mesh with its indices in range. O(blocks + triangles); a byte
     /// a block.
-    explicit WallEntry(const Scene& scene);
+    explicit WallEntry(const Scene& scene, double marginMm = defaultMarginMm);
 
     const EntryTriangles& wall() const { return wall_; }
     /// Whether each block may be visible, on the lumen's side or where the moved mesh touches.

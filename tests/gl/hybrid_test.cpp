@@ -94,6 +94,15 @@ TEST_F(Hybrid, DrawsTheSinglePassesPixelsWhateverItsControls) {
     }
 }
 
+TEST_F(Hybrid, StopsShortOfABoundaryThatIsManySamplesAway) {
+    const auto shared = scene(tubeWithResidue);
+    const auto plain = *SinglePassRaycaster::create(shared);
+    const auto hybrid = *HybridRaycaster::create(shared, {0, hybridLadder[8]});
+    CameraView view{cameras()[0], *opticsPreset("mucosa"), {}};
+    view.march.stepVoxels = 0.05;  // forty samples and more to a leaf
+    EXPECT_GE(psnr(drawn(*hybrid, view, {48, 32}), drawn(*plain, view, {48, 32})), 60.0);
+}
+
 TEST_F(Hybrid, EndsRaysAtTheBackdrop) {
     const auto shared = scene(closedTube);
     const auto plain = *SinglePassRaycaster::create(shared);

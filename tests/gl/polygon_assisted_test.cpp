@@ -38,7 +38,7 @@ protected:
         std::vector<CameraView> views;
         for (const auto& name : opticsPresets()) {
             const Optics optics = *opticsPreset(name);
-            views.push_back({{{1, -2, -13}, {0.1, 0.05, 1.0}, {0, -1, 0}, 90.0}, optics, {}});
+            views.push_back({{{1, -2, -9}, {0.1, 0.05, 1.0}, {0, -1, 0}, 90.0}, optics, {}});
             views.push_back({{{-3, 2, 8}, {-0.8, 0.3, -0.4}, {0, 0, 1}, 120.0}, optics, {}});
             views.push_back({{{0, 0, 0}, {1.0, 0.2, 0.1}, {0, 0, 1}, 60.0}, optics, {0.31}});
         }

@@ -199,7 +199,8 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     const TransferTable& table = (*onGpu)->table();
     const double step = stepMm(view.march, scene.grid());
     const Classified& classified = my.classify(view.optics, step, table);
-    const MarchVariant variant = MarchVariant::of(view.optics, false, view.backdrop != nullptr);
+    const MarchVariant variant = MarchVariant::of(view.optics, my.scene->hasGradients(view.optics),
+                                                  view.backdrop != nullptr);
     const auto slab = my.slabs.program(variant);
     if (!slab) return tl::make_unexpected(slab.error());
     const auto finish = my.finish.program(variant);
@@ -236,8 +237,7 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     const std::vector<double> between = my.timestamps.betweenMs();
     for (std::size_t i = 0; i < between.size(); i += 2)
         my.stats.gpuMs += between[i];
-    if (!my.options.controls)
-        my.balance.drew(my.stats.cpuMs, my.stats.gpuMs, nowMs() - began);
+    if (!my.options.controls) my.balance.drew(my.stats.cpuMs, my.stats.gpuMs, nowMs() - began);
     return {};
 }
 

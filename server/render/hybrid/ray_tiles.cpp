@@ -161,7 +161,7 @@ float RayTiles::firstVisible(const VoxelRay& ray, double from, double to) const 
             if (medium_.table.anyVisible(value - blur, value + blur))
                 return float(std::max(n - 1.0, 0.0));
         }
-        n = std::max(n, std::ceil(entry->leave));
+        if (samples < mostSamplesToBoundary) n = std::max(n, std::ceil(entry->leave));
     }
     return float(std::max(n - 1.0, 0.0));
 }
