@@ -17,7 +17,7 @@ struct RendererOptions {
     RaycasterKind raycaster = RaycasterKind::singlePass;
     std::size_t gpuBudgetBytes = 0;  ///< for the volume's cells of objectOrder; 0: what there is
     /// Gradients are kept on the GPU where 8 bytes a voxel are within it (GlScene::hasGradients).
-    std::size_t gradientBudgetBytes = 0;
+    std::size_t gradientBudgetBytes = std::size_t(1) << 30;
     int threads = 0;                 ///< ≤ 0: all cores; changes no pixel
 };
 

@@ -97,11 +97,14 @@ bool GlScene::hasGradients(const Optics& optics) {
     if (gradients_ || !MarchVariant::of(optics, true, false).gradientTexture)
         return gradients_.has_value();
     if (8 * scene_->grid().voxelCount() > gradientBudgetBytes_) return false;
-    if (auto made = makeGradients())
-        gradients_ = std::move(*made);
-    else
+    auto made = makeGradients();
+    if (!made) {
         gradientBudgetBytes_ = 0;
-    return gradients_.has_value();
+        return false;
+    }
+    gradients_ = std::move(*made);
+    gradients_->bind(shaders::gradientUnit);
+    return true;
 }
 
 Result<gpu::Texture> GlScene::makeGradients() {
