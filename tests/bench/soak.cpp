@@ -8,6 +8,7 @@
 #include "session/picture_job.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -140,9 +141,16 @@ Result<render::Image> draw(render::CaseRenderer& renderer, const session::AnyVie
     return picture;
 }
 
+const char* nameOf(const session::AnyView& view) {
+    constexpr std::array names{"camera", "slice", "oblique", "overview", "strip window", "strip"};
+    static_assert(names.size() == std::variant_size_v<session::AnyView>);
+    return names[view.index()];
+}
+
 struct Kept {
     RaycasterKind kind;
     session::AnyView view;
+    int bandRows;
     render::Image picture;
 };
 
@@ -216,11 +224,16 @@ int soak(int argc, char** argv) {
             const RaycasterKind kind = kinds[std::size_t(frame) % kinds.size()];
             if (auto used = (*renderer)->use(kind); !used) return broken(used.error());
             const session::AnyView view = views.next();
-            auto picture = draw(**renderer, view, side, 1 + views.below(side));
+            const int bandRows = 1 + views.below(side);
+            auto picture = draw(**renderer, view, side, bandRows);
             ++(picture ? drawn : refused)[toString(kind)];
-            if (!picture && picture.error().kind != ErrorKind::badInput)
+            if (!picture && picture.error().kind != ErrorKind::badInput) {
+                fmt::print(stderr, "frame {}, {}, {} raycaster\n", frame, nameOf(view),
+                           toString(kind));
                 return broken(picture.error());
-            if (picture && kept.size() < 20) kept.push_back({kind, view, std::move(*picture)});
+            }
+            if (picture && kept.size() < 20)
+                kept.push_back({kind, view, bandRows, std::move(*picture)});
             if ((frame + 1) % std::max(1, frames / 20) == 0) {
                 memory.push_back(residentMib());
                 fmt::print("{:6} frames: resident {} MiB, GPU {:.1f} MiB, GL errors {}\n",
@@ -233,10 +246,13 @@ int soak(int argc, char** argv) {
         // Equal views give equal pixels, whatever was drawn before.
         for (const Kept& one : kept) {
             if (auto used = (*renderer)->use(one.kind); !used) return broken(used.error());
-            const auto again = draw(**renderer, one.view, side, side);
-            if (again && again->rgb == one.picture.rgb) continue;
-            ++different;
-            fmt::print("a picture of the {} raycaster is not the same again\n", toString(one.kind));
+            for (const int rows : {one.bandRows, side}) {
+                const auto again = draw(**renderer, one.view, side, rows);
+                if (again && again->rgb == one.picture.rgb) continue;
+                ++different;
+                fmt::print("{}, {} raycaster, in bands of {} rows: not what {} rows were\n",
+                           nameOf(one.view), toString(one.kind), rows, one.bandRows);
+            }
         }
     }
     for (const auto& [kind, count] : drawn)
