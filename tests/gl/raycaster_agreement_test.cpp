@@ -97,8 +97,13 @@ TEST(NativeRaycaster, LeapingChangesNoPixel) {
                 CameraView view{camera, model, {}};
                 const Image leaping = drawn(*native, view, 75, 53);
                 view.march.emptySpaceLeaping = false;
-                EXPECT_EQ(leaping.rgb, drawn(*native, view, 75, 53).rgb)
-                    << name << ", lens " << int(camera.lens);
+                const Image plain = drawn(*native, view, 75, 53);
+                if (!model.preIntegrated) {
+                    EXPECT_EQ(leaping.rgb, plain.rgb) << name << ", lens " << int(camera.lens);
+                }
+                // Segments count as a table's entry long at least, and so show a trace of what is
+                // beside them.
+                EXPECT_GE(psnr(leaping, plain), 80.0) << name << ", lens " << int(camera.lens);
             }
         }
     }

@@ -137,8 +137,8 @@ HWY_INLINE Color backdropOf(const PacketScene& scene, const PacketPicture& pictu
             hn::LoadU(f, pixels[3])};
 }
 
-template <class Voxels>
-HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<Voxels>& lattice,
+template <class AnyVoxels>
+HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
                            const PacketPicture& picture, float start, int left, int top) {
     const VF half = set(0.5f);
     const V3 aside = asideMm(scene, hn::Add(laneX(), hn::Add(set(float(left)), half)),
@@ -155,9 +155,9 @@ HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<Voxels>& latt
                 top);
 }
 
-template <class Voxels>
+template <class AnyVoxels>
 void castTile(const PacketScene& scene, const PacketPicture& picture, int x, int y) {
-    const Lattice<Voxels> lattice(scene);
+    const Lattice<AnyVoxels> lattice(scene);
     const int left = x * packetWidth * coneSide, top = y * packetHeight * coneSide;
     float starts[lanes];
     hn::StoreU(coneStart(scene, hn::MulAdd(laneX(), set(coneSide), set(float(left))),

@@ -143,9 +143,9 @@ struct Start {
 
 /// A ray starts at the darkest sample, going back from the wall through the open lumen. What rises
 /// again ends the way: something stands before the wall.
-template <class Voxels>
+template <class AnyVoxels>
 HWY_INLINE Start startOf(const PacketScene& scene, const PacketWall& wall,
-                         const Lattice<Voxels>& lattice, V3 place, V3 step, MF wanted) {
+                         const Lattice<AnyVoxels>& lattice, V3 place, V3 step, MF wanted) {
     const VF zero = hn::Zero(f), one = set(1.0f);
     VF least = lattice.value(onlyWhere(wanted, place));
     VF back = zero, visible = zero, before = least;
@@ -165,9 +165,9 @@ HWY_INLINE Start startOf(const PacketScene& scene, const PacketWall& wall,
     return {back, hn::Sub(back, hn::Min(hn::Add(visible, one), back))};
 }
 
-template <class Voxels>
+template <class AnyVoxels>
 HWY_INLINE void castPacket(const PacketScene& scene, const PacketWall& wall,
-                           const Lattice<Voxels>& lattice, const PacketRows& rows, int left,
+                           const Lattice<AnyVoxels>& lattice, const PacketRows& rows, int left,
                            int top) {
     const int width = wall.u.picture.x, endRow = rows.firstRow + rows.rows;
     std::int32_t triangle[lanes], x[lanes], y[lanes];
@@ -214,9 +214,9 @@ HWY_INLINE void castPacket(const PacketScene& scene, const PacketWall& wall,
     storePixels(rows.rgb, width, rows.firstRow, endRow, bytes, left, top);
 }
 
-template <class Voxels>
+template <class AnyVoxels>
 void castRows(const PacketScene& scene, const PacketWall& wall, const PacketRows& rows) {
-    const Lattice<Voxels> lattice(scene);
+    const Lattice<AnyVoxels> lattice(scene);
     for (int top = rows.firstRow; top < rows.firstRow + rows.rows; top += packetHeight)
         for (int left = 0; left < wall.u.picture.x; left += packetWidth)
             castPacket(scene, wall, lattice, rows, left, top);

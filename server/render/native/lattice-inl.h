@@ -147,9 +147,9 @@ struct FarVoxels {
 };
 
 /// Interpolation in the volume; outside the outermost voxel centres their value goes on.
-template <class Voxels>
+template <class AnyVoxels>
 struct Lattice {
-    Voxels voxels;
+    AnyVoxels voxels;
     std::int64_t row, slice;  // 0 across a volume that is one voxel thick
     float last[3];            // centres
     float lastLow[3];         // highest lower corner of a cell
@@ -166,7 +166,7 @@ struct Lattice {
 
     /// The cell around a place, and the place in it.
     struct Cell {
-        typename Voxels::Place low;
+        typename AnyVoxels::Place low;
         V3 share;
     };
     HWY_INLINE Cell cellAt(V3 place) const {

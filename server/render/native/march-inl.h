@@ -91,58 +91,68 @@ HWY_INLINE V3 onlyWhere(MF wanted, V3 place) {
             hn::IfThenElseZero(wanted, place.z)};
 }
 
-/// Goes on until every ray has found a value that may be visible, or has come to its end.
+/// Goes on until every ray has found a value that may be visible, or has come to its end. Where
+/// something was visible the next sample is as a rule, too: it is looked at before the leap map.
 struct Search {
     VF n, hu;
     MF found;
 };
-template <class Voxels>
-HWY_INLINE Search searched(const PacketScene& scene, const Lattice<Voxels>& lattice,
-                           const Rays& rays, VF n, VF last, MF searching) {
-    const VF one = set(1.0f), zero = hn::Zero(f);
-    Search result{n, zero, hn::Lt(one, zero)};
-    do {
-        const V3 place = along(rays.origin, result.n, rays.step);
+template <class AnyVoxels>
+HWY_INLINE void look(const PacketScene& scene, const Lattice<AnyVoxels>& lattice, V3 place,
+                     MF looking, VF last, MF& searching, Search& search) {
+    const VF value = lattice.value(onlyWhere(looking, place));
+    const MF visible = hn::And(looking, mayShow(scene, value));
+    search.hu = hn::IfThenElse(visible, value, search.hu);
+    search.found = hn::Or(search.found, visible);
+    search.n = hn::Add(search.n, hn::IfThenElseZero(hn::AndNot(visible, looking), set(1.0f)));
+    searching = hn::And(hn::AndNot(visible, searching), hn::Le(search.n, last));
+}
+template <class AnyVoxels>
+HWY_INLINE Search searched(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+                           const Rays& rays, VF n, VF last, MF searching, bool lookFirst) {
+    const VF zero = hn::Zero(f);
+    Search search{n, zero, hn::Lt(set(1.0f), zero)};
+    if (lookFirst)
+        look(scene, lattice, along(rays.origin, n, rays.step), searching, last, searching, search);
+    while (any(searching)) {
+        const V3 place = along(rays.origin, search.n, rays.step);
         const Blocks blocks = blocksAt(scene, place);
         const MF empty = hn::Gt(blocks.distance, zero);
         const MF leaping = hn::And(searching, empty);
         if (any(leaping)) {
-            result.n =
-                hn::Add(result.n, hn::IfThenElseZero(leaping, stepsToLeave(rays, place, blocks)));
-            searching = hn::And(searching, hn::Le(result.n, last));
+            search.n =
+                hn::Add(search.n, hn::IfThenElseZero(leaping, stepsToLeave(rays, place, blocks)));
+            searching = hn::And(searching, hn::Le(search.n, last));
         }
         const MF looking = hn::AndNot(empty, searching);
-        if (any(looking)) {
-            const VF value = lattice.value(onlyWhere(looking, place));
-            const MF visible = hn::And(looking, mayShow(scene, value));
-            result.hu = hn::IfThenElse(visible, value, result.hu);
-            result.found = hn::Or(result.found, visible);
-            result.n = hn::Add(result.n, hn::IfThenElseZero(hn::AndNot(visible, looking), one));
-            searching = hn::And(hn::AndNot(visible, searching), hn::Le(result.n, last));
-        }
-    } while (any(searching));
-    return result;
+        if (any(looking)) look(scene, lattice, place, looking, last, searching, search);
+    }
+    return search;
 }
 
 /// Emission and absorption by samples. As the other marches: colour (linear, multiplied by opacity)
 /// and opacity along rays from n = `first` to `last`.
-template <class Voxels>
-HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<Voxels>& lattice,
+template <bool byGradient, class AnyVoxels>
+HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
                                 const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f);
     Color sum{zero, zero, zero, zero};
     VF n = first;
     MF active = hn::Le(n, last);
-    while (any(active)) {
-        const Search at = searched(scene, lattice, rays, n, last, active);
+    for (bool again = false; any(active); again = true) {
+        const Search at = searched(scene, lattice, rays, n, last, active, again);
         if (!any(at.found)) break;
         n = at.n;
+        const V3 place = along(rays.origin, n, rays.step);
         V3 normal{zero, zero, zero};
-        if (scene.shading || scene.rows > 1)
-            normal = normalOf(scene, lattice.gradient(along(rays.origin, n, rays.step), at.found));
-        Color here = scene.rows > 1 ? classified(scene, at.hu, hn::Sqrt(dot(normal, normal)))
-                                    : classified(scene, at.hu);
-        if (scene.shading) here = shaded(scene, here, normal, rays.lightMm, n);
+        if (byGradient) normal = normalOf(scene, lattice.gradient(place, at.found));
+        Color here = byGradient ? classified(scene, at.hu, hn::Sqrt(dot(normal, normal)))
+                                : classified(scene, at.hu);
+        // Values may lie between two ranges that have opacity: their light is not seen.
+        if (scene.shading && any(hn::And(at.found, hn::Gt(here.a, zero)))) {
+            if (!byGradient) normal = normalOf(scene, lattice.gradient(place, at.found));
+            here = shaded(scene, here, normal, rays.lightMm, n);
+        }
         sum = behind(sum, here, at.found);
         n = hn::Add(n, one);
         active =
@@ -153,8 +163,8 @@ HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<Voxels>&
 
 /// Emission and absorption by pre-integrated segments. A segment is worth a look where one of its
 /// ends lies in a block that may be visible.
-template <class Voxels>
-HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<Voxels>& lattice,
+template <class AnyVoxels>
+HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
                                  const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
     Color sum{zero, zero, zero, zero};
@@ -170,8 +180,10 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<Voxels>
             const VF advance =
                 hn::IfThenElse(hn::Gt(blocks.distance, zero),
                                hn::Max(hn::Sub(stepsToLeave(rays, place, blocks), one), one), one);
-            // Where a leap begins, nobody asks for the value.
-            const MF looking = hn::And(searching, hn::Eq(advance, one));
+            // Where a leap begins, nobody asks for the value, unless a segment that may show ends
+            // there.
+            const MF looking =
+                hn::And(searching, hn::Or(hn::Eq(advance, one), hn::Eq(frontDistance, zero)));
             if (any(looking)) {
                 const VF value = lattice.value(onlyWhere(looking, place));
                 // The first sample stands for the way before it.
@@ -207,8 +219,8 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<Voxels>
 }
 
 /// The greatest value. The leap map lets rays leap over what lies below the first visible one.
-template <class Voxels>
-HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<Voxels>& lattice,
+template <class AnyVoxels>
+HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
                                 const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f);
     VF greatest = set(-32768.0f), n = first;
@@ -235,16 +247,16 @@ HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<Voxels>&
 }
 
 /// The place where opacity first is enough, found between samples by bisection.
-template <class Voxels>
-HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<Voxels>& lattice,
+template <class AnyVoxels>
+HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
                                  const Rays& rays, VF first, VF last) {
     constexpr int bisections = 8;
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
     const VF enough = set(scene.u.slopes.w);
     VF n = first, hit = first;
     MF active = hn::Le(n, last), ended = hn::Lt(one, zero);
-    while (any(active)) {
-        const Search at = searched(scene, lattice, rays, n, last, active);
+    for (bool again = false; any(active); again = true) {
+        const Search at = searched(scene, lattice, rays, n, last, active, again);
         if (!any(at.found)) break;
         const MF opaque = hn::And(at.found, hn::Ge(classified(scene, at.hu).a, enough));
         hit = hn::IfThenElse(opaque, at.n, hit);
@@ -274,17 +286,18 @@ HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<Voxels>
 }
 
 /// By the scene's composition.
-template <class Voxels>
-HWY_INLINE Color march(const PacketScene& scene, const Lattice<Voxels>& lattice, const Rays& rays,
-                       VF first, VF last) {
+template <class AnyVoxels>
+HWY_INLINE Color march(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+                       const Rays& rays, VF first, VF last) {
     switch (scene.composition) {
         case Composition::maximumIntensity:
             return marchMaximum(scene, lattice, rays, first, last);
         case Composition::firstHit:
             return marchFirstHit(scene, lattice, rays, first, last);
         default:
-            return scene.integrals ? marchSegments(scene, lattice, rays, first, last)
-                                   : marchSamples(scene, lattice, rays, first, last);
+            if (scene.integrals) return marchSegments(scene, lattice, rays, first, last);
+            return scene.rows > 1 ? marchSamples<true>(scene, lattice, rays, first, last)
+                                  : marchSamples<false>(scene, lattice, rays, first, last);
     }
 }
 

@@ -25,19 +25,20 @@ HWY_INLINE Color mix(const Color& a, const Color& b, VF share) {
 
 /// Entries of a table of four floats each, and how far between it and the next.
 struct Entry {
-    VI bytes;
+    VI number;
     VF share;
 };
 HWY_INLINE Entry entryAt(VF at) {
     constexpr float last = float(TransferTable::entries - 1);
     const VF inside = clamped(at, 0.0f, last);
     const VF low = hn::Min(hn::Floor(inside), set(last - 1.0f));
-    return {hn::ShiftLeft<4>(hn::ConvertTo(i, low)), hn::Sub(inside, low)};
+    return {hn::ConvertTo(i, low), hn::Sub(inside, low)};
 }
 HWY_INLINE Color lookedUp(const float* table, const Entry& entry) {
+    const VI bytes = hn::ShiftLeft<4>(entry.number);
     const auto channel = [&](int c) HWY_ATTR {
-        return mix(hn::GatherOffset(f, table + c, entry.bytes),
-                   hn::GatherOffset(f, table + c + 4, entry.bytes), entry.share);
+        return mix(hn::GatherOffset(f, table + c, bytes), hn::GatherOffset(f, table + c + 4, bytes),
+                   entry.share);
     };
     return {channel(0), channel(1), channel(2), channel(3)};
 }
@@ -53,16 +54,14 @@ HWY_INLINE Color classified(const PacketScene& scene, VF hu) {
 }
 /// By a 2-D one; `slope` is the length of the normal.
 HWY_INLINE Color classified(const PacketScene& scene, VF hu, VF slope) {
-    constexpr int rowBytes = 16 * TransferTable::entries;
     const float last = float(scene.rows - 1);
     const VF row = clamped(hn::Mul(slope, set(scene.rowsPerSlope)), 0.0f, last);
     const VF low = hn::Min(hn::Floor(row), set(last - 1.0f));
+    const VI rowEntries = hn::Set(i, TransferTable::entries);
     const Entry entry = entryAt(entryOf(scene, hu));
-    const VI first =
-        hn::Add(entry.bytes, hn::Mul(hn::ConvertTo(i, low), hn::Set(i, std::int32_t(rowBytes))));
-    const VI second = hn::Add(first, hn::Set(i, std::int32_t(rowBytes)));
+    const VI first = hn::Add(hn::Mul(hn::ConvertTo(i, low), rowEntries), entry.number);
     return mix(lookedUp(scene.table, {first, entry.share}),
-               lookedUp(scene.table, {second, entry.share}), hn::Sub(row, low));
+               lookedUp(scene.table, {hn::Add(first, rowEntries), entry.share}), hn::Sub(row, low));
 }
 
 /// The integral up to entries; beyond the table its ends go on.
@@ -117,6 +116,18 @@ HWY_INLINE V3 normalOf(const PacketScene& scene, V3 gradient) {
     return {component(0), component(1), component(2)};
 }
 
+/// max(mirror, 0) to the power of the shininess, which is whole as a rule.
+HWY_INLINE VF glossOf(VF mirror, float shininess) {
+    if (shininess != float(int(shininess)) || shininess < 1.0f || shininess > 1024.0f)
+        return power(mirror, set(shininess));
+    VF square = hn::Max(mirror, hn::Zero(f)), gloss = set(1.0f);
+    for (int rest = int(shininess); rest > 0; rest >>= 1) {
+        if (rest & 1) gloss = hn::Mul(gloss, square);
+        square = hn::Mul(square, square);
+    }
+    return gloss;
+}
+
 /// A lamp, seen from where it hangs, `n` steps away; colours are linear light, `lightMm` is unit.
 HWY_INLINE Color shaded(const PacketScene& scene, const Color& color, V3 normal, V3 lightMm, VF n) {
     const VF slope = dot(normal, normal), one = set(1.0f);
@@ -129,8 +140,7 @@ HWY_INLINE Color shaded(const PacketScene& scene, const Color& color, V3 normal,
     const VF depth = hn::Mul(n, set(scene.u.stepping.x / scene.u.stepping.w));
     const VF falloff = hn::Div(one, hn::MulAdd(depth, depth, one));
     const VF mirror = hn::MulSub(hn::Add(facing, facing), facing, one);
-    const VF highlight =
-        hn::IfThenElseZero(steep, hn::Mul(set(light.z), power(mirror, set(light.w))));
+    const VF highlight = hn::IfThenElseZero(steep, hn::Mul(set(light.z), glossOf(mirror, light.w)));
     const VF matt = hn::MulAdd(set(light.y), facing, set(light.x));
     const auto lit = [&](VF c)
                          HWY_ATTR { return hn::Mul(falloff, hn::MulAdd(c, matt, highlight)); };

@@ -15,10 +15,10 @@ namespace HWY_NAMESPACE {
 
 namespace {
 
-template <class Voxels>
+template <class AnyVoxels>
 void drawRows(const PacketScene& scene, const PacketSlice& slice, int firstRow, int endRow,
               std::uint8_t* rgb) {
-    const Lattice<Voxels> lattice(scene);
+    const Lattice<AnyVoxels> lattice(scene);
     const auto vector = [&](glm::vec3 v) HWY_ATTR { return V3{set(v.x), set(v.y), set(v.z)}; };
     const V3 origin = vector(slice.origin), right = vector(slice.right), down = vector(slice.down);
     for (int top = firstRow; top < endRow; top += packetHeight) {
