@@ -1,5 +1,5 @@
 // Times the flattened views of a prepared case, and counts the triangles that the strip shows.
-// usage: flat_bench STORE CASE [PRESET]
+// usage: flat_bench STORE CASE [PRESET [RAYCASTER]]
 #include "render/flat_painter.h"
 #include "render/strip_picture.h"
 #include "store/case_store.h"
@@ -140,7 +140,10 @@ Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
     return {};
 }
 
-Result<void> bench(const std::string& store, const std::string& name, const std::string& preset) {
+Result<void> bench(const std::string& store, const std::string& name, const std::string& preset,
+                   const std::string& raycaster) {
+    const auto kind = render::raycasterFromString(raycaster);
+    if (!kind) return tl::make_unexpected(kind.error());
     const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
         return s.openCase(name);
     });
@@ -160,7 +163,8 @@ Result<void> bench(const std::string& store, const std::string& name, const std:
 
     const auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
-    const auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared));
+    const auto renderer =
+        render::CaseRenderer::upload(**context, std::move(*prepared), {.raycaster = *kind});
     if (!renderer) return tl::make_unexpected(renderer.error());
     std::printf("%s (%s); strip of %.2f circumferences; %zu MiB on the GPU\n",
                 (*context)->renderer().c_str(), (*context)->platform().c_str(), shared->height,
@@ -173,11 +177,13 @@ Result<void> bench(const std::string& store, const std::string& name, const std:
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 3 || argc > 4) {
-        std::fprintf(stderr, "usage: flat_bench STORE CASE [PRESET]\n");
+    if (argc < 3 || argc > 5) {
+        std::fprintf(stderr, "usage: flat_bench STORE CASE [PRESET [RAYCASTER]]\n");
         return 2;
     }
-    if (const auto done = bench(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa"); !done) {
+    if (const auto done = bench(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa",
+                                argc > 4 ? argv[4] : "single-pass");
+        !done) {
         std::fprintf(stderr, "flat_bench: %s\n", haustra::describe(done.error()).c_str());
         return 1;
     }

@@ -152,7 +152,8 @@ TEST(Script, ErrorsNameTheLineAndTheKey) {
         {"{\"do\":\"go\",\"arc_mm\":1,\"fraction\":0.5}", "exclude each other"},
         {"{\"do\":\"fly\",\"positions\":1.5}", "\"positions\" must be a whole number"},
         {"{\"do\":\"view\",\"view\":\"upside\"}",
-         "\"view\" must be endoscopic, axial, coronal, sagittal, flattened or flattened-zoom"},
+         "\"view\" must be endoscopic, axial, coronal, sagittal, flattened, flattened-zoom, oblique "
+         "or overview"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"viewport\":8}", "\"viewport\" must lie in 0…7"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"size\":[4096,4]}",
          "\"size\" must hold numbers in 16…2048"},
