@@ -83,8 +83,7 @@ struct CaseRenderer::Impl {
         if (auto fits = checkScanSide(grid(), std::min(maxScanSide, gpu::maxTextureSide3d()));
             !fits)
             return fits;
-        auto made = GlScene::upload(context, scene, options.threads,
-                                    options.gradientBudgetBytes);
+        auto made = GlScene::upload(context, scene, options.threads, options.gradientBudgetBytes);
         if (!made) return tl::make_unexpected(made.error());
         glScene = std::move(*made);
         if (flatGeometry)
@@ -121,10 +120,10 @@ struct CaseRenderer::Impl {
 
     Result<void> checkFlat() const {
         if (flatGeometry && !scene->ranges.lowHu.empty()) return {};
-        return fail(ErrorKind::badInput,
-                    flatGeometry ? "so large a scan has no flattened views"
-                                 : "the case has no flat map",
-                    "flattened view");
+        return fail(
+            ErrorKind::badInput,
+            flatGeometry ? "so large a scan has no flattened views" : "the case has no flat map",
+            "flattened view");
     }
 };
 
@@ -172,8 +171,8 @@ Result<void> CaseRenderer::use(RaycasterKind kind) {
     Impl& my = *impl_;
     if (!my.raycasters.contains(kind)) {
         if (my.scene->ranges.lowHu.empty() && kind != RaycasterKind::objectOrder)
-            return fail(ErrorKind::device,
-                        "only the object-order raycaster draws so large a scan", "render");
+            return fail(ErrorKind::device, "only the object-order raycaster draws so large a scan",
+                        "render");
         if (auto made = my.makePictures(kind); !made) return made;
         auto made = my.makeRaycaster(kind);
         if (!made) return tl::make_unexpected(made.error());
@@ -284,14 +283,23 @@ Result<Image> CaseRenderer::render(const FlatOverview& view, int width, int heig
     return overview;
 }
 
-Result<Image> CaseRenderer::render(const OverviewView& view, int width, int height) {
+Result<void> CaseRenderer::render(const OverviewView& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
     if (!my.overview) {
         auto made = OverviewPainter::create(my.context, my.scene);
         if (!made) return tl::make_unexpected(made.error());
         my.overview = std::move(*made);
     }
-    return my.overview->draw(view, {width, height}, *my.raycasters.at(my.used));
+    return my.overview->draw(view, band, *my.raycasters.at(my.used), picture);
+}
+
+Result<Image> CaseRenderer::render(const OverviewView& view, int width, int height) {
+    if (auto sound = checkPictureSize({width, height}); !sound)
+        return tl::make_unexpected(sound.error());
+    Image picture = blank(width, height);
+    if (auto drawn = render(view, Band::whole(width, height), picture); !drawn)
+        return tl::make_unexpected(drawn.error());
+    return picture;
 }
 
 std::size_t CaseRenderer::gpuBytes() const {

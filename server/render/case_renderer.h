@@ -18,7 +18,7 @@ struct RendererOptions {
     std::size_t gpuBudgetBytes = 0;  ///< for the volume's cells of objectOrder; 0: what there is
     /// Gradients are kept on the GPU where 8 bytes a voxel are within it (GlScene::hasGradients).
     std::size_t gradientBudgetBytes = std::size_t(1) << 30;
-    int threads = 0;                 ///< ≤ 0: all cores; changes no pixel
+    int threads = 0;  ///< ≤ 0: all cores; changes no pixel
 };
 
 /// Draws one case's volumes: the scan, for slices, and the cleansed scan, for the endoscopic view.
@@ -63,8 +63,10 @@ public:
     /// its path) is left out. Fails as the other views do.
     Result<Image> render(const OverviewView& view, int width, int height);
 
-    /// Some rows of a camera's picture, for a frame that is drawn in bands.
+    /// Some rows of a picture, for a frame that is drawn in bands; of the overview from the top
+    /// down, for its last band marks all of the picture.
     Result<void> render(const CameraView& view, const Band& band, Image& picture);
+    Result<void> render(const OverviewView& view, const Band& band, Image& picture);
 
     /// Which place of the wall each of the band's pixels sees first, rows from the top. Fails
     /// (badInput) on a bad camera or band, or where the case has no flat map.

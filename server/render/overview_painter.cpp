@@ -18,6 +18,8 @@ constexpr glm::vec4 background{0.0065f, 0.0080f, 0.0100f, 1e9f};
 /// Pixels of a mark's or wall's picture along a pixel of the view's, in pictures up to this size.
 constexpr int fineSide = 2;
 constexpr std::int64_t finePixels = 1 << 20;
+/// Backdrops of 16 bytes a pixel.
+constexpr std::size_t wallsKept = 4;
 /// How far behind a wall marks fade, mm: a wide colon's diameter.
 constexpr double fadeMm = 80.0;
 constexpr double farthestShare = 0.45;
@@ -193,7 +195,8 @@ OverviewPainter::OverviewPainter(gpu::Context& context, std::shared_ptr<const Sc
       block_(std::move(block)) {}
 
 bool OverviewPainter::shows(const OverviewView& view, glm::ivec2 size) const {
-    if (!ground_ || ground_->size != size) return false;
+    if (!ground_ || glm::ivec2(ground_->picture.width, ground_->picture.height) != size)
+        return false;
     const OverviewView& last = ground_->view;
     if (!(last.camera == view.camera) || last.body != view.body) return false;
     return !view.body || (last.optics == view.optics && last.march == view.march);
@@ -210,30 +213,64 @@ Result<void> OverviewPainter::makeTargets(glm::ivec2 size) {
     if (!marks) return tl::make_unexpected(marks.error());
     wallTarget_ = std::move(*wall);
     marksTarget_ = std::move(*marks);
+    inTarget_.reset();
     return {};
 }
 
-Result<Image> OverviewPainter::drawGround(const OverviewView& view, glm::ivec2 size,
-                                          Raycaster& raycaster) {
+void OverviewPainter::rasterizeWall(const Sight& sight) {
+    block_.bind(shaders::uniformBinding);
+    if (inTarget_ == sight) return;
     wallTarget_->clear(background);
     if (wallTriangles_) {
         wallVertices_->bind(shaders::overviewVertexBinding);
         wall_.drawNearest(*wallTarget_, *wallTriangles_, 0, int(scene_->wall->triangles.size()));
     }
-    auto wall = std::make_shared<Backdrop>();
-    wall->size = size;
-    wall->pixels =
-        reduced(read<glm::vec4>(*wallTarget_), size, wallTarget_->size().x / size.x, meanWall);
-    Image picture{size.x, size.y, std::vector<std::uint8_t>(3 * wall->pixels.size())};
-    if (!view.body) {
-        for (std::size_t i = 0; i < picture.rgb.size(); ++i)
-            picture.rgb[i] = byteOf(displayed(double(wall->pixels[i / 3][int(i % 3)])));
-        return picture;
+    inTarget_ = sight;
+}
+
+std::shared_ptr<const Backdrop> OverviewPainter::wallOf(const Sight& sight) {
+    const auto found = std::find_if(walls_.begin(), walls_.end(),
+                                    [&](const Wall& wall) { return wall.sight == sight; });
+    if (found != walls_.end()) {
+        std::rotate(found, found + 1, walls_.end());
+        return walls_.back().backdrop;
     }
-    const CameraView body{view.camera, view.optics, view.march, std::move(wall)};
-    if (auto drawn = raycaster.render(body, Band::whole(size.x, size.y), picture); !drawn)
-        return tl::make_unexpected(drawn.error());
-    return picture;
+    rasterizeWall(sight);
+    auto backdrop = std::make_shared<Backdrop>();
+    backdrop->size = sight.size;
+    backdrop->pixels = reduced(read<glm::vec4>(*wallTarget_), sight.size,
+                               wallTarget_->size().x / sight.size.x, meanWall);
+    if (walls_.size() == wallsKept) walls_.erase(walls_.begin());
+    walls_.push_back({sight, std::move(backdrop)});
+    return walls_.back().backdrop;
+}
+
+Result<void> OverviewPainter::drawGround(const OverviewView& view, const Band& band,
+                                         Raycaster& raycaster, Image& picture) {
+    const std::size_t row = 3 * std::size_t(band.pictureSize.x);
+    const std::size_t begin = row * std::size_t(band.firstRow),
+                      bytes = row * std::size_t(band.rows);
+    if (shows(view, band.pictureSize) && ground_->rows >= band.firstRow + band.rows) {
+        std::copy_n(&ground_->picture.rgb[begin], bytes, &picture.rgb[begin]);
+        return {};
+    }
+    auto wall = wallOf({view.camera, band.pictureSize});
+    if (!view.body) {
+        for (std::size_t i = begin; i < begin + bytes; ++i)
+            picture.rgb[i] = byteOf(displayed(double(wall->pixels[i / 3][int(i % 3)])));
+    } else if (auto drawn = raycaster.render(
+                   {view.camera, view.optics, view.march, std::move(wall)}, band, picture);
+               !drawn) {
+        return drawn;
+    }
+    // Rows that follow on are kept, so that one picture after the other needs none of them again.
+    if (band.firstRow == 0) ground_ = Ground{view, {picture.width, picture.height, {}}, 0};
+    if (shows(view, band.pictureSize) && ground_->rows == band.firstRow) {
+        ground_->picture.rgb.resize(picture.rgb.size());
+        std::copy_n(&picture.rgb[begin], bytes, &ground_->picture.rgb[begin]);
+        ground_->rows += band.rows;
+    }
+    return {};
 }
 
 Result<void> OverviewPainter::addMarks(const OverviewView& view, Image& picture) {
@@ -243,6 +280,7 @@ Result<void> OverviewPainter::addMarks(const OverviewView& view, Image& picture)
     if (!vertices) return tl::make_unexpected(vertices.error());
     auto triangles = gpu::StorageBuffer::create(std::span(shapes.indices), "marks' triangles");
     if (!triangles) return tl::make_unexpected(triangles.error());
+    rasterizeWall({view.camera, {picture.width, picture.height}});  // marks fade behind it
     marksTarget_->clear(glm::vec4(0.0f));
     vertices->bind(shaders::overviewVertexBinding);
     wallTarget_->texture().bind(shaders::overviewWallUnit);
@@ -262,29 +300,23 @@ Result<void> OverviewPainter::addMarks(const OverviewView& view, Image& picture)
     return {};
 }
 
-Result<Image> OverviewPainter::draw(const OverviewView& view, glm::ivec2 size,
-                                    Raycaster& raycaster) {
+Result<void> OverviewPainter::draw(const OverviewView& view, const Band& band, Raycaster& raycaster,
+                                   Image& picture) {
     const int errorsBefore = context_.errorCount();
-    if (auto sound = checkPictureSize(size); !sound) return tl::make_unexpected(sound.error());
-    if (auto sound = checkOverview(view); !sound) return tl::make_unexpected(sound.error());
-    if (auto made = makeTargets(size); !made) return tl::make_unexpected(made.error());
-    const auto uniforms = uniformsOf(view, *scene_, originMm_, size);
-    block_.write(uniforms);
-    block_.bind(shaders::uniformBinding);
-    if (!shows(view, size)) {
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    if (auto sound = checkOverview(view); !sound) return sound;
+    if (auto made = makeTargets(band.pictureSize); !made) return made;
+    block_.write(uniformsOf(view, *scene_, originMm_, band.pictureSize));
+    auto drawn = drawGround(view, band, raycaster, picture);
+    if (drawn && band.firstRow + band.rows == band.pictureSize.y) drawn = addMarks(view, picture);
+    if (drawn && context_.errorCount() != errorsBefore)
+        drawn = fail(ErrorKind::device, "the graphics driver reported an error", "overview");
+    if (!drawn) {
         ground_.reset();
-        auto picture = drawGround(view, size, raycaster);
-        if (!picture) return picture;
-        ground_ = Ground{view, size, std::move(*picture)};
-        block_.bind(shaders::uniformBinding);  // the body's rays have bound theirs
+        walls_.clear();
+        inTarget_.reset();
     }
-    Image picture = ground_->picture;
-    if (auto added = addMarks(view, picture); !added) return tl::make_unexpected(added.error());
-    if (context_.errorCount() != errorsBefore) {
-        ground_.reset();
-        return fail(ErrorKind::device, "the graphics driver reported an error", "overview");
-    }
-    return picture;
+    return drawn;
 }
 
 std::size_t OverviewPainter::gpuBytes() const {

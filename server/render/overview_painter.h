@@ -25,23 +25,40 @@ public:
     static Result<std::unique_ptr<OverviewPainter>> create(gpu::Context& context,
                                                            std::shared_ptr<const Scene> scene);
 
-    /// `raycaster` draws the body: of this scene. The picture's edges are smooth up to a million
-    /// pixels. Fails (badInput) on a bad view, (device) where the driver reports an error.
-    Result<Image> draw(const OverviewView& view, glm::ivec2 size, Raycaster& raycaster);
+    /// Draws the band's rows into `picture`, which has the whole picture's size; `raycaster`, which
+    /// is of this scene, draws the body. Path, reader and bookmarks come over all of the picture
+    /// with the last rows, which therefore need the rows above them drawn before. The picture's
+    /// edges are smooth up to a million pixels. Fails (badInput) on a bad view or band, (device)
+    /// where the driver reports an error.
+    Result<void> draw(const OverviewView& view, const Band& band, Raycaster& raycaster,
+                      Image& picture);
     std::size_t gpuBytes() const;
 
 private:
     OverviewPainter(gpu::Context& context, std::shared_ptr<const Scene> scene,
                     gpu::RasterProgram wall, gpu::RasterProgram marks, gpu::UniformBuffer block);
-    /// Wall and body of the picture that was drawn last.
+    /// What the wall looks like depends on.
+    struct Sight {
+        Camera camera;
+        glm::ivec2 size;
+        bool operator==(const Sight&) const = default;
+    };
+    struct Wall {
+        Sight sight;
+        std::shared_ptr<const Backdrop> backdrop;
+    };
+    /// Wall and body, of the rows from the top that have been drawn.
     struct Ground {
         OverviewView view;
-        glm::ivec2 size;
         Image picture;
+        int rows = 0;
     };
     bool shows(const OverviewView& view, glm::ivec2 size) const;
     Result<void> makeTargets(glm::ivec2 size);
-    Result<Image> drawGround(const OverviewView& view, glm::ivec2 size, Raycaster& raycaster);
+    void rasterizeWall(const Sight& sight);
+    std::shared_ptr<const Backdrop> wallOf(const Sight& sight);
+    Result<void> drawGround(const OverviewView& view, const Band& band, Raycaster& raycaster,
+                            Image& picture);
     Result<void> addMarks(const OverviewView& view, Image& picture);
 
     gpu::Context& context_;
@@ -51,6 +68,8 @@ private:
     gpu::UniformBuffer block_;
     std::optional<gpu::StorageBuffer> wallVertices_, wallTriangles_;
     std::optional<gpu::RasterTarget> wallTarget_, marksTarget_;
+    std::optional<Sight> inTarget_;  // whose wall wallTarget_ holds
+    std::vector<Wall> walls_;        // lately used, the latest last: readers' bands alternate
     std::optional<Ground> ground_;
 };
 

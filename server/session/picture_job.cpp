@@ -3,7 +3,8 @@
 namespace haustra::session {
 
 bool inBands(const AnyView& view) {
-    return std::holds_alternative<render::CameraView>(view);
+    return std::holds_alternative<render::CameraView>(view) ||
+           std::holds_alternative<render::OverviewView>(view);
 }
 
 bool canBeCoarse(const AnyView& view) {

@@ -28,13 +28,15 @@ Result<void> draw(render::CaseRenderer& renderer, Frame& frame, const render::Ba
     const AnyView view = size.x == frame.job.width
                              ? frame.job.view
                              : scaledView(frame.job.view, frame.job.width, size.x);
-    if (const auto* camera = std::get_if<render::CameraView>(&view)) {
+    const auto drawBand = [&](const auto& banded) {
         if (frame.picture.rgb.empty())
             frame.picture = {
                 size.x, size.y,
                 std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
-        return renderer.render(*camera, band, frame.picture);
-    }
+        return renderer.render(banded, band, frame.picture);
+    };
+    if (const auto* camera = std::get_if<render::CameraView>(&view)) return drawBand(*camera);
+    if (const auto* overview = std::get_if<render::OverviewView>(&view)) return drawBand(*overview);
     auto image =
         std::visit([&](const auto& any) { return renderer.render(any, size.x, size.y); }, view);
     if (!image) return tl::make_unexpected(image.error());

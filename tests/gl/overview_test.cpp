@@ -177,6 +177,33 @@ TEST_F(Overview, MarksShowThroughTheWallWhereTheyAreAndNowhereElse) {
     EXPECT_EQ(draw(*scan, view, 200, 200).rgb, bare.rgb);
 }
 
+TEST_F(Overview, BandsMakeTheSamePictureAlsoWhereTwoReadersTakeTurns) {
+    TriMesh wall;
+    addBall(wall, {18.0, -6.0, 11.0}, 12.0);
+    std::vector<OverviewView> views{seenFrom(orbit()), seenFrom(orbit(60.0, 20.0))};
+    for (OverviewView& view : views) {
+        view.body = true;
+        view.optics.transferFunction = everywhere(0.01);
+        view.bookmarksMm = {{18.0, -6.0, 11.0}};
+    }
+    const int width = 90, height = 70;
+    std::vector<Image> whole;
+    for (const OverviewView& view : views)
+        whole.push_back(draw(*renderer(wall), view, width, height));
+    ASSERT_NE(whole[0].rgb, whole[1].rgb);
+    // Each view's rows are drawn where the other's were last; the first again at the end, as kept.
+    const auto scan = renderer(wall);
+    std::vector<Image> drawn(2,
+                             Image{width, height, std::vector<std::uint8_t>(3 * width * height)});
+    for (const auto& [firstRow, rows] : {std::pair(0, 24), {24, 16}, {40, 30}})
+        for (std::size_t i = 0; i < views.size(); ++i)
+            ASSERT_TRUE(scan->render(views[i], Band{{width, height}, firstRow, rows}, drawn[i]));
+    EXPECT_EQ(drawn[0].rgb, whole[0].rgb);
+    EXPECT_EQ(drawn[1].rgb, whole[1].rgb);
+    EXPECT_EQ(draw(*scan, views[0], width, height).rgb, whole[0].rgb);
+    EXPECT_EQ(draw(*scan, views[0], width, height).rgb, whole[0].rgb);
+}
+
 TEST_F(Overview, WithoutAWallTheBodyStillShows) {
     const Volume<std::int16_t> ct(grid, 0);
     auto prepared = prepareCase(ct, {});
