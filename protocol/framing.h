@@ -58,7 +58,7 @@ struct TileHeader {
     std::uint16_t x = 0, y = 0, width = 0, height = 0;
     std::uint32_t renderMicroseconds = 0, encodeMicroseconds = 0;
     std::uint32_t queueMicroseconds = 0;  ///< from the input's arrival to the start of rendering
-    std::uint8_t raycaster = 0;           ///< that drew it (raycasterName); 0: none of them
+    std::uint8_t raycaster = 0;           ///< that draws the case (raycasterName); 0: not told
     /// The viewport that the picture fills; where it is coarse, larger than the picture. 0: not
     /// told, as large as the picture.
     std::uint16_t viewportWidth = 0, viewportHeight = 0;

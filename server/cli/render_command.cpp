@@ -21,6 +21,7 @@
 #include "store/case_store.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -256,7 +257,7 @@ Result<render::Image> drawWith(
     if (!context) return tl::make_unexpected(context.error());
     render::RendererOptions options;
     if (arguments.castsRays()) options.raycaster = arguments.raycaster;
-    options.gpuBudgetBytes = std::size_t(arguments.gpuBudgetMb * 1048576.0);
+    options.gpuBudgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMb * 1048576.0));
     options.threads = arguments.threads;
     auto renderer = render::CaseRenderer::upload(**context, std::move(prepared), options);
     if (!renderer) return tl::make_unexpected(renderer.error());
@@ -322,7 +323,7 @@ Result<render::Image> drawLabelled(const RenderArguments& arguments) {
     if (!context) return tl::make_unexpected(context.error());
     auto raycaster = render::LabelledRaycaster::create(
         **context, *volume,
-        {.budgetBytes = std::size_t(arguments.gpuBudgetMb * 1048576.0),
+        {.budgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMb * 1048576.0)),
          .threads = arguments.threads});
     if (!raycaster) return tl::make_unexpected(raycaster.error());
     if (auto chosen =

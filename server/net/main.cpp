@@ -2,6 +2,7 @@
 #include "net/server.h"
 #include "store/durable_file.h"
 
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -140,7 +141,7 @@ int runProgram(int argc, char** argv) {
             arguments.server.drawing.raycaster = *kind;
         }
         arguments.server.drawing.gpuBudgetBytes =
-            std::size_t(arguments.gpuBudgetMb * double(1 << 20));
+            std::size_t(std::ceil(arguments.gpuBudgetMb * double(1 << 20)));
         if (!arguments.certificate.empty())
             arguments.server.identity = {arguments.certificate, arguments.key};
     } catch (const CLI::ParseError& error) {

@@ -9,7 +9,7 @@ namespace {
 using Points = std::vector<TransferFunctionPoint>;
 
 constexpr std::size_t mostPoints = 256, mostRows = 64;
-constexpr double steepestHuPerMm = 65536.0;
+constexpr double steepestHuPerMm = 65536.0, leastSpanHu = 1.0 / 16.0, leastRowHuPerMm = 1e-3;
 
 tl::unexpected<Error> refuse(const std::string& what) {
     return fail(ErrorKind::badInput, what, "transfer function");
@@ -37,6 +37,8 @@ Result<void> checkPoints(const Points& points, const std::string& row) {
             return refuse(at + " has a lower HU than the point before");
     }
     if (!(points.back().hu > points.front().hu)) return refuse(row + "all points have the same HU");
+    if (!(points.back().hu - points.front().hu >= leastSpanHu))
+        return refuse(row + "the points span less than 1/16 HU");
     return {};
 }
 
@@ -65,9 +67,11 @@ Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
     for (std::size_t i = 0; i < transferFunction.rows.size(); ++i) {
         const GradientRow& row = transferFunction.rows[i];
         const std::string at = "row " + std::to_string(i + 1);
-        if (!(row.gradientHuPerMm > before && row.gradientHuPerMm <= steepestHuPerMm))
+        if (!(row.gradientHuPerMm >= before + leastRowHuPerMm &&
+              row.gradientHuPerMm <= steepestHuPerMm))
             return refuse(at +
-                          " has a gradient magnitude not over the row before's, or over 65536");
+                          " has a gradient magnitude not 0.001 over the row before's, or over "
+                          "65536");
         before = row.gradientHuPerMm;
         if (auto sound = checkPoints(row.points, at + ": "); !sound) return sound;
     }

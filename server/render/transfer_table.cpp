@@ -133,8 +133,9 @@ void findVisible(TransferTable& table, const Optics& optics, const std::vector<b
 }  // namespace
 
 bool TransferTable::anyVisible(double lowHu, double highHu) const {
-    const int low = std::clamp(int(std::floor(entryOf(lowHu))), 0, entries - 1);
-    const int high = std::clamp(int(std::ceil(entryOf(highHu))), 0, entries - 1);
+    const double lastEntry = entries - 1;
+    const int low = int(std::clamp(std::floor(entryOf(lowHu)), 0.0, lastEntry));
+    const int high = int(std::clamp(std::ceil(entryOf(highHu)), 0.0, lastEntry));
     return visibleBefore[std::size_t(high) + 1] > visibleBefore[std::size_t(low)];
 }
 

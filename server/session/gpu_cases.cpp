@@ -142,11 +142,17 @@ Result<GpuCases::Made> GpuCases::makeRenderer(render::PreparedCase prepared) {
         cases_.erase(cases_.begin() + std::ptrdiff_t(*gone));
 
     // Whoever is chosen later, the native raycaster costs nothing to begin with.
-    const RaycasterKind kind = options_.raycaster.value_or(RaycasterKind::native);
+    // A scan without block ranges is drawn in object order alone.
+    const RaycasterKind kind = options_.raycaster.value_or(
+        prepared.ranges.lowHu.empty() ? RaycasterKind::objectOrder : RaycasterKind::native);
+    const bool fits = whole <= room.freeBytes;
     render::RendererOptions how;
     how.raycaster = kind;
-    if (options_.gpuBudgetBytes > 0) how.gpuBudgetBytes = room.freeBytes;
-    const bool fits = whole <= room.freeBytes;
+    if (options_.gpuBudgetBytes > 0) {
+        how.gpuBudgetBytes = std::max<std::size_t>(room.freeBytes, 1);  // 0 has no bounds
+        how.gradientBudgetBytes =
+            std::min(how.gradientBudgetBytes, fits ? room.freeBytes - whole : 0);
+    }
     if (!fits && needsWhole(kind))
         return fail(ErrorKind::device,
                     "the GPU has no room for the case: it needs " + std::to_string(mib(whole)) +

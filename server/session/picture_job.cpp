@@ -1,5 +1,7 @@
 #include "session/picture_job.h"
 
+#include <algorithm>
+
 namespace haustra::session {
 
 bool inBands(const AnyView& view) {
@@ -14,8 +16,10 @@ bool canBeCoarse(const AnyView& view) {
 }
 
 AnyView scaledView(AnyView view, int fromWidth, int toWidth) {
+    // At the widest, rounding must not make it a hair wider.
     if (auto* flat = std::get_if<render::FlatView>(&view))
-        flat->window.pixelsPerUnit *= double(toWidth) / fromWidth;
+        flat->window.pixelsPerUnit = std::max(flat->window.pixelsPerUnit * toWidth / fromWidth,
+                                              double(toWidth) / render::maxCircumferences);
     return view;
 }
 

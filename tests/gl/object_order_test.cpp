@@ -142,6 +142,21 @@ TEST_F(ObjectOrder, NoPixelDependsOnTheBudgetOnWhatWasDrawnBeforeOrOnBands) {
     }
 }
 
+TEST_F(ObjectOrder, WhatDoesNotFitIntoABatchIsNotOverwritten) {
+    const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
+    const auto roomy = objectOrder(scene, {.cellSide = 16});
+    for (const int batchCells : {1, 2, 3, 5})
+        for (const std::size_t slots : {1, 4, 8}) {
+            const auto tight = objectOrder(scene, {.cellSide = 16,
+                                                   .budgetBytes = slots * 32 * 32 * 32 * 2,
+                                                   .batchCells = batchCells});
+            for (const Camera& camera : {cameras()[0], cameras()[6]})
+                EXPECT_EQ(cast(*roomy, misty(camera), 40, 30).rgb,
+                          cast(*tight, misty(camera), 40, 30).rgb)
+                    << batchCells << " cells a batch, " << slots << " slots";
+        }
+}
+
 TEST_F(ObjectOrder, CellsStayAndOnlyWhatIsSeenIsBrought) {
     const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
     const auto cells = objectOrder(scene, {.cellSide = 16});

@@ -168,6 +168,9 @@ int CellPool::victimUnseen() {
 }
 
 int CellPool::victimDrawn() {
+    // A cell that did not fit into a batch was pinned through its drawing, and waits for the next.
+    for (Drawn& batch : drawn_)
+        std::erase_if(batch.slots, [&](int slot) { return slots_[std::size_t(slot)].pinned; });
     while (!drawn_.empty() && drawn_.back().slots.empty())
         drawn_.pop_back();
     if (drawn_.empty()) return -1;

@@ -10,8 +10,8 @@ namespace haustra::render {
 
 namespace {
 
-constexpr int batchesAhead = 4, cellsInBatch = 4096, itemsInBatch = 1 << 18;
-constexpr std::size_t cellBytes = cellsInBatch * sizeof(shaders::CellInSlot);
+constexpr int batchesAhead = 4, itemsInBatch = 1 << 18;
+constexpr std::size_t cellBytes = mostBatchCells * sizeof(shaders::CellInSlot);
 constexpr std::size_t batchBytes = cellBytes + itemsInBatch * sizeof(glm::uvec2);
 static_assert(cellBytes % 4096 == 0 && batchBytes % 4096 == 0);
 // One tile of the largest picture after another, at least, fits into a batch.
@@ -19,16 +19,19 @@ static_assert(itemsInBatch >= (maxPictureSide / rayTile) * (maxPictureSide / ray
 
 }  // namespace
 
-Result<CellProjector> CellProjector::create() {
+Result<CellProjector> CellProjector::create(int batchCells) {
     auto batches = gpu::MappedBuffer::create(batchesAhead * batchBytes, "cells to draw");
     if (!batches) return tl::make_unexpected(batches.error());
     auto block = gpu::UniformBuffer::create(sizeof(shaders::CellUniforms));
     if (!block) return tl::make_unexpected(block.error());
-    return CellProjector(std::move(*batches), std::move(*block));
+    return CellProjector(std::move(*batches), std::move(*block), batchCells);
 }
 
-CellProjector::CellProjector(gpu::MappedBuffer batches, gpu::UniformBuffer block)
-    : batches_(std::move(batches)), block_(std::move(block)), ring_(batchesAhead) {
+CellProjector::CellProjector(gpu::MappedBuffer batches, gpu::UniformBuffer block, int batchCells)
+    : batches_(std::move(batches)),
+      block_(std::move(block)),
+      ring_(batchesAhead),
+      batchCells_(batchCells) {
     for (std::size_t i = 0; i < ring_.size(); ++i)
         ring_[i].offset = i * batchBytes;
 }
@@ -86,7 +89,7 @@ bool CellProjector::isLive(const PlannedCell& cell) const {
 bool CellProjector::add(const PlannedCell& planned, const CellGrid& cells, const CellPool& pool,
                         int slot) {
     const glm::ivec2 along = planned.tiles.high - planned.tiles.low;
-    if (cellCount_ == cellsInBatch || itemCount_ + along.x * along.y > itemsInBatch) return false;
+    if (cellCount_ == batchCells_ || itemCount_ + along.x * along.y > itemsInBatch) return false;
     const glm::ivec3 cell = cells.cellAt(planned.cell);
     cellsOfBatch()[cellCount_] = {glm::ivec4(cell, 0),
                                   glm::vec4(glm::vec3(cell * cells.side - pool.border()), 0.0f),

@@ -17,11 +17,14 @@
 
 namespace haustra::render {
 
+inline constexpr int mostBatchCells = 4096;
+
 /// What a band's rays have gathered, and the commands that go on with them. Belongs to the thread
 /// of the context.
 class CellProjector {
 public:
-    static Result<CellProjector> create();
+    /// `batchCells`: cells that one dispatch draws, 1…mostBatchCells.
+    static Result<CellProjector> create(int batchCells);
 
     /// Begins a band: no ray has met anything. `eye`: in cells, w 1 where all rays begin there.
     Result<void> begin(glm::ivec2 bandSize, const CellGrid& cells, glm::vec4 eye);
@@ -39,7 +42,7 @@ private:
         std::size_t offset = 0;
         gpu::Fence drawn;
     };
-    CellProjector(gpu::MappedBuffer batches, gpu::UniformBuffer block);
+    CellProjector(gpu::MappedBuffer batches, gpu::UniformBuffer block, int batchCells);
     bool isLive(const PlannedCell& cell) const;
     bool add(const PlannedCell& cell, const CellGrid& cells, const CellPool& pool, int slot);
     void flush(CellPool& pool, const gpu::ComputeProgram& program);
@@ -51,6 +54,7 @@ private:
     gpu::MappedBuffer batches_;
     gpu::UniformBuffer block_;
     std::vector<Batch> ring_;
+    int batchCells_;
     std::size_t current_ = 0;
     int cellCount_ = 0, itemCount_ = 0;
 

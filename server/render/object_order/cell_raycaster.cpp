@@ -24,7 +24,7 @@ Result<CellRaycaster> CellRaycaster::create(gpu::Context& context, const Grid& g
                                             std::shared_ptr<const CellSource> source,
                                             const ObjectOrderOptions& options, glm::ivec3 leaves,
                                             int leafSide) {
-    auto projector = CellProjector::create();
+    auto projector = CellProjector::create(options.batchCells);
     if (!projector) return tl::make_unexpected(projector.error());
     auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
     if (!block) return tl::make_unexpected(block.error());

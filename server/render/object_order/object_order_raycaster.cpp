@@ -4,6 +4,7 @@
 #include "render/lately_used.h"
 #include "render/march_variant.h"
 #include "render/min_max_octree.h"
+#include "render/object_order/cell_projector.h"
 #include "render/object_order/cell_raycaster.h"
 #include "render/ray_setup.h"
 
@@ -106,6 +107,9 @@ Result<void> checkObjectOrder(const ObjectOrderOptions& options) {
     if (options.leafSide < 0 || options.leafSide > options.cellSide ||
         (options.leafSide > 0 && options.cellSide % options.leafSide != 0))
         return fail(ErrorKind::badInput, "cells do not consist of whole leaves",
+                    "object-order raycaster");
+    if (options.batchCells < 1 || options.batchCells > mostBatchCells)
+        return fail(ErrorKind::badInput, "a batch is not of 1 to 4096 cells",
                     "object-order raycaster");
     return {};
 }

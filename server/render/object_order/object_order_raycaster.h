@@ -15,6 +15,7 @@ struct ObjectOrderOptions {
     std::size_t budgetBytes = 0;  ///< of GPU memory for cells; 0: as much as they need
     int leafSide = 0;             ///< voxels; a cell's side is a multiple; 0: by the volume's size
     int threads = 0;              ///< that read cells (≤ 0: all cores); changes no pixel
+    int batchCells = 4096;        ///< cells that one dispatch draws, 1…4096; changes no pixel
 };
 
 /// Fails (badInput) on sides that cannot be chosen.
