@@ -2,6 +2,7 @@
 // usage: flat_bench STORE CASE [PRESET [RAYCASTER]]
 #include "render/flat_painter.h"
 #include "render/strip_picture.h"
+#include "stopwatch.h"
 #include "store/case_store.h"
 
 #include <algorithm>
@@ -16,18 +17,7 @@ namespace {
 
 using namespace haustra;
 
-double milliseconds() {
-    return std::chrono::duration<double, std::milli>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-/// Of all of this process's threads: what a busy machine does not disturb.
-double processorMilliseconds() {
-    std::timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * double(now.tv_sec) + 1e-6 * double(now.tv_nsec);
-}
+using bench::cpuMilliseconds, bench::milliseconds;
 
 /// A hand that drags the window along and around the strip, at one enlargement after the other.
 Result<void> timeWindows(render::CaseRenderer& renderer, const FlatMap& map,
@@ -43,7 +33,7 @@ Result<void> timeWindows(render::CaseRenderer& renderer, const FlatMap& map,
             const auto image = renderer.render(render::FlatView{window, function, {}}, side, side);
             if (!image) return tl::make_unexpected(image.error());
             // The first picture loads the transfer function and the driver's code.
-            if (i < 0) processor = processorMilliseconds();
+            if (i < 0) processor = cpuMilliseconds();
             if (i >= 0) times.push_back(milliseconds() - start);
         }
         std::sort(times.begin(), times.end());
@@ -51,7 +41,7 @@ Result<void> timeWindows(render::CaseRenderer& renderer, const FlatMap& map,
             "window %d x %d, %4.0f pixels a circumference: median %.1f ms, worst %.1f ms; "
             "processor time %.1f ms\n",
             side, side, pixels, times[pictures / 2], times.back(),
-            (processorMilliseconds() - processor) / pictures);
+            (cpuMilliseconds() - processor) / pictures);
     }
     return {};
 }
@@ -60,7 +50,7 @@ Result<void> timeStrips(render::CaseRenderer& renderer, const FlatMap& map,
                         const render::Optics& function) {
     for (const int width : {400, 1600}) {
         const render::StripPicture picture{width, 0.0, function, {}};
-        const double start = milliseconds(), processor = processorMilliseconds();
+        const double start = milliseconds(), processor = cpuMilliseconds();
         int rows = 0;
         const auto drawn =
             render::drawStrip(renderer, picture, map.height, [&](const render::Image& band) {
@@ -69,8 +59,7 @@ Result<void> timeStrips(render::CaseRenderer& renderer, const FlatMap& map,
             });
         if (!drawn) return drawn;
         std::printf("strip %d x %d: %.2f s; processor time %.2f s\n", width, rows,
-                    (milliseconds() - start) / 1000.0,
-                    (processorMilliseconds() - processor) / 1000.0);
+                    (milliseconds() - start) / 1000.0, (cpuMilliseconds() - processor) / 1000.0);
     }
     return {};
 }
@@ -140,8 +129,8 @@ Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
     return {};
 }
 
-Result<void> bench(const std::string& store, const std::string& name, const std::string& preset,
-                   const std::string& raycaster) {
+Result<void> timeCase(const std::string& store, const std::string& name, const std::string& preset,
+                      const std::string& raycaster) {
     const auto kind = render::raycasterFromString(raycaster);
     if (!kind) return tl::make_unexpected(kind.error());
     const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
@@ -181,8 +170,8 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: flat_bench STORE CASE [PRESET [RAYCASTER]]\n");
         return 2;
     }
-    if (const auto done = bench(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa",
-                                argc > 4 ? argv[4] : "single-pass");
+    if (const auto done = timeCase(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa",
+                                   argc > 4 ? argv[4] : "single-pass");
         !done) {
         std::fprintf(stderr, "flat_bench: %s\n", haustra::describe(done.error()).c_str());
         return 1;

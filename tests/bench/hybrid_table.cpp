@@ -5,10 +5,10 @@
 #include "render/hybrid/hybrid_raycaster.h"
 #include "render/polygon_assisted_raycaster.h"
 #include "render/single_pass_raycaster.h"
+#include "stopwatch.h"
 #include "store/case_store.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -18,28 +18,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
-#include <sys/resource.h>
 
 namespace {
 
 using namespace haustra;
 using namespace render;
 
-double milliseconds() {
-    return std::chrono::duration<double, std::milli>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-/// CPU time of the process, all threads: what a machine that others use does not blur.
-double cpuMilliseconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto ms = [](const timeval& t) {
-        return 1e3 * double(t.tv_sec) + 1e-3 * double(t.tv_usec);
-    };
-    return ms(usage.ru_utime) + ms(usage.ru_stime);
-}
+using bench::cpuMilliseconds, bench::milliseconds;
 
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());

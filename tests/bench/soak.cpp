@@ -50,7 +50,7 @@ public:
                     {within(-500, 500), within(1, 3000)},
                     facts_.cleansed && below(2) ? render::Scan::cleansed : render::Scan::original};
             case 1:
-                return render::ObliqueView{place(), direction(), direction(), within(5, 300)};
+                return render::ObliqueView{place(), direction(), direction(), within(5, 300), {}};
             case 2: {
                 render::OverviewView view;
                 view.camera = camera();

@@ -21,16 +21,6 @@ protected:
         if (!made) ADD_FAILURE() << describe(made.error());
         return std::move(*made);
     }
-    static Image drawn(Raycaster& raycaster, const CameraView& view, glm::ivec2 size,
-                       int bandRows = 1 << 20) {
-        Image picture{size.x, size.y, std::vector<std::uint8_t>(3u * unsigned(size.x * size.y))};
-        for (int row = 0; row < size.y; row += bandRows) {
-            const auto done =
-                raycaster.render(view, {size, row, std::min(bandRows, size.y - row)}, picture);
-            if (!done) ADD_FAILURE() << describe(done.error());
-        }
-        return picture;
-    }
     static std::vector<Camera> cameras() {
         std::vector<Camera> cameras = {{{1, -2, -13}, {0.1, 0.05, 1.0}, {0, -1, 0}, 90.0},
                                        {{60, -55, -70}, {-0.6, 0.55, 0.7}, {0, 0, 1}, 40.0}};

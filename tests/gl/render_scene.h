@@ -3,6 +3,7 @@
 
 #include "render/case_renderer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -79,6 +80,18 @@ protected:
         if (context) {
             EXPECT_EQ(context->errorCount(), 0);
         }
+    }
+    /// The picture, in bands of so many rows.
+    static render::Image drawn(render::Raycaster& raycaster, const render::CameraView& view,
+                               glm::ivec2 size, int bandRows = 1 << 20) {
+        render::Image picture{size.x, size.y,
+                              std::vector<std::uint8_t>(3u * unsigned(size.x * size.y))};
+        for (int row = 0; row < size.y; row += bandRows) {
+            const auto done =
+                raycaster.render(view, {size, row, std::min(bandRows, size.y - row)}, picture);
+            if (!done) ADD_FAILURE() << describe(done.error());
+        }
+        return picture;
     }
     std::unique_ptr<render::CaseRenderer> renderer(const Volume<std::int16_t>& ct,
                                                    const Volume<std::int16_t>& cleansed = {},
