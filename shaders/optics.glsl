@@ -1,8 +1,8 @@
-// The optical model (render/optics.h), one sample or segment at a time: classification, light,
+// The optical model (render/optics/optics.h), one sample or segment at a time: classification, light,
 // compositing, and what a pixel shows in the end. Nothing here knows where values come from or in
 // which order they are visited; the C++ of the native raycaster says the same line by line.
 //
-// Variants, each 0 unless it is defined before this text (render/march_variant.h):
+// Variants, each 0 unless it is defined before this text (render/gl/march_variant.h):
 #define EMISSION_ABSORPTION 0
 #define MAXIMUM_INTENSITY 1
 #define FIRST_HIT 2

@@ -17,7 +17,7 @@
 #include "render/comparison.h"
 #include "render/object_order/labelled_raycaster.h"
 #include "render/png_file.h"
-#include "render/wall_paint.h"
+#include "render/wall/wall_paint.h"
 #include "store/case_store.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "cli/render_parts.h"
 
 #include "cli/render_camera.h"
-#include "render/optics_presets.h"
+#include "render/optics/optics_presets.h"
 
 #include <fstream>
 #include <iterator>

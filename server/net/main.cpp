@@ -90,7 +90,7 @@ void addOptions(CLI::App& program, Arguments& arguments) {
     program
         .add_option("--presets", arguments.presets,
                     "Transfer functions for clients beside the built-in ones: a folder of *.json "
-                    "files, as those in server/render/presets")
+                    "files, as those in server/render/optics/presets")
         ->type_name("DIR");
     program.add_option("--log-level", arguments.logLevel, "How much to log, on standard error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error"}))

@@ -5,7 +5,7 @@
 #include "render/prepared_case.h"
 #include "render/raycaster.h"
 #include "render/view.h"
-#include "render/wall_paint.h"
+#include "render/wall/wall_paint.h"
 
 #include <memory>
 

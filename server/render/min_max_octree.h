@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/volume.h"
-#include "render/leap_map.h"
-#include "render/transfer_table.h"
+#include "render/optics/leap_map.h"
+#include "render/optics/transfer_table.h"
 
 #include <cstdint>
 #include <functional>

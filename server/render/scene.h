@@ -5,7 +5,7 @@
 #include "core/flat_map.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
-#include "render/leap_map.h"
+#include "render/optics/leap_map.h"
 
 #include <cstdint>
 #include <memory>

@@ -4,7 +4,7 @@
 #include "core/grid.h"
 #include "core/result.h"
 #include "core/strip_layout.h"
-#include "render/optics.h"
+#include "render/optics/optics.h"
 
 #include <cstdint>
 #include <memory>

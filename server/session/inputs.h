@@ -4,7 +4,7 @@
 #include "core/result.h"
 #include "protocol/haustra.pb.h"
 #include "records/bookmarks.h"
-#include "render/optics_presets.h"
+#include "render/optics/optics_presets.h"
 #include "render/view.h"
 
 #include <string>

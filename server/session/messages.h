@@ -3,7 +3,7 @@
 
 #include "protocol/haustra.pb.h"
 #include "records/bookmarks.h"
-#include "render/optics_presets.h"
+#include "render/optics/optics_presets.h"
 #include "session/open_case.h"
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "core/result.h"
 #include "protocol/haustra.pb.h"
-#include "render/optics_presets.h"
+#include "render/optics/optics_presets.h"
 #include "session/picture_job.h"
 
 #include <cstdint>

@@ -2,9 +2,9 @@
 // 5.2 and 5.3 as ratios, what each control gains, and what mesh entry points gain in a colon.
 #include "cli/input_volume.h"
 #include "core/centerline.h"
+#include "render/gl/single_pass_raycaster.h"
 #include "render/hybrid/hybrid_raycaster.h"
-#include "render/polygon_assisted_raycaster.h"
-#include "render/single_pass_raycaster.h"
+#include "render/wall/polygon_assisted_raycaster.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 

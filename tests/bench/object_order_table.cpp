@@ -1,9 +1,9 @@
 // The object-order raycaster's figures: cell sides and skipping on a prepared case; a tall scan in
 // a bounded pool along a flight; a volume larger than main memory.
 #include "mapped_volume.h"
+#include "render/gl/single_pass_raycaster.h"
 #include "render/object_order/object_order_raycaster.h"
 #include "render/png_file.h"
-#include "render/single_pass_raycaster.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 

@@ -3,7 +3,7 @@
 // wrong.
 #include "gpu/context.h"
 #include "render/case_renderer.h"
-#include "render/optics_presets.h"
+#include "render/optics/optics_presets.h"
 #include "session/open_case.h"
 #include "session/picture_job.h"
 

@@ -3,7 +3,7 @@
 #include "end_to_end/server_test_client.h"
 #include "gpu/context.h"
 #include "render/case_renderer.h"
-#include "render/optics_presets.h"
+#include "render/optics/optics_presets.h"
 
 #include <fstream>
 

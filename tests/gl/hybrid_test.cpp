@@ -1,7 +1,7 @@
 // The hybrid raycaster against the single pass, whatever its controls.
 #include "reference_marcher.h"
+#include "render/gl/single_pass_raycaster.h"
 #include "render/hybrid/hybrid_raycaster.h"
-#include "render/single_pass_raycaster.h"
 #include "wall_scene.h"
 
 namespace haustra::tests {

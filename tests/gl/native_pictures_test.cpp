@@ -1,7 +1,7 @@
 // Slices and flattened views of the CPU against those of the GPU and against plain ones.
 #include "flat_reference.h"
 #include "flat_tube.h"
-#include "render/flat_painter.h"
+#include "render/flat/flat_painter.h"
 #include "render/native/flat_coverage.h"
 #include "render_scene.h"
 

@@ -1,7 +1,7 @@
 // The object-order raycaster against the single pass, and its budget against none.
 #include "reference_marcher.h"
+#include "render/gl/single_pass_raycaster.h"
 #include "render/object_order/object_order_raycaster.h"
-#include "render/single_pass_raycaster.h"
 #include "render_scene.h"
 
 #include <random>

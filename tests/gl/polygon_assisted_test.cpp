@@ -1,7 +1,7 @@
 // Rays that begin at the wall's mesh, and the wall's paint.
 #include "reference_marcher.h"
-#include "render/polygon_assisted_raycaster.h"
-#include "render/single_pass_raycaster.h"
+#include "render/gl/single_pass_raycaster.h"
+#include "render/wall/polygon_assisted_raycaster.h"
 #include "wall_scene.h"
 
 #include <map>

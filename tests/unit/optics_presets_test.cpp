@@ -1,5 +1,5 @@
 // Presets: the built-in ones, files that are and are not presets, and a folder of them.
-#include "render/optics_presets.h"
+#include "render/optics/optics_presets.h"
 
 #include <filesystem>
 #include <fstream>
@@ -17,7 +17,8 @@ constexpr const char* sound = R"({"name": "test-1", "points": [
 TEST(OpticsPresets, AllFilesAreBuiltInUnderTheirNames) {
     ASSERT_FALSE(builtInPresets().empty());
     EXPECT_EQ(builtInPresets().front().name, "mucosa");
-    const fs::path folder = fs::path(std::getenv("HAUSTRA_SOURCE")) / "server/render/presets";
+    const fs::path folder =
+        fs::path(std::getenv("HAUSTRA_SOURCE")) / "server/render/optics/presets";
     std::size_t files = 0;
     for (const auto& file : fs::directory_iterator(folder)) {
         ++files;

@@ -1,5 +1,5 @@
 // The leap map against its definition.
-#include "render/leap_map.h"
+#include "render/optics/leap_map.h"
 
 #include <algorithm>
 #include <random>

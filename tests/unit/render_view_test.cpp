@@ -1,6 +1,6 @@
 // Cameras, transfer functions and slices, where no GL is needed.
+#include "render/optics/transfer_table.h"
 #include "render/png_file.h"
-#include "render/transfer_table.h"
 #include "render/view.h"
 
 #include <cmath>

@@ -2,13 +2,13 @@
 
 #include "gpu/streaming.h"
 #include "gpu/timestamps.h"
+#include "render/gl/march_variant.h"
+#include "render/gl/picture_readback.h"
+#include "render/gl/ray_setup.h"
 #include "render/hybrid/camera_rays.h"
 #include "render/hybrid/quad_list.h"
 #include "render/hybrid/ray_tiles.h"
-#include "render/march_variant.h"
 #include "render/native/tile_workers.h"
-#include "render/picture_readback.h"
-#include "render/ray_setup.h"
 
 #include <algorithm>
 #include <chrono>

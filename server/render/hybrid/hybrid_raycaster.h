@@ -2,7 +2,7 @@
 // (dissertation §5.3).
 #pragma once
 
-#include "render/gl_scene.h"
+#include "render/gl/gl_scene.h"
 #include "render/hybrid/balance.h"
 #include "render/raycaster.h"
 

@@ -6,8 +6,8 @@
 #include "render/hybrid/balance.h"
 #include "render/hybrid/camera_rays.h"
 #include "render/min_max_octree.h"
+#include "render/optics/transfer_table.h"
 #include "render/raycaster.h"
-#include "render/transfer_table.h"
 
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // Which triangle of a flat map covers each pixel of a window, without a GPU.
 #pragma once
 
-#include "render/flat_geometry.h"
+#include "render/flat/flat_geometry.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 // Draws windows onto the flattened wall on the CPU's vector units.
 #pragma once
 
-#include "render/flat_geometry.h"
+#include "render/flat/flat_geometry.h"
 #include "render/native/flat_packets.h"
 #include "render/native/native_scene.h"
 #include "render/raycaster.h"

@@ -4,8 +4,8 @@
 #include "render/lately_used.h"
 #include "render/native/packet_scene.h"
 #include "render/native/tile_workers.h"
+#include "render/optics/transfer_table.h"
 #include "render/scene.h"
-#include "render/transfer_table.h"
 #include "render/view.h"
 
 #include <memory>

@@ -1,5 +1,5 @@
-// The optical model (render/optics.h) for a packet of samples or segments: shaders/optics.glsl in
-// vectors, with values in HU and normals in HU differences.
+// The optical model (render/optics/optics.h) for a packet of samples or segments:
+// shaders/optics.glsl in vectors, with values in HU and normals in HU differences.
 #if defined(HAUSTRA_OPTICS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HAUSTRA_OPTICS_INL_H
 #undef HAUSTRA_OPTICS_INL_H
@@ -9,7 +9,7 @@
 
 #include "render/native/lattice-inl.h"
 #include "render/native/packet_scene.h"
-#include "render/transfer_table.h"
+#include "render/optics/transfer_table.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace haustra::render {

@@ -1,7 +1,7 @@
 // What ray packets read: plain numbers and pointers, the same for every vector width.
 #pragma once
 
-#include "render/optics.h"
+#include "render/optics/optics.h"
 #include "shaders/uniforms.h"
 
 #include <cstdint>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "gpu/context.h"
-#include "render/classification.h"
 #include "render/object_order/cell_pool.h"
 #include "render/object_order/cell_projector.h"
+#include "render/optics/classification.h"
 #include "render/raycaster.h"
 #include "render/view.h"
 

@@ -1,0 +1,85 @@
+#include "render/flat/flat_painter.h"
+
+#include "render/gl/stored_value.h"
+#include "shaders/shader_source.h"
+
+#include <cmath>
+#include <utility>
+
+namespace haustra::render {
+
+Result<FlatPainter> FlatPainter::create(const FlatMap& map, const Grid& grid) {
+    const auto geometry = FlatGeometry::of(map, grid);
+    if (!geometry) return tl::make_unexpected(geometry.error());
+    auto surface = FlatSurface::upload(*geometry);
+    if (!surface) return tl::make_unexpected(surface.error());
+    return create(std::make_shared<const FlatSurface>(std::move(*surface)));
+}
+
+Result<FlatPainter> FlatPainter::create(std::shared_ptr<const FlatSurface> surface) {
+    using shaders::shaderSource;
+    const auto structs = shaderSource("uniforms.h"), flatMap = shaderSource("flat_map.glsl");
+    auto triangles = gpu::RasterProgram::create(
+        "flat_triangles", {structs, flatMap, shaderSource("flat_triangles.vert")},
+        {structs, flatMap, shaderSource("flat_triangles.frag")});
+    if (!triangles) return tl::make_unexpected(triangles.error());
+    auto block = gpu::UniformBuffer::create(sizeof(shaders::FlatUniforms));
+    if (!block) return tl::make_unexpected(block.error());
+    FlatPainter made(std::move(surface), std::move(*triangles), std::move(*block));
+    // A driver that refuses the text is found here, not in a reader's session.
+    if (auto rays = made.rays_.program({}); !rays) return tl::make_unexpected(rays.error());
+    return made;
+}
+
+FlatPainter::FlatPainter(std::shared_ptr<const FlatSurface> surface, gpu::RasterProgram triangles,
+                         gpu::UniformBuffer block)
+    : surface_(std::move(surface)), triangles_(std::move(triangles)), block_(std::move(block)) {}
+
+Result<void> FlatPainter::findTriangles(const FlatWindow& window, glm::ivec2 size) {
+    if (!triangleOfPixel_ || glm::ivec2(triangleOfPixel_->size()) != size) {
+        auto made = gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rg32i,
+                                         gpu::Filter::nearest, "triangles of the picture");
+        if (!made) return tl::make_unexpected(made.error());
+        triangleOfPixel_ = std::move(*made);
+    }
+    const FlatLattice lattice = surface_->geometry().lattice(window, size);
+    uniforms_ = lattice.uniforms;
+    block_.write(uniforms_);
+    block_.bind(shaders::flatUniformBinding);
+    surface_->bind();
+    triangles_.draw(*triangleOfPixel_, {-1, 0}, surface_->triangles(), lattice.triangles.first,
+                    lattice.triangles.count, lattice.copies);
+    return {};
+}
+
+std::vector<int> FlatPainter::triangleOfPixel() const {
+    if (!triangleOfPixel_) return {};
+    const glm::ivec3 size = triangleOfPixel_->size();
+    std::vector<glm::ivec2> found(std::size_t(size.x) * std::size_t(size.y));
+    triangleOfPixel_->read(found.data(), triangleOfPixel_->bytes());
+    std::vector<int> triangles;
+    for (const glm::ivec2 one : found)
+        triangles.push_back(one.x < 0 ? -1 : surface_->geometry().mapTriangle(one.x));
+    return triangles;
+}
+
+Result<void> FlatPainter::castRays(const MarchVariant& variant, double stepMm,
+                                   const gpu::Texture& picture) {
+    const auto rays = rays_.program(variant);
+    if (!rays) return tl::make_unexpected(rays.error());
+    uniforms_.ray = glm::vec4(std::ceil(flatRay.backMm / stepMm), flatRay.riseHu / storedRange,
+                              std::ceil(flatRay.depthMm / stepMm), 0.0);
+    block_.write(uniforms_);
+    block_.bind(shaders::flatUniformBinding);
+    surface_->bind();
+    triangleOfPixel_->bind(shaders::triangleUnit);
+    picture.bindImage(shaders::pictureImage);
+    (*rays)->dispatch(glm::ivec2(picture.size()));
+    return {};
+}
+
+std::size_t FlatPainter::gpuBytes() const {
+    return triangleOfPixel_ ? triangleOfPixel_->bytes() : 0;
+}
+
+}  // namespace haustra::render

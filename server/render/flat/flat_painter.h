@@ -1,0 +1,49 @@
+// Draws windows onto the flattened wall.
+#pragma once
+
+#include "core/grid.h"
+#include "gpu/program.h"
+#include "gpu/texture.h"
+#include "render/flat/flat_surface.h"
+#include "render/gl/march_variant.h"
+#include "render/view.h"
+#include "shaders/uniforms.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace haustra::render {
+
+/// The raster pass that finds each pixel's triangle, and the compute pass that casts its ray.
+/// Belongs to the thread of the context.
+class FlatPainter {
+public:
+    /// The flat map of a case whose volumes are on `grid`. Fails as FlatGeometry::of and
+    /// FlatSurface::upload do, and where the shaders do not compile.
+    static Result<FlatPainter> create(const FlatMap& map, const Grid& grid);
+    static Result<FlatPainter> create(std::shared_ptr<const FlatSurface> surface);
+
+    /// Finds which triangle covers each pixel of a picture of `size`. The window must have passed
+    /// its check.
+    Result<void> findTriangles(const FlatWindow& window, glm::ivec2 size);
+    /// What it found, rows from the top: the number of the map's triangle, or −1 beyond the strip.
+    std::vector<int> triangleOfPixel() const;
+    /// Casts the rays of the window that findTriangles was given last, into the whole of `picture`,
+    /// which has the same size. The volume, its classification and the block of march.glsl must be
+    /// bound; `stepMm` is that block's. Fails (device) where the driver refuses the variant's text.
+    Result<void> castRays(const MarchVariant& variant, double stepMm, const gpu::Texture& picture);
+    std::size_t gpuBytes() const;  ///< without the surface's
+
+private:
+    FlatPainter(std::shared_ptr<const FlatSurface> surface, gpu::RasterProgram triangles,
+                gpu::UniformBuffer block);
+    std::shared_ptr<const FlatSurface> surface_;
+    gpu::RasterProgram triangles_;
+    MarchPrograms rays_{"flattened.comp", {"flat_map.glsl"}};
+    gpu::UniformBuffer block_;
+    shaders::FlatUniforms uniforms_{};
+    std::optional<gpu::Texture> triangleOfPixel_;
+};
+
+}  // namespace haustra::render

@@ -1,0 +1,120 @@
+#include "render/gl/gl_pictures.h"
+
+#include "render/gl/march_variant.h"
+#include "render/gl/picture_readback.h"
+#include "render/gl/ray_setup.h"
+#include "render/gl/stored_value.h"
+#include "shaders/shader_source.h"
+#include "shaders/uniforms.h"
+
+#include <utility>
+
+namespace haustra::render {
+
+Result<std::unique_ptr<GlPictures>> GlPictures::create(std::shared_ptr<GlScene> scene,
+                                                       const Volume<std::int16_t>& ct,
+                                                       std::shared_ptr<const FlatSurface> surface,
+                                                       int threads) {
+    using shaders::shaderSource;
+    std::optional<gpu::Texture> ctTexture;
+    if (ct.voxels().data() != scene->scene().volume.voxels().data()) {
+        auto texture = uploadVolume(ct, threads, "scan on the GPU");
+        if (!texture) return tl::make_unexpected(texture.error());
+        ctTexture = std::move(*texture);
+    }
+    auto slice = gpu::ComputeProgram::create(
+        "slice.comp", {shaderSource("uniforms.h"), shaderSource("slice.comp")});
+    if (!slice) return tl::make_unexpected(slice.error());
+    auto block = gpu::UniformBuffer::create(sizeof(shaders::SliceUniforms));
+    if (!block) return tl::make_unexpected(block.error());
+    std::optional<FlatPainter> flat;
+    if (surface) {
+        auto painter = FlatPainter::create(std::move(surface));
+        if (!painter) return tl::make_unexpected(painter.error());
+        flat = std::move(*painter);
+    }
+    return std::unique_ptr<GlPictures>(new GlPictures(std::move(scene), std::move(ctTexture),
+                                                      std::move(flat), std::move(*slice),
+                                                      std::move(*block)));
+}
+
+GlPictures::GlPictures(std::shared_ptr<GlScene> scene, std::optional<gpu::Texture> ct,
+                       std::optional<FlatPainter> flat, gpu::ComputeProgram slice,
+                       gpu::UniformBuffer sliceBlock)
+    : scene_(std::move(scene)),
+      ct_(std::move(ct)),
+      flat_(std::move(flat)),
+      slice_(std::move(slice)),
+      sliceBlock_(std::move(sliceBlock)) {}
+
+Result<void> GlPictures::makePicture(glm::ivec2 size) {
+    if (picture_ && glm::ivec2(picture_->size()) == size) return {};
+    auto made = gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rgba8, gpu::Filter::nearest,
+                                     "picture");
+    if (!made) return tl::make_unexpected(made.error());
+    picture_ = std::move(*made);
+    return {};
+}
+
+Result<Image> GlPictures::readPicture(int errorsBefore) {
+    const glm::ivec2 size = picture_->size();
+    Image image{size.x, size.y,
+                std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+    if (auto read = readBack(scene_->context(), *picture_, errorsBefore, 0, image); !read)
+        return tl::make_unexpected(read.error());
+    return image;
+}
+
+Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLevel& window,
+                                Scan scan, glm::ivec2 size) {
+    const int errorsBefore = scene_->context().errorCount();
+    if (auto made = makePicture(size); !made) return tl::make_unexpected(made.error());
+    const Grid& grid = scene_->scene().grid();
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    const glm::dvec3 voxels(grid.size);
+    const auto textureVector = [&](glm::dvec3 mm) {
+        return glm::dvec3(voxelFromPatient * glm::dvec4(mm, 0.0)) / voxels;
+    };
+    shaders::SliceUniforms u{};
+    u.originTexture = glm::vec4(
+        (glm::dvec3(voxelFromPatient * glm::dvec4(placement.topLeftMm, 1.0)) + 0.5) / voxels, 0.0);
+    u.rightTexture = glm::vec4(textureVector(placement.rightMm), 0.0);
+    u.downTexture = glm::vec4(textureVector(placement.downMm), 0.0);
+    u.window = glm::vec4(storedRange / window.widthHu,
+                         0.5 - (storedOffset + window.centerHu) / window.widthHu, 0, 0);
+    u.pictureSize = glm::ivec4(size, 0, 0);
+    sliceBlock_.write(u);
+    sliceBlock_.bind(shaders::uniformBinding);
+    (scan == Scan::original && ct_ ? *ct_ : scene_->volume()).bind(shaders::volumeUnit);
+    picture_->bindImage(shaders::pictureImage);
+    slice_.dispatch(size);
+    return readPicture(errorsBefore);
+}
+
+Result<Image> GlPictures::flat(const FlatView& view, glm::ivec2 size) {
+    if (!flat_) return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
+    const int errorsBefore = scene_->context().errorCount();
+    const auto classified = scene_->classification(view.optics, view.march);
+    if (!classified) return tl::make_unexpected(classified.error());
+    if (auto made = makePicture(size); !made) return tl::make_unexpected(made.error());
+    const Scene& scene = scene_->scene();
+    scene_->bind(marchUniforms(view.optics, view.march, scene.grid(), (*classified)->table(),
+                               scene.ranges.size, size),
+                 **classified);
+    if (auto found = flat_->findTriangles(view.window, size); !found)
+        return tl::make_unexpected(found.error());
+    const MarchVariant variant =
+        MarchVariant::of(view.optics, scene_->hasGradients(view.optics), false);
+    if (auto cast = flat_->castRays(variant, stepMm(view.march, scene.grid()), *picture_); !cast)
+        return tl::make_unexpected(cast.error());
+    return readPicture(errorsBefore);
+}
+
+std::size_t GlPictures::gpuBytes() const {
+    std::size_t bytes = flat_ ? flat_->gpuBytes() : 0;
+    for (const std::optional<gpu::Texture>* texture : {&ct_, &picture_})
+        if (*texture) bytes += (*texture)->bytes();
+    return bytes;
+}
+
+}  // namespace haustra::render

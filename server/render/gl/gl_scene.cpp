@@ -1,0 +1,147 @@
+#include "render/gl/gl_scene.h"
+
+#include "core/parallel.h"
+#include "gpu/program.h"
+#include "render/gl/march_variant.h"
+#include "render/gl/ray_setup.h"
+#include "render/gl/stored_value.h"
+#include "shaders/shader_source.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+// Each holds a leap map, a byte for eight voxels.
+constexpr std::size_t classificationsKept = 4;
+
+}  // namespace
+
+Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
+                                  const char* what) {
+    const glm::ivec3 size = volume.grid().size;
+    Result<gpu::Texture> texture =
+        gpu::Texture::create(3, size, gpu::TexelFormat::r16, gpu::Filter::linear, what);
+    if (!texture) return texture;
+    // By slabs, so that the copy in the texture's encoding stays small.
+    const std::size_t slice = std::size_t(size.x) * std::size_t(size.y);
+    const int slab = std::max(1, int((std::size_t(16) << 20) / slice));
+    std::vector<std::uint16_t> encoded;
+    for (int z = 0; z < size.z; z += slab) {
+        const int count = std::min(slab, size.z - z);
+        encoded.resize(slice * std::size_t(count));
+        const std::int16_t* from = volume.voxels().data() + slice * std::size_t(z);
+        parallelFor(encoded.size(), 1 << 20, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                encoded[i] = encodeHu(from[i]);
+        });
+        texture->uploadSlices(z, count, encoded.data());
+    }
+    return texture;
+}
+
+Result<std::unique_ptr<GlScene>> GlScene::upload(gpu::Context& context,
+                                                 std::shared_ptr<const Scene> scene, int threads,
+                                                 std::size_t gradientBudgetBytes) {
+    auto volume = uploadVolume(scene->volume, threads, "scan on the GPU");
+    if (!volume) return tl::make_unexpected(volume.error());
+    auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
+    if (!block) return tl::make_unexpected(block.error());
+    return std::unique_ptr<GlScene>(new GlScene(context, std::move(scene), threads,
+                                                gradientBudgetBytes, std::move(*volume),
+                                                std::move(*block)));
+}
+
+GlScene::GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int threads,
+                 std::size_t gradientBudgetBytes, gpu::Texture volume,
+                 gpu::UniformBuffer marchBlock)
+    : context_(context),
+      scene_(std::move(scene)),
+      threads_(threads),
+      gradientBudgetBytes_(gradientBudgetBytes),
+      volume_(std::move(volume)),
+      marchBlock_(std::move(marchBlock)) {}
+
+Result<const Classification*> GlScene::classification(const Optics& optics,
+                                                      const MarchOptions& march) {
+    if (auto sound = checkOptics(optics); !sound) return tl::make_unexpected(sound.error());
+    if (auto sound = checkMarch(march, optics); !sound) return tl::make_unexpected(sound.error());
+    const double step = stepMm(march, scene_->grid());
+    const auto wanted = [&](const Classification& one) {
+        return one.isFor(optics, step, march.emptySpaceLeaping);
+    };
+    if (const auto found = std::find_if(recent_.begin(), recent_.end(), wanted);
+        found != recent_.end()) {
+        std::rotate(found, found + 1, recent_.end());
+        return &recent_.back();
+    }
+    if (recent_.size() == classificationsKept) recent_.erase(recent_.begin());
+    Result<Classification> made =
+        Classification::create(optics, step, march.emptySpaceLeaping, scene_->ranges, threads_);
+    if (!made) return tl::make_unexpected(made.error());
+    recent_.push_back(std::move(*made));
+    return &recent_.back();
+}
+
+void GlScene::bind(const shaders::MarchUniforms& uniforms, const Classification& classified) {
+    marchBlock_.write(uniforms);
+    marchBlock_.bind(shaders::uniformBinding);
+    volume_.bind(shaders::volumeUnit);
+    if (gradients_) gradients_->bind(shaders::gradientUnit);
+    classified.bind();
+}
+
+bool GlScene::hasGradients(const Optics& optics) {
+    if (gradients_ || !MarchVariant::of(optics, true, false).gradientTexture)
+        return gradients_.has_value();
+    if (8 * scene_->grid().voxelCount() > gradientBudgetBytes_) return false;
+    auto made = makeGradients();
+    if (!made) {
+        gradientBudgetBytes_ = 0;
+        return false;
+    }
+    gradients_ = std::move(*made);
+    gradients_->bind(shaders::gradientUnit);
+    return true;
+}
+
+Result<gpu::Texture> GlScene::makeGradients() {
+    const glm::ivec3 size = scene_->grid().size;
+    auto program =
+        gpu::ComputeProgram::create("gradients.comp", {shaders::shaderSource("gradients.comp")});
+    if (!program) return tl::make_unexpected(program.error());
+    auto made =
+        gpu::Texture::create(3, size, gpu::TexelFormat::rgba16f, gpu::Filter::linear, "gradients");
+    if (!made) return made;
+    volume_.bind(shaders::volumeUnit);
+    made->bindImage(shaders::gradientImage);
+    program->dispatch({size.x, size.y});
+    return made;
+}
+
+Result<void> GlScene::bindBackdrop(const std::shared_ptr<const Backdrop>& backdrop) {
+    if (backdrop != backdrop_) {
+        if (!backdropTexture_ || glm::ivec2(backdropTexture_->size()) != backdrop->size) {
+            auto made = gpu::Texture::create(2, {backdrop->size, 1}, gpu::TexelFormat::rgba32f,
+                                             gpu::Filter::nearest, "backdrop");
+            if (!made) return tl::make_unexpected(made.error());
+            backdropTexture_ = std::move(*made);
+        }
+        backdropTexture_->upload(backdrop->pixels.data());
+        backdrop_ = backdrop;
+    }
+    backdropTexture_->bind(shaders::backdropUnit);
+    return {};
+}
+
+std::size_t GlScene::gpuBytes() const {
+    std::size_t bytes = volume_.bytes() + (backdropTexture_ ? backdropTexture_->bytes() : 0) +
+                        (gradients_ ? gradients_->bytes() : 0);
+    for (const Classification& one : recent_)
+        bytes += one.gpuBytes();
+    return bytes;
+}
+
+}  // namespace haustra::render

@@ -1,0 +1,48 @@
+#include "render/gl/march_variant.h"
+
+#include "shaders/shader_source.h"
+
+namespace haustra::render {
+
+MarchVariant MarchVariant::of(const Optics& optics, bool gradientTexture, bool backdrop) {
+    MarchVariant variant;
+    variant.composition = optics.composition;
+    const bool absorbs = optics.composition == Composition::emissionAbsorption;
+    variant.gradientRows = absorbs && !optics.transferFunction.rows.empty();
+    variant.preIntegrated = absorbs && optics.preIntegrated;
+    variant.shading = optics.composition != Composition::maximumIntensity && optics.shading;
+    variant.gradientTexture = gradientTexture && (variant.shading || variant.gradientRows);
+    variant.backdrop = backdrop;
+    return variant;
+}
+
+std::string MarchVariant::defines() const {
+    const auto define = [](const char* name, int value) {
+        return "#define " + std::string(name) + " " + std::to_string(value) + "\n";
+    };
+    return define("COMPOSITION", int(composition)) + define("PRE_INTEGRATED", preIntegrated) +
+           define("GRADIENT_ROWS", gradientRows) + define("SHADING", shading) +
+           define("GRADIENT_TEXTURE", gradientTexture) + define("BACKDROP", backdrop);
+}
+
+MarchPrograms::MarchPrograms(std::string entry, std::vector<std::string> between)
+    : entry_(std::move(entry)) {
+    for (const std::string& file : between)
+        between_ += shaders::shaderSource(file);
+}
+
+Result<const gpu::ComputeProgram*> MarchPrograms::program(const MarchVariant& variant) {
+    for (const auto& [known, program] : made_)
+        if (known == variant) return program.get();
+    using shaders::shaderSource;
+    const std::string defines = variant.defines();
+    auto program = gpu::ComputeProgram::create(
+        entry_.c_str(),
+        {defines, shaderSource("uniforms.h"), shaderSource("optics.glsl"),
+         shaderSource("march.glsl"), shaderSource("picture.glsl"), between_, shaderSource(entry_)});
+    if (!program) return tl::make_unexpected(program.error());
+    made_.emplace_back(variant, std::make_unique<gpu::ComputeProgram>(std::move(*program)));
+    return made_.back().second.get();
+}
+
+}  // namespace haustra::render

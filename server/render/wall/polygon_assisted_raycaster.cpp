@@ -1,0 +1,161 @@
+#include "render/wall/polygon_assisted_raycaster.h"
+
+#include "render/gl/ray_setup.h"
+#include "render/wall/wall_projection.h"
+#include "shaders/shader_source.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+/// With more, their faces cost more than the rays that they shorten.
+constexpr std::size_t mostBlocksBefore = 100000;
+
+Result<void> checkWall(const Scene& scene) {
+    const auto bad = [](const char* what) { return fail(ErrorKind::badInput, what, "wall"); };
+    if (!scene.wall) return bad("the case has no mesh of the wall");
+    const int count = int(scene.wall->vertices.size());
+    for (const glm::ivec3& t : scene.wall->triangles)
+        if (std::min({t.x, t.y, t.z}) < 0 || std::max({t.x, t.y, t.z}) >= count)
+            return bad("has triangles of vertices that it has not");
+    if (scene.wall->triangles.empty() || !meshTopology(*scene.wall).closed())
+        return bad("the mesh is not closed");
+    return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PolygonAssistedRaycaster>> PolygonAssistedRaycaster::create(
+    std::shared_ptr<GlScene> scene, int threads) {
+    using shaders::shaderSource;
+    if (auto sound = checkWall(scene->scene()); !sound) return tl::make_unexpected(sound.error());
+    auto rays = SinglePassRaycaster::create(scene);
+    if (!rays) return tl::make_unexpected(rays.error());
+    const auto structs = shaderSource("uniforms.h"), own = shaderSource("wall_uniforms.h"),
+               wall = shaderSource("wall.glsl");
+    auto entry = gpu::RasterProgram::create("wall_entry",
+                                            {structs, own, wall, shaderSource("wall_entry.vert")},
+                                            {structs, own, wall, shaderSource("wall_entry.frag")});
+    if (!entry) return tl::make_unexpected(entry.error());
+    auto block = gpu::UniformBuffer::create(sizeof(shaders::WallUniforms));
+    if (!block) return tl::make_unexpected(block.error());
+    WallEntry around(scene->scene());
+    auto mesh = upload(around.wall());
+    if (!mesh) return tl::make_unexpected(mesh.error());
+    return std::unique_ptr<PolygonAssistedRaycaster>(
+        new PolygonAssistedRaycaster(std::move(scene), threads, std::move(*rays), std::move(*entry),
+                                     std::move(*block), std::move(around), std::move(*mesh)));
+}
+
+PolygonAssistedRaycaster::PolygonAssistedRaycaster(std::shared_ptr<GlScene> scene, int threads,
+                                                   std::unique_ptr<SinglePassRaycaster> rays,
+                                                   gpu::RasterProgram entry,
+                                                   gpu::UniformBuffer block, WallEntry wall,
+                                                   Mesh mesh)
+    : scene_(std::move(scene)),
+      threads_(threads),
+      rays_(std::move(rays)),
+      entry_(std::move(entry)),
+      block_(std::move(block)),
+      wall_(std::move(wall)),
+      mesh_(std::move(mesh)) {}
+
+Result<PolygonAssistedRaycaster::Mesh> PolygonAssistedRaycaster::upload(
+    const EntryTriangles& triangles) {
+    using gpu::StorageBuffer;
+    auto places = StorageBuffer::create(std::span<const glm::vec4>(triangles.places), "wall");
+    if (!places) return tl::make_unexpected(places.error());
+    auto indices = StorageBuffer::create(std::span<const glm::ivec3>(triangles.triangles), "wall");
+    if (!indices) return tl::make_unexpected(indices.error());
+    return Mesh{std::move(*places), std::move(*indices), int(triangles.triangles.size())};
+}
+
+Result<void> PolygonAssistedRaycaster::findBefore(const Optics& optics, double stepMm,
+                                                  const TransferTable& table) {
+    if (before_ && before_->stepMm == stepMm && before_->optics == optics) return {};
+    Before before;
+    before.optics = optics;
+    before.stepMm = stepMm;
+    before.visible = wall_.visibleBefore(scene_->scene().ranges, table, threads_);
+    before.count =
+        std::size_t(std::count(before.visible.begin(), before.visible.end(), std::uint8_t(1)));
+    before.tooMany = before.count > mostBlocksBefore;
+    if (before.count > 0 && !before.tooMany) {
+        const EntryTriangles faces = wall_.faces(before.visible);
+        if (!faces.triangles.empty()) {
+            auto uploaded = upload(faces);
+            if (!uploaded) return tl::make_unexpected(uploaded.error());
+            before.faces = std::move(*uploaded);
+        }
+    }
+    before_ = std::move(before);
+    return {};
+}
+
+bool PolygonAssistedRaycaster::mayBeginAtMesh(const CameraView& view) const {
+    // Not every ray of an orthographic camera begins where the camera is.
+    return view.march.emptySpaceLeaping && view.camera.lens == Lens::perspective &&
+           !before_->tooMany && wall_.isClear(view.camera.positionMm, before_->visible);
+}
+
+Result<void> PolygonAssistedRaycaster::drawEntry(const CameraView& view, const Band& band,
+                                                 double stepMm) {
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
+    if (!firstStep_ || firstStep_->size() != size) {
+        auto made = gpu::RasterTarget::create(size, gpu::TexelFormat::r32f, "rays' beginnings");
+        if (!made) return tl::make_unexpected(made.error());
+        firstStep_ = std::move(*made);
+    }
+    const Grid& grid = scene_->scene().grid();
+    shaders::WallUniforms u = wallProjection(
+        view.camera, band, grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size) - 0.5));
+    u.lensDown.w = float(1.0 / stepMm);
+    block_.write(u);
+    block_.bind(shaders::wallUniformBinding);
+    firstStep_->clear(glm::vec4(0.0f));
+    const auto draw = [&](const Mesh& mesh) {
+        mesh.places.bind(shaders::wallVertexBinding);
+        entry_.drawNearest(*firstStep_, mesh.triangles, 0, mesh.count);
+    };
+    draw(mesh_);
+    if (before_->faces) draw(*before_->faces);
+    return {};
+}
+
+Result<void> PolygonAssistedRaycaster::render(const CameraView& view, const Band& band,
+                                              Image& picture) {
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    timestamps_.restart();
+    timestamps_.mark();
+    const auto classified = scene_->classification(view.optics, view.march);
+    if (!classified) return tl::make_unexpected(classified.error());
+    const double step = stepMm(view.march, scene_->scene().grid());
+    if (auto found = findBefore(view.optics, step, (*classified)->table()); !found) return found;
+    beganAtMesh_ = mayBeginAtMesh(view);
+    if (!beganAtMesh_) return rays_->render(view, band, picture);
+    if (auto drawn = drawEntry(view, band, step); !drawn) return drawn;
+    timestamps_.mark();
+    return rays_->renderFrom(firstStep_->texture(), view, band, picture);
+}
+
+std::vector<PassTime> PolygonAssistedRaycaster::passTimes() const {
+    std::vector<PassTime> times = rays_->passTimes();
+    if (const std::vector<double> ms = timestamps_.betweenMs(); beganAtMesh_ && ms.size() == 1)
+        times.insert(times.begin(), {"mesh", ms.front()});
+    return times;
+}
+
+std::size_t PolygonAssistedRaycaster::gpuBytes() const {
+    std::size_t bytes = mesh_.places.bytes() + mesh_.triangles.bytes() + rays_->gpuBytes();
+    if (before_ && before_->faces)
+        bytes += before_->faces->places.bytes() + before_->faces->triangles.bytes();
+    if (firstStep_) bytes += firstStep_->bytes();
+    return bytes;
+}
+
+}  // namespace haustra::render

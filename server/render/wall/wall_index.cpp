@@ -1,0 +1,97 @@
+#include "render/wall/wall_index.h"
+
+#include "render/wall/wall_projection.h"
+#include "shaders/shader_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haustra::render {
+
+namespace {
+
+/// Pixels along a cube's side, so that they are at most half as wide as the fisheye's: those in the
+/// middle of a side, where it is coarsest, span 2 / side radians.
+int cubeSidePixels(const Camera& camera, const Band& band) {
+    const double pixelsPerRadian = band.pictureSize.y / glm::radians(camera.fovDegrees);
+    return std::clamp(int(std::ceil(4.0 * pixelsPerRadian)), 16, maxPictureSide);
+}
+
+}  // namespace
+
+Result<WallIndex> WallIndex::create() {
+    using shaders::shaderSource;
+    const auto structs = shaderSource("uniforms.h"), flatMap = shaderSource("flat_map.glsl"),
+               own = shaderSource("wall_uniforms.h"), wall = shaderSource("wall.glsl");
+    auto triangles = gpu::RasterProgram::create(
+        "wall_triangles", {structs, flatMap, own, wall, shaderSource("wall_triangles.vert")},
+        {structs, shaderSource("wall_triangles.frag")});
+    if (!triangles) return tl::make_unexpected(triangles.error());
+    auto places = gpu::ComputeProgram::create(
+        "wall_index.comp", {structs, flatMap, own, wall, shaderSource("wall_index.comp")});
+    if (!places) return tl::make_unexpected(places.error());
+    auto block = gpu::UniformBuffer::create(sizeof(shaders::WallUniforms));
+    if (!block) return tl::make_unexpected(block.error());
+    return WallIndex(std::move(*triangles), std::move(*places), std::move(*block));
+}
+
+WallIndex::WallIndex(gpu::RasterProgram triangles, gpu::ComputeProgram places,
+                     gpu::UniformBuffer block)
+    : triangles_(std::move(triangles)), places_(std::move(places)), block_(std::move(block)) {}
+
+Result<void> WallIndex::makeTargets(glm::ivec2 picture, glm::ivec2 raster) {
+    using gpu::Filter, gpu::RasterTarget, gpu::TexelFormat, gpu::Texture;
+    if (!triangleOfPixel_ || triangleOfPixel_->size() != raster) {
+        auto made = RasterTarget::create(raster, TexelFormat::rg32i, "triangles of the wall");
+        if (!made) return tl::make_unexpected(made.error());
+        triangleOfPixel_ = std::move(*made);
+    }
+    if (!placeOfPixel_ || glm::ivec2(placeOfPixel_->size()) != picture) {
+        auto made = Texture::create(2, {picture, 1}, TexelFormat::rgba32f, Filter::nearest,
+                                    "places of the wall");
+        if (!made) return tl::make_unexpected(made.error());
+        placeOfPixel_ = std::move(*made);
+    }
+    return {};
+}
+
+Result<std::vector<WallPixel>> WallIndex::find(gpu::Context& context, const FlatSurface& surface,
+                                               const Camera& camera, const Band& band) {
+    const int errorsBefore = context.errorCount();
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
+    const bool cube = camera.lens == Lens::fisheye;
+    const int side = cube ? cubeSidePixels(camera, band) : 0;
+    if (auto made = makeTargets(size, cube ? glm::ivec2(side) : size); !made)
+        return tl::make_unexpected(made.error());
+    // What lies within 125° of the axis is on the first five sides, to their corners.
+    const bool behind =
+        camera.fovDegrees * std::hypot(1.0, double(size.x) / band.pictureSize.y) > 2.0 * 125.0;
+    const int passes = !cube ? 1 : behind ? 6 : 5;
+    for (int pass = 0; pass < passes; ++pass) {
+        shaders::WallUniforms u = cube ? cubeSide(camera, band, surface.originMm(), pass)
+                                       : wallProjection(camera, band, surface.originMm());
+        u.lensRight.w = float(surface.unitsPerCircumference());
+        block_.write(u);
+        block_.bind(shaders::wallUniformBinding);
+        surface.bind();
+        triangleOfPixel_->clear(glm::ivec4(-1, 0, 0, 0));
+        triangles_.drawNearest(*triangleOfPixel_, surface.triangles(), 0, surface.triangleCount());
+        triangleOfPixel_->texture().bind(shaders::triangleUnit);
+        placeOfPixel_->bindImage(shaders::pictureImage);
+        places_.dispatch(size);
+    }
+    std::vector<WallPixel> pixels(std::size_t(size.x) * std::size_t(size.y));
+    static_assert(sizeof(WallPixel) == 16, "a texel of four floats");
+    placeOfPixel_->read(pixels.data(), placeOfPixel_->bytes());
+    if (context.errorCount() != errorsBefore)
+        return fail(ErrorKind::device, "the graphics driver reported an error", "wall index");
+    return pixels;
+}
+
+std::size_t WallIndex::gpuBytes() const {
+    return (triangleOfPixel_ ? triangleOfPixel_->bytes() : 0) +
+           (placeOfPixel_ ? placeOfPixel_->bytes() : 0);
+}
+
+}  // namespace haustra::render

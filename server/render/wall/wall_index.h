@@ -1,0 +1,45 @@
+// Which place of the wall each pixel of a camera's picture sees.
+#pragma once
+
+#include "gpu/context.h"
+#include "gpu/program.h"
+#include "gpu/raster_target.h"
+#include "gpu/texture.h"
+#include "render/flat/flat_surface.h"
+#include "render/raycaster.h"
+#include "render/wall/wall_paint.h"
+
+#include <optional>
+#include <vector>
+
+namespace haustra::render {
+
+/// Rasterises the flat map's cut surface with a depth test, a triangle's number for each pixel, and
+/// then cuts each pixel's ray with its triangle (dissertation §6.3.1). Of a fisheye's picture the
+/// six sides of a cube around the camera are drawn, or five where it sees nothing behind. Whatever
+/// raycaster draws the picture, also one without a GPU, a software device can do this. Belongs to
+/// the thread of the context.
+class WallIndex {
+public:
+    /// Fails where the shaders do not compile.
+    static Result<WallIndex> create();
+
+    /// One for each pixel of the band, rows from the top: the place where its ray first meets the
+    /// surface, from whichever side. The surface is open at the colon's two ends. The camera must
+    /// have passed its check. Fails (device) where the driver reports an error. O(triangles +
+    /// pixels).
+    Result<std::vector<WallPixel>> find(gpu::Context& context, const FlatSurface& surface,
+                                        const Camera& camera, const Band& band);
+    std::size_t gpuBytes() const;
+
+private:
+    WallIndex(gpu::RasterProgram triangles, gpu::ComputeProgram places, gpu::UniformBuffer block);
+    Result<void> makeTargets(glm::ivec2 picture, glm::ivec2 raster);
+    gpu::RasterProgram triangles_;
+    gpu::ComputeProgram places_;
+    gpu::UniformBuffer block_;
+    std::optional<gpu::RasterTarget> triangleOfPixel_;
+    std::optional<gpu::Texture> placeOfPixel_;
+};
+
+}  // namespace haustra::render

@@ -1,0 +1,97 @@
+#include "render/wall/wall_paint.h"
+
+#include "core/flat_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include <png.h>
+
+namespace haustra::render {
+
+namespace {
+
+double linearLight(double displayed) {
+    return displayed <= 0.04045 ? displayed / 12.92 : std::pow((displayed + 0.055) / 1.055, 2.4);
+}
+double displayedLight(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+std::array<double, 256> linearOfBytes() {
+    std::array<double, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = linearLight(double(i) / 255.0);
+    return table;
+}
+
+Result<void> checkSize(double width, double height) {
+    if (width >= 1 && height >= 1 && width <= maxPaintSide && height <= maxPaintSide) return {};
+    return fail(
+        ErrorKind::badInput,
+        "the picture's sides are not within 1 to " + std::to_string(maxPaintSide) + " pixels",
+        "wall paint");
+}
+
+}  // namespace
+
+glm::u8vec4 WallPaint::at(glm::dvec2 flat) const {
+    if (!(flat.y >= 0.0 && flat.y <= height) || !std::isfinite(flat.x)) return glm::u8vec4(0);
+    const glm::dvec2 share(1.0 - (flat.x - std::floor(flat.x)), 1.0 - flat.y / height);
+    const glm::ivec2 pixel =
+        glm::clamp(glm::ivec2(glm::floor(share * glm::dvec2(size))), glm::ivec2(0), size - 1);
+    return pixels[std::size_t(pixel.y) * std::size_t(size.x) + std::size_t(pixel.x)];
+}
+
+Result<void> checkWallPaint(const WallPaint& paint) {
+    if (auto sound = checkSize(paint.size.x, paint.size.y); !sound) return sound;
+    if (paint.pixels.size() != std::size_t(paint.size.x) * std::size_t(paint.size.y))
+        return fail(ErrorKind::badInput, "the number of pixels is not the picture's", "wall paint");
+    if (!(paint.height > 0.0 && paint.height <= maxFlatHeight))
+        return fail(ErrorKind::badInput, "the strip has no height or is too long", "wall paint");
+    return {};
+}
+
+Result<std::shared_ptr<const WallPaint>> readWallPaint(const std::filesystem::path& file,
+                                                       double height) {
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    const auto refuse = [&](const std::string& why) {
+        png_image_free(&png);
+        return fail(ErrorKind::badInput, why, file.filename().string());
+    };
+    if (!png_image_begin_read_from_file(&png, file.c_str()))
+        return refuse(std::string("is no PNG picture: ") + png.message);
+    png.format = PNG_FORMAT_RGBA;
+    auto paint = std::make_shared<WallPaint>();
+    if (auto sound = checkSize(png.width, png.height); !sound) return refuse(sound.error().message);
+    paint->size = {int(png.width), int(png.height)};
+    paint->height = height;
+    paint->pixels.resize(std::size_t(png.width) * png.height);
+    if (!png_image_finish_read(&png, nullptr, paint->pixels.data(), 0, nullptr))
+        return refuse(std::string("cannot be read: ") + png.message);
+    if (auto sound = checkWallPaint(*paint); !sound) return tl::make_unexpected(sound.error());
+    return std::shared_ptr<const WallPaint>(std::move(paint));
+}
+
+void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band,
+          Image& picture) {
+    static const std::array<double, 256> linear = linearOfBytes();
+    std::uint8_t* rgb =
+        &picture.rgb[3 * std::size_t(band.pictureSize.x) * std::size_t(band.firstRow)];
+    for (std::size_t i = 0; i < seen.size(); ++i, rgb += 3) {
+        if (!seen[i].seen()) continue;
+        const glm::u8vec4 color = paint.at(seen[i].flat);
+        if (color.a == 0) continue;
+        const double light = linear[std::max({rgb[0], rgb[1], rgb[2]})], share = color.a / 255.0;
+        for (int c = 0; c < 3; ++c) {
+            const double mixed =
+                glm::mix(linear[rgb[c]], light * linear[std::size_t(color[c])], share);
+            rgb[c] = std::uint8_t(std::lround(255.0 * displayedLight(mixed)));
+        }
+    }
+}
+
+}  // namespace haustra::render
