@@ -2,6 +2,7 @@
 #include "reference_marcher.h"
 #include "render/gl/single_pass_raycaster.h"
 #include "render/hybrid/hybrid_raycaster.h"
+#include "render/optics/optics_presets.h"
 #include "wall_scene.h"
 
 namespace haustra::tests {
@@ -136,6 +137,41 @@ TEST_F(Hybrid, FollowsRaysToTheirEndsSoThatTheGpuCastsFewQuads) {
     // A translucent medium ends no ray before its last sample.
     view.optics.transferFunction = everywhere(0.01);
     EXPECT_GT(cost({0, false, 0, 0.0}).passes, 2);
+}
+
+TEST_F(Hybrid, ReadersWithTheirOwnColoursDoNotTakeEachOthers) {
+    const auto shared = scene(tubeWithResidue);
+    const auto plain = *SinglePassRaycaster::create(shared);
+    const auto hybrid = *HybridRaycaster::create(shared);
+    CameraView one{cameras()[0], *opticsPreset("mucosa"), {}}, other = one;
+    other.optics.transferFunction = translucent();
+    const Image expected[] = {drawn(*plain, one, {75, 51}), drawn(*plain, other, {75, 51})};
+    for (int i = 0; i < 20; ++i)
+        EXPECT_GE(psnr(drawn(*hybrid, i % 2 ? other : one, {75, 51}), expected[i % 2]), 60.0);
+    EXPECT_EQ(hybrid->classifications(), 2);
+    // Of more readers than that the latest are known.
+    for (int i = 0; i < 12; ++i) {
+        one.optics.light.ambient = 0.1 + 0.01 * (i % 6);
+        drawn(*hybrid, one, {20, 20});
+    }
+    EXPECT_EQ(hybrid->classifications(), 14);
+}
+
+TEST_F(Hybrid, PixelsAreTheSameWhateverTheBalanceAsks) {
+    const auto shared = scene(tubeWithResidue);
+    const auto plain = *SinglePassRaycaster::create(shared);
+    const auto hybrid = *HybridRaycaster::create(shared);
+    const CameraView view{cameras()[1], *opticsPreset("mucosa"), {}};
+    const Image expected = drawn(*plain, view, {75, 51});
+    std::vector<HybridControls> asked;
+    for (int i = 0; i < 100; ++i) {
+        EXPECT_GE(psnr(drawn(*hybrid, view, {75, 51}), expected), 60.0);
+        const HybridControls& controls = hybrid->stats().controls;
+        if (std::find(asked.begin(), asked.end(), controls) == asked.end())
+            asked.push_back(controls);
+    }
+    EXPECT_EQ(asked.front(), hybridLadder.front());
+    EXPECT_GE(asked.size(), 2u);
 }
 
 TEST_F(Hybrid, NothingToSeeCostsNoPass) {

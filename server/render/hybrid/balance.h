@@ -1,8 +1,10 @@
 // How the hybrid raycaster shares its work between CPU and GPU (dissertation §5.3.4).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace haustra::render {
 
@@ -37,41 +39,76 @@ inline constexpr std::array<HybridControls, 9> hybridLadder = {{
     {0, true, 0, 0.0},
 }};
 
-/// Which rung to stand on, by what pictures have cost on average over `patience` of them. Where the
-/// CPU takes more than `tolerance` times as long as the GPU, the next pictures stand one rung
-/// lower; where the GPU does, one higher; where neither does, one lower for a trial: there is less
-/// work in all. A step that has made pictures faster by `gain` is followed by another in its
-/// direction; one that has not is taken back, and there the balance stays until the two times have
-/// changed by `stirring` in proportion to each other. (The dissertation compares the two times
-/// alone. Where the GPU is the CPU's own cores, as with a software device, equal times are no
-/// optimum: there the picture's time leads to the rung with the least work in all.) Belongs to one
-/// thread.
+/// Which rung to stand on, by what pictures cost. It begins on the lowest, which costs about what a
+/// single pass does, and stands at home on the best that it knows. Now and then another rung is
+/// asked: its pictures are drawn in turns with home's, so that a view or a machine that changes
+/// meanwhile changes both, and the medians of up to `mostPairs` of each decide. One that is faster
+/// by `gain` is home from then on. No slope is followed from rung to rung: costs need not rise and
+/// fall but once along the ladder, and where the GPU is the CPU's own cores they do not.
+///
+/// Whom it asks: those never asked, first towards where the longer of the CPU's and the GPU's times
+/// says (the dissertation equalises the two; here they only give the direction); then whoever was
+/// not asked for the longest, where the waiting of those that were slow counts less, down to a
+/// quarter; but that of the lowest rung and of home's neighbours counts whole. What asking loses
+/// against home is bounded: `share` of a picture for each picture, of which up to `mostCredit` may
+/// be saved, and at most one asking beyond.
+///
+/// Where home's times have changed by `stirring` in proportion to each other, what is known of the
+/// other rungs is doubted, and the lowest is asked first. Belongs to one thread.
 class HybridBalance {
 public:
-    static constexpr int patience = 4;
-    static constexpr double tolerance = 1.25, gain = 0.02, stirring = 1.6;
+    static constexpr int mostPairs = 7, pairsToWin = 5, pairsToLose = 3;
+    static constexpr double gain = 0.03, hopeless = 2.0, worse = 1.1;
+    static constexpr double share = 1.0 / 32.0, mostCredit = 8.0;
+    static constexpr double tolerance = 1.25, stirring = 1.6;
+    static constexpr int shortestRest = 8, longestRest = 32;  // pictures from asking to asking
 
-    explicit HybridBalance(int rung = 3) : rung_(rung) {}
-
-    int rung() const { return rung_; }
-    const HybridControls& controls() const { return hybridLadder[std::size_t(rung_)]; }
+    /// For the next picture.
+    int rung() const { return guestsTurn_ ? guest_ : home_; }
+    const HybridControls& controls() const { return hybridLadder[std::size_t(rung())]; }
+    /// The rung that it holds for the best.
+    int home() const { return home_; }
     /// Of a picture that was drawn with controls(): the CPU's part, the GPU's, and from its
     /// beginning to its end.
     void drew(double cpuMs, double gpuMs, double pictureMs);
+    /// The next picture shows something else: the last ones' times are no measure for it.
+    void elsewhere();
 
 private:
-    struct Seen {
-        double cpuMs = 0.0, gpuMs = 0.0, pictureMs = 0.0;
-        double ratio() const;
+    static constexpr int rungs = int(hybridLadder.size());
+    struct Asked {
+        bool ever = false;
+        long at = 0;          // in pictures_
+        double excess = 0.0;  // over home's time, in proportion to it
     };
-    void step(int direction, const Seen& here);
+    /// The last few values.
+    class Few {
+    public:
+        void add(double value);
+        void clear() { values_.clear(); }
+        int count() const { return int(values_.size()); }
+        double median() const;
+        double least() const { return *std::min_element(values_.begin(), values_.end()); }
+        double most() const { return *std::max_element(values_.begin(), values_.end()); }
 
-    int rung_;
-    int pictures_ = 0;  // on this rung
-    Seen sum_;
-    int cameFrom_ = -1;
-    Seen there_;            // on the rung that it came from
-    double settled_ = 0.0;  // the ratio at which it stays; 0: it does not
+    private:
+        std::vector<double> values_;
+    };
+    void drewHome(double cpuMs, double gpuMs, double pictureMs);
+    void drewGuest(double pictureMs);
+    void doubt();
+    int nextGuest() const;
+    void judge();
+    void endAsking(bool won, double ratio);
+
+    int home_ = 0, guest_ = -1;
+    bool guestsTurn_ = false;
+    Few homeMs_, guestMs_, cpuPerGpu_;
+    std::array<Asked, rungs> asked_{};
+    long pictures_ = 0, doubtedAt_ = 0;
+    int rest_ = 0, nextRest_ = shortestRest;
+    double credit_ = mostCredit;
+    double knownCpuPerGpu_ = 0.0;  // 0: not yet
 };
 
 }  // namespace haustra::render

@@ -8,6 +8,8 @@
 #include "render/hybrid/camera_rays.h"
 #include "render/hybrid/quad_list.h"
 #include "render/hybrid/ray_tiles.h"
+#include "render/hybrid/reader_balances.h"
+#include "render/lately_used.h"
 #include "render/native/tile_workers.h"
 
 #include <algorithm>
@@ -25,6 +27,11 @@ constexpr int tileRowsAtOnce = 4;
 /// Quads of a work group, and as many groups to a row of them as any device takes.
 constexpr int quadsPerGroup = 16, groupsPerRow = 1024, groupThreads = 64;
 
+/// As many as the scene keeps: each holds a byte for eight voxels.
+constexpr std::size_t classificationsKept = 4;
+/// Cameras of one reader, picture after picture, in lengths of the volume's diagonal.
+constexpr double nearShare = 0.1;
+
 double nowMs() {
     return std::chrono::duration<double, std::milli>(
                std::chrono::steady_clock::now().time_since_epoch())
@@ -38,6 +45,11 @@ struct Classified {
     ClassifiedOctree octree;
     bool anyOpaque;
 };
+
+double diagonalMm(const Grid& grid) {
+    return glm::distance(grid.patientFromVoxelPoint(glm::dvec3(0.0)),
+                         grid.patientFromVoxelPoint(glm::dvec3(grid.size - 1)));
+}
 
 bool anyOpaqueLeaf(const ClassifiedOctree& octree) {
     const glm::ivec3 size = octree.nodes(0);
@@ -56,8 +68,9 @@ struct HybridRaycaster::Impl {
     TileWorkers workers;
     MinMaxOctree octree;
     MarchPrograms slabs{"hybrid_slab.comp"}, finish{"cell_picture.comp"};
-    HybridBalance balance;
-    std::optional<Classified> classified;  // of the last view
+    ReaderBalances balances;
+    LatelyUsed<Classified> classified{classificationsKept};
+    int classifications = 0;
     std::optional<gpu::Texture> rays, target;
     std::optional<gpu::MappedBuffer> spans;
     std::optional<QuadLists> lists;
@@ -69,16 +82,20 @@ struct HybridRaycaster::Impl {
           options(chosen),
           workers(chosen.threads),
           octree(MinMaxOctree::fromLeaves(scene->scene().ranges, blockSide,
-                                          scene->scene().grid().size)) {}
+                                          scene->scene().grid().size)),
+          balances(nearShare * diagonalMm(scene->scene().grid())) {}
 
     const Classified& classify(const Optics& optics, double stepMm, const TransferTable& table) {
-        if (!classified || classified->stepMm != stepMm || !(classified->optics == optics)) {
-            ClassifiedOctree made(octree, table, options.threads);
-            const bool opaque =
-                optics.composition != Composition::maximumIntensity && anyOpaqueLeaf(made);
-            classified.emplace(Classified{optics, stepMm, std::move(made), opaque});
-        }
-        return *classified;
+        if (const Classified* known = classified.find([&](const Classified& one) {
+                return one.stepMm == stepMm && one.optics == optics;
+            }))
+            return *known;
+        classified.makeRoom();
+        ++classifications;
+        ClassifiedOctree made(octree, table, options.threads);
+        const bool opaque =
+            optics.composition != Composition::maximumIntensity && anyOpaqueLeaf(made);
+        return *classified.keep({optics, stepMm, std::move(made), opaque});
     }
 
     Result<void> makeTargets(glm::ivec2 size);
@@ -215,7 +232,8 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     }
     const double began = nowMs();
     my.stats = {};
-    my.stats.controls = my.options.controls.value_or(my.balance.controls());
+    my.stats.controls =
+        my.options.controls ? *my.options.controls : my.balances.controls(view, band, step);
     my.timestamps.restart();
     my.rays->clear();
     my.rays->bindImage(raysImage);
@@ -237,12 +255,16 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     const std::vector<double> between = my.timestamps.betweenMs();
     for (std::size_t i = 0; i < between.size(); i += 2)
         my.stats.gpuMs += between[i];
-    if (!my.options.controls) my.balance.drew(my.stats.cpuMs, my.stats.gpuMs, nowMs() - began);
+    if (!my.options.controls) my.balances.drew(my.stats.cpuMs, my.stats.gpuMs, nowMs() - began);
     return {};
 }
 
 const HybridStats& HybridRaycaster::stats() const {
     return impl_->stats;
+}
+
+int HybridRaycaster::classifications() const {
+    return impl_->classifications;
 }
 
 std::vector<PassTime> HybridRaycaster::passTimes() const {

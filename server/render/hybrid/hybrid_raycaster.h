@@ -50,6 +50,9 @@ public:
     std::vector<PassTime> passTimes() const override;
     /// Of the last band.
     const HybridStats& stats() const;
+    /// How often the octree was classified anew: once for each transfer function, as long as no
+    /// more than four take turns.
+    int classifications() const;
 
 private:
     struct Impl;
