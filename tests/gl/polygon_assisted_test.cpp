@@ -1,6 +1,7 @@
 // Rays that begin at the wall's mesh, and the wall's paint.
 #include "reference_marcher.h"
 #include "render/gl/single_pass_raycaster.h"
+#include "render/optics/optics_presets.h"
 #include "render/wall/polygon_assisted_raycaster.h"
 #include "wall_scene.h"
 
@@ -102,6 +103,24 @@ TEST_F(PolygonAssisted, FindsResidueAndNothingWhereTheLumenIsClean) {
     // A ball of 2 mm and what the transfer function shows of its blur, in blocks of 4 mm³.
     EXPECT_GT(dirty, clean + 10);
     EXPECT_LT(dirty, clean + 300);
+}
+
+TEST_F(PolygonAssisted, ReadersWithTheirOwnColoursDoNotTakeEachOthers) {
+    const auto shared = scene(sampled(grid, tubeWithResidue), tube.wall);
+    const auto plain = *SinglePassRaycaster::create(shared);
+    const auto assisted = *PolygonAssistedRaycaster::create(shared, 0);
+    CameraView one = insideViews().front(), other = one;
+    other.optics.transferFunction = surfaceAt(-300.0);
+    const Image expected[] = {drawn(*plain, one, {75, 51}), drawn(*plain, other, {75, 51})};
+    drawn(*assisted, one, {75, 51});
+    const std::size_t blocks = assisted->blocksBefore(), bytes = assisted->gpuBytes();
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_GE(psnr(drawn(*assisted, i % 2 ? other : one, {75, 51}), expected[i % 2]), 60.0);
+        EXPECT_EQ(assisted->blocksBefore() == blocks, i % 2 == 0);
+    }
+    EXPECT_EQ(assisted->searches(), 2);
+    // The faces of both are counted.
+    EXPECT_GT(assisted->gpuBytes(), bytes);
 }
 
 TEST_F(PolygonAssisted, BandsMakeTheWholePicture) {

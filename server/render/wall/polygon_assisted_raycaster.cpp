@@ -74,9 +74,13 @@ Result<PolygonAssistedRaycaster::Mesh> PolygonAssistedRaycaster::upload(
     return Mesh{std::move(*places), std::move(*indices), int(triangles.triangles.size())};
 }
 
-Result<void> PolygonAssistedRaycaster::findBefore(const Optics& optics, double stepMm,
-                                                  const TransferTable& table) {
-    if (before_ && before_->stepMm == stepMm && before_->optics == optics) return {};
+Result<const PolygonAssistedRaycaster::Before*> PolygonAssistedRaycaster::findBefore(
+    const Optics& optics, double stepMm, const TransferTable& table) {
+    if (const Before* known = before_.find(
+            [&](const Before& one) { return one.stepMm == stepMm && one.optics == optics; }))
+        return known;
+    before_.makeRoom();
+    ++searches_;
     Before before;
     before.optics = optics;
     before.stepMm = stepMm;
@@ -92,18 +96,17 @@ Result<void> PolygonAssistedRaycaster::findBefore(const Optics& optics, double s
             before.faces = std::move(*uploaded);
         }
     }
-    before_ = std::move(before);
-    return {};
+    return before_.keep(std::move(before));
 }
 
-bool PolygonAssistedRaycaster::mayBeginAtMesh(const CameraView& view) const {
+bool PolygonAssistedRaycaster::mayBeginAtMesh(const CameraView& view, const Before& before) const {
     // Not every ray of an orthographic camera begins where the camera is.
     return view.march.emptySpaceLeaping && view.camera.lens == Lens::perspective &&
-           !before_->tooMany && wall_.isClear(view.camera.positionMm, before_->visible);
+           !before.tooMany && wall_.isClear(view.camera.positionMm, before.visible);
 }
 
 Result<void> PolygonAssistedRaycaster::drawEntry(const CameraView& view, const Band& band,
-                                                 double stepMm) {
+                                                 double stepMm, const Before& before) {
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     if (!firstStep_ || firstStep_->size() != size) {
         auto made = gpu::RasterTarget::create(size, gpu::TexelFormat::r32f, "rays' beginnings");
@@ -122,7 +125,7 @@ Result<void> PolygonAssistedRaycaster::drawEntry(const CameraView& view, const B
         entry_.drawNearest(*firstStep_, mesh.triangles, 0, mesh.count);
     };
     draw(mesh_);
-    if (before_->faces) draw(*before_->faces);
+    if (before.faces) draw(*before.faces);
     return {};
 }
 
@@ -135,10 +138,12 @@ Result<void> PolygonAssistedRaycaster::render(const CameraView& view, const Band
     const auto classified = scene_->classification(view.optics, view.march);
     if (!classified) return tl::make_unexpected(classified.error());
     const double step = stepMm(view.march, scene_->scene().grid());
-    if (auto found = findBefore(view.optics, step, (*classified)->table()); !found) return found;
-    beganAtMesh_ = mayBeginAtMesh(view);
+    const auto before = findBefore(view.optics, step, (*classified)->table());
+    if (!before) return tl::make_unexpected(before.error());
+    blocksBefore_ = (*before)->count;
+    beganAtMesh_ = mayBeginAtMesh(view, **before);
     if (!beganAtMesh_) return rays_->render(view, band, picture);
-    if (auto drawn = drawEntry(view, band, step); !drawn) return drawn;
+    if (auto drawn = drawEntry(view, band, step, **before); !drawn) return drawn;
     timestamps_.mark();
     return rays_->renderFrom(firstStep_->texture(), view, band, picture);
 }
@@ -152,8 +157,8 @@ std::vector<PassTime> PolygonAssistedRaycaster::passTimes() const {
 
 std::size_t PolygonAssistedRaycaster::gpuBytes() const {
     std::size_t bytes = mesh_.places.bytes() + mesh_.triangles.bytes() + rays_->gpuBytes();
-    if (before_ && before_->faces)
-        bytes += before_->faces->places.bytes() + before_->faces->triangles.bytes();
+    for (const Before& one : before_.all())
+        if (one.faces) bytes += one.faces->places.bytes() + one.faces->triangles.bytes();
     if (firstStep_) bytes += firstStep_->bytes();
     return bytes;
 }

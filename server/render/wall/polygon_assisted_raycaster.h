@@ -7,6 +7,7 @@
 #include "render/gl/gl_scene.h"
 #include "render/gl/march_variant.h"
 #include "render/gl/single_pass_raycaster.h"
+#include "render/lately_used.h"
 #include "render/raycaster.h"
 #include "render/wall/wall_entry.h"
 
@@ -34,7 +35,10 @@ public:
     /// Whether the last band's rays began at the mesh.
     bool beganAtMesh() const { return beganAtMesh_; }
     /// Blocks that stand visible before the mesh, in the last view's colours.
-    std::size_t blocksBefore() const { return before_ ? before_->count : 0; }
+    std::size_t blocksBefore() const { return blocksBefore_; }
+    /// How often such blocks were looked for: once for each transfer function, as long as no more
+    /// than four take turns.
+    int searches() const { return searches_; }
 
 private:
     /// Triangles on the GPU.
@@ -55,9 +59,12 @@ private:
                              std::unique_ptr<SinglePassRaycaster> rays, gpu::RasterProgram entry,
                              gpu::UniformBuffer block, WallEntry wall, Mesh mesh);
     static Result<Mesh> upload(const EntryTriangles& triangles);
-    Result<void> findBefore(const Optics& optics, double stepMm, const TransferTable& table);
-    bool mayBeginAtMesh(const CameraView& view) const;
-    Result<void> drawEntry(const CameraView& view, const Band& band, double stepMm);
+    /// Valid until the next call.
+    Result<const Before*> findBefore(const Optics& optics, double stepMm,
+                                     const TransferTable& table);
+    bool mayBeginAtMesh(const CameraView& view, const Before& before) const;
+    Result<void> drawEntry(const CameraView& view, const Band& band, double stepMm,
+                           const Before& before);
 
     std::shared_ptr<GlScene> scene_;
     int threads_;
@@ -66,7 +73,10 @@ private:
     gpu::UniformBuffer block_;
     WallEntry wall_;
     Mesh mesh_;
-    std::optional<Before> before_;  // of the last view
+    static constexpr std::size_t searchesKept = 4;  // as many classifications as the scene keeps
+    LatelyUsed<Before> before_{searchesKept};
+    int searches_ = 0;
+    std::size_t blocksBefore_ = 0;
     std::optional<gpu::RasterTarget> firstStep_;
     gpu::Timestamps timestamps_;
     bool beganAtMesh_ = false;
