@@ -7,6 +7,7 @@
 #include "panels/flat_strip.h"
 #include "panels/flight.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -31,7 +32,10 @@ enum class View {
     oblique,
     overview,
 };
-inline constexpr int viewCount = 8;
+inline constexpr std::array allViews = {View::endoscopic, View::axial,     View::coronal,
+                                        View::sagittal,   View::flattened, View::flattenedZoom,
+                                        View::oblique,    View::overview};
+inline constexpr std::size_t viewCount = allViews.size();
 inline bool isSlice(View view) {
     return view == View::axial || view == View::coronal || view == View::sagittal;
 }

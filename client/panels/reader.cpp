@@ -5,16 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace haustra::panels {
 namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::array<View, viewCount> views = {
-    View::endoscopic, View::axial,         View::coronal, View::sagittal,
-    View::flattened,  View::flattenedZoom, View::oblique, View::overview};
 // What hands do to a curve reaches the server so often.
 constexpr auto curveInterval = milliseconds(50);
 // The flattened views take long: they show a curve that rests.
@@ -48,7 +44,7 @@ Reader::Reader(link::ConnectionOptions options, std::string caseName)
 void Reader::update(double seconds) {
     session_.poll(milliseconds(0));
     if (session_.caseInfo() && session_.caseInfo() != case_) caseOpened();
-    takePictures();
+    pictures_.take(session_.takePictures(), Clock::now());
     if (!case_) return;
     wall_.update(*case_);
     takePicked();
@@ -80,12 +76,8 @@ void Reader::caseOpened() {
     obliqueAheadMm_ = 0.0;
     obliqueHeightMm_ = Oblique{}.heightMm;
     resetOverview();
-    pictures_ = {};
-    pictureCounts_ = {};
+    pictures_.clear();
     openSizes_ = {};
-    for (auto& asked : asked_)
-        asked.clear();
-    latencies_.clear();
     transferFunction_ = case_->transferFunctions.empty() ? "" : case_->transferFunctions.front();
     curveChangedAt_.reset();
     curveIsNew_ = false;
@@ -93,35 +85,6 @@ void Reader::caseOpened() {
         session_.setWindowLevel(int(view), window_);
     for (ViewPacer& pacer : pacers_)
         pacer.touch();
-}
-
-void Reader::takePictures() {
-    for (Arrival& arrival : session_.takePictures()) {
-        const std::size_t n = std::size_t(arrival.picture.viewport);
-        if (n >= viewCount) continue;
-        std::deque<Asked>& asked = asked_[n];
-        std::optional<Asked> answered;
-        while (!asked.empty() && asked.front().sequence <= arrival.picture.sequence) {
-            answered = asked.front();
-            asked.pop_front();
-        }
-        if (answered) shownSlices_[n] = answered->slice;
-        if (answered && n == at(View::flattenedZoom)) shownWindow_ = answered->window;
-        if (answered && n == at(View::oblique)) shownOblique_ = answered->oblique;
-        if (answered && n == at(View::overview)) shownOrbit_ = answered->orbit;
-        if (n == at(View::endoscopic)) pictureTimes_.push_back(arrival.decodedAt);
-        if (answered && answered->moving) {
-            const double ms =
-                std::chrono::duration<double, std::milli>(arrival.decodedAt - answered->at).count();
-            details_[n].add(ms);
-            if (n == at(View::endoscopic)) latencies_.add(ms);
-        }
-        pictures_[n] = std::move(arrival.picture);
-        ++pictureCounts_[n];
-    }
-    const auto secondAgo = Clock::now() - std::chrono::seconds(1);
-    while (!pictureTimes_.empty() && pictureTimes_.front() < secondAgo)
-        pictureTimes_.pop_front();
 }
 
 void Reader::setPaneSize(View view, glm::ivec2 pixels) {
@@ -144,90 +107,32 @@ void Reader::openPane(View view, bool moving) {
     const bool scales =
         view == View::endoscopic || view == View::flattenedZoom || view == View::overview;
     const glm::ivec2 size =
-        scaled(paneSizes_[at(view)], moving && scales ? details_[at(view)].scale() : 1.0);
+        scaled(paneSizes_[at(view)], moving && scales ? pictures_.movingScale(view) : 1.0);
     if (size == openSizes_[at(view)]) return;
     openSizes_[at(view)] = size;
     session_.setViewport(int(view), view, size.x, size.y);
 }
 
-// The flight moves the window of the zoom view; the fly-over's window moves the camera.
-void Reader::travel(double seconds) {
-    flight_.advance(seconds);
-    if (!case_->flat) return;
-    const double arc = placeArcMm();
-    if (arc != followedArcMm_) {
-        tour_.follow(arc);
-    } else {
-        tour_.advance(seconds, flight_.speedMmPerS(), flight_.direction());
-        if (!tour_.flyingOver() || tour_.window().center.y == followedY_) return;
-        flight_.goTo(tour_.arcMm());
-    }
-    picked_.reset();
-    followedArcMm_ = placeArcMm();
-    followedY_ = tour_.window().center.y;
-}
-
-double Reader::placeArcMm() const {
-    return flight_.isFree() && !flight_.centerline().points.empty()
-               ? nearestArc(flight_.centerline(), flight_.camera().positionMm)
-               : flight_.arcMm();
-}
-
-void Reader::goToFlat(glm::dvec2 flat, bool center) {
-    if (!hasStrip()) return;
-    flat.y = std::clamp(flat.y, 0.0, case_->flat->height);
-    centerPicked_ = center;
-    wall_.pick(flat);
-}
-
-void Reader::takePicked() {
-    const auto place = wall_.takePicked();
-    if (!place) return;
-    tour_.setMotion(Motion::paused);
-    flight_.lookAt(place->arcMm, place->positionMm);
-    // The camera's new place is not followed: slices and window show what was picked.
-    lastCamera_ = flight_.camera();
-    pacers_[at(View::endoscopic)].touch();
-    followedArcMm_ = placeArcMm();
-    sliceFocusMm_ = place->positionMm;
-    if (centerPicked_) tour_.centerOn(place->flat);
-    followedY_ = tour_.window().center.y;
-    picked_ = place;
-}
-
-Motion Reader::motion() const {
-    return tour_.flyingOver() ? tour_.motion() : flight_.motion();
-}
-
-void Reader::setMotion(Motion motion) {
-    if (tour_.flyingOver())
-        tour_.setMotion(motion);
-    else
-        flight_.setMotion(motion);
-}
-
-void Reader::setFlyingOver(bool on) {
-    flight_.setMotion(Motion::paused);
-    tour_.setFlyingOver(on && hasStrip());
-    if (tour_.flyingOver()) flight_.resetLook();
-    followedY_ = tour_.window().center.y;
+Sight Reader::sight() const {
+    return {slice(), tour_.window(), oblique(), orbit_};
 }
 
 bool Reader::changed(View view, bool cameraMoved) const {
+    const Sight& asked = asked_[at(view)];
     switch (view) {
         case View::endoscopic:
             return cameraMoved;
         case View::flattened:
             return false;
         case View::flattenedZoom:
-            return tour_.window().center != askedWindow_.center ||
-                   tour_.window().pixelsPerUnit != askedWindow_.pixelsPerUnit;
+            return tour_.window().center != asked.window.center ||
+                   tour_.window().pixelsPerUnit != asked.window.pixelsPerUnit;
         case View::oblique:
-            return !(oblique() == askedOblique_);
+            return !(oblique() == asked.oblique);
         case View::overview:
-            return !(orbit_ == askedOrbit_);
+            return !(orbit_ == asked.orbit);
         default:
-            return !(slice(view) == askedSlices_[at(view)]);
+            return !(slice() == asked.slice);
     }
 }
 
@@ -236,7 +141,7 @@ void Reader::askForViews(Clock::time_point now) {
     const bool moved = !(camera == lastCamera_);
     if (camera.positionMm != lastCamera_.positionMm) sliceFocusMm_ = camera.positionMm;
     lastCamera_ = camera;
-    for (const View view : views) {
+    for (const View view : allViews) {
         const std::size_t n = at(view);
         if (!inUse(view)) continue;
         const auto due = pacers_[n].next(changed(view, moved), now);
@@ -244,19 +149,14 @@ void Reader::askForViews(Clock::time_point now) {
         const bool moving = due == ViewPacer::Ask::moving;
         if (moving && view == View::flattened) continue;  // its still follows at once
         openPane(view, moving);
-        if (isSlice(view)) askedSlices_[n] = slice(view);
-        if (view == View::flattenedZoom) askedWindow_ = tour_.window();
-        if (view == View::oblique) askedOblique_ = oblique();
-        if (view == View::overview) askedOrbit_ = orbit_;
-        asked_[n].push_back(
-            {ask(view, moving), now, slice(view), tour_.window(), oblique(), orbit_, moving});
-        if (asked_[n].size() > 256) asked_[n].pop_front();
+        asked_[n] = sight();
+        pictures_.asked(view, {ask(view, moving), now, asked_[n], moving});
     }
 }
 
 std::uint64_t Reader::ask(View view, bool moving) {
     if (view == View::endoscopic) return session_.setCamera(int(view), lastCamera_, moving);
-    if (isSlice(view)) return session_.setSlice(int(view), slice(view), moving);
+    if (isSlice(view)) return session_.setSlice(int(view), slice(), moving);
     if (view == View::oblique) return session_.setOblique(int(view), oblique(), moving);
     // The window itself marks reader and bookmarks: they move without a new picture. While the
     // hand turns the colon it is alone: where there is no GPU, the body takes a second.
@@ -267,7 +167,7 @@ std::uint64_t Reader::ask(View view, bool moving) {
     return session_.setFlat(int(view), window, moving);
 }
 
-Slice Reader::slice(View) const {
+Slice Reader::slice() const {
     return {sliceFocusMm_, sliceZoom_, slicesCleansed_};
 }
 
@@ -332,12 +232,6 @@ void Reader::setShowsBody(bool shows) {
     pacers_[at(View::overview)].touch();
 }
 
-void Reader::goNear(glm::dvec3 patientMm) {
-    if (!case_ || case_->centerline.points.empty()) return;
-    setMotion(Motion::paused);
-    flight_.goTo(nearestArc(case_->centerline, patientMm));
-}
-
 void Reader::setWindow(WindowLevel window) {
     window.widthHu = std::clamp(window.widthHu, 1.0, 6000.0);
     window.centerHu = std::clamp(window.centerHu, -2000.0, 4000.0);
@@ -384,29 +278,10 @@ void Reader::sendCurve(Clock::time_point now) {
             show(view);
 }
 
-void Reader::addBookmark(std::string note) {
-    if (case_) session_.addBookmark(flight_.camera(), flight_.arcMm(), std::move(note));
-}
-
-void Reader::goToBookmark(int step) {
-    const double here = flight_.arcMm();
-    double nearest = std::numeric_limits<double>::max();
-    std::optional<Bookmark> found;
-    for (const Bookmark& bookmark : session_.bookmarks()) {
-        const double ahead = step * (bookmark.arcMm - here);
-        if (ahead > 0.5 && ahead < nearest) nearest = ahead, found = bookmark;
-    }
-    if (found) goTo(*found);
-}
-
-double Reader::picturesPerSecond() const {
-    return double(pictureTimes_.size());
-}
-
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
     if (motion() != Motion::paused || wall_.waits() || curveChangedAt_) return true;
-    return std::any_of(views.begin(), views.end(),
+    return std::any_of(allViews.begin(), allViews.end(),
                        [&](View view) { return inUse(view) && pacers_[at(view)].owes(); });
 }
 

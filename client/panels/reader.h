@@ -2,8 +2,8 @@
 // and turns the hand's movements into its calls; it holds no window itself.
 #pragma once
 
-#include "panels/latency.h"
 #include "panels/pacing.h"
+#include "panels/picture_log.h"
 #include "panels/session.h"
 #include "panels/strip_tour.h"
 #include "panels/transfer_curve.h"
@@ -34,8 +34,9 @@ public:
     void setPaneSize(View view, glm::ivec2 pixels);
     glm::ivec2 paneSize(View view) const { return paneSizes_[std::size_t(view)]; }
 
-    /// The slice that is shown now. Slices follow the camera; scrolling leaves it until it moves.
-    Slice slice(View view) const;
+    /// What the three slice views show now, each its plane through the point. They follow the
+    /// camera; scrolling leaves it until it moves.
+    Slice slice() const;
     void scrollSlice(View view, double mm);
     void zoomSlices(double factor);
     /// Whether slices show the cleansed scan; stays false where the case has none.
@@ -93,38 +94,26 @@ public:
     void goToBookmark(int step);
 
     /// The newest picture of a view, and how many there were; nothing shown: count 0.
-    const tiles::Picture& picture(View view) const { return pictures_[std::size_t(view)]; }
-    std::uint64_t pictureCount(View view) const { return pictureCounts_[std::size_t(view)]; }
-    /// The slice that the newest picture of a slice view shows; it lags behind slice().
-    const Slice& shownSlice(View view) const { return shownSlices_[std::size_t(view)]; }
+    const tiles::Picture& picture(View view) const { return pictures_.picture(view); }
+    std::uint64_t pictureCount(View view) const { return pictures_.count(view); }
+    /// What the newest pictures show; they lag behind slice(), oblique(), orbit() and the tour's
+    /// window. The window is in pixels of its pane.
+    const Slice& shownSlice(View view) const { return pictures_.shown(view).slice; }
+    const Oblique& shownOblique() const { return pictures_.shown(View::oblique).oblique; }
+    const Orbit& shownOrbit() const { return pictures_.shown(View::overview).orbit; }
+    const FlatWindow& shownWindow() const { return pictures_.shown(View::flattenedZoom).window; }
 
-    /// Likewise of the oblique view, and of the overview.
-    const Oblique& shownOblique() const { return shownOblique_; }
-    const Orbit& shownOrbit() const { return shownOrbit_; }
-    /// The window that the newest picture of the zoom view shows, in pixels of its pane.
-    const FlatWindow& shownWindow() const { return shownWindow_; }
-
-    /// From camera message to decoded picture, of the last moving endoscopic pictures, ms.
-    Summary latencyMs() const { return latencies_.summary(); }
-    double picturesPerSecond() const;
+    /// See PictureLog.
+    Summary latencyMs() const { return pictures_.latencyMs(); }
+    double picturesPerSecond() const { return double(pictures_.picturesPerSecond()); }
     /// Whether the picture will change soon by itself: draw at full rate.
     bool restless() const;
 
 private:
-    struct Asked {
-        std::uint64_t sequence;
-        Clock::time_point at;
-        Slice slice;
-        FlatWindow window;
-        Oblique oblique;
-        Orbit orbit;
-        bool moving;
-    };
-
     void caseOpened();
-    void takePictures();
     void travel(double seconds);
     void takePicked();
+    Sight sight() const;
     bool changed(View view, bool cameraMoved) const;
     bool inUse(View view) const;
     void askForViews(Clock::time_point now);
@@ -156,17 +145,9 @@ private:
 
     std::array<glm::ivec2, viewCount> paneSizes_{};
     std::array<glm::ivec2, viewCount> openSizes_{};
-    std::array<Slice, viewCount> askedSlices_{}, shownSlices_{};
-    FlatWindow askedWindow_, shownWindow_;
-    Oblique askedOblique_, shownOblique_;
-    Orbit askedOrbit_, shownOrbit_;
     std::array<ViewPacer, viewCount> pacers_;
-    std::array<std::deque<Asked>, viewCount> asked_;
-    std::array<tiles::Picture, viewCount> pictures_;
-    std::array<std::uint64_t, viewCount> pictureCounts_{};
-    std::array<MovingDetail, viewCount> details_;  // slices and the strip are always whole
-    RecentTimes latencies_{40};
-    std::deque<Clock::time_point> pictureTimes_;
+    std::array<Sight, viewCount> asked_;  // last, of each view
+    PictureLog pictures_;
 };
 
 }  // namespace haustra::panels

@@ -1,6 +1,7 @@
 #include "panels/session.h"
 
-#include "panels/messages.h"
+#include "panels/incoming_messages.h"
+#include "panels/outgoing_messages.h"
 
 #include <algorithm>
 #include <random>
@@ -181,7 +182,7 @@ void Session::openCase(const std::string& name) {
 void Session::askAgain() {
     for (const auto& [id, state] : viewports_) {
         if (state.width == 0) continue;  // spoken of before it was opened
-        connection_.send(viewportMessage(++sequence_, id, state.view, state.width, state.height));
+        connection_.send(viewportMessage({++sequence_, id}, state.view, state.width, state.height));
         sayWhatWaited(id, state);
     }
     for (const Owed& owed : owed_)
@@ -190,11 +191,6 @@ void Session::askAgain() {
     for (const auto& [request, question] : questions_)
         connection_.send(question);
     requestBookmarks();
-}
-
-// What is said of a viewport before it is open waits in its state.
-void Session::sendInput(const ViewportState& state, const protocol::ClientMessage& message) {
-    if (state.width > 0) sendIfOpen(message);
 }
 
 void Session::sendIfOpen(const protocol::ClientMessage& message) {
@@ -208,79 +204,50 @@ std::uint64_t Session::setViewport(int viewport, View view, int width, int heigh
     state.view = view;
     state.width = width;
     state.height = height;
-    sendIfOpen(viewportMessage(++sequence_, viewport, view, width, height));
+    sendIfOpen(viewportMessage({++sequence_, viewport}, view, width, height));
     if (!wasOpen && phase_ == Phase::open) sayWhatWaited(viewport, state);
     if (width == 0 || height == 0) viewports_.erase(viewport);
     return sequence_;
 }
 
+// What is said of a viewport before it is open waits in its state.
+template <class Input>
+std::uint64_t Session::setInput(int viewport, const Input& input, std::optional<bool> moving) {
+    ViewportState& state = viewports_[viewport];
+    std::get<std::optional<Input>>(state.inputs) = input;
+    state.moving = moving.value_or(state.moving);
+    ++sequence_;
+    if (state.width > 0) sendIfOpen(inputMessage({sequence_, viewport, state.moving}, input));
+    return sequence_;
+}
+
 void Session::sayWhatWaited(int viewport, const ViewportState& state) {
-    if (state.window) connection_.send(windowMessage(++sequence_, viewport, *state.window));
-    if (state.transferFunction)
-        connection_.send(transferMessage(++sequence_, viewport, *state.transferFunction));
-    if (state.camera)
-        connection_.send(cameraMessage(++sequence_, viewport, *state.camera, state.moving));
-    if (state.slice)
-        connection_.send(sliceMessage(++sequence_, viewport, *state.slice, state.moving));
-    if (state.flat) connection_.send(flatMessage(++sequence_, viewport, *state.flat, state.moving));
-    if (state.oblique)
-        connection_.send(obliqueMessage(++sequence_, viewport, *state.oblique, state.moving));
-    if (state.overview)
-        connection_.send(overviewMessage(++sequence_, viewport, *state.overview, state.moving));
+    const auto say = [&](const auto& input) {
+        if (input) connection_.send(inputMessage({++sequence_, viewport, state.moving}, *input));
+    };
+    std::apply([&](const auto&... input) { (say(input), ...); }, state.inputs);
 }
 
 std::uint64_t Session::setCamera(int viewport, const Camera& camera, bool moving) {
-    ViewportState& state = viewports_[viewport];
-    state.camera = camera;
-    state.moving = moving;
-    sendInput(state, cameraMessage(++sequence_, viewport, camera, moving));
-    return sequence_;
+    return setInput(viewport, camera, moving);
 }
-
 std::uint64_t Session::setSlice(int viewport, const Slice& slice, bool moving) {
-    ViewportState& state = viewports_[viewport];
-    state.slice = slice;
-    state.moving = moving;
-    sendInput(state, sliceMessage(++sequence_, viewport, slice, moving));
-    return sequence_;
+    return setInput(viewport, slice, moving);
 }
-
 std::uint64_t Session::setFlat(int viewport, const FlatWindow& window, bool moving) {
-    ViewportState& state = viewports_[viewport];
-    state.flat = window;
-    state.moving = moving;
-    sendInput(state, flatMessage(++sequence_, viewport, window, moving));
-    return sequence_;
+    return setInput(viewport, window, moving);
 }
-
 std::uint64_t Session::setOblique(int viewport, const Oblique& oblique, bool moving) {
-    ViewportState& state = viewports_[viewport];
-    state.oblique = oblique;
-    state.moving = moving;
-    sendInput(state, obliqueMessage(++sequence_, viewport, oblique, moving));
-    return sequence_;
+    return setInput(viewport, oblique, moving);
 }
-
 std::uint64_t Session::setOverview(int viewport, const Overview& overview, bool moving) {
-    ViewportState& state = viewports_[viewport];
-    state.overview = overview;
-    state.moving = moving;
-    sendInput(state, overviewMessage(++sequence_, viewport, overview, moving));
-    return sequence_;
+    return setInput(viewport, overview, moving);
 }
-
 std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
-    ViewportState& state = viewports_[viewport];
-    state.window = window;
-    sendInput(state, windowMessage(++sequence_, viewport, window));
-    return sequence_;
+    return setInput(viewport, window, std::nullopt);
 }
-
 std::uint64_t Session::setTransferFunction(int viewport, const TransferFunction& function) {
-    ViewportState& state = viewports_[viewport];
-    state.transferFunction = function;
-    sendInput(state, transferMessage(++sequence_, viewport, function));
-    return sequence_;
+    return setInput(viewport, function, std::nullopt);
 }
 
 // ---- the wall -------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #include <array>
 #include <deque>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -98,13 +99,11 @@ private:
     struct ViewportState {
         View view = View::endoscopic;
         int width = 0, height = 0;
-        std::optional<Camera> camera;
-        std::optional<Slice> slice;
-        std::optional<FlatWindow> flat;
-        std::optional<Oblique> oblique;
-        std::optional<Overview> overview;
-        std::optional<WindowLevel> window;
-        std::optional<TransferFunction> transferFunction;
+        // In the order in which the server hears them again.
+        std::tuple<std::optional<WindowLevel>, std::optional<TransferFunction>,
+                   std::optional<Camera>, std::optional<Slice>, std::optional<FlatWindow>,
+                   std::optional<Oblique>, std::optional<Overview>>
+            inputs;
         bool moving = false;
     };
     struct Owed {
@@ -127,7 +126,8 @@ private:
     void askAgain();
     void giveUp(Error error);
     void sayWhatWaited(int viewport, const ViewportState& state);
-    void sendInput(const ViewportState& state, const protocol::ClientMessage& message);
+    template <class Input>
+    std::uint64_t setInput(int viewport, const Input& input, std::optional<bool> moving);
     void sendIfOpen(const protocol::ClientMessage& message);
 
     Phase phase_ = Phase::connecting;

@@ -166,7 +166,7 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
     const bool hovered = pane(ui, title(view), area);
 
     const panels::Slice shown =
-        reader.pictureCount(view) > 0 ? reader.shownSlice(view) : reader.slice(view);
+        reader.pictureCount(view) > 0 ? reader.shownSlice(view) : reader.slice();
     const double pixels = area.size().x / size.x;
     const panels::SliceMap map(view, shown, reader.session().caseInfo()->grid, size.x, size.y);
     handleSliceMouse(ui, view, map, pixels, area, hovered);

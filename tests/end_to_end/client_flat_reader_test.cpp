@@ -119,7 +119,7 @@ TEST_F(ClientFlatReader, AClickOnTheStripLeadsAllViewsThere) {
     reader_->flight().goTo(10.0);
     reader_->update(0.0);
     EXPECT_FALSE(reader_->pickedPlace());
-    EXPECT_EQ(reader_->slice(View::axial).positionMm, reader_->flight().camera().positionMm);
+    EXPECT_EQ(reader_->slice().positionMm, reader_->flight().camera().positionMm);
 }
 
 TEST_F(ClientFlatReader, AClickInTheWindowLeavesItWhereItIs) {

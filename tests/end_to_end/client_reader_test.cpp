@@ -205,15 +205,15 @@ TEST_F(ClientReader, ScrollingASliceLeavesTheCameraAndStaysWithinTheScan) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     const glm::dvec3 camera = reader_->flight().camera().positionMm;
     reader_->scrollSlice(View::axial, 15.0);
-    EXPECT_EQ(reader_->slice(View::axial).positionMm, camera + glm::dvec3(0, 0, 15));
+    EXPECT_EQ(reader_->slice().positionMm, camera + glm::dvec3(0, 0, 15));
     EXPECT_EQ(reader_->flight().camera().positionMm, camera);
     reader_->scrollSlice(View::axial, 1e6);
     const Grid& grid = reader_->session().caseInfo()->grid;
-    EXPECT_NEAR(reader_->slice(View::axial).positionMm.z,
+    EXPECT_NEAR(reader_->slice().positionMm.z,
                 grid.patientFromVoxelPoint(grid.size - 1).z, 1e-9);
     reader_->flight().goTo(50.0);
     reader_->update(0.0);
-    EXPECT_EQ(reader_->slice(View::axial).positionMm, reader_->flight().camera().positionMm);
+    EXPECT_EQ(reader_->slice().positionMm, reader_->flight().camera().positionMm);
 }
 
 TEST_F(ClientReader, BookmarksLeadAlongTheColon) {

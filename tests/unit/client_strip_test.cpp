@@ -1,6 +1,6 @@
 // The strip as the client knows it, the window onto it, the fly-over, and descriptions of strips
 // that a server should not send.
-#include "panels/messages.h"
+#include "panels/incoming_messages.h"
 #include "panels/strip_tour.h"
 
 #include <cmath>

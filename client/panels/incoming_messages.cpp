@@ -1,0 +1,136 @@
+#include "panels/incoming_messages.h"
+
+#include <cmath>
+
+namespace haustra::panels {
+namespace {
+
+constexpr double maxStripHeight = 4096.0;
+
+glm::dvec3 vectorFrom(const protocol::Vec3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+Result<Centerline> centerlineFrom(const protocol::CaseOpened& message) {
+    const auto refuse = [](const char* what) {
+        return fail(ErrorKind::badInput, what, "case opened: centerline");
+    };
+    constexpr int perSample = 5;  // x, y, z, arc, radius
+    if (message.centerline_size() % perSample != 0)
+        return refuse("its numbers do not come in fives");
+    Centerline centerline;
+    centerline.points.resize(std::size_t(message.centerline_size() / perSample));
+    double arcBefore = 0.0;
+    for (std::size_t n = 0; n < centerline.points.size(); ++n) {
+        const double* sample = message.centerline().data() + n * perSample;
+        CenterlinePoint& point = centerline.points[n];
+        point.positionMm = {sample[0], sample[1], sample[2]};
+        point.arcMm = sample[3];
+        point.radiusMm = sample[4];
+        for (int k = 0; k < perSample; ++k)
+            if (!std::isfinite(sample[k])) return refuse("a number is not finite");
+        if (point.arcMm < arcBefore) return refuse("its arc does not grow");
+        arcBefore = point.arcMm;
+    }
+    for (const std::uint32_t n : message.gap_samples()) {
+        if (n >= centerline.points.size()) return refuse("a gap lies past its end");
+        centerline.points[n].gap = true;
+    }
+    return centerline;
+}
+
+Result<FlatStrip> stripFrom(const protocol::FlatStrip& message) {
+    const auto refuse = [](const char* what) {
+        return fail(ErrorKind::badInput, what, "case opened: flat");
+    };
+    FlatStrip strip;
+    strip.height = message.height();
+    strip.circumferenceMm = message.circumference_mm();
+    if (!(strip.height > 0.0 && strip.height <= maxStripHeight))
+        return refuse("the strip's height is none");
+    if (!(strip.circumferenceMm > 0.0) || !std::isfinite(strip.circumferenceMm))
+        return refuse("its circumference is none");
+    if (message.rows_size() < 2 || message.rows_size() % 2 != 0)
+        return refuse("its rows do not come in pairs");
+    FlatStrip::Row before;
+    for (int n = 0; n < message.rows_size(); n += 2) {
+        const FlatStrip::Row row{message.rows(n), message.rows(n + 1)};
+        // Written so that what is not a number fails, too.
+        if (!(row.arcMm >= before.arcMm && row.arcMm < INFINITY && row.y >= before.y &&
+              row.y <= strip.height))
+            return refuse("its rows are not in order within the strip");
+        strip.rows.push_back(row);
+        before = row;
+    }
+    return strip;
+}
+
+}  // namespace
+
+Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
+    CaseInfo info;
+    info.name = message.name();
+    for (const std::uint32_t extent : {message.size_x(), message.size_y(), message.size_z()})
+        if (extent > 4096)
+            return fail(ErrorKind::badInput, "the volume is too large", "case opened: size");
+    info.grid.size = {int(message.size_x()), int(message.size_y()), int(message.size_z())};
+    if (message.patient_from_voxel_size() != 12)
+        return fail(ErrorKind::badInput, "not 12 numbers", "case opened: patient_from_voxel");
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            info.grid.patientFromVoxel[column][row] = message.patient_from_voxel(4 * row + column);
+    if (auto sound = checkGrid(info.grid, "case opened"); !sound)
+        return tl::make_unexpected(sound.error());
+    auto centerline = centerlineFrom(message);
+    if (!centerline) return tl::make_unexpected(centerline.error());
+    info.centerline = std::move(*centerline);
+    info.position = patientPositionFromString(message.patient_position());
+    info.transferFunctions.assign(message.transfer_functions().begin(),
+                                  message.transfer_functions().end());
+    info.cleansed = message.cleansed();
+    if (message.has_flat()) {
+        auto strip = stripFrom(message.flat());
+        if (!strip) return tl::make_unexpected(strip.error());
+        info.flat = std::move(*strip);
+    }
+    return info;
+}
+
+Bookmark bookmarkFrom(const protocol::Bookmark& message) {
+    Bookmark bookmark;
+    bookmark.id = message.id();
+    bookmark.camera.positionMm = vectorFrom(message.position_mm());
+    bookmark.camera.forward = vectorFrom(message.forward());
+    bookmark.camera.up = vectorFrom(message.up());
+    bookmark.arcMm = message.arc_mm();
+    bookmark.note = message.note();
+    bookmark.createdUtc = message.created_utc();
+    bookmark.clientKey = message.client_key();
+    return bookmark;
+}
+
+Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
+    WallPlace place;
+    place.flat = {message.flat().x(), message.flat().y()};
+    place.positionMm = vectorFrom(message.position_mm());
+    place.triangle = message.triangle();
+    place.arcMm = message.arc_mm();
+    place.cameraMm = vectorFrom(message.camera_mm());
+    const glm::dvec3 sum = place.positionMm + place.cameraMm;
+    const bool inStrip = place.flat.x >= 0.0 && place.flat.x < 1.0 && place.flat.y >= 0.0 &&
+                         place.flat.y <= maxStripHeight;
+    if (!inStrip || !std::isfinite(sum.x + sum.y + sum.z + place.arcMm))
+        return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
+    return place;
+}
+
+Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message) {
+    const FlatMeasure measure{message.length_mm(), message.straight_mm(), message.area_mm2(),
+                              message.largest_diameter_mm()};
+    if (!std::isfinite(measure.lengthMm + measure.straightMm + measure.areaMm2 +
+                       measure.largestDiameterMm))
+        return fail(ErrorKind::badInput, "the server sent a measurement that is no number", "wall");
+    return measure;
+}
+
+}  // namespace haustra::panels
