@@ -24,7 +24,7 @@ namespace haustra::render {
 class PolygonAssistedRaycaster final : public Raycaster {
 public:
     /// Fails (badInput) where the scene has no mesh of the wall, or one that is not closed; else as
-    /// SinglePassRaycaster. Takes about a second for a colon's.
+    /// SinglePassRaycaster. Takes 0.2 s for a colon's.
     static Result<std::unique_ptr<PolygonAssistedRaycaster>> create(std::shared_ptr<GlScene> scene,
                                                                     int threads);
 

@@ -80,25 +80,44 @@ void WallEntry::touch(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
 }
 
 void WallEntry::floodOutside() {
-    std::vector<glm::ivec3> open;
+    // Row by row: nearly all blocks are outside, and lie in long rows of them.
+    std::vector<glm::ivec3> open;  // the first blocks of rows that are not yet entered
+    const auto openRow = [&](int first, int last, int y, int z) {
+        if (y < 0 || z < 0 || y >= blocks_.y || z >= blocks_.z) return;
+        const Side* row = &side_[index({0, y, z})];
+        bool before = false;
+        for (int x = first; x <= last; ++x) {
+            const bool here = row[x] == lumen;
+            if (here && !before) open.push_back({x, y, z});
+            before = here;
+        }
+    };
     const auto enter = [&](glm::ivec3 block) {
-        Side& side = side_[index(block)];
-        if (side != lumen) return;
-        side = outside;
-        open.push_back(block);
+        Side* row = &side_[index({0, block.y, block.z})];
+        if (row[block.x] != lumen) return;
+        int first = block.x, last = block.x;
+        while (first > 0 && row[first - 1] == lumen)
+            --first;
+        while (last + 1 < blocks_.x && row[last + 1] == lumen)
+            ++last;
+        std::fill(row + first, row + last + 1, outside);
+        openRow(first, last, block.y - 1, block.z);
+        openRow(first, last, block.y + 1, block.z);
+        openRow(first, last, block.y, block.z - 1);
+        openRow(first, last, block.y, block.z + 1);
     };
     for (int z = 0; z < blocks_.z; ++z) {
         for (int y = 0; y < blocks_.y; ++y) {
             const bool rim = z == 0 || y == 0 || z == blocks_.z - 1 || y == blocks_.y - 1;
-            for (int x = 0; x < blocks_.x; x += rim ? 1 : std::max(blocks_.x - 1, 1))
+            for (int x = 0; x < blocks_.x; x += rim ? 1 : std::max(blocks_.x - 1, 1)) {
                 enter({x, y, z});
+                while (!open.empty()) {
+                    const glm::ivec3 next = open.back();
+                    open.pop_back();
+                    enter(next);
+                }
+            }
         }
-    }
-    while (!open.empty()) {
-        const glm::ivec3 at = open.back();
-        open.pop_back();
-        for (const glm::ivec3& step : neighbours)
-            if (contains(at + step)) enter(at + step);
     }
 }
 
