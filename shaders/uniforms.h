@@ -46,7 +46,7 @@ struct SliceUniforms {
     vec4 rightTexture;   ///< xyz: one pixel to the right
     vec4 downTexture;    ///< xyz: one pixel down
     vec4 window;         ///< x, y: stored value -> grey 0…1 (scale, bias)
-    ivec4 pictureSize;   ///< x, y: pixels
+    ivec4 pictureSize;   ///< x, y: pixels of the band, z: its first row
 };
 
 /// One window onto the flattened wall. Flat coordinates are whole numbers of a small unit: what is

@@ -1,7 +1,7 @@
 // Slices and flattened views of a case, whoever draws them.
 #pragma once
 
-#include "render/view.h"
+#include "render/raycaster.h"
 
 #include <cstddef>
 
@@ -16,12 +16,12 @@ public:
     CasePictures(const CasePictures&) = delete;
     CasePictures& operator=(const CasePictures&) = delete;
 
-    /// What is asked for must have passed its checks: sizes, windows, that the case has a cleansed
-    /// scan or a flat map. Fail (badInput) on bad optics or sampling, (device) where a driver
-    /// reports an error.
+    /// The band's rows, as an image of their own. What is asked for must have passed its checks:
+    /// bands, windows, that the case has a cleansed scan or a flat map. Fail (badInput) on bad
+    /// optics or sampling, (device) where a driver reports an error.
     virtual Result<Image> slice(const SlicePlacement& placement, const WindowLevel& window,
-                                Scan scan, glm::ivec2 size) = 0;
-    virtual Result<Image> flat(const FlatView& view, glm::ivec2 size) = 0;
+                                Scan scan, const Band& band) = 0;
+    virtual Result<Image> flat(const FlatView& view, const Band& band) = 0;
     virtual std::size_t gpuBytes() const { return 0; }
 };
 

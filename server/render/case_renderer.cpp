@@ -21,8 +21,16 @@ namespace haustra::render {
 
 namespace {
 
-Image blank(int width, int height) {
-    return {width, height, std::vector<std::uint8_t>(3u * unsigned(width) * unsigned(height))};
+/// Copies what was drawn to its place in the picture.
+Result<void> put(const Result<Image>& drawn, glm::ivec2 corner, Image& picture) {
+    if (!drawn) return tl::make_unexpected(drawn.error());
+    const std::size_t row = 3 * std::size_t(drawn->width), rows = std::size_t(drawn->height);
+    std::uint8_t* to =
+        &picture
+             .rgb[3 * (std::size_t(corner.y) * std::size_t(picture.width) + std::size_t(corner.x))];
+    for (std::size_t y = 0; y < rows; ++y, to += 3 * std::size_t(picture.width))
+        std::copy_n(&drawn->rgb[row * y], row, to);
+    return {};
 }
 
 template <class T>
@@ -111,11 +119,11 @@ struct CaseRenderer::Impl {
         }
     }
 
-    Result<Image> drawSlice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
-                            glm::ivec2 size) {
+    Result<void> drawSlice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
+                           const Band& band, Image& picture) {
         if (scan == Scan::cleansed && !hasCleansed)
             return fail(ErrorKind::badInput, "the case has no cleansed scan", "slice");
-        return pictures().slice(placement, window, scan, size);
+        return put(pictures().slice(placement, window, scan, band), {0, band.firstRow}, picture);
     }
 
     Result<void> checkFlat() const {
@@ -188,6 +196,7 @@ void CaseRenderer::keepOnlyUsed() {
     if (picturesOnCpu(my.used)) {
         my.glPictures.reset();
         my.glScene.reset();
+        if (!my.wallIndex) my.flatSurface.reset();
     } else {
         my.nativePictures.reset();
         my.nativeScene.reset();
@@ -228,59 +237,42 @@ Result<std::vector<WallPixel>> CaseRenderer::wallSeen(const Camera& camera, cons
     return my.wallIndex->find(my.context, *my.flatSurface, camera, band);
 }
 
-Result<Image> CaseRenderer::render(const CameraView& view, int width, int height) {
-    if (auto sound = checkPictureSize({width, height}); !sound)
-        return tl::make_unexpected(sound.error());
-    Image picture = blank(width, height);
-    if (auto drawn = render(view, Band::whole(width, height), picture); !drawn)
-        return tl::make_unexpected(drawn.error());
-    return picture;
-}
-
-Result<Image> CaseRenderer::render(const SliceView& view, int width, int height) {
-    if (auto sound = checkPictureSize({width, height}); !sound)
-        return tl::make_unexpected(sound.error());
-    const auto placement = placeSlice(view, impl_->grid(), width, height);
+Result<void> CaseRenderer::render(const SliceView& view, const Band& band, Image& picture) {
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    const auto placement = placeSlice(view, impl_->grid(), band.pictureSize.x, band.pictureSize.y);
     if (!placement) return tl::make_unexpected(placement.error());
-    return impl_->drawSlice(*placement, view.window, view.scan, {width, height});
+    return impl_->drawSlice(*placement, view.window, view.scan, band, picture);
 }
 
-Result<Image> CaseRenderer::render(const ObliqueView& view, int width, int height) {
-    if (auto sound = checkPictureSize({width, height}); !sound)
-        return tl::make_unexpected(sound.error());
-    const auto placement = placeSlice(view, width, height);
+Result<void> CaseRenderer::render(const ObliqueView& view, const Band& band, Image& picture) {
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    const auto placement = placeSlice(view, band.pictureSize.x, band.pictureSize.y);
     if (!placement) return tl::make_unexpected(placement.error());
-    return impl_->drawSlice(*placement, view.window, view.scan, {width, height});
+    return impl_->drawSlice(*placement, view.window, view.scan, band, picture);
 }
 
-Result<Image> CaseRenderer::render(const FlatView& view, int width, int height) {
-    if (Result<void> sound = checkPictureSize({width, height}); !sound)
-        return tl::make_unexpected(sound.error());
-    if (Result<void> sound = checkFlatWindow(view.window, width); !sound)
-        return tl::make_unexpected(sound.error());
-    if (Result<void> has = impl_->checkFlat(); !has) return tl::make_unexpected(has.error());
-    return impl_->pictures().flat(view, {width, height});
+Result<void> CaseRenderer::render(const FlatView& view, const Band& band, Image& picture) {
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    if (auto sound = checkFlatWindow(view.window, band.pictureSize.x); !sound) return sound;
+    if (auto has = impl_->checkFlat(); !has) return has;
+    return put(impl_->pictures().flat(view, band), {0, band.firstRow}, picture);
 }
 
-Result<Image> CaseRenderer::render(const FlatOverview& view, int width, int height) {
+Result<void> CaseRenderer::render(const FlatOverview& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
-    if (Result<void> sound = checkPictureSize({width, height}); !sound)
-        return tl::make_unexpected(sound.error());
-    if (Result<void> has = my.checkFlat(); !has) return tl::make_unexpected(has.error());
-    Image overview = blank(width, height);
+    if (auto sound = checkBand(band, picture); !sound) return sound;
+    if (auto has = my.checkFlat(); !has) return has;
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
+    (void)put(blankImage(size), {0, band.firstRow}, picture);  // the gutters
     for (const StripColumn& column :
-         layOutStrip(my.flatGeometry->height(), {width, height}).columns) {
-        const Result<Image> drawn =
-            my.pictures().flat({column.window, view.optics, view.march}, column.size);
-        if (!drawn) return drawn;
-        const std::size_t row = 3 * std::size_t(column.size.x);
-        for (int y = 0; y < column.size.y; ++y)
-            std::copy_n(
-                &drawn->rgb[row * std::size_t(y)], row,
-                &overview
-                     .rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(column.left))]);
+         layOutStrip(my.flatGeometry->height(), band.pictureSize).columns) {
+        const FlatView part{column.window, view.optics, view.march};
+        const Band rows{column.size, band.firstRow, band.rows};
+        if (auto drawn = put(my.pictures().flat(part, rows), {column.left, band.firstRow}, picture);
+            !drawn)
+            return drawn;
     }
-    return overview;
+    return {};
 }
 
 Result<void> CaseRenderer::render(const OverviewView& view, const Band& band, Image& picture) {
@@ -291,15 +283,6 @@ Result<void> CaseRenderer::render(const OverviewView& view, const Band& band, Im
         my.overview = std::move(*made);
     }
     return my.overview->draw(view, band, *my.raycasters.at(my.used), picture);
-}
-
-Result<Image> CaseRenderer::render(const OverviewView& view, int width, int height) {
-    if (auto sound = checkPictureSize({width, height}); !sound)
-        return tl::make_unexpected(sound.error());
-    Image picture = blank(width, height);
-    if (auto drawn = render(view, Band::whole(width, height), picture); !drawn)
-        return tl::make_unexpected(drawn.error());
-    return picture;
 }
 
 std::size_t CaseRenderer::gpuBytes() const {

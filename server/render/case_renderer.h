@@ -45,28 +45,35 @@ public:
     CaseRenderer(const CaseRenderer&) = delete;
     CaseRenderer& operator=(const CaseRenderer&) = delete;
 
+    // Each draws the band's rows into `picture`, which has the whole picture's size; the pixels are
+    // the same whatever the bands. Fails on a bad view or band (badInput) or where the driver
+    // reports an error (device).
+
     /// Ray-cast picture of the cleansed scan, or of the scan where there is none; sRGB, over black.
     /// A new transfer function costs some 0.1 s for the leap map of a 512³ scan; the last four are
-    /// kept, so that readers with different ones do not disturb each other. Fails on a bad view
-    /// (badInput) or where the driver reports an error (device).
-    Result<Image> render(const CameraView& view, int width, int height);
+    /// kept, so that readers with different ones do not disturb each other.
+    Result<void> render(const CameraView& view, const Band& band, Image& picture);
     /// Slice of the scan that the view names, linearly interpolated; black outside it. Fail
     /// (badInput) where there is no cleansed scan.
-    Result<Image> render(const SliceView& view, int width, int height);
-    Result<Image> render(const ObliqueView& view, int width, int height);
-
-    /// The flattened wall. Fail (badInput) on a bad view or where the case has no flat map.
-    Result<Image> render(const FlatView& view, int width, int height);
-    Result<Image> render(const FlatOverview& view, int width, int height);
-
+    Result<void> render(const SliceView& view, const Band& band, Image& picture);
+    Result<void> render(const ObliqueView& view, const Band& band, Image& picture);
+    /// The flattened wall. Fail (badInput) where the case has no flat map.
+    Result<void> render(const FlatView& view, const Band& band, Image& picture);
+    Result<void> render(const FlatOverview& view, const Band& band, Image& picture);
     /// The colon from outside; the body is drawn by raycaster(). What the case has not (its wall,
-    /// its path) is left out. Fails as the other views do.
-    Result<Image> render(const OverviewView& view, int width, int height);
-
-    /// Some rows of a picture, for a frame that is drawn in bands; of the overview from the top
-    /// down, for its last band marks all of the picture.
-    Result<void> render(const CameraView& view, const Band& band, Image& picture);
+    /// its path) is left out. Bands come from the top down: the last one marks all of the picture.
     Result<void> render(const OverviewView& view, const Band& band, Image& picture);
+
+    /// The whole picture of any of these views.
+    template <class View>
+    Result<Image> render(const View& view, int width, int height) {
+        if (auto sound = checkPictureSize({width, height}); !sound)
+            return tl::make_unexpected(sound.error());
+        Image picture = blankImage({width, height});
+        if (auto drawn = render(view, Band::whole(width, height), picture); !drawn)
+            return tl::make_unexpected(drawn.error());
+        return picture;
+    }
 
     /// Which place of the wall each of the band's pixels sees first, rows from the top. Fails
     /// (badInput) on a bad camera or band, or where the case has no flat map.

@@ -21,6 +21,11 @@ struct Image {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgb;
 };
+/// A black one.
+inline Image blankImage(glm::ivec2 size) {
+    return {size.x, size.y,
+            std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+}
 
 /// How a camera's rays spread over its picture; y is the distance of a pixel from the picture's
 /// middle in half heights of the picture.

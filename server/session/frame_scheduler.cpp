@@ -125,7 +125,6 @@ FrameScheduler::FramePointer FrameScheduler::begin(SessionId session, Entry& ent
 render::Band FrameScheduler::nextBand(const Entry& entry, const Frame& frame) const {
     const int left = frame.size.y - frame.rowsDrawn;
     render::Band band{frame.size, frame.rowsDrawn, left};
-    if (!inBands(frame.job.view)) return band;
     const double msPerRow =
         frame.rowsDrawn > 0
             ? frame.spentMs / frame.rowsDrawn
@@ -144,9 +143,7 @@ FrameScheduler::Outcome FrameScheduler::drawn(const Turn& turn, double ms, Clock
     const auto found = entries_.find(frame.job.session);
     if (found == entries_.end()) return Outcome::unwanted;
     Entry& entry = found->second;
-    entry.usedMs += ms;
-    entry.recentMs = usage(entry, now) + ms;
-    entry.recentAt = now;
+    charge(entry, ms, now);
     if (entry.underWay != turn.frame) return Outcome::unwanted;
     if (frame.rowsDrawn < frame.size.y) return Outcome::goesOn;
     const std::size_t viewport = frame.job.header.viewport;
@@ -156,14 +153,23 @@ FrameScheduler::Outcome FrameScheduler::drawn(const Turn& turn, double ms, Clock
     return Outcome::finished;
 }
 
-bool FrameScheduler::failed(const Turn& turn) {
+bool FrameScheduler::failed(const Turn& turn, double ms, Clock::time_point now) {
     const auto found = entries_.find(turn.frame->job.session);
-    if (found == entries_.end() || found->second.underWay != turn.frame) return false;
-    found->second.underWay = nullptr;
+    if (found == entries_.end()) return false;
+    Entry& entry = found->second;
+    charge(entry, ms, now);
+    if (entry.underWay != turn.frame) return false;
+    entry.underWay = nullptr;
     return true;
 }
 
 // ---- shares -------------------------------------------------------------------------------------
+
+void FrameScheduler::charge(Entry& entry, double ms, Clock::time_point now) {
+    entry.usedMs += ms;
+    entry.recentMs = usage(entry, now) + ms;
+    entry.recentAt = now;
+}
 
 double FrameScheduler::usage(const Entry& entry, Clock::time_point now) {
     const std::chrono::duration<double> since = now - entry.recentAt, window = usageWindow;

@@ -81,8 +81,9 @@ public:
     /// The turn has taken `ms`. Finished: the frame is the caller's, and the session has none any
     /// more. Unwanted: it was given up meanwhile.
     Outcome drawn(const Turn& turn, double ms, Clock::time_point now);
-    /// The frame cannot be drawn: as if it were finished. False where it was given up meanwhile.
-    bool failed(const Turn& turn);
+    /// The frame cannot be drawn, which took `ms` to find out: as if it were finished. False where
+    /// it was given up meanwhile.
+    bool failed(const Turn& turn, double ms, Clock::time_point now);
 
     /// What share of the GPU the session can count on: what the others have left of it lately, and
     /// never less than its fair share.
@@ -104,6 +105,7 @@ private:
     static bool worthGivingUp(const Entry& entry, const PictureJob& newer);
     static double usage(const Entry& entry, Clock::time_point now);
     void arrive(Entry& entry);
+    static void charge(Entry& entry, double ms, Clock::time_point now);
     FramePointer begin(SessionId session, Entry& entry, Clock::time_point now);
     render::Band nextBand(const Entry& entry, const Frame& frame) const;
 

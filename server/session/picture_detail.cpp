@@ -6,17 +6,18 @@
 namespace haustra::session {
 namespace {
 
-constexpr int leastSide = 16;
 constexpr double finerShare = 0.8;  // of movingPictureMs
 
-glm::ivec2 scaled(glm::ivec2 full, double scale) {
-    const auto side = [&](int pixels) {
-        return std::clamp(int(std::lround(pixels * scale)), std::min(pixels, leastSide), pixels);
-    };
-    return {side(full.x), side(full.y)};
-}
-
 }  // namespace
+
+glm::ivec2 coarseSize(glm::ivec2 full, double scale) {
+    const int fullShorter = std::min(full.x, full.y), fullLonger = std::max(full.x, full.y);
+    const int shorter = std::clamp(int(std::lround(fullShorter * scale)),
+                                   std::min(fullShorter, leastSide), fullShorter);
+    // Not rounded from the scale: one side follows the other.
+    const int longer = int(std::lround(double(fullLonger) * shorter / fullShorter));
+    return full.x < full.y ? glm::ivec2(shorter, longer) : glm::ivec2(longer, shorter);
+}
 
 void PictureDetail::drawn(double ms, glm::ivec2 size) {
     std::rotate(recent_.begin(), recent_.end() - 1, recent_.end());
@@ -32,13 +33,14 @@ double PictureDetail::msPerPixel() const {
 }
 
 glm::ivec2 PictureDetail::nextSize(glm::ivec2 full, double share) {
-    const double fullMs = msPerPixel() * double(full.x) * double(full.y) / share;
+    const double msOfPixel = msPerPixel() / share;
     const std::size_t before = step_;
     for (step_ = 0; step_ + 1 < detailSteps.size(); ++step_) {
-        const double ms = fullMs * detailSteps[step_] * detailSteps[step_];
-        if (ms <= movingPictureMs * (step_ < before ? finerShare : 1.0)) break;
+        const glm::dvec2 size = coarseSize(full, detailSteps[step_]);
+        if (msOfPixel * size.x * size.y <= movingPictureMs * (step_ < before ? finerShare : 1.0))
+            break;
     }
-    return scaled(full, detailSteps[step_]);
+    return coarseSize(full, detailSteps[step_]);
 }
 
 }  // namespace haustra::session

@@ -13,6 +13,13 @@ namespace haustra::session {
 inline constexpr double movingPictureMs = 50.0;
 /// Sides of a coarse picture, as shares of the viewport's.
 inline constexpr std::array<double, 5> detailSteps{1.0, 0.75, 0.5, 0.375, 0.25};
+/// Coarsening takes no side under so many pixels.
+inline constexpr int leastSide = 16;
+
+/// The size of a picture that shows the same as one of `full` pixels, its shorter side `scale`
+/// (0…1) of that one's to the nearest pixel, but not under leastSide by it. The longer side follows
+/// to the nearest pixel: of the view's edge it shows at most half a pixel more or less.
+glm::ivec2 coarseSize(glm::ivec2 full, double scale);
 
 /// What drawing one viewport has cost lately, and from that how much detail it can have.
 class PictureDetail {
@@ -27,7 +34,7 @@ public:
     /// `share` (over 0, at most 1) of the GPU's time: the finest of detailSteps that is expected to
     /// be ready within movingPictureMs, else the coarsest. Finer than the picture before only
     /// where it is expected to be ready in 4/5 of that, so that sizes do not flicker. Full where
-    /// nothing has been measured. No side gets under 16 pixels by it.
+    /// nothing has been measured.
     glm::ivec2 nextSize(glm::ivec2 full, double share);
 
 private:

@@ -4,11 +4,6 @@
 
 namespace haustra::session {
 
-bool inBands(const AnyView& view) {
-    return std::holds_alternative<render::CameraView>(view) ||
-           std::holds_alternative<render::OverviewView>(view);
-}
-
 bool canBeCoarse(const AnyView& view) {
     return std::holds_alternative<render::CameraView>(view) ||
            std::holds_alternative<render::OverviewView>(view) ||

@@ -34,8 +34,6 @@ struct PictureJob {
     std::function<void(const protocol::TileHeader&, Result<render::Image>)> done;
 };
 
-/// Whether a picture of this view can be drawn some rows at a time (render::Band).
-bool inBands(const AnyView& view);
 /// Whether a smaller picture of this view shows the same, coarser; slices are drawn in no time.
 bool canBeCoarse(const AnyView& view);
 /// The view as it is to be drawn into a picture of another width, which shows the same.

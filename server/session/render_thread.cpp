@@ -28,20 +28,9 @@ Result<void> draw(render::CaseRenderer& renderer, Frame& frame, const render::Ba
     const AnyView view = size.x == frame.job.width
                              ? frame.job.view
                              : scaledView(frame.job.view, frame.job.width, size.x);
-    const auto drawBand = [&](const auto& banded) {
-        if (frame.picture.rgb.empty())
-            frame.picture = {
-                size.x, size.y,
-                std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
-        return renderer.render(banded, band, frame.picture);
-    };
-    if (const auto* camera = std::get_if<render::CameraView>(&view)) return drawBand(*camera);
-    if (const auto* overview = std::get_if<render::OverviewView>(&view)) return drawBand(*overview);
-    auto image =
-        std::visit([&](const auto& any) { return renderer.render(any, size.x, size.y); }, view);
-    if (!image) return tl::make_unexpected(image.error());
-    frame.picture = std::move(*image);
-    return {};
+    if (frame.picture.rgb.empty()) frame.picture = render::blankImage(size);
+    return std::visit([&](const auto& any) { return renderer.render(any, band, frame.picture); },
+                      view);
 }
 
 }  // namespace
@@ -109,9 +98,10 @@ struct RenderThread::Drawing {
         Outcome outcome = Outcome::unwanted;
         {
             const std::lock_guard lock(shared->mutex);
+            const double ms = msBetween(start, end);
             if (drawn)
-                outcome = shared->frames.drawn(turn, msBetween(start, end), end);
-            else if (shared->frames.failed(turn))
+                outcome = shared->frames.drawn(turn, ms, end);
+            else if (shared->frames.failed(turn, ms, end))
                 outcome = Outcome::finished;
         }
         if (outcome != Outcome::finished) return;

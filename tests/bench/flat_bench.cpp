@@ -101,7 +101,7 @@ Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
     if (!painter) return tl::make_unexpected(painter.error());
     std::vector<bool> seen(count, false);
     const auto look = [&](const FlatWindow& window, glm::ivec2 size) -> Result<void> {
-        if (auto found = painter->findTriangles(window, size); !found) return found;
+        if (auto found = painter->findTriangles(window, render::Band::whole(size.x, size.y)); !found) return found;
         for (const int triangle : painter->triangleOfPixel())
             if (triangle >= 0) seen[std::size_t(triangle)] = true;
         return {};

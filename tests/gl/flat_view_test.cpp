@@ -266,7 +266,7 @@ TEST_F(Flattened, EveryTriangleIsInThePictureWhereItIsLargeEnough) {
         FlatWindow window;
         window.pixelsPerUnit = pixels;
         window.center = {0.5, (row + 0.5 * size.y) / pixels};
-        ASSERT_TRUE(painter->findTriangles(window, size));
+        ASSERT_TRUE(painter->findTriangles(window, Band::whole(size.x, size.y)));
         const std::vector<int> found = painter->triangleOfPixel();
         for (std::size_t i = 0; i < found.size(); ++i) {
             const double y = window.flatFromPixel({0.5, double(i / 160) + 0.5}, size).y;

@@ -319,8 +319,30 @@ TEST_F(OneSession, WhatIsGivenUpWhileItIsDrawnIsUnwanted) {
     add(someJob(1, 6));
     const auto last = scheduler_.next(now_);
     EXPECT_TRUE(scheduler_.end(1).frame);
-    EXPECT_FALSE(scheduler_.failed(*last));
+    EXPECT_FALSE(scheduler_.failed(*last, 1.0, now_));
     EXPECT_TRUE(scheduler_.empty());
+}
+
+TEST_F(OneSession, WhatFailsIsPaidForToo) {
+    // Another session's picture fails each time, after as long as a band; it asks again at once.
+    double ofFailing = 0.0, ofOther = 0.0;
+    add(someJob(1, 2));
+    add(someJob(2, 3));
+    for (int turns = 0; turns < 500; ++turns) {
+        const auto turn = scheduler_.next(now_);
+        ASSERT_TRUE(turn);
+        if (turn->frame->job.session == 2) {
+            ofFailing += bandMs;
+            ASSERT_TRUE(scheduler_.failed(*turn, bandMs, now_));
+            add(someJob(2, 3));
+        } else {
+            const double ms = turn->band.rows * rowMs;
+            ofOther += ms;
+            if (scheduler_.drawn(*turn, ms, now_) == Outcome::finished) add(someJob(1, 2));
+        }
+    }
+    EXPECT_NEAR(ofFailing, ofOther, savedMs + turnMs);
+    EXPECT_NEAR(scheduler_.shareOf(1, now_), 0.5, 1e-9) << "and counts as a use of the GPU";
 }
 
 TEST_F(OneSession, BandsCoverThePictureOnce) {
@@ -343,13 +365,16 @@ TEST_F(OneSession, BandsCoverThePictureOnce) {
     }
 }
 
-TEST_F(OneSession, ViewsWithoutBandsAreDrawnAtOnce) {
-    PictureJob job = someJob(1, 2);
-    job.view = render::SliceView{};
-    add(std::move(job));
-    const auto turn = scheduler_.next(now_);
-    ASSERT_TRUE(turn);
-    EXPECT_EQ(turn->band.rows, 256);
+TEST_F(OneSession, AllViewsAreDrawnInBands) {
+    for (const AnyView& view : {AnyView(render::SliceView{}), AnyView(render::ObliqueView{}),
+                                AnyView(render::OverviewView{}), AnyView(render::FlatView{}),
+                                AnyView(render::FlatOverview{})}) {
+        PictureJob job = someJob(1, 2);
+        job.view = view;
+        add(std::move(job));
+        EXPECT_EQ(band(), Outcome::goesOn);
+        EXPECT_EQ(finish(), 2u);
+    }
 }
 
 TEST(PictureDetail, SizesDoNotFlicker) {
@@ -370,7 +395,52 @@ TEST(PictureDetail, SizesDoNotFlicker) {
     for (int n = 0; n < 3; ++n)
         detail.drawn(5000.0, full);
     EXPECT_EQ(detail.nextSize(full, 1.0), glm::ivec2(128));
-    EXPECT_EQ(detail.nextSize({32, 20}, 0.001), glm::ivec2(16));
+    EXPECT_EQ(detail.nextSize({32, 20}, 0.001), glm::ivec2(26, 16));
+}
+
+TEST(PictureDetail, CoarsePicturesShowTheSame) {
+    std::mt19937 random(11);
+    std::uniform_int_distribution<int> anySide(1, 2048);
+    std::vector<glm::ivec2> sizes{{1600, 20}, {20, 1600}, {2048, 17}, {2048, 16},  {2048, 1},
+                                  {1, 2048},  {1, 1},     {512, 512}, {2048, 2047}};
+    for (int n = 0; n < 2000; ++n)
+        sizes.emplace_back(anySide(random), anySide(random));
+    for (const glm::ivec2 full : sizes) {
+        glm::ivec2 finer = full;
+        for (const double scale : detailSteps) {
+            const glm::ivec2 size = coarseSize(full, scale);
+            if (scale == 1.0) {
+                ASSERT_EQ(size, full);
+            }
+            ASSERT_TRUE(size.x <= finer.x && size.y <= finer.y && size.x >= 1 && size.y >= 1);
+            ASSERT_GE(std::min(size.x, size.y), std::min({full.x, full.y, leastSide}));
+            // What it shows along one side, were the other's edges the same, is off by half a
+            // pixel.
+            const double longer = std::max(size.x, size.y), shorter = std::min(size.x, size.y);
+            const double wanted = shorter * std::max(full.x, full.y) / std::min(full.x, full.y);
+            ASSERT_LE(std::abs(longer - wanted), 0.5 + 1e-9) << full.x << " " << full.y;
+            // And it is as coarse as asked, where that leaves pixels enough.
+            if (scale * std::min(full.x, full.y) >= leastSide) {
+                ASSERT_NEAR(shorter, scale * std::min(full.x, full.y), 0.5 + 1e-9);
+            }
+            finer = size;
+        }
+    }
+}
+
+TEST(PictureDetail, CoarseFlatWindowsShowTheSame) {
+    for (const glm::ivec2 full : {glm::ivec2(1600, 20), {20, 1600}, {1000, 333}, {333, 1000}}) {
+        render::FlatView view;
+        view.window = {{0.4, 0.3}, 300.0};
+        const glm::ivec2 size = coarseSize(full, 0.25);
+        const auto coarse = std::get<render::FlatView>(scaledView(view, full.x, size.x)).window;
+        for (const glm::dvec2 corner : {glm::dvec2(0.0), {1.0, 0.0}, {1.0, 1.0}}) {
+            const glm::dvec2 shown = coarse.flatFromPixel(corner * glm::dvec2(size), size);
+            const glm::dvec2 wanted = view.window.flatFromPixel(corner * glm::dvec2(full), full);
+            EXPECT_LE(std::abs(shown.x - wanted.x) * coarse.pixelsPerUnit, 0.5) << full.x;
+            EXPECT_LE(std::abs(shown.y - wanted.y) * coarse.pixelsPerUnit, 0.5) << full.x;
+        }
+    }
 }
 
 }  // namespace

@@ -132,23 +132,26 @@ TriangleRange FlatGeometry::trianglesWithin(double lowY, double highY) const {
     return {int(first), int(std::max(last - first, std::ptrdiff_t(0)))};
 }
 
-FlatLattice FlatGeometry::lattice(const FlatWindow& window, glm::ivec2 size) const {
+FlatLattice FlatGeometry::lattice(const FlatWindow& window, const Band& band) const {
+    const glm::ivec2 size = band.pictureSize;
     const double pixels = window.pixelsPerUnit, units = unitsPerCircumference_;
     // Pixel (i, j) shows the flat coordinate (edge − (i, j) − ½) / pixels.
     const glm::dvec2 middle(window.center.x - std::floor(window.center.x), window.center.y);
     const glm::dvec2 edge =
         glm::round((middle * pixels + 0.5 * glm::dvec2(size)) * phasesPerPixel) / phasesPerPixel;
     const glm::dvec2 whole = glm::floor(edge);
-    const double halfHeight = (0.5 * size.y + 1.0) / pixels;
+    const auto flatY = [&](int row) { return window.center.y + (0.5 * size.y - row) / pixels; };
     FlatLattice lattice;
-    lattice.triangles = trianglesWithin(window.center.y - halfHeight, window.center.y + halfHeight);
+    lattice.triangles =
+        trianglesWithin(flatY(band.firstRow + band.rows + 1), flatY(band.firstRow - 1));
     shaders::FlatUniforms& u = lattice.uniforms;
     u.phase = edge - whole;
     u.scale = {units / pixels, pixels / units};
     const int firstCopy = int(std::floor((edge.x - size.x) / pixels));
     lattice.copies = int(std::floor(edge.x / pixels)) - firstCopy + 1;
-    u.lattice = glm::ivec4(glm::ivec2(whole), unitsPerCircumference_, firstCopy);
-    u.picture = glm::ivec4(size, lattice.triangles.first, int(cameras_.size()) - 1);
+    u.lattice = glm::ivec4(glm::ivec2(whole) - glm::ivec2(0, band.firstRow), unitsPerCircumference_,
+                           firstCopy);
+    u.picture = glm::ivec4(size.x, band.rows, lattice.triangles.first, int(cameras_.size()) - 1);
     u.angles = glm::vec4(flatRay.mostRayAngle, flatRay.mostLightAngle, flatRay.lampAhead, 0.0);
     return lattice;
 }

@@ -5,6 +5,7 @@
 #include "core/grid.h"
 #include "core/result.h"
 #include "core/strip_layout.h"
+#include "render/raycaster.h"
 #include "shaders/uniforms.h"
 
 #include <memory>
@@ -17,10 +18,10 @@ struct TriangleRange {
     int first = 0, count = 0;
 };
 
-/// How a window's pixels lie over the strip; see FlatUniforms. The rows of a ray (u.ray) are zero.
+/// How a band's pixels lie over the strip; see FlatUniforms. The rows of a ray (u.ray) are zero.
 struct FlatLattice {
     shaders::FlatUniforms uniforms{};
-    TriangleRange triangles;  ///< all that the window shows, and more
+    TriangleRange triangles;  ///< all that the band shows, and more
     int copies = 0;           ///< of the strip that it shows, from uniforms.lattice.w on
 };
 
@@ -49,8 +50,9 @@ public:
 
     /// A range that holds every triangle with a place in lowY … highY. O(log n).
     TriangleRange trianglesWithin(double lowY, double highY) const;
-    /// Of a picture of `size` pixels. The window must have passed its check.
-    FlatLattice lattice(const FlatWindow& window, glm::ivec2 size) const;
+    /// Of a band, as if it were a picture of its own, of the same pixels to the bit. The window
+    /// must have passed its check.
+    FlatLattice lattice(const FlatWindow& window, const Band& band) const;
 
 private:
     std::vector<shaders::FlatVertex> vertices_;

@@ -35,14 +35,15 @@ FlatPainter::FlatPainter(std::shared_ptr<const FlatSurface> surface, gpu::Raster
                          gpu::UniformBuffer block)
     : surface_(std::move(surface)), triangles_(std::move(triangles)), block_(std::move(block)) {}
 
-Result<void> FlatPainter::findTriangles(const FlatWindow& window, glm::ivec2 size) {
+Result<void> FlatPainter::findTriangles(const FlatWindow& window, const Band& band) {
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
     if (!triangleOfPixel_ || glm::ivec2(triangleOfPixel_->size()) != size) {
         auto made = gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rg32i,
                                          gpu::Filter::nearest, "triangles of the picture");
         if (!made) return tl::make_unexpected(made.error());
         triangleOfPixel_ = std::move(*made);
     }
-    const FlatLattice lattice = surface_->geometry().lattice(window, size);
+    const FlatLattice lattice = surface_->geometry().lattice(window, band);
     uniforms_ = lattice.uniforms;
     block_.write(uniforms_);
     block_.bind(shaders::flatUniformBinding);

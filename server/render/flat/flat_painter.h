@@ -24,14 +24,14 @@ public:
     static Result<FlatPainter> create(const FlatMap& map, const Grid& grid);
     static Result<FlatPainter> create(std::shared_ptr<const FlatSurface> surface);
 
-    /// Finds which triangle covers each pixel of a picture of `size`. The window must have passed
-    /// its check.
-    Result<void> findTriangles(const FlatWindow& window, glm::ivec2 size);
+    /// Finds which triangle covers each pixel of a band. The window must have passed its check.
+    Result<void> findTriangles(const FlatWindow& window, const Band& band);
     /// What it found, rows from the top: the number of the map's triangle, or −1 beyond the strip.
     std::vector<int> triangleOfPixel() const;
-    /// Casts the rays of the window that findTriangles was given last, into the whole of `picture`,
-    /// which has the same size. The volume, its classification and the block of march.glsl must be
-    /// bound; `stepMm` is that block's. Fails (device) where the driver refuses the variant's text.
+    /// Casts the rays of the band that findTriangles was given last, into the whole of `picture`,
+    /// which has the band's size. The volume, its classification and the block of march.glsl must
+    /// be bound; `stepMm` is that block's. Fails (device) where the driver refuses the variant's
+    /// text.
     Result<void> castRays(const MarchVariant& variant, double stepMm, const gpu::Texture& picture);
     std::size_t gpuBytes() const;  ///< without the surface's
 

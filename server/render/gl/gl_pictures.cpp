@@ -57,16 +57,15 @@ Result<void> GlPictures::makePicture(glm::ivec2 size) {
 }
 
 Result<Image> GlPictures::readPicture(int errorsBefore) {
-    const glm::ivec2 size = picture_->size();
-    Image image{size.x, size.y,
-                std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+    Image image = blankImage(picture_->size());
     if (auto read = readBack(scene_->context(), *picture_, errorsBefore, 0, image); !read)
         return tl::make_unexpected(read.error());
     return image;
 }
 
 Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLevel& window,
-                                Scan scan, glm::ivec2 size) {
+                                Scan scan, const Band& band) {
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
     const int errorsBefore = scene_->context().errorCount();
     if (auto made = makePicture(size); !made) return tl::make_unexpected(made.error());
     const Grid& grid = scene_->scene().grid();
@@ -82,7 +81,7 @@ Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLev
     u.downTexture = glm::vec4(textureVector(placement.downMm), 0.0);
     u.window = glm::vec4(storedRange / window.widthHu,
                          0.5 - (storedOffset + window.centerHu) / window.widthHu, 0, 0);
-    u.pictureSize = glm::ivec4(size, 0, 0);
+    u.pictureSize = glm::ivec4(size, band.firstRow, 0);
     sliceBlock_.write(u);
     sliceBlock_.bind(shaders::uniformBinding);
     (scan == Scan::original && ct_ ? *ct_ : scene_->volume()).bind(shaders::volumeUnit);
@@ -91,9 +90,10 @@ Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLev
     return readPicture(errorsBefore);
 }
 
-Result<Image> GlPictures::flat(const FlatView& view, glm::ivec2 size) {
+Result<Image> GlPictures::flat(const FlatView& view, const Band& band) {
     if (!flat_) return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
     const int errorsBefore = scene_->context().errorCount();
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
     const auto classified = scene_->classification(view.optics, view.march);
     if (!classified) return tl::make_unexpected(classified.error());
     if (auto made = makePicture(size); !made) return tl::make_unexpected(made.error());
@@ -101,7 +101,7 @@ Result<Image> GlPictures::flat(const FlatView& view, glm::ivec2 size) {
     scene_->bind(marchUniforms(view.optics, view.march, scene.grid(), (*classified)->table(),
                                scene.ranges.size, size),
                  **classified);
-    if (auto found = flat_->findTriangles(view.window, size); !found)
+    if (auto found = flat_->findTriangles(view.window, band); !found)
         return tl::make_unexpected(found.error());
     const MarchVariant variant =
         MarchVariant::of(view.optics, scene_->hasGradients(view.optics), false);

@@ -25,8 +25,8 @@ public:
                                                       int threads);
 
     Result<Image> slice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
-                        glm::ivec2 size) override;
-    Result<Image> flat(const FlatView& view, glm::ivec2 size) override;
+                        const Band& band) override;
+    Result<Image> flat(const FlatView& view, const Band& band) override;
     /// Without the scene's and the surface's.
     std::size_t gpuBytes() const override;
 

@@ -28,7 +28,8 @@ NativeFlatPainter::NativeFlatPainter(std::shared_ptr<NativeScene> scene,
                                      std::shared_ptr<const FlatGeometry> geometry)
     : scene_(std::move(scene)), geometry_(std::move(geometry)), cast_(flatPackets()) {}
 
-Result<Image> NativeFlatPainter::draw(const FlatView& view, glm::ivec2 size) {
+Result<Image> NativeFlatPainter::draw(const FlatView& view, const Band& band) {
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
     const auto classified = scene_->classification(view.optics, view.march);
     if (!classified) return tl::make_unexpected(classified.error());
     const Scene& scene = scene_->scene();
@@ -36,14 +37,13 @@ Result<Image> NativeFlatPainter::draw(const FlatView& view, glm::ivec2 size) {
         scene_->packetScene(marchUniforms(view.optics, view.march, scene.grid(),
                                           (*classified)->table, scene.ranges.size, size),
                             **classified);
-    const FlatLattice lattice = geometry_->lattice(view.window, size);
+    const FlatLattice lattice = geometry_->lattice(view.window, band);
     const double step = stepMm(view.march, scene.grid());
     PacketWall wall{geometry_->vertices().data(), geometry_->triangles().data(),
                     geometry_->cameras().data(), lattice.uniforms};
     wall.u.ray = glm::vec4(std::ceil(flatRay.backMm / step), flatRay.riseHu,
                            std::ceil(flatRay.depthMm / step), 0.0);
-    Image image{size.x, size.y,
-                std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+    Image image = blankImage(size);
     scene_->workers().run((size.y + stripeRows - 1) / stripeRows, [&](int stripe) {
         const int first = stripe * stripeRows, rows = std::min(stripeRows, size.y - first);
         std::vector<FlatPixel> pixels;

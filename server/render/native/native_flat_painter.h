@@ -18,9 +18,9 @@ public:
     static Result<NativeFlatPainter> create(std::shared_ptr<NativeScene> scene,
                                             std::shared_ptr<const FlatGeometry> geometry);
 
-    /// The window must have passed its check, the picture's size too. Fails (badInput) on bad
-    /// optics or sampling.
-    Result<Image> draw(const FlatView& view, glm::ivec2 size);
+    /// The band's rows alone. The window must have passed its check, the band too. Fails (badInput)
+    /// on bad optics or sampling.
+    Result<Image> draw(const FlatView& view, const Band& band);
 
 private:
     NativeFlatPainter(std::shared_ptr<NativeScene> scene,

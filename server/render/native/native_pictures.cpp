@@ -26,7 +26,8 @@ NativePictures::NativePictures(std::shared_ptr<NativeScene> scene, Volume<std::i
     : scene_(std::move(scene)), ct_(std::move(ct)), drawSlice_(slicePackets()) {}
 
 Result<Image> NativePictures::slice(const SlicePlacement& placement, const WindowLevel& window,
-                                    Scan scan, glm::ivec2 size) {
+                                    Scan scan, const Band& band) {
+    const glm::ivec2 size(band.pictureSize.x, band.rows);
     PacketScene packets;
     (scan == Scan::cleansed ? scene_->volume() : ct_).describe(packets);
     const Grid& grid = ct_.volume().grid();
@@ -36,9 +37,9 @@ Result<Image> NativePictures::slice(const SlicePlacement& placement, const Windo
                             linear * placement.downMm,
                             float(1.0 / window.widthHu),
                             float(0.5 - window.centerHu / window.widthHu),
-                            size.x};
-    Image image{size.x, size.y,
-                std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+                            size.x,
+                            band.firstRow};
+    Image image = blankImage(size);
     scene_->workers().run((size.y + stripeRows - 1) / stripeRows, [&](int stripe) {
         const int first = stripe * stripeRows;
         drawSlice_(packets, slice, first, std::min(first + stripeRows, size.y), image.rgb.data());
@@ -46,9 +47,9 @@ Result<Image> NativePictures::slice(const SlicePlacement& placement, const Windo
     return image;
 }
 
-Result<Image> NativePictures::flat(const FlatView& view, glm::ivec2 size) {
+Result<Image> NativePictures::flat(const FlatView& view, const Band& band) {
     if (!flat_) return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
-    return flat_->draw(view, size);
+    return flat_->draw(view, band);
 }
 
 }  // namespace haustra::render

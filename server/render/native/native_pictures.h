@@ -20,8 +20,8 @@ public:
         std::shared_ptr<const FlatGeometry> geometry);
 
     Result<Image> slice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
-                        glm::ivec2 size) override;
-    Result<Image> flat(const FlatView& view, glm::ivec2 size) override;
+                        const Band& band) override;
+    Result<Image> flat(const FlatView& view, const Band& band) override;
 
 private:
     NativePictures(std::shared_ptr<NativeScene> scene, Volume<std::int16_t> ct);

@@ -24,7 +24,7 @@ void drawRows(const PacketScene& scene, const PacketSlice& slice, int firstRow, 
     for (int top = firstRow; top < endRow; top += packetHeight) {
         for (int left = 0; left < slice.width; left += packetWidth) {
             const V3 place = along(along(origin, hn::Add(laneX(), set(float(left))), right),
-                                   hn::Add(laneY(), set(float(top))), down);
+                                   hn::Add(laneY(), set(float(slice.firstRow + top))), down);
             const auto within = [&](VF p, int axis) HWY_ATTR {
                 return hn::And(hn::Ge(p, set(-0.5f)),
                                hn::Le(p, set(float(scene.size[axis]) - 0.5f)));
