@@ -31,12 +31,6 @@ struct ColonPath {
     PathSample at(double arcMm) const;
 };
 
-/// How far apart along the axis two samples must be before they count as different loops: nearer
-/// ones belong to one bend.
-inline double loopSeparationMm(double radiusA, double radiusB) {
-    return 1.7 * (std::max(radiusA, 2.0) + std::max(radiusB, 2.0) + 3.0);
-}
-
 /// An anatomical path, varied by the seed: control points from rectum to cecum, made longer or
 /// shorter (sigmoid loop, sagging transverse colon) until the length is the one drawn from
 /// 1250…1640 mm, then relaxed so that loops, spine, hip bones and abdominal wall keep apart.

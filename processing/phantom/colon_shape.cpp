@@ -1,5 +1,6 @@
 #include "phantom/colon_shape.h"
 
+#include "phantom/colon_skeleton.h"
 #include "phantom/implicit.h"
 #include "phantom/random.h"
 

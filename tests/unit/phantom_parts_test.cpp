@@ -1,5 +1,6 @@
 // The parts of the phantom by themselves: the colon's axis, its surface, fluid, the scanner.
 #include "phantom/colon_field.h"
+#include "phantom/colon_skeleton.h"
 #include "phantom/filled_colon.h"
 #include "phantom/growths.h"
 #include "phantom/implicit.h"
