@@ -68,8 +68,8 @@ public:
     const HybridControls& controls() const { return hybridLadder[std::size_t(rung())]; }
     /// The rung that it holds for the best.
     int home() const { return home_; }
-    /// Of a picture that was drawn with controls(): the CPU's part, the GPU's, and from its
-    /// beginning to its end.
+    /// Of a picture that was drawn with controls(): the CPU's part, the GPU's, and what it took in
+    /// all, which is to become least.
     void drew(double cpuMs, double gpuMs, double pictureMs);
     /// The next picture shows something else: the last ones' times are no measure for it.
     void elsewhere();

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <utility>
 
 namespace haustra::render {
@@ -36,6 +37,13 @@ double nowMs() {
     return std::chrono::duration<double, std::milli>(
                std::chrono::steady_clock::now().time_since_epoch())
         .count();
+}
+
+/// Of all threads of the process.
+double cpuTimeMs() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
 }
 
 /// The octree as one view's colours show it.
@@ -230,7 +238,10 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     if (view.backdrop) {
         if (auto bound = my.scene->bindBackdrop(view.backdrop); !bound) return bound;
     }
-    const double began = nowMs();
+    // Where the GPU is the CPU's own cores, a picture costs what it takes of them all: that others
+    // who use them meanwhile do not blur, nor does a way of sharing that only takes more from them.
+    const auto spentMs = my.scene->context().software() ? cpuTimeMs : nowMs;
+    const double began = spentMs();
     my.stats = {};
     my.stats.controls =
         my.options.controls ? *my.options.controls : my.balances.controls(view, band, step);
@@ -255,7 +266,7 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     const std::vector<double> between = my.timestamps.betweenMs();
     for (std::size_t i = 0; i < between.size(); i += 2)
         my.stats.gpuMs += between[i];
-    if (!my.options.controls) my.balances.drew(my.stats.cpuMs, my.stats.gpuMs, nowMs() - began);
+    if (!my.options.controls) my.balances.drew(my.stats.cpuMs, my.stats.gpuMs, spentMs() - began);
     return {};
 }
 
