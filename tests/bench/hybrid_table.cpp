@@ -80,65 +80,134 @@ std::vector<CameraView> around(const Grid& grid, const Optics& optics, int views
 }
 
 struct Setup {
-    const char* name;
+    std::string name;
     std::optional<HybridControls> controls;
 };
 
-/// Balanced; with all that the CPU can do; and that without each control.
+/// The lowest rung; balanced; with all that the CPU can do; and that without each control.
 std::vector<Setup> setups() {
-    return {{"balanced", std::nullopt},
+    return {{"least work for the CPU (rung 0)", hybridLadder[0]},
+            {"balanced", std::nullopt},
             {"all that the CPU can do", HybridControls{0, true, 0, 0.0}},
-            {"  1: begins at level 3", HybridControls{3, false, 0, 0.0}},
-            {"  2: not to the boundary", HybridControls{0, false, 0, 0.0}},
-            {"  3: no way from behind", HybridControls{0, true, -1, 0.0}},
-            {"  4: tiles left at 1/4", HybridControls{0, true, 0, 0.25}},
-            {"  4: not followed at all", HybridControls{0, true, 0, 1.01}},
-            {"least (rung 0)", hybridLadder[0]}};
+            {"… 1: rays begin at level 3", HybridControls{3, false, 0, 0.0}},
+            {"… 2: not to the boundary", HybridControls{0, false, 0, 0.0}},
+            {"… 3: no way from behind", HybridControls{0, true, -1, 0.0}},
+            {"… 4: tiles left at a quarter", HybridControls{0, true, 0, 0.25}},
+            {"… 4: not followed", HybridControls{0, true, 0, 1.01}}};
 }
 
-void hybridTable(gpu::Context& context, const std::string& name, Volume<std::int16_t> volume,
-                 const std::string& preset, int side, int places) {
+/// Every rung, and where the balance comes to stand.
+std::vector<Setup> ladder() {
+    std::vector<Setup> rungs = {{"balanced", std::nullopt}};
+    for (std::size_t rung = 0; rung < hybridLadder.size(); ++rung)
+        rungs.push_back({fmt::format("rung {}", rung), hybridLadder[rung]});
+    return rungs;
+}
+
+int rungOf(const HybridControls& controls) {
+    return int(std::find(hybridLadder.begin(), hybridLadder.end(), controls) -
+               hybridLadder.begin());
+}
+
+/// What one setup has cost, picture by picture.
+struct Cost {
+    std::unique_ptr<HybridRaycaster> raycaster;
+    Times times;
+    std::vector<double> cpu, gpu;
+    double cast = 0.0, filled = 0.0, passes = 0.0;
+    int most = 0;
+};
+
+/// Medians of one volume with one transfer function.
+struct Column {
+    std::string name;
+    double singleMs = 0.0, singleCpuMs = 0.0;
+    std::vector<double> ms, cpuMs;  // of each setup
+};
+
+struct Sizes {
+    int side, places, rounds, warm;
+};
+
+/// Single pass and all setups in turns: what else runs on the machine meets all of them.
+Column measure(gpu::Context& context, const std::string& name, Volume<std::int16_t> volume,
+               const std::vector<Setup>& setups, const Sizes& sizes) {
     Scene made;
     made.ranges = blockRanges(volume, 0);
     made.volume = std::move(volume);
     const auto scene = std::shared_ptr<GlScene>(
         orEnd(GlScene::upload(context, std::make_shared<const Scene>(std::move(made)), 0)));
     const auto single = orEnd(SinglePassRaycaster::create(scene));
-    const auto views = around(scene->scene().grid(), orEnd(opticsPreset(preset)), places);
-    fmt::print("{} {}, {}²: median ms a picture (CPU time), and the single pass's / it\n", name,
-               preset, side);
-    for (const Setup& setup : setups()) {
-        const auto hybrid = orEnd(HybridRaycaster::create(scene, {0, setup.controls}));
+    const auto views = around(scene->scene().grid(), orEnd(opticsPreset(name)), sizes.places);
+    Times plain;
+    plain.draw(*single, views.front(), sizes.side);
+    plain = {};
+    std::vector<Cost> costs(setups.size());
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+        costs[i].raycaster = orEnd(HybridRaycaster::create(scene, {0, setups[i].controls}));
         // The balance needs some pictures to find its place.
         Times warm;
-        for (int i = 0; i < (setup.controls ? 1 : 32); ++i)
-            warm.draw(*hybrid, views.front(), side);
-        warm.draw(*single, views.front(), side);
-        Times plain, shared;
-        std::vector<double> cpu, gpu;
-        int most = 0;
-        double cast = 0.0, filled = 0.0, passes = 0.0;
-        for (const CameraView& view : views) {
-            plain.draw(*single, view, side);
-            shared.draw(*hybrid, view, side);
-            most = std::max(most, apart(plain.last, shared.last));
-            const HybridStats& stats = hybrid->stats();
-            cpu.push_back(stats.cpuMs);
-            gpu.push_back(stats.gpuMs);
-            cast += double(stats.quadsCast) / stats.quads / places;
-            filled += double(stats.quadsFilled) / stats.quads / places;
-            passes += double(stats.passes) / places;
+        std::string rungs;
+        for (int n = 0; n < (setups[i].controls ? 1 : sizes.warm); ++n) {
+            warm.draw(*costs[i].raycaster, views.front(), sizes.side);
+            rungs += char('0' + rungOf(costs[i].raycaster->stats().controls));
         }
-        fmt::print(
-            "{:26s} single {:6.1f} ({:6.1f})  hybrid {:6.1f} ({:6.1f})  ratio {:.2f} "
-            "({:.2f})  cpu {:6.1f} gpu {:6.1f}  passes {:4.1f} quads {:.2f} + {:.2f} "
-            "filled, most apart {}, rung {} {} {} {}\n",
-            setup.name, median(plain.ms), median(plain.cpuMs), median(shared.ms),
-            median(shared.cpuMs), median(plain.ms) / median(shared.ms),
-            median(plain.cpuMs) / median(shared.cpuMs), median(cpu), median(gpu), passes, cast,
-            filled, most, hybrid->stats().controls.entryLevel, hybrid->stats().controls.toBoundary,
-            hybrid->stats().controls.exitLevel, hybrid->stats().controls.leftToFilling);
+        if (!setups[i].controls)
+            fmt::print("{}: rungs while the balance finds its place {}\n", name, rungs);
     }
+    const double pictures = sizes.places * sizes.rounds;
+    for (const CameraView& view : views) {
+        for (int round = 0; round < sizes.rounds; ++round) {
+            plain.draw(*single, view, sizes.side);
+            for (Cost& cost : costs) {
+                cost.times.draw(*cost.raycaster, view, sizes.side);
+                cost.most = std::max(cost.most, apart(plain.last, cost.times.last));
+                const HybridStats& stats = cost.raycaster->stats();
+                cost.cpu.push_back(stats.cpuMs);
+                cost.gpu.push_back(stats.gpuMs);
+                cost.cast += double(stats.quadsCast) / stats.quads / pictures;
+                cost.filled += double(stats.quadsFilled) / stats.quads / pictures;
+                cost.passes += double(stats.passes) / pictures;
+            }
+        }
+    }
+    Column column{name, median(plain.ms), median(plain.cpuMs), {}, {}};
+    fmt::print("{}, {}²: single pass {:.1f} ms, CPU time {:.1f} ms\n", name, sizes.side,
+               column.singleMs, column.singleCpuMs);
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+        const Cost& cost = costs[i];
+        column.ms.push_back(median(cost.times.ms));
+        column.cpuMs.push_back(median(cost.times.cpuMs));
+        fmt::print(
+            "  {:32s} {:6.1f} ms, CPU time {:6.1f} ms; cpu {:6.1f} gpu {:6.1f}, passes {:4.1f}, "
+            "quads {:.2f} + {:.2f} filled, most apart {}, rung {}\n",
+            setups[i].name, column.ms.back(), column.cpuMs.back(), median(cost.cpu),
+            median(cost.gpu), cost.passes, cost.cast, cost.filled, cost.most,
+            rungOf(cost.raycaster->stats().controls));
+    }
+    return column;
+}
+
+/// The single pass's milliseconds, and what they are of each setup's: over 1 where the hybrid is
+/// faster.
+void printTable(const char* what, const std::vector<Setup>& setups,
+                const std::vector<Column>& columns, double Column::*single,
+                std::vector<double> Column::*hybrid) {
+    fmt::print("\n| {} |", what);
+    for (const Column& column : columns)
+        fmt::print(" {} |", column.name);
+    fmt::print("\n| --- |");
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        fmt::print(" --- |");
+    fmt::print("\n| single pass, ms |");
+    for (const Column& column : columns)
+        fmt::print(" {:.0f} |", column.*single);
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+        fmt::print("\n| {} |", setups[i].name);
+        for (const Column& column : columns)
+            fmt::print(" {:.2f} |", column.*single / (column.*hybrid)[i]);
+    }
+    fmt::print("\n");
 }
 
 void polygonTable(gpu::Context& context, const store::Case& source, const std::string& preset,
@@ -198,13 +267,19 @@ void polygonTable(gpu::Context& context, const store::Case& source, const std::s
 
 int main(int argc, char** argv) {
     CLI::App program("Times the hybrid and the polygon-assisted raycaster beside the single pass.");
-    std::string volumes, storeFolder, caseName;
-    int side = 512, places = 9;
+    std::string volumes, storeFolder, caseName, only;
+    int side = 512, places = 3, rounds = 2, warm = 48;
+    bool ladderToo = false;
     program.add_option("--volumes", volumes, "Folder of engine, bonsai and head");
     program.add_option("--store", storeFolder, "A store with a prepared case");
     program.add_option("--case", caseName, "Its name");
     program.add_option("--size", side, "Pixels")->check(CLI::Range(1, 2048));
     program.add_option("--places", places, "Views")->check(CLI::Range(1, 1000));
+    program.add_option("--rounds", rounds, "Pictures of each view")->check(CLI::Range(1, 1000));
+    program.add_option("--warm", warm, "Pictures in which the balance finds its place")
+        ->check(CLI::Range(1, 100000));
+    program.add_option("--only", only, "One of the volumes");
+    program.add_flag("--ladder", ladderToo, "Every rung of the balance, in place of the controls");
     CLI11_PARSE(program, argc, argv);
     // Lines appear as they are made, also in a file.
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
@@ -220,6 +295,8 @@ int main(int argc, char** argv) {
     }
     if (volumes.empty()) return 0;
     const std::filesystem::path folder = volumes;
+    const std::vector<Setup> chosen = ladderToo ? ladder() : setups();
+    std::vector<Column> columns;
     struct Data {
         const char* name;
         std::filesystem::path path;
@@ -228,12 +305,14 @@ int main(int argc, char** argv) {
     for (const Data& data :
          {Data{"engine", folder / "engine.nii.gz", glm::dvec3(1.0)},
           Data{"bonsai", folder / "bonsai.nii.gz", glm::dvec3(1.0)},
-          Data{"head", folder / "visible_human_ct_head" / "texture", {1.0, 1.0, -1.0}}}) {
-        if (!std::filesystem::exists(data.path)) continue;
+          Data{"head", folder / "visible_human_ct_head" / "texture", glm::dvec3(1.0)}}) {
+        if (!std::filesystem::exists(data.path) || (!only.empty() && only != data.name)) continue;
+        const auto volume = orEnd(cli::readInputVolume(data.path, data.spacingMm, 0));
         for (const char* kind : {"opaque", "translucent"})
-            hybridTable(*context, data.name,
-                        orEnd(cli::readInputVolume(data.path, data.spacingMm, 0)),
-                        std::string(data.name) + "-" + kind, side, places);
+            columns.push_back(measure(*context, std::string(data.name) + "-" + kind, volume.share(),
+                                      chosen, {side, places, rounds, warm}));
     }
+    printTable("by the clock", chosen, columns, &Column::singleMs, &Column::ms);
+    printTable("by CPU time", chosen, columns, &Column::singleCpuMs, &Column::cpuMs);
     return 0;
 }
