@@ -11,7 +11,9 @@ namespace {
 
 Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, RenderThread& renderer,
                                              const std::string& name) {
-    auto files = readCase(store, name);
+    const auto source = store.openCase(name);
+    if (!source) return tl::make_unexpected(source.error());
+    auto files = readCase(*source);
     if (!files) return tl::make_unexpected(files.error());
     if (auto there = renderer.find(files->facts)) return there;
     if (!files->facts.cleansed)
@@ -20,7 +22,7 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
     if (!prepared) return tl::make_unexpected(prepared.error());
     if (files->flattened) {
         // Without it the case can still be read.
-        if (auto wall = readWall(store, name)) {
+        if (auto wall = readWall(*source)) {
             files->facts.wall = std::move(*wall);
             prepared->flatMap = files->facts.wall->map;
         } else {
@@ -28,7 +30,7 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         }
     }
     if (files->surface) {
-        if (auto surface = readSurface(store, name))
+        if (auto surface = readSurface(*source))
             prepared->wall = std::move(*surface);
         else
             spdlog::warn("a case's overview has no colon: {}", surface.error().message);

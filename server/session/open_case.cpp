@@ -2,31 +2,29 @@
 
 namespace haustra::session {
 
-Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& name) {
-    const auto source = store.openCase(name);
-    if (!source) return tl::make_unexpected(source.error());
-    const auto products = source->products();
+Result<CaseFiles> readCase(const store::Case& source) {
+    const auto products = source.products();
     if (!products) return tl::make_unexpected(products.error());
 
     CaseFiles files;
-    files.facts.name = name;
-    auto ct = source->readVolume<std::int16_t>("ct");
+    files.facts.name = source.name();
+    auto ct = source.readVolume<std::int16_t>("ct");
     if (!ct) return tl::make_unexpected(ct.error());
     files.ct = std::move(*ct);
     files.facts.grid = files.ct.grid();
-    if (const auto attributes = source->attributes("ct")) {
+    if (const auto attributes = source.attributes("ct")) {
         const auto position = attributes->find("position");
         if (position != attributes->end())
             files.facts.position = patientPositionFromString(position->second);
     }
     for (const store::ProductEntry& entry : *products) {
         if (entry.product == "cleansed") {
-            auto cleansed = source->readVolume<std::int16_t>("cleansed");
+            auto cleansed = source.readVolume<std::int16_t>("cleansed");
             if (!cleansed) return tl::make_unexpected(cleansed.error());
             files.cleansed = std::move(*cleansed);
             files.facts.cleansed = true;
         } else if (entry.product == "centerline") {
-            auto centerline = source->readCenterline();
+            auto centerline = source.readCenterline();
             if (!centerline) return tl::make_unexpected(centerline.error());
             files.facts.centerline = std::move(*centerline);
         } else if (entry.product == "flatmap") {
@@ -41,20 +39,14 @@ Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& nam
     return files;
 }
 
-Result<std::shared_ptr<const TriMesh>> readSurface(const store::CaseStore& store,
-                                                   const std::string& name) {
-    const auto source = store.openCase(name);
-    if (!source) return tl::make_unexpected(source.error());
-    auto mesh = source->readMesh("surface");
+Result<std::shared_ptr<const TriMesh>> readSurface(const store::Case& source) {
+    auto mesh = source.readMesh("surface");
     if (!mesh) return tl::make_unexpected(mesh.error());
     return std::make_shared<const TriMesh>(std::move(*mesh));
 }
 
-Result<std::shared_ptr<const Wall>> readWall(const store::CaseStore& store,
-                                             const std::string& name) {
-    const auto source = store.openCase(name);
-    if (!source) return tl::make_unexpected(source.error());
-    auto map = source->readFlatMap();
+Result<std::shared_ptr<const Wall>> readWall(const store::Case& source) {
+    auto map = source.readFlatMap();
     if (!map) return tl::make_unexpected(map.error());
     return makeWall(std::make_shared<const FlatMap>(std::move(*map)));
 }

@@ -38,17 +38,15 @@ struct CaseFiles {
     bool surface = false;           ///< there is the wall's mesh
 };
 
-/// Reads product "ct" of a case and, where they are there, "cleansed" and "centerline". Fails
-/// (notFound) where there is no such case. Maps the volumes, reads no voxel.
-Result<CaseFiles> readCase(const store::CaseStore& store, const std::string& name);
+/// Reads product "ct" of a case and, where they are there, "cleansed" and "centerline". Maps the
+/// volumes, reads no voxel.
+Result<CaseFiles> readCase(const store::Case& source);
 
 /// Reads product "surface", the wall's mesh.
-Result<std::shared_ptr<const TriMesh>> readSurface(const store::CaseStore& store,
-                                                   const std::string& name);
+Result<std::shared_ptr<const TriMesh>> readSurface(const store::Case& source);
 
 /// Reads product "flatmap" and makes it ready for questions: about a second for a million
 /// triangles, and some hundred bytes for each.
-Result<std::shared_ptr<const Wall>> readWall(const store::CaseStore& store,
-                                             const std::string& name);
+Result<std::shared_ptr<const Wall>> readWall(const store::Case& source);
 
 }  // namespace haustra::session

@@ -2,6 +2,7 @@
 // many pictures each gets, and what of the GPU. Needs HAUSTRA_BIN, the folder of the programs.
 #include "end_to_end/server_process.h"
 #include "end_to_end/server_test_client.h"
+#include "stopwatch.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -15,7 +16,7 @@
 namespace haustra::tests {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using bench::median, bench::milliseconds;
 
 struct Reader {
     int width = 512, height = 512;
@@ -30,17 +31,6 @@ struct Flown {
     std::uint8_t raycaster = 0;
     double restMs = 0.0;  // from the last moving picture to the exact one
 };
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
-}
 
 // Each camera is sent when the picture of the one before has come.
 Flown fly(std::uint16_t port, const std::string& caseName, const Reader& reader, int start,
@@ -58,17 +48,18 @@ Flown fly(std::uint16_t port, const std::string& caseName, const Reader& reader,
     client.viewport(1, 0, protocol::ENDOSCOPIC, reader.width, reader.height);
 
     Flown flown;
-    const auto begun = Clock::now();
+    const double begun = milliseconds();
+    const auto flownFor = [&] { return 1e-3 * (milliseconds() - begun); };
     const int ahead = 20;
     double sample = start % (samples - ahead - 1);
-    for (std::uint64_t sequence = 2; secondsSince(begun) < warmUpSeconds + seconds; ++sequence) {
+    for (std::uint64_t sequence = 2; flownFor() < warmUpSeconds + seconds; ++sequence) {
         sample += 1.0;
         if (sample >= samples - ahead - 1) sample = 0.0;
         const auto at = [&](int n) {
             return TestClient::Vector{path[5 * n], path[5 * n + 1], path[5 * n + 2]};
         };
         const auto here = at(int(sample)), there = at(int(sample) + ahead);
-        const auto asked = Clock::now();
+        const double asked = milliseconds();
         client.camera(sequence, 0, here, true,
                       {there[0] - here[0], there[1] - here[1], there[2] - here[2]});
         std::optional<TestPicture> picture;
@@ -76,17 +67,17 @@ Flown fly(std::uint16_t port, const std::string& caseName, const Reader& reader,
             picture = client.picture();
         while (picture && picture->header.sequence < sequence);
         if (!picture) throw std::runtime_error("the server is silent");
-        if (secondsSince(begun) < warmUpSeconds) continue;
+        if (flownFor() < warmUpSeconds) continue;
         ++flown.pictures;
         flown.gpuMs += 1e-3 * picture->header.renderMicroseconds;
-        flown.latencyMs.push_back(1e3 * secondsSince(asked));
+        flown.latencyMs.push_back(milliseconds() - asked);
         ++flown.widths[picture->header.pictureWidth];
         flown.raycaster = picture->header.raycaster;
     }
-    const auto rested = Clock::now();
+    const double rested = milliseconds();
     while (const auto picture = client.picture())
         if (picture->header.exact) break;
-    flown.restMs = 1e3 * secondsSince(rested);
+    flown.restMs = milliseconds() - rested;
     return flown;
 }
 

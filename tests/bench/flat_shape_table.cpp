@@ -11,9 +11,9 @@
 #include "flatten/unified_flattening.h"
 #include "flatten_meshes.h"
 #include "phantom_polyps.h"
+#include "stopwatch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -23,6 +23,8 @@
 #include <fmt/format.h>
 
 using namespace haustra;
+
+using bench::milliseconds;
 
 namespace {
 
@@ -109,9 +111,9 @@ flatten::PeriodicMap unified(const Study& study, double weight, int threads, dou
     flatten::UnifiedOptions options;
     options.areaWeight = weight;
     options.threads = threads;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = milliseconds();
     auto map = need(flatten::unifiedFlattening(study.tube.mesh, study.conformal, options));
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds = 1e-3 * (milliseconds() - start);
     return map;
 }
 
@@ -175,18 +177,15 @@ void printRoundTrip(const Study& study) {
         flatten::cutAlongSeam(tube, study.conformal, flatten::bestSeam(tube, study.conformal));
     cut.cameras.push_back({});
     cut.camera.assign(cut.flat.size(), 0);
-    const auto now = [] { return std::chrono::steady_clock::now(); };
-    const auto since = [&](auto start) {
-        return std::chrono::duration<double>(now() - start).count();
-    };
-    const auto begin = now();
+    const auto since = [](double start) { return 1e-3 * (milliseconds() - start); };
+    const double begin = milliseconds();
     const FlatLookup lookup(std::make_shared<const FlatMap>(std::move(cut)));
     const double buildSeconds = since(begin);
 
     std::mt19937 random(1);
     std::vector<WallPlace> places;
     const auto rows = unsigned(pixelsPerUnit * lookup.map().height);
-    auto start = now();
+    double start = milliseconds();
     for (int n = 0; n < pixels; ++n) {
         const glm::dvec2 pixel(random() % unsigned(pixelsPerUnit) + 0.5, random() % rows + 0.5);
         places.push_back(*lookup.at(pixel / pixelsPerUnit));
@@ -194,7 +193,7 @@ void printRoundTrip(const Study& study) {
     const double atSeconds = since(start);
     double worst = 0.0;
     int beyondHalf = 0;
-    start = now();
+    start = milliseconds();
     for (const WallPlace& place : places) {
         const WallPlace back = lookup.nearest(place.positionMm);
         const double off =

@@ -3,6 +3,7 @@
 #include "cover_iteration.h"
 #include "flatten/conformal_tube.h"
 #include "process_cost.h"
+#include "stopwatch.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -14,11 +15,6 @@
 
 namespace haustra::bench {
 namespace {
-
-double medianOf(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 flatten::ConformalTube mapOf(const TriMesh& mesh, const flatten::ConformalTubeOptions& options) {
     auto made = flatten::conformalTube(mesh, -1, options);
@@ -102,7 +98,7 @@ void printOurs(const char* name, const std::vector<Ours>& runs, Cost Ours::*whic
         std::vector<double> values;
         for (const Ours& run : runs)
             values.push_back(clock(run.*which));
-        return medianOf(values);
+        return median(values);
     };
     fmt::print("| {} | | {:.2f} | {:.2f} | {:.2f} | {:.0f} | | | | |\n", name,
                middle([](const Cost& c) { return c.wallS; }),
@@ -116,7 +112,7 @@ void printLaps(const char* name, const std::vector<Lap>& laps) {
         std::vector<double> values;
         for (const Lap& lap : laps)
             values.push_back(of(lap));
-        return medianOf(values);
+        return median(values);
     };
     const auto wall = [](const Cost& c) { return c.wallS; };
     const auto cpu = [](const Cost& c) { return c.cpuS(); };

@@ -1,32 +1,21 @@
 // What cutting handles does to masks: one line of a table for each NIfTI mask given.
 // Arguments: [--threads N] [--write FOLDER] mask…
 #include "nifti/nifti_file.h"
+#include "stopwatch.h"
 #include "topology/centerline_path.h"
 #include "topology/distance_field.h"
 #include "topology/handle_cutting.h"
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include <sys/resource.h>
-
 namespace haustra::topology {
 namespace {
 
-double seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-double cpuSeconds() {
-    rusage used{};
-    getrusage(RUSAGE_SELF, &used);
-    return double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-           1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-}
+using bench::cpuMilliseconds, bench::milliseconds;
 
 void printHeader() {
     std::printf("%-24s %10s %6s %9s %8s | %6s %6s %8s %8s %6s %6s | %10s %6s %6s\n", "mask",
@@ -42,7 +31,7 @@ bool printLine(const std::filesystem::path& file, int threads, const std::string
     }
     const DigitalTopology before = digitalTopology(*mask, threads);
     const std::size_t voxels = maskOf(*mask, threads).count();
-    double wall = seconds(), cpu = cpuSeconds();
+    double wall = milliseconds(), cpu = cpuMilliseconds();
     HandleCuttingOptions options;
     options.threads = threads;
     const auto cut = cutHandles(*mask, options);
@@ -53,15 +42,15 @@ bool printLine(const std::filesystem::path& file, int threads, const std::string
     std::printf("%-24s %10zu %6ld %9ld %8ld | %6s %6ld %8zu %8zu %6.2f %6.2f | ",
                 file.filename().c_str(), voxels, before.components, before.cavities,
                 before.handles(), digitalTopology(cut->labels, threads).isBall() ? "yes" : "NO",
-                cut->cavitiesFilled, cut->voxelsRemoved, cut->voxelsAdded, seconds() - wall,
-                cpuSeconds() - cpu);
-    wall = seconds(), cpu = cpuSeconds();
+                cut->cavitiesFilled, cut->voxelsRemoved, cut->voxelsAdded,
+                1e-3 * (milliseconds() - wall), 1e-3 * (cpuMilliseconds() - cpu));
+    wall = milliseconds(), cpu = cpuMilliseconds();
     CenterlineOptions centerline;
     centerline.threads = threads;
     const auto traced =
         traceCenterline(cut->labels, distanceToBoundaryMm(cut->labels, threads), centerline);
     std::printf("%10.0f %6.2f %6.2f\n", traced ? traced->centerline.lengthMm() : 0.0,
-                seconds() - wall, cpuSeconds() - cpu);
+                1e-3 * (milliseconds() - wall), 1e-3 * (cpuMilliseconds() - cpu));
     for (const std::string& note : cut->notes)
         std::printf("    %s\n", note.c_str());
     if (folder.empty()) return true;

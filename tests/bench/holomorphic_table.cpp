@@ -9,10 +9,10 @@
 #include "flatten/torus_map.h"
 #include "handle_meshes.h"
 #include "mesh/mesh_file.h"
+#include "stopwatch.h"
 #include "torus_meshes.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
 namespace haustra {
@@ -21,9 +21,7 @@ namespace {
 using flatten::ComplexForm;
 using Complex = std::complex<double>;
 
-double secondsSince(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+using bench::milliseconds;
 
 void printKnown() {
     std::printf("surface | triangles | tau | error | certificate\n");
@@ -45,13 +43,13 @@ void printKnown() {
 }
 
 void printClosed(const TriMesh& mesh) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = milliseconds();
     const auto halfedges = mesh::HalfedgeMesh::ofClosed(mesh);
     if (!halfedges) return void(std::printf("%s\n", halfedges.error().message.c_str()));
     const auto basis = flatten::holomorphicBasis(*halfedges);
     if (!basis) return void(std::printf("%s\n", basis.error().message.c_str()));
     const flatten::PeriodMatrix periods = flatten::periodMatrix(*basis);
-    const double seconds = secondsSince(start);
+    const double seconds = 1e-3 * (milliseconds() - start);
     double dual = 0.0, skew = 0.0;
     for (std::size_t k = 0; k < basis->harmonic.size(); ++k) {
         for (std::size_t i = 0; i < basis->homology.size(); ++i) {
@@ -98,12 +96,12 @@ void printTube(const TriMesh& tube) {
     flatten::ConformalTubeOptions reduced;
     reduced.repairFlips = false;
     reduced.threads = 1;
-    auto start = std::chrono::steady_clock::now();
+    double start = milliseconds();
     const auto one = flatten::conformalTube(tube, -1, reduced);
-    const double reducedSeconds = secondsSince(start);
-    start = std::chrono::steady_clock::now();
+    const double reducedSeconds = 1e-3 * (milliseconds() - start);
+    start = milliseconds();
     const auto two = flatten::tubeMapFromDoubleCover(tube);
-    const double generalSeconds = secondsSince(start);
+    const double generalSeconds = 1e-3 * (milliseconds() - start);
     if (!one || !two)
         return void(std::printf("%s\n", (one ? two.error() : one.error()).message.c_str()));
     const auto step = [&](std::size_t t, int c) {

@@ -20,12 +20,7 @@ namespace {
 using namespace haustra;
 using namespace render;
 
-using bench::cpuMilliseconds, bench::milliseconds;
-
-double quantile(std::vector<double> values, double share) {
-    std::sort(values.begin(), values.end());
-    return values.empty() ? 0.0 : values[std::size_t(share * double(values.size() - 1))];
-}
+using bench::cpuMilliseconds, bench::milliseconds, bench::quantile;
 
 template <class T>
 T orEnd(Result<T> made) {

@@ -4,15 +4,14 @@
 #include "render/case_renderer.h"
 #include "render/comparison.h"
 #include "render/png_file.h"
+#include "stopwatch.h"
 #include "store/case_store.h"
 #ifdef HAUSTRA_BENCH_VTK_VOLUME
 #include "vtk_raycasters.h"
 #endif
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
@@ -23,6 +22,7 @@
 namespace {
 
 using namespace haustra;
+using bench::cpuMilliseconds, bench::median, bench::milliseconds;
 using render::Image;
 
 struct Arguments {
@@ -38,20 +38,6 @@ struct Contestant {
     std::vector<double> wallMs = {}, cpuMs = {}, psnr = {};
 };
 
-double wallMs() {
-    return std::chrono::duration<double, std::milli>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-double cpuMs() {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return double(time.tv_sec) * 1e3 + double(time.tv_nsec) * 1e-6;
-}
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 double psnr(const Image& a, const Image& b) {
     double squares = 0.0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i)
@@ -134,12 +120,12 @@ Result<void> table(const Arguments& given) {
             view.optics = *optics;
             Image first;
             for (Contestant& one : all) {
-                const double wall = wallMs(), cpu = cpuMs();
+                const double wall = milliseconds(), cpu = cpuMilliseconds();
                 const auto image = one.draw(view, size);
                 if (!image) return tl::make_unexpected(image.error());
                 if (place < 0) continue;
-                one.wallMs.push_back(wallMs() - wall);
-                one.cpuMs.push_back(cpuMs() - cpu);
+                one.wallMs.push_back(milliseconds() - wall);
+                one.cpuMs.push_back(cpuMilliseconds() - cpu);
                 if (first.rgb.empty()) first = *image;
                 one.psnr.push_back(psnr(*image, first));
                 if (given.pictures.empty()) continue;

@@ -2,10 +2,10 @@
 // usage: render_bench STORE CASE [PRESET]
 #include "core/centerline.h"
 #include "render/case_renderer.h"
+#include "stopwatch.h"
 #include "store/case_store.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -13,16 +13,12 @@
 namespace {
 
 using namespace haustra;
+using bench::milliseconds;
 
 constexpr int places = 25;
 
-double milliseconds() {
-    return std::chrono::duration<double, std::milli>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-Result<void> bench(const std::string& store, const std::string& name, const std::string& preset) {
+Result<void> timePictures(const std::string& store, const std::string& name,
+                          const std::string& preset) {
     const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
         return s.openCase(name);
     });
@@ -75,7 +71,7 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "usage: render_bench STORE CASE [PRESET]\n");
         return 2;
     }
-    if (const auto done = bench(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa"); !done) {
+    if (const auto done = timePictures(argv[1], argv[2], argc > 3 ? argv[3] : "mucosa"); !done) {
         std::fprintf(stderr, "render_bench: %s\n", haustra::describe(done.error()).c_str());
         return 1;
     }

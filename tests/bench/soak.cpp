@@ -177,18 +177,20 @@ int soak(int argc, char** argv) {
     };
     const auto store = store::CaseStore::open(storeFolder, false);
     if (!store) return broken(store.error());
-    auto files = session::readCase(*store, caseName);
+    const auto source = store->openCase(caseName);
+    if (!source) return broken(source.error());
+    auto files = session::readCase(*source);
     if (!files) return broken(files.error());
     auto context = gpu::Context::create();
     if (!context) return broken(context.error());
     if (files->flattened) {
-        auto wall = session::readWall(*store, caseName);
+        auto wall = session::readWall(*source);
         if (!wall) return broken(wall.error());
         files->facts.wall = *wall;
     }
     std::shared_ptr<const TriMesh> surface;
     if (files->surface) {
-        auto read = session::readSurface(*store, caseName);
+        auto read = session::readSurface(*source);
         if (!read) return broken(read.error());
         surface = *read;
     }

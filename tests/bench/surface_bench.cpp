@@ -1,13 +1,13 @@
 // The colon surface of a case in a store: contouring and simplification at several bounds, beside
 // VTK's flying edges and decimation to as many triangles, as a Markdown table. `--help` tells the
 // options.
+#include "stopwatch.h"
 #include "store/case_store.h"
 #include "surface/dual_contouring.h"
 #include "surface/self_intersection.h"
 #include "surface/simplification.h"
 #include "surface_measure.h"
 
-#include <chrono>
 #include <cstdlib>
 
 #include <CLI/CLI.hpp>
@@ -45,9 +45,9 @@ struct Timed {
 
 template <class Work>
 double secondsOf(const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = bench::milliseconds();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return 1e-3 * (bench::milliseconds() - start);
 }
 
 /// What a reader wants to know of one surface, and its distance from `fine` where that is given.

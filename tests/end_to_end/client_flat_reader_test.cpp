@@ -1,14 +1,7 @@
 // The reader's flattened views, against a server on the loopback: strip, window, camera and slices
 // follow each other; bookmarks find their wall; lines are measured.
-#include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
-#include "panels/reader.h"
-
-#include <filesystem>
-#include <thread>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
+#include "end_to_end/reader_fixture.h"
 
 namespace haustra::panels {
 namespace {
@@ -16,37 +9,16 @@ namespace {
 using tests::FakeServer;
 using tests::Misbehaviour;
 
-class ClientFlatReader : public ::testing::Test {
+class ClientFlatReader : public tests::ReaderFixture {
 protected:
-    explicit ClientFlatReader(Misbehaviour misbehaviour = {}) : server_(misbehaviour) {}
+    using ReaderFixture::ReaderFixture;
 
     void SetUp() override {
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("haustra-flat-" + std::string(info->name()) + std::to_string(::getpid()));
-        link::ConnectionOptions options;
-        options.address = {"127.0.0.1", server_.port()};
-        options.pinning.knownServersFile = folder_ / "known_servers";
-        options.reconnect = true;
-        reader_ = std::make_unique<Reader>(options, "phantom");
+        ReaderFixture::SetUp();
         for (const View view : {View::endoscopic, View::axial, View::flattened})
             reader_->setPaneSize(view, {100, 90});
         reader_->setPaneSize(View::flattenedZoom, {232, 100});
         ASSERT_TRUE(runUntil([&] { return atRest(); }));
-    }
-    void TearDown() override {
-        reader_.reset();
-        std::filesystem::remove_all(folder_);
-    }
-    template <class Done>
-    bool runUntil(Done done) {
-        const auto deadline = Clock::now() + std::chrono::seconds(30);
-        while (!done()) {
-            if (Clock::now() > deadline) return false;
-            reader_->update(0.01);
-            std::this_thread::sleep_for(std::chrono::milliseconds(3));
-        }
-        return true;
     }
     bool atRest() const {
         if (!reader_->isOpen() || reader_->restless()) return false;
@@ -63,10 +35,6 @@ protected:
     }
     double length() const { return FakeServer::centerline().lengthMm(); }
     static glm::dvec3 vector(const protocol::Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-    FakeServer server_;
-    std::filesystem::path folder_;
-    std::unique_ptr<Reader> reader_;
 };
 
 TEST_F(ClientFlatReader, TheWindowFollowsTheFlight) {

@@ -1,14 +1,7 @@
 // The reader behind the window, against a server on the loopback: four views that follow the
 // flight, exact when it rests, and alive again after a lost link.
-#include "end_to_end/fake_server.h"
-#include "panels/reader.h"
+#include "end_to_end/reader_fixture.h"
 #include "protocol/haustra.pb.h"
-
-#include <filesystem>
-#include <thread>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace haustra::panels {
 namespace {
@@ -18,38 +11,15 @@ using tests::Misbehaviour;
 
 constexpr View views[] = {View::endoscopic, View::axial, View::coronal, View::sagittal};
 
-class ClientReader : public ::testing::Test {
+class ClientReader : public tests::ReaderFixture {
 protected:
-    explicit ClientReader(Misbehaviour misbehaviour = {}) : server_(misbehaviour) {}
+    using ReaderFixture::ReaderFixture;
 
     void SetUp() override {
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("haustra-reader-" + std::string(info->name()) + std::to_string(::getpid()));
-        link::ConnectionOptions options;
-        options.address = {"127.0.0.1", server_.port()};
-        options.pinning.knownServersFile = folder_ / "known_servers";
-        options.reconnect = true;
-        reader_ = std::make_unique<Reader>(options, "phantom");
+        ReaderFixture::SetUp();
         reader_->setPaneSize(View::endoscopic, {240, 160});
         for (const View view : {View::axial, View::coronal, View::sagittal})
             reader_->setPaneSize(view, {100, 90});
-    }
-    void TearDown() override {
-        reader_.reset();
-        std::filesystem::remove_all(folder_);
-    }
-
-    // Steps the reader, as a window does, until `done`; false when it takes absurdly long.
-    template <class Done>
-    bool runUntil(Done done) {
-        const auto deadline = Clock::now() + std::chrono::seconds(30);
-        while (!done()) {
-            if (Clock::now() > deadline) return false;
-            reader_->update(0.01);
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-        return true;
     }
     bool allAtRest() const {
         if (!reader_->isOpen() || reader_->restless()) return false;
@@ -66,10 +36,6 @@ protected:
             EXPECT_EQ(reader_->shownSlice(view).positionMm, positionMm);
         }
     }
-
-    FakeServer server_;
-    std::filesystem::path folder_;
-    std::unique_ptr<Reader> reader_;
 };
 
 TEST_F(ClientReader, TheOverviewStandsStillWhileTheReaderFliesAndTurnsByHand) {
@@ -209,8 +175,7 @@ TEST_F(ClientReader, ScrollingASliceLeavesTheCameraAndStaysWithinTheScan) {
     EXPECT_EQ(reader_->flight().camera().positionMm, camera);
     reader_->scrollSlice(View::axial, 1e6);
     const Grid& grid = reader_->session().caseInfo()->grid;
-    EXPECT_NEAR(reader_->slice().positionMm.z,
-                grid.patientFromVoxelPoint(grid.size - 1).z, 1e-9);
+    EXPECT_NEAR(reader_->slice().positionMm.z, grid.patientFromVoxelPoint(grid.size - 1).z, 1e-9);
     reader_->flight().goTo(50.0);
     reader_->update(0.0);
     EXPECT_EQ(reader_->slice().positionMm, reader_->flight().camera().positionMm);

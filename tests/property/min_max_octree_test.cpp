@@ -1,6 +1,8 @@
 // The min-max octree against its definition, and rays through it against plain stepping.
 #include "render/min_max_octree.h"
 
+#include "random_volume.h"
+
 #include <algorithm>
 #include <random>
 #include <set>
@@ -11,15 +13,7 @@
 namespace haustra::render {
 namespace {
 
-Volume<std::int16_t> randomVolume(glm::ivec3 size, unsigned seed, double dense) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> chance(0.0, 1.0);
-    Volume<std::int16_t> volume(axisAlignedGrid(size, glm::dvec3(1.0)));
-    for (auto& hu : volume.writable())
-        hu = std::int16_t(chance(random) < dense ? 100.0 * chance(random)
-                                                 : -1000.0 + 50.0 * chance(random));
-    return volume;
-}
+using tests::randomVolume;
 
 /// Opaque from `fromHu` on, clear a HU below.
 TransferTable stepTable(double fromHu, double stepMm = 0.5) {

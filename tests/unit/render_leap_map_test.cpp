@@ -1,23 +1,15 @@
 // The leap map against its definition.
+#include "random_volume.h"
 #include "render/optics/leap_map.h"
 
 #include <algorithm>
-#include <random>
 
 #include <gtest/gtest.h>
 
 namespace haustra::render {
 namespace {
 
-Volume<std::int16_t> randomVolume(glm::ivec3 size, unsigned seed, double dense) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> chance(0.0, 1.0);
-    Volume<std::int16_t> volume(axisAlignedGrid(size, glm::dvec3(1.0)));
-    for (auto& hu : volume.writable())
-        hu = std::int16_t(chance(random) < dense ? 100.0 * chance(random)
-                                                 : -1000.0 + 50.0 * chance(random));
-    return volume;
-}
+using tests::randomVolume;
 
 const TransferTable& mucosa() {
     static const TransferTable table = makeTransferTable(*opticsPreset("mucosa"), 0.5);

@@ -1,0 +1,55 @@
+// A reader behind a window, against a fake server on the loopback.
+#pragma once
+
+#include "end_to_end/fake_server.h"
+#include "panels/reader.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace haustra::tests {
+
+class ReaderFixture : public ::testing::Test {
+protected:
+    explicit ReaderFixture(Misbehaviour misbehaviour = {}) : server_(misbehaviour) {}
+
+    /// The reader opens the server's case; no pane has a size yet.
+    void SetUp() override {
+        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("haustra-" + std::string(info->test_suite_name()) + info->name() +
+                   std::to_string(::getpid()));
+        link::ConnectionOptions options;
+        options.address = {"127.0.0.1", server_.port()};
+        options.pinning.knownServersFile = folder_ / "known_servers";
+        options.reconnect = true;
+        reader_ = std::make_unique<panels::Reader>(options, "phantom");
+    }
+    void TearDown() override {
+        reader_.reset();
+        std::filesystem::remove_all(folder_);
+    }
+
+    /// Steps the reader, as a window does, until `done`; false when it takes absurdly long.
+    template <class Done>
+    bool runUntil(Done done) {
+        const auto deadline = link::Clock::now() + std::chrono::seconds(30);
+        while (!done()) {
+            if (link::Clock::now() > deadline) return false;
+            reader_->update(0.01);
+            std::this_thread::sleep_for(std::chrono::milliseconds(4));
+        }
+        return true;
+    }
+
+    FakeServer server_;
+    std::filesystem::path folder_;
+    std::unique_ptr<panels::Reader> reader_;
+};
+
+}  // namespace haustra::tests
