@@ -104,9 +104,10 @@ std::vector<Setup> ladder() {
     return rungs;
 }
 
-int rungOf(const HybridControls& controls) {
-    return int(std::find(hybridLadder.begin(), hybridLadder.end(), controls) -
-               hybridLadder.begin());
+/// "-" for controls that are none of the ladder's.
+char rungOf(const HybridControls& controls) {
+    const auto found = std::find(hybridLadder.begin(), hybridLadder.end(), controls);
+    return found == hybridLadder.end() ? '-' : char('0' + (found - hybridLadder.begin()));
 }
 
 /// What one setup has cost, picture by picture.
@@ -150,7 +151,7 @@ Column measure(gpu::Context& context, const std::string& name, Volume<std::int16
         std::string rungs;
         for (int n = 0; n < (setups[i].controls ? 1 : sizes.warm); ++n) {
             warm.draw(*costs[i].raycaster, views.front(), sizes.side);
-            rungs += char('0' + rungOf(costs[i].raycaster->stats().controls));
+            rungs += rungOf(costs[i].raycaster->stats().controls);
         }
         if (!setups[i].controls)
             fmt::print("{}: rungs while the balance finds its place {}\n", name, rungs);

@@ -179,6 +179,22 @@ TEST(HybridBalance, FindsItsPlaceAnewWhereTheCurveChanges) {
     }
 }
 
+TEST(HybridBalance, AChangeThatTheTimesTellIsSoonFollowed) {
+    int late = 0, all = 0;
+    for (const NamedCurve& before : curves) {
+        forAll([&](const Curve& ms, const Noise& noise, unsigned seed, const std::string&) {
+            if (seed > 1) return;
+            HybridBalance balance;
+            Machine machine(noise.spread, noise.spikes, seed);
+            machine.run(balance, before.ms, 1000);
+            machine.run(balance, ms, 60, 4.0);
+            late += ms[std::size_t(balance.home())] > (1.05 + noise.spread) * ms[0];
+            ++all;
+        });
+    }
+    EXPECT_LE(late, all / 20);
+}
+
 TEST(HybridBalance, GivesASlowGpuLessAndASlowCpuLess) {
     // Each rung takes a fifth more of the CPU's time and a tenth less of the GPU's.
     const auto standsOn = [](double cpuMs, double gpuMs) {

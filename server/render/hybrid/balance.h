@@ -57,11 +57,17 @@ inline constexpr std::array<HybridControls, 9> hybridLadder = {{
 /// other rungs is doubted, and the lowest is asked first. Belongs to one thread.
 class HybridBalance {
 public:
+    /// Pairs of a guest's and home's pictures: from the third on, a guest that is slower by
+    /// median / median > `worse` is dismissed; from the fifth on, one whose slowest is faster than
+    /// home's fastest wins; the seventh decides. A first picture that takes `hopeless` times home's
+    /// is enough.
     static constexpr int mostPairs = 7, pairsToWin = 5, pairsToLose = 3;
     static constexpr double gain = 0.03, hopeless = 2.0, worse = 1.1;
-    static constexpr double share = 1.0 / 32.0, mostCredit = 8.0;
-    static constexpr double tolerance = 1.25, stirring = 1.6;
-    static constexpr int shortestRest = 8, longestRest = 32;  // pictures from asking to asking
+    static constexpr double share = 1.0 / 32.0, mostCredit = 8.0;  ///< in pictures of home's
+    static constexpr double tolerance = 1.25;  ///< over it the CPU's time is the longer
+    static constexpr double stirring = 1.6;
+    /// Home's pictures from asking to asking, once all were asked: ever more, until another wins.
+    static constexpr int shortestRest = 8, longestRest = 32;
 
     /// For the next picture.
     int rung() const { return guestsTurn_ ? guest_ : home_; }
