@@ -9,5 +9,5 @@ void main() {
     // does not depend on the picture that the pixel is in. Rasterizers snap as finely or coarser.
     dvec2 snapped = floor((place * flatWindow.scale.y - flatWindow.phase) * 256.0 + 0.5);
     vec2 pixel = vec2(dvec2(flatWindow.lattice.xy) * 256.0 - snapped) / 256.0;
-    gl_Position = vec4(2.0 * pixel / vec2(flatWindow.picture.xy) - 1.0, 0.0, 1.0);
+    gl_Position = vec4(pixel / flatWindow.angles.w, 0.0, 1.0);
 }

@@ -59,7 +59,8 @@ struct FlatUniforms {
                     ///< circumference; w: which copy of the strip is drawn first
     ivec4 picture;  ///< xy: pixels, z: first triangle drawn, w: last camera
     vec4 angles;    ///< radians; x: most between ray and wall's normal, y: between light and it;
-                    ///< z: how far ahead of the camera the lamp hangs, in distances to the wall
+                    ///< z: how far ahead of the camera the lamp hangs, in distances to the wall;
+                    ///< w: pixels from the picture's corner to where gl_Position is 1
     vec4 ray;       ///< x: most steps back from the wall, y: rise of the stored value that ends
                     ///< the way back, z: most steps on from the wall
 };

@@ -138,7 +138,7 @@ void RasterProgram::draw(const Texture& target, glm::ivec2 background, const Sto
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
     glBindVertexArray(vertexArray_);
     glUseProgram(program_);
-    glViewport(0, 0, target.size().x, target.size().y);
+    glViewport(-reachPixels, -reachPixels, 2 * reachPixels, 2 * reachPixels);
     if (count > 0) {
         const auto* offset = reinterpret_cast<const void*>(std::size_t(first) * 3 * sizeof(GLuint));
         glDrawElementsInstanced(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, offset, copies);

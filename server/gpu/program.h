@@ -57,6 +57,11 @@ public:
     /// [first, first + count) of `indices` (three 32-bit indices each) `copies` times, without
     /// depth and whichever way they wind; later ones cover earlier ones. What it draws is visible
     /// to later reads. gl_PrimitiveID counts from `first`.
+    ///
+    /// gl_Position is 0 at the corner of the target's first pixel, and grows by 1 in reachPixels,
+    /// whatever the target's size: places in whole parts of a pixel stay exact on their way to the
+    /// raster, and triangles that leave the target are not clipped before they are far from it.
+    static constexpr int reachPixels = 4096;
     void draw(const Texture& target, glm::ivec2 background, const StorageBuffer& indices, int first,
               int count, int copies) const;
 

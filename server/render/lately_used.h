@@ -32,6 +32,7 @@ public:
     void makeRoom() {
         if (kept_.size() == most_) kept_.erase(kept_.begin());
     }
+    void clear() { kept_.clear(); }
     const std::vector<T>& all() const { return kept_; }
 
 private:

@@ -17,29 +17,72 @@ using namespace haustra;
 
 using bench::cpuMilliseconds, bench::milliseconds;
 
-/// A hand that drags the window along and around the strip, at one enlargement after the other.
+/// Pictures drawn whole, and in bands of some 8 ms, in turns.
+struct Timed {
+    std::vector<double> wholeMs = {};
+    double cpuMs = 0.0, cpuMsInBands = 0.0, longestBandMs = 0.0;
+    int bands = 0;
+
+    template <class View>
+    Result<void> time(render::CaseRenderer& renderer, const View& view, int side) {
+        const double start = milliseconds(), cpuStart = cpuMilliseconds();
+        const auto whole = renderer.render(view, side, side);
+        if (!whole) return tl::make_unexpected(whole.error());
+        const double cpuEnd = cpuMilliseconds();
+        wholeMs.push_back(milliseconds() - start);
+        cpuMs += cpuEnd - cpuStart;
+        // As the server's scheduler cuts them.
+        const int rows = std::max(1, int(8.0 / wholeMs.back() * side / 16)) * 16;
+        render::Image picture = render::blankImage({side, side});
+        for (int row = 0; row < side; ++bands) {
+            const int left = side - row, here = left < rows + rows / 2 ? left : rows;
+            const double bandStart = milliseconds();
+            if (auto drawn = renderer.render(view, {{side, side}, row, here}, picture); !drawn)
+                return drawn;
+            longestBandMs = std::max(longestBandMs, milliseconds() - bandStart);
+            row += here;
+        }
+        cpuMsInBands += cpuMilliseconds() - cpuEnd;
+        if (picture.rgb != whole->rgb)
+            return fail(ErrorKind::device, "bands show another picture than the whole");
+        return {};
+    }
+    void print() {
+        std::sort(wholeMs.begin(), wholeMs.end());
+        const double pictures = double(wholeMs.size());
+        std::printf(
+            "median %.1f ms, worst %.1f ms; processor time %.1f ms; in %.1f bands %.1f ms, "
+            "the longest %.1f ms elapsed\n",
+            wholeMs[wholeMs.size() / 2], wholeMs.back(), cpuMs / pictures, bands / pictures,
+            cpuMsInBands / pictures, longestBandMs);
+    }
+};
+
+/// A hand that drags the window along and around the strip, at one enlargement after the other;
+/// then the whole strip.
 Result<void> timeWindows(render::CaseRenderer& renderer, const FlatMap& map,
                          const render::Optics& function) {
     constexpr int side = 512, pictures = 60;
     for (const double pixels : {400.0, 1000.0, 2500.0, 6000.0}) {
-        std::vector<double> times;
-        double processor = 0.0;
+        Timed timed;
         for (int i = -1; i < pictures; ++i) {
             const double along = (std::max(i, 0) + 0.5) / pictures;
-            const FlatWindow window{{7.0 * along, map.height * along}, pixels};
-            const double start = milliseconds();
-            const auto image = renderer.render(render::FlatView{window, function, {}}, side, side);
-            if (!image) return tl::make_unexpected(image.error());
+            const render::FlatView view{{{7.0 * along, map.height * along}, pixels}, function, {}};
+            if (auto drawn = timed.time(renderer, view, side); !drawn) return drawn;
             // The first picture loads the transfer function and the driver's code.
-            if (i < 0) processor = cpuMilliseconds();
-            if (i >= 0) times.push_back(milliseconds() - start);
+            if (i < 0) timed = {};
         }
-        std::sort(times.begin(), times.end());
-        std::printf(
-            "window %d x %d, %4.0f pixels a circumference: median %.1f ms, worst %.1f ms; "
-            "processor time %.1f ms\n",
-            side, side, pixels, times[pictures / 2], times.back(),
-            (cpuMilliseconds() - processor) / pictures);
+        std::printf("window %d x %d, %4.0f pixels a circumference: ", side, side, pixels);
+        timed.print();
+    }
+    for (const int overviewSide : {512, 1024}) {
+        Timed timed;
+        for (int i = 0; i < 5; ++i)
+            if (auto drawn = timed.time(renderer, render::FlatOverview{function, {}}, overviewSide);
+                !drawn)
+                return drawn;
+        std::printf("the whole strip in %d x %d: ", overviewSide, overviewSide);
+        timed.print();
     }
     return {};
 }
@@ -101,7 +144,9 @@ Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
     if (!painter) return tl::make_unexpected(painter.error());
     std::vector<bool> seen(count, false);
     const auto look = [&](const FlatWindow& window, glm::ivec2 size) -> Result<void> {
-        if (auto found = painter->findTriangles(window, render::Band::whole(size.x, size.y)); !found) return found;
+        if (auto found = painter->findTriangles(window, render::Band::whole(size.x, size.y));
+            !found)
+            return found;
         for (const int triangle : painter->triangleOfPixel())
             if (triangle >= 0) seen[std::size_t(triangle)] = true;
         return {};

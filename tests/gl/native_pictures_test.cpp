@@ -110,7 +110,7 @@ TEST_F(NativePictures, TrianglesAreTheGpus) {
                                  theirs[std::size_t(row * size.x) + n];
                 }
             }
-            EXPECT_LE(different, 2 + size.x * size.y / 2000) << pixels << " " << center.y;
+            EXPECT_EQ(different, 0) << pixels << " " << center.y;
         }
     }
 }

@@ -126,7 +126,7 @@ TEST_F(ObjectOrder, NoPixelDependsOnTheBudgetOnWhatWasDrawnBeforeOrOnBands) {
         EXPECT_EQ(first.back().rgb, cast(*tight, misty(camera), 72, 53).rgb);
         EXPECT_GT(tight->residency().uploaded, tight->residency().resident);
         EXPECT_EQ(tight->residency().bytesMoved,
-                  std::size_t(tight->residency().uploaded) * 19 * 19 * 19 * 2);
+                  std::size_t(tight->residency().uploaded) * 21 * 21 * 21 * 2);
     }
     EXPECT_EQ(first[0].rgb, cast(*single, misty(cameras()[0]), 72, 53).rgb);
     // Again, the other way round; then in bands.
@@ -154,6 +154,27 @@ TEST_F(ObjectOrder, WhatDoesNotFitIntoABatchIsNotOverwritten) {
                 EXPECT_EQ(cast(*roomy, misty(camera), 40, 30).rgb,
                           cast(*tight, misty(camera), 40, 30).rgb)
                     << batchCells << " cells a batch, " << slots << " slots";
+        }
+}
+
+TEST_F(ObjectOrder, ReadersOfDifferentFunctionsShareTheCells) {
+    const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
+    // They differ in how far beyond a cell its samples look.
+    std::vector<CameraView> views;
+    for (const auto& [name, optics] : models())
+        views.push_back({cameras()[0], optics, {}});
+    views.push_back({cameras()[1], views[4].optics, {.stepVoxels = 1.7}});
+    views.back().optics.preIntegrated = false;
+    std::vector<Image> alone;
+    for (const CameraView& view : views)
+        alone.push_back(cast(*objectOrder(scene, {.cellSide = 16}), view, 64, 64));
+    const auto shared = objectOrder(scene, {.cellSide = 16});
+    for (int round = 0; round < 3; ++round)
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            EXPECT_EQ(cast(*shared, views[i], 64, 64).rgb, alone[i].rgb) << i;
+            if (round == 2) {
+                EXPECT_EQ(shared->residency().uploaded, 0) << i;
+            }
         }
 }
 

@@ -45,6 +45,7 @@ Result<void> FlatPainter::findTriangles(const FlatWindow& window, const Band& ba
     }
     const FlatLattice lattice = surface_->geometry().lattice(window, band);
     uniforms_ = lattice.uniforms;
+    uniforms_.angles.w = float(gpu::RasterProgram::reachPixels);
     block_.write(uniforms_);
     block_.bind(shaders::flatUniformBinding);
     surface_->bind();

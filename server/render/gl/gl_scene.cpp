@@ -12,13 +12,6 @@
 
 namespace haustra::render {
 
-namespace {
-
-// Each holds a leap map, a byte for eight voxels.
-constexpr std::size_t classificationsKept = 4;
-
-}  // namespace
-
 Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
                                   const char* what) {
     const glm::ivec3 size = volume.grid().size;
@@ -69,20 +62,14 @@ Result<const Classification*> GlScene::classification(const Optics& optics,
     if (auto sound = checkOptics(optics); !sound) return tl::make_unexpected(sound.error());
     if (auto sound = checkMarch(march, optics); !sound) return tl::make_unexpected(sound.error());
     const double step = stepMm(march, scene_->grid());
-    const auto wanted = [&](const Classification& one) {
-        return one.isFor(optics, step, march.emptySpaceLeaping);
-    };
-    if (const auto found = std::find_if(recent_.begin(), recent_.end(), wanted);
-        found != recent_.end()) {
-        std::rotate(found, found + 1, recent_.end());
-        return &recent_.back();
-    }
-    if (recent_.size() == classificationsKept) recent_.erase(recent_.begin());
-    Result<Classification> made =
-        Classification::create(optics, step, march.emptySpaceLeaping, scene_->ranges, threads_);
+    const bool leaping = march.emptySpaceLeaping;
+    if (const Classification* known = recent_.find(
+            [&](const Classification& one) { return one.isFor(optics, step, leaping); }))
+        return known;
+    recent_.makeRoom();
+    auto made = Classification::create(optics, step, leaping, scene_->ranges, threads_);
     if (!made) return tl::make_unexpected(made.error());
-    recent_.push_back(std::move(*made));
-    return &recent_.back();
+    return recent_.keep(std::move(*made));
 }
 
 void GlScene::bind(const shaders::MarchUniforms& uniforms, const Classification& classified) {
@@ -139,7 +126,7 @@ Result<void> GlScene::bindBackdrop(const std::shared_ptr<const Backdrop>& backdr
 std::size_t GlScene::gpuBytes() const {
     std::size_t bytes = volume_.bytes() + (backdropTexture_ ? backdropTexture_->bytes() : 0) +
                         (gradients_ ? gradients_->bytes() : 0);
-    for (const Classification& one : recent_)
+    for (const Classification& one : recent_.all())
         bytes += one.gpuBytes();
     return bytes;
 }

@@ -4,6 +4,7 @@
 #include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "gpu/texture.h"
+#include "render/lately_used.h"
 #include "render/optics/classification.h"
 #include "render/scene.h"
 #include "render/view.h"
@@ -11,7 +12,6 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 namespace haustra::render {
 
@@ -55,6 +55,9 @@ private:
     GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int threads,
             std::size_t gradientBudgetBytes, gpu::Texture volume, gpu::UniformBuffer marchBlock);
     Result<gpu::Texture> makeGradients();
+
+    // Each holds a leap map, a byte for eight voxels.
+    static constexpr std::size_t classificationsKept = 4;
     gpu::Context& context_;
     std::shared_ptr<const Scene> scene_;
     int threads_;
@@ -62,7 +65,7 @@ private:
     gpu::Texture volume_;
     gpu::UniformBuffer marchBlock_;
     std::optional<gpu::Texture> gradients_;
-    std::vector<Classification> recent_;  // the latest used last
+    LatelyUsed<Classification> recent_{classificationsKept};
     std::shared_ptr<const Backdrop> backdrop_;
     std::optional<gpu::Texture> backdropTexture_;  // of backdrop_
 };

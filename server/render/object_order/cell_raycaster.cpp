@@ -50,7 +50,9 @@ CellRaycaster::CellRaycaster(gpu::Context& context, const Grid& grid,
       marchBlock_(std::move(marchBlock)) {}
 
 Result<void> CellRaycaster::makePool(int border) {
-    if (pool_ && pool_->border() == border) return {};
+    // Readers' functions differ: what has room for the widest border serves them all, and no pixel
+    // depends on what else is in a slot.
+    if (pool_ && pool_->border() >= border) return {};
     pool_.reset();
     auto made = CellPool::create(source_, cells_, border, options_.budgetBytes, options_.threads);
     if (!made) return tl::make_unexpected(made.error());

@@ -87,7 +87,7 @@ struct LabelledRaycaster::Impl {
                             "colour volume");
         // Nothing is read before the next picture.
         cells.forget();
-        shown = LatelyUsed<ShownCells>(1);
+        shown.clear();
         source->show(std::move(labels));
         const Grid& grid = volume->grid();
         const auto row = [&](int y, int z, std::span<std::int16_t> values) {

@@ -19,14 +19,13 @@ namespace {
 
 constexpr std::size_t classificationsKept = 4;
 
-/// Voxels beyond the cell's own that a sample in it may read, but for interpolation: a voxel for
-/// gradients; and up to the sample before, where that enters too.
+/// Voxels beyond the cell's own that a sample in it may read, but for interpolation: up to the
+/// sample before, where that enters too; and one more for gradients, which are read on the way.
 int borderOf(const Optics& optics, const MarchOptions& march) {
-    const int before = int(std::ceil(march.stepVoxels));
-    if (optics.composition == Composition::firstHit) return before + (optics.shading ? 1 : 0);
-    const bool segments =
-        optics.composition == Composition::emissionAbsorption && optics.preIntegrated;
-    return segments ? std::max(before, 1) : 1;
+    const MarchVariant variant = MarchVariant::of(optics, false, false);
+    const bool looksBack = optics.composition == Composition::firstHit || variant.preIntegrated;
+    const int before = looksBack ? int(std::ceil(march.stepVoxels)) : 0;
+    return before + (variant.shading || variant.gradientRows ? 1 : 0);
 }
 
 /// Cells with something visible in them, or (where samples show together with the one before

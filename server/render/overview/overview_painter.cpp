@@ -18,8 +18,6 @@ constexpr glm::vec4 background{0.0065f, 0.0080f, 0.0100f, 1e9f};
 /// Pixels of a mark's or wall's picture along a pixel of the view's, in pictures up to this size.
 constexpr int fineSide = 2;
 constexpr std::int64_t finePixels = 1 << 20;
-/// Backdrops of 16 bytes a pixel.
-constexpr std::size_t wallsKept = 4;
 /// How far behind a wall marks fade, mm: a wide colon's diameter.
 constexpr double fadeMm = 80.0;
 constexpr double farthestShare = 0.45;
@@ -229,20 +227,14 @@ void OverviewPainter::rasterizeWall(const Sight& sight) {
 }
 
 std::shared_ptr<const Backdrop> OverviewPainter::wallOf(const Sight& sight) {
-    const auto found = std::find_if(walls_.begin(), walls_.end(),
-                                    [&](const Wall& wall) { return wall.sight == sight; });
-    if (found != walls_.end()) {
-        std::rotate(found, found + 1, walls_.end());
-        return walls_.back().backdrop;
-    }
+    if (const Wall* known = walls_.find([&](const Wall& wall) { return wall.sight == sight; }))
+        return known->backdrop;
     rasterizeWall(sight);
     auto backdrop = std::make_shared<Backdrop>();
     backdrop->size = sight.size;
     backdrop->pixels = reduced(read<glm::vec4>(*wallTarget_), sight.size,
                                wallTarget_->size().x / sight.size.x, meanWall);
-    if (walls_.size() == wallsKept) walls_.erase(walls_.begin());
-    walls_.push_back({sight, std::move(backdrop)});
-    return walls_.back().backdrop;
+    return walls_.keep({sight, std::move(backdrop)})->backdrop;
 }
 
 Result<void> OverviewPainter::drawGround(const OverviewView& view, const Band& band,

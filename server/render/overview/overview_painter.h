@@ -4,6 +4,7 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 #include "gpu/raster_target.h"
+#include "render/lately_used.h"
 #include "render/raycaster.h"
 #include "render/scene.h"
 #include "render/view.h"
@@ -11,7 +12,6 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 namespace haustra::render {
 
@@ -69,7 +69,7 @@ private:
     std::optional<gpu::StorageBuffer> wallVertices_, wallTriangles_;
     std::optional<gpu::RasterTarget> wallTarget_, marksTarget_;
     std::optional<Sight> inTarget_;  // whose wall wallTarget_ holds
-    std::vector<Wall> walls_;        // lately used, the latest last: readers' bands alternate
+    LatelyUsed<Wall> walls_{4};      // of 16 bytes a pixel: readers' bands alternate
     std::optional<Ground> ground_;
 };
 
