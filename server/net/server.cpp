@@ -81,6 +81,8 @@ struct Server::Impl {
     std::unique_ptr<session::CaseLoader> loader;  // after the renderer, which it uses
     std::unique_ptr<session::EncoderThreads> encoders;
     std::unique_ptr<session::WallThread> walls;
+    std::unique_ptr<session::PaintThread> painting;
+    session::BookmarkNews news;
     render::PresetLibrary presets;
     std::optional<session::Services> services;
 
@@ -129,8 +131,9 @@ Result<void> Server::Impl::start() {
     renderer = std::move(*rendering);
     encoders = std::move(*encoding);
     walls = session::WallThread::start();
-    services.emplace(session::Services{*renderer, *loader, *encoders, *records, *walls, presets,
-                                       options.software});
+    painting = session::PaintThread::start();
+    services.emplace(session::Services{*renderer, *loader, *encoders, *records, *walls, *painting,
+                                       news, presets, options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);
     signals.async_wait([this](const asio::error_code& error, int) {

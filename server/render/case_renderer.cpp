@@ -4,6 +4,7 @@
 #include "render/gl/gl_pictures.h"
 #include "render/gl/single_pass_raycaster.h"
 #include "render/hybrid/hybrid_raycaster.h"
+#include "render/lately_used.h"
 #include "render/native/native_pictures.h"
 #include "render/native/native_raycaster.h"
 #include "render/object_order/object_order_raycaster.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -64,6 +66,13 @@ struct CaseRenderer::Impl {
     std::unique_ptr<CasePictures> glPictures = nullptr, nativePictures = nullptr;
     std::unique_ptr<OverviewPainter> overview = nullptr;
     std::optional<WallIndex> wallIndex = std::nullopt;
+    // Of whole pictures: one serves all bands of a picture, and the next paint over it.
+    struct SeenWall {
+        Camera camera;
+        glm::ivec2 size{0};
+        std::vector<WallPixel> pixels;
+    };
+    LatelyUsed<SeenWall> seenWalls{4};
 
     const Grid& grid() const { return scene->grid(); }
     CasePictures& pictures() { return picturesOnCpu(used) ? *nativePictures : *glPictures; }
@@ -124,6 +133,48 @@ struct CaseRenderer::Impl {
         if (scan == Scan::cleansed && !hasCleansed)
             return fail(ErrorKind::badInput, "the case has no cleansed scan", "slice");
         return put(pictures().slice(placement, window, scan, band), {0, band.firstRow}, picture);
+    }
+
+    Result<void> checkPaint(const WallPaint* paint) const {
+        if (!paint) return {};
+        if (auto sound = checkWallPaint(*paint); !sound) return sound;
+        if (!flatGeometry)
+            return fail(ErrorKind::badInput, "the case has no flat map", "wall paint");
+        return {};
+    }
+
+    Result<std::vector<WallPixel>> findWall(const Camera& camera, const Band& band) {
+        if (!wallIndex) {
+            auto made = WallIndex::create();
+            if (!made) return tl::make_unexpected(made.error());
+            wallIndex = std::move(*made);
+        }
+        if (auto made = makeFlatSurface(); !made) return tl::make_unexpected(made.error());
+        return wallIndex->find(context, *flatSurface, camera, band);
+    }
+
+    /// Tints the band of a camera's picture.
+    Result<void> paintWall(const Camera& camera, const WallPaint& paint, const Band& band,
+                           Image& picture) {
+        const glm::ivec2 size = band.pictureSize;
+        const SeenWall* seen = seenWalls.find(
+            [&](const SeenWall& kept) { return kept.camera == camera && kept.size == size; });
+        if (!seen) {
+            auto found = findWall(camera, Band::whole(size.x, size.y));
+            if (!found) return tl::make_unexpected(found.error());
+            seen = seenWalls.keep({camera, size, std::move(*found)});
+        }
+        const std::size_t row = std::size_t(size.x);
+        const std::span pixels(seen->pixels);
+        tint(pixels.subspan(row * std::size_t(band.firstRow), row * std::size_t(band.rows)), paint,
+             band, picture);
+        return {};
+    }
+
+    Result<Image> drawFlat(const FlatView& view, const Band& band) {
+        Result<Image> rows = pictures().flat(view, band);
+        if (rows && view.paint) tint(view.window, *view.paint, band, *rows);
+        return rows;
     }
 
     Result<void> checkFlat() const {
@@ -208,18 +259,10 @@ std::vector<PassTime> CaseRenderer::passTimes() const {
 }
 
 Result<void> CaseRenderer::render(const CameraView& view, const Band& band, Image& picture) {
-    if (view.paint) {
-        if (auto sound = checkWallPaint(*view.paint); !sound) return sound;
-        if (!impl_->flatGeometry)
-            return fail(ErrorKind::badInput, "the case has no flat map", "wall paint");
-    }
-    if (auto drawn = impl_->raycasters.at(impl_->used)->render(view, band, picture); !drawn)
-        return drawn;
-    if (!view.paint) return {};
-    const auto seen = wallSeen(view.camera, band);
-    if (!seen) return tl::make_unexpected(seen.error());
-    tint(*seen, *view.paint, band, picture);
-    return {};
+    Impl& my = *impl_;
+    if (auto sound = my.checkPaint(view.paint.get()); !sound) return sound;
+    if (auto drawn = my.raycasters.at(my.used)->render(view, band, picture); !drawn) return drawn;
+    return view.paint ? my.paintWall(view.camera, *view.paint, band, picture) : Result<void>{};
 }
 
 Result<std::vector<WallPixel>> CaseRenderer::wallSeen(const Camera& camera, const Band& band) {
@@ -228,13 +271,7 @@ Result<std::vector<WallPixel>> CaseRenderer::wallSeen(const Camera& camera, cons
     if (auto sound = checkBand(band); !sound) return tl::make_unexpected(sound.error());
     if (!my.flatGeometry)
         return fail(ErrorKind::badInput, "the case has no flat map", "wall index");
-    if (!my.wallIndex) {
-        auto made = WallIndex::create();
-        if (!made) return tl::make_unexpected(made.error());
-        my.wallIndex = std::move(*made);
-    }
-    if (auto made = my.makeFlatSurface(); !made) return tl::make_unexpected(made.error());
-    return my.wallIndex->find(my.context, *my.flatSurface, camera, band);
+    return my.findWall(camera, band);
 }
 
 Result<void> CaseRenderer::render(const SliceView& view, const Band& band, Image& picture) {
@@ -255,20 +292,22 @@ Result<void> CaseRenderer::render(const FlatView& view, const Band& band, Image&
     if (auto sound = checkBand(band, picture); !sound) return sound;
     if (auto sound = checkFlatWindow(view.window, band.pictureSize.x); !sound) return sound;
     if (auto has = impl_->checkFlat(); !has) return has;
-    return put(impl_->pictures().flat(view, band), {0, band.firstRow}, picture);
+    if (auto sound = impl_->checkPaint(view.paint.get()); !sound) return sound;
+    return put(impl_->drawFlat(view, band), {0, band.firstRow}, picture);
 }
 
 Result<void> CaseRenderer::render(const FlatOverview& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
     if (auto sound = checkBand(band, picture); !sound) return sound;
     if (auto has = my.checkFlat(); !has) return has;
+    if (auto sound = my.checkPaint(view.paint.get()); !sound) return sound;
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     (void)put(blankImage(size), {0, band.firstRow}, picture);  // the gutters
     for (const StripColumn& column :
          layOutStrip(my.flatGeometry->height(), band.pictureSize).columns) {
-        const FlatView part{column.window, view.optics, view.march};
+        const FlatView part{column.window, view.optics, view.march, view.paint};
         const Band rows{column.size, band.firstRow, band.rows};
-        if (auto drawn = put(my.pictures().flat(part, rows), {column.left, band.firstRow}, picture);
+        if (auto drawn = put(my.drawFlat(part, rows), {column.left, band.firstRow}, picture);
             !drawn)
             return drawn;
     }
@@ -277,12 +316,15 @@ Result<void> CaseRenderer::render(const FlatOverview& view, const Band& band, Im
 
 Result<void> CaseRenderer::render(const OverviewView& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
+    if (auto sound = my.checkPaint(view.paint.get()); !sound) return sound;
     if (!my.overview) {
         auto made = OverviewPainter::create(my.context, my.scene);
         if (!made) return tl::make_unexpected(made.error());
         my.overview = std::move(*made);
     }
-    return my.overview->draw(view, band, *my.raycasters.at(my.used), picture);
+    if (auto drawn = my.overview->draw(view, band, *my.raycasters.at(my.used), picture); !drawn)
+        return drawn;
+    return view.paint ? my.paintWall(view.camera, *view.paint, band, picture) : Result<void>{};
 }
 
 std::size_t CaseRenderer::gpuBytes() const {

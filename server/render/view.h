@@ -159,6 +159,7 @@ struct OverviewView {
     Optics optics;  ///< of the body: translucent
     /// The body is a soft shadow: samples a voxel apart show all of it.
     MarchOptions march{.stepVoxels = 1.0};
+    std::shared_ptr<const WallPaint> paint = nullptr;  ///< as of a CameraView
 };
 inline constexpr std::size_t maxOverviewBookmarks = 1024;
 
@@ -183,6 +184,7 @@ struct FlatView {
     FlatWindow window;
     Optics optics;
     MarchOptions march;
+    std::shared_ptr<const WallPaint> paint = nullptr;  ///< as of a CameraView
 };
 
 /// How the rays of flattened views run. An angle a between a direction and the wall's normal
@@ -203,6 +205,7 @@ Result<void> checkFlatWindow(const FlatWindow& window, int width);
 struct FlatOverview {
     Optics optics;
     MarchOptions march;
+    std::shared_ptr<const WallPaint> paint = nullptr;  ///< as of a CameraView
 };
 
 /// Grey 0…255 of a value, before rounding: the window's lower end is black, its upper end white.

@@ -174,6 +174,16 @@ Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message,
     return optics;
 }
 
+Result<WallPaintChoice> paintChoiceFrom(const protocol::SetWallPaint& message) {
+    WallPaintChoice choice{message.marks(), message.unseen()};
+    const double radius = message.mark_radius_mm();
+    if (radius == 0.0) return choice;
+    if (!(radius >= render::minMarkRadiusMm && radius <= render::maxMarkRadiusMm))
+        return refuse("a mark's radius is not within 1 to 20 mm", "wall paint");
+    choice.markRadiusMm = radius;
+    return choice;
+}
+
 Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
                                           const std::string& caseName) {
     const auto position = positionFrom(message.position_mm());

@@ -6,6 +6,7 @@
 #include "records/bookmarks.h"
 #include "render/optics/optics_presets.h"
 #include "render/view.h"
+#include "session/wall_reading.h"
 
 #include <string>
 
@@ -43,6 +44,9 @@ Result<void> checkView(protocol::View view);
 /// One of the presets by name, or optics by their parts; not both.
 Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message,
                                   const render::PresetLibrary& presets);
+
+/// A radius of 0 is the usual one; fails where it is out of bounds.
+Result<WallPaintChoice> paintChoiceFrom(const protocol::SetWallPaint& message);
 
 /// A camera's place with finite arc; the note is at most maxNoteBytes without control characters
 /// but line feed and tab; the key is 1 to maxClientKeyBytes of visible ASCII.

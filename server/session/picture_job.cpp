@@ -10,6 +10,14 @@ bool canBeCoarse(const AnyView& view) {
            std::holds_alternative<render::FlatView>(view);
 }
 
+void setPaint(AnyView& view, std::shared_ptr<const render::WallPaint> paint) {
+    std::visit(
+        [&](auto& any) {
+            if constexpr (requires { any.paint; }) any.paint = std::move(paint);
+        },
+        view);
+}
+
 AnyView scaledView(AnyView view, int fromWidth, int toWidth) {
     // At the widest, rounding must not make it a hair wider.
     if (auto* flat = std::get_if<render::FlatView>(&view))

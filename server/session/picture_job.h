@@ -38,5 +38,7 @@ struct PictureJob {
 bool canBeCoarse(const AnyView& view);
 /// The view as it is to be drawn into a picture of another width, which shows the same.
 AnyView scaledView(AnyView view, int fromWidth, int toWidth);
+/// Colours the wall, in views that show it; null: it has its own colours.
+void setPaint(AnyView& view, std::shared_ptr<const render::WallPaint> paint);
 
 }  // namespace haustra::session

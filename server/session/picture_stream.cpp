@@ -1,5 +1,9 @@
 #include "session/picture_stream.h"
 
+#include "session/inputs.h"
+
+#include <algorithm>
+
 #include <asio/post.hpp>
 
 namespace haustra::session {
@@ -16,6 +20,7 @@ PictureStream::PictureStream(SessionId session, asio::any_io_executor io, Render
 
 void PictureStream::setCase(std::shared_ptr<const OpenCase> opened) {
     case_ = std::move(opened);
+    reading_.reset();
     ++caseNumber_;
     slots_ = {};
     renderer_.withdraw(session_);
@@ -31,11 +36,16 @@ void PictureStream::stop() {
 
 // ---- inputs -----------------------------------------------------------------------------------
 
+Result<void> PictureStream::takeSequence(std::uint64_t sequence) {
+    if (sequence <= lastSequence_)
+        return fail(ErrorKind::badInput, "the sequence does not grow", "sequence");
+    lastSequence_ = sequence;
+    return {};
+}
+
 template <class Input>
 Result<void> PictureStream::input(const Input& message) {
-    if (message.sequence() <= lastSequence_)
-        return fail(ErrorKind::badInput, "the sequence does not grow", "sequence");
-    lastSequence_ = message.sequence();
+    if (auto taken = takeSequence(message.sequence()); !taken) return taken;
     if (message.viewport() >= slots_.size())
         return fail(ErrorKind::badInput, "viewports have numbers below 8", "viewport");
     Slot& slot = slots_[message.viewport()];
@@ -69,6 +79,43 @@ template Result<void> PictureStream::input(const protocol::SetFlat&);
 template Result<void> PictureStream::input(const protocol::SetWindowLevel&);
 template Result<void> PictureStream::input(const protocol::SetTransferFunction&);
 
+Result<void> PictureStream::input(const protocol::SetWallPaint& message) {
+    if (auto taken = takeSequence(message.sequence()); !taken) return taken;
+    if (!reading_)
+        return fail(ErrorKind::badInput, "the case has not been flattened: its wall has no paint",
+                    "wall paint");
+    const auto choice = paintChoiceFrom(message);
+    if (!choice) return tl::make_unexpected(choice.error());
+    reading_->choose(*choice);
+    for (std::size_t id = 0; id < slots_.size(); ++id) {
+        Slot& slot = slots_[id];
+        if (!slot.viewport.isOpen() || !slot.viewport.showsWall()) continue;
+        slot.sequence = message.sequence();
+        changed(id);
+    }
+    return {};
+}
+
+void PictureStream::repaint() {
+    if (!reading_ || stopped_) return;
+    const bool moves = std::any_of(slots_.begin(), slots_.end(), [](const Slot& slot) {
+        return slot.viewport.isDrawable() && slot.viewport.moving();
+    });
+    for (Slot& slot : slots_) {
+        if (moves || slot.due || !slot.viewport.isDrawable() || !slot.viewport.showsWall() ||
+            slot.paint == reading_->paint())
+            continue;
+        slot.due = true;
+        slot.inputAt = Clock::now();
+    }
+    schedule();
+}
+
+// Not while the paint that it is to show is being made.
+bool PictureStream::canDraw(const Slot& slot) const {
+    return slot.due && (!reading_ || reading_->ready() || !slot.viewport.showsWall());
+}
+
 void PictureStream::changed(std::size_t id) {
     Slot& slot = slots_[id];
     slot.due = slot.viewport.isDrawable();
@@ -99,6 +146,7 @@ void PictureStream::atRest(std::size_t id) {
     slot.viewport.rest();
     slot.due = true;
     slot.inputAt = Clock::now();
+    repaint();
     schedule();
 }
 
@@ -110,7 +158,7 @@ void PictureStream::schedule() {
     if (held_ || !unsent_.empty()) return;
     for (std::size_t n = 1; n <= slots_.size(); ++n) {
         const std::size_t id = (lastDrawn_ + n) % slots_.size();
-        if (!slots_[id].due) continue;
+        if (!canDraw(slots_[id])) continue;
         slots_[id].due = false;
         lastDrawn_ = id;
         rendering_ = id;
@@ -126,7 +174,7 @@ void PictureStream::overtake() {
     for (std::size_t n = 0; n < slots_.size(); ++n) {
         const std::size_t id = (before + n) % slots_.size();
         Slot& slot = slots_[id];
-        if (!slot.due || (id != before && !slot.viewport.moving())) continue;
+        if (!canDraw(slot) || (id != before && !slot.viewport.moving())) continue;
         if (!renderer_.replace(makeJob(id))) continue;
         slot.due = false;
         if (id != before) slots_[before].due = true;
@@ -136,11 +184,16 @@ void PictureStream::overtake() {
 }
 
 PictureJob PictureStream::makeJob(std::size_t id) {
-    const Slot& slot = slots_[id];
+    Slot& slot = slots_[id];
     PictureJob job;
     job.session = session_;
     job.of = case_;
     job.view = slot.viewport.view(presets_);
+    slot.paint = reading_ ? reading_->paint() : nullptr;
+    setPaint(job.view, slot.paint);
+    std::optional<render::Camera> camera;
+    if (const auto* endoscopic = std::get_if<render::CameraView>(&job.view))
+        camera = endoscopic->camera;
     job.width = slot.viewport.width();
     job.height = slot.viewport.height();
     job.inputAt = slot.inputAt;
@@ -153,22 +206,26 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.header.sequence = slot.sequence;
     job.header.viewportWidth = std::uint16_t(job.width);
     job.header.viewportHeight = std::uint16_t(job.height);
-    job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_](
+    job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_, camera](
                    const protocol::TileHeader& header, Result<render::Image> image) {
-        asio::post(io, [weak, ofCase, header, image = std::move(image)]() mutable {
-            if (const auto self = weak.lock()) self->rendered(ofCase, header, std::move(image));
+        asio::post(io, [weak, ofCase, header, camera, image = std::move(image)]() mutable {
+            if (const auto self = weak.lock())
+                self->rendered(ofCase, header, camera, std::move(image));
         });
     };
     return job;
 }
 
 void PictureStream::rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
+                             const std::optional<render::Camera>& camera,
                              Result<render::Image> image) {
     if (ofCase != caseNumber_ || stopped_) return;  // rendering_ speaks of a newer picture
     rendering_.reset();
     if (!image) {
         lost(image.error());
     } else {
+        if (reading_ && camera)
+            reading_->shown(*camera, {image->width, image->height}, !header.exact);
         EncodeJob job{std::move(*image), header, {}};
         if (encoding_)
             held_ = Held{std::move(job), ofCase};

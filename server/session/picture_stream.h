@@ -5,6 +5,7 @@
 #include "session/open_case.h"
 #include "session/render_thread.h"
 #include "session/viewport.h"
+#include "session/wall_reading.h"
 
 #include <array>
 #include <deque>
@@ -41,6 +42,11 @@ public:
     /// From here on pictures are of this case (null: of none). Closes all viewports; pictures of
     /// the case before do not appear any more.
     void setCase(std::shared_ptr<const OpenCase> opened);
+    /// What colours the wall of the case that was set, and learns what pictures have shown of it.
+    void setReading(std::shared_ptr<WallReading> reading) { reading_ = std::move(reading); }
+    /// The reading's paint is another: views of the wall that are at rest are drawn again. While
+    /// one moves, only that one shows it.
+    void repaint();
 
     /// SetViewport, SetCamera, SetSlice, SetOblique, SetOverview, SetFlat, SetWindowLevel,
     /// SetTransferFunction. Fails
@@ -48,6 +54,8 @@ public:
     /// (unsupported) where the viewport is not open.
     template <class Input>
     Result<void> input(const Input& message);
+    /// Likewise, for all views of the wall.
+    Result<void> input(const protocol::SetWallPaint& message);
 
     void pictureSent();
     /// Ends everything; the outlet is not used again.
@@ -57,19 +65,22 @@ private:
     struct Slot {
         Viewport viewport;
         std::uint64_t sequence = 0;
-        bool due = false;  // has to be drawn
+        bool due = false;                                // has to be drawn
+        std::shared_ptr<const render::WallPaint> paint;  // of the picture that was asked for last
         Clock::time_point inputAt;
         std::optional<asio::steady_timer> rest;
     };
 
+    Result<void> takeSequence(std::uint64_t sequence);
     void changed(std::size_t id);
+    bool canDraw(const Slot& slot) const;
     void awaitRest(const protocol::TileHeader& sent);
     void atRest(std::size_t id);
     void schedule();
     void overtake();
     PictureJob makeJob(std::size_t id);
     void rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
-                  Result<render::Image> image);
+                  const std::optional<render::Camera>& camera, Result<render::Image> image);
     void encode(EncodeJob job, std::uint64_t ofCase);
     void encoded(std::uint64_t ofCase, const protocol::TileHeader& header,
                  Result<std::vector<std::uint8_t>> frames);
@@ -87,7 +98,8 @@ private:
     const render::PresetLibrary& presets_;
     Outlet outlet_;
     std::shared_ptr<const OpenCase> case_;
-    std::uint64_t caseNumber_ = 0;  // counts setCase: tells old pictures from new ones
+    std::shared_ptr<WallReading> reading_;  // null where the case has not been flattened
+    std::uint64_t caseNumber_ = 0;          // counts setCase: tells old pictures from new ones
     bool jpeg_ = true, coarse_ = false, stopped_ = false;
 
     std::array<Slot, protocol::maxViewports> slots_;

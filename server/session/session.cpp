@@ -50,6 +50,11 @@ std::shared_ptr<Session> Session::create(SessionId id, asio::any_io_executor io,
     };
     self->pictures_ = std::make_shared<PictureStream>(id, io, services.renderer, services.encoders,
                                                       services.presets, std::move(outlet));
+    services.news.listen(weak, [weak](const records::Bookmark& bookmark) {
+        const auto session = weak.lock();
+        if (session && session->reading_ && bookmark.caseName == session->case_->name)
+            session->reading_->addBookmark(bookmark);
+    });
     return self;
 }
 
@@ -102,6 +107,10 @@ void Session::dispatch(const ClientMessage& message) {
             return handle(message.add_bookmark());
         case ClientMessage::kListBookmarks:
             return handle(message.list_bookmarks());
+        case ClientMessage::kSetWallPaint:
+            return handle(message.set_wall_paint());
+        case ClientMessage::kAskSeen:
+            return handle(message.ask_seen());
         case ClientMessage::kPing:
             return handle(message.ping());
         case ClientMessage::BODY_NOT_SET:
@@ -125,6 +134,7 @@ void Session::end(ErrorReport::Code code, const std::string& message) {
 void Session::disconnected() {
     state_ = State::ended;
     pictures_->stop();
+    reading_.reset();
     case_.reset();
     questions_.clear();
 }
@@ -191,6 +201,7 @@ void Session::handle(const protocol::OpenCase& message) {
         return refuse(ErrorReport::NO_SUCH_CASE, "this is no case's name");
     state_ = State::opening;
     case_.reset();
+    reading_.reset();
     pictures_->setCase(nullptr);
     services_.loader.openCase(message.name(), weak_from_this(),
                               [weak = weak_from_this(), io = io_](auto result) {
@@ -213,6 +224,7 @@ void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
     state_ = State::open;
     case_ = std::move(*result);
     pictures_->setCase(case_);
+    if (case_->wall) makeReading();
     spdlog::info("session {} has a case open", id_);
     send(caseOpenedMessage(*case_, services_.presets));
 }
@@ -254,6 +266,57 @@ void Session::answeredAboutWall(std::uint64_t request, Result<WallAnswer> answer
     askNext();
 }
 
+void Session::makeReading() {
+    const std::weak_ptr<Session> weak = weak_from_this();
+    WallReading::Outlet outlet;
+    outlet.painted = [weak] {
+        if (const auto session = weak.lock()) session->pictures_->repaint();
+    };
+    outlet.seen = [weak](double share) {
+        if (const auto session = weak.lock()) session->tellSeen(0, share);
+    };
+    ++readings_;
+    reading_ = std::make_shared<WallReading>(io_, services_.painting, case_, std::move(outlet));
+    pictures_->setReading(reading_);
+}
+
+void Session::handle(const protocol::SetWallPaint& message) {
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open");
+    if (const auto taken = pictures_->input(message); !taken) return report(taken.error());
+    if (message.marks())
+        services_.records.list(case_->name, answer(&Session::listedToPaint, readings_, listWeight));
+}
+
+void Session::listedToPaint(std::uint64_t ofReading,
+                            Result<std::vector<records::Bookmark>> bookmarks) {
+    if (!reading_ || ofReading != readings_) return;
+    if (!bookmarks) report(bookmarks.error());
+    reading_->setBookmarks(bookmarks ? std::move(*bookmarks) : std::vector<records::Bookmark>());
+}
+
+void Session::handle(const protocol::AskSeen& message) {
+    const std::uint64_t request = message.request();
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
+    if (!reading_)
+        return refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
+    ++unanswered_;
+    reading_->ask(message.forget(), [weak = weak_from_this(), request](double share) {
+        const auto self = weak.lock();
+        if (!self) return;
+        --self->unanswered_;
+        if (self->state_ == State::ended) return;
+        self->tellSeen(request, share);
+        self->peer_.answered();
+    });
+}
+
+void Session::tellSeen(std::uint64_t request, double share) {
+    ServerMessage message;
+    message.mutable_wall_seen()->set_request(request);
+    message.mutable_wall_seen()->set_share(share);
+    send(message);
+}
+
 // ---- bookmarks ----------------------------------------------------------------------------------
 
 void Session::handle(const protocol::AddBookmark& message) {
@@ -266,6 +329,7 @@ void Session::handle(const protocol::AddBookmark& message) {
 
 void Session::addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark) {
     if (!bookmark) return report(bookmark.error(), request);
+    services_.news.tell(*bookmark);
     ServerMessage message;
     message.mutable_bookmark_added()->set_request(request);
     fill(*message.mutable_bookmark_added()->mutable_bookmark(), *bookmark);

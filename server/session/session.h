@@ -2,6 +2,7 @@
 #pragma once
 
 #include "protocol/haustra.pb.h"
+#include "session/bookmark_news.h"
 #include "session/case_loader.h"
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
@@ -27,6 +28,8 @@ struct Services {
     EncoderThreads& encoders;
     RecordsThread& records;
     WallThread& walls;
+    PaintThread& painting;
+    BookmarkNews& news;
     const render::PresetLibrary& presets;  ///< not empty
     std::string software;                  ///< name and version, for the welcome
 };
@@ -69,6 +72,8 @@ private:
     void handle(const protocol::OpenCase& message);
     void handle(const protocol::AddBookmark& message);
     void handle(const protocol::ListBookmarks& message);
+    void handle(const protocol::SetWallPaint& message);
+    void handle(const protocol::AskSeen& message);
     void handle(const protocol::Ping& message);
     template <class Input>
     void handleInput(const Input& message);
@@ -91,6 +96,9 @@ private:
     void listedCases(std::uint64_t request, Result<std::vector<std::string>> names);
     void addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark);
     void listedBookmarks(std::uint64_t request, Result<std::vector<records::Bookmark>> bookmarks);
+    void makeReading();
+    void listedToPaint(std::uint64_t ofReading, Result<std::vector<records::Bookmark>> bookmarks);
+    void tellSeen(std::uint64_t request, double share);
 
     const SessionId id_;
     asio::any_io_executor io_;
@@ -99,6 +107,8 @@ private:
     State state_ = State::hello;
     std::shared_ptr<const OpenCase> case_;
     std::shared_ptr<PictureStream> pictures_;
+    std::shared_ptr<WallReading> reading_;  // where the open case has been flattened
+    std::uint64_t readings_ = 0;
     int unanswered_ = 0;
 
     struct Waiting {

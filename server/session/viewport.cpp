@@ -25,6 +25,10 @@ render::View planeOf(protocol::View slice) {
 
 }  // namespace
 
+bool Viewport::showsWall() const {
+    return !isSlice(view_) && view_ != protocol::OBLIQUE;
+}
+
 Result<void> Viewport::apply(const protocol::SetViewport& message) {
     if (message.width() == 0 || message.height() == 0) {
         *this = Viewport{};

@@ -39,6 +39,8 @@ public:
     bool isDrawable() const {
         return isOpen() && (camera_ || slicePositionMm_ || oblique_ || overview_ || flat_);
     }
+    /// A view of the wall, which paint colours.
+    bool showsWall() const;
     /// The newest camera, slice or place said that more would follow, and rest() has not been
     /// called.
     bool moving() const { return moving_; }

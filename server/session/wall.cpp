@@ -83,8 +83,12 @@ Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map)
     const double circumferenceMm = std::sqrt(area / map->height);
     std::vector<WallRow> rows = rowsOf(*map);
     FlatLookup lookup(map);
-    return std::make_shared<const Wall>(
-        Wall{std::move(map), std::move(lookup), circumferenceMm, std::move(rows)});
+    auto sight = render::WallSight::of(map);
+    if (!sight) return tl::make_unexpected(sight.error());
+    auto painter = render::StripPainter::of(std::move(*sight));
+    if (!painter) return tl::make_unexpected(painter.error());
+    return std::make_shared<const Wall>(Wall{std::move(map), std::move(lookup), circumferenceMm,
+                                             std::move(rows), std::move(*painter)});
 }
 
 Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question) {

@@ -3,6 +3,7 @@
 
 #include "core/flat_lookup.h"
 #include "core/result.h"
+#include "render/wall/strip_painter.h"
 
 #include <memory>
 #include <variant>
@@ -25,10 +26,12 @@ struct Wall {
     /// squares (pool adjacent violators; Barlow et al. 1972). Neither arc nor y falls; at least
     /// one.
     std::vector<WallRow> rows;
+    std::shared_ptr<const render::StripPainter> painter;  ///< and its lines of sight
 };
 
 /// The map must be sound, as store::Case::readFlatMap gives it. Fails (badInput) where the surface
-/// has no area. O(n log n): a second for a million triangles.
+/// has no area, (device) where there is not enough memory. O(n log n): a few seconds for a million
+/// triangles.
 Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map);
 
 /// Which place of the wall is shown at a place in the strip, which must lie in it.

@@ -27,6 +27,25 @@ std::array<double, 256> linearOfBytes() {
     return table;
 }
 
+/// Bytes of linear light in steps of 1/65535, far finer than a byte's.
+std::vector<std::uint8_t> bytesOfLinear() {
+    std::vector<std::uint8_t> table(65536);
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = std::uint8_t(std::lround(255.0 * displayedLight(double(i) / 65535.0)));
+    return table;
+}
+
+void tintPixel(std::uint8_t* rgb, glm::u8vec4 color) {
+    static const std::array<double, 256> linear = linearOfBytes();
+    static const std::vector<std::uint8_t> bytes = bytesOfLinear();
+    if (color.a == 0) return;
+    const double light = linear[std::max({rgb[0], rgb[1], rgb[2]})], share = color.a / 255.0;
+    for (int c = 0; c < 3; ++c) {
+        const double mixed = glm::mix(linear[rgb[c]], light * linear[std::size_t(color[c])], share);
+        rgb[c] = bytes[std::size_t(65535.0 * mixed + 0.5)];
+    }
+}
+
 Result<void> checkSize(double width, double height) {
     if (width >= 1 && height >= 1 && width <= maxPaintSide && height <= maxPaintSide) return {};
     return fail(
@@ -39,10 +58,35 @@ Result<void> checkSize(double width, double height) {
 
 glm::u8vec4 WallPaint::at(glm::dvec2 flat) const {
     if (!(flat.y >= 0.0 && flat.y <= height) || !std::isfinite(flat.x)) return glm::u8vec4(0);
-    const glm::dvec2 share(1.0 - (flat.x - std::floor(flat.x)), 1.0 - flat.y / height);
-    const glm::ivec2 pixel =
-        glm::clamp(glm::ivec2(glm::floor(share * glm::dvec2(size))), glm::ivec2(0), size - 1);
-    return pixels[std::size_t(pixel.y) * std::size_t(size.x) + std::size_t(pixel.x)];
+    const glm::dvec2 place =
+        glm::dvec2(1.0 - (flat.x - std::floor(flat.x)), 1.0 - flat.y / height) * glm::dvec2(size);
+    const auto pixel = [&](int x, int y) {
+        return pixels[std::size_t(y) * std::size_t(size.x) + std::size_t(x)];
+    };
+    if (!smooth) {
+        const glm::ivec2 in = glm::clamp(glm::ivec2(glm::floor(place)), glm::ivec2(0), size - 1);
+        return pixel(in.x, in.y);
+    }
+    const glm::dvec2 low = glm::floor(place - 0.5);
+    const glm::vec2 part(place - 0.5 - low);
+    const int left = (int(low.x) + size.x) % size.x, right = (left + 1) % size.x,
+              top = std::clamp(int(low.y), 0, size.y - 1),
+              bottom = std::clamp(int(low.y) + 1, 0, size.y - 1);
+    const glm::u8vec4 corners[4] = {pixel(left, top), pixel(right, top), pixel(left, bottom),
+                                    pixel(right, bottom)};
+    if (corners[0] == corners[1] && corners[0] == corners[2] && corners[0] == corners[3])
+        return corners[0];
+    const float weights[4] = {(1 - part.x) * (1 - part.y), part.x * (1 - part.y),
+                              (1 - part.x) * part.y, part.x * part.y};
+    // What covers nothing has no colour to mix in.
+    glm::vec3 color(0.0f);
+    float cover = 0.0f;
+    for (int n = 0; n < 4; ++n) {
+        color += weights[n] * float(corners[n].a) * glm::vec3(corners[n]);
+        cover += weights[n] * float(corners[n].a);
+    }
+    if (!(cover > 0.0f)) return glm::u8vec4(0);
+    return glm::u8vec4(glm::clamp(glm::round(glm::vec4(color / cover, cover)), 0.0f, 255.0f));
 }
 
 Result<void> checkWallPaint(const WallPaint& paint) {
@@ -78,20 +122,17 @@ Result<std::shared_ptr<const WallPaint>> readWallPaint(const std::filesystem::pa
 
 void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band,
           Image& picture) {
-    static const std::array<double, 256> linear = linearOfBytes();
     std::uint8_t* rgb =
         &picture.rgb[3 * std::size_t(band.pictureSize.x) * std::size_t(band.firstRow)];
-    for (std::size_t i = 0; i < seen.size(); ++i, rgb += 3) {
-        if (!seen[i].seen()) continue;
-        const glm::u8vec4 color = paint.at(seen[i].flat);
-        if (color.a == 0) continue;
-        const double light = linear[std::max({rgb[0], rgb[1], rgb[2]})], share = color.a / 255.0;
-        for (int c = 0; c < 3; ++c) {
-            const double mixed =
-                glm::mix(linear[rgb[c]], light * linear[std::size_t(color[c])], share);
-            rgb[c] = std::uint8_t(std::lround(255.0 * displayedLight(mixed)));
-        }
-    }
+    for (std::size_t i = 0; i < seen.size(); ++i, rgb += 3)
+        if (seen[i].seen()) tintPixel(rgb, paint.at(seen[i].flat));
+}
+
+void tint(const FlatWindow& window, const WallPaint& paint, const Band& band, Image& rows) {
+    std::uint8_t* rgb = rows.rgb.data();
+    for (int y = band.firstRow; y < band.firstRow + band.rows; ++y)
+        for (int x = 0; x < band.pictureSize.x; ++x, rgb += 3)
+            tintPixel(rgb, paint.at(window.flatFromPixel({x + 0.5, y + 0.5}, band.pictureSize)));
 }
 
 }  // namespace haustra::render

@@ -16,12 +16,14 @@ namespace haustra::render {
 
 /// A picture of the whole strip, laid out as the exported flat image is without a seam margin: its
 /// columns run towards −x once around the colon, its rows towards −y, the cecum up. Each pixel
-/// colours the places of the wall whose flat coordinate lies in it, without interpolation.
-/// Immutable once a view has it; any number of threads.
+/// colours the places of the wall whose flat coordinate lies in it. Immutable once a view has it;
+/// any number of threads.
 struct WallPaint {
     glm::ivec2 size{0};
     std::vector<glm::u8vec4> pixels;  ///< rows from the top; rgb: sRGB, a: how much it covers
     double height = 0.0;              ///< the strip's, circumferences
+    bool smooth = false;              ///< between the middles of pixels it is interpolated, over
+                                      ///< the seam too; else each pixel is of one colour
 
     /// The colour at a flat coordinate, x modulo 1; nothing (all 0) beyond the strip's ends.
     glm::u8vec4 at(glm::dvec2 flat) const;
@@ -54,5 +56,8 @@ struct WallPixel {
 /// pixels that see no wall, and places without paint, stay as they are to the bit. O(pixels).
 void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band,
           Image& picture);
+
+/// Likewise `rows`, the band of a finished picture of a window onto the strip.
+void tint(const FlatWindow& window, const WallPaint& paint, const Band& band, Image& rows);
 
 }  // namespace haustra::render

@@ -1,0 +1,141 @@
+#include "render/wall/wall_coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <tuple>
+
+namespace haustra::render {
+
+namespace {
+
+constexpr float cellMm = 16.0f;
+
+/// A camera's picture, as far as it matters what lies in it.
+class Sight {
+public:
+    Sight(const Camera& camera, glm::ivec2 size)
+        : lens_(camera.lens), forward_(glm::normalize(camera.forward)) {
+        right_ = glm::normalize(glm::cross(camera.forward, camera.up));
+        down_ = glm::cross(glm::dvec3(forward_), glm::dvec3(right_));
+        halfFov_ = glm::radians(0.5 * camera.fovDegrees);
+        halfHeightMm_ = float(0.5 * camera.heightMm);
+        aspect_ = float(size.x) / float(size.y);
+        // In the picture's middle, where pixels of a perspective picture span the most.
+        pixel_ = lens_ == Lens::orthographic  ? float(camera.heightMm / size.y)
+                 : lens_ == Lens::perspective ? float(2.0 * std::tan(halfFov_) / size.y)
+                                              : float(2.0 * halfFov_ / size.y);
+    }
+
+    bool parallel() const { return lens_ == Lens::orthographic; }
+    /// Towards a place that lies `fromEyeMm` from the camera, unit; and how far.
+    std::pair<glm::vec3, float> towards(glm::vec3 fromEyeMm) const {
+        if (parallel()) return {forward_, glm::dot(fromEyeMm, forward_)};
+        const float distance = glm::length(fromEyeMm);
+        return {distance > 0.0f ? fromEyeMm / distance : forward_, distance};
+    }
+    float pixelMm(float distanceMm) const { return parallel() ? pixel_ : pixel_ * distanceMm; }
+
+    bool inPicture(glm::vec3 fromEyeMm) const {
+        const float depth = glm::dot(fromEyeMm, forward_);
+        const glm::vec2 aside(glm::dot(fromEyeMm, right_), glm::dot(fromEyeMm, down_));
+        glm::vec2 halves;  // from the middle, in half heights
+        if (parallel()) {
+            halves = aside / halfHeightMm_;
+        } else if (lens_ == Lens::perspective) {
+            if (depth <= 0.0f) return false;
+            halves = aside / (depth * float(std::tan(halfFov_)));
+        } else {
+            const float radius = glm::length(aside);
+            const float angle = std::atan2(radius, depth);
+            halves = radius > 0.0f ? aside * (angle / float(halfFov_) / radius) : glm::vec2(0.0f);
+        }
+        return std::abs(halves.x) <= aspect_ && std::abs(halves.y) <= 1.0f;
+    }
+
+private:
+    Lens lens_;
+    glm::vec3 forward_, right_{0.0f}, down_{0.0f};
+    double halfFov_ = 0.0;
+    float halfHeightMm_ = 0.0f, aspect_ = 1.0f, pixel_ = 0.0f;
+};
+
+}  // namespace
+
+WallCoverage::WallCoverage(std::shared_ptr<const WallSight> sight) : sight_(std::move(sight)) {
+    forget();
+}
+
+void WallCoverage::makeCells() {
+    const auto& facets = sight_->facets();
+    std::map<std::tuple<int, int, int>, std::vector<int>> blocks;
+    for (int t = 0; t < int(facets.size()); ++t) {
+        if (!(facets[std::size_t(t)].areaMm2 > 0.0f)) continue;
+        const glm::ivec3 block(glm::floor(facets[std::size_t(t)].middleMm / cellMm));
+        blocks[{block.x, block.y, block.z}].push_back(t);
+    }
+    cells_.clear();
+    for (auto& [block, triangles] : blocks) {
+        glm::vec3 low(facets[std::size_t(triangles.front())].middleMm), high = low;
+        for (const int t : triangles) {
+            low = glm::min(low, facets[std::size_t(t)].middleMm);
+            high = glm::max(high, facets[std::size_t(t)].middleMm);
+        }
+        unseenTriangles_ += triangles.size();
+        cells_.push_back(
+            {0.5f * (low + high), 0.5f * glm::distance(low, high), std::move(triangles)});
+    }
+}
+
+void WallCoverage::forget() {
+    seen_.assign(sight_->facets().size(), 0);
+    unseenTriangles_ = 0;
+    unseenMm2_ = sight_->areaMm2();
+    makeCells();
+}
+
+double WallCoverage::share() const {
+    if (unseenTriangles_ == 0) return 1.0;
+    return std::clamp(1.0 - unseenMm2_ / sight_->areaMm2(), 0.0, 1.0);
+}
+
+int WallCoverage::show(const Camera& camera, glm::ivec2 size) {
+    const Sight sight(camera, size);
+    const auto& facets = sight_->facets();
+    const glm::vec3 eye(camera.positionMm - sight_->originMm());
+    const float nearest = float(seenLimits.nearestMm), farthest = float(seenLimits.farthestMm),
+                leastCosine = float(std::cos(glm::radians(seenLimits.mostAngleDegrees)));
+    const auto shows = [&](int triangle) {
+        const WallSight::Facet& facet = facets[std::size_t(triangle)];
+        const glm::vec3 fromEye = facet.middleMm - eye;
+        const auto [direction, distance] = sight.towards(fromEye);
+        if (!(distance >= nearest && distance <= farthest) ||
+            sight.pixelMm(distance) > float(seenLimits.mostPixelMm) ||
+            -glm::dot(direction, facet.inward) < leastCosine || !sight.inPicture(fromEye))
+            return false;
+        // Parallel rays start in the camera's plane, each before its own place.
+        const glm::dvec3 from =
+            sight.parallel()
+                ? sight_->originMm() + glm::dvec3(facet.middleMm - distance * direction)
+                : camera.positionMm;
+        return !sight_->hides(from, triangle);
+    };
+    int first = 0;
+    for (Cell& cell : cells_) {
+        const glm::vec3 fromEye = cell.middleMm - eye;
+        // Of an orthographic camera the way across counts too, and is bounded by the picture.
+        if (!sight.parallel() && glm::length(fromEye) > farthest + cell.radiusMm) continue;
+        std::erase_if(cell.unseen, [&](int triangle) {
+            if (!shows(triangle)) return false;
+            seen_[std::size_t(triangle)] = 1;
+            unseenMm2_ -= double(facets[std::size_t(triangle)].areaMm2);
+            --unseenTriangles_;
+            ++first;
+            return true;
+        });
+    }
+    return first;
+}
+
+}  // namespace haustra::render

@@ -1,0 +1,19 @@
+#include "session/paint_thread.h"
+
+namespace haustra::session {
+
+std::unique_ptr<PaintThread> PaintThread::start() {
+    std::unique_ptr<PaintThread> self(new PaintThread);
+    self->thread_ = std::thread([&tasks = self->tasks_] {
+        for (auto taken = tasks.take(1); !taken.empty(); taken = tasks.take(1))
+            taken.front()();
+    });
+    return self;
+}
+
+PaintThread::~PaintThread() {
+    tasks_.close();
+    if (thread_.joinable()) thread_.join();
+}
+
+}  // namespace haustra::session

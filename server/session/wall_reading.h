@@ -1,0 +1,99 @@
+// What one session has been shown of a case's wall, and what its pictures colour the wall with.
+#pragma once
+
+#include "records/bookmarks.h"
+#include "render/view.h"
+#include "session/open_case.h"
+#include "session/paint_thread.h"
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <asio/any_io_executor.hpp>
+#include <asio/steady_timer.hpp>
+
+namespace haustra::session {
+
+/// What colours the wall.
+struct WallPaintChoice {
+    bool marks = false;   ///< discs around the places that bookmarks mean
+    bool unseen = false;  ///< what no endoscopic picture of the session has shown yet
+    double markRadiusMm = 5.0;
+    bool any() const { return marks || unseen; }
+};
+
+/// The newest bookmarks of a case that are painted.
+inline constexpr std::size_t maxPaintedBookmarks = 1024;
+/// A place stays painted for so long after it has been shown: long enough to be noticed as one that
+/// had been missed.
+inline constexpr std::chrono::milliseconds repaintAfter{1000};
+/// The share of the wall that has been seen is told when it has changed by this.
+inline constexpr double toldShare = 0.005;
+/// While the hand moves, a camera that has moved and turned by less shows nothing new.
+inline constexpr double sameCameraMm = 1.0, sameCameraDegrees = 2.0;
+
+/// Belongs to the io thread; seeing and painting are done on the paint thread. The wall that has
+/// been seen is kept whether or not it is painted, so that whoever turns the paint on learns of all
+/// of the session.
+class WallReading : public std::enable_shared_from_this<WallReading> {
+public:
+    struct Outlet {
+        std::function<void()> painted;           ///< paint() is another
+        std::function<void(double share)> seen;  ///< of the wall's area, 0…1
+    };
+    /// The case has a wall.
+    WallReading(asio::any_io_executor io, PaintThread& painting, std::shared_ptr<const OpenCase> of,
+                Outlet outlet);
+
+    /// From now on paint() is to be this; until it is made, ready() is false. With marks,
+    /// setBookmarks has to follow.
+    void choose(const WallPaintChoice& choice);
+    const WallPaintChoice& choice() const { return choice_; }
+    /// All bookmarks of the case, and one more.
+    void setBookmarks(std::vector<records::Bookmark> bookmarks);
+    void addBookmark(const records::Bookmark& bookmark);
+
+    bool ready() const { return ready_; }
+    /// Null where nothing is painted.
+    const std::shared_ptr<const render::WallPaint>& paint() const { return paint_; }
+
+    /// An endoscopic picture of `size` pixels has been drawn for the client. Of those that move,
+    /// some are passed over where there are more than the paint thread can look at: what is told as
+    /// seen has been.
+    void shown(const render::Camera& camera, glm::ivec2 size, bool moving);
+    /// `told` is called on the io thread with the share that pictures drawn before this have shown;
+    /// with `forget`, nothing has been.
+    void ask(bool forget, std::function<void(double share)> told);
+
+private:
+    struct Work;
+    void repaint(bool soon);
+    void startPainting();
+    void painted(std::uint64_t number, std::shared_ptr<const render::WallPaint> paint);
+    void sawMore(double share, bool more);
+
+    asio::any_io_executor io_;
+    PaintThread& painting_;
+    std::shared_ptr<Work> work_;  // the paint thread's, but for its making and its end
+    Outlet outlet_;
+
+    WallPaintChoice choice_;
+    bool listed_ = false;  // the bookmarks of this choice are known
+    bool ready_ = true;
+    std::shared_ptr<const render::WallPaint> paint_;
+    std::uint64_t wanted_ = 0;  // counts what changed the paint; the newest is to be shown
+    std::uint64_t chosen_ = 0;  // its number when choice_ was made
+    bool isPainting_ = false, paintAgain_ = false, paintAgainSoon_ = false;
+    std::optional<std::chrono::steady_clock::time_point> paintedAt_;
+    asio::steady_timer later_;
+
+    std::optional<render::Camera> lastCamera_;
+    int looks_ = 0;  // that wait for the paint thread
+    double told_ = 0.0;
+};
+
+}  // namespace haustra::session

@@ -1,0 +1,236 @@
+// The coloured wall of the real haustra-server: bookmarks, and what a session has not been shown.
+#include "end_to_end/flat_store.h"
+#include "end_to_end/server_test_client.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace haustra::tests {
+namespace {
+
+using protocol::ClientMessage;
+using protocol::ErrorReport;
+using protocol::ServerMessage;
+
+constexpr int side = 96;
+
+class ServerPaintTest : public ::testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        makeFlatStore(folder_->path(), tube());
+        server_ = std::make_unique<ServerProcess>(folder_->path());
+    }
+    static void TearDownTestSuite() {
+        server_.reset();
+        folder_.reset();
+    }
+    void TearDown() override { ASSERT_TRUE(server_->running()) << server_->log(); }
+
+    static const FlatTube& tube() {
+        static const FlatTube made;
+        return made;
+    }
+    std::unique_ptr<TestClient> reader(const std::string& name = smallCaseName) {
+        auto client = std::make_unique<TestClient>(server_->port());
+        EXPECT_TRUE(client->hello());
+        const auto opened = client->openCase(name);
+        EXPECT_TRUE(opened && opened->has_case_opened());
+        return client;
+    }
+    /// An endoscopic picture from the axis, at rest.
+    static TestPicture look(TestClient& client, std::uint64_t sequence, double z = 10.0) {
+        client.viewport(sequence, 0, protocol::ENDOSCOPIC, side, side);
+        client.camera(sequence + 1, 0, {0, 0, z}, false);
+        return awaitPicture(client, 0, sequence + 1);
+    }
+    static TestPicture awaitPicture(TestClient& client, int viewport, std::uint64_t sequence) {
+        for (;;) {
+            auto picture = client.picture();
+            if (!picture) throw std::runtime_error("no picture came");
+            if (picture->header.viewport == viewport && picture->header.sequence >= sequence)
+                return std::move(*picture);
+        }
+    }
+    static ClientMessage paint(std::uint64_t sequence, bool marks, bool unseen,
+                               double radiusMm = 0.0) {
+        ClientMessage message;
+        auto* body = message.mutable_set_wall_paint();
+        body->set_sequence(sequence);
+        body->set_marks(marks);
+        body->set_unseen(unseen);
+        body->set_mark_radius_mm(radiusMm);
+        return message;
+    }
+    static double seen(TestClient& client, std::uint64_t request, bool forget = false) {
+        ClientMessage message;
+        message.mutable_ask_seen()->set_request(request);
+        message.mutable_ask_seen()->set_forget(forget);
+        client.send(message);
+        for (;;) {
+            const auto answer = client.answer();
+            if (!answer) throw std::runtime_error("no answer came");
+            if (answer->has_wall_seen() && answer->wall_seen().request() == request)
+                return answer->wall_seen().share();
+        }
+    }
+    /// Looks at a place of the wall from the axis.
+    static ClientMessage bookmark(const std::string& key, glm::dvec3 place) {
+        ClientMessage message = TestClient::bookmark(1, key, "a finding");
+        auto* body = message.mutable_add_bookmark();
+        TestClient::set(body->mutable_position_mm(), {0, 0, 10.0});
+        TestClient::set(body->mutable_forward(), {place.x, place.y, place.z - 10.0});
+        TestClient::set(body->mutable_up(), {place.y, -place.x, 0.0});
+        return message;
+    }
+    static glm::ivec3 pixel(const TestPicture& picture, int x, int y) {
+        const std::uint8_t* rgb =
+            &picture.rgb[3 * std::size_t(y * picture.header.pictureWidth + x)];
+        return {rgb[0], rgb[1], rgb[2]};
+    }
+    /// Where look()'s camera has a place: its right is forward × up = (1, 0, 0).
+    static glm::dvec2 projected(glm::dvec3 place, double z = 10.0) {
+        const double depth = place.z - z;
+        return 0.5 * side * (1.0 + glm::dvec2(place.x, place.y) / depth);
+    }
+    static void expectRefusal(TestClient& client, ErrorReport::Code code) {
+        const auto answer = client.answer();
+        ASSERT_TRUE(answer && answer->has_error());
+        EXPECT_EQ(answer->error().code(), code) << answer->error().message();
+        EXPECT_FALSE(answer->error().fatal());
+    }
+
+    static std::unique_ptr<TemporaryFolder> folder_;
+    static std::unique_ptr<ServerProcess> server_;
+};
+std::unique_ptr<TemporaryFolder> ServerPaintTest::folder_;
+std::unique_ptr<ServerProcess> ServerPaintTest::server_;
+
+TEST_F(ServerPaintTest, BookmarksAreDiscsOnTheWallForWhoeverWantsThem) {
+    const auto mine = reader(), others = reader();
+    const TestPicture plain = look(*mine, 1);
+    ASSERT_EQ(look(*others, 1).rgb, plain.rgb);
+    // On the flank of a fold that faces the camera.
+    const double y = 0.5 * tube().height();
+    glm::dvec3 place(0.0);
+    for (double at = y; at < tube().height(); at += 0.005) {
+        place = tube().positionMm({0.3, at});
+        const glm::dvec3 back = glm::normalize(glm::dvec3(0, 0, 10) - place);
+        if (glm::dot(back, tube().inwardNormal({0.3, at})) > 0.8) break;
+    }
+    mine->send(paint(3, true, false, 2.0));
+    EXPECT_EQ(awaitPicture(*mine, 0, 3).rgb, plain.rgb) << "no bookmark yet";
+    // Another reader's: it appears by itself, in pictures of the newest input.
+    others->send(bookmark("theirs", place));
+    for (auto answer = others->answer(); !answer->has_bookmark_added(); answer = others->answer())
+        ASSERT_TRUE(answer->has_wall_seen()) << answer->ShortDebugString();
+    const TestPicture marked = awaitPicture(*mine, 0, 3);
+    EXPECT_TRUE(marked.header.exact);
+    EXPECT_EQ(marked.header.sequence, 3u);
+    const glm::dvec2 at = projected(place);
+    const double reachPixels = 0.5 * side * 2.0 / (place.z - 10.0) + 3.0;
+    int changed = 0;
+    for (int row = 0; row < side; ++row) {
+        for (int x = 0; x < side; ++x) {
+            if (pixel(marked, x, row) == pixel(plain, x, row)) continue;
+            ++changed;
+            EXPECT_LT(glm::distance(glm::dvec2(x + 0.5, row + 0.5), at), reachPixels);
+        }
+    }
+    EXPECT_GT(changed, 8);
+    const glm::ivec2 middle(at);
+    EXPECT_NE(pixel(marked, middle.x, middle.y), pixel(plain, middle.x, middle.y));
+    EXPECT_LT(pixel(marked, middle.x, middle.y).b, pixel(plain, middle.x, middle.y).b);
+    // Who has not asked for marks has none, and without them pictures are as before.
+    EXPECT_EQ(look(*others, 3).rgb, plain.rgb);
+    mine->send(paint(4, false, false));
+    EXPECT_EQ(awaitPicture(*mine, 0, 4).rgb, plain.rgb);
+    // Who asks later has those that are there.
+    others->send(paint(5, true, false, 2.0));
+    EXPECT_EQ(awaitPicture(*others, 0, 5).rgb, marked.rgb);
+}
+
+TEST_F(ServerPaintTest, EachSessionHasSeenWhatItWasShown) {
+    const auto mine = reader(), others = reader();
+    EXPECT_EQ(seen(*mine, 1), 0.0);
+    look(*mine, 1);
+    const double one = seen(*mine, 2);
+    EXPECT_GT(one, 0.05);
+    EXPECT_LT(one, 0.9);
+    EXPECT_EQ(seen(*others, 3), 0.0);
+    look(*mine, 3, 30.0);
+    EXPECT_GT(seen(*mine, 4), one);
+    EXPECT_EQ(seen(*others, 5), 0.0);
+    EXPECT_EQ(seen(*mine, 6, true), 0.0);
+    // Slices and strips show nothing of the wall as an eye would.
+    mine->viewport(10, 4, protocol::FLATTENED, 64, 64);
+    ClientMessage strip;
+    strip.mutable_set_flat()->set_sequence(11);
+    strip.mutable_set_flat()->set_viewport(4);
+    mine->send(strip);
+    awaitPicture(*mine, 4, 11);
+    EXPECT_EQ(seen(*mine, 7), 0.0);
+}
+
+TEST_F(ServerPaintTest, WhatIsNotSeenIsColouredAlsoInTheStrip) {
+    const auto client = reader();
+    client->viewport(1, 4, protocol::FLATTENED, 64, 128);
+    ClientMessage strip;
+    strip.mutable_set_flat()->set_sequence(2);
+    strip.mutable_set_flat()->set_viewport(4);
+    client->send(strip);
+    const TestPicture plain = awaitPicture(*client, 4, 2);
+    const auto changed = [&](const TestPicture& picture) {
+        int pixels = 0;
+        for (int y = 0; y < 128; ++y)
+            for (int x = 0; x < 64; ++x)
+                pixels += pixel(picture, x, y) != pixel(plain, x, y);
+        return pixels;
+    };
+    client->send(paint(3, false, true));
+    const int all = changed(awaitPicture(*client, 4, 3));
+    EXPECT_GT(all, 2000);
+    const TestPicture first = look(*client, 4);
+    EXPECT_GT(seen(*client, 1), 0.05);
+    // It is drawn again by itself, and what the camera has shown has its own colour.
+    const int left = changed(awaitPicture(*client, 4, 3));
+    EXPECT_LT(left, all - 200);
+    EXPECT_GT(left, 200);
+    // Paint that is turned on late knows of it.
+    client->send(paint(6, false, false));
+    EXPECT_EQ(awaitPicture(*client, 4, 6).rgb, plain.rgb);
+    client->send(paint(7, false, true));
+    EXPECT_EQ(changed(awaitPicture(*client, 4, 7)), left);
+}
+
+TEST_F(ServerPaintTest, RefusesInOneSentenceAndGoesOn) {
+    const auto client = reader();
+    for (const double radius : {-1.0, 0.5, 20.1, std::nan(""), double(INFINITY)}) {
+        static std::uint64_t sequence = 0;
+        client->send(paint(++sequence, true, true, radius));
+        expectRefusal(*client, ErrorReport::BAD_VALUE);
+    }
+    client->send(paint(1, true, false));  // the sequence does not grow
+    expectRefusal(*client, ErrorReport::BAD_VALUE);
+    EXPECT_EQ(seen(*client, 9), 0.0);
+
+    const auto bare = reader("scan");
+    bare->send(paint(1, true, false));
+    expectRefusal(*bare, ErrorReport::BAD_VALUE);
+    ClientMessage ask;
+    ask.mutable_ask_seen()->set_request(5);
+    bare->send(ask);
+    expectRefusal(*bare, ErrorReport::BAD_VALUE);
+
+    TestClient early(server_->port());
+    ASSERT_TRUE(early.hello());
+    early.send(paint(1, true, false));
+    expectRefusal(early, ErrorReport::BAD_STATE);
+    early.send(ask);
+    expectRefusal(early, ErrorReport::BAD_STATE);
+}
+
+}  // namespace
+}  // namespace haustra::tests
