@@ -88,7 +88,8 @@ public:
     /// Of the last camera view.
     std::vector<PassTime> passTimes() const;
 
-    /// Bytes of GPU memory held.
+    /// Bytes of GPU memory held: textures, meshes, tables, targets. Not counted are uniform blocks
+    /// of some hundred bytes, and mapped memory, which is the CPU's (gpu::MappedBuffer).
     std::size_t gpuBytes() const;
 
 private:

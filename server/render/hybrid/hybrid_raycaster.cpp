@@ -285,7 +285,7 @@ std::vector<PassTime> HybridRaycaster::passTimes() const {
 std::size_t HybridRaycaster::gpuBytes() const {
     const Impl& my = *impl_;
     if (!my.target) return 0;
-    return my.rays->bytes() + my.target->bytes() + my.spans->bytes() + my.lists->bytes();
+    return my.rays->bytes() + my.target->bytes();
 }
 
 }  // namespace haustra::render

@@ -37,7 +37,7 @@ CellProjector::CellProjector(gpu::MappedBuffer batches, gpu::UniformBuffer block
 }
 
 std::size_t CellProjector::gpuBytes() const {
-    return batches_.bytes() + (rays_ ? rays_->bytes() + live_->bytes() : 0);
+    return rays_ ? rays_->bytes() : 0;
 }
 
 Result<void> CellProjector::begin(glm::ivec2 bandSize, const CellGrid& cells, glm::vec4 eye) {
