@@ -3,6 +3,8 @@
 
 #include "core/centerline.h"
 #include "core/grid.h"
+#include "core/histogram.h"
+#include "core/optics_preset.h"
 #include "core/orbit.h"
 #include "panels/flat_strip.h"
 #include "panels/flight.h"
@@ -82,9 +84,10 @@ struct CaseInfo {
     Grid grid;
     Centerline centerline;
     PatientPosition position = PatientPosition::unknown;
-    std::vector<std::string> transferFunctions;
-    bool cleansed = false;          ///< there is a cleansed scan
-    std::optional<FlatStrip> flat;  ///< where the case has been flattened
+    std::vector<OpticsPreset> presets;  ///< one at least, the default first
+    Histogram histogram;                ///< of the scan; may be empty
+    bool cleansed = false;              ///< there is a cleansed scan
+    std::optional<FlatStrip> flat;      ///< where the case has been flattened
 };
 
 struct Bookmark {
@@ -96,14 +99,7 @@ struct Bookmark {
     bool acknowledged() const { return id != 0; }
 };
 
-/// A control point of a transfer function; opacity is for a way of 1 mm.
-struct TransferPoint {
-    double hu = 0.0;
-    glm::dvec3 color{1.0};
-    double opacity = 0.0;
-    bool operator==(const TransferPoint&) const = default;
-};
-/// One of the server's presets by its name, or points.
-using TransferFunction = std::variant<std::string, std::vector<TransferPoint>>;
+/// One of the server's presets by its name, or optics of one's own.
+using OpticsChoice = std::variant<std::string, Optics>;
 
 }  // namespace haustra::panels

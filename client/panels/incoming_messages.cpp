@@ -1,5 +1,7 @@
 #include "panels/incoming_messages.h"
 
+#include "protocol/optics_message.h"
+
 #include <cmath>
 
 namespace haustra::panels {
@@ -85,8 +87,21 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     if (!centerline) return tl::make_unexpected(centerline.error());
     info.centerline = std::move(*centerline);
     info.position = patientPositionFromString(message.patient_position());
-    info.transferFunctions.assign(message.transfer_functions().begin(),
-                                  message.transfer_functions().end());
+    for (const protocol::OpticsPreset& preset : message.presets()) {
+        auto sound = protocol::presetFrom(preset);
+        if (!sound)
+            return fail(ErrorKind::badInput, describe(sound.error()), "case opened: presets");
+        info.presets.push_back(std::move(*sound));
+    }
+    if (info.presets.empty())
+        return fail(ErrorKind::badInput, "there is none", "case opened: presets");
+    info.histogram = {message.histogram().first_hu(),
+                      message.histogram().hu_per_bin(),
+                      {message.histogram().voxels().begin(), message.histogram().voxels().end()}};
+    if (!info.histogram.voxels.empty() &&
+        !(std::isfinite(info.histogram.firstHu) && info.histogram.huPerBin > 0.0 &&
+          std::isfinite(info.histogram.huPerBin)))
+        return fail(ErrorKind::badInput, "its bins are none", "case opened: histogram");
     info.cleansed = message.cleansed();
     if (message.has_flat()) {
         auto strip = stripFrom(message.flat());

@@ -1,5 +1,7 @@
 #include "panels/outgoing_messages.h"
 
+#include "protocol/optics_message.h"
+
 #include <array>
 
 namespace haustra::panels {
@@ -112,19 +114,11 @@ protocol::ClientMessage inputMessage(InputHeader header, const WindowLevel& wind
     return message;
 }
 
-protocol::ClientMessage inputMessage(InputHeader header, const TransferFunction& function) {
+protocol::ClientMessage inputMessage(InputHeader header, const OpticsChoice& optics) {
     protocol::ClientMessage message;
     auto* body = begin(message.mutable_set_transfer_function(), header);
-    if (const auto* preset = std::get_if<std::string>(&function)) body->set_preset(*preset);
-    if (const auto* points = std::get_if<std::vector<TransferPoint>>(&function))
-        for (const TransferPoint& point : *points) {
-            auto* out = body->add_points();
-            out->set_hu(point.hu);
-            out->set_red(point.color.r);
-            out->set_green(point.color.g);
-            out->set_blue(point.color.b);
-            out->set_opacity(point.opacity);
-        }
+    if (const auto* preset = std::get_if<std::string>(&optics)) body->set_preset(*preset);
+    if (const auto* own = std::get_if<Optics>(&optics)) fill(*body->mutable_optics(), *own);
     return message;
 }
 

@@ -21,7 +21,7 @@ protocol::ClientMessage inputMessage(InputHeader header, const FlatWindow& windo
 protocol::ClientMessage inputMessage(InputHeader header, const Oblique& oblique);
 protocol::ClientMessage inputMessage(InputHeader header, const Overview& overview);
 protocol::ClientMessage inputMessage(InputHeader header, const WindowLevel& window);
-protocol::ClientMessage inputMessage(InputHeader header, const TransferFunction& function);
+protocol::ClientMessage inputMessage(InputHeader header, const OpticsChoice& optics);
 
 protocol::ClientMessage bookmarkMessage(std::uint64_t request, const Bookmark& bookmark);
 protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec2 flat);

@@ -206,7 +206,7 @@ Status Player::run(const WindowAction& action, ActionReport&) {
 
 Status Player::run(const TransferAction& action, ActionReport&) {
     if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
-    session_.setTransferFunction(action.viewport, action.function);
+    session_.setTransferFunction(action.viewport, action.optics);
     return awaitBookmarkList();
 }
 

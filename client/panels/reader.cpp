@@ -11,10 +11,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// What hands do to a curve reaches the server so often.
-constexpr auto curveInterval = milliseconds(50);
-// The flattened views take long: they show a curve that rests.
-constexpr auto curveRest = milliseconds(350);
+// What hands do to the optics reaches the server so often.
+constexpr auto opticsInterval = milliseconds(50);
+// The flattened views take long: they show optics that rest.
+constexpr auto opticsRest = milliseconds(350);
 constexpr std::size_t at(View view) {
     return std::size_t(view);
 }
@@ -49,7 +49,7 @@ void Reader::update(double seconds) {
     wall_.update(*case_);
     takePicked();
     travel(seconds);
-    sendCurve(Clock::now());
+    sendOptics(Clock::now());
     askForViews(Clock::now());
 }
 
@@ -78,9 +78,9 @@ void Reader::caseOpened() {
     resetOverview();
     pictures_.clear();
     openSizes_ = {};
-    transferFunction_ = case_->transferFunctions.empty() ? "" : case_->transferFunctions.front();
-    curveChangedAt_.reset();
-    curveIsNew_ = false;
+    optics_.offer(case_->presets);
+    sentOptics_ = seenOptics_ = optics_.revision();
+    opticsChangedAt_.reset();
     for (const View view : {View::axial, View::coronal, View::sagittal, View::oblique})
         session_.setWindowLevel(int(view), window_);
     for (ViewPacer& pacer : pacers_)
@@ -243,36 +243,22 @@ void Reader::setWindow(WindowLevel window) {
     }
 }
 
-void Reader::setTransferFunction(const std::string& preset) {
-    transferFunction_ = preset;
-    curveChangedAt_.reset();
-    curveIsNew_ = false;
-    for (const View view : {View::endoscopic, View::flattened, View::flattenedZoom}) {
-        if (isFlat(view) && !hasStrip()) continue;
-        session_.setTransferFunction(int(view), preset);
-        pacers_[at(view)].touch();
-    }
-}
-
-void Reader::setCurve(TransferCurve curve) {
-    curve_ = std::move(curve);
-    transferFunction_.clear();
-    curveIsNew_ = true;
-    curveChangedAt_ = Clock::now();
-}
-
-void Reader::sendCurve(Clock::time_point now) {
+void Reader::sendOptics(Clock::time_point now) {
     const auto show = [&](View view) {
-        session_.setTransferFunction(int(view), curve_.points());
+        session_.setTransferFunction(int(view), optics_.choice());
         pacers_[at(view)].touch();
     };
-    if (curveIsNew_ && !(curveSentAt_ && now < *curveSentAt_ + curveInterval)) {
-        show(View::endoscopic);
-        curveIsNew_ = false;
-        curveSentAt_ = now;
+    if (optics_.revision() != seenOptics_) {
+        seenOptics_ = optics_.revision();
+        opticsChangedAt_ = now;
     }
-    if (!curveChangedAt_ || now < *curveChangedAt_ + curveRest) return;
-    curveChangedAt_.reset();
+    if (seenOptics_ != sentOptics_ && !(opticsSentAt_ && now < *opticsSentAt_ + opticsInterval)) {
+        show(View::endoscopic);
+        sentOptics_ = seenOptics_;
+        opticsSentAt_ = now;
+    }
+    if (!opticsChangedAt_ || now < *opticsChangedAt_ + opticsRest) return;
+    opticsChangedAt_.reset();
     if (hasStrip())
         for (const View view : {View::flattened, View::flattenedZoom})
             show(view);
@@ -280,7 +266,9 @@ void Reader::sendCurve(Clock::time_point now) {
 
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
-    if (motion() != Motion::paused || wall_.waits() || curveChangedAt_) return true;
+    if (motion() != Motion::paused || wall_.waits() || opticsChangedAt_ ||
+        optics_.revision() != sentOptics_)
+        return true;
     return std::any_of(allViews.begin(), allViews.end(),
                        [&](View view) { return inUse(view) && pacers_[at(view)].owes(); });
 }

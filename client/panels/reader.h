@@ -2,11 +2,11 @@
 // and turns the hand's movements into its calls; it holds no window itself.
 #pragma once
 
+#include "panels/optics_editor.h"
 #include "panels/pacing.h"
 #include "panels/picture_log.h"
 #include "panels/session.h"
 #include "panels/strip_tour.h"
-#include "panels/transfer_curve.h"
 #include "panels/wall_questions.h"
 
 #include <memory>
@@ -80,13 +80,10 @@ public:
 
     const WindowLevel& window() const { return window_; }
     void setWindow(WindowLevel window);
-    /// A preset's name, or empty where it is the curve.
-    const std::string& transferFunction() const { return transferFunction_; }
-    void setTransferFunction(const std::string& preset);
-    /// The wall in colours and opacities of one's own: shown from when it is first changed, in the
-    /// endoscopic view while it changes and in the flattened ones when it rests.
-    const TransferCurve& curve() const { return curve_; }
-    void setCurve(TransferCurve curve);
+    /// How the wall is drawn: what is made of it is shown in the endoscopic view while it changes,
+    /// and in the flattened ones when it rests.
+    OpticsEditor& optics() { return optics_; }
+    const OpticsEditor& optics() const { return optics_; }
 
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
@@ -119,7 +116,7 @@ private:
     void askForViews(Clock::time_point now);
     std::uint64_t ask(View view, bool moving);
     void openPane(View view, bool moving);
-    void sendCurve(Clock::time_point now);
+    void sendOptics(Clock::time_point now);
 
     Session session_;
     std::shared_ptr<const CaseInfo> case_;
@@ -134,10 +131,9 @@ private:
     double sliceZoom_ = 1.0;
     bool slicesCleansed_ = false;
     WindowLevel window_;
-    std::string transferFunction_;
-    TransferCurve curve_;
-    std::optional<Clock::time_point> curveChangedAt_, curveSentAt_;  // until it is shown everywhere
-    bool curveIsNew_ = false;                                        // to the endoscopic view
+    OpticsEditor optics_;
+    std::uint64_t sentOptics_ = 0, seenOptics_ = 0;                    // revisions
+    std::optional<Clock::time_point> opticsChangedAt_, opticsSentAt_;  // until shown everywhere
 
     double obliqueAheadMm_ = 0.0, obliqueHeightMm_ = Oblique{}.heightMm;
     Orbit orbit_;

@@ -180,12 +180,14 @@ WindowAction readWindow(Fields& in) {
 TransferAction readTransfer(Fields& in) {
     TransferAction action;
     if (in.has("viewport")) action.viewport = in.viewport();
-    if (in.has("preset") == in.has("points"))
-        Fields::refuse("preset", "or \"points\" is needed, not both");
-    if (in.has("preset"))
-        action.function = in.text("preset");
-    else
-        action.function = in.transferPoints("points");
+    const bool preset = in.has("preset"), points = in.has("points"), optics = in.has("optics"),
+               file = in.has("file");
+    if (preset + points + optics + file != 1)
+        Fields::refuse("preset", "or \"points\", \"optics\" or \"file\" is needed, one of them");
+    if (preset) action.optics = in.text("preset");
+    if (points) action.optics = in.opticsOfPoints("points");
+    if (optics) action.optics = in.opticsOfObject("optics");
+    if (file) action.optics = in.opticsOfFile("file");
     return action;
 }
 

@@ -96,7 +96,7 @@ struct WindowAction {
 };
 struct TransferAction {
     int viewport = 0;
-    TransferFunction function;
+    OpticsChoice optics;
 };
 struct BookmarkAction {
     std::string note;

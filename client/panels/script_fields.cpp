@@ -1,5 +1,6 @@
 #include "panels/script_fields.h"
 
+#include "core/optics_preset.h"
 #include "protocol/framing.h"
 
 #include <cmath>
@@ -10,7 +11,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double maxPositionMm = 1e5, maxTurns = 32.0, maxStripHeight = 4096.0;
-constexpr std::size_t maxTransferPoints = 256;
 
 std::string span(double low, double high) {
     const auto text = [](double v) {
@@ -103,21 +103,33 @@ glm::dvec3 Fields::position(const char* key) {
     return {p[0], p[1], p[2]};
 }
 
-std::vector<TransferPoint> Fields::transferPoints(const char* key) {
+Optics Fields::opticsOfPoints(const char* key) {
     asked_.insert(key);
     const json& list = at(key);
-    if (!list.is_array() || list.size() < 2 || list.size() > maxTransferPoints)
-        refuse(key, "must be a list of 2 to " + std::to_string(maxTransferPoints) +
-                        " points [hu, red, green, blue, opacity]");
-    std::vector<TransferPoint> points;
+    if (!list.is_array()) refuse(key, "must be a list of [hu, red, green, blue, opacity]");
+    Optics optics;
     for (const json& item : list) {
-        const auto p = numbersOf(key, item, 5, -32768.0, 32767.0);
-        if (!points.empty() && p[0] < points.back().hu) refuse(key, "must not fall in HU");
-        for (std::size_t n = 1; n < 5; ++n)
-            if (p[n] < 0.0 || p[n] > 1.0) refuse(key, "has a colour or opacity beyond 0 to 1");
-        points.push_back({p[0], {p[1], p[2], p[3]}, p[4]});
+        const auto p = numbersOf(key, item, 5, lowestTransferHu, highestTransferHu);
+        optics.transferFunction.points.push_back({p[0], {p[1], p[2], p[3]}, p[4]});
     }
-    return points;
+    if (const auto sound = checkOptics(optics); !sound) refuse(key, describe(sound.error()));
+    return optics;
+}
+
+Optics Fields::opticsOfObject(const char* key) {
+    asked_.insert(key);
+    json object = at(key);
+    if (!object.is_object()) refuse(key, "must be an object, as a preset's file has it");
+    object.emplace("name", "own");
+    const auto preset = parsePreset(object.dump(), "");
+    if (!preset) refuse(key, "is no preset: " + describe(preset.error()));
+    return preset->optics;
+}
+
+Optics Fields::opticsOfFile(const char* key) {
+    const auto preset = readPresetFile(text(key));
+    if (!preset) refuse(key, "is no preset's: " + describe(preset.error()));
+    return preset->optics;
 }
 
 glm::ivec2 Fields::size(const char* key) {

@@ -1,6 +1,7 @@
 // One line of a script: its keys, checked.
 #pragma once
 
+#include "core/optics.h"
 #include "panels/case_info.h"
 
 #include <set>
@@ -33,8 +34,11 @@ public:
     glm::dvec2 flat(const char* key);
     std::vector<glm::dvec2> flats(const char* key, std::size_t least, std::size_t most);
     glm::dvec3 position(const char* key);
-    /// Each [hu, red, green, blue, opacity].
-    std::vector<TransferPoint> transferPoints(const char* key);
+    /// A list of [hu, red, green, blue, opacity], all else being the usual; an object as in a
+    /// preset's file, which may lack the name; or the name of such a file.
+    Optics opticsOfPoints(const char* key);
+    Optics opticsOfObject(const char* key);
+    Optics opticsOfFile(const char* key);
     glm::ivec2 size(const char* key);
     View view(const char* key);
     int viewport();

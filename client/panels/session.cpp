@@ -246,8 +246,8 @@ std::uint64_t Session::setOverview(int viewport, const Overview& overview, bool 
 std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
     return setInput(viewport, window, std::nullopt);
 }
-std::uint64_t Session::setTransferFunction(int viewport, const TransferFunction& function) {
-    return setInput(viewport, function, std::nullopt);
+std::uint64_t Session::setTransferFunction(int viewport, const OpticsChoice& optics) {
+    return setInput(viewport, optics, std::nullopt);
 }
 
 // ---- the wall -------------------------------------------------------------------------------

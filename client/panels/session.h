@@ -63,7 +63,7 @@ public:
     std::uint64_t setOblique(int viewport, const Oblique& oblique, bool moving);
     std::uint64_t setOverview(int viewport, const Overview& overview, bool moving);
     std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
-    std::uint64_t setTransferFunction(int viewport, const TransferFunction& function);
+    std::uint64_t setTransferFunction(int viewport, const OpticsChoice& optics);
 
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
     std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
@@ -100,7 +100,7 @@ private:
         View view = View::endoscopic;
         int width = 0, height = 0;
         // In the order in which the server hears them again.
-        std::tuple<std::optional<WindowLevel>, std::optional<TransferFunction>,
+        std::tuple<std::optional<WindowLevel>, std::optional<OpticsChoice>,
                    std::optional<Camera>, std::optional<Slice>, std::optional<FlatWindow>,
                    std::optional<Oblique>, std::optional<Overview>>
             inputs;

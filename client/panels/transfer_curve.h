@@ -1,36 +1,36 @@
-// A transfer function while a hand changes it.
+// The points of a transfer function, or of one of its gradient rows, while a hand changes them.
 #pragma once
 
-#include "panels/case_info.h"
+#include "core/optics.h"
 
 #include <cstddef>
 #include <vector>
 
 namespace haustra::panels {
 
-/// Points sorted by HU, two at least. Colour and opacity are linear between them.
+/// Points sorted by HU, two at least, as checkTransferFunction has them: whatever is called, they
+/// stay so. Colour and opacity are linear between them.
 class TransferCurve {
 public:
-    static constexpr double minHu = -1024.0, maxHu = 3071.0;
-    static constexpr std::size_t maxPoints = 64;
-
-    /// The colon's wall, opaque, as a start.
+    /// Black and clear from −1000 to 1000 HU.
     TransferCurve();
+    /// `points` as checkTransferFunction passes them.
+    explicit TransferCurve(std::vector<TransferFunctionPoint> points);
 
-    const std::vector<TransferPoint>& points() const { return points_; }
+    const std::vector<TransferFunctionPoint>& points() const { return points_; }
     /// As the curve has it there.
-    TransferPoint at(double hu) const;
-    /// A point more, of the curve's colour there; returns its number. At most maxPoints: none is
-    /// added beyond, and the nearest is returned.
+    TransferFunctionPoint at(double hu) const;
+    /// A point more, of the curve's colour there; returns its number. Beyond mostTransferPoints
+    /// none is added, and the nearest is returned.
     std::size_t add(double hu, double opacity);
     /// No farther than to its neighbours.
     void move(std::size_t point, double hu, double opacity);
     void setColor(std::size_t point, glm::dvec3 color);
-    /// False, and nothing done, where only two are left.
+    /// False, and nothing done, where too little would be left.
     bool remove(std::size_t point);
 
 private:
-    std::vector<TransferPoint> points_;
+    std::vector<TransferFunctionPoint> points_;
 };
 
 }  // namespace haustra::panels

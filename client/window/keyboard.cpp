@@ -26,12 +26,8 @@ void stepAlong(Flight& flight, double mm) {
     flight.goTo(flight.arcMm() + (flight.direction() == FlightDirection::antegrade ? mm : -mm));
 }
 
-void nextTransferFunction(panels::Reader& reader) {
-    const auto& names = reader.session().caseInfo()->transferFunctions;
-    if (names.empty()) return;
-    const auto now = std::find(names.begin(), names.end(), reader.transferFunction());
-    reader.setTransferFunction(now == names.end() || now + 1 == names.end() ? names.front()
-                                                                            : *(now + 1));
+void nextTransferFunction(panels::OpticsEditor& optics) {
+    optics.choose((optics.chosen() + 1) % optics.presets());
 }
 
 // Letters as the layout of the keyboard gives them.
@@ -89,7 +85,7 @@ void handleLetter(Ui& ui, ImWchar letter) {
             break;
         case 't':
         case 'T':
-            nextTransferFunction(reader);
+            nextTransferFunction(reader.optics());
             break;
         case 'g':
         case 'G':

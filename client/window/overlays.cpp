@@ -23,7 +23,7 @@ constexpr Key flightKeys[] = {
     {"B", "bookmark this place"},
     {"Shift B", "bookmark with a note"},
     {"P  N", "previous, next bookmark"},
-    {"T  G", "next look of the wall; a look of one's own"},
+    {"T  G", "next look of the wall; its colours, opacities and light"},
     {"I", "fisheye, which sees all around, or not"},
     {"Y", "overview: with the body, or the colon alone"},
     {"V", "fly over the flattened wall, or along the path"},

@@ -43,7 +43,7 @@ void drawEverything(Ui& ui) {
     drawNotices(ui, ui.reader.isOpen() ? layout.endoscopic : layout.middle);
     if (ui.showHelp) drawHelp(ui, {{0, 0}, ImGui::GetIO().DisplaySize});
     ImGui::End();
-    if (ui.showTransfer && ui.reader.isOpen()) drawTransferPanel(ui, layout.endoscopic);
+    if (ui.showTransfer && ui.reader.isOpen()) drawTransferPanel(ui, layout.middle);
 }
 
 // Turns what happened in the session since the last frame into notices.

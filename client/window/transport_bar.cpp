@@ -161,17 +161,16 @@ void drawControls(Ui& ui) {
     sameRow(ui);
     label(ui, format("%.0f mm/s", flight.speedMmPerS()).c_str());
 
-    const auto& info = *reader.session().caseInfo();
-    if (!info.transferFunctions.empty()) {
-        sameRow(ui, 20);
-        const std::string& preset = reader.transferFunction();
-        combo(ui, "##transfer", "wall", wide, preset.empty() ? "own" : preset,
-              info.transferFunctions,
-              [&](const std::string& name) { reader.setTransferFunction(name); });
-    }
+    sameRow(ui, 20);
+    panels::OpticsEditor& optics = reader.optics();
+    std::vector<std::string> presets;
+    for (std::size_t n = 0; n < optics.presets(); ++n)
+        presets.push_back(optics.preset(n).name);
+    combo(ui, "##transfer", "wall", wide, presets[optics.chosen()], presets,
+          [&](const std::string& name) { optics.choose(name); });
     sameRow(ui);
     if (ImGui::Button("…##curve")) ui.showTransfer = !ui.showTransfer;
-    tooltip("Colours and opacities (G)");
+    tooltip("Colours, opacities and light (G)");
     sameRow(ui, 20);
     std::vector<std::string> names;
     std::string current = "own";

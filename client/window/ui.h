@@ -24,6 +24,14 @@ struct Notice {
 /// `none`: a drag moves the picture.
 enum class DrawingTool { none, line, outline };
 
+/// What the hand has chosen there.
+struct TransferPanel {
+    std::string preset{};              ///< that the axis was fitted to
+    int point = -1;                    ///< of the row being edited
+    double lowHu = 0.0, highHu = 1.0;  ///< the graph's axis
+    std::array<char, 512> file{};
+};
+
 struct Ui {
     panels::Reader& reader;
     Fonts fonts;
@@ -32,7 +40,7 @@ struct Ui {
     std::array<PictureTexture, panels::viewCount> textures{};
     std::deque<Notice> notices{};
     bool showHelp = false, showBookmarks = true, focusNote = false, showTransfer = false;
-    int curvePoint = -1;  ///< of the transfer function: which the hand has chosen
+    TransferPanel transfer{};
     std::array<char, 256> note{};
     double drag = 0.0;  ///< pixels that the mouse moved since it was pressed on a pane
     DrawingTool tool = DrawingTool::none;  ///< what a drag on the flattened wall does
@@ -59,7 +67,8 @@ void drawZoomPane(Ui& ui, Rect area);
 /// The colon from outside, and the slice across the gaze.
 void drawOverviewPane(Ui& ui, Rect area);
 void drawObliquePane(Ui& ui, Rect area);
-/// A window of its own over `area`, while Ui::showTransfer.
+/// A window of its own, at first in the corner of `area` that leaves the endoscopic view in sight;
+/// while Ui::showTransfer.
 void drawTransferPanel(Ui& ui, Rect area);
 void drawTransportBar(Ui& ui, Rect area);
 void drawBookmarkPanel(Ui& ui, Rect area);

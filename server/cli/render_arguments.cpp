@@ -1,6 +1,7 @@
 #include "cli/render_arguments.h"
 
 #include "cli/arguments.h"
+#include "render/optics/optics_presets.h"
 
 #include <algorithm>
 #include <functional>
@@ -116,21 +117,27 @@ void addCameraOptions(CLI::App& command, RenderArguments& my) {
         ->check(CLI::Range(render::minObliqueMm, render::maxObliqueMm));
 }
 
-void addDrawingOptions(CLI::App& command, RenderArguments& my) {
+std::string presetNames() {
     std::string names;
     for (const std::string& name : render::opticsPresets())
         names += (names.empty() ? "" : ", ") + name;
+    return names;
+}
+
+void addDrawingOptions(CLI::App& command, RenderArguments& my) {
     command
         .add_option("--tf,--transfer-function", my.optics,
-                    "Colours, opacities and light of what rays meet: a preset (" + names +
-                        ") or a preset's file; mucosa, and body around the overview's colon")
+                    "Colours, opacities and light of what rays meet: a preset (" + presetNames() +
+                        ") or a preset's file. Of a case mucosa, or body around the overview's "
+                        "colon, unless given; a scan from a file needs one")
         ->type_name("NAME|FILE.json")
         ->check([](const std::string& text) {
             const auto& presets = render::opticsPresets();
             if (fs::path(text).extension() == ".json" ||
                 std::find(presets.begin(), presets.end(), text) != presets.end())
                 return std::string();
-            return "\"" + text + "\" is neither a preset nor the name of a .json file";
+            return "\"" + text + "\" is neither the name of a .json file nor a preset (" +
+                   presetNames() + ")";
         });
     addText(command, "--raycaster", "KIND",
             "What casts the rays: single-pass, native (the CPU), polygon-assisted, object-order "
@@ -142,8 +149,10 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
             })
         ->default_str("single-pass");
     command
-        .add_option("--gpu-budget", my.gpuBudgetMb,
-                    "GPU memory for the scan in the object-order raycaster, MB; 0: what there is")
+        .add_option(
+            "--gpu-budget", my.gpuBudgetMb,
+            "GPU memory for the scan, MB; 0: what there is. Of --raycaster object-order and of "
+            "--labels: the others keep the whole scan there, or, native, nothing")
         ->type_name("MB")
         ->check(CLI::Range(0.0, 1e7))
         ->capture_default_str();
@@ -318,7 +327,8 @@ void checkUsage(const RenderArguments& my) {
         if (my.compare || !my.product.empty()) wrong("--product", "a scan has no products");
         if (my.arcMm || my.flat) wrong("--arc-mm", "a scan has no centerline");
         if (view == View::endoscopic && my.optics.empty() && my.labels.empty())
-            throw CLI::RequiredError("--tf");
+            wrong("--tf", "a scan from a file needs a preset (" + presetNames() +
+                              ") or a preset's file FILE.json");
         if (view != View::endoscopic && !my.labels.empty())
             wrong("--labels", "is for a camera's view");
     } else if (!my.labels.empty()) {
@@ -326,6 +336,15 @@ void checkUsage(const RenderArguments& my) {
     } else if (my.store.empty()) {
         throw CLI::RequiredError("--store");
     }
+    if (!my.optics.empty() && !my.castsRays())
+        wrong("--tf", "a slice shows grey values; give --window");
+    if (!my.optics.empty() && !my.labels.empty())
+        wrong("--tf", "a colour volume has colours of its own");
+    if (my.gpuBudgetMb > 0.0 && my.labels.empty() &&
+        (!my.castsRays() || my.raycaster != render::RaycasterKind::objectOrder))
+        wrong("--gpu-budget",
+              "only the object-order raycaster has one; give --raycaster "
+              "object-order");
     if (!my.isSlice() && my.compare) wrong("--compare", "compares slices; give --view");
     if (my.lens != Lens::perspective && view != View::endoscopic)
         wrong("--lens", "is for the endoscopic view and camera");

@@ -3,21 +3,16 @@
 #include "cli/render_camera.h"
 #include "render/optics/optics_presets.h"
 
-#include <fstream>
-#include <iterator>
 #include <string>
 
 namespace haustra::cli {
 
 using render::Lens;
 
-Result<render::Optics> opticsOf(const RenderArguments& arguments, const char* otherwise) {
+Result<Optics> opticsOf(const RenderArguments& arguments, const char* otherwise) {
     const std::string name = arguments.optics.empty() ? otherwise : arguments.optics;
     if (std::filesystem::path(name).extension() != ".json") return render::opticsPreset(name);
-    std::ifstream file(name, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(file), {});
-    if (!file) return fail(ErrorKind::io, "the file cannot be read", name);
-    auto preset = render::parsePreset(text, name);
+    auto preset = readPresetFile(name);
     if (!preset) return tl::make_unexpected(preset.error());
     return std::move(preset->optics);
 }

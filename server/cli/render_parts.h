@@ -3,13 +3,14 @@
 
 #include "cli/render_arguments.h"
 #include "core/grid.h"
+#include "core/optics.h"
 #include "core/result.h"
 #include "render/view.h"
 
 namespace haustra::cli {
 
 /// --tf, a preset's name or file; `otherwise` names the view's own. Fails naming the file.
-Result<render::Optics> opticsOf(const RenderArguments& arguments, const char* otherwise);
+Result<Optics> opticsOf(const RenderArguments& arguments, const char* otherwise);
 
 /// --step, else as it is.
 render::MarchOptions marchOf(const RenderArguments& arguments, render::MarchOptions march = {});

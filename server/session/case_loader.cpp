@@ -20,6 +20,7 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         spdlog::info("a case has no cleansed scan: its endoscopic views show the scan as it is");
     auto prepared = render::prepareCase(files->ct, files->cleansed);
     if (!prepared) return tl::make_unexpected(prepared.error());
+    files->facts.histogram = histogramOf(prepared->endoscopic());
     if (files->flattened) {
         // Without it the case can still be read.
         if (auto wall = readWall(*source)) {

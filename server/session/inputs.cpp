@@ -1,6 +1,7 @@
 #include "session/inputs.h"
 
 #include "core/flat_map.h"
+#include "protocol/optics_message.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,27 +41,6 @@ Result<render::Camera> soundCamera(const Message& message) {
     if (const auto checked = render::checkCamera(camera); !checked)
         return tl::make_unexpected(checked.error());
     return camera;
-}
-
-template <class Points>
-std::vector<render::TransferFunctionPoint> pointsFrom(const Points& points) {
-    std::vector<render::TransferFunctionPoint> made;
-    for (const protocol::TransferFunctionPoint& point : points)
-        made.push_back({point.hu(), {point.red(), point.green(), point.blue()}, point.opacity()});
-    return made;
-}
-
-Result<render::Composition> compositionFrom(protocol::Composition composition) {
-    switch (composition) {
-        case protocol::EMISSION_ABSORPTION:
-            return render::Composition::emissionAbsorption;
-        case protocol::MAXIMUM_INTENSITY:
-            return render::Composition::maximumIntensity;
-        case protocol::FIRST_HIT:
-            return render::Composition::firstHit;
-        default:
-            return refuse("there is no such composition", "transfer function");
-    }
 }
 
 bool isControl(char c) {
@@ -150,28 +130,14 @@ Result<void> checkView(protocol::View view) {
     return {};
 }
 
-Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message,
-                                  const render::PresetLibrary& presets) {
-    if (message.preset().empty() == message.points().empty())
-        return refuse("either a preset or points are needed", "transfer function");
-    if (!message.preset().empty()) {
-        const render::OpticsPreset* preset = presets.find(message.preset());
-        if (!preset) return refuse("there is no such preset", "transfer function");
-        return preset->optics;
-    }
-    render::Optics optics;
-    const auto composition = compositionFrom(message.composition());
-    if (!composition) return tl::make_unexpected(composition.error());
-    optics.composition = *composition;
-    optics.preIntegrated = message.pre_integrated();
-    optics.shading = !message.unlit();
-    optics.transferFunction.points = pointsFrom(message.points());
-    for (const protocol::GradientRow& row : message.rows())
-        optics.transferFunction.rows.push_back(
-            {row.gradient_hu_per_mm(), pointsFrom(row.points())});
-    if (const auto checked = render::checkOptics(optics); !checked)
-        return tl::make_unexpected(checked.error());
-    return optics;
+Result<Optics> opticsFrom(const protocol::SetTransferFunction& message,
+                          const render::PresetLibrary& presets) {
+    if (message.preset().empty() != message.has_optics())
+        return refuse("either a preset or optics are needed", "transfer function");
+    if (message.has_optics()) return protocol::opticsFrom(message.optics());
+    const OpticsPreset* preset = presets.find(message.preset());
+    if (!preset) return refuse("there is no such preset", "transfer function");
+    return preset->optics;
 }
 
 Result<WallPaintChoice> paintChoiceFrom(const protocol::SetWallPaint& message) {

@@ -41,9 +41,9 @@ Result<FlatWindow> flatWindowFrom(const protocol::SetFlat& message);
 /// Fails where there is no such view.
 Result<void> checkView(protocol::View view);
 
-/// One of the presets by name, or optics by their parts; not both.
-Result<render::Optics> opticsFrom(const protocol::SetTransferFunction& message,
-                                  const render::PresetLibrary& presets);
+/// One of the presets by name, or optics of the client's own; not both.
+Result<Optics> opticsFrom(const protocol::SetTransferFunction& message,
+                          const render::PresetLibrary& presets);
 
 /// A radius of 0 is the usual one; fails where it is out of bounds.
 Result<WallPaintChoice> paintChoiceFrom(const protocol::SetWallPaint& message);

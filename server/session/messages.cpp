@@ -1,6 +1,7 @@
 #include "session/messages.h"
 
 #include "protocol/framing.h"
+#include "protocol/optics_message.h"
 #include "render/view.h"
 
 namespace haustra::session {
@@ -58,8 +59,8 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
         ++sample;
     }
     message->set_patient_position(toString(opened.position));
-    for (const render::OpticsPreset& preset : presets.presets)
-        message->add_transfer_functions(preset.name);
+    for (const OpticsPreset& preset : presets.presets)
+        fill(*message->add_presets(), preset);
     message->set_cleansed(opened.cleansed);
     message->set_raycaster(toString(opened.raycaster));
     for (const render::RaycasterTrial& trial : opened.trials) {
@@ -68,6 +69,11 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
         if (!trial.ms.empty()) tried->set_median_ms(trial.medianMs());
         tried->set_failure(trial.failure);
     }
+    auto* histogram = message->mutable_histogram();
+    histogram->set_first_hu(opened.histogram.firstHu);
+    histogram->set_hu_per_bin(opened.histogram.huPerBin);
+    histogram->mutable_voxels()->Add(opened.histogram.voxels.begin(),
+                                     opened.histogram.voxels.end());
     if (opened.wall) {
         auto* flat = message->mutable_flat();
         flat->set_height(opened.wall->map->height);

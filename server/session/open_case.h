@@ -3,6 +3,7 @@
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
+#include "core/histogram.h"
 #include "core/tri_mesh.h"
 #include "render/raycaster_choice.h"
 #include "session/wall.h"
@@ -22,6 +23,7 @@ struct OpenCase {
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
     Centerline centerline;             ///< empty where the case has none yet
+    Histogram histogram;               ///< of the scan that the endoscopic view shows
     bool cleansed = false;             ///< the endoscopic view shows the cleansed scan, slices can
     std::shared_ptr<const Wall> wall;  ///< empty where the case has not been flattened
     /// What draws it, and what was measured to choose it (nothing where it was not).

@@ -128,8 +128,7 @@ AnyView Viewport::view(const render::PresetLibrary& presets) const {
         oblique.window = window_;
         return oblique;
     }
-    const render::OpticsPreset* usual =
-        view_ == protocol::OVERVIEW ? presets.find(bodyPreset) : nullptr;
+    const OpticsPreset* usual = view_ == protocol::OVERVIEW ? presets.find(bodyPreset) : nullptr;
     if (!usual) usual = &presets.presets.front();
     auto optics = optics_.value_or(usual->optics);
     if (view_ == protocol::OVERVIEW) {

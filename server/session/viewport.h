@@ -61,7 +61,7 @@ private:
     std::optional<render::ObliqueView> oblique_;
     std::optional<render::OverviewView> overview_;
     std::optional<FlatWindow> flat_;
-    std::optional<render::Optics> optics_;  ///< none: a preset
+    std::optional<Optics> optics_;  ///< none: a preset
     bool moving_ = false;
 };
 

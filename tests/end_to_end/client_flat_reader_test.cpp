@@ -178,7 +178,7 @@ TEST_F(ClientFlatReaderWithoutStrip, NothingOfItIsAskedFor) {
     reader_->setFlyingOver(true);
     EXPECT_FALSE(reader_->tour().flyingOver());
     reader_->addBookmark("");
-    reader_->setTransferFunction("translucent");
+    EXPECT_TRUE(reader_->optics().choose("translucent"));
     reader_->flight().goTo(200.0);
     ASSERT_TRUE(runUntil([&] { return atRest(); }));
     EXPECT_EQ(reader_->pictureCount(View::flattened), 0u);

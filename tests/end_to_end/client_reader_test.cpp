@@ -72,22 +72,25 @@ TEST_F(ClientReader, TheOverviewStandsStillWhileTheReaderFliesAndTurnsByHand) {
     EXPECT_EQ(reader_->orbit().azimuthDegrees, 0.0);
 }
 
-TEST_F(ClientReader, ACurveIsShownWhileTheHandMovesItAndReplacesThePreset) {
+TEST_F(ClientReader, OpticsAreShownWhileTheHandChangesThem) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
-    EXPECT_EQ(reader_->transferFunction(), "mucosa");
+    OpticsEditor& optics = reader_->optics();
+    ASSERT_EQ(optics.presets(), 2u);
+    EXPECT_EQ(optics.preset(optics.chosen()).name, "mucosa");
+    EXPECT_EQ(optics.curve().points().front().hu, -700.0);  // the server's own
     for (int n = 0; n < 30; ++n) {
-        TransferCurve curve = reader_->curve();
+        TransferCurve curve = optics.curve();
         curve.move(1, -560.0 + n, 0.5);
-        reader_->setCurve(curve);
+        optics.setCurve(curve);
         reader_->update(0.01);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    EXPECT_EQ(reader_->transferFunction(), "");
+    EXPECT_TRUE(std::holds_alternative<Optics>(optics.choice()));
     EXPECT_TRUE(reader_->restless());
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
-    reader_->setTransferFunction("translucent");
-    EXPECT_EQ(reader_->transferFunction(), "translucent");
+    ASSERT_TRUE(optics.choose("translucent"));
+    EXPECT_EQ(optics.choice(), OpticsChoice("translucent"));
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
 }

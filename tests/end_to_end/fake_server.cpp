@@ -4,6 +4,7 @@
 #include "link/fingerprint.h"
 #include "protocol/framing.h"
 #include "protocol/haustra.pb.h"
+#include "protocol/optics_message.h"
 
 #include <array>
 #include <cmath>
@@ -179,8 +180,12 @@ struct FakeServer::Impl {
         for (std::uint32_t n = 200; n < 220; ++n)
             opened->add_gap_samples(n);
         opened->set_patient_position("supine");
-        opened->add_transfer_functions("mucosa");
-        opened->add_transfer_functions("translucent");
+        for (const char* offered : {"mucosa", "translucent"}) {
+            haustra::OpticsPreset preset{offered, "as a test has it", {}};
+            preset.optics.transferFunction.points = {{-700.0, {0.9, 0.6, 0.5}, 0.0},
+                                                     {-500.0, {0.9, 0.6, 0.5}, 1.0}};
+            fill(*opened->add_presets(), preset);
+        }
         if (!misbehaviour.notFlattened) *opened->mutable_flat() = fakeStrip();
         return message;
     }
@@ -302,7 +307,7 @@ struct FakeServer::Impl {
                     if (!misbehaviour.silentAboutTheWall) write(stream, aboutFakeWall(message));
                     break;
                 case ClientMessage::kSetTransferFunction:
-                    if (message.set_transfer_function().points_size() == 0 &&
+                    if (!message.set_transfer_function().has_optics() &&
                         message.set_transfer_function().preset() != "mucosa" &&
                         message.set_transfer_function().preset() != "translucent") {
                         answer.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);

@@ -149,8 +149,10 @@ TEST_F(RenderScan, AFolderOfSlicesIsTheSameScan) {
 
 TEST_F(RenderScan, EachRaycasterDrawsThePicture) {
     const Image usual = drawn(at("ball.nii.gz"), {});
-    for (const char* kind : {"native", "object-order"}) {
-        const Image image = drawn(at("ball.nii.gz"), {"--raycaster", kind, "--gpu-budget", "16"});
+    for (const std::string kind : {"native", "object-order"}) {
+        std::vector<std::string> options{"--raycaster", kind};
+        if (kind == "object-order") options.insert(options.end(), {"--gpu-budget", "16"});
+        const Image image = drawn(at("ball.nii.gz"), options);
         ASSERT_EQ(image.rgb.size(), usual.rgb.size()) << kind;
         int far = 0;
         for (std::size_t i = 0; i < usual.rgb.size(); ++i)
@@ -205,6 +207,7 @@ TEST_F(RenderScan, ColoursAreDrawnLabelByLabel) {
     green.back() = "9";
     expectFails(at("color.nii.gz"), green, 1, "label");
     expectFails(at("color.nii.gz"), {"--tf", at("white.json"), "--label", "7"}, 2, "--label");
+    expectFails(at("color.nii.gz"), {"--labels", at("labels.nii.gz"), "--tf", "bone"}, 2, "--tf");
 }
 
 TEST_F(RenderScan, WhatIsWrongIsNamed) {
@@ -221,7 +224,12 @@ TEST_F(RenderScan, WhatIsWrongIsNamed) {
     expectFails(at("mixed"), {"--tf", white}, 1, "2.png");
 
     expectFails(scan, {}, 2, "--tf");
+    expectFails(scan, {}, 2, "mucosa");  // the presets are named
     expectFails(scan, {"--tf", "purple"}, 2, "purple");
+    expectFails(scan, {"--tf", white, "--gpu-budget", "16"}, 2, "object-order");
+    expectFails(scan, {"--tf", white, "--gpu-budget", "16", "--raycaster", "native"}, 2,
+                "object-order");
+    expectFails(scan, {"--tf", white, "--view", "axial", "--position", "1,2,3"}, 2, "--window");
     expectFails(scan, {"--view", "overview"}, 2, "overview");
     expectFails(scan, {"--tf", white, "--arc-mm", "10"}, 2, "--arc-mm");
     expectFails(scan, {"--tf", white, "--look", "1,2,3"}, 2, "--look");

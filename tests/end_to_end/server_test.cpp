@@ -90,7 +90,7 @@ TEST_F(ServerTest, WelcomesListsAndOpens) {
     EXPECT_EQ(facts.centerline(5 * 7 + 3), truth.centerline.points[7].arcMm);
     EXPECT_EQ(facts.gap_samples_size(), 2);
     EXPECT_EQ(facts.patient_position(), toString(PatientPosition::supine));
-    EXPECT_EQ(facts.transfer_functions(0), "mucosa");
+    EXPECT_EQ(facts.presets(0).name(), "mucosa");
     EXPECT_TRUE(facts.cleansed());
     // The raycaster is the fastest of those that were tried.
     double least = INFINITY;

@@ -2,10 +2,13 @@
 #include "end_to_end/server_process.h"
 #include "end_to_end/server_test_client.h"
 #include "gpu/context.h"
+#include "protocol/optics_message.h"
 #include "render/case_renderer.h"
 #include "render/optics/optics_presets.h"
 
+#include <cmath>
 #include <fstream>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -191,12 +194,12 @@ TEST_F(ServerViews, LensesAndOpticsReachTheRaycaster) {
     auto* set = optics.mutable_set_transfer_function();
     set->set_sequence(4);
     for (const double hu : {-600.0, 100.0}) {
-        auto* point = set->add_points();
+        auto* point = set->mutable_optics()->add_points();
         point->set_hu(hu);
         point->set_red(0.9);
         point->set_opacity(hu > 0 ? 0.3 : 0.0);
     }
-    set->set_pre_integrated(true);
+    set->mutable_optics()->set_pre_integrated(true);
     client_->send(optics);
     view.optics = {};
     view.optics.transferFunction.points = {{-600.0, {0.9, 0, 0}, 0.0}, {100.0, {0.9, 0, 0}, 0.3}};
@@ -204,54 +207,144 @@ TEST_F(ServerViews, LensesAndOpticsReachTheRaycaster) {
     expectPicture(view);
 
     set->set_sequence(5);
-    set->set_pre_integrated(false);
-    set->set_composition(protocol::MAXIMUM_INTENSITY);
+    set->mutable_optics()->set_pre_integrated(false);
+    set->mutable_optics()->set_composition(protocol::MAXIMUM_INTENSITY);
     client_->send(optics);
     view.optics.preIntegrated = false;
     view.optics.composition = render::Composition::maximumIntensity;
     expectPicture(view);
 
     set->set_sequence(6);
-    set->set_composition(protocol::EMISSION_ABSORPTION);
-    set->set_unlit(true);
-    auto* row = set->add_rows();
-    row->set_gradient_hu_per_mm(150);
-    *row->mutable_points() = set->points();
-    row->mutable_points(1)->set_opacity(0.8);
-    client_->send(optics);
     view.optics.composition = render::Composition::emissionAbsorption;
-    view.optics.shading = false;
     view.optics.transferFunction.rows = {
         {150.0, {{-600.0, {0.9, 0, 0}, 0.0}, {100.0, {0.9, 0, 0}, 0.8}}}};
+    view.optics.light = {20.0, 0.3, 0.5, 0.4, 8.0};
+    protocol::fill(*set->mutable_optics(), view.optics);
+    client_->send(optics);
     expectPicture(view);
+}
 
-    std::uint64_t sequence = 6;
+TEST_F(ServerViews, OpticsThatAreNoneAreRefusedAndTheSessionGoesOn) {
+    client_->viewport(1, 0, protocol::ENDOSCOPIC, 120, 90);
+    render::CameraView view;
+    view.camera = {{-1.2, 2.2, 112.0}, {0, 0, 1}, {0, -1, 0}, 90.0};
+    view.optics.transferFunction = {
+        {{-600.0, {0.9, 0, 0}, 0.0}, {100.0, {0.9, 0, 0}, 0.3}},
+        {{150.0, {{-600.0, {0.9, 0, 0}, 0.0}, {0.0, {0, 0, 1}, 1.0}, {100.0, {1, 0, 0}, 0.8}}}}};
+    protocol::ClientMessage optics;
+    protocol::fill(*optics.mutable_set_transfer_function()->mutable_optics(), view.optics);
+    std::uint64_t sequence = 1;
     const auto refused = [&](auto change) {
         protocol::ClientMessage bad = optics;
         bad.mutable_set_transfer_function()->set_sequence(++sequence);
-        change(*bad.mutable_set_transfer_function());
+        change(*bad.mutable_set_transfer_function()->mutable_optics());
         expectRefused(bad);
     };
-    refused([](auto& b) { b.set_preset("mucosa"); });
     refused([](auto& b) { b.clear_points(); });
+    refused([](auto& b) { b.Clear(); });
+    refused([](auto& b) { b.mutable_points()->RemoveLast(); });
+    refused([](auto& b) { b.mutable_points(0)->set_hu(500.0); });  // unsorted
+    refused([](auto& b) { b.mutable_points(0)->set_hu(100.0); });  // of no width
+    refused([](auto& b) { b.mutable_points(0)->set_hu(-1e9); });
+    refused([](auto& b) { b.mutable_points(1)->set_hu(NAN); });
+    refused([](auto& b) { b.mutable_points(1)->set_hu(INFINITY); });
+    refused([](auto& b) { b.mutable_points(1)->set_opacity(NAN); });
+    refused([](auto& b) { b.mutable_points(1)->set_opacity(-0.1); });
+    refused([](auto& b) { b.mutable_points(1)->set_opacity(1.0001); });
+    refused([](auto& b) { b.mutable_points(1)->set_green(2.0); });
+    refused([](auto& b) { b.mutable_points(1)->set_blue(NAN); });
     refused([](auto& b) { b.set_composition(protocol::Composition(9)); });
     refused([](auto& b) { b.set_pre_integrated(true); });  // of a 2-D function
     refused([](auto& b) { *b.add_rows() = b.rows(0); });   // no steeper
     refused([](auto& b) { b.mutable_rows(0)->set_gradient_hu_per_mm(NAN); });
+    refused([](auto& b) { b.mutable_rows(0)->set_gradient_hu_per_mm(0.0); });
     refused([](auto& b) { b.mutable_rows(0)->mutable_points(0)->set_opacity(1.5); });
+    refused([](auto& b) { b.mutable_rows(0)->mutable_points()->SwapElements(0, 1); });
     refused([](auto& b) { b.mutable_rows(0)->clear_points(); });
+    refused([](auto& b) { b.mutable_light(); });  // that does not shine
+    refused([](auto& b) { b.mutable_light()->set_half_depth_mm(NAN); });
+    const auto grow = [](auto* points, int count) {
+        while (points->size() < count)
+            *points->Add() = *points->rbegin();
+    };
+    refused([&](auto& b) { grow(b.mutable_points(), 257); });
+    refused([&](auto& b) { grow(b.mutable_points(), 1200); });
+    // Each row has what a row may, and all together too much.
+    refused([&](auto& b) {
+        for (int n = 0; n < 10; ++n) {
+            *b.add_rows() = b.rows(0);
+            b.mutable_rows(n + 1)->set_gradient_hu_per_mm(200 + n);
+            grow(b.mutable_rows(n + 1)->mutable_points(), 110);
+        }
+    });
     refused([](auto& b) {
         for (int n = 0; n < 80; ++n) {
             *b.add_rows() = b.rows(0);
             b.mutable_rows(n + 1)->set_gradient_hu_per_mm(200 + n);
         }
     });
+    protocol::ClientMessage both = optics;
+    both.mutable_set_transfer_function()->set_sequence(++sequence);
+    both.mutable_set_transfer_function()->set_preset("mucosa");
+    expectRefused(both);
+    protocol::ClientMessage neither;
+    neither.mutable_set_transfer_function()->set_sequence(++sequence);
+    expectRefused(neither);
+
+    // Rows of different lengths are sound, and all that was refused has left no trace.
+    optics.mutable_set_transfer_function()->set_sequence(++sequence);
+    client_->send(optics);
+    client_->camera(++sequence, 0, inTheTube, false);
+    expectPicture(view);
+}
+
+TEST_F(ServerViews, AMessageOverTheProtocolsBoundEndsItsSessionAlone) {
+    protocol::ClientMessage endless;
+    auto* points = endless.mutable_set_transfer_function()->mutable_optics();
+    endless.mutable_set_transfer_function()->set_sequence(1);
+    for (int n = 0; n < 10'000; ++n) {
+        auto* point = points->add_points();
+        point->set_hu(n);
+        point->set_opacity(0.5);
+        point->set_red(0.5);
+    }
+    TestClient other(server_->port());
+    ASSERT_TRUE(other.hello()->has_welcome());
+    client_->send(endless);
+    const auto answer = client_->answer();
+    ASSERT_TRUE(answer);
+    EXPECT_TRUE(answer->error().fatal());
+    EXPECT_EQ(answer->error().code(), protocol::ErrorReport::BAD_MESSAGE);
+    EXPECT_FALSE(answer->error().message().empty());
+    protocol::ClientMessage ping;
+    ping.mutable_ping()->set_request(7);
+    other.send(ping);
+    const auto pong = other.answer();
+    ASSERT_TRUE(pong);
+    EXPECT_EQ(pong->pong().request(), 7u);
+}
+
+TEST_F(ServerViews, APresetComesWithAllThatMakesIt) {
+    for (const auto& sent : opened_.case_opened().presets()) {
+        const auto preset = protocol::presetFrom(sent);
+        ASSERT_TRUE(preset) << describe(preset.error());
+        EXPECT_FALSE(preset->description.empty() && preset->name != "plain") << preset->name;
+        const auto expected = preset->name == "plain"
+                                  ? render::parsePreset(ownPreset, "test").value().optics
+                                  : render::opticsPreset(preset->name).value();
+        EXPECT_EQ(preset->optics, expected) << preset->name;
+    }
+    const auto& histogram = opened_.case_opened().histogram();
+    EXPECT_EQ(histogram.voxels_size(), 256);
+    EXPECT_GT(std::accumulate(histogram.voxels().begin(), histogram.voxels().end(), 0.0), 1000.0);
 }
 
 TEST_F(ServerViews, AFolderOfPresetsIsOfferedAndABadFileIsNot) {
-    const auto& names = opened_.case_opened().transfer_functions();
-    EXPECT_EQ(names.Get(0), "mucosa");
-    EXPECT_EQ(std::count(names.begin(), names.end(), "plain"), 1);
+    const auto& presets = opened_.case_opened().presets();
+    EXPECT_EQ(presets.Get(0).name(), "mucosa");
+    EXPECT_EQ(std::count_if(presets.begin(), presets.end(),
+                            [](const auto& preset) { return preset.name() == "plain"; }),
+              1);
     EXPECT_NE(server_->log().find("a preset is not used"), std::string::npos);
 
     client_->viewport(1, 0, protocol::ENDOSCOPIC, 120, 90);

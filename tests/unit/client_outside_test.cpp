@@ -2,14 +2,15 @@
 #include "panels/flight.h"
 #include "panels/overview_map.h"
 #include "panels/script.h"
-#include "panels/transfer_curve.h"
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace haustra::panels {
 namespace {
@@ -98,57 +99,6 @@ TEST(Fisheye, KeepsItsOwnFieldOfView) {
     EXPECT_EQ(flight.camera().fovDegrees, 240.0);
 }
 
-void expectSound(const TransferCurve& curve) {
-    const auto& points = curve.points();
-    EXPECT_GE(points.size(), 2u);
-    EXPECT_LE(points.size(), TransferCurve::maxPoints);
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        if (n > 0) {
-            EXPECT_LE(points[n - 1].hu, points[n].hu);
-        }
-        EXPECT_TRUE(points[n].opacity >= 0.0 && points[n].opacity <= 1.0);
-        EXPECT_TRUE(points[n].hu >= TransferCurve::minHu && points[n].hu <= TransferCurve::maxHu);
-    }
-}
-
-TEST(TransferCurve, StaysOneThatAServerTakesWhateverTheHandDoes) {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> hu(-3000.0, 5000.0), opacity(-0.5, 1.5);
-    TransferCurve curve;
-    for (int n = 0; n < 5000; ++n) {
-        const std::size_t point = random() % curve.points().size();
-        switch (random() % 4) {
-            case 0:
-                curve.add(hu(random), opacity(random));
-                break;
-            case 1:
-                curve.move(point, hu(random), opacity(random));
-                break;
-            case 2:
-                curve.setColor(point, {opacity(random), opacity(random), opacity(random)});
-                break;
-            default:
-                curve.remove(point);
-        }
-        expectSound(curve);
-    }
-}
-
-TEST(TransferCurve, AddingAPointOnTheCurveChangesNoValue) {
-    const TransferCurve before;
-    TransferCurve after = before;
-    const double hu = -431.0;
-    const std::size_t point = after.add(hu, before.at(hu).opacity);
-    EXPECT_EQ(after.points()[point].hu, hu);
-    EXPECT_EQ(after.points().size(), before.points().size() + 1);
-    for (double x = -1100.0; x < 400.0; x += 13.7) {
-        EXPECT_NEAR(after.at(x).opacity, before.at(x).opacity, 1e-12);
-        EXPECT_NEAR(glm::distance(after.at(x).color, before.at(x).color), 0.0, 1e-12);
-    }
-    ASSERT_TRUE(after.remove(point));
-    EXPECT_EQ(after.points(), before.points());
-}
-
 Result<std::vector<Action>> parse(const std::string& text) {
     std::istringstream in(text);
     return parseScript(in, "tour.jsonl");
@@ -171,10 +121,37 @@ TEST(Script, ReadsTheActionsOfTheViewsFromOutside) {
     EXPECT_EQ(oblique.heightMm, 40.0);
     EXPECT_EQ(oblique.viewport, 6);
     EXPECT_EQ(std::get<GoAction>((*actions)[2].body).fisheye, true);
-    const auto& points =
-        std::get<std::vector<TransferPoint>>(std::get<TransferAction>((*actions)[3].body).function);
-    ASSERT_EQ(points.size(), 2u);
-    EXPECT_EQ(points[1], (TransferPoint{-500.0, {1.0, 0.5, 0.0}, 0.9}));
+    const auto& optics = std::get<Optics>(std::get<TransferAction>((*actions)[3].body).optics);
+    ASSERT_EQ(optics.transferFunction.points.size(), 2u);
+    EXPECT_EQ(optics.transferFunction.points[1],
+              (TransferFunctionPoint{-500.0, {1.0, 0.5, 0.0}, 0.9}));
+}
+
+TEST(Script, OpticsAreGivenWholeOrByAPresetsFile) {
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("haustra-look-" + std::to_string(::getpid()) + ".json");
+    const std::string own = R"("composition":"first-hit","shading":false,
+        "light":{"halfDepthMm":9,"ambient":0.1,"diffuse":1,"specular":0.3,"shininess":4},
+        "points":[{"hu":-1,"color":[1,0,0],"opacity":0},{"hu":1,"color":[0,1,0],"opacity":1}],
+        "rows":[{"gradientHuPerMm":90,"points":[{"hu":-5,"color":[1,0,0],"opacity":0.5},
+                                                {"hu":1,"color":[0,1,0],"opacity":1}]}]})";
+    std::ofstream(file) << R"({"name":"look",)" << own;
+    std::string line = R"({"do":"transfer","viewport":3,"optics":{)" + own + "}\n";
+    std::erase(line, '\n');
+    const auto actions =
+        parse(line + "\n" + R"({"do":"transfer","file":")" + file.string() + "\"}");
+    ASSERT_TRUE(actions) << describe(actions.error());
+    const auto& whole = std::get<TransferAction>((*actions)[0].body);
+    EXPECT_EQ(whole.viewport, 3);
+    const auto& optics = std::get<Optics>(whole.optics);
+    EXPECT_EQ(optics.composition, Composition::firstHit);
+    EXPECT_FALSE(optics.shading);
+    EXPECT_EQ(optics.light, (Headlight{9, 0.1, 1, 0.3, 4}));
+    ASSERT_EQ(optics.transferFunction.rows.size(), 1u);
+    EXPECT_EQ(optics.transferFunction.rows[0].points[0].opacity, 0.5);
+    EXPECT_EQ(std::get<TransferAction>((*actions)[1].body).optics, OpticsChoice(optics));
+    std::filesystem::remove(file);
+    EXPECT_FALSE(parse(R"({"do":"transfer","file":")" + file.string() + "\"}"));
 }
 
 TEST(Script, ActionsOfTheViewsFromOutsideHaveTheirBounds) {

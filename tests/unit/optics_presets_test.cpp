@@ -25,6 +25,8 @@ TEST(OpticsPresets, AllFilesAreBuiltInUnderTheirNames) {
         EXPECT_TRUE(opticsPreset(file.path().stem().string())) << file.path();
     }
     EXPECT_EQ(builtInPresets().size(), files);
+    for (const OpticsPreset& preset : builtInPresets())
+        EXPECT_FALSE(preset.description.empty()) << preset.name;
 }
 
 TEST(OpticsPresets, TextGoesThereAndBack) {
@@ -43,6 +45,20 @@ TEST(OpticsPresets, WhatIsMissingHasTheDefault) {
     Optics expected;
     expected.transferFunction.points = {{0.0, glm::dvec3(0.0), 0.0}, {10.0, glm::dvec3(1.0), 1.0}};
     EXPECT_EQ(preset->optics, expected);
+}
+
+TEST(OpticsPresets, HaveAtMostSoManyPointsInAllRows) {
+    Optics optics;
+    auto& function = optics.transferFunction;
+    for (int n = 0; n < 64; ++n)
+        function.points.push_back({double(n), glm::dvec3(1.0), 0.5});
+    for (int n = 1; n < 16; ++n)
+        function.rows.push_back({double(n), function.points});
+    EXPECT_TRUE(checkOptics(optics));
+    function.rows.back().points.push_back({64.0, glm::dvec3(1.0), 0.5});
+    const auto refused = checkOptics(optics);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("1024"), std::string::npos);
 }
 
 TEST(OpticsPresets, SaysWhatIsWrongAndWhere) {
@@ -114,6 +130,35 @@ TEST_F(PresetFolder, AddsToTheBuiltInOnesAndReplacesThem) {
     ASSERT_EQ(library->refused.size(), 2u);
     EXPECT_EQ(library->refused[0].place, "c.json");
     EXPECT_EQ(library->refused[1].place, "d.json");
+}
+
+TEST_F(PresetFolder, HoldsNoMoreThanOneMessageDoes) {
+    std::string text = sound;
+    for (std::size_t n = 0; n < mostPresets; ++n) {
+        const std::string name = "own-" + std::to_string(100 + n);
+        std::string one = text;
+        write((name + ".json").c_str(), one.replace(one.find("test-1"), 6, name));
+    }
+    const auto library = readPresets(folder);
+    ASSERT_TRUE(library);
+    EXPECT_EQ(library->presets.size(), mostPresets);
+    ASSERT_EQ(library->refused.size(), builtInPresets().size());
+    EXPECT_NE(library->refused[0].message.find("64"), std::string::npos);
+}
+
+TEST_F(PresetFolder, FilesAreWrittenWholeAndReadBack) {
+    for (const OpticsPreset& preset : builtInPresets()) {
+        ASSERT_TRUE(writePresetFile(folder / "a.json", preset));
+        const auto read = readPresetFile(folder / "a.json");
+        ASSERT_TRUE(read) << describe(read.error());
+        EXPECT_EQ(*read, preset);
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+    EXPECT_FALSE(writePresetFile(folder / "none" / "a.json", builtInPresets().front()));
+    write("b.json", std::string((1 << 20) + 1, ' '));
+    const auto tooLong = readPresetFile(folder / "b.json");
+    ASSERT_FALSE(tooLong);
+    EXPECT_EQ(tooLong.error().kind, ErrorKind::io);
 }
 
 TEST_F(PresetFolder, ThatIsNotThereIsAFailure) {

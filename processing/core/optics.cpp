@@ -1,14 +1,13 @@
-#include "render/optics/optics.h"
+#include "core/optics.h"
 
 #include <cmath>
 
-namespace haustra::render {
+namespace haustra {
 
 namespace {
 
 using Points = std::vector<TransferFunctionPoint>;
 
-constexpr std::size_t mostPoints = 256, mostRows = 64;
 constexpr double steepestHuPerMm = 65536.0, leastSpanHu = 1.0 / 16.0, leastRowHuPerMm = 1e-3;
 
 tl::unexpected<Error> refuse(const std::string& what) {
@@ -23,12 +22,12 @@ bool isColor(glm::dvec3 color) {
 
 /// `row` is empty, or says which row's points these are.
 Result<void> checkPoints(const Points& points, const std::string& row) {
-    if (points.size() < 2 || points.size() > mostPoints)
+    if (points.size() < 2 || points.size() > mostTransferPoints)
         return refuse(row + std::to_string(points.size()) + " points, where 2 to 256 are needed");
     for (std::size_t i = 0; i < points.size(); ++i) {
         const TransferFunctionPoint& point = points[i];
         const std::string at = row + "point " + std::to_string(i + 1);
-        if (!(point.hu >= -32768.0 && point.hu <= 32767.0))
+        if (!(point.hu >= lowestTransferHu && point.hu <= highestTransferHu))
             return refuse(at + " has HU outside -32768 to 32767");
         if (!(point.opacity >= 0.0 && point.opacity <= 1.0))
             return refuse(at + " has an opacity outside 0 to 1");
@@ -60,9 +59,10 @@ Result<void> checkLight(const Headlight& light) {
 
 Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
     if (auto sound = checkPoints(transferFunction.points, ""); !sound) return sound;
-    if (transferFunction.rows.size() > mostRows)
+    if (transferFunction.rows.size() > mostGradientRows)
         return refuse(std::to_string(transferFunction.rows.size()) +
                       " rows, where at most 64 are allowed");
+    std::size_t points = transferFunction.points.size();
     double before = 0.0;
     for (std::size_t i = 0; i < transferFunction.rows.size(); ++i) {
         const GradientRow& row = transferFunction.rows[i];
@@ -74,7 +74,11 @@ Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
                           "65536");
         before = row.gradientHuPerMm;
         if (auto sound = checkPoints(row.points, at + ": "); !sound) return sound;
+        points += row.points.size();
     }
+    if (points > mostTransferPointsInAll)
+        return refuse(std::to_string(points) +
+                      " points in all rows together, where at most 1024 are allowed");
     return {};
 }
 
@@ -85,4 +89,4 @@ Result<void> checkOptics(const Optics& optics) {
     return checkLight(optics.light);
 }
 
-}  // namespace haustra::render
+}  // namespace haustra
