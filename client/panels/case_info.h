@@ -74,6 +74,14 @@ struct Overview {
     bool operator==(const Overview&) const = default;
 };
 
+/// What colours the wall.
+struct WallPaint {
+    bool marks = false;   ///< discs where bookmarks are, whoever added them
+    bool unseen = false;  ///< what no endoscopic picture of this session has shown
+    double markRadiusMm = 5.0;
+    bool any() const { return marks || unseen; }
+};
+
 struct WindowLevel {
     double centerHu = 0.0, widthHu = 2000.0;
     bool operator==(const WindowLevel&) const = default;

@@ -122,6 +122,16 @@ protocol::ClientMessage inputMessage(InputHeader header, const OpticsChoice& opt
     return message;
 }
 
+protocol::ClientMessage paintMessage(std::uint64_t sequence, const WallPaint& paint) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_wall_paint();
+    body->set_sequence(sequence);
+    body->set_marks(paint.marks);
+    body->set_unseen(paint.unseen);
+    body->set_mark_radius_mm(paint.markRadiusMm);
+    return message;
+}
+
 protocol::ClientMessage bookmarkMessage(std::uint64_t request, const Bookmark& bookmark) {
     protocol::ClientMessage message;
     auto* body = message.mutable_add_bookmark();

@@ -23,6 +23,8 @@ protocol::ClientMessage inputMessage(InputHeader header, const Overview& overvie
 protocol::ClientMessage inputMessage(InputHeader header, const WindowLevel& window);
 protocol::ClientMessage inputMessage(InputHeader header, const OpticsChoice& optics);
 
+protocol::ClientMessage paintMessage(std::uint64_t sequence, const WallPaint& paint);
+
 protocol::ClientMessage bookmarkMessage(std::uint64_t request, const Bookmark& bookmark);
 protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec2 flat);
 protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec3 positionMm);

@@ -52,6 +52,8 @@ private:
     Status run(const FlyOverAction&, ActionReport&);
     Status run(const LocateAction&, ActionReport&);
     Status run(const MeasureAction&, ActionReport&);
+    Status run(const PaintAction&, ActionReport&);
+    Status run(const SeenAction&, ActionReport&);
     Status run(const WindowAction&, ActionReport&);
     Status run(const TransferAction&, ActionReport&);
     Status run(const BookmarkAction&, ActionReport&);

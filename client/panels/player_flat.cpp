@@ -70,4 +70,21 @@ Status Player::run(const MeasureAction& action, ActionReport& report) {
     return action.json.empty() ? Status{} : writeJson(action.json, toJson(*report.measure), report);
 }
 
+Status Player::run(const PaintAction& action, ActionReport&) {
+    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    session_.setWallPaint(action.paint);
+    return awaitBookmarkList();
+}
+
+Status Player::run(const SeenAction& action, ActionReport& report) {
+    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    const auto request = session_.askSeen(action.forget);
+    auto came = awaitThat([&] { return session_.answeredSeenRequest() >= request; },
+                          "the share of the wall that has been seen");
+    if (!came) return came;
+    report.seenShare = session_.seenShare();
+    return action.json.empty() ? Status{}
+                               : writeJson(action.json, seenShareJson(*report.seenShare), report);
+}
+
 }  // namespace haustra::panels

@@ -227,6 +227,16 @@ void Reader::resetOverview() {
     orbit_ = orbitAround(glm::min(a, b), glm::max(a, b), size.x / size.y);
 }
 
+bool Reader::setWallPaint(const WallPaint& paint) {
+    if (!hasStrip()) return false;
+    session_.setWallPaint(paint);
+    return true;
+}
+
+void Reader::forgetSeen() {
+    if (hasStrip()) session_.askSeen(true);
+}
+
 void Reader::setShowsBody(bool shows) {
     showsBody_ = shows;
     pacers_[at(View::overview)].touch();

@@ -58,6 +58,11 @@ public:
     bool showsBody() const { return showsBody_; }
     void setShowsBody(bool shows);
 
+    /// What colours the wall; refused (false) where the case has not been flattened.
+    bool setWallPaint(const WallPaint& paint);
+    const WallPaint& wallPaint() const { return session_.wallPaint(); }
+    void forgetSeen();
+
     bool hasStrip() const { return case_ && case_->flat; }
     /// The window of the zoom view. It follows the camera along the colon; moving it leaves the
     /// camera, but for the fly-over, which the camera follows.

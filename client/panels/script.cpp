@@ -169,6 +169,21 @@ MeasureAction readMeasure(Fields& in) {
     return action;
 }
 
+PaintAction readPaint(Fields& in) {
+    PaintAction action;
+    if (in.has("marks")) action.paint.marks = in.flag("marks");
+    if (in.has("unseen")) action.paint.unseen = in.flag("unseen");
+    if (in.has("radius_mm")) action.paint.markRadiusMm = in.number("radius_mm", 1.0, 20.0);
+    return action;
+}
+
+SeenAction readSeen(Fields& in) {
+    SeenAction action;
+    if (in.has("forget")) action.forget = in.flag("forget");
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
 WindowAction readWindow(Fields& in) {
     WindowAction action;
     if (in.has("viewport")) action.viewport = in.viewport();
@@ -239,6 +254,10 @@ Action readAction(const std::string& line) {
         action.body = readLocate(in);
     else if (action.name == "measure")
         action.body = readMeasure(in);
+    else if (action.name == "paint")
+        action.body = readPaint(in);
+    else if (action.name == "seen")
+        action.body = readSeen(in);
     else if (action.name == "window")
         action.body = readWindow(in);
     else if (action.name == "transfer")

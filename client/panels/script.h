@@ -98,6 +98,13 @@ struct TransferAction {
     int viewport = 0;
     OpticsChoice optics;
 };
+struct PaintAction {
+    WallPaint paint;
+};
+struct SeenAction {
+    bool forget = false;
+    std::string json;
+};
 struct BookmarkAction {
     std::string note;
     int count = 1;  ///< added one after the other, each acknowledged before the next
@@ -114,8 +121,8 @@ struct Action {
     std::string name;  ///< the value of "do"
     std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, ObliqueAction,
                  OverviewAction, FlatAction, StripAction, FlyOverAction, LocateAction,
-                 MeasureAction, WindowAction, TransferAction, BookmarkAction, BookmarksAction,
-                 WaitAction>
+                 MeasureAction, PaintAction, SeenAction, WindowAction, TransferAction,
+                 BookmarkAction, BookmarksAction, WaitAction>
         body;
 };
 

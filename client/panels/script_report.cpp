@@ -75,6 +75,7 @@ json jsonOf(const ActionReport& action) {
     if (action.following) out["following"] = *action.following;
     if (action.place) out["place"] = jsonOf(*action.place);
     if (action.measure) out["measure"] = jsonOf(*action.measure);
+    if (action.seenShare) out["seen_share"] = *action.seenShare;
     return out;
 }
 
@@ -86,6 +87,10 @@ std::string toJson(const WallPlace& place) {
 
 std::string toJson(const FlatMeasure& measure) {
     return jsonOf(measure).dump(2) + "\n";
+}
+
+std::string seenShareJson(double share) {
+    return json{{"seen_share", share}}.dump(2) + "\n";
 }
 
 std::string toJson(const PlayReport& report) {

@@ -35,6 +35,7 @@ struct ActionReport {
     std::optional<int> following;  ///< endoscopic pictures beside those of a fly-over
     std::optional<WallPlace> place;
     std::optional<FlatMeasure> measure;
+    std::optional<double> seenShare;  ///< of the wall
 };
 
 struct PlayReport {
@@ -49,5 +50,6 @@ struct PlayReport {
 std::string toJson(const PlayReport& report);
 std::string toJson(const WallPlace& place);
 std::string toJson(const FlatMeasure& measure);
+std::string seenShareJson(double share);
 
 }  // namespace haustra::panels

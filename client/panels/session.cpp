@@ -98,6 +98,11 @@ void Session::handle(const protocol::ServerMessage& message) {
         case protocol::ServerMessage::kFlatMeasure:
             answeredAboutWall(message.flat_measure(), measureFrom(message.flat_measure()));
             break;
+        case protocol::ServerMessage::kWallSeen:
+            seenShare_ = std::clamp(message.wall_seen().share(), 0.0, 1.0);
+            questions_.erase(message.wall_seen().request());
+            answeredSeen_ = std::max(answeredSeen_, message.wall_seen().request());
+            break;
         case protocol::ServerMessage::kError:
             refused(message.error());
             break;
@@ -173,6 +178,7 @@ void Session::openCase(const std::string& name) {
     viewports_.clear();
     questions_.clear();
     wallAnswers_.clear();
+    paint_ = {};
     if (phase_ == Phase::failed || phase_ == Phase::lost) return;
     phase_ = Phase::connecting;
     askForCase();
@@ -180,6 +186,8 @@ void Session::openCase(const std::string& name) {
 
 // Everything that the server has to know of a session that it sees for the first time.
 void Session::askAgain() {
+    seenShare_ = 0.0;
+    if (caseInfo_->flat && paint_.any()) connection_.send(paintMessage(++sequence_, paint_));
     for (const auto& [id, state] : viewports_) {
         if (state.width == 0) continue;  // spoken of before it was opened
         connection_.send(viewportMessage({++sequence_, id}, state.view, state.width, state.height));
@@ -250,6 +258,12 @@ std::uint64_t Session::setTransferFunction(int viewport, const OpticsChoice& opt
     return setInput(viewport, optics, std::nullopt);
 }
 
+std::uint64_t Session::setWallPaint(const WallPaint& paint) {
+    paint_ = paint;
+    sendIfOpen(paintMessage(++sequence_, paint));
+    return sequence_;
+}
+
 // ---- the wall -------------------------------------------------------------------------------
 
 std::uint64_t Session::ask(const protocol::ClientMessage& question) {
@@ -263,6 +277,12 @@ std::uint64_t Session::locate(glm::dvec2 flat) {
 }
 std::uint64_t Session::locate(glm::dvec3 positionMm) {
     return ask(locateMessage(++request_, positionMm));
+}
+std::uint64_t Session::askSeen(bool forget) {
+    protocol::ClientMessage message;
+    message.mutable_ask_seen()->set_request(++request_);
+    message.mutable_ask_seen()->set_forget(forget);
+    return ask(message);
 }
 std::uint64_t Session::measure(const std::vector<glm::dvec2>& points, bool closed) {
     return ask(measureMessage(++request_, points, closed));

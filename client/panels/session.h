@@ -65,6 +65,17 @@ public:
     std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
     std::uint64_t setTransferFunction(int viewport, const OpticsChoice& optics);
 
+    /// What colours the wall, in all viewports that show it. Of a case that has been flattened.
+    std::uint64_t setWallPaint(const WallPaint& paint);
+    const WallPaint& wallPaint() const { return paint_; }
+    /// How much of the wall's area this session's pictures have shown, 0…1, as the server told
+    /// last. A link that was lost begins anew.
+    double seenShare() const { return seenShare_; }
+    /// Asks for it, of all pictures so far; with `forget`, nothing has been shown. Returns the
+    /// request's number.
+    std::uint64_t askSeen(bool forget);
+    std::uint64_t answeredSeenRequest() const { return answeredSeen_; }
+
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
     std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
     /// What the server refused since the last call; the session goes on.
@@ -100,9 +111,9 @@ private:
         View view = View::endoscopic;
         int width = 0, height = 0;
         // In the order in which the server hears them again.
-        std::tuple<std::optional<WindowLevel>, std::optional<OpticsChoice>,
-                   std::optional<Camera>, std::optional<Slice>, std::optional<FlatWindow>,
-                   std::optional<Oblique>, std::optional<Overview>>
+        std::tuple<std::optional<WindowLevel>, std::optional<OpticsChoice>, std::optional<Camera>,
+                   std::optional<Slice>, std::optional<FlatWindow>, std::optional<Oblique>,
+                   std::optional<Overview>>
             inputs;
         bool moving = false;
     };
@@ -137,7 +148,9 @@ private:
     std::vector<std::string> caseNames_;
     std::shared_ptr<const CaseInfo> caseInfo_;
 
-    std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0;
+    WallPaint paint_;
+    double seenShare_ = 0.0;
+    std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0;
     std::map<int, ViewportState> viewports_;
     tiles::TileDecoder decoder_;
     std::array<tiles::PictureAssembler, protocol::maxViewports> assemblers_;

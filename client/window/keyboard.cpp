@@ -30,6 +30,13 @@ void nextTransferFunction(panels::OpticsEditor& optics) {
     optics.choose((optics.chosen() + 1) % optics.presets());
 }
 
+void togglePaint(Ui& ui, bool panels::WallPaint::*which) {
+    panels::WallPaint paint = ui.reader.wallPaint();
+    paint.*which = !(paint.*which);
+    if (!ui.reader.setWallPaint(paint))
+        ui.tell("this case has not been flattened: its wall cannot be coloured");
+}
+
 // Letters as the layout of the keyboard gives them.
 void handleLetter(Ui& ui, ImWchar letter) {
     panels::Reader& reader = ui.reader;
@@ -98,6 +105,16 @@ void handleLetter(Ui& ui, ImWchar letter) {
         case 'y':
         case 'Y':
             reader.setShowsBody(!reader.showsBody());
+            break;
+        case 'k':
+        case 'K':
+            togglePaint(ui, &panels::WallPaint::marks);
+            break;
+        case 'u':
+            togglePaint(ui, &panels::WallPaint::unseen);
+            break;
+        case 'U':
+            reader.forgetSeen();
             break;
         case 'v':
         case 'V':

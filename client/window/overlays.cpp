@@ -27,6 +27,8 @@ constexpr Key flightKeys[] = {
     {"I", "fisheye, which sees all around, or not"},
     {"Y", "overview: with the body, or the colon alone"},
     {"V", "fly over the flattened wall, or along the path"},
+    {"K", "colour the wall around bookmarks"},
+    {"U  Shift U", "colour what has not been seen yet; begin anew"},
     {"L  O", "measure a line, an outline on the flattened wall"},
     {"X", "slices: as scanned, or cleansed"},
     {"M", "show or hide the bookmarks"},

@@ -74,8 +74,11 @@ void drawTopBar(Ui& ui, Rect area) {
     const tiles::Picture& shown = ui.reader.picture(panels::View::endoscopic);
     const std::string raycaster = protocol::raycasterName(shown.raycaster);
     if (!raycaster.empty())
-        drawFigure(ui, list, right, middle, raycaster.c_str(),
-                   format("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);
+        right = drawFigure(ui, list, right, middle, raycaster.c_str(),
+                           format("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);
+    if (ui.reader.hasStrip())
+        drawFigure(ui, list, right, middle, "wall seen",
+                   format("%.1f %%", 100.0 * session.seenShare()), color::text);
 }
 
 }  // namespace haustra::window

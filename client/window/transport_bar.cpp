@@ -115,6 +115,23 @@ void drawStripControls(Ui& ui, float side) {
                DrawingTool::outline);
 }
 
+// What colours the wall. Greyed out where there is no flat map to colour it by.
+void drawPaintControls(Ui& ui) {
+    panels::Reader& reader = ui.reader;
+    panels::WallPaint paint = reader.wallPaint();
+    const bool can = reader.hasStrip();
+    const char* const cannot = "This case has not been flattened: its wall cannot be coloured";
+    ImGui::BeginDisabled(!can);
+    sameRow(ui, 12);
+    bool changed = ImGui::Checkbox("marks", &paint.marks);
+    tooltip(can ? "Colour the wall around bookmarks (K)" : cannot);
+    sameRow(ui);
+    changed |= ImGui::Checkbox("unseen", &paint.unseen);
+    tooltip(can ? "Colour what has not been seen yet (U); Shift U: begin anew" : cannot);
+    ImGui::EndDisabled();
+    if (changed) reader.setWallPaint(paint);
+}
+
 void drawControls(Ui& ui) {
     panels::Reader& reader = ui.reader;
     Flight& flight = reader.flight();
@@ -148,6 +165,7 @@ void drawControls(Ui& ui) {
     if (iconButton("bookmark", Icon::bookmark, side, "Bookmark this place (B)"))
         reader.addBookmark("");
     if (reader.hasStrip()) drawStripControls(ui, side);
+    drawPaintControls(ui);
 
     sameRow(ui, 20);
     label(ui, "speed");

@@ -30,7 +30,7 @@ ImVec2 outlinedText(ImDrawList* list, ImFont* font, ImVec2 position, ImU32 colou
 }
 
 void tooltip(const char* text) {
-    if (ImGui::IsItemHovered() && ImGui::GetCurrentContext() && text && *text) {
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && text && *text) {
         ImGui::BeginTooltip();
         ImGui::TextUnformatted(text);
         ImGui::EndTooltip();

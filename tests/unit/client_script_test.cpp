@@ -20,6 +20,25 @@ Result<std::vector<Action>> parse(const std::string& text) {
     return parseScript(in, "tour.jsonl");
 }
 
+TEST(Script, PaintsTheWallWithinBounds) {
+    const auto actions = parse(R"({"do":"paint","marks":true,"radius_mm":8})"
+                               "\n"
+                               R"({"do":"paint","unseen":true})"
+                               "\n"
+                               R"({"do":"seen","forget":true,"json":"seen.json"})");
+    ASSERT_TRUE(actions) << describe(actions.error());
+    const WallPaint marks = std::get<PaintAction>((*actions)[0].body).paint;
+    EXPECT_TRUE(marks.marks && !marks.unseen);
+    EXPECT_EQ(marks.markRadiusMm, 8.0);
+    const WallPaint unseen = std::get<PaintAction>((*actions)[1].body).paint;
+    EXPECT_TRUE(unseen.unseen && !unseen.marks);
+    EXPECT_TRUE(std::get<SeenAction>((*actions)[2].body).forget);
+    EXPECT_EQ(std::get<SeenAction>((*actions)[2].body).json, "seen.json");
+    for (const char* bad : {R"({"do":"paint","radius_mm":21})", R"({"do":"paint","marks":1})",
+                            R"({"do":"seen","png":"a.png"})"})
+        EXPECT_FALSE(parse(bad)) << bad;
+}
+
 TEST(Script, ReadsEveryActionWithItsLine) {
     const auto actions = parse(
         "# a tour\n"
@@ -152,7 +171,8 @@ TEST(Script, ErrorsNameTheLineAndTheKey) {
         {"{\"do\":\"go\",\"arc_mm\":1,\"fraction\":0.5}", "exclude each other"},
         {"{\"do\":\"fly\",\"positions\":1.5}", "\"positions\" must be a whole number"},
         {"{\"do\":\"view\",\"view\":\"upside\"}",
-         "\"view\" must be endoscopic, axial, coronal, sagittal, flattened, flattened-zoom, oblique "
+         "\"view\" must be endoscopic, axial, coronal, sagittal, flattened, flattened-zoom, "
+         "oblique "
          "or overview"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"viewport\":8}", "\"viewport\" must lie in 0…7"},
         {"{\"do\":\"view\",\"view\":\"axial\",\"size\":[4096,4]}",
