@@ -91,6 +91,23 @@ HWY_INLINE V3 onlyWhere(MF wanted, V3 place) {
             hn::IfThenElseZero(wanted, place.z)};
 }
 
+/// Rays leap on together until each has come to a block that may be visible, has passed its `last`
+/// step, or is `staying`; all are looked at together then. Who leaps leaves `known`, which tells
+/// whether the value a step before is. Returns which rays are in an empty block.
+HWY_INLINE MF leapt(const PacketScene& scene, const Rays& rays, VF last, MF staying, VF& n,
+                    MF& searching, MF& known) {
+    while (true) {
+        const V3 place = along(rays.origin, n, rays.step);
+        const Blocks blocks = blocksAt(scene, place);
+        const MF empty = hn::Gt(blocks.distance, hn::Zero(f));
+        const MF leaping = hn::AndNot(staying, hn::And(searching, empty));
+        if (!any(leaping)) return empty;
+        n = hn::Add(n, hn::IfThenElseZero(leaping, stepsToLeave(rays, place, blocks)));
+        known = hn::AndNot(leaping, known);
+        searching = hn::And(searching, hn::Le(n, last));
+    }
+}
+
 /// Goes on until every ray has found a value that may be visible, or has come to its end. Where
 /// something was visible the next sample is as a rule, too: it is looked at before the leap map.
 struct Search {
@@ -98,34 +115,23 @@ struct Search {
     MF found;
 };
 template <class AnyVoxels>
-HWY_INLINE void look(const PacketScene& scene, const Lattice<AnyVoxels>& lattice, V3 place,
-                     MF looking, VF last, MF& searching, Search& search) {
-    const VF value = lattice.value(onlyWhere(looking, place));
-    const MF visible = hn::And(looking, mayShow(scene, value));
-    search.hu = hn::IfThenElse(visible, value, search.hu);
-    search.found = hn::Or(search.found, visible);
-    search.n = hn::Add(search.n, hn::IfThenElseZero(hn::AndNot(visible, looking), set(1.0f)));
-    searching = hn::And(hn::AndNot(visible, searching), hn::Le(search.n, last));
-}
-template <class AnyVoxels>
 HWY_INLINE Search searched(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
                            const Rays& rays, VF n, VF last, MF searching, bool lookFirst) {
-    const VF zero = hn::Zero(f);
-    Search search{n, zero, hn::Lt(set(1.0f), zero)};
-    if (lookFirst)
-        look(scene, lattice, along(rays.origin, n, rays.step), searching, last, searching, search);
-    while (any(searching)) {
+    const VF zero = hn::Zero(f), one = set(1.0f);
+    const MF none = hn::Lt(one, zero);
+    Search search{n, zero, none};
+    MF known = none;
+    for (bool leap = !lookFirst; any(searching); leap = true) {
+        if (leap) leapt(scene, rays, last, none, search.n, searching, known);
+        if (!any(searching)) break;
         const V3 place = along(rays.origin, search.n, rays.step);
-        const Blocks blocks = blocksAt(scene, place);
-        const MF empty = hn::Gt(blocks.distance, zero);
-        const MF leaping = hn::And(searching, empty);
-        if (any(leaping)) {
-            search.n =
-                hn::Add(search.n, hn::IfThenElseZero(leaping, stepsToLeave(rays, place, blocks)));
-            searching = hn::And(searching, hn::Le(search.n, last));
-        }
-        const MF looking = hn::AndNot(empty, searching);
-        if (any(looking)) look(scene, lattice, place, looking, last, searching, search);
+        const VF value = lattice.value(onlyWhere(searching, place));
+        const MF visible = hn::And(searching, mayShow(scene, value));
+        search.hu = hn::IfThenElse(visible, value, search.hu);
+        search.found = hn::Or(search.found, visible);
+        searching = hn::AndNot(visible, searching);
+        search.n = hn::Add(search.n, hn::IfThenElseZero(searching, one));
+        searching = hn::And(searching, hn::Le(search.n, last));
     }
     return search;
 }
@@ -162,45 +168,43 @@ HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<AnyVoxel
 }
 
 /// Emission and absorption by pre-integrated segments. A segment is worth a look where one of its
-/// ends lies in a block that may be visible.
+/// ends lies in a block that may be visible: others have no opacity, looked at or not.
 template <class AnyVoxels>
 HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
                                  const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
+    const MF none = hn::Lt(one, zero);
     Color sum{zero, zero, zero, zero};
-    VF n = first, front = zero, frontDistance = one;
-    MF active = hn::Le(n, last), fresh = active;
-    while (any(active)) {
-        MF searching = active, found = hn::Lt(one, zero);
-        VF back = zero, backDistance = one;
-        do {
-            const V3 place = along(rays.origin, n, rays.step);
-            const Blocks blocks = blocksAt(scene, place);
-            // A leap ends inside the empty blocks, at the front of the first segment that leaves.
-            const VF advance =
-                hn::IfThenElse(hn::Gt(blocks.distance, zero),
-                               hn::Max(hn::Sub(stepsToLeave(rays, place, blocks), one), one), one);
-            // Where a leap begins, nobody asks for the value, unless a segment that may show ends
-            // there.
-            const MF looking =
-                hn::And(searching, hn::Or(hn::Eq(advance, one), hn::Eq(frontDistance, zero)));
-            if (any(looking)) {
-                const VF value = lattice.value(onlyWhere(looking, place));
+    VF n = first, front = zero;
+    // Whether `front` is the value at n - 1, and whether that sample's block may be visible.
+    MF known = none, near = none;
+    MF active = hn::Le(n, last);
+    for (bool again = false; any(active); again = true) {
+        MF searching = active, found = none;
+        VF back = zero;
+        for (bool leap = !again; any(searching); leap = true) {
+            MF empty = none;
+            if (leap) empty = leapt(scene, rays, last, near, n, searching, known);
+            if (!any(searching)) break;
+            const MF asking = hn::AndNot(known, searching);
+            if (any(asking)) {
                 // The first sample stands for the way before it.
-                front = hn::IfThenElse(hn::And(looking, fresh), value, front);
-                fresh = hn::AndNot(looking, fresh);
-                const MF visible = hn::And(hn::And(looking, mayShow(scene, front, value)),
-                                           hn::Eq(hn::Min(blocks.distance, frontDistance), zero));
-                back = hn::IfThenElse(visible, value, back);
-                backDistance = hn::IfThenElse(visible, blocks.distance, backDistance);
-                found = hn::Or(found, visible);
-                searching = hn::AndNot(visible, searching);
-                front = hn::IfThenElse(hn::And(looking, searching), value, front);
+                const VF before = hn::Max(hn::Sub(n, one), first);
+                const VF value =
+                    lattice.value(onlyWhere(asking, along(rays.origin, before, rays.step)));
+                front = hn::IfThenElse(asking, value, front);
+                known = hn::Or(known, asking);
             }
-            frontDistance = hn::IfThenElse(searching, blocks.distance, frontDistance);
-            n = hn::Add(n, hn::IfThenElseZero(searching, advance));
+            const VF value = lattice.value(onlyWhere(searching, along(rays.origin, n, rays.step)));
+            const MF visible = hn::And(searching, mayShow(scene, front, value));
+            back = hn::IfThenElse(visible, value, back);
+            found = hn::Or(found, visible);
+            near = hn::Or(hn::AndNot(searching, near), hn::AndNot(empty, searching));
+            searching = hn::AndNot(visible, searching);
+            front = hn::IfThenElse(searching, value, front);
+            n = hn::Add(n, hn::IfThenElseZero(searching, one));
             searching = hn::And(searching, hn::Le(n, last));
-        } while (any(searching));
+        }
         if (!any(found)) break;
         Color here = classifiedSegment(scene, front, back);
         if (scene.shading) {
@@ -211,7 +215,6 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxe
         }
         sum = behind(sum, here, found);
         front = back;
-        frontDistance = backDistance;
         n = hn::Add(n, one);
         active = hn::And(found, hn::And(hn::Le(n, last), hn::Lt(sum.a, set(scene.u.stepping.y))));
     }

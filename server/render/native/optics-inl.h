@@ -7,8 +7,8 @@
 #define HAUSTRA_OPTICS_INL_H
 #endif
 
-#include "render/native/lattice-inl.h"
 #include "render/native/packet_scene.h"
+#include "render/native/table_rows-inl.h"
 #include "render/optics/transfer_table.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -34,13 +34,15 @@ HWY_INLINE Entry entryAt(VF at) {
     const VF low = hn::Min(hn::Floor(inside), set(last - 1.0f));
     return {hn::ConvertTo(i, low), hn::Sub(inside, low)};
 }
+/// What lies between an entry's row and the next.
+HWY_INLINE Rows rowsAt(const float* table, const Entry& entry) {
+    return each([](VF low, VF high, VF share) HWY_ATTR { return mix(low, high, share); },
+                loadedRows(table, entry.number), loadedRows(table + 4, entry.number),
+                spread(entry.share));
+}
 HWY_INLINE Color lookedUp(const float* table, const Entry& entry) {
-    const VI bytes = hn::ShiftLeft<4>(entry.number);
-    const auto channel = [&](int c) HWY_ATTR {
-        return mix(hn::GatherOffset(f, table + c, bytes), hn::GatherOffset(f, table + c + 4, bytes),
-                   entry.share);
-    };
-    return {channel(0), channel(1), channel(2), channel(3)};
+    const Channels channels = channelsOf(rowsAt(table, entry));
+    return {channels.c[0], channels.c[1], channels.c[2], channels.c[3]};
 }
 
 /// HU to entries of the table, not clamped.
@@ -65,34 +67,31 @@ HWY_INLINE Color classified(const PacketScene& scene, VF hu, VF slope) {
 }
 
 /// The integral up to entries; beyond the table its ends go on.
-HWY_INLINE Color integralTo(const PacketScene& scene, VF entry) {
-    const Color within = lookedUp(scene.integrals, entryAt(entry));
+HWY_INLINE Rows integralTo(const PacketScene& scene, VF entry) {
+    const Rows within = rowsAt(scene.integrals, entryAt(entry));
     const VF under = hn::Min(entry, hn::Zero(f));
     const VF over = hn::Max(hn::Sub(entry, set(float(TransferTable::entries - 1))), hn::Zero(f));
-    const auto onward = [&](VF sum, int c) HWY_ATTR {
-        return hn::MulAdd(under, set(scene.u.integralBelow[c]),
-                          hn::MulAdd(over, set(scene.u.integralAbove[c]), sum));
-    };
-    return {onward(within.r, 0), onward(within.g, 1), onward(within.b, 2), onward(within.a, 3)};
+    if (hn::AllTrue(f, hn::Eq(under, over))) return within;  // both 0
+    const auto onward = [](VF sum, VF steps, VF growth)
+                            HWY_ATTR { return hn::MulAdd(steps, growth, sum); };
+    return each(onward, each(onward, within, spread(over), sameRow(&scene.u.integralAbove.x)),
+                spread(under), sameRow(&scene.u.integralBelow.x));
 }
 
 /// Colour and opacity of segments between two samples [Engel et al. 2001].
 HWY_INLINE Color classifiedSegment(const PacketScene& scene, VF front, VF back) {
     const VF a = entryOf(scene, front), b = entryOf(scene, back);
-    const VF half = set(0.5f), zero = hn::Zero(f);
+    const VF half = set(0.5f), one = set(1.0f);
     const VF middle = hn::Mul(half, hn::Add(a, b));
     // Values closer than an entry count as an entry apart, lest their difference drown in rounding.
-    const VF reach = hn::Mul(half, hn::Max(hn::AbsDiff(b, a), set(1.0f)));
-    const Color to = integralTo(scene, hn::Add(middle, reach));
-    const Color from = integralTo(scene, hn::Sub(middle, reach));
-    const VF depth = hn::Max(hn::Sub(to.a, from.a), zero);
-    const VF perDepth = hn::Div(set(1.0f), hn::Max(depth, set(1e-20f)));
-    const auto mean = [&](VF upper, VF lower) HWY_ATTR {
-        return hn::Mul(hn::Max(hn::Sub(upper, lower), zero), perDepth);
-    };
+    const VF reach = hn::Mul(half, hn::Max(hn::AbsDiff(b, a), one));
+    const Channels between = channelsOf(
+        each([](VF to, VF from) HWY_ATTR { return hn::Max(hn::Sub(to, from), hn::Zero(f)); },
+             integralTo(scene, hn::Add(middle, reach)), integralTo(scene, hn::Sub(middle, reach))));
+    const VF depth = between.c[3], perDepth = hn::Div(one, hn::Max(depth, set(1e-20f)));
     const VF passing = hn::Exp(f, hn::Neg(hn::Div(depth, hn::Add(reach, reach))));
-    return {mean(to.r, from.r), mean(to.g, from.g), mean(to.b, from.b),
-            hn::Sub(set(1.0f), passing)};
+    return {hn::Mul(between.c[0], perDepth), hn::Mul(between.c[1], perDepth),
+            hn::Mul(between.c[2], perDepth), hn::Sub(one, passing)};
 }
 
 /// Whether values may be visible, or first hit; of a 2-D table, at some gradient.

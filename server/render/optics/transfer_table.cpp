@@ -133,9 +133,11 @@ void findVisible(TransferTable& table, const Optics& optics, const std::vector<b
 }  // namespace
 
 bool TransferTable::anyVisible(double lowHu, double highHu) const {
-    const double lastEntry = entries - 1;
-    const int low = int(std::clamp(std::floor(entryOf(lowHu)), 0.0, lastEntry));
-    const int high = int(std::clamp(std::ceil(entryOf(highHu)), 0.0, lastEntry));
+    // A segment of nearly one value counts as an entry long, and sees what is beside it; a hair
+    // more, as raycasters round.
+    const double beside = integrals.empty() ? 0.0 : 0.51, lastEntry = entries - 1;
+    const int low = int(std::clamp(std::floor(entryOf(lowHu) - beside), 0.0, lastEntry));
+    const int high = int(std::clamp(std::ceil(entryOf(highHu) + beside), 0.0, lastEntry));
     return visibleBefore[std::size_t(high) + 1] > visibleBefore[std::size_t(low)];
 }
 

@@ -41,7 +41,8 @@ struct TransferTable {
     /// Entries below i that can show in some row: visibleBefore[0] = 0 … visibleBefore[entries].
     std::vector<int> visibleBefore;
 
-    /// Whether any value of [lowHu, highHu] can show. Errs to yes by at most one entry.
+    /// Whether any value of [lowHu, highHu] can show, or any segment between two of them. Errs to
+    /// yes by at most two entries.
     bool anyVisible(double lowHu, double highHu) const;
 
     /// HU to entry, a fraction between two; not clamped.
