@@ -86,11 +86,14 @@ std::string describe(const std::vector<RaycasterTrial>& trials) {
         if (!text.empty()) text += ", ";
         text += toString(trial.kind);
         if (trial.ms.empty()) {
-            text += trial.failure.empty() ? ": not tried" : ": " + trial.failure;
+            text += trial.failure.empty() ? ": not tried, the time for trials was up"
+                                          : ": " + trial.failure;
             continue;
         }
-        char ms[32];
-        std::snprintf(ms, sizeof ms, " %.1f ms", trial.medianMs());
+        char ms[64];
+        const std::size_t pictures = trial.ms.size();
+        std::snprintf(ms, sizeof ms, " %.1f ms (%zu picture%s)", trial.medianMs(), pictures,
+                      pictures == 1 ? "" : "s");
         text += ms;
     }
     return text;

@@ -68,7 +68,8 @@ private:
 /// the single-pass one on a GPU.
 std::vector<RaycasterKind> raycasterCandidates(bool softwareDevice);
 
-/// "native 21.4 ms, single-pass 55.0 ms, hybrid: no such raycaster is built in".
+/// "native 21.4 ms (4 pictures), single-pass 95.0 ms (1 picture), hybrid: not tried, the time for
+/// trials was up": medians, of one picture where that was hopelessly slow or the time was up.
 std::string describe(const std::vector<RaycasterTrial>& trials);
 
 }  // namespace haustra::render

@@ -49,11 +49,22 @@ bool needsWhole(RaycasterKind kind) {
     return kind != RaycasterKind::native && kind != RaycasterKind::objectOrder;
 }
 
-// What a renderer holds of a case in whole: its volumes.
-std::size_t wholeBytes(const render::PreparedCase& prepared) {
+// What a renderer comes to hold of a case in whole, as far as it grows with the case: volumes.
+std::size_t volumeBytes(const render::PreparedCase& prepared) {
     const bool two = !prepared.cleansed.empty() &&
                      prepared.cleansed.voxels().data() != prepared.ct.voxels().data();
     return prepared.ct.grid().voxelCount() * sizeof(std::int16_t) * (two ? 2 : 1);
+}
+// And besides: leap maps of four transfer functions, the wall twice (from within, from outside),
+// the flat map.
+std::size_t otherBytes(const render::PreparedCase& prepared) {
+    std::size_t bytes = 4 * prepared.ranges.lowHu.size();
+    if (const auto& wall = prepared.wall)
+        bytes += 64 * wall->vertices.size() + 24 * wall->triangles.size();
+    if (const auto& map = prepared.flatMap)
+        bytes +=
+            48 * map->flat.size() + 12 * map->surface.triangles.size() + 32 * map->cameras.size();
+    return bytes;
 }
 
 }  // namespace
@@ -136,7 +147,7 @@ Result<GpuCases::Made> GpuCases::makeRenderer(render::PreparedCase prepared) {
     for (const Entry& entry : cases_)
         held.push_back({entry.renderer->gpuBytes(), !entry.leftAt,
                         entry.leftAt.value_or(Clock::time_point{})});
-    const std::size_t whole = wholeBytes(prepared);
+    const std::size_t others = otherBytes(prepared), whole = volumeBytes(prepared) + others;
     const Room room = makeRoom(held, options_.gpuBudgetBytes, whole);
     for (auto gone = room.released.rbegin(); gone != room.released.rend(); ++gone)
         cases_.erase(cases_.begin() + std::ptrdiff_t(*gone));
@@ -149,7 +160,9 @@ Result<GpuCases::Made> GpuCases::makeRenderer(render::PreparedCase prepared) {
     render::RendererOptions how;
     how.raycaster = kind;
     if (options_.gpuBudgetBytes > 0) {
-        how.gpuBudgetBytes = std::max<std::size_t>(room.freeBytes, 1);  // 0 has no bounds
+        // Cells get what the rest leaves, but half at least; 0 would have no bounds.
+        how.gpuBudgetBytes =
+            std::max<std::size_t>(room.freeBytes - std::min(others, room.freeBytes / 2), 1);
         how.gradientBudgetBytes =
             std::min(how.gradientBudgetBytes, fits ? room.freeBytes - whole : 0);
     }
@@ -175,6 +188,21 @@ std::vector<RaycasterKind> GpuCases::candidates(bool fits) const {
 }
 
 // ---- opening ------------------------------------------------------------------------------------
+
+std::string GpuCases::whyDrawnBy(const Opening& opening) const {
+    if (!opening.choice) return "which the options name";
+    std::string why = "the fastest at " + std::to_string(trialSide) +
+                      "² pixels: " + describe(opening.choice->trials());
+    std::string others;
+    for (const RaycasterKind kind : render::raycasterCandidates(context_.software())) {
+        const auto& trials = opening.choice->trials();
+        if (std::none_of(trials.begin(), trials.end(),
+                         [&](const auto& trial) { return trial.kind == kind; }))
+            others += std::string(others.empty() ? "" : ", ") + toString(kind);
+    }
+    if (!others.empty()) why += "; not considered within the GPU budget: " + others;
+    return why;
+}
 
 Result<void> GpuCases::upload(OpenCase facts, render::PreparedCase prepared) {
     opening_.reset();
@@ -223,10 +251,8 @@ Result<std::shared_ptr<const OpenCase>> GpuCases::opened() {
         renderer.keepOnlyUsed();
     }
     facts.raycaster = renderer.raycaster();
-    spdlog::info("a case is ready: {} MiB on the GPU, drawn by the {} raycaster{}{}",
-                 mib(renderer.gpuBytes()), toString(facts.raycaster),
-                 facts.trials.empty() ? "" : ", of " + describe(facts.trials),
-                 facts.trials.empty() ? "" : " for " + std::to_string(trialSide) + "² pixels");
+    spdlog::info("a case is ready: {} MiB on the GPU, drawn by the {} raycaster, {}",
+                 mib(renderer.gpuBytes()), toString(facts.raycaster), whyDrawnBy(my));
     auto of = lend(facts);
     my.entry.of = of;
     cases_.push_back(std::move(my.entry));

@@ -87,6 +87,8 @@ private:
     Result<Made> makeRenderer(render::PreparedCase prepared);
     std::vector<render::RaycasterKind> candidates(bool fits) const;
     std::shared_ptr<const OpenCase> lend(const OpenCase& facts) const;
+    /// For the log: what was tried, and what was not, and why.
+    std::string whyDrawnBy(const Opening& opening) const;
 
     gpu::Context& context_;
     DrawingOptions options_;

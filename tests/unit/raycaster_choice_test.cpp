@@ -73,7 +73,7 @@ TEST(RaycasterChoice, WhoFailsIsOutWithItsReason) {
     const Trials made = tryAll({native, singlePass}, {{native, {}}, {singlePass, {{500.0}}}});
     EXPECT_EQ(made.chosen, singlePass);
     EXPECT_EQ(made.trials[0].failure, "broken");
-    EXPECT_EQ(describe(made.trials), "native: broken, single-pass 500.0 ms");
+    EXPECT_EQ(describe(made.trials), "native: broken, single-pass 500.0 ms (1 picture)");
     EXPECT_FALSE(tryAll({native, singlePass}, {{native, {}}, {singlePass, {}}}).chosen);
 }
 
