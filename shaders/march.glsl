@@ -117,6 +117,28 @@ vec3 gradientAt(vec3 position) {
 #endif
 }
 
+// Goes on from step n to the first at which something may show, whose value it returns, or beyond
+// `end`.
+float searched(Ray ray, vec3 inverseBlockStep, inout float n, float end) {
+    float stored = 0.0;
+    bool searching;
+    do {
+        vec3 position = ray.origin + n * ray.step;
+        ivec3 block = blockAt(position);
+        float distance = float(texelFetch(leapDistance, block, 0).r);
+        float advance = 1.0;
+        searching = n <= end;
+        if (distance > 0.0) {
+            advance = stepsToLeave(position, block, distance, inverseBlockStep);
+        } else {
+            stored = storedAt(position);
+            searching = searching && !mayShow(stored);
+        }
+        n += searching ? advance : 0.0;
+    } while (searching);
+    return stored;
+}
+
 // march(ray, begin, end): colour (linear, multiplied by opacity) and opacity of a ray's samples from
 // step `begin` to `end`. It may begin at the ray's first step inside the volume, or anywhere in
 // front of which, and at which, nothing can show. marchOn() is a part of it: it goes on from what a
@@ -127,25 +149,9 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
     vec3 inverseBlockStep = inverseBlockStepOf(ray);
     float n = begin;
     while (n <= end && sum.a < u.stepping.y) {
-        vec3 position;
-        float stored = 0.0;
-        bool searching;
-        do {
-            position = ray.origin + n * ray.step;
-            ivec3 block = blockAt(position);
-            float distance = float(texelFetch(leapDistance, block, 0).r);
-            float advance = 1.0;
-            searching = n <= end;
-            if (distance > 0.0) {
-                advance = stepsToLeave(position, block, distance, inverseBlockStep);
-            } else {
-                stored = storedAt(position);
-                searching = searching && !mayShow(stored);
-            }
-            n += searching ? advance : 0.0;
-        } while (searching);
+        float stored = searched(ray, inverseBlockStep, n, end);
 #if SHADING || GRADIENT_ROWS
-        vec3 normal = normalOf(gradientAt(position));
+        vec3 normal = normalOf(gradientAt(ray.origin + n * ray.step));
 #else
         vec3 normal = vec3(0.0);
 #endif
@@ -165,27 +171,30 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
 vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
     vec3 inverseBlockStep = inverseBlockStepOf(ray);
     float n = begin;
-    // The first sample stands for the way before it.
-    vec3 before = ray.origin + max(n - 1.0, first) * ray.step;
-    float front = storedAt(before);
-    float frontDistance = float(texelFetch(leapDistance, blockAt(before), 0).r);
+    // Of the sample before n: its value, whether that is known, and whether its block may be visible,
+    // as it may where another part has looked at it.
+    float front = 0.0;
+    bool known = false;
+    bool near = begin > first;
     while (n <= end && sum.a < u.stepping.y) {
         float stored;
-        float distance;
         bool searching;
         do {
             vec3 position = ray.origin + n * ray.step;
             ivec3 block = blockAt(position);
-            distance = float(texelFetch(leapDistance, block, 0).r);
-            stored = storedAt(position);
-            searching = n <= end && !(min(distance, frontDistance) == 0.0 && mayShow(front, stored));
-            // A leap ends inside the empty blocks, at the front of the first segment that leaves.
-            float advance = distance > 0.0
-                ? max(stepsToLeave(position, block, distance, inverseBlockStep) - 1.0, 1.0)
-                : 1.0;
+            float distance = float(texelFetch(leapDistance, block, 0).r);
+            bool open = distance == 0.0;
+            bool leaping = !(open || near);
+            // Where a leap has ended, the sample before is looked at first.
+            float at = known ? n : max(n - 1.0, first);
+            stored = storedAt(ray.origin + at * ray.step);
+            searching = n <= end && !(known && !leaping && mayShow(front, stored));
+            float steps = stepsToLeave(position, block, distance, inverseBlockStep);
+            float advance = leaping ? steps : known ? 1.0 : 0.0;
             n += searching ? advance : 0.0;
             front = searching ? stored : front;
-            frontDistance = searching ? distance : frontDistance;
+            near = searching && known ? open : near;
+            known = !(searching && leaping);
         } while (searching);
         vec4 here = classifySegment(front, stored);
 #if SHADING
@@ -196,7 +205,7 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
 #endif
         sum = behind(sum, color, n <= end ? here.a : 0.0);
         front = stored;
-        frontDistance = distance;
+        near = true;
         n += 1.0;
     }
     return sum;
@@ -228,22 +237,7 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
     vec4 here = vec4(0.0);
     float n = begin;
     while (n <= end && here.a < u.slopes.w) {
-        float stored = 0.0;
-        bool searching;
-        do {
-            vec3 position = ray.origin + n * ray.step;
-            ivec3 block = blockAt(position);
-            float distance = float(texelFetch(leapDistance, block, 0).r);
-            float advance = 1.0;
-            searching = n <= end;
-            if (distance > 0.0) {
-                advance = stepsToLeave(position, block, distance, inverseBlockStep);
-            } else {
-                stored = storedAt(position);
-                searching = searching && !mayShow(stored);
-            }
-            n += searching ? advance : 0.0;
-        } while (searching);
+        float stored = searched(ray, inverseBlockStep, n, end);
         here = n <= end ? classify(stored, 0.0) : vec4(0.0);
         n += 1.0;
     }
