@@ -18,7 +18,7 @@ struct WallUniforms {
                      ///< in half heights, of an orthographic camera in mm; w: units of flat
                      ///< coordinates a circumference
     vec4 lensDown;   ///< xyz: likewise to its bottom edge; w: steps a mm
-    vec4 lensAhead;  ///< xyz: unit, the camera's own forward
+    vec4 lensAhead;  ///< xyz: unit, the camera's own forward; w: the first triangle of the draw
     vec4 rows;       ///< x, y: gl_Position.y in the band = y · x + w · y
     ivec4 picture;   ///< x, y: pixels of the whole picture, z: first row of the band, w: 1 where
                      ///< the pass is a cube's side

@@ -18,6 +18,23 @@ int cubeSidePixels(const Camera& camera, const Band& band) {
     return std::clamp(int(std::ceil(4.0 * pixelsPerRadian)), 16, maxPictureSide);
 }
 
+constexpr int trianglesOfRun = 1024;
+
+/// Whether a ball, given from the eye, shows nothing in a pass.
+bool isOutside(const shaders::WallUniforms& pass, glm::vec3 middle, float radius) {
+    const glm::vec3 forward(pass.forward);
+    const bool parallel = pass.eyeMm.w == 1.0f;
+    radius += 0.01f + 1e-4f * glm::length(middle);  // rounding
+    if (glm::dot(forward, middle) < -radius) return true;
+    for (const glm::vec3 side : {glm::vec3(pass.right), -glm::vec3(pass.right),
+                                 glm::vec3(pass.down), -glm::vec3(pass.down)}) {
+        const glm::vec3 outward = parallel ? side : side - forward;
+        if (glm::dot(outward, middle) - (parallel ? 1.0f : 0.0f) > radius * glm::length(outward))
+            return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 Result<WallIndex> WallIndex::create() {
@@ -26,7 +43,7 @@ Result<WallIndex> WallIndex::create() {
                own = shaderSource("wall_uniforms.h"), wall = shaderSource("wall.glsl");
     auto triangles = gpu::RasterProgram::create(
         "wall_triangles", {structs, flatMap, own, wall, shaderSource("wall_triangles.vert")},
-        {structs, shaderSource("wall_triangles.frag")});
+        {structs, own, wall, shaderSource("wall_triangles.frag")});
     if (!triangles) return tl::make_unexpected(triangles.error());
     auto places = gpu::ComputeProgram::create(
         "wall_index.comp", {structs, flatMap, own, wall, shaderSource("wall_index.comp")});
@@ -56,6 +73,48 @@ Result<void> WallIndex::makeTargets(glm::ivec2 picture, glm::ivec2 raster) {
     return {};
 }
 
+void WallIndex::makeRuns(const FlatGeometry& geometry) {
+    const auto& triangles = geometry.triangles();
+    for (int first = 0; first < int(triangles.size()); first += trianglesOfRun) {
+        Run run{{first, std::min(trianglesOfRun, int(triangles.size()) - first)}};
+        glm::vec3 low(INFINITY), high(-INFINITY);
+        for (int t = first; t < first + run.triangles.count; ++t) {
+            for (int corner = 0; corner < 3; ++corner) {
+                const int vertex = triangles[std::size_t(t)][corner];
+                const glm::vec3 place(geometry.vertices()[std::size_t(vertex)].placeMm);
+                low = glm::min(low, place);
+                high = glm::max(high, place);
+            }
+        }
+        run.middleMm = 0.5f * (low + high);
+        run.radiusMm = 0.5f * glm::distance(low, high);
+        runs_.push_back(run);
+    }
+}
+
+// In one draw where nothing is left out between two runs.
+void WallIndex::drawSeen(const FlatSurface& surface, shaders::WallUniforms& pass) {
+    block_.bind(shaders::wallUniformBinding);
+    surface.bind();
+    triangleOfPixel_->clear(glm::ivec4(-1, 0, 0, 0));
+    TriangleRange draw;
+    const auto flush = [&] {
+        if (draw.count == 0) return;
+        pass.lensAhead.w = float(draw.first);
+        block_.write(pass);
+        triangles_.drawNearest(*triangleOfPixel_, surface.triangles(), draw.first, draw.count);
+        draw = {};
+    };
+    for (const Run& run : runs_) {
+        if (isOutside(pass, run.middleMm - glm::vec3(pass.eyeMm), run.radiusMm)) continue;
+        if (draw.count > 0 && draw.first + draw.count != run.triangles.first) flush();
+        if (draw.count == 0) draw.first = run.triangles.first;
+        draw.count += run.triangles.count;
+    }
+    flush();
+    block_.write(pass);  // for the pass that finds places, also where nothing was drawn
+}
+
 Result<std::vector<WallPixel>> WallIndex::find(gpu::Context& context, const FlatSurface& surface,
                                                const Camera& camera, const Band& band) {
     const int errorsBefore = context.errorCount();
@@ -67,16 +126,13 @@ Result<std::vector<WallPixel>> WallIndex::find(gpu::Context& context, const Flat
     // What lies within 125° of the axis is on the first five sides, to their corners.
     const bool behind =
         camera.fovDegrees * std::hypot(1.0, double(size.x) / band.pictureSize.y) > 2.0 * 125.0;
+    if (runs_.empty()) makeRuns(surface.geometry());
     const int passes = !cube ? 1 : behind ? 6 : 5;
     for (int pass = 0; pass < passes; ++pass) {
         shaders::WallUniforms u = cube ? cubeSide(camera, band, surface.originMm(), pass)
                                        : wallProjection(camera, band, surface.originMm());
         u.lensRight.w = float(surface.unitsPerCircumference());
-        block_.write(u);
-        block_.bind(shaders::wallUniformBinding);
-        surface.bind();
-        triangleOfPixel_->clear(glm::ivec4(-1, 0, 0, 0));
-        triangles_.drawNearest(*triangleOfPixel_, surface.triangles(), 0, surface.triangleCount());
+        drawSeen(surface, u);
         triangleOfPixel_->texture().bind(shaders::triangleUnit);
         placeOfPixel_->bindImage(shaders::pictureImage);
         places_.dispatch(size);
