@@ -130,7 +130,10 @@ TEST_F(ServerPaintTest, BookmarksAreDiscsOnTheWallForWhoeverWantsThem) {
     EXPECT_TRUE(marked.header.exact);
     EXPECT_EQ(marked.header.sequence, 3u);
     const glm::dvec2 at = projected(place);
-    const double reachPixels = 0.5 * side * 2.0 / (place.z - 10.0) + 3.0;
+    // Of what is within the radius, and a pixel or two of the strip more, through space.
+    const double reachMm = 2.6, depth = place.z - 10.0, aside = std::hypot(place.x, place.y);
+    const double reachPixels =
+        0.5 * side * (reachMm + reachMm * aside / depth) / (depth - reachMm) + 1.0;
     int changed = 0;
     for (int row = 0; row < side; ++row) {
         for (int x = 0; x < side; ++x) {
