@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "render/object_order/cell_grid.h"
+#include "render/optics/srgb.h"
 
 #include <algorithm>
 #include <array>
@@ -10,10 +11,6 @@
 namespace haustra::render {
 
 namespace {
-
-double linearLight(double displayed) {
-    return displayed <= 0.04045 ? displayed / 12.92 : std::pow((displayed + 0.055) / 1.055, 2.4);
-}
 
 const std::array<double, 256>& linearOfByte() {
     static const std::array<double, 256> table = [] {

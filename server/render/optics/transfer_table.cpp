@@ -1,5 +1,7 @@
 #include "render/optics/transfer_table.h"
 
+#include "render/optics/srgb.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,11 +11,6 @@ namespace haustra::render {
 namespace {
 
 using Points = std::vector<TransferFunctionPoint>;
-
-/// Colours are named as displayed (sRGB); light adds up linearly.
-double linearLight(double displayed) {
-    return displayed <= 0.04045 ? displayed / 12.92 : std::pow((displayed + 0.055) / 1.055, 2.4);
-}
 
 /// Colour as displayed, and opacity for 1 mm, at HU that never fall from call to call.
 class RisingLookup {
@@ -32,7 +29,9 @@ private:
     std::size_t segment_ = 0;
 };
 
+/// Colours are named as displayed.
 glm::dvec3 linearLight(glm::dvec3 color) {
+    using render::linearLight;
     return {linearLight(color.r), linearLight(color.g), linearLight(color.b)};
 }
 

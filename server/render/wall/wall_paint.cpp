@@ -1,6 +1,7 @@
 #include "render/wall/wall_paint.h"
 
 #include "core/flat_map.h"
+#include "render/optics/srgb.h"
 
 #include <algorithm>
 #include <array>
@@ -12,13 +13,6 @@
 namespace haustra::render {
 
 namespace {
-
-double linearLight(double displayed) {
-    return displayed <= 0.04045 ? displayed / 12.92 : std::pow((displayed + 0.055) / 1.055, 2.4);
-}
-double displayedLight(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
 
 std::array<double, 256> linearOfBytes() {
     std::array<double, 256> table{};
