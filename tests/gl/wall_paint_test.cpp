@@ -144,7 +144,8 @@ TEST_F(WallOfTube, IsPaintedExactlyWhereItsFlatCoordinateLiesInThePaint) {
                                         ? glm::u8vec4(255, 230, 0, 255)
                                         : glm::u8vec4(0));
     const glm::ivec2 size(120, 90);
-    for (const RaycasterKind kind : {RaycasterKind::singlePass, RaycasterKind::polygonAssisted}) {
+    for (const RaycasterKind kind :
+         {RaycasterKind::singlePass, RaycasterKind::polygonAssisted, RaycasterKind::native}) {
         const auto renderer = tubeRenderer(kind);
         int painted = 0;
         for (const Camera& camera : cameras()) {
