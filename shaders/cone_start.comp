@@ -4,7 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(r32f, binding = 1) uniform writeonly image2D firstStep;
 
 void main() {
-    ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 tile = tileOfGroup() * ivec2(gl_WorkGroupSize.xy) + ivec2(gl_LocalInvocationID.xy);
     float side = float(u.lastBlock.w);
     vec2 low = vec2(tile) * side;
     Ray axis = rayThrough(low + 0.5 * side);

@@ -5,7 +5,7 @@ layout(rgba8, binding = 0) uniform writeonly image2D picture;
 layout(binding = 3) uniform sampler2D firstStep;
 
 void main() {
-    ivec2 pixel = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy) + pixelOfLane(gl_LocalInvocationIndex);
+    ivec2 pixel = tileOfGroup() * ivec2(gl_WorkGroupSize.xy) + pixelOfLane(gl_LocalInvocationIndex);
     vec2 center = vec2(pixel) + 0.5;
     Ray ray = rayThrough(center);
     vec2 inside = insideRange(ray);

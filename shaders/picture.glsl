@@ -13,6 +13,22 @@ ivec2 pixelOfLane(uint lane) {
     return ivec2((lane & 3u) | ((lane >> 1) & 4u), ((lane >> 2) & 1u) | ((lane >> 3) & 6u));
 }
 
+// The n-th of `count` things in the order in which they are dealt to work groups. A software device
+// gives each of its threads one run of successive groups, whatever they cost: when every eighth
+// comes first, each run has some from all over, and the threads end together.
+int dealt(int n, int count) {
+    const int hands = 8;
+    int each = count / hands, longer = count % hands;
+    int later = n - longer * (each + 1);
+    return later < 0 ? hands * (n % (each + 1)) + n / (each + 1)
+                     : hands * (later % each) + longer + later / each;
+}
+
+// The tile of pixels that this work group draws.
+ivec2 tileOfGroup() {
+    return ivec2(int(gl_WorkGroupID.x), dealt(int(gl_WorkGroupID.y), int(gl_NumWorkGroups.y)));
+}
+
 // What lies behind a pixel of the band.
 vec4 backdropOf(ivec2 pixel) {
 #if BACKDROP

@@ -158,7 +158,7 @@ int main(int argc, char** argv) {
         compareVolume(*context, "bonsai", read(folder / "bonsai.nii.gz", glm::dvec3(1.0)), side,
                       worst);
         compareVolume(*context, "head",
-                      read(folder / "visible_human_ct_head" / "texture", {1.0, 1.0, -1.0}), side,
+                      read(folder / "visible_human_ct_head" / "texture", glm::dvec3(1.0)), side,
                       worst);
     }
     for (std::size_t k = 0; k < worst.size(); ++k)

@@ -34,23 +34,23 @@ OpticsPreset borders() {
     return preset;
 }
 
-class TransferCurves : public ::testing::TestWithParam<OpticsPreset> {};
-
-TEST_P(TransferCurves, AddingAPointOnTheCurveChangesNoValue) {
-    const TransferCurve before(GetParam().optics.transferFunction.points);
-    TransferCurve after = before;
-    const double hu = 0.3 * before.points().front().hu + 0.7 * before.points().back().hu;
-    const std::size_t point = after.add(hu, before.at(hu).opacity);
-    EXPECT_EQ(after.points()[point].hu, hu);
-    EXPECT_EQ(after.points().size(), before.points().size() + 1);
-    for (double x = -1100.0; x < 400.0; x += 13.7) {
-        EXPECT_NEAR(after.at(x).opacity, before.at(x).opacity, 1e-12);
-        EXPECT_NEAR(glm::distance(after.at(x).color, before.at(x).color), 0.0, 1e-12);
+TEST(TransferCurves, AddingAPointOnTheCurveChangesNoValue) {
+    for (const OpticsPreset& preset : {wall(), borders()}) {
+        SCOPED_TRACE(preset.name);
+        const TransferCurve before(preset.optics.transferFunction.points);
+        TransferCurve after = before;
+        const double hu = 0.3 * before.points().front().hu + 0.7 * before.points().back().hu;
+        const std::size_t point = after.add(hu, before.at(hu).opacity);
+        EXPECT_EQ(after.points()[point].hu, hu);
+        EXPECT_EQ(after.points().size(), before.points().size() + 1);
+        for (double x = -1100.0; x < 400.0; x += 13.7) {
+            EXPECT_NEAR(after.at(x).opacity, before.at(x).opacity, 1e-12);
+            EXPECT_NEAR(glm::distance(after.at(x).color, before.at(x).color), 0.0, 1e-12);
+        }
+        ASSERT_TRUE(after.remove(point));
+        EXPECT_EQ(after.points(), before.points());
     }
-    ASSERT_TRUE(after.remove(point));
-    EXPECT_EQ(after.points(), before.points());
 }
-INSTANTIATE_TEST_SUITE_P(Presets, TransferCurves, ::testing::Values(wall(), borders()));
 
 TEST(OpticsEditor, HoldsWhatAServerTakesWhateverTheHandDoes) {
     std::mt19937 random(7);

@@ -2,6 +2,7 @@
 // that a server should not send.
 #include "panels/incoming_messages.h"
 #include "panels/strip_tour.h"
+#include "protocol/optics_message.h"
 
 #include <cmath>
 
@@ -138,6 +139,9 @@ protocol::CaseOpened soundCase() {
     flat->set_circumference_mm(120.0);
     for (const double number : {0.0, 0.1, 200.0, 1.5, 350.0, 2.9})
         flat->add_rows(number);
+    OpticsPreset preset{"wall", "", {}};
+    preset.optics.transferFunction.points = {{-750.0, {}, 0.0}, {-550.0, {}, 1.0}};
+    fill(*opened.add_presets(), preset);
     return opened;
 }
 

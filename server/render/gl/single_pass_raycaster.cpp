@@ -12,8 +12,9 @@ Result<std::unique_ptr<SinglePassRaycaster>> SinglePassRaycaster::create(
     std::shared_ptr<GlScene> scene) {
     using shaders::shaderSource;
     auto cone = gpu::ComputeProgram::create(
-        "cone_start.comp", {shaderSource("uniforms.h"), shaderSource("optics.glsl"),
-                            shaderSource("march.glsl"), shaderSource("cone_start.comp")});
+        "cone_start.comp",
+        {shaderSource("uniforms.h"), shaderSource("optics.glsl"), shaderSource("march.glsl"),
+         shaderSource("picture.glsl"), shaderSource("cone_start.comp")});
     if (!cone) return tl::make_unexpected(cone.error());
     std::unique_ptr<SinglePassRaycaster> made(
         new SinglePassRaycaster(std::move(scene), std::move(*cone)));
