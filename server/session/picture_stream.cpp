@@ -68,6 +68,8 @@ Result<void> PictureStream::input(const Input& message) {
     if (!applied) return applied;
     slot.sequence = message.sequence();
     changed(message.viewport());
+    // While it moved, the other views of the wall kept their paint.
+    if (!slot.viewport.moving()) repaint();
     return {};
 }
 template Result<void> PictureStream::input(const protocol::SetViewport&);

@@ -291,7 +291,7 @@ void Session::listedToPaint(std::uint64_t ofReading,
                             Result<std::vector<records::Bookmark>> bookmarks) {
     if (!reading_ || ofReading != readings_) return;
     if (!bookmarks) report(bookmarks.error());
-    reading_->setBookmarks(bookmarks ? std::move(*bookmarks) : std::vector<records::Bookmark>());
+    reading_->setBookmarks(bookmarks.value_or(std::vector<records::Bookmark>()));
 }
 
 void Session::handle(const protocol::AskSeen& message) {
@@ -299,15 +299,20 @@ void Session::handle(const protocol::AskSeen& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
     if (!reading_)
         return refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
-    ++unanswered_;
-    reading_->ask(message.forget(), [weak = weak_from_this(), request](double share) {
-        const auto self = weak.lock();
-        if (!self) return;
-        --self->unanswered_;
-        if (self->state_ == State::ended) return;
-        self->tellSeen(request, share);
-        self->peer_.answered();
-    });
+    const int weight = message.forget() ? listWeight : 1;  // to begin anew takes a while
+    unanswered_ += weight;
+    reading_->ask(message.forget(),
+                  [weak = weak_from_this(), request, weight](Result<double> share) {
+                      const auto self = weak.lock();
+                      if (!self) return;
+                      self->unanswered_ -= weight;
+                      if (self->state_ == State::ended) return;
+                      if (share)
+                          self->tellSeen(request, *share);
+                      else
+                          self->report(share.error(), request);
+                      self->peer_.answered();
+                  });
 }
 
 void Session::tellSeen(std::uint64_t request, double share) {
@@ -324,12 +329,17 @@ void Session::handle(const protocol::AddBookmark& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
     auto bookmark = bookmarkFrom(message, case_->name);
     if (!bookmark) return report(bookmark.error(), request);
-    services_.records.add(std::move(*bookmark), answer(&Session::addedBookmark, request));
+    services_.records.add(std::move(*bookmark), [io = io_, &news = services_.news,
+                                                 told = answer(&Session::addedBookmark, request)](
+                                                    Result<records::Bookmark> added) {
+        // Others show it, whether or not this session is still there.
+        if (added) asio::post(io, [&news, bookmark = *added] { news.tell(bookmark); });
+        told(std::move(added));
+    });
 }
 
 void Session::addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark) {
     if (!bookmark) return report(bookmark.error(), request);
-    services_.news.tell(*bookmark);
     ServerMessage message;
     message.mutable_bookmark_added()->set_request(request);
     fill(*message.mutable_bookmark_added()->mutable_bookmark(), *bookmark);

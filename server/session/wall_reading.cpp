@@ -2,26 +2,29 @@
 
 #include "render/wall/strip_painter.h"
 #include "render/wall/wall_coverage.h"
+#include "session/guarded.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <asio/post.hpp>
+#include <spdlog/spdlog.h>
 
 namespace haustra::session {
 namespace {
 
-constexpr int maxLooks = 16;  // of moving pictures that wait
+constexpr int maxLooks = 16;  // that wait
 // So near to the wall a bookmark is a place of it, wherever it looks.
 constexpr double onWallMm = 2.0;
 
 /// The place of the wall that a bookmark means: its own, or else where its gaze meets the wall.
-std::optional<render::WallMark> markOf(const Wall& wall, const records::Bookmark& bookmark) {
-    const WallPlace near = wall.lookup.nearest(bookmark.positionMm);
-    if (glm::distance(near.positionMm, bookmark.positionMm) <= onWallMm)
+std::optional<render::WallMark> markOf(const Wall& wall, glm::dvec3 positionMm,
+                                       glm::dvec3 forward) {
+    const WallPlace near = wall.lookup.nearest(positionMm);
+    if (glm::distance(near.positionMm, positionMm) <= onWallMm)
         return render::WallMark{near.flat, near.positionMm};
-    const auto met = wall.painter->sight().firstMet(bookmark.positionMm, bookmark.forward);
+    const auto met = wall.painter->sight().firstMet(positionMm, forward);
     if (!met || met->distanceMm > render::seenLimits.farthestMm) return std::nullopt;
     return render::WallMark{met->flat, met->positionMm};
 }
@@ -47,12 +50,14 @@ struct WallReading::Work {
         if (!coverage) coverage.emplace(of->wall->painter->sharedSight());
         return *coverage;
     }
-    void mark(const std::vector<records::Bookmark>& bookmarks) {
-        for (const records::Bookmark& bookmark : bookmarks)
-            if (const auto mark = markOf(*of->wall, bookmark)) marks.push_back(*mark);
+    void mark(const std::vector<Gaze>& gazes) {
         discsRadiusMm = 0.0;
+        marks.clear();
+        for (const Gaze& gaze : gazes)
+            if (const auto mark = markOf(*of->wall, gaze.positionMm, gaze.forward))
+                marks.push_back(*mark);
     }
-    std::shared_ptr<const render::WallPaint> paint(const WallPaintChoice& choice) {
+    Paint paint(const WallPaintChoice& choice) {
         const render::StripPainter& painter = *of->wall->painter;
         if (choice.marks && discsRadiusMm != choice.markRadiusMm) {
             discs = painter.discs(marks, choice.markRadiusMm);
@@ -86,24 +91,29 @@ void WallReading::choose(const WallPaintChoice& choice) {
         repaint(true);
 }
 
-void WallReading::setBookmarks(std::vector<records::Bookmark> bookmarks) {
-    if (bookmarks.size() > maxPaintedBookmarks)
-        bookmarks.erase(bookmarks.begin(), bookmarks.end() - std::ptrdiff_t(maxPaintedBookmarks));
+void WallReading::setBookmarks(const std::vector<records::Bookmark>& bookmarks) {
+    gazes_.clear();
+    for (const records::Bookmark& bookmark : bookmarks)
+        keep(bookmark);
+    gazesAreNew_ = true;
     listed_ = true;
-    painting_.run([work = work_, bookmarks = std::move(bookmarks)] {
-        work->marks.clear();
-        work->mark(bookmarks);
-    });
     if (choice_.marks) repaint(true);
 }
 
 void WallReading::addBookmark(const records::Bookmark& bookmark) {
     if (!choice_.marks || !listed_) return;  // the list will have it
-    painting_.run([work = work_, bookmark] {
-        work->mark({bookmark});
-        if (work->marks.size() > maxPaintedBookmarks) work->marks.erase(work->marks.begin());
-    });
+    // A client that has lost an acknowledgement adds it again.
+    if (std::any_of(gazes_.begin(), gazes_.end(),
+                    [&](const Gaze& gaze) { return gaze.bookmark == bookmark.id; }))
+        return;
+    keep(bookmark);
     repaint(true);
+}
+
+void WallReading::keep(const records::Bookmark& bookmark) {
+    if (gazes_.size() == maxPaintedBookmarks) gazes_.erase(gazes_.begin());
+    gazes_.push_back({bookmark.id, bookmark.positionMm, bookmark.forward});
+    gazesAreNew_ = true;
 }
 
 void WallReading::repaint(bool soon) {
@@ -129,20 +139,30 @@ void WallReading::startPainting() {
     later_.cancel();
     isPainting_ = true;
     paintAgain_ = paintAgainSoon_ = false;
-    painting_.run(
-        [weak = weak_from_this(), io = io_, work = work_, choice = choice_, number = wanted_] {
-            auto paint = work->paint(choice);
-            asio::post(io, [weak, number, paint = std::move(paint)]() mutable {
-                if (const auto self = weak.lock()) self->painted(number, std::move(paint));
-            });
+    std::optional<std::vector<Gaze>> gazes;
+    if (choice_.marks && std::exchange(gazesAreNew_, false)) gazes = gazes_;
+    painting_.run([weak = weak_from_this(), io = io_, work = work_, choice = choice_,
+                   gazes = std::move(gazes), number = wanted_] {
+        auto paint = guarded([&]() -> Result<Paint> {
+            if (gazes) work->mark(*gazes);
+            return work->paint(choice);
         });
+        asio::post(io, [weak, number, paint = std::move(paint)]() mutable {
+            if (const auto self = weak.lock()) self->painted(number, std::move(paint));
+        });
+    });
 }
 
-void WallReading::painted(std::uint64_t number, std::shared_ptr<const render::WallPaint> paint) {
+void WallReading::painted(std::uint64_t number, Result<Paint> paint) {
     isPainting_ = false;
     paintedAt_ = std::chrono::steady_clock::now();
+    if (!paint) {
+        spdlog::error("a wall cannot be painted: {}", paint.error().message);
+        gazesAreNew_ = true;
+        paint = paint_;  // so that its views are drawn
+    }
     if (number >= chosen_ && choice_.any()) {
-        paint_ = std::move(paint);
+        paint_ = std::move(*paint);
         ready_ = true;
         outlet_.painted();
     }
@@ -152,18 +172,41 @@ void WallReading::painted(std::uint64_t number, std::shared_ptr<const render::Wa
 // ---- what has been seen -------------------------------------------------------------------------
 
 void WallReading::shown(const render::Camera& camera, glm::ivec2 size, bool moving) {
-    if (moving && lastCamera_ && (looks_ >= maxLooks || nearlySame(camera, *lastCamera_))) return;
+    if (moving && lastCamera_ && nearlySame(camera, *lastCamera_)) return;
+    if (looks_ < maxLooks)
+        look(camera, size);
+    else if (!moving)
+        still_ = Still{camera, size};
+}
+
+void WallReading::look(const render::Camera& camera, glm::ivec2 size) {
     lastCamera_ = camera;
     ++looks_;
+    struct Saw {
+        double share;
+        bool more;
+    };
     painting_.run([weak = weak_from_this(), io = io_, work = work_, camera, size] {
-        const bool more = work->seen().show(camera, size) > 0;
-        asio::post(io, [weak, share = work->seen().share(), more] {
+        const auto saw = guarded([&]() -> Result<Saw> {
+            render::WallCoverage& seen = work->seen();
+            const bool more = seen.show(camera, size) > 0;
+            return Saw{seen.share(), more};
+        });
+        asio::post(io, [weak, saw] {
             const auto self = weak.lock();
             if (!self) return;
             --self->looks_;
-            self->sawMore(share, more);
+            if (saw)
+                self->sawMore(saw->share, saw->more);
+            else
+                spdlog::error("a wall cannot be looked at: {}", saw.error().message);
+            self->lookAtStill();
         });
     });
+}
+
+void WallReading::lookAtStill() {
+    if (const auto still = std::exchange(still_, std::nullopt)) look(still->camera, still->size);
 }
 
 void WallReading::sawMore(double share, bool more) {
@@ -175,14 +218,21 @@ void WallReading::sawMore(double share, bool more) {
     if (choice_.unseen) repaint(false);
 }
 
-void WallReading::ask(bool forget, std::function<void(double share)> told) {
-    if (forget) lastCamera_.reset();
+void WallReading::ask(bool forget, std::function<void(Result<double> share)> told) {
+    if (forget) {
+        lastCamera_.reset();
+        still_.reset();
+    }
+    lookAtStill();
     painting_.run([weak = weak_from_this(), io = io_, work = work_, forget,
                    told = std::move(told)]() mutable {
-        if (forget) work->seen().forget();
-        asio::post(io, [weak, share = work->seen().share(), forget, told = std::move(told)] {
+        const auto share = guarded([&]() -> Result<double> {
+            if (forget) work->seen().forget();
+            return work->seen().share();
+        });
+        asio::post(io, [weak, share, forget, told = std::move(told)] {
             const auto self = weak.lock();
-            if (self) self->told_ = share;
+            if (self && share) self->told_ = *share;
             told(share);
             if (self && forget && self->choice_.unseen) self->repaint(true);
         });

@@ -1,6 +1,7 @@
 // What one session has been shown of a case's wall, and what its pictures colour the wall with.
 #pragma once
 
+#include "core/result.h"
 #include "records/bookmarks.h"
 #include "render/view.h"
 #include "session/open_case.h"
@@ -53,27 +54,36 @@ public:
     /// setBookmarks has to follow.
     void choose(const WallPaintChoice& choice);
     const WallPaintChoice& choice() const { return choice_; }
-    /// All bookmarks of the case, and one more.
-    void setBookmarks(std::vector<records::Bookmark> bookmarks);
+    /// All bookmarks of the case, and one more, or one that is known already.
+    void setBookmarks(const std::vector<records::Bookmark>& bookmarks);
     void addBookmark(const records::Bookmark& bookmark);
 
     bool ready() const { return ready_; }
     /// Null where nothing is painted.
     const std::shared_ptr<const render::WallPaint>& paint() const { return paint_; }
 
-    /// An endoscopic picture of `size` pixels has been drawn for the client. Of those that move,
-    /// some are passed over where there are more than the paint thread can look at: what is told as
-    /// seen has been.
+    /// An endoscopic picture of `size` pixels has been drawn for the client. Where there are more
+    /// than the paint thread can look at, some are passed over, but not the newest that is at rest:
+    /// what is told as seen has been.
     void shown(const render::Camera& camera, glm::ivec2 size, bool moving);
     /// `told` is called on the io thread with the share that pictures drawn before this have shown;
-    /// with `forget`, nothing has been.
-    void ask(bool forget, std::function<void(double share)> told);
+    /// with `forget`, nothing has been. Fails (device) where there is not enough memory.
+    void ask(bool forget, std::function<void(Result<double> share)> told);
 
 private:
     struct Work;
+    /// A bookmark, as far as it is painted.
+    struct Gaze {
+        std::uint64_t bookmark;
+        glm::dvec3 positionMm, forward;
+    };
+    using Paint = std::shared_ptr<const render::WallPaint>;
+    void keep(const records::Bookmark& bookmark);
     void repaint(bool soon);
     void startPainting();
-    void painted(std::uint64_t number, std::shared_ptr<const render::WallPaint> paint);
+    void painted(std::uint64_t number, Result<Paint> paint);
+    void look(const render::Camera& camera, glm::ivec2 size);
+    void lookAtStill();
     void sawMore(double share, bool more);
 
     asio::any_io_executor io_;
@@ -83,16 +93,23 @@ private:
 
     WallPaintChoice choice_;
     bool listed_ = false;  // the bookmarks of this choice are known
+    std::vector<Gaze> gazes_;
+    bool gazesAreNew_ = false;  // to work_
     bool ready_ = true;
-    std::shared_ptr<const render::WallPaint> paint_;
+    Paint paint_;
     std::uint64_t wanted_ = 0;  // counts what changed the paint; the newest is to be shown
     std::uint64_t chosen_ = 0;  // its number when choice_ was made
     bool isPainting_ = false, paintAgain_ = false, paintAgainSoon_ = false;
     std::optional<std::chrono::steady_clock::time_point> paintedAt_;
     asio::steady_timer later_;
 
+    struct Still {
+        render::Camera camera;
+        glm::ivec2 size;
+    };
     std::optional<render::Camera> lastCamera_;
-    int looks_ = 0;  // that wait for the paint thread
+    std::optional<Still> still_;  // the newest that could not be looked at yet
+    int looks_ = 0;               // that wait for the paint thread
     double told_ = 0.0;
 };
 

@@ -2,6 +2,7 @@
 #include "end_to_end/flat_store.h"
 #include "end_to_end/server_test_client.h"
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -85,6 +86,23 @@ protected:
         TestClient::set(body->mutable_up(), {place.y, -place.x, 0.0});
         return message;
     }
+    /// On the flank of a fold that faces look()'s camera.
+    static glm::dvec3 facing(double x) {
+        glm::dvec3 place(0.0);
+        for (double y = 0.5 * tube().height(); y < tube().height(); y += 0.005) {
+            place = tube().positionMm({x, y});
+            const glm::dvec3 back = glm::normalize(glm::dvec3(0, 0, 10) - place);
+            if (glm::dot(back, tube().inwardNormal({x, y})) > 0.8) break;
+        }
+        return place;
+    }
+    static void openStrip(TestClient& client, std::uint64_t sequence) {
+        client.viewport(sequence, 4, protocol::FLATTENED, 64, 128);
+        ClientMessage strip;
+        strip.mutable_set_flat()->set_sequence(sequence + 1);
+        strip.mutable_set_flat()->set_viewport(4);
+        client.send(strip);
+    }
     static glm::ivec3 pixel(const TestPicture& picture, int x, int y) {
         const std::uint8_t* rgb =
             &picture.rgb[3 * std::size_t(y * picture.header.pictureWidth + x)];
@@ -112,14 +130,7 @@ TEST_F(ServerPaintTest, BookmarksAreDiscsOnTheWallForWhoeverWantsThem) {
     const auto mine = reader(), others = reader();
     const TestPicture plain = look(*mine, 1);
     ASSERT_EQ(look(*others, 1).rgb, plain.rgb);
-    // On the flank of a fold that faces the camera.
-    const double y = 0.5 * tube().height();
-    glm::dvec3 place(0.0);
-    for (double at = y; at < tube().height(); at += 0.005) {
-        place = tube().positionMm({0.3, at});
-        const glm::dvec3 back = glm::normalize(glm::dvec3(0, 0, 10) - place);
-        if (glm::dot(back, tube().inwardNormal({0.3, at})) > 0.8) break;
-    }
+    const glm::dvec3 place = facing(0.3);
     mine->send(paint(3, true, false, 2.0));
     EXPECT_EQ(awaitPicture(*mine, 0, 3).rgb, plain.rgb) << "no bookmark yet";
     // Another reader's: it appears by itself, in pictures of the newest input.
@@ -179,11 +190,7 @@ TEST_F(ServerPaintTest, EachSessionHasSeenWhatItWasShown) {
 
 TEST_F(ServerPaintTest, WhatIsNotSeenIsColouredAlsoInTheStrip) {
     const auto client = reader();
-    client->viewport(1, 4, protocol::FLATTENED, 64, 128);
-    ClientMessage strip;
-    strip.mutable_set_flat()->set_sequence(2);
-    strip.mutable_set_flat()->set_viewport(4);
-    client->send(strip);
+    openStrip(*client, 1);
     const TestPicture plain = awaitPicture(*client, 4, 2);
     const auto changed = [&](const TestPicture& picture) {
         int pixels = 0;
@@ -206,6 +213,45 @@ TEST_F(ServerPaintTest, WhatIsNotSeenIsColouredAlsoInTheStrip) {
     EXPECT_EQ(awaitPicture(*client, 4, 6).rgb, plain.rgb);
     client->send(paint(7, false, true));
     EXPECT_EQ(changed(awaitPicture(*client, 4, 7)), left);
+}
+
+TEST_F(ServerPaintTest, TheStripShowsWhatWasSeenInAMovementWhenItEnds) {
+    const auto client = reader();
+    openStrip(*client, 1);
+    client->send(paint(3, false, true));
+    const TestPicture unseen = awaitPicture(*client, 4, 3);
+    client->viewport(4, 0, protocol::ENDOSCOPIC, side, side);
+    std::optional<TestPicture> strip;
+    const auto next = [&] {
+        auto picture = client->picture();
+        if (!picture) throw std::runtime_error("no picture came");
+        const protocol::TileHeader header = picture->header;
+        if (header.viewport == 4) strip = std::move(*picture);
+        return header;
+    };
+    // Long enough for what the first picture shows to be painted while others follow, which show
+    // nothing more.
+    std::uint64_t sequence = 5;
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(1600);
+    for (; std::chrono::steady_clock::now() < until; ++sequence) {
+        client->camera(sequence, 0, {0, 0, 10.0}, true);
+        for (auto header = next(); header.viewport != 0 || header.sequence < sequence;)
+            header = next();
+    }
+    client->camera(sequence, 0, {0, 0, 10.0}, false);
+    while (!strip || strip->rgb == unseen.rgb)
+        next();
+}
+
+TEST_F(ServerPaintTest, ABookmarkOfAReaderWhoHasGoneIsPainted) {
+    const auto mine = reader();
+    look(*mine, 1);
+    mine->send(paint(3, true, false, 4.0));
+    const TestPicture before = awaitPicture(*mine, 0, 3);
+    auto others = reader();
+    others->send(bookmark("gone", facing(0.6)));
+    others.reset();  // without waiting for the acknowledgement
+    EXPECT_NE(awaitPicture(*mine, 0, 3).rgb, before.rgb);
 }
 
 TEST_F(ServerPaintTest, RefusesInOneSentenceAndGoesOn) {
