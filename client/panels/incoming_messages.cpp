@@ -7,7 +7,8 @@
 namespace haustra::panels {
 namespace {
 
-constexpr double maxStripHeight = 4096.0;
+constexpr double maxStripHeight = 4096.0, maxBinHu = 1e6;
+constexpr std::size_t maxBins = 65536;
 
 glm::dvec3 vectorFrom(const protocol::Vec3& v) {
     return {v.x(), v.y(), v.z()};
@@ -99,8 +100,8 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
                       message.histogram().hu_per_bin(),
                       {message.histogram().voxels().begin(), message.histogram().voxels().end()}};
     if (!info.histogram.voxels.empty() &&
-        !(std::isfinite(info.histogram.firstHu) && info.histogram.huPerBin > 0.0 &&
-          std::isfinite(info.histogram.huPerBin)))
+        !(std::abs(info.histogram.firstHu) <= maxBinHu && info.histogram.huPerBin > 0.0 &&
+          info.histogram.huPerBin <= maxBinHu && info.histogram.voxels.size() <= maxBins))
         return fail(ErrorKind::badInput, "its bins are none", "case opened: histogram");
     info.cleansed = message.cleansed();
     if (message.has_flat()) {

@@ -99,7 +99,10 @@ void Session::handle(const protocol::ServerMessage& message) {
             answeredAboutWall(message.flat_measure(), measureFrom(message.flat_measure()));
             break;
         case protocol::ServerMessage::kWallSeen:
-            seenShare_ = std::clamp(message.wall_seen().share(), 0.0, 1.0);
+            if (!(message.wall_seen().share() >= 0.0 && message.wall_seen().share() <= 1.0))
+                return giveUp(
+                    {ErrorKind::badInput, "the server sent a share that is none", "wall"});
+            seenShare_ = message.wall_seen().share();
             questions_.erase(message.wall_seen().request());
             answeredSeen_ = std::max(answeredSeen_, message.wall_seen().request());
             break;

@@ -145,6 +145,33 @@ protocol::CaseOpened soundCase() {
     return opened;
 }
 
+TEST(ClientCase, OnlySoundPresetsAndHistogramsAreTakenFromAServer) {
+    const auto taken = [](const auto& spoil) {
+        protocol::CaseOpened opened = soundCase();
+        auto* histogram = opened.mutable_histogram();
+        histogram->set_first_hu(-1024.0);
+        histogram->set_hu_per_bin(16.0);
+        for (const std::uint64_t voxels : {std::uint64_t(3), std::uint64_t(0), UINT64_MAX})
+            histogram->add_voxels(voxels);
+        spoil(opened);
+        return bool(caseInfoFrom(opened));
+    };
+    EXPECT_TRUE(taken([](protocol::CaseOpened&) {}));
+    EXPECT_TRUE(taken([](protocol::CaseOpened& opened) { opened.clear_histogram(); }));
+    for (const double bad : {std::nan(""), double(INFINITY), -1e300})
+        EXPECT_FALSE(taken([&](protocol::CaseOpened& opened) {
+            opened.mutable_histogram()->set_first_hu(bad);
+        })) << bad;
+    for (const double bad : {std::nan(""), double(INFINITY), 0.0, -1.0, 1e300})
+        EXPECT_FALSE(taken([&](protocol::CaseOpened& opened) {
+            opened.mutable_histogram()->set_hu_per_bin(bad);
+        })) << bad;
+    EXPECT_FALSE(taken([](protocol::CaseOpened& opened) { opened.clear_presets(); }));
+    EXPECT_FALSE(taken([](protocol::CaseOpened& opened) {
+        opened.mutable_presets(0)->mutable_optics()->mutable_points(0)->set_opacity(2.0);
+    }));
+}
+
 TEST(ClientStrip, OnlySoundStripsAreTakenFromAServer) {
     const auto info = caseInfoFrom(soundCase());
     ASSERT_TRUE(info && info->flat);
