@@ -1,5 +1,6 @@
 #include "render/overview/overview_painter.h"
 
+#include "render/optics/srgb.h"
 #include "render/overview/overview_marks.h"
 #include "shaders/shader_source.h"
 
@@ -23,8 +24,7 @@ constexpr double fadeMm = 80.0;
 constexpr double farthestShare = 0.45;
 
 double displayed(double linear) {
-    const double c = std::clamp(linear, 0.0, 1.0);
-    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+    return displayedLight(std::clamp(linear, 0.0, 1.0));
 }
 
 std::uint8_t byteOf(double displayed) {
