@@ -31,11 +31,13 @@ vec2 samplesInCell(Ray ray, ivec3 cell) {
     return samples;
 }
 
-// Places in a slot lie on a lattice of 1/4096 voxel: then all that follows is exact, whichever slot
-// the cell is in, for the atlas has sides of powers of two.
+// Places in a slot lie on a lattice of 1/4096 voxel, to which they are rounded before the slot counts:
+// then all that follows is exact, whichever slot the cell is in and however far it reaches beyond
+// the cell, for the atlas has sides of powers of two.
 vec3 inSlot(vec3 position, CellInSlot cell) {
     precise vec3 voxel = position * cells.voxels.xyz;
-    return floor((voxel - cell.corner.xyz) * 4096.0 + 0.5) * (1.0 / 4096.0);
+    precise vec3 onLattice = floor(voxel * 4096.0 + 0.5) * (1.0 / 4096.0);
+    return onLattice - cell.corner.xyz;
 }
 vec3 atlasPlace(vec3 inSlot, CellInSlot cell) { return (inSlot + cell.slot.xyz) * cells.atlasPerVoxel.xyz; }
 

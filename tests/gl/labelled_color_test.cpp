@@ -163,7 +163,7 @@ TEST_F(LabelledColor, AChosenLabelLoadsItsCellsAlone) {
             EXPECT_EQ(stats.uploaded, holding);
         }
         EXPECT_GT(stats.uploaded, 0);
-        EXPECT_EQ(stats.bytesMoved, std::size_t(stats.uploaded) * 19 * 19 * 19 * 4);
+        EXPECT_EQ(stats.bytesMoved, std::size_t(stats.uploaded) * 21 * 21 * 21 * 4);
         EXPECT_LT(holding, stats.cells);
     }
     EXPECT_LT(cellsHolding({300}), cellsHolding({1}) / 4);

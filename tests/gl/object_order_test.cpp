@@ -126,7 +126,7 @@ TEST_F(ObjectOrder, NoPixelDependsOnTheBudgetOnWhatWasDrawnBeforeOrOnBands) {
         EXPECT_EQ(first.back().rgb, cast(*tight, misty(camera), 72, 53).rgb);
         EXPECT_GT(tight->residency().uploaded, tight->residency().resident);
         EXPECT_EQ(tight->residency().bytesMoved,
-                  std::size_t(tight->residency().uploaded) * 21 * 21 * 21 * 2);
+                  std::size_t(tight->residency().uploaded) * 23 * 23 * 23 * 2);
     }
     EXPECT_EQ(first[0].rgb, cast(*single, misty(cameras()[0]), 72, 53).rgb);
     // Again, the other way round; then in bands.

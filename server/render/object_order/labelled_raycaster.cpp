@@ -178,7 +178,8 @@ Result<void> LabelledRaycaster::render(const CameraView& asked, const Band& band
     if (!cast) return tl::make_unexpected(cast.error());
     const auto resolve = impl_->resolve.program(variant);
     if (!resolve) return tl::make_unexpected(resolve.error());
-    return impl_->cells.render(view, band, **seen, 1, **cast, **resolve, picture);
+    constexpr int border = 2;  // of gradients, and of samples that rounding puts past a face
+    return impl_->cells.render(view, band, **seen, border, **cast, **resolve, picture);
 }
 
 std::size_t LabelledRaycaster::gpuBytes() const {

@@ -20,12 +20,13 @@ namespace {
 constexpr std::size_t classificationsKept = 4;
 
 /// Voxels beyond the cell's own that a sample in it may read, but for interpolation: up to the
-/// sample before, where that enters too; and one more for gradients, which are read on the way.
+/// sample before, where that enters too; one more for gradients, which are read on the way; and one
+/// for samples on a face, which rounding may put past it.
 int borderOf(const Optics& optics, const MarchOptions& march) {
     const MarchVariant variant = MarchVariant::of(optics, false, false);
     const bool looksBack = optics.composition == Composition::firstHit || variant.preIntegrated;
     const int before = looksBack ? int(std::ceil(march.stepVoxels)) : 0;
-    return before + (variant.shading || variant.gradientRows ? 1 : 0);
+    return before + (variant.shading || variant.gradientRows ? 1 : 0) + 1;
 }
 
 /// Cells with something visible in them, or (where samples show together with the one before
