@@ -32,9 +32,11 @@ void declare(CLI::App& app, Arguments& a) {
         "when it changes. For a physician's judgement; not a certified medical device.");
     app.footer(
         "In the window, ? or F1 shows the keys.\n"
-        "Scripts have one JSON object a line: view, go, fly, still, slice, flat, strip, flyover, "
-        "locate,\n"
-        "measure, window, transfer, bookmark, bookmarks, wait. For example:\n"
+        "Scripts have one JSON object a line: view, go, fly, still, slice, oblique, overview, "
+        "flat,\n"
+        "strip, flyover, locate, measure, paint, seen, window, transfer, bookmark, bookmarks, "
+        "wait.\n"
+        "For example:\n"
         "  {\"do\":\"go\",\"arc_mm\":120,\"direction\":\"antegrade\"}\n"
         "  {\"do\":\"still\",\"png\":\"rectum.png\"}\n"
         "  {\"do\":\"fly\",\"from_mm\":0,\"to_mm\":1500,\"positions\":200}\n"
