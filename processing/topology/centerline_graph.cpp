@@ -2,46 +2,28 @@
 
 #include "core/parallel.h"
 
+#include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <limits>
 
 namespace haustra::topology {
 namespace {
 
-// The voxels of a block that lie on its side towards `step` (−1, 0 or 1 along each axis).
-constexpr std::uint8_t sideTowards(int sx, int sy, int sz) {
-    std::uint8_t side = 0;
-    for (int child = 0; child < 8; ++child) {
-        const int x = child & 1, y = child >> 1 & 1, z = child >> 2;
-        if ((sx == 0 || x == (sx > 0)) && (sy == 0 || y == (sy > 0)) &&
-            (sz == 0 || z == (sz > 0))) {
-            side = std::uint8_t(side | 1 << child);
+/// A block's voxels at its lower end along each axis.
+constexpr std::array<std::uint8_t, 3> lowSide{0x55, 0x33, 0x0f};
+
+/// The 6-connected body of `inside` that holds its first voxel.
+constexpr std::uint8_t firstBody(std::uint8_t inside) {
+    unsigned body = inside & (~unsigned(inside) + 1u);
+    for (unsigned before = 0; before != body;) {
+        before = body;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const unsigned step = 1u << axis, low = lowSide[axis];
+            body |= (((body & low) << step) | ((body & ~low) >> step)) & inside;
         }
     }
-    return side;
-}
-
-struct Neighbour {
-    glm::ivec3 step;
-    std::uint8_t ownSide, itsSide;
-};
-
-const std::array<Neighbour, 26>& neighbourSteps() {
-    static const auto steps = [] {
-        std::array<Neighbour, 26> all;
-        int n = 0;
-        for (int z = -1; z <= 1; ++z) {
-            for (int y = -1; y <= 1; ++y) {
-                for (int x = -1; x <= 1; ++x) {
-                    if (x == 0 && y == 0 && z == 0) continue;
-                    all[std::size_t(n++)] = {
-                        {x, y, z}, sideTowards(x, y, z), sideTowards(-x, -y, -z)};
-                }
-            }
-        }
-        return all;
-    }();
-    return steps;
+    return std::uint8_t(body);
 }
 
 /// The nodes of one layer of blocks.
@@ -52,44 +34,106 @@ std::vector<BlockGraph::Node> layerNodes(const Volume<std::uint8_t>& labels,
     std::vector<BlockGraph::Node> nodes;
     for (int by = 0; by < blocks.y; ++by) {
         for (int bx = 0; bx < blocks.x; ++bx) {
-            BlockGraph::Node node{glm::ivec3(0), -1.0f, -1, 0, 0};
+            const auto voxelAt = [&](int child) {
+                return glm::ivec3(2 * bx + (child & 1), 2 * by + (child >> 1 & 1),
+                                  2 * layer + (child >> 2));
+            };
+            unsigned inside = 0;
             for (int child = 0; child < 8; ++child) {
-                const glm::ivec3 v(2 * bx + (child & 1), 2 * by + (child >> 1 & 1),
-                                   2 * layer + (child >> 2));
-                if (!grid.contains(v)) continue;
-                const std::size_t at = grid.index(v);
-                if (labels[at] == 0) continue;
-                node.inside = std::uint8_t(node.inside | 1 << child);
-                if (distanceMm[at] > node.radiusMm) {
-                    node.radiusMm = distanceMm[at];
-                    node.voxel = v;
-                }
+                const glm::ivec3 v = voxelAt(child);
+                if (grid.contains(v) && labels[grid.index(v)] != 0) inside |= 1u << child;
             }
-            if (node.inside) nodes.push_back(node);
+            while (inside != 0) {
+                BlockGraph::Node node{glm::ivec3(0), -1.0f, -1, firstBody(std::uint8_t(inside))};
+                inside &= ~unsigned(node.inside);
+                for (int child = 0; child < 8; ++child) {
+                    if (!(node.inside >> child & 1)) continue;
+                    const glm::ivec3 v = voxelAt(child);
+                    const float mm = distanceMm[grid.index(v)];
+                    if (mm > node.radiusMm) node.radiusMm = mm, node.voxel = v;
+                }
+                nodes.push_back(node);
+            }
         }
     }
     return nodes;
 }
 
-std::uint32_t neighbourBits(const BlockGraph& graph, const BlockGraph::Node& node) {
-    std::uint32_t bits = 0;
-    for (std::size_t n = 0; n < 26; ++n) {
-        const Neighbour& neighbour = neighbourSteps()[n];
-        if (!(node.inside & neighbour.ownSide)) continue;
-        const glm::ivec3 b = node.voxel / 2 + neighbour.step;
-        if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= graph.blocks.x || b.y >= graph.blocks.y ||
-            b.z >= graph.blocks.z) {
-            continue;
-        }
-        const std::int32_t other = graph.nodeAt[graph.blockIndex(b)];
-        if (other >= 0 && (graph.nodes[std::size_t(other)].inside & neighbour.itsSide))
-            bits |= 1u << n;
+/// A few nodes, each once: a block has four bodies at most.
+struct FewNodes {
+    std::array<std::int32_t, 4> at{};
+    int count = 0;
+    void add(std::int32_t node) {
+        if (std::find(at.begin(), at.begin() + count, node) == at.begin() + count)
+            at[std::size_t(count++)] = node;
     }
-    return bits;
+};
+
+/// Adds what joints lead to from `node` across its block's face.
+void addAcross(const BlockGraph& graph, std::int32_t node, int axis, int sign, FewNodes& found) {
+    glm::ivec3 block = graph.blockOf(node);
+    block[axis] += sign;
+    if (block[axis] < 0 || block[axis] >= graph.blocks[axis]) return;
+    const unsigned low = lowSide[std::size_t(axis)], own = graph.nodes[std::size_t(node)].inside;
+    const unsigned facing = sign > 0 ? (own & ~low) >> (1 << axis) : (own & low) << (1 << axis);
+    if (facing == 0) return;
+    graph.visitNodesOf(block, [&](std::int32_t other) {
+        if (graph.nodes[std::size_t(other)].inside & facing) found.add(other);
+    });
+}
+
+/// The nodes in the 26 blocks around a node's that joints lead straight to.
+void appendNeighbours(const BlockGraph& graph, std::int32_t node,
+                      std::vector<std::int32_t>& neighbours) {
+    // By the step (−1, 0 or 1 along each axis) to their block; those with fewer axes come first.
+    std::array<FewNodes, 27> reached;
+    const auto place = [](glm::ivec3 s) { return std::size_t(13 + s.x + 3 * s.y + 9 * s.z); };
+    reached[place(glm::ivec3(0))].add(node);
+    for (int axes = 1; axes <= 3; ++axes) {
+        for (int n = 0; n < 27; ++n) {
+            const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) != axes) continue;
+            FewNodes& found = reached[place(step)];
+            for (int axis = 0; axis < 3; ++axis) {
+                if (step[axis] == 0) continue;
+                glm::ivec3 before = step;
+                before[axis] = 0;
+                const FewNodes& from = reached[place(before)];
+                for (int f = 0; f < from.count; ++f)
+                    addAcross(graph, from.at[std::size_t(f)], axis, step[axis], found);
+            }
+        }
+    }
+    for (int n = 0; n < 27; ++n) {
+        if (n == 13) continue;
+        for (int f = 0; f < reached[std::size_t(n)].count; ++f)
+            neighbours.push_back(reached[std::size_t(n)].at[std::size_t(f)]);
+    }
+}
+
+void joinNodes(BlockGraph& graph, int threads) {
+    constexpr std::size_t chunk = 1 << 14;
+    const std::size_t count = graph.nodes.size();
+    std::vector<std::vector<std::int32_t>> found((count + chunk - 1) / chunk);
+    graph.firstNeighbour.assign(count + 1, 0);
+    parallelFor(found.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+            for (std::size_t n = c * chunk; n < std::min(count, (c + 1) * chunk); ++n) {
+                appendNeighbours(graph, std::int32_t(n), found[c]);
+                graph.firstNeighbour[n + 1] = found[c].size();
+            }
+        }
+    });
+    for (std::size_t c = 0, before = 0; c < found.size(); ++c) {
+        for (std::size_t n = c * chunk; n < std::min(count, (c + 1) * chunk); ++n)
+            graph.firstNeighbour[n + 1] += before;
+        before += found[c].size();
+        graph.neighbourOf.insert(graph.neighbourOf.end(), found[c].begin(), found[c].end());
+        found[c] = {};
+    }
 }
 
 void labelComponents(BlockGraph& graph) {
-    std::array<std::int32_t, 26> around;
     std::vector<std::int32_t> front;
     for (std::size_t first = 0; first < graph.nodes.size(); ++first) {
         if (graph.nodes[first].component >= 0) continue;
@@ -106,12 +150,11 @@ void labelComponents(BlockGraph& graph) {
             if (node.radiusMm > deepest || (node.radiusMm == deepest && at < component.deepest)) {
                 component.deepest = at;
             }
-            const int count = graph.neighbours(at, around);
-            for (int n = 0; n < count; ++n) {
-                BlockGraph::Node& next = graph.nodes[std::size_t(around[std::size_t(n)])];
+            for (const std::int32_t other : graph.neighbours(at)) {
+                BlockGraph::Node& next = graph.nodes[std::size_t(other)];
                 if (next.component >= 0) continue;
                 next.component = number;
-                front.push_back(around[std::size_t(n)]);
+                front.push_back(other);
             }
         }
         graph.components.push_back(component);
@@ -119,15 +162,6 @@ void labelComponents(BlockGraph& graph) {
 }
 
 }  // namespace
-
-int BlockGraph::neighbours(std::int32_t node, std::array<std::int32_t, 26>& found) const {
-    const std::int32_t* here = nodeAt.data() + blockIndex(blockOf(node));
-    int count = 0;
-    for (std::uint32_t bits = nodes[std::size_t(node)].neighbours; bits; bits &= bits - 1) {
-        found[std::size_t(count++)] = here[offsets[std::size_t(std::countr_zero(bits))]];
-    }
-    return count;
-}
 
 std::int32_t BlockGraph::nearest(glm::dvec3 patientMm) const {
     std::int32_t best = 0;
@@ -155,20 +189,13 @@ BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float
         -1);
     for (auto& layer : layers) {
         for (const BlockGraph::Node& node : layer) {
-            graph.nodeAt[graph.blockIndex(node.voxel / 2)] = std::int32_t(graph.nodes.size());
+            std::int32_t& first = graph.nodeAt[graph.blockIndex(node.voxel / 2)];
+            if (first < 0) first = std::int32_t(graph.nodes.size());
             graph.nodes.push_back(node);
         }
         layer = {};
     }
-    for (std::size_t n = 0; n < 26; ++n) {
-        const glm::ivec3 step = neighbourSteps()[n].step;
-        graph.offsets[n] = step.x + std::ptrdiff_t(graph.blocks.x) *
-                                        (step.y + std::ptrdiff_t(graph.blocks.y) * step.z);
-    }
-    parallelFor(graph.nodes.size(), 1 << 14, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n)
-            graph.nodes[n].neighbours = neighbourBits(graph, graph.nodes[n]);
-    });
+    joinNodes(graph, threads);
     labelComponents(graph);
     return graph;
 }
@@ -187,11 +214,11 @@ void markAlong(const BlockGraph& graph, const std::vector<std::int32_t>& route, 
         for (int z = lo.z; z <= hi.z; ++z) {
             for (int y = lo.y; y <= hi.y; ++y) {
                 for (int x = lo.x; x <= hi.x; ++x) {
-                    const std::int32_t other = graph.nodeAt[graph.blockIndex({x, y, z})];
-                    if (other < 0 || marked[std::size_t(other)]) continue;
-                    const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
-                    if (glm::dot(away, away) <= radiusMm * radiusMm)
-                        marked[std::size_t(other)] = true;
+                    graph.visitNodesOf({x, y, z}, [&](std::int32_t other) {
+                        const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
+                        if (glm::dot(away, away) <= radiusMm * radiusMm)
+                            marked[std::size_t(other)] = true;
+                    });
                 }
             }
         }

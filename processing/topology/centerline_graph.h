@@ -6,20 +6,22 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace haustra::topology {
 
-/// One node for each 2×2×2 block with an inside voxel. Any two voxels of a block touch, and two
-/// nodes are joined exactly where voxels of theirs touch, so the graph's connected components are
-/// the mask's 26-connected ones: nothing is merged or cut by halving the resolution.
+/// One node for each 6-connected body of inside voxels in a 2×2×2 block. Two nodes of blocks that
+/// share a face are joined exactly where voxels of theirs do; two of blocks that share an edge or
+/// a corner where such joints lead straight from the one to the other. So the graph's connected
+/// components are the mask's 6-connected ones: nothing is merged or cut by halving the resolution,
+/// and a wall one voxel thick parts what it parts in the mask.
 struct BlockGraph {
     struct Node {
-        glm::ivec3 voxel;  ///< the block's deepest voxel; the first of several
+        glm::ivec3 voxel;  ///< the node's deepest voxel; the first of several
         float radiusMm;    ///< distance to the boundary there
         std::int32_t component;
-        std::uint8_t inside;       ///< bit x + 2y + 4z: that voxel of the block is inside
-        std::uint32_t neighbours;  ///< bit n: joined to the node of the n-th of 26 blocks around
+        std::uint8_t inside;  ///< bit x + 2y + 4z: that voxel of the block is the node's
     };
     struct Component {
         std::int32_t deepest;  ///< node with the greatest radius; the first of several
@@ -29,11 +31,11 @@ struct BlockGraph {
     Grid grid;
     glm::dvec3 spacingMm{0.0};
     glm::ivec3 blocks{0};              ///< extent of the block grid
-    std::vector<std::int32_t> nodeAt;  ///< by block, x fastest; −1: none
+    std::vector<std::int32_t> nodeAt;  ///< by block, x fastest: its first node; −1: none
     std::vector<Node> nodes;           ///< by block, in memory order
     std::vector<Component> components;
-    std::array<std::ptrdiff_t, 26>
-        offsets{};  ///< from a block's place in nodeAt to those around it
+    std::vector<std::size_t> firstNeighbour;  ///< of each node, in neighbourOf; and the end
+    std::vector<std::int32_t> neighbourOf;
 
     std::size_t blockIndex(glm::ivec3 b) const {
         return std::size_t(b.x) + std::size_t(blocks.x) *
@@ -44,8 +46,19 @@ struct BlockGraph {
     glm::dvec3 positionMm(std::int32_t node) const {
         return grid.patientFromVoxelPoint(voxelOf(node));
     }
-    /// Writes the node's neighbours, in a fixed order, and returns how many (at most 26).
-    int neighbours(std::int32_t node, std::array<std::int32_t, 26>& found) const;
+    std::span<const std::int32_t> neighbours(std::int32_t node) const {
+        const std::size_t first = firstNeighbour[std::size_t(node)];
+        return {neighbourOf.data() + first, firstNeighbour[std::size_t(node) + 1] - first};
+    }
+    /// Calls visit(node) for each node of a block.
+    template <class Visit>
+    void visitNodesOf(glm::ivec3 block, const Visit& visit) const {
+        const std::int32_t first = nodeAt[blockIndex(block)];
+        if (first < 0) return;
+        for (std::size_t n = std::size_t(first);
+             n < nodes.size() && blockOf(std::int32_t(n)) == block; ++n)
+            visit(std::int32_t(n));
+    }
     /// The node whose deepest voxel is nearest to a patient point. Needs at least one node; O(n).
     std::int32_t nearest(glm::dvec3 patientMm) const;
 };

@@ -36,7 +36,7 @@ struct TracedCenterline {
 /// 21:1450, 2002; dissertation §1.2.1 [126]). `labels` is 0 outside the lumen; `distanceMm` is
 /// distanceToBoundaryMm(labels).
 ///
-/// In each 26-connected segment the ends are found automatically, the route between them is the
+/// In each 6-connected segment the ends are found automatically, the route between them is the
 /// minimum-cost spanning tree's (it passes no leak while the colon is wider), the line within it
 /// minimises ∫ ds / distance from the boundary, and a B-spline smooths it. Every sample outside a
 /// gap is inside the lumen; its radius is the distance field there. A straight line of samples

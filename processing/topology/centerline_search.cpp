@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -29,7 +30,7 @@ public:
             for (int z = lo.z; z <= hi.z; ++z) {
                 for (int y = lo.y; y <= hi.y; ++y) {
                     for (int x = lo.x; x <= hi.x; ++x)
-                        add(graph.nodeAt[graph.blockIndex({x, y, z})]);
+                        graph.visitNodesOf({x, y, z}, [&](std::int32_t near) { add(near); });
                 }
             }
         }
@@ -38,11 +39,29 @@ public:
     /// −1 for a voxel that is outside the lumen or the corridor.
     std::int32_t numberOf(glm::ivec3 voxel) const {
         if (!graph_.grid.contains(voxel)) return -1;
-        const std::int32_t node = graph_.nodeAt[graph_.blockIndex(voxel / 2)];
-        if (node < 0 || numberOf_[std::size_t(node)] < 0) return -1;
         const int child = (voxel.x & 1) | (voxel.y & 1) << 1 | (voxel.z & 1) << 2;
-        if (!(graph_.nodes[std::size_t(node)].inside >> child & 1)) return -1;
-        return numberOf_[std::size_t(node)] * 8 + child;
+        std::int32_t number = -1;
+        graph_.visitNodesOf(voxel / 2, [&](std::int32_t node) {
+            if (numberOf_[std::size_t(node)] >= 0 &&
+                (graph_.nodes[std::size_t(node)].inside >> child & 1))
+                number = numberOf_[std::size_t(node)] * 8 + child;
+        });
+        return number;
+    }
+    /// The voxel `step` (−1, 0 or 1 along each axis) away, where voxels lead there face by face;
+    /// −1: none do.
+    std::int32_t straightTo(glm::ivec3 voxel, glm::ivec3 step) const {
+        if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) == 1)
+            return numberOf(voxel + step);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (step[axis] == 0) continue;
+            glm::ivec3 first(0);
+            first[axis] = step[axis];
+            if (numberOf(voxel + first) < 0) continue;
+            if (const std::int32_t found = straightTo(voxel + first, step - first); found >= 0)
+                return found;
+        }
+        return -1;
     }
     glm::ivec3 voxelOf(std::int32_t number) const {
         const glm::ivec3 block = graph_.blockOf(nodes_[std::size_t(number / 8)]);
@@ -77,7 +96,6 @@ double stepMm(const BlockGraph& graph, std::int32_t a, std::int32_t b) {
 PathTree growWidestTree(const BlockGraph& graph, std::int32_t source) {
     const std::size_t count = graph.nodes.size();
     PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f), {source}};
-    std::array<std::int32_t, 26> around;
     // The deepest first; of equals, the first node.
     std::priority_queue<std::pair<float, std::int32_t>> frontier;
     tree.lengthMm[std::size_t(source)] = 0.0f;
@@ -85,9 +103,7 @@ PathTree growWidestTree(const BlockGraph& graph, std::int32_t source) {
     while (!frontier.empty()) {
         const std::int32_t at = -frontier.top().second;
         frontier.pop();
-        const int found = graph.neighbours(at, around);
-        for (int n = 0; n < found; ++n) {
-            const std::int32_t next = around[std::size_t(n)];
+        for (const std::int32_t next : graph.neighbours(at)) {
             if (tree.lengthMm[std::size_t(next)] >= 0.0f) continue;
             tree.parent[std::size_t(next)] = at;
             tree.lengthMm[std::size_t(next)] =
@@ -138,7 +154,6 @@ PathTree growCheapestTree(const BlockGraph& graph, std::span<const std::int32_t>
     PathTree tree{std::vector<std::int32_t>(count, -1), std::vector<float>(count, -1.0f), {}};
     std::vector<double> best(count, std::numeric_limits<double>::infinity());
     std::vector<bool> done(count, false);
-    std::array<std::int32_t, 26> around;
     CheapestFirst frontier;
     for (const std::int32_t source : sources) {
         best[std::size_t(source)] = 0.0;
@@ -154,9 +169,7 @@ PathTree growCheapestTree(const BlockGraph& graph, std::span<const std::int32_t>
         if (done[std::size_t(at)]) continue;
         done[std::size_t(at)] = true;
         const double perMmHere = perMm(at);
-        const int found = graph.neighbours(at, around);
-        for (int n = 0; n < found; ++n) {
-            const std::int32_t next = around[std::size_t(n)];
+        for (const std::int32_t next : graph.neighbours(at)) {
             if (done[std::size_t(next)] || (!within.empty() && !within[std::size_t(next)]))
                 continue;
             const double step = stepMm(graph, at, next);
@@ -215,7 +228,8 @@ std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<flo
         const double costHere = costPerMm(distanceMm.at(here));
         for (int n = 0; n < 27; ++n) {
             const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-            const std::int32_t next = corridor.numberOf(here + step);
+            if (n == 13) continue;
+            const std::int32_t next = corridor.straightTo(here, step);
             if (next < 0 || done[std::size_t(next)]) continue;
             const double through =
                 cost[std::size_t(at)] + 0.5 * glm::length(spacing * glm::dvec3(step)) *

@@ -50,8 +50,9 @@ std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target);
 std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
                                       const std::vector<std::int32_t>& route);
 
-/// The exact minimum of the same cost over single voxels (26-connected), from the deepest voxel of
-/// the route's first block to that of its last, within `reach` blocks of the route.
+/// The exact minimum of the same cost over single voxels, from the deepest voxel of
+/// the route's first block to that of its last, within `reach` blocks of the
+/// route. A step goes to one of 26 voxels where voxels lead there face by face.
 std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<float>& distanceMm,
                                        const std::vector<std::int32_t>& route, int reach = 3);
 
