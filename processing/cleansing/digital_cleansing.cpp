@@ -5,6 +5,7 @@
 #include "cleansing/refined_lumen.h"
 #include "cleansing/rim_smoothing.h"
 #include "cleansing/tagged_surroundings.h"
+#include "core/connected_labels.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -107,6 +108,11 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
     std::inplace_merge(changed.begin(), changed.begin() + std::ptrdiff_t(cleansedVoxels),
                        changed.end(), byIndex);
     cleansed.lumen = refineLumen(cleansed.hu, tissue, means.airHu, labels, changed);
+    // The way on through a narrow place is no less there because its wall looks thicker now.
+    joinBodies(
+        cleansed.lumen,
+        [&](std::size_t n) { return LumenLabel(segmentation[n]) != LumenLabel::outside; },
+        [&](std::size_t n) { return segmentation[n]; }, {.dropOthers = false});
     return cleansed;
 }
 

@@ -1,5 +1,7 @@
 #include "cleansing/menisci.h"
 
+#include "core/connected_labels.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -65,6 +67,7 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                 const double least = leastHuOf();
                 if (scan.hu[index] <= least) continue;
                 if (step > lagging && !airNear(segmentation, n)) continue;
+                if (!joinsNothing(labels, index)) continue;  // there may be a wall too thin to show
                 out[index] = std::uint8_t(LumenLabel::tagged);
                 next.push_back({n, least});
             }

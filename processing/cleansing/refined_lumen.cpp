@@ -1,5 +1,7 @@
 #include "cleansing/refined_lumen.h"
 
+#include "core/connected_labels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -71,11 +73,15 @@ Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& ti
     }
     // Each pass is one step outward.
     for (int pass = 0; pass < 2; ++pass) {
-        std::vector<const CleansedVoxel*> added, left;
+        std::vector<const CleansedVoxel*> touching, left;
         for (const CleansedVoxel* voxel : beside)
-            (touchesLumen(labels, voxel->index) ? added : left).push_back(voxel);
-        for (const CleansedVoxel* voxel : added)
-            out[voxel->index] = labelOf(*voxel);
+            (touchesLumen(labels, voxel->index) ? touching : left).push_back(voxel);
+        for (const CleansedVoxel* voxel : touching) {
+            if (joinsNothing(labels, voxel->index))
+                out[voxel->index] = labelOf(*voxel);
+            else
+                left.push_back(voxel);
+        }
         beside = std::move(left);
     }
     const std::size_t most =

@@ -1,6 +1,6 @@
-#include "topology/simple_point.h"
+#include "core/simple_point.h"
 
-namespace haustra::topology {
+namespace haustra {
 namespace {
 
 constexpr Neighbourhood centre = 1u << 13;
@@ -106,4 +106,4 @@ bool isSimple(Neighbourhood object) {
            isOneComponent<dilated18>(background(object), eighteen);
 }
 
-}  // namespace haustra::topology
+}  // namespace haustra

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace haustra::topology {
+namespace haustra {
 
 /// The object voxels among a voxel's 26 neighbours: bit (dx+1) + 3 (dy+1) + 9 (dz+1) for the
 /// neighbour at (dx, dy, dz), bit 13 (the voxel itself) ignored.
@@ -24,4 +24,4 @@ int topologicalNumber18(Neighbourhood object);
 /// tens of nanoseconds; any thread.
 bool isSimple(Neighbourhood object);
 
-}  // namespace haustra::topology
+}  // namespace haustra

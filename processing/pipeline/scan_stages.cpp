@@ -6,9 +6,9 @@
 #include "pipeline/product_attributes.h"
 #include "pipeline/read_inputs.h"
 #include "pipeline/source_key.h"
+#include "segmentation/find_colon.h"
 #include "surface/wall_field.h"
 #include "topology/hu_range_lumen.h"
-#include "topology/lumen.h"
 
 namespace haustra::pipeline {
 namespace {
@@ -18,10 +18,10 @@ using store::Attributes;
 
 // Raise a stage's version whenever its products change for the same input and options.
 constexpr int importVersion = 1;
-constexpr int segmentationVersion = 1;
+constexpr int segmentationVersion = 2;
 constexpr int maskVersion = 1;
 constexpr int mixtureVersion = 7;
-constexpr int cleansingVersion = 4;
+constexpr int cleansingVersion = 5;
 
 Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,
                                  const Volume<std::uint8_t>& labels, const Attributes& attributes) {
@@ -35,15 +35,17 @@ Result<void> findGasAndTagged(Preparation& preparation, const CtScan& scan, cons
     const auto tissue =
         cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues);
     if (!tissue) return tl::make_unexpected(tissue.error());
-    const auto lumen = topology::findLumen(
-        scan, *tissue, {options.seedsMm, options.excludesMm, options.threads, progress});
-    if (!lumen) return tl::make_unexpected(lumen.error());
-    Attributes attributes{{"source", "scan"},
-                          {"segments", std::to_string(lumen->segments.size())},
-                          {"gravity", exactText(lumen->gravity)}};
+    segmentation::ColonOptions finding;
+    finding.edits.seedsMm = options.seedsMm, finding.edits.excludesMm = options.excludesMm;
+    finding.threads = options.threads, finding.progress = progress;
+    const auto colon = segmentation::findColon(scan, *tissue, finding);
+    if (!colon) return tl::make_unexpected(colon.error());
+    Attributes attributes{{"source", "scan"}, {"gravity", exactText(colon->gravity)}};
     setTissueModel(attributes, *tissue);
-    setNotes(attributes, lumen->notes);
-    return publishSegmentation(preparation, key, lumen->labels, attributes);
+    std::vector<std::string> notes = colon->notes;
+    notes.insert(notes.end(), colon->record.warnings.begin(), colon->record.warnings.end());
+    setNotes(attributes, notes);
+    return publishSegmentation(preparation, key, colon->labels, attributes);
 }
 
 Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const ProductKey& key,

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace haustra::topology {
+namespace haustra::segmentation {
 
 /// From the voxel `index` along ± each axis, up to `mostBetween` voxels and then one more, to the
 /// first for which `hit(index)` holds: visit(axis, sign, step, index of the hit).
@@ -38,4 +38,4 @@ void visitNeighbours(const Grid& grid, std::size_t index, Visit&& visit) {
         [&](int, int, int, std::size_t at) { visit(at); });
 }
 
-}  // namespace haustra::topology
+}  // namespace haustra::segmentation

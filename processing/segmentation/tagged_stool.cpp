@@ -1,11 +1,11 @@
-#include "topology/tagged_stool.h"
+#include "segmentation/tagged_stool.h"
 
-#include "topology/axis_walk.h"
+#include "segmentation/axis_walk.h"
 
 #include <algorithm>
 #include <vector>
 
-namespace haustra::topology {
+namespace haustra::segmentation {
 namespace {
 
 constexpr double largestMl = 30.0;
@@ -117,4 +117,4 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
     }
 }
 
-}  // namespace haustra::topology
+}  // namespace haustra::segmentation

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace haustra::topology {
+namespace haustra::segmentation {
 
 /// Labels as tagged the bodies of tagged material that touch labelled lumen over a good part of
 /// their surface, and the partial volume between them and it. Bone or opacified bowel behind the
@@ -17,4 +17,4 @@ namespace haustra::topology {
 void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
                     const TissueModel& tissue, std::span<const std::uint32_t> excluded = {});
 
-}  // namespace haustra::topology
+}  // namespace haustra::segmentation

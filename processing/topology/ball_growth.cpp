@@ -1,6 +1,6 @@
 #include "topology/ball_growth.h"
 
-#include "topology/simple_point.h"
+#include "core/simple_point.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // A mask of one bit a voxel with a border of zeros, from which neighbourhoods are read fast.
 #pragma once
 
-#include "topology/simple_point.h"
+#include "core/simple_point.h"
 
 #include <bit>
 #include <cstddef>

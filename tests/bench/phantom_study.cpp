@@ -5,12 +5,12 @@
 #include "cleansing/tissue_mixture.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
+#include "segmentation/find_colon.h"
 #include "surface/dual_contouring.h"
 #include "surface/self_intersection.h"
 #include "surface/simplification.h"
 #include "topology/centerline_path.h"
 #include "topology/distance_field.h"
-#include "topology/lumen.h"
 
 #include <algorithm>
 #include <chrono>
@@ -143,9 +143,9 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     const auto tissue = cleansing::fitTissueModel(truth->scan, threads);
     if (!tissue) return tl::make_unexpected(tissue.error());
     study.airBelowHu = tissue->airBelowHu;
-    topology::LumenOptions finding;
+    segmentation::ColonOptions finding;
     finding.threads = threads;
-    const auto segmentation = topology::findLumen(truth->scan, *tissue, finding);
+    const auto segmentation = segmentation::findColon(truth->scan, *tissue, finding);
     if (!segmentation) return tl::make_unexpected(segmentation.error());
     study.segmentationSeconds = watch.lap();
 

@@ -1,6 +1,6 @@
 // Topological numbers against components counted by the definition's letter, voxel by voxel.
 #include "topology/digital_topology.h"
-#include "topology/simple_point.h"
+#include "core/simple_point.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // Tubes with planted handles, islands and gaps: cut where they are thinnest, filled, joined.
 #include "topology/handle_cutting.h"
 
-#include "topology/simple_point.h"
+#include "core/simple_point.h"
 #include "tube_phantom.h"
 
 #include <algorithm>

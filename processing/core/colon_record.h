@@ -1,0 +1,89 @@
+// What the colon was found to be: its pieces in order, what joins them, and how sure that is.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra {
+
+/// Parts of the colon in the order of travel from the anus.
+enum class ColonPart : std::uint8_t {
+    rectum,
+    sigmoid,
+    descending,
+    splenicFlexure,
+    transverse,
+    hepaticFlexure,
+    ascending,
+    cecum
+};
+inline constexpr int colonParts = 8;
+/// "rectum", "splenic flexure" …
+const char* toString(ColonPart part);
+
+/// How the lumen goes on from one piece to the next.
+enum class JunctionKind : std::uint8_t {
+    openLumen,      ///< gas or fluid goes through
+    airFluidLevel,  ///< … across the level between them
+    thinWall,       ///< what looks like a thin wall was taken for a fold or a film
+    collapse,       ///< the lumen is closed; a way through soft tissue was taken
+};
+/// "open lumen", "collapse" …
+const char* toString(JunctionKind kind);
+
+struct ColonPiece {
+    ColonPart part = ColonPart::rectum;
+    glm::dvec3 centreMm{0.0};  ///< patient, LPS: middle of the largest ball inside
+    double radiusMm = 0.0;     ///< of that ball
+    double lengthMm = 0.0;     ///< as a tube of that calibre
+    double gasMl = 0.0, taggedMl = 0.0;
+};
+
+struct ColonJunction {
+    JunctionKind kind = JunctionKind::openLumen;
+    glm::dvec3 placeMm{0.0};
+    double lengthMm = 0.0;    ///< of what is crossed: 0 where the lumen is open
+    double radiusMm = 0.0;    ///< of the largest ball that passes: 0 where it is closed
+    double confidence = 1.0;  ///< share of the likely chains that have it
+};
+
+/// Bowel, or what may be, that is not part of the colon that was found.
+struct LeftOutBody {
+    glm::dvec3 centreMm{0.0};
+    double volumeMl = 0.0;
+    bool gas = true;  ///< mostly gas; else tagged
+    ColonPart nearest = ColonPart::rectum;
+    double distanceMm = 0.0;  ///< from its centre to the nearest piece's centre, less both radii
+    bool opens = false;       ///< a door between it and the colon had to be closed
+};
+
+/// A wall too thin for the scan to show whole, set up again.
+struct RebuiltWallRecord {
+    glm::dvec3 placeMm{0.0};
+    double areaMm2 = 0.0;
+    bool betweenLoops = false;  ///< both sides are the colon's; else other bowel lies behind
+};
+
+/// Another chain that explains the scan nearly as well.
+struct RunnerUp {
+    double probability = 0.0;  ///< beside the one that was taken
+    double addsMl = 0.0, dropsMl = 0.0;
+    glm::dvec3 placeMm{0.0};  ///< middle of the largest piece in which they differ
+};
+
+struct ColonRecord {
+    std::vector<ColonPiece> pieces;        ///< from the rectum on
+    std::vector<ColonJunction> junctions;  ///< one fewer than pieces
+    double confidence = 0.0;           ///< that the chain is right, among those that were weighed
+    std::vector<RunnerUp> runnersUp;   ///< none or one
+    std::vector<LeftOutBody> leftOut;  ///< near the chain, the largest first
+    std::vector<RebuiltWallRecord> walls;
+    double noiseSdHu = 0.0;             ///< in gas
+    std::vector<std::string> warnings;  ///< where a reader must look
+};
+
+}  // namespace haustra

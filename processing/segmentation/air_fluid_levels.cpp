@@ -1,0 +1,232 @@
+#include "segmentation/air_fluid_levels.h"
+
+#include "core/parallel.h"
+#include "segmentation/bowel_contents.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+namespace haustra::segmentation {
+namespace {
+
+constexpr double thickestInterfaceMm = 2.6;  // of partial volume between air and fluid
+constexpr int thinnestLayer = 2;             // voxels of air above, and of fluid below
+constexpr double smallestLevelMm2 = 20.0;
+constexpr double offHeightMm = 0.6;  // of a column from its level
+constexpr double otherFluid = 0.55;  // of a level's fluid's HU over soft tissue
+constexpr double roughestMm = 0.4;   // fluid at rest is flat; a wall is not
+constexpr int deepestSample = 6;     // voxels below the surface that tell the fluid's HU
+
+// Columns of one slice across the third axis, found by walking down each line of the gravity axis.
+std::vector<LevelColumn> columnsOfSlice(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                                        const Volume<std::uint8_t>& content, GravityAxis down,
+                                        int k) {
+    const Grid& grid = hu.grid();
+    const int across = 1 - down.axis;
+    const int length = grid.size[down.axis], width = grid.size[across];
+    const double spacingMm = grid.spacingMm()[down.axis];
+    const int longestGap = int(std::ceil(thickestInterfaceMm / spacingMm));
+    struct State {
+        int airRun = 0, airEnd = -1, gap = 0, fluidRun = 0, fluidBegin = -1;
+        bool armed = false;
+    };
+    std::vector<State> states(static_cast<std::size_t>(width));
+    std::vector<LevelColumn> columns;
+    for (int step = 0; step < length; ++step) {
+        const int at = down.sign > 0 ? step : length - 1 - step;
+        glm::ivec3 v(0, 0, k);
+        v[down.axis] = at;
+        for (int n = 0; n < width; ++n) {
+            v[across] = n;
+            State& s = states[n];
+            const int value = hu.at(v);
+            if (value < tissue.airBelowHu) {
+                s.airRun = s.armed && s.gap == 0 ? s.airRun + 1 : 1;
+                s.armed = true, s.gap = 0, s.fluidRun = 0, s.airEnd = at;
+            } else if (!s.armed) {
+                continue;
+            } else if (value > tissue.taggedAboveHu) {
+                if (s.fluidRun++ == 0) s.fluidBegin = at;
+                if (s.fluidRun < thinnestLayer) continue;
+                s.armed = false;
+                if (s.airRun < thinnestLayer) continue;
+                LevelColumn column{v, v};
+                column.above[down.axis] = s.airEnd;
+                column.below[down.axis] = s.fluidBegin;
+                if (Content(content.at(column.above)) == Content::gas) columns.push_back(column);
+            } else if (s.fluidRun > 0 || ++s.gap > longestGap) {
+                s.armed = false;
+            }
+        }
+    }
+    return columns;
+}
+
+double median(std::vector<double>& values) {
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Where HU first rises above `value` on the way down from a column's gas, in voxels from there.
+double crossing(const Volume<std::int16_t>& hu, const LevelColumn& column, GravityAxis down,
+                double value) {
+    glm::ivec3 v = column.above;
+    double last = hu.at(v);
+    for (int step = 1; step < 12; ++step) {
+        v[down.axis] += down.sign;
+        if (!hu.grid().contains(v)) break;
+        const double here = hu.at(v);
+        if (here > value) return step - 1 + std::clamp((value - last) / (here - last), 0.0, 1.0);
+        last = here;
+    }
+    return 12.0;
+}
+
+/// Median HU of the first voxels of a column's fluid.
+double fluidUnder(const Volume<std::int16_t>& hu, const LevelColumn& column, GravityAxis down,
+                  double taggedAboveHu) {
+    std::vector<double> values;
+    glm::ivec3 v = column.below;
+    for (int depth = 0; depth < deepestSample; ++depth, v[down.axis] += down.sign) {
+        if (!hu.grid().contains(v) || hu.at(v) <= taggedAboveHu) break;
+        if (depth > 0) values.push_back(hu.at(v));
+    }
+    return values.empty() ? double(hu.at(column.below)) : median(values);
+}
+
+/// Height, roughness and step of a level's surface, to a fraction of a voxel; columns of another
+/// height or over another fluid are not its own.
+void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                    GravityAxis down) {
+    const double gas = tissue.meanHu[int(Tissue::air)], soft = tissue.meanHu[int(Tissue::soft)];
+    const double voxelMm = hu.grid().spacingMm()[down.axis];
+    std::vector<double> heights, steps;
+    for (const LevelColumn& c : level.columns) {
+        const double middle = crossing(hu, c, down, 0.5 * (gas + level.fluidHu));
+        heights.push_back(voxelMm * (c.above[down.axis] + down.sign * middle));
+        // From above the gas' own edge: the column's gas ends at that very HU.
+        LevelColumn from = c;
+        from.above[down.axis] -= down.sign;
+        if (!hu.grid().contains(from.above)) continue;
+        steps.push_back(voxelMm * (crossing(hu, from, down, 0.5 * (soft + level.fluidHu)) -
+                                   crossing(hu, from, down, 0.5 * (gas + soft))));
+    }
+    std::vector<double> sorted = heights;
+    level.heightMm = median(sorted);
+    level.stepMm = median(steps);
+    const double mostOffMm = std::max(offHeightMm, 0.5 * voxelMm);
+    const double contrast = level.fluidHu - soft;
+    std::vector<LevelColumn> own;
+    for (std::size_t n = 0; n < heights.size(); ++n) {
+        heights[n] = std::abs(heights[n] - level.heightMm);
+        if (heights[n] > mostOffMm) continue;
+        const double ratio =
+            (fluidUnder(hu, level.columns[n], down, tissue.taggedAboveHu) - soft) / contrast;
+        if (ratio < otherFluid || ratio > 1.0 / otherFluid) continue;
+        own.push_back(level.columns[n]);
+    }
+    level.roughnessMm = median(heights);
+    level.columns = std::move(own);
+}
+
+// The columns of one patch that lie at its commonest height, if they are most of it: a level.
+// A curved wall between gas and an opacified neighbour has no such height.
+void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t>& hu,
+                const TissueModel& tissue, GravityAxis down, double columnMm2,
+                std::vector<Level>& levels) {
+    std::unordered_map<int, int> heights;
+    for (const LevelColumn& c : patch)
+        ++heights[c.below[down.axis]];
+    int mode = 0, most = 0;
+    for (const auto& [height, count] : heights) {
+        const int around = count + (heights.count(height - 1) ? heights.at(height - 1) : 0) +
+                           (heights.count(height + 1) ? heights.at(height + 1) : 0);
+        if (around > most || (around == most && height < mode)) most = around, mode = height;
+    }
+    if (most * columnMm2 < smallestLevelMm2 || most < 0.5 * double(patch.size())) return;
+    Level level;
+    level.height = mode;
+    std::vector<int> samples;
+    for (const LevelColumn& c : patch) {
+        if (std::abs(c.below[down.axis] - mode) > 1) continue;
+        level.columns.push_back(c);
+        glm::ivec3 v = c.below;
+        for (int depth = 0; depth < deepestSample; ++depth, v[down.axis] += down.sign) {
+            if (!hu.grid().contains(v) || hu.at(v) <= tissue.taggedAboveHu) break;
+            if (depth > 0) samples.push_back(hu.at(v));
+        }
+    }
+    if (samples.empty()) return;
+    std::nth_element(samples.begin(), samples.begin() + samples.size() / 2, samples.end());
+    level.fluidHu = samples[samples.size() / 2];
+    measureSurface(level, hu, tissue, down);
+    level.areaMm2 = double(level.columns.size()) * columnMm2;
+    if (level.roughnessMm > roughestMm || level.areaMm2 < smallestLevelMm2) return;
+    levels.push_back(std::move(level));
+}
+
+}  // namespace
+
+std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                              const Volume<std::uint8_t>& content, GravityAxis down, int threads) {
+    const Grid& grid = hu.grid();
+    std::vector<std::vector<LevelColumn>> slices(static_cast<std::size_t>(grid.size.z));
+    parallelFor(slices.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+            slices[k] = columnsOfSlice(hu, tissue, content, down, int(k));
+        }
+    });
+    std::vector<LevelColumn> columns;
+    for (const auto& slice : slices)
+        columns.insert(columns.end(), slice.begin(), slice.end());
+
+    // Patches: neighbours in the horizontal plane (8 of them) whose heights differ by at most one.
+    const int across = 1 - down.axis;
+    const std::size_t width = std::size_t(grid.size[across]);
+    std::unordered_map<std::size_t, std::vector<int>> atPlace;
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+        atPlace[std::size_t(columns[n].below[across]) + width * std::size_t(columns[n].below.z)]
+            .push_back(int(n));
+    }
+    const glm::dvec3 spacing = grid.spacingMm();
+    std::vector<char> visited(columns.size(), 0);
+    std::vector<Level> levels;
+    for (std::size_t seed = 0; seed < columns.size(); ++seed) {
+        if (visited[seed]) continue;
+        std::vector<int> queue{int(seed)};
+        visited[seed] = 1;
+        std::vector<LevelColumn> patch;
+        for (std::size_t head = 0; head < queue.size(); ++head) {
+            const LevelColumn& c = columns[queue[head]];
+            patch.push_back(c);
+            for (int dz = -1; dz <= 1; ++dz) {
+                for (int dn = -1; dn <= 1; ++dn) {
+                    const int n = c.below[across] + dn, z = c.below.z + dz;
+                    if (n < 0 || z < 0 || n >= int(width) || z >= grid.size.z) continue;
+                    const auto found = atPlace.find(std::size_t(n) + width * std::size_t(z));
+                    if (found == atPlace.end()) continue;
+                    for (int other : found->second) {
+                        if (visited[other] ||
+                            std::abs(columns[other].below[down.axis] - c.below[down.axis]) > 1)
+                            continue;
+                        visited[other] = 1;
+                        queue.push_back(other);
+                    }
+                }
+            }
+        }
+        keepIfFlat(patch, hu, tissue, down, spacing[across] * spacing.z, levels);
+    }
+    return levels;
+}
+
+double totalAreaMm2(const std::vector<Level>& levels) {
+    return std::accumulate(levels.begin(), levels.end(), 0.0,
+                           [](double sum, const Level& level) { return sum + level.areaMm2; });
+}
+
+}  // namespace haustra::segmentation

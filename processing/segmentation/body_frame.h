@@ -1,0 +1,28 @@
+// Where in the body a point lies, whoever's body it is.
+#pragma once
+
+#include "segmentation/bowel_contents.h"
+
+#include <glm/glm.hpp>
+
+namespace haustra::segmentation {
+
+/// The trunk as a box. place(p): x from −1 (the patient's right side) to 1 (left), y from −1
+/// (anterior) to 1 (posterior), z from 0 (the lowest bowel) to 1 (the highest).
+struct BodyFrame {
+    glm::dvec3 middleMm{0.0};
+    glm::dvec2 halfMm{150.0, 100.0};  ///< half width and half depth
+    double lowMm = 0.0, highMm = 400.0;
+
+    glm::dvec3 place(glm::dvec3 patientMm) const {
+        return {(patientMm.x - middleMm.x) / halfMm.x, (patientMm.y - middleMm.y) / halfMm.y,
+                (patientMm.z - lowMm) / (highMm - lowMm)};
+    }
+};
+
+/// Width and depth from the soft tissue of all slices (their 2nd and 98th percentiles), so that
+/// table and arms count little; `lowMm` and `highMm` are given.
+BodyFrame findBodyFrame(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
+                        double lowMm, double highMm);
+
+}  // namespace haustra::segmentation

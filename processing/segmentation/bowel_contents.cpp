@@ -1,0 +1,346 @@
+#include "segmentation/bowel_contents.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace haustra::segmentation {
+namespace {
+
+constexpr double cellMm = 4.0;
+constexpr double outsideReachMm = 6.0;
+constexpr double lungAboveGasHu = 60.0, lungBelowHu = -550.0;
+constexpr double smallestLungMl = 50.0;
+
+constexpr std::array<glm::ivec3, 6> faces{
+    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+
+/// The scan in cubes of about 4 mm.
+struct Cells {
+    glm::ivec3 block{1}, size{0};
+    double cellMl = 0.0;
+    std::vector<std::uint8_t> allAir;  ///< every voxel of the cube is below the wall's HU
+    std::vector<float> meanHu;
+
+    std::size_t index(glm::ivec3 c) const {
+        return std::size_t(c.x) +
+               std::size_t(size.x) * (std::size_t(c.y) + std::size_t(size.y) * std::size_t(c.z));
+    }
+    bool contains(glm::ivec3 c) const {
+        return glm::all(glm::greaterThanEqual(c, glm::ivec3(0))) &&
+               glm::all(glm::lessThan(c, size));
+    }
+    std::size_t count() const { return allAir.size(); }
+    glm::ivec3 at(std::size_t n) const {
+        return {int(n % std::size_t(size.x)), int(n / std::size_t(size.x) % std::size_t(size.y)),
+                int(n / std::size_t(size.x) / std::size_t(size.y))};
+    }
+};
+
+Cells makeCells(const Volume<std::int16_t>& hu, double airBelowHu, int threads) {
+    const Grid& grid = hu.grid();
+    Cells cells;
+    cells.block = glm::max(glm::ivec3(1), glm::ivec3(glm::round(cellMm / grid.spacingMm())));
+    cells.size = (grid.size + cells.block - 1) / cells.block;
+    const std::size_t count =
+        std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z);
+    cells.cellMl = grid.voxelVolumeMm3() * cells.block.x * cells.block.y * cells.block.z / 1000.0;
+    cells.allAir.assign(count, 0);
+    cells.meanHu.assign(count, 0.0f);
+    parallelFor(std::size_t(cells.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
+        std::vector<double> sum(std::size_t(cells.size.x));
+        std::vector<int> voxels(sum.size()), high(sum.size());
+        for (std::size_t z = first; z < last; ++z) {
+            for (int y = 0; y < cells.size.y; ++y) {
+                std::fill(sum.begin(), sum.end(), 0.0);
+                std::fill(voxels.begin(), voxels.end(), 0);
+                std::fill(high.begin(), high.end(), -32768);
+                const glm::ivec3 lo = glm::ivec3(0, y, int(z)) * cells.block;
+                const glm::ivec3 hi = glm::min(lo + cells.block, grid.size);
+                for (int k = lo.z; k < hi.z; ++k) {
+                    for (int j = lo.y; j < hi.y; ++j) {
+                        const std::int16_t* row = &hu.voxels()[grid.index(0, j, k)];
+                        for (int i = 0; i < grid.size.x; ++i) {
+                            const std::size_t x = std::size_t(i / cells.block.x);
+                            sum[x] += row[i];
+                            ++voxels[x];
+                            high[x] = std::max(high[x], int(row[i]));
+                        }
+                    }
+                }
+                for (int x = 0; x < cells.size.x; ++x) {
+                    const std::size_t at = cells.index({x, y, int(z)});
+                    cells.meanHu[at] =
+                        float(sum[std::size_t(x)] / std::max(1, voxels[std::size_t(x)]));
+                    cells.allAir[at] = high[std::size_t(x)] < airBelowHu;
+                }
+            }
+        }
+    });
+    return cells;
+}
+
+template <class Accept>
+std::vector<std::uint8_t> flood(const Cells& cells, std::vector<std::size_t> front,
+                                const Accept& accept) {
+    std::vector<std::uint8_t> reached(cells.count(), 0);
+    for (const std::size_t n : front)
+        reached[n] = 1;
+    for (std::size_t head = 0; head < front.size(); ++head) {
+        const glm::ivec3 c = cells.at(front[head]);
+        for (const glm::ivec3 step : faces) {
+            if (!cells.contains(c + step)) continue;
+            const std::size_t next = cells.index(c + step);
+            if (reached[next] || !accept(next)) continue;
+            reached[next] = 1;
+            front.push_back(next);
+        }
+    }
+    return reached;
+}
+
+std::vector<std::uint8_t> outsideCells(const Cells& cells) {
+    std::vector<std::size_t> front;
+    for (std::size_t n = 0; n < cells.count(); ++n) {
+        const glm::ivec3 c = cells.at(n);
+        const bool side =
+            c.x == 0 || c.y == 0 || c.x == cells.size.x - 1 || c.y == cells.size.y - 1;
+        if (side && cells.allAir[n]) front.push_back(n);
+    }
+    return flood(cells, std::move(front), [&](std::size_t n) { return cells.allAir[n] != 0; });
+}
+
+// Cells of a mean HU well above gas, in bodies thicker than the partial volume at a wall.
+std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::uint8_t>& outside,
+                                    double gasHu) {
+    const auto lungLike = [&](std::size_t n) {
+        return !outside[n] && cells.meanHu[n] > gasHu + lungAboveGasHu &&
+               cells.meanHu[n] < lungBelowHu;
+    };
+    std::vector<std::uint8_t> deep(cells.count(), 0), lung(cells.count(), 0);
+    for (std::size_t n = 0; n < cells.count(); ++n) {
+        if (!lungLike(n)) continue;
+        const glm::ivec3 c = cells.at(n);
+        bool inside = true;
+        for (const glm::ivec3 step : faces)
+            inside = inside && cells.contains(c + step) && lungLike(cells.index(c + step));
+        deep[n] = inside;
+    }
+    std::vector<std::uint8_t> seen(cells.count(), 0);
+    for (std::size_t n = 0; n < cells.count(); ++n) {
+        if (!deep[n] || seen[n]) continue;
+        std::vector<std::size_t> body{n};
+        seen[n] = 1;
+        for (std::size_t head = 0; head < body.size(); ++head) {
+            for (const glm::ivec3 step : faces) {
+                const glm::ivec3 c = cells.at(body[head]) + step;
+                if (!cells.contains(c) || !deep[cells.index(c)] || seen[cells.index(c)]) continue;
+                seen[cells.index(c)] = 1;
+                body.push_back(cells.index(c));
+            }
+        }
+        if (double(body.size()) * cells.cellMl < smallestLungMl) continue;
+        for (const std::size_t m : body)
+            lung[m] = 1;
+    }
+    // Back out by what the erosion took.
+    std::vector<std::uint8_t> grown = lung;
+    for (std::size_t n = 0; n < cells.count(); ++n) {
+        if (lung[n] || !lungLike(n)) continue;
+        const glm::ivec3 c = cells.at(n);
+        for (const glm::ivec3 step : faces)
+            grown[n] = grown[n] || (cells.contains(c + step) && lung[cells.index(c + step)]);
+    }
+    return grown;
+}
+
+/// Gas from the outside cells on, as far as the outside reaches into narrower places.
+void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
+             const std::vector<std::uint8_t>& outside) {
+    const Grid& grid = content.grid();
+    const auto voxels = content.writable();
+    std::vector<std::uint32_t> front;
+    for (int k = 0; k < grid.size.z; ++k) {
+        for (int j = 0; j < grid.size.y; ++j) {
+            for (int i = 0; i < grid.size.x; ++i) {
+                const glm::ivec3 v(i, j, k);
+                if (Content(voxels[grid.index(v)]) != Content::gas) continue;
+                bool near = i == 0 || j == 0 || i == grid.size.x - 1 || j == grid.size.y - 1;
+                for (const glm::ivec3 step : faces) {
+                    if (near) break;
+                    near =
+                        grid.contains(v + step) && outside[cells.index((v + step) / cells.block)];
+                }
+                if (near) front.push_back(std::uint32_t(grid.index(v)));
+            }
+        }
+    }
+    for (const std::uint32_t n : front)
+        voxels[n] = std::uint8_t(Content::outside);
+    const glm::dvec3 spacing = grid.spacingMm();
+    const int steps =
+        std::max(1, int(std::lround(outsideReachMm / std::max({spacing.x, spacing.y, spacing.z}))));
+    std::size_t begin = 0;
+    for (int step = 0; step < steps; ++step) {
+        const std::size_t end = front.size();
+        for (std::size_t head = begin; head < end; ++head) {
+            const glm::ivec3 v = grid.voxelAt(front[head]);
+            for (const glm::ivec3 face : faces) {
+                if (!grid.contains(v + face)) continue;
+                const std::size_t next = grid.index(v + face);
+                if (Content(voxels[next]) != Content::gas) continue;
+                voxels[next] = std::uint8_t(Content::outside);
+                front.push_back(std::uint32_t(next));
+            }
+        }
+        begin = end;
+    }
+}
+
+// The grid axis and sign along which a patient direction points most.
+GravityAxis axisOf(const Grid& grid, glm::dvec3 gravity) {
+    GravityAxis down;
+    double best = -1.0;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double along =
+            glm::dot(glm::normalize(glm::dvec3(grid.patientFromVoxel[axis])), gravity);
+        if (std::abs(along) > best) best = std::abs(along), down = {axis, along < 0.0 ? -1 : 1};
+    }
+    return down;
+}
+
+const char* lyingName(glm::dvec3 gravity) {
+    if (gravity.y > 0.0) return "supine";
+    if (gravity.y < 0.0) return "prone";
+    return gravity.x > 0.0 ? "on the left side" : "on the right side";
+}
+
+// The patient position says which way is down; the levels must agree, and overrule it where they
+// clearly do not.
+void findGravity(const CtScan& scan, const TissueModel& tissue, int threads,
+                 BowelContents& contents) {
+    constexpr double clearMm2 = 400.0, clearRatio = 3.0;
+    const glm::dvec3 told = gravityDirection(scan.position);
+    const bool known = glm::length(told) > 0.0;
+    const std::array<glm::dvec3, 4> directions{{{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}}};
+    std::array<std::vector<Level>, 4> levels;
+    std::array<double, 4> areaMm2{};
+    std::size_t best = 0, toldIndex = 0;
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+        levels[n] = findLevels(scan.hu, tissue, contents.content,
+                               axisOf(scan.hu.grid(), directions[n]), threads);
+        areaMm2[n] = totalAreaMm2(levels[n]);
+        if (areaMm2[n] > areaMm2[best]) best = n;
+        if (known && glm::dot(directions[n], told) > 0.5) toldIndex = n;
+    }
+    if (known && best != toldIndex) {
+        if (areaMm2[best] > clearMm2 && areaMm2[best] > clearRatio * areaMm2[toldIndex]) {
+            contents.notes.push_back(
+                std::string("the air-fluid levels show that the patient lay ") +
+                lyingName(directions[best]) + ", not " + toString(scan.position) +
+                " as the series says; the levels are believed");
+        } else {
+            best = toldIndex;
+        }
+    }
+    if (!known && areaMm2[best] > 0.0) {
+        contents.notes.push_back(
+            std::string(
+                "patient position unknown; the air-fluid levels show that the patient lay ") +
+            lyingName(directions[best]));
+    }
+    contents.gravity = directions[best];
+    contents.down = axisOf(scan.hu.grid(), directions[best]);
+    contents.levels = std::move(levels[best]);
+}
+
+void markInterfaces(BowelContents& contents) {
+    const Grid& grid = contents.content.grid();
+    const auto voxels = contents.content.writable();
+    const GravityAxis down = contents.down;
+    for (const Level& level : contents.levels) {
+        for (const LevelColumn& column : level.columns) {
+            for (glm::ivec3 v = column.above;; v[down.axis] += down.sign) {
+                voxels[grid.index(v)] = std::uint8_t(Content::interface);
+                if (v == column.below) break;
+            }
+        }
+    }
+}
+
+// Mean and sd of gas where all neighbours are gas too.
+void measureGas(const Volume<std::int16_t>& hu, BowelContents& contents, int threads) {
+    const Grid& grid = hu.grid();
+    std::vector<std::array<double, 3>> sums(std::size_t(grid.size.z), {0.0, 0.0, 0.0});
+    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
+                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
+    parallelFor(sums.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = std::max<std::size_t>(2, first);
+             k < std::min(last, std::size_t(std::max(2, grid.size.z - 2))); ++k) {
+            for (int j = 2; j < grid.size.y - 2; ++j) {
+                for (int i = 2; i < grid.size.x - 2; ++i) {
+                    const std::size_t n = grid.index(i, j, int(k));
+                    bool deep = Content(contents.content[n]) == Content::gas;
+                    for (int axis = 0; axis < 3 && deep; ++axis) {
+                        deep = Content(contents.content[n - 2 * strides[axis]]) == Content::gas &&
+                               Content(contents.content[n + 2 * strides[axis]]) == Content::gas;
+                    }
+                    if (!deep) continue;
+                    const double value = hu[n];
+                    sums[k][0] += 1.0, sums[k][1] += value, sums[k][2] += value * value;
+                }
+            }
+        }
+    });
+    std::array<double, 3> all{};
+    for (const auto& sum : sums) {
+        for (std::size_t n = 0; n < 3; ++n)
+            all[n] += sum[n];
+    }
+    if (all[0] < 100.0) return;
+    contents.gasHu = all[1] / all[0];
+    contents.gasSdHu = std::sqrt(std::max(0.0, all[2] / all[0] - contents.gasHu * contents.gasHu));
+}
+
+}  // namespace
+
+BowelContents findContents(const CtScan& scan, const TissueModel& tissue, int threads) {
+    const Grid& grid = scan.hu.grid();
+    const Cells cells = makeCells(scan.hu, tissue.airBelowHu, threads);
+    const std::vector<std::uint8_t> outside = outsideCells(cells);
+    const std::vector<std::uint8_t> lung =
+        lungCells(cells, outside, tissue.meanHu[int(Tissue::air)]);
+    BowelContents contents;
+    contents.content = Volume<std::uint8_t>(grid);
+    const auto voxels = contents.content.writable();
+    parallelFor(std::size_t(grid.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                const std::size_t row = grid.index(0, j, int(k));
+                for (int i = 0; i < grid.size.x; ++i) {
+                    const int value = scan.hu[row + std::size_t(i)];
+                    Content content = Content::tissue;
+                    if (value < tissue.airBelowHu) {
+                        const std::size_t cell =
+                            cells.index(glm::ivec3(i, j, int(k)) / cells.block);
+                        content = outside[cell] ? Content::outside
+                                  : lung[cell]  ? Content::lung
+                                                : Content::gas;
+                    } else if (value > tissue.taggedAboveHu) {
+                        content = Content::tagged;
+                    }
+                    voxels[row + std::size_t(i)] = std::uint8_t(content);
+                }
+            }
+        }
+    });
+    reachIn(contents.content, cells, outside);
+    measureGas(scan.hu, contents, threads);
+    findGravity(scan, tissue, threads, contents);
+    markInterfaces(contents);
+    return contents;
+}
+
+}  // namespace haustra::segmentation

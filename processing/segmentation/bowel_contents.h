@@ -1,0 +1,40 @@
+// What may be in the bowel: gas, tagged fluid and stool, and the levels between them.
+#pragma once
+
+#include "core/ct_scan.h"
+#include "core/tissue.h"
+#include "segmentation/air_fluid_levels.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haustra::segmentation {
+
+/// One byte a voxel.
+enum class Content : std::uint8_t {
+    tissue = 0,
+    gas,        ///< in the body, and no lung
+    tagged,     ///< tagged fluid or stool, contrast, or bone
+    interface,  ///< at an air–fluid level: partial volume, and the last voxels of gas and fluid
+    outside,    ///< the room's air
+    lung,
+};
+
+struct BowelContents {
+    Volume<std::uint8_t> content;  ///< Content
+    std::vector<Level> levels;
+    GravityAxis down;
+    glm::dvec3 gravity{0.0};  ///< unit, LPS: as the levels show it
+    double gasHu = -1000.0, gasSdHu = 0.0;
+    std::vector<std::string> notes;
+};
+
+/// Sorts the voxels of a scan by HU and place. The room's air is what can be reached from the
+/// scan's sides through places where a cube of 4 mm fits, and 6 mm more: so a tube in the rectum,
+/// open to the room, does not make the colon a part of it. Lung is air of a mean HU more than 60
+/// above gas in cubes of 4 mm, where such cubes lie three deep. Levels as of findLevels, for the
+/// direction of gravity that shows most of them; a note says where that is not the told one.
+BowelContents findContents(const CtScan& scan, const TissueModel& tissue, int threads);
+
+}  // namespace haustra::segmentation

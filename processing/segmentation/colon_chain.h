@@ -1,0 +1,56 @@
+// Which pieces of bowel are the colon: the best chain from the rectum to the cecum.
+#pragma once
+
+#include "core/colon_record.h"
+
+#include <array>
+#include <vector>
+
+namespace haustra::segmentation {
+
+/// A piece of bowel as the search sees it.
+struct ChainNode {
+    double lengthMm = 0.0;  ///< volume over the inscribed circle's area
+    double radiusMm = 0.0;  ///< of the largest ball inside
+    double volumeMl = 0.0;
+    glm::dvec3 centreMm{0.0};
+    std::array<double, colonParts>
+        placeLogOdds{};          ///< of lying where that part does, mean over the piece
+    double rectumLogOdds = 0.0;  ///< of beginning at the anus: its lowest end's place
+    double given = 0.0;  ///< what a person said, as log-odds: far above 0 for colon, below for none
+};
+
+/// Two pieces that may be joined, and how much speaks for it.
+struct ChainJunction {
+    int a = 0, b = 0;
+    JunctionKind kind = JunctionKind::openLumen;
+    double logOdds = 0.0;   ///< ln P(lumen passes) / P(it does not)
+    double lengthMm = 0.0;  ///< of a collapse
+    double radiusMm = 0.0, openMm2 = 0.0, wallMm2 = 0.0;
+    glm::dvec3 placeMm{0.0};
+    int path = -1;  ///< index of the collapse's path, or else of the orifice
+};
+
+struct ChainGraph {
+    std::vector<ChainNode> nodes;
+    std::vector<ChainJunction> junctions;
+};
+
+struct ColonChain {
+    std::vector<int> nodes;      ///< from the rectum on
+    std::vector<int> junctions;  ///< between one node and the next
+    std::vector<int> states;     ///< of each node, a ColonPart
+    std::vector<int> sacs;       ///< side pieces that belong to the lumen
+    std::vector<int> cuts;       ///< open junctions that have to be closed
+    double score = 0.0;
+};
+
+struct ChainOptions {
+    std::size_t labelsPerPlace = 24;
+    std::size_t chains = 2;  ///< how many that differ are wanted
+};
+
+/// The best chains, the best first.
+std::vector<ColonChain> findChains(const ChainGraph& graph, const ChainOptions& options = {});
+
+}  // namespace haustra::segmentation

@@ -1,0 +1,525 @@
+#include "segmentation/colon_labels.h"
+
+#include "core/connected_labels.h"
+#include "core/ct_scan.h"
+#include "segmentation/tagged_stool.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+
+namespace haustra::segmentation {
+namespace {
+
+constexpr std::uint8_t outside = std::uint8_t(LumenLabel::outside),
+                       air = std::uint8_t(LumenLabel::air),
+                       tagged = std::uint8_t(LumenLabel::tagged),
+                       bridge = std::uint8_t(LumenLabel::bridge);
+
+template <class Visit>
+void visitFaces(const Grid& grid, std::size_t n, const Visit& visit) {
+    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
+                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
+    const glm::ivec3 v = grid.voxelAt(n);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (v[axis] > 0) visit(n - strides[axis], axis);
+        if (v[axis] + 1 < grid.size[axis]) visit(n + strides[axis], axis);
+    }
+}
+
+class Labelling {
+public:
+    Labelling(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+              const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
+              const ColonChain& chain)
+        : hu_(hu),
+          grid_(hu.grid()),
+          tissue_(tissue),
+          contents_(contents),
+          cut_(cut),
+          graph_(graph),
+          chain_(chain),
+          softHu_(tissue.meanHu[int(Tissue::soft)]),
+          kept_(cut.pieces.size(), 0),
+          barred_(hu.voxels().size(), false) {
+        result_.labels = Volume<std::uint8_t>(grid_, outside);
+        labels_ = result_.labels.writable();
+    }
+
+    ColonLabels run(double bridgeRadiusMm) {
+        keepPieces();
+        openDoors();
+        label();
+        closeDoors();
+        fillInterfaces();
+        fitToHalfHeight();
+        takeCrumbs();
+        layBridges(bridgeRadiusMm);
+        joinUp();
+        return std::move(result_);
+    }
+
+private:
+    std::int32_t pieceOf(int node) const { return graph_.pieceOf[std::size_t(node)]; }
+
+    void keepPieces() {
+        for (const int n : chain_.nodes)
+            kept_[std::size_t(pieceOf(n))] = 1;
+        for (const int n : chain_.sacs)
+            kept_[std::size_t(pieceOf(n))] = 1;
+    }
+    bool isKept(std::int32_t piece) const { return piece >= 0 && kept_[std::size_t(piece)]; }
+
+    // Doors between kept pieces: those of the chain and of its sacs are open; of the others the
+    // ways that lead to their two sides tell.
+    void openDoors() {
+        std::set<std::int32_t> sacs;
+        for (const int n : chain_.sacs)
+            sacs.insert(pieceOf(n));
+        std::set<int> passed;
+        for (const int j : chain_.junctions) {
+            const ChainJunction& junction = graph_.graph.junctions[std::size_t(j)];
+            if (junction.kind != JunctionKind::collapse) passed.insert(junction.path);
+        }
+        for (const int j : chain_.cuts)
+            cuts_.insert(graph_.graph.junctions[std::size_t(j)].path);
+        open_.assign(cut_.orifices.size(), 0);
+        for (std::size_t o = 0; o < cut_.orifices.size(); ++o) {
+            const Orifice& orifice = cut_.orifices[o];
+            if (!isKept(orifice.a) || !isKept(orifice.b)) continue;
+            inner_.push_back(int(o));
+            const bool ofSac = sacs.count(orifice.a) || sacs.count(orifice.b);
+            open_[o] =
+                passed.count(int(o)) || (ofSac && orifice.openMm2 > 0.0 && !cuts_.count(int(o)));
+            for (const std::uint32_t n : orifice.voxels)
+                faces_.emplace_back(n, int(o));
+        }
+        std::sort(faces_.begin(), faces_.end());
+        const std::vector<float> way = waysFromRectum();
+        for (const int o : inner_) {
+            if (open_[std::size_t(o)] || cuts_.count(o)) continue;
+            open_[std::size_t(o)] = leadsAroundANeck(o, way);
+        }
+    }
+
+    // The orifice of the face between voxels n and m of pieces a and b; −1: none that is known.
+    int orificeAt(std::size_t n, std::size_t m) const {
+        const std::uint32_t first = std::uint32_t(std::min(n, m));
+        const std::int32_t a = std::min(cut_.pieceAt[n], cut_.pieceAt[m]),
+                           b = std::max(cut_.pieceAt[n], cut_.pieceAt[m]);
+        for (auto at = std::lower_bound(faces_.begin(), faces_.end(), std::pair(first, -1));
+             at != faces_.end() && at->first == first; ++at) {
+            if (cut_.orifices[std::size_t(at->second)].a == a &&
+                cut_.orifices[std::size_t(at->second)].b == b)
+                return at->second;
+        }
+        return -1;
+    }
+
+    // Shortest ways (face to face, mm) from the chain's beginning within its pieces and through
+    // open doors; what no such way reaches goes on from a collapse. One value for each voxel of a
+    // kept piece; unreached ones have −1.
+    std::vector<float> waysFromRectum() const {
+        constexpr float tickMm = 0.25f;
+        std::vector<float> way(hu_.voxels().size(), -1.0f);
+        const glm::dvec3 spacing = grid_.spacingMm();
+        const std::size_t buckets =
+            std::size_t(std::max({spacing.x, spacing.y, spacing.z}) / tickMm) + 2;
+        std::vector<std::vector<std::pair<float, std::uint32_t>>> front(buckets);
+        float from = 0.0f;
+        const auto spreadFrom = [&](std::uint32_t seed) {
+            float most = from;
+            std::size_t waiting = 1;
+            front[std::size_t(from / tickMm) % buckets].emplace_back(from, seed);
+            for (std::size_t tick = std::size_t(from / tickMm); waiting > 0; ++tick) {
+                auto& now = front[tick % buckets];
+                for (std::size_t head = 0; head < now.size(); ++head) {
+                    const auto [mm, n] = now[head];
+                    --waiting;
+                    if (way[n] >= 0.0f && way[n] <= mm) continue;
+                    way[n] = mm;
+                    most = std::max(most, mm);
+                    visitFaces(grid_, n, [&](std::size_t m, int axis) {
+                        if (!isKept(cut_.pieceAt[m])) return;
+                        const float there = mm + float(spacing[axis]);
+                        if (way[m] >= 0.0f && way[m] <= there) return;
+                        if (cut_.pieceAt[m] != cut_.pieceAt[n]) {
+                            const int o = orificeAt(n, m);
+                            if (o < 0 || !open_[std::size_t(o)]) return;
+                        }
+                        front[std::size_t(there / tickMm) % buckets].emplace_back(there,
+                                                                                  std::uint32_t(m));
+                        ++waiting;
+                    });
+                }
+                now.clear();
+            }
+            from = most + 1.0f;
+        };
+        for (std::size_t step = 0; step < chain_.nodes.size(); ++step) {
+            const TubePiece& piece = cut_.pieces[std::size_t(pieceOf(chain_.nodes[step]))];
+            const std::uint32_t seed = std::uint32_t(
+                grid_.index(step == 0 ? lowestVoxel(pieceOf(chain_.nodes[0])) : piece.centre));
+            if (way[seed] < 0.0f) spreadFrom(seed);
+        }
+        return way;
+    }
+    glm::ivec3 lowestVoxel(std::int32_t piece) const {
+        glm::ivec3 lowest = cut_.pieces[std::size_t(piece)].centre;
+        double lowestMm = 1e9;
+        for (std::size_t n = 0; n < cut_.pieceAt.voxels().size(); ++n) {
+            if (cut_.pieceAt[n] != piece) continue;
+            const double z = grid_.patientFromVoxelPoint(grid_.voxelAt(n)).z;
+            if (z < lowestMm) lowestMm = z, lowest = grid_.voxelAt(n);
+        }
+        return lowest;
+    }
+
+    template <class Visit>
+    void visitFacesOf(int o, const Visit& visit) const {
+        const Orifice& orifice = cut_.orifices[std::size_t(o)];
+        const std::size_t strides[3] = {1, std::size_t(grid_.size.x),
+                                        std::size_t(grid_.size.x) * std::size_t(grid_.size.y)};
+        for (const std::uint32_t n : orifice.voxels) {
+            const glm::ivec3 v = grid_.voxelAt(n);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (v[axis] + 1 >= grid_.size[axis]) continue;
+                const std::size_t m = n + strides[axis];
+                if (std::min(cut_.pieceAt[n], cut_.pieceAt[m]) == orifice.a &&
+                    std::max(cut_.pieceAt[n], cut_.pieceAt[m]) == orifice.b)
+                    visit(std::size_t(n), m, axis);
+            }
+        }
+    }
+
+    // Around a neck, ways along faces differ by no more than the lumen's width and some; between
+    // two loops that touch, by the loop.
+    bool leadsAroundANeck(int o, const std::vector<float>& way) const {
+        const Orifice& orifice = cut_.orifices[std::size_t(o)];
+        double sum = 0.0;
+        std::size_t count = 0;
+        visitFacesOf(o, [&](std::size_t n, std::size_t m, int) {
+            if (way[n] < 0.0f || way[m] < 0.0f) return;
+            sum += std::abs(double(way[n]) - double(way[m])), ++count;
+        });
+        if (count == 0) return false;
+        const double widest = std::max(cut_.pieces[std::size_t(orifice.a)].radiusMm,
+                                       cut_.pieces[std::size_t(orifice.b)].radiusMm);
+        return sum / double(count) < 2.5 * widest + 5.0;
+    }
+
+    void label() {
+        for (std::size_t n = 0; n < labels_.size(); ++n) {
+            if (!isKept(cut_.pieceAt[n])) continue;
+            const bool gas = Content(contents_.content[n]) == Content::gas ||
+                             (Content(contents_.content[n]) == Content::interface &&
+                              hu_[n] < tissue_.airBelowHu);
+            labels_[n] = gas ? air : tagged;
+        }
+    }
+
+    double unlikeSoft(std::size_t n) const { return std::abs(hu_[n] - softHu_); }
+
+    void closeDoors() {
+        for (std::size_t o = 0; o < cut_.orifices.size(); ++o) {
+            const Orifice& orifice = cut_.orifices[o];
+            const bool a = isKept(orifice.a), b = isKept(orifice.b);
+            if ((!a && !b) || open_[o]) continue;
+            // What is small and no bowel of its own may yet be a crumb of the lumen.
+            if (a != b && graph_.nodeOf[std::size_t(a ? orifice.b : orifice.a)] < 0) continue;
+            double areaMm2 = 0.0;
+            visitFacesOf(int(o), [&](std::size_t n, std::size_t m, int axis) {
+                if (orificeAt(n, m) >= 0 && orificeAt(n, m) != int(o)) return;
+                const std::size_t wall = unlikeSoft(n) <= unlikeSoft(m) ? n : m;
+                labels_[wall] = outside, barred_[wall] = true;
+                areaMm2 += grid_.voxelVolumeMm3() / grid_.spacingMm()[axis];
+            });
+            if (orifice.openMm2 > 0.0)
+                result_.walls.push_back({orifice.placeMm, areaMm2, orifice.radiusMm, a && b});
+        }
+    }
+
+    // Between gas and the tagged material straight beneath: partial volume, and the menisci at a
+    // level's rim. Elsewhere a thin wall looks the same.
+    void fillInterfaces() {
+        constexpr double rimMm = 1.5, nearMm = 3.0;
+        const glm::dvec3 spacing = grid_.spacingMm();
+        const GravityAxis down = contents_.down;
+        const int side = 1 - down.axis;
+        const auto voxels = [&](double mm, int axis) {
+            return std::max(1, int(std::lround(mm / spacing[axis])));
+        };
+        const int rimAside = voxels(rimMm, side), rimAlong = voxels(rimMm, 2),
+                  near = voxels(nearMm, down.axis) + 1;
+        std::vector<std::size_t> between;
+        for (const Level& level : contents_.levels) {
+            for (const LevelColumn& column : level.columns) {
+                if (labels_[grid_.index(column.below)] == outside &&
+                    labels_[grid_.index(column.above)] == outside)
+                    continue;
+                for (int dz = -rimAlong; dz <= rimAlong; ++dz) {
+                    for (int dn = -rimAside; dn <= rimAside; ++dn) {
+                        glm::ivec3 v = column.below;
+                        v[side] += dn, v.z += dz, v[down.axis] -= near * down.sign;
+                        between.clear();
+                        bool underAir = false;
+                        for (int step = 0; step < 2 * near; ++step, v[down.axis] += down.sign) {
+                            if (!grid_.contains(v)) break;
+                            const std::size_t n = grid_.index(v);
+                            if (labels_[n] == air) {
+                                underAir = true, between.clear();
+                            } else if (labels_[n] == tagged) {
+                                if (underAir && int(between.size()) < near) {
+                                    for (const std::size_t gap : between)
+                                        labels_[gap] = tagged;
+                                }
+                                break;
+                            } else if (barred_[n] ||
+                                       (cut_.pieceAt[n] >= 0 &&
+                                        graph_.nodeOf[std::size_t(cut_.pieceAt[n])] >= 0)) {
+                                break;
+                            } else if (underAir) {
+                                between.push_back(n);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    // Tagged material ends where the HU are half-way between it and soft tissue: its own, as it is
+    // not equally bright everywhere. One layer of voxels at a time, off or on.
+    void fitToHalfHeight() {
+        constexpr double layersMm = 1.6;
+        std::vector<std::uint32_t> front;
+        for (std::size_t n = 0; n < labels_.size(); ++n) {
+            if (labels_[n] != tagged || Content(contents_.content[n]) == Content::interface)
+                continue;
+            bool edge = false;
+            visitFaces(grid_, n, [&](std::size_t m, int) { edge = edge || labels_[m] == outside; });
+            if (edge) front.push_back(std::uint32_t(n));
+        }
+        const int layers = std::max(1, int(std::lround(layersMm / grid_.spacingMm().x)));
+        const std::vector<std::uint32_t> rim = front;
+        for (int layer = 0; layer < layers && !front.empty(); ++layer) {
+            std::vector<std::uint32_t> off;
+            for (const std::uint32_t n : front) {
+                bool byAir = false;
+                visitFaces(grid_, n,
+                           [&](std::size_t m, int) { byAir = byAir || labels_[m] == air; });
+                if (!byAir && hu_[n] < halfHeightAt(n)) off.push_back(n);
+            }
+            front.clear();
+            for (const std::uint32_t n : off)
+                labels_[n] = outside;
+            for (const std::uint32_t n : off) {
+                visitFaces(grid_, n, [&](std::size_t m, int) {
+                    if (labels_[m] == tagged && Content(contents_.content[m]) != Content::interface)
+                        front.push_back(std::uint32_t(m));
+                });
+            }
+            std::sort(front.begin(), front.end());
+            front.erase(std::unique(front.begin(), front.end()), front.end());
+        }
+        front = rim;
+        for (int layer = 0; layer < layers && !front.empty(); ++layer) {
+            std::vector<std::uint32_t> on;
+            for (const std::uint32_t n : front) {
+                if (labels_[n] != tagged) continue;
+                visitFaces(grid_, n, [&](std::size_t m, int) {
+                    if (labels_[m] == outside && !barred_[m] &&
+                        Content(contents_.content[m]) == Content::tissue &&
+                        hu_[m] > halfHeightAt(n) && !besideOthers(m))
+                        on.push_back(std::uint32_t(m));
+                });
+            }
+            std::sort(on.begin(), on.end());
+            on.erase(std::unique(on.begin(), on.end()), on.end());
+            for (const std::uint32_t n : on)
+                labels_[n] = tagged;
+            front = std::move(on);
+        }
+    }
+    // By the brightest tagged voxel within 3 mm.
+    double halfHeightAt(std::size_t n) const {
+        constexpr double reachMm = 3.0;
+        const glm::ivec3 v = grid_.voxelAt(n);
+        const glm::ivec3 reach(reachMm / grid_.spacingMm());
+        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
+                         hi = glm::min(v + reach, grid_.size - 1);
+        int most = -1024;
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (std::size_t m = grid_.index(lo.x, j, k), end = grid_.index(hi.x, j, k);
+                     m <= end; ++m) {
+                    if (labels_[m] == tagged) most = std::max<int>(most, hu_[m]);
+                }
+            }
+        }
+        return 0.5 * (softHu_ + most);
+    }
+    bool besideOthers(std::size_t n) const {
+        bool beside = false;
+        visitFaces(grid_, n, [&](std::size_t m, int) {
+            const std::int32_t p = cut_.pieceAt[m];
+            beside = beside || barred_[m] ||
+                     (p >= 0 && !isKept(p) && graph_.nodeOf[std::size_t(p)] >= 0);
+        });
+        return beside;
+    }
+
+    // Pieces that are no bowel of their own, open to the lumen more than to anything else; and
+    // tagged stool in its gas.
+    void takeCrumbs() {
+        std::map<std::int32_t, std::pair<double, double>>
+            contactMm2;  // to the lumen, to other bowel
+        for (const Orifice& orifice : cut_.orifices) {
+            for (const auto& [crumb, other] :
+                 {std::pair(orifice.a, orifice.b), std::pair(orifice.b, orifice.a)}) {
+                if (isKept(crumb) || graph_.nodeOf[std::size_t(crumb)] >= 0) continue;
+                if (!cut_.pieces[std::size_t(crumb)].mostlyGas()) continue;
+                if (isKept(other))
+                    contactMm2[crumb].first += orifice.openMm2;
+                else if (graph_.nodeOf[std::size_t(other)] >= 0)
+                    contactMm2[crumb].second += orifice.openMm2;
+            }
+        }
+        std::set<std::int32_t> taken;
+        for (const auto& [crumb, mm2] : contactMm2) {
+            constexpr double largestMl = 1.0;
+            const TubePiece& piece = cut_.pieces[std::size_t(crumb)];
+            if (mm2.first > 3.0 * mm2.second && mm2.first > 0.05 * piece.surfaceMm2 &&
+                piece.volumeMl < largestMl && piece.excludedAirMm2 == 0.0)
+                taken.insert(crumb);
+        }
+        std::vector<std::uint32_t> barredVoxels;
+        for (std::size_t n = 0; n < labels_.size(); ++n) {
+            const std::int32_t p = cut_.pieceAt[n];
+            if (p >= 0 && labels_[n] == outside && !barred_[n] && taken.count(p))
+                labels_[n] = hu_[n] < tissue_.airBelowHu ? air : tagged;
+            if (barred_[n] || (p >= 0 && !isKept(p) && graph_.nodeOf[std::size_t(p)] >= 0))
+                barredVoxels.push_back(std::uint32_t(n));
+        }
+        addTaggedStool(result_.labels, hu_, tissue_, barredVoxels);
+        labels_ = result_.labels.writable();
+    }
+
+    // The voxel of a labelled piece nearest to a point.
+    std::optional<glm::ivec3> nearestOf(std::int32_t piece, glm::dvec3 pointMm) const {
+        constexpr double reachMm = 12.0;
+        const glm::ivec3 centre(glm::round(grid_.voxelFromPatientPoint(pointMm)));
+        const glm::ivec3 reach = glm::ivec3(reachMm / grid_.spacingMm()) + 1;
+        const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)),
+                         hi = glm::min(centre + reach, grid_.size - 1);
+        std::optional<glm::ivec3> nearest;
+        double nearestMm = 1e9;
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (int i = lo.x; i <= hi.x; ++i) {
+                    const std::size_t n = grid_.index(i, j, k);
+                    if (cut_.pieceAt[n] != piece || labels_[n] == outside || labels_[n] == bridge)
+                        continue;
+                    const double mm =
+                        glm::distance(grid_.patientFromVoxelPoint(glm::dvec3(i, j, k)), pointMm);
+                    if (mm < nearestMm) nearestMm = mm, nearest = glm::ivec3(i, j, k);
+                }
+            }
+        }
+        return nearest;
+    }
+
+    void layBridges(double radiusMm) {
+        result_.bridgeMm.assign(chain_.junctions.size(), 0.0);
+        for (std::size_t step = 0; step < chain_.junctions.size(); ++step) {
+            const ChainJunction& junction =
+                graph_.graph.junctions[std::size_t(chain_.junctions[step])];
+            if (junction.kind != JunctionKind::collapse) continue;
+            const CollapsePath& path = graph_.collapses[std::size_t(junction.path)];
+            const auto from = nearestOf(path.from, path.pointsMm.front()),
+                       to = nearestOf(path.to, path.pointsMm.back());
+            if (!from || !to) continue;  // joinUp tells
+            std::vector<glm::ivec3> corners{*from};
+            for (const glm::dvec3 p : path.pointsMm)
+                corners.push_back(glm::ivec3(glm::round(grid_.voxelFromPatientPoint(p))));
+            corners.push_back(*to);
+            for (std::size_t n = 1; n < corners.size(); ++n)
+                result_.bridgeMm[step] += layStraight(corners[n - 1], corners[n], radiusMm);
+        }
+    }
+    // Returns the length outside the lumen.
+    double layStraight(glm::ivec3 from, glm::ivec3 to, double radiusMm) {
+        const glm::dvec3 spacing = grid_.spacingMm(), line = spacing * glm::dvec3(to - from);
+        const int steps = std::max(1, int(std::ceil(glm::length(line) / 0.2)));
+        glm::ivec3 at = from;
+        double crossedMm = 0.0;
+        for (int s = 0; s <= steps; ++s) {
+            const glm::ivec3 next(
+                glm::round(glm::mix(glm::dvec3(from), glm::dvec3(to), double(s) / steps)));
+            while (at != next) {  // face to face
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (at[axis] == next[axis]) continue;
+                    at[axis] += next[axis] > at[axis] ? 1 : -1;
+                    setBridge(at, true);
+                }
+            }
+            setBridge(at, true);
+            if (labels_[grid_.index(at)] == bridge) crossedMm += glm::length(line) / steps;
+            const glm::ivec3 reach(radiusMm / spacing);
+            for (int k = -reach.z; k <= reach.z; ++k) {
+                for (int j = -reach.y; j <= reach.y; ++j) {
+                    for (int i = -reach.x; i <= reach.x; ++i) {
+                        if (glm::length(spacing * glm::dvec3(i, j, k)) <= radiusMm)
+                            setBridge(at + glm::ivec3(i, j, k), false);
+                    }
+                }
+            }
+        }
+        return crossedMm;
+    }
+    void setBridge(glm::ivec3 v, bool middle) {
+        if (!grid_.contains(v)) return;
+        const std::size_t n = grid_.index(v);
+        if (labels_[n] != outside) return;
+        if (!middle && (barred_[n] || Content(contents_.content[n]) != Content::tissue)) return;
+        labels_[n] = bridge;
+    }
+
+    // What the labels' fitting has parted is joined again through the pieces as they were cut.
+    void joinUp() {
+        result_.strandedMl = joinBodies(
+            result_.labels, [&](std::size_t n) { return isKept(cut_.pieceAt[n]) && !barred_[n]; },
+            [&](std::size_t n) { return hu_[n] < tissue_.airBelowHu ? air : tagged; });
+    }
+
+    const Volume<std::int16_t>& hu_;
+    const Grid grid_;
+    const TissueModel& tissue_;
+    const BowelContents& contents_;
+    const TubePieces& cut_;
+    const PieceGraph& graph_;
+    const ColonChain& chain_;
+    const double softHu_;
+    std::vector<char> kept_;                            ///< pieces
+    std::vector<bool> barred_;                          ///< voxels of rebuilt walls
+    std::vector<char> open_;                            ///< orifices
+    std::vector<int> inner_;                            ///< orifices between kept pieces
+    std::set<int> cuts_;                                ///< orifices that the chain closes
+    std::vector<std::pair<std::uint32_t, int>> faces_;  ///< first voxel, inner orifice; sorted
+    ColonLabels result_;
+    std::span<std::uint8_t> labels_;
+};
+
+}  // namespace
+
+ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                      const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
+                      const ColonChain& chain, double bridgeRadiusMm) {
+    return Labelling(hu, tissue, contents, cut, graph, chain).run(bridgeRadiusMm);
+}
+
+}  // namespace haustra::segmentation

@@ -1,0 +1,41 @@
+// From the colon's chain of pieces to labels: what is lumen, where walls stand, what is crossed.
+#pragma once
+
+#include "core/tissue.h"
+#include "segmentation/chain_graph.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace haustra::segmentation {
+
+/// A wall between two parts of the lumen, or the lumen and other bowel, too thin for the scan to
+/// show whole.
+struct RebuiltWall {
+    glm::dvec3 placeMm{0.0};
+    double areaMm2 = 0.0;
+    double radiusMm = 0.0;      ///< of the largest ball that passed
+    bool betweenLoops = false;  ///< both sides are the colon's
+};
+
+struct ColonLabels {
+    Volume<std::uint8_t> labels;  ///< LumenLabel; one 6-connected piece
+    std::vector<RebuiltWall> walls;
+    std::vector<double> bridgeMm;  ///< of each junction of the chain: the length labelled as bridge
+    double strandedMl = 0.0;       ///< left out since nothing joins it to the rest
+};
+
+/// Labels the chain's pieces and sacs, and the small bodies of content that lie open to them.
+///
+/// Gas is LumenLabel::air; tagged material, and what lies between the two at a level, is
+/// LumenLabel::tagged, out to half its local height over soft tissue. A contact between two pieces
+/// of the lumen stays open where the ways from the rectum to its two sides are equally long, but
+/// for what leads around a neck; elsewhere it leads through a wall between two loops, and that wall
+/// is rebuilt, one voxel thick: of each pair of voxels that touch, the one with the HU nearer to
+/// soft tissue's is outside. So is the wall to other bowel. Where the chain crosses a collapse, a
+/// bridge of `bridgeRadiusMm` follows its path. The same for any number of threads. O(voxels).
+ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                      const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
+                      const ColonChain& chain, double bridgeRadiusMm = 1.5);
+
+}  // namespace haustra::segmentation

@@ -1,0 +1,346 @@
+#include "segmentation/find_colon.h"
+
+#include "segmentation/bowel_contents.h"
+#include "segmentation/chain_graph.h"
+#include "segmentation/colon_labels.h"
+#include "segmentation/thin_walls.h"
+#include "segmentation/tube_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace haustra::segmentation {
+namespace {
+
+template <class... Numbers>
+std::string text(const char* format, Numbers... numbers) {
+    char line[300];
+    std::snprintf(line, sizeof line, format, numbers...);
+    return line;
+}
+
+std::string placeText(glm::dvec3 p) {
+    return text("(%.0f, %.0f, %.0f) mm", p.x, p.y, p.z);
+}
+
+void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
+    const Grid& grid = contents.content.grid();
+    const auto voxels = contents.content.writable();
+    for (const CutBall& ball : balls) {
+        const glm::dvec3 centre = grid.voxelFromPatientPoint(ball.centreMm);
+        const glm::ivec3 reach = glm::ivec3(ball.radiusMm / grid.spacingMm()) + 1;
+        const glm::ivec3 lo = glm::max(glm::ivec3(centre) - reach, glm::ivec3(0)),
+                         hi = glm::min(glm::ivec3(centre) + reach + 1, grid.size - 1);
+        for (int k = lo.z; k <= hi.z; ++k) {
+            for (int j = lo.y; j <= hi.y; ++j) {
+                for (int i = lo.x; i <= hi.x; ++i) {
+                    if (glm::distance(grid.patientFromVoxelPoint(glm::dvec3(i, j, k)),
+                                      ball.centreMm) <= ball.radiusMm)
+                        voxels[grid.index(i, j, k)] = std::uint8_t(Content::tissue);
+                }
+            }
+        }
+    }
+}
+
+// The piece at a patient point, or within 3 mm of it.
+Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
+    constexpr double reachMm = 3.0;
+    const Grid& grid = cut.pieceAt.grid();
+    const glm::ivec3 centre(glm::round(grid.voxelFromPatientPoint(pointMm)));
+    const glm::ivec3 reach(glm::ceil(reachMm / grid.spacingMm()));
+    std::int32_t piece = -1;
+    double nearest = std::numeric_limits<double>::max();
+    for (int k = -reach.z; k <= reach.z; ++k) {
+        for (int j = -reach.y; j <= reach.y; ++j) {
+            for (int i = -reach.x; i <= reach.x; ++i) {
+                const glm::ivec3 v = centre + glm::ivec3(i, j, k);
+                if (!grid.contains(v) || cut.pieceAt.at(v) < 0) continue;
+                const double d = glm::distance(grid.patientFromVoxelPoint(glm::dvec3(v)), pointMm);
+                if (d <= reachMm && d < nearest) nearest = d, piece = cut.pieceAt.at(v);
+            }
+        }
+    }
+    if (piece < 0) {
+        return fail(ErrorKind::badInput,
+                    "there is no air or tagged fluid within 3 mm of this point",
+                    text("%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z));
+    }
+    return piece;
+}
+
+Result<GivenPieces> givenPieces(const TubePieces& cut, const ColonEdits& edits) {
+    GivenPieces given;
+    for (const auto& [points, pieces] :
+         {std::pair(&edits.seedsMm, &given.colon), std::pair(&edits.excludesMm, &given.notColon)}) {
+        for (const glm::dvec3 p : *points) {
+            const auto piece = pieceAt(cut, p);
+            if (!piece) return tl::make_unexpected(piece.error());
+            pieces->push_back(*piece);
+        }
+    }
+    for (const auto& [a, b] : edits.joins) {
+        const auto from = pieceAt(cut, a), to = pieceAt(cut, b);
+        if (!from) return tl::make_unexpected(from.error());
+        if (!to) return tl::make_unexpected(to.error());
+        given.joins.push_back({*from, *to, a, b});
+    }
+    return given;
+}
+
+// The weights of chains by their scores, the best one's first; they sum to 1.
+std::vector<double> posterior(const std::vector<ColonChain>& chains) {
+    std::vector<double> weights;
+    double sum = 0.0;
+    for (const ColonChain& chain : chains)
+        weights.push_back(std::exp(chain.score - chains.front().score)), sum += weights.back();
+    for (double& weight : weights)
+        weight /= sum;
+    return weights;
+}
+
+bool joins(const ColonChain& chain, int a, int b) {
+    for (std::size_t n = 0; n + 1 < chain.nodes.size(); ++n) {
+        if ((chain.nodes[n] == a && chain.nodes[n + 1] == b) ||
+            (chain.nodes[n] == b && chain.nodes[n + 1] == a))
+            return true;
+    }
+    return false;
+}
+
+std::set<int> nodesOf(const ColonChain& chain) {
+    std::set<int> all(chain.nodes.begin(), chain.nodes.end());
+    all.insert(chain.sacs.begin(), chain.sacs.end());
+    return all;
+}
+
+// The most likely chain that differs in more than crumbs.
+std::vector<RunnerUp> runnersUp(const PieceGraph& graph, const std::vector<ColonChain>& chains,
+                                const std::vector<double>& weights) {
+    constexpr double crumbMl = 3.0;
+    const std::set<int> best = nodesOf(chains.front());
+    for (std::size_t c = 1; c < chains.size(); ++c) {
+        const std::set<int> other = nodesOf(chains[c]);
+        RunnerUp up;
+        up.probability = weights[c];
+        double largest = -1.0;
+        const auto differs = [&](int n, double& sumMl) {
+            const ChainNode& node = graph.graph.nodes[std::size_t(n)];
+            sumMl += node.volumeMl;
+            if (node.volumeMl > largest) largest = node.volumeMl, up.placeMm = node.centreMm;
+        };
+        for (const int n : other) {
+            if (!best.count(n)) differs(n, up.addsMl);
+        }
+        for (const int n : best) {
+            if (!other.count(n)) differs(n, up.dropsMl);
+        }
+        if (up.addsMl + up.dropsMl > crumbMl) return {up};
+    }
+    return {};
+}
+
+class Recorder {
+public:
+    Recorder(const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
+             const std::vector<ColonChain>& chains, const ColonLabels& labels)
+        : contents_(contents),
+          cut_(cut),
+          graph_(graph),
+          chains_(chains),
+          chain_(chains.front()),
+          labels_(labels) {}
+
+    ColonRecord record() {
+        const std::vector<double> weights = posterior(chains_);
+        made_.noiseSdHu = contents_.gasSdHu;
+        for (std::size_t n = 0; n < chain_.nodes.size(); ++n) {
+            const ChainNode& node = graph_.graph.nodes[std::size_t(chain_.nodes[n])];
+            const TubePiece& piece = pieceOf(chain_.nodes[n]);
+            const double voxelMl = piece.volumeMl / double(piece.voxels);
+            const double gasMl = double(piece.gasVoxels) * voxelMl;
+            made_.pieces.push_back({ColonPart(chain_.states[n]), node.centreMm, node.radiusMm,
+                                    node.lengthMm, gasMl, piece.volumeMl - gasMl});
+        }
+        for (std::size_t n = 0; n < chain_.junctions.size(); ++n) {
+            const ChainJunction& junction =
+                graph_.graph.junctions[std::size_t(chain_.junctions[n])];
+            double confidence = 0.0;
+            for (std::size_t c = 0; c < chains_.size(); ++c) {
+                if (joins(chains_[c], junction.a, junction.b)) confidence += weights[c];
+            }
+            made_.junctions.push_back({junction.kind, junction.placeMm, labels_.bridgeMm[n],
+                                       junction.radiusMm, confidence});
+        }
+        made_.runnersUp = runnersUp(graph_, chains_, weights);
+        made_.confidence = made_.runnersUp.empty()
+                               ? 1.0
+                               : weights[0] / (weights[0] + made_.runnersUp[0].probability);
+        if (!made_.runnersUp.empty()) made_.runnersUp[0].probability = 1.0 - made_.confidence;
+        for (const RebuiltWall& wall : labels_.walls)
+            made_.walls.push_back({wall.placeMm, wall.areaMm2, wall.betweenLoops});
+        findLeftOut();
+        warn();
+        return std::move(made_);
+    }
+
+private:
+    const TubePiece& pieceOf(int node) const {
+        return cut_.pieces[std::size_t(graph_.pieceOf[std::size_t(node)])];
+    }
+
+    void findLeftOut() {
+        constexpr double leastMl = 2.0, nearMm = 20.0;
+        const std::set<int> taken = nodesOf(chain_);
+        std::set<int> opened;
+        for (const int j : chain_.cuts) {
+            opened.insert(graph_.graph.junctions[std::size_t(j)].a);
+            opened.insert(graph_.graph.junctions[std::size_t(j)].b);
+        }
+        for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
+            const ChainNode& node = graph_.graph.nodes[n];
+            if (taken.count(int(n)) || node.volumeMl < leastMl) continue;
+            LeftOutBody body{node.centreMm,     node.volumeMl, pieceOf(int(n)).mostlyGas(),
+                             ColonPart::rectum, 1e9,           opened.count(int(n)) > 0};
+            for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
+                const ChainNode& home = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
+                const double mm =
+                    glm::distance(home.centreMm, node.centreMm) - home.radiusMm - node.radiusMm;
+                if (mm < body.distanceMm)
+                    body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
+            }
+            body.distanceMm = std::max(0.0, body.distanceMm);
+            if (body.opens || body.distanceMm < nearMm) made_.leftOut.push_back(body);
+        }
+        std::stable_sort(
+            made_.leftOut.begin(), made_.leftOut.end(),
+            [](const LeftOutBody& a, const LeftOutBody& b) { return a.volumeMl > b.volumeMl; });
+    }
+
+    void warn() {
+        constexpr double sure = 0.95, doubtful = 0.8;
+        const auto say = [&](std::string line) { made_.warnings.push_back(std::move(line)); };
+        for (std::size_t n = 0; n < made_.junctions.size(); ++n) {
+            const ColonJunction& junction = made_.junctions[n];
+            const char* const part = toString(made_.pieces[n].part);
+            if (junction.kind == JunctionKind::collapse) {
+                say(text("the %s is collapsed over %.0f mm, at %s", part, junction.lengthMm,
+                         placeText(junction.placeMm).c_str()));
+            } else if (junction.kind == JunctionKind::thinWall) {
+                say(text("what looks like a thin wall in the %s was taken for open lumen, at %s",
+                         part, placeText(junction.placeMm).c_str()));
+            }
+            if (junction.confidence < sure)
+                say(text("the way on from the %s is not sure (%.0f %%), at %s", part,
+                         100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
+        }
+        for (const LeftOutBody& body : made_.leftOut) {
+            constexpr double tellMl = 5.0;
+            if (!body.opens && body.volumeMl < tellMl) continue;
+            say(text("%.0f ml of %s near the %s %s, at %s", body.volumeMl,
+                     body.gas ? "gas" : "tagged material", toString(body.nearest),
+                     body.opens ? "lies open to the colon and was taken for small bowel"
+                                : "was taken for other than colon",
+                     placeText(body.centreMm).c_str()));
+        }
+        for (const RebuiltWallRecord& wall : made_.walls) {
+            constexpr double tellMm2 = 20.0;
+            if (wall.betweenLoops && wall.areaMm2 > tellMm2)
+                say(text("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
+                         placeText(wall.placeMm).c_str()));
+        }
+        if (made_.confidence < doubtful && !made_.runnersUp.empty()) {
+            const RunnerUp& up = made_.runnersUp.front();
+            say(
+                text("another course is nearly as likely (%.0f %%): it adds %.0f ml and drops %.0f "
+                     "ml, at %s",
+                     100.0 * up.probability, up.addsMl, up.dropsMl, placeText(up.placeMm).c_str()));
+        }
+        // Places of neighbouring parts overlap: only what lies farther off is told.
+        if (made_.pieces.front().part > ColonPart::sigmoid)
+            say(text("the rectum was not found: the colon begins in the %s",
+                     toString(made_.pieces.front().part)));
+        if (made_.pieces.back().part < ColonPart::ascending)
+            say(text("the cecum was not found: the colon ends in the %s",
+                     toString(made_.pieces.back().part)));
+        if (labels_.strandedMl >= 0.5)
+            say(text("%.1f ml that nothing joins to the lumen were left out", labels_.strandedMl));
+    }
+
+    const BowelContents& contents_;
+    const TubePieces& cut_;
+    const PieceGraph& graph_;
+    const std::vector<ColonChain>& chains_;
+    const ColonChain& chain_;
+    const ColonLabels& labels_;
+    ColonRecord made_;
+};
+
+// Half of the shortest adult colon, distended (Khashab et al., Endoscopy 2009: 120 to 250 cm at CT
+// colonography).
+constexpr double leastDistendedMm = 500.0, distendedRadiusMm = 8.0;
+
+double distendedMm(const PieceGraph& graph, const ColonChain& chain) {
+    double sum = 0.0;
+    for (const int n : chain.nodes) {
+        const ChainNode& node = graph.graph.nodes[std::size_t(n)];
+        if (node.radiusMm >= distendedRadiusMm) sum += node.lengthMm;
+    }
+    return sum;
+}
+
+}  // namespace
+
+Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
+                             const ColonOptions& options) {
+    if (scan.hu.grid().voxelCount() > std::numeric_limits<std::uint32_t>::max())
+        return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "segmentation");
+    const auto progress = [&](double fraction) {
+        if (options.progress) options.progress(fraction);
+    };
+    progress(0.0);
+    BowelContents contents = findContents(scan, tissue, options.threads);
+    cutBalls(contents, options.edits.cuts);
+    progress(0.2);
+    TubePieces cut;
+    {
+        ThinWallOptions walls;
+        walls.softHu = tissue.meanHu[int(Tissue::soft)];
+        walls.threads = options.threads;
+        const Volume<std::uint8_t> thin = findThinWalls(scan.hu, contents, walls);
+        progress(0.4);
+        cut = cutIntoPieces(scan.hu, contents.content, thin, {.threads = options.threads});
+    }
+    progress(0.65);
+    const auto given = givenPieces(cut, options.edits);
+    if (!given) return tl::make_unexpected(given.error());
+    const PieceGraph graph = makePieceGraph(scan, contents, tissue, cut, *given, options.threads);
+    progress(0.75);
+    const std::vector<ColonChain> chains = findChains(graph.graph, {.chains = 12});
+    const bool asked = !options.edits.seedsMm.empty() || !options.edits.joins.empty();
+    if (chains.empty())
+        return fail(ErrorKind::noResult, "no gas-filled bowel was found in the scan",
+                    "segmentation");
+    if (const double mm = distendedMm(graph, chains.front()); mm < leastDistendedMm && !asked) {
+        return fail(ErrorKind::noResult,
+                    text("this is no CT colonography: no more than %.0f mm of distended colon were "
+                         "found; name a point in it (--seed) if it is one",
+                         mm),
+                    "segmentation");
+    }
+    progress(0.8);
+    ColonLabels labels = layLabels(scan.hu, tissue, contents, cut, graph, chains.front());
+    FoundColon found;
+    found.record = Recorder(contents, cut, graph, chains, labels).record();
+    found.labels = std::move(labels.labels);
+    found.gravity = contents.gravity;
+    found.notes = contents.notes;
+    progress(1.0);
+    return found;
+}
+
+}  // namespace haustra::segmentation

@@ -1,0 +1,61 @@
+// Finding the colon in a CT scan: its lumen, and how sure that is.
+#pragma once
+
+#include "core/colon_record.h"
+#include "core/ct_scan.h"
+#include "core/parallel.h"
+#include "core/result.h"
+#include "core/tissue.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace haustra::segmentation {
+
+/// A ball in which there is no lumen, as a person said.
+struct CutBall {
+    glm::dvec3 centreMm{0.0};  ///< patient, LPS
+    double radiusMm = 3.0;
+    bool operator==(const CutBall&) const = default;
+};
+
+/// What a person said of the scan (patient, LPS).
+struct ColonEdits {
+    std::vector<glm::dvec3> seedsMm;     ///< the gas or fluid at these points is colon
+    std::vector<glm::dvec3> excludesMm;  ///< the gas or fluid at these points is not
+    std::vector<CutBall> cuts;           ///< here is a wall
+    std::vector<std::pair<glm::dvec3, glm::dvec3>>
+        joins;  ///< the colon goes on from one to the other
+    bool operator==(const ColonEdits&) const = default;
+};
+
+struct ColonOptions {
+    ColonEdits edits;
+    int threads = 0;
+    Progress progress;
+};
+
+struct FoundColon {
+    Volume<std::uint8_t> labels;  ///< LumenLabel: one 6-connected piece
+    glm::dvec3 gravity{0.0};      ///< unit, LPS: as the air–fluid levels show it
+    ColonRecord record;
+    std::vector<std::string> notes;  ///< for the log: disagreement with the patient position …
+};
+
+/// The colon's gas and tagged material as one lumen from the rectum to the cecum.
+///
+/// Gas and tagged material are cut into tube pieces at their necks (cutIntoPieces); each orifice,
+/// thin wall and way through soft tissue between two of them is a junction with odds
+/// (makePieceGraph); the colon is the most likely chain of pieces by place in the body, calibre and
+/// junctions (findChains); what is on it, or is a sac of it, is lumen, and no other bowel is
+/// (layLabels). Walls that touching loops share are rebuilt; a collapse is crossed by a bridge
+/// through soft tissue.
+///
+/// Fails where the scan has no bowel gas, or too little of a distended colon for a virtual
+/// colonoscopy, unless a seed says otherwise (noResult); where a point of the edits has neither gas
+/// nor tagged material within 3 mm (badInput). The same for any number of threads. O(voxels).
+Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
+                             const ColonOptions& options = {});
+
+}  // namespace haustra::segmentation

@@ -1,0 +1,399 @@
+#include "segmentation/tube_pieces.h"
+
+#include "segmentation/bowel_contents.h"
+#include "topology/distance_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+namespace haustra::segmentation {
+namespace {
+
+constexpr double ticksPerMm = 32.0;
+constexpr std::int32_t none = -1, waiting = -2;
+
+bool isContent(std::uint8_t content) {
+    return Content(content) == Content::gas || Content(content) == Content::tagged ||
+           Content(content) == Content::interface;
+}
+
+std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t n) {
+    while (parent[std::size_t(n)] != n)
+        n = parent[std::size_t(n)] = parent[std::size_t(parent[std::size_t(n)])];
+    return n;
+}
+
+template <class Visit>
+void visitFaces(const Grid& grid, std::size_t n, const Visit& visit) {
+    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
+                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
+    const glm::ivec3 v = grid.voxelAt(n);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (v[axis] > 0) visit(n - strides[axis], axis);
+        if (v[axis] + 1 < grid.size[axis]) visit(n + strides[axis], axis);
+    }
+}
+
+/// Voxels with a distance, the farthest from the boundary first, of equals the first.
+std::vector<std::uint32_t> byFallingDistance(const Volume<float>& distanceMm) {
+    std::vector<std::size_t> begin;
+    const auto ticks = [](float mm) {
+        return std::size_t(std::min(mm, 1000.0f) * float(ticksPerMm));
+    };
+    for (const float mm : distanceMm.voxels()) {
+        if (!(mm > 0.0f)) continue;
+        const std::size_t at = ticks(mm);
+        if (at + 2 > begin.size()) begin.resize(at + 2, 0);
+        ++begin[at];
+    }
+    std::size_t sum = 0;
+    for (std::size_t n = begin.size(); n-- > 0;) {
+        const std::size_t count = begin[n];
+        begin[n] = sum;
+        sum += count;
+    }
+    std::vector<std::uint32_t> order(sum);
+    for (std::size_t n = 0; n < distanceMm.voxels().size(); ++n) {
+        if (distanceMm[n] > 0.0f) order[begin[ticks(distanceMm[n])]++] = std::uint32_t(n);
+    }
+    return order;
+}
+
+/// Basins of the distance, merged as they meet; `label` gets their numbers.
+std::vector<std::int32_t> floodBasins(const Volume<float>& distanceMm, double neck,
+                                      std::span<std::int32_t> label, const Grid& grid) {
+    std::vector<std::int32_t> parent;
+    std::vector<float> peakMm;
+    for (const std::uint32_t n : byFallingDistance(distanceMm)) {
+        std::array<std::int32_t, 6> around{};
+        std::size_t count = 0;
+        float deepest = 0.0f;
+        std::int32_t uphill = none;
+        visitFaces(grid, n, [&](std::size_t m, int) {
+            if (label[m] < 0) return;
+            const std::int32_t root = rootOf(parent, label[m]);
+            if (distanceMm[m] > deepest) deepest = distanceMm[m], uphill = root;
+            if (std::find(around.begin(), around.begin() + std::ptrdiff_t(count), root) ==
+                around.begin() + std::ptrdiff_t(count))
+                around[count++] = root;
+        });
+        if (count == 0) {
+            label[n] = std::int32_t(parent.size());
+            parent.push_back(label[n]);
+            peakMm.push_back(distanceMm[n]);
+            continue;
+        }
+        // The voxel goes uphill; the highest peak takes what hardly stands apart from it here.
+        std::int32_t first = around[0];
+        for (std::size_t k = 1; k < count; ++k) {
+            const float peak = peakMm[std::size_t(around[k])], highest = peakMm[std::size_t(first)];
+            if (peak > highest || (peak == highest && around[k] < first)) first = around[k];
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            if (around[k] != first &&
+                double(distanceMm[n]) >= neck * double(peakMm[std::size_t(around[k])]))
+                parent[std::size_t(around[k])] = first;
+        }
+        label[n] = uphill;
+    }
+    for (std::size_t n = 0; n < parent.size(); ++n)
+        parent[n] = rootOf(parent, std::int32_t(n));
+    return parent;
+}
+
+/// Cuts pieces that reach farther than a part of the colon does, into lengths of about `bandMm` by
+/// the way, face to face, from their far end.
+void splitLong(std::span<std::int32_t> label, std::vector<std::int32_t>& rootOfBasin, double bandMm,
+               const Grid& grid) {
+    if (!(bandMm > 0.0)) return;
+    std::vector<std::size_t> voxels(rootOfBasin.size(), 0);
+    std::vector<std::uint32_t> first(rootOfBasin.size(), 0);
+    for (std::size_t n = label.size(); n-- > 0;) {
+        if (label[n] < 0) continue;
+        label[n] = rootOfBasin[std::size_t(label[n])];
+        ++voxels[std::size_t(label[n])], first[std::size_t(label[n])] = std::uint32_t(n);
+    }
+    const glm::dvec3 spacing = grid.spacingMm();
+    const std::size_t large =
+        std::size_t(bandMm * 30.0 / grid.voxelVolumeMm3());  // thinner is no colon
+    std::vector<float> way(
+        label.size() * std::size_t(std::any_of(voxels.begin(), voxels.end(),
+                                               [&](std::size_t v) { return v > large; })),
+        -1.0f);
+    const std::size_t basins = voxels.size();
+    for (std::size_t basin = 0; basin < basins; ++basin) {
+        if (voxels[basin] <= large) continue;
+        // Ways by steps of equal count are long enough here: rounds of breadth-first search, in mm.
+        const auto waysFrom = [&](std::uint32_t seed, std::vector<std::uint32_t>& reached) {
+            for (const std::uint32_t n : reached)
+                way[n] = -1.0f;
+            reached.assign(1, seed);
+            way[seed] = 0.0f;
+            for (std::size_t head = 0; head < reached.size(); ++head) {
+                visitFaces(grid, reached[head], [&](std::size_t m, int axis) {
+                    if (label[m] != std::int32_t(basin) || way[m] >= 0.0f) return;
+                    way[m] = way[reached[head]] + float(spacing[axis]);
+                    reached.push_back(std::uint32_t(m));
+                });
+            }
+        };
+        std::vector<std::uint32_t> reached;
+        waysFrom(first[basin], reached);
+        waysFrom(reached.back(), reached);
+        const double reachMm = way[reached.back()];
+        if (reachMm < 1.6 * bandMm) continue;
+        const int bands = int(std::lround(reachMm / bandMm));
+        const auto bandOf = [&](std::uint32_t n) {
+            return std::min(bands - 1, int(double(way[n]) / reachMm * bands));
+        };
+        // Each connected part of a band is a piece.
+        std::vector<std::uint32_t> front;
+        std::vector<std::pair<std::uint32_t, std::int32_t>> moved;
+        std::vector<char> seen(reached.size(), 0);
+        std::unordered_map<std::uint32_t, std::uint32_t> at;
+        at.reserve(reached.size());
+        for (std::size_t n = 0; n < reached.size(); ++n)
+            at.emplace(reached[n], std::uint32_t(n));
+        for (std::size_t n = 0; n < reached.size(); ++n) {
+            if (seen[n]) continue;
+            const std::int32_t number = std::int32_t(rootOfBasin.size());
+            rootOfBasin.push_back(number);
+            const int band = bandOf(reached[n]);
+            front.assign(1, reached[n]);
+            seen[n] = 1;
+            for (std::size_t head = 0; head < front.size(); ++head) {
+                moved.emplace_back(front[head], number);
+                visitFaces(grid, front[head], [&](std::size_t m, int) {
+                    if (label[m] != std::int32_t(basin)) return;
+                    const std::uint32_t place = at.at(std::uint32_t(m));
+                    if (seen[place] || bandOf(std::uint32_t(m)) != band) return;
+                    seen[place] = 1;
+                    front.push_back(std::uint32_t(m));
+                });
+            }
+        }
+        for (const auto& [n, number] : moved)
+            label[n] = number, way[n] = -1.0f;
+    }
+}
+
+void numberByVolume(std::span<std::int32_t> label, std::vector<std::int32_t>& rootOfBasin) {
+    std::vector<std::size_t> voxels(rootOfBasin.size(), 0);
+    for (const std::int32_t l : label) {
+        if (l >= 0) ++voxels[std::size_t(rootOfBasin[std::size_t(l)])];
+    }
+    std::vector<std::int32_t> roots;
+    for (std::size_t n = 0; n < rootOfBasin.size(); ++n) {
+        if (rootOfBasin[n] == std::int32_t(n)) roots.push_back(std::int32_t(n));
+    }
+    std::stable_sort(roots.begin(), roots.end(), [&](std::int32_t a, std::int32_t b) {
+        return voxels[std::size_t(a)] > voxels[std::size_t(b)];
+    });
+    std::vector<std::int32_t> number(rootOfBasin.size(), none);
+    for (std::size_t n = 0; n < roots.size(); ++n)
+        number[std::size_t(roots[n])] = std::int32_t(n);
+    for (std::int32_t& l : label) {
+        if (l >= 0) l = number[std::size_t(rootOfBasin[std::size_t(l)])];
+    }
+    rootOfBasin = std::move(roots);
+}
+
+/// Thin walls, and what no basin reached, go to the nearest piece.
+void spread(std::span<std::int32_t> label, const Volume<std::uint8_t>& content, const Grid& grid) {
+    std::vector<std::uint32_t> front;
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] >= 0 || !isContent(content[n])) continue;
+        label[n] = waiting;
+    }
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] != waiting) continue;
+        bool near = false;
+        visitFaces(grid, n, [&](std::size_t m, int) { near = near || label[m] >= 0; });
+        if (near) front.push_back(std::uint32_t(n));
+    }
+    while (!front.empty()) {
+        std::vector<std::pair<std::uint32_t, std::int32_t>> given;
+        for (const std::uint32_t n : front) {
+            std::int32_t nearest = waiting;
+            visitFaces(grid, n, [&](std::size_t m, int) {
+                if (label[m] >= 0 && (nearest < 0 || label[m] < nearest)) nearest = label[m];
+            });
+            given.emplace_back(n, nearest);
+        }
+        for (const auto& [n, to] : given)
+            label[n] = to;
+        std::vector<std::uint32_t> next;
+        for (const std::uint32_t n : front) {
+            visitFaces(grid, n, [&](std::size_t m, int) {
+                if (label[m] == waiting) label[m] = waiting - 1, next.push_back(std::uint32_t(m));
+            });
+        }
+        for (const std::uint32_t n : next)
+            label[n] = waiting;
+        front = std::move(next);
+    }
+    for (std::int32_t& l : label)
+        l = std::max(l, none);
+}
+
+/// A face between voxel `n` and the next along `axis`, of two pieces.
+struct Face {
+    std::int32_t a, b;
+    std::uint32_t n;
+    std::uint8_t axis;
+};
+
+/// The connected patches of the faces between each two pieces: faces are neighbours where their
+/// first voxels are the same or touch.
+std::vector<Orifice> patchesOf(std::vector<Face> faces, const Volume<std::int16_t>& hu,
+                               const Volume<std::uint8_t>& content,
+                               const Volume<std::uint8_t>& thinWalls,
+                               const Volume<float>& distanceMm) {
+    const Grid& grid = hu.grid();
+    const glm::dvec3 faceMm2 = grid.voxelVolumeMm3() / grid.spacingMm();
+    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
+                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
+    std::stable_sort(faces.begin(), faces.end(), [](const Face& x, const Face& y) {
+        return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+    });
+    std::vector<Orifice> patches;
+    std::unordered_map<std::uint32_t, std::int32_t> at;  // first face of a voxel
+    for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
+        while (last < faces.size() && faces[last].a == faces[first].a &&
+               faces[last].b == faces[first].b)
+            ++last;
+        std::vector<std::int32_t> parent(last - first);
+        std::iota(parent.begin(), parent.end(), 0);
+        const auto unite = [&](std::int32_t x, std::int32_t y) {
+            x = rootOf(parent, x), y = rootOf(parent, y);
+            parent[std::size_t(std::max(x, y))] = std::min(x, y);
+        };
+        at.clear();
+        for (std::size_t f = first; f < last; ++f) {
+            const auto [known, isNew] = at.try_emplace(faces[f].n, std::int32_t(f - first));
+            if (!isNew) unite(std::int32_t(f - first), known->second);
+        }
+        for (std::size_t f = first; f < last; ++f) {
+            const glm::ivec3 v = grid.voxelAt(faces[f].n);
+            for (int s = 0; s < 27; ++s) {
+                const glm::ivec3 w = v + glm::ivec3(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
+                if (!grid.contains(w)) continue;
+                const auto near = at.find(std::uint32_t(grid.index(w)));
+                if (near != at.end()) unite(std::int32_t(f - first), near->second);
+            }
+        }
+        std::map<std::int32_t, std::vector<std::size_t>> byRoot;
+        for (std::size_t f = first; f < last; ++f)
+            byRoot[rootOf(parent, std::int32_t(f - first))].push_back(f);
+        for (const auto& [root, members] : byRoot) {
+            Orifice orifice;
+            orifice.a = faces[first].a, orifice.b = faces[first].b;
+            glm::dvec3 middle(0.0);
+            double area = 0.0, huSum = 0.0;
+            for (const std::size_t f : members) {
+                const std::size_t n = faces[f].n, m = n + strides[faces[f].axis];
+                const double mm2 = faceMm2[faces[f].axis];
+                middle += mm2 * 0.5 * (glm::dvec3(grid.voxelAt(n)) + glm::dvec3(grid.voxelAt(m)));
+                area += mm2;
+                orifice.voxels.push_back(std::uint32_t(n));
+                if (thinWalls[n] || thinWalls[m]) {
+                    orifice.wallMm2 += mm2;
+                    huSum += mm2 * double(std::max(hu[n], hu[m]));
+                    continue;
+                }
+                orifice.openMm2 += mm2;
+                if (Content(content[n]) == Content::tagged &&
+                    Content(content[m]) == Content::tagged)
+                    orifice.openTaggedMm2 += mm2;
+                const double through = std::min(distanceMm[n], distanceMm[m]);
+                if (through > orifice.radiusMm)
+                    orifice.radiusMm = through, orifice.place = grid.voxelAt(n);
+            }
+            if (orifice.openMm2 == 0.0) orifice.place = glm::ivec3(glm::round(middle / area));
+            orifice.placeMm = grid.patientFromVoxelPoint(orifice.place);
+            if (orifice.wallMm2 > 0.0) orifice.barrierHu = huSum / orifice.wallMm2;
+            std::sort(orifice.voxels.begin(), orifice.voxels.end());
+            orifice.voxels.erase(std::unique(orifice.voxels.begin(), orifice.voxels.end()),
+                                 orifice.voxels.end());
+            patches.push_back(std::move(orifice));
+        }
+    }
+    return patches;
+}
+
+}  // namespace
+
+TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
+                         const Volume<std::uint8_t>& thinWalls, const TubePieceOptions& options) {
+    const Grid& grid = hu.grid();
+    TubePieces cut;
+    {
+        Volume<std::uint8_t> plain(grid);
+        const auto out = plain.writable();
+        for (std::size_t n = 0; n < out.size(); ++n)
+            out[n] = isContent(content[n]) && !thinWalls[n];
+        cut.distanceMm = topology::distanceToBoundaryMm(plain, options.threads);
+    }
+    cut.pieceAt = Volume<std::int32_t>(grid, none);
+    const auto label = cut.pieceAt.writable();
+    std::vector<std::int32_t> basins = floodBasins(cut.distanceMm, options.neck, label, grid);
+    splitLong(label, basins, options.lengthMm, grid);
+    numberByVolume(label, basins);
+    spread(label, content, grid);
+
+    const glm::dvec3 spacing = grid.spacingMm();
+    const double voxelMm3 = grid.voxelVolumeMm3();
+    const glm::dvec3 faceMm2 = voxelMm3 / spacing;
+    cut.pieces.assign(basins.size(), {});
+    std::vector<double> gasSum(basins.size(), 0.0), taggedSum(basins.size(), 0.0);
+    std::vector<Face> faces;
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        const std::int32_t l = label[n];
+        if (l < 0) continue;
+        TubePiece& piece = cut.pieces[std::size_t(l)];
+        ++piece.voxels;
+        if (Content(content[n]) == Content::gas) ++piece.gasVoxels, gasSum[std::size_t(l)] += hu[n];
+        if (Content(content[n]) == Content::tagged)
+            ++piece.taggedVoxels, taggedSum[std::size_t(l)] += hu[n];
+        const double mm = cut.distanceMm[n];
+        if (mm > piece.radiusMm) piece.radiusMm = mm, piece.centre = grid.voxelAt(n);
+        visitFaces(grid, n, [&](std::size_t m, int axis) {
+            if (label[m] == l) return;
+            piece.surfaceMm2 += faceMm2[axis];
+            const Content other = Content(content[m]);
+            if (other == Content::outside || other == Content::lung)
+                piece.excludedAirMm2 += faceMm2[axis];
+            if (label[m] < 0 || m < n) return;
+            faces.push_back({std::min(l, label[m]), std::max(l, label[m]), std::uint32_t(n),
+                             std::uint8_t(axis)});
+        });
+    }
+    std::vector<std::array<double, 3>> core(basins.size(), {0, 0, 0});
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] < 0 || Content(content[n]) != Content::tagged || !(cut.distanceMm[n] > 2.5f))
+            continue;
+        std::array<double, 3>& sums = core[std::size_t(label[n])];
+        sums[0] += 1.0, sums[1] += hu[n], sums[2] += double(hu[n]) * hu[n];
+    }
+    for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
+        if (core[p][0] > 0.0) {
+            cut.pieces[p].coreHu = core[p][1] / core[p][0];
+            cut.pieces[p].coreSdHu = std::sqrt(std::max(
+                0.0, core[p][2] / core[p][0] - cut.pieces[p].coreHu * cut.pieces[p].coreHu));
+        }
+        TubePiece& piece = cut.pieces[p];
+        piece.volumeMl = double(piece.voxels) * voxelMm3 / 1000.0;
+        piece.centreMm = grid.patientFromVoxelPoint(piece.centre);
+        piece.meanHu = piece.mostlyGas()
+                           ? gasSum[p] / double(std::max<std::size_t>(1, piece.gasVoxels))
+                           : taggedSum[p] / double(piece.taggedVoxels);
+    }
+    cut.orifices = patchesOf(std::move(faces), hu, content, thinWalls, cut.distanceMm);
+    return cut;
+}
+
+}  // namespace haustra::segmentation
