@@ -1,6 +1,7 @@
 #include "pipeline/preparation.h"
 
 #include "pipeline/product_attributes.h"
+#include "pipeline/scan_identity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +33,41 @@ const std::vector<std::string>& madeFrom(const std::string& product) {
 }
 
 Preparation::Preparation(store::Case target, const PrepareOptions& options,
-                         organs::OrganProfile organ)
-    : target_(std::move(target)), options_(options), organ_(std::move(organ)) {}
+                         organs::OrganProfile organ, std::string studyUid)
+    : target_(std::move(target)),
+      options_(options),
+      organ_(std::move(organ)),
+      studyUid_(std::move(studyUid)) {
+    report_.caseName = target_.name();
+}
+
+Result<void> Preparation::bind(store::ScanIdentity scan,
+                               const std::optional<store::ProductKey>& importKey) {
+    const auto refuse = [&](const std::string& why) {
+        return fail(ErrorKind::badInput, why, "case " + target_.name());
+    };
+    if (!studyUid_.empty() && !scan.studyUid.empty() && studyUid_ != scan.studyUid)
+        return refuse("this series is of another study than the case's other scans");
+    const auto held = target_.scan();
+    if (!held) return tl::make_unexpected(held.error());
+    // A case of before cases were bound, and the series that it was made from.
+    const bool adopted = *held && importKey && (*held)->key == *importKey;
+    if (*held && (adopted || sameScan(**held, scan))) {
+        scan.key = (*held)->key;
+        return target_.bind(scan);
+    }
+    const auto products = target_.products();
+    if (!products) return tl::make_unexpected(products.error());
+    if (!products->empty() && !options_.replace) {
+        const bool ofStudy = *held && !scan.studyUid.empty() && (*held)->studyUid == scan.studyUid;
+        return refuse(
+            std::string(ofStudy ? "the case holds another series of the same study: prepare this "
+                                  "one as a scan of its own (--scan prone)"
+                                : "the case holds another scan: choose another name (--case)") +
+            ", or let it take that one's place (--replace)");
+    }
+    return target_.bind(scan);
+}
 
 bool Preparation::wanted(const std::string& stage) const {
     const auto& names = stageNames();

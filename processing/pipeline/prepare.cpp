@@ -98,6 +98,21 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     return preparation.takeReport();
 }
 
+// The study of the scans that a case has beside `scan`; empty where no UID tells it.
+Result<std::string> studyOfOtherScans(const store::CaseStore& store, const std::string& caseName,
+                                      const std::string& scan) {
+    const auto names = store.cases();
+    if (!names) return tl::make_unexpected(names.error());
+    for (const std::string& name : *names) {
+        if (name == scan || (name != caseName && !name.starts_with(caseName + "."))) continue;
+        const auto other =
+            store.openCase(name).and_then([](const store::Case& opened) { return opened.scan(); });
+        if (!other) return tl::make_unexpected(other.error());
+        if (*other && !(*other)->studyUid.empty()) return (*other)->studyUid;
+    }
+    return std::string();
+}
+
 // A case that was refused before its first product leaves no folder behind.
 void removeIfEmpty(const std::filesystem::path& folder) {
     std::error_code ignored;
@@ -122,11 +137,15 @@ Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& 
     if (auto sound = checkOptions(options); !sound) return tl::make_unexpected(sound.error());
     auto organ = organs::readProfile(options.organ);
     if (!organ) return tl::make_unexpected(organ.error());
-    auto target = store.createCase(caseName);
+    const std::string name = options.scan.empty() ? caseName : caseName + "." + options.scan;
+    Result<std::string> study;
+    if (!options.scan.empty()) study = studyOfOtherScans(store, caseName, name);
+    if (!study) return tl::make_unexpected(study.error());
+    auto target = store.createCase(name);
     if (!target) return tl::make_unexpected(target.error());
     const store::Case held = *target;  // keeps the lock until the folder is tidied
     try {
-        Preparation preparation(std::move(*target), options, std::move(*organ));
+        Preparation preparation(std::move(*target), options, std::move(*organ), std::move(*study));
         auto report = runStages(preparation);
         if (!report) removeIfEmpty(held.folder());
         return report;

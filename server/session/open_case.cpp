@@ -8,6 +8,9 @@ Result<CaseFiles> readCase(const store::Case& source) {
 
     CaseFiles files;
     files.facts.name = source.name();
+    const auto scan = source.scan();
+    if (!scan) return tl::make_unexpected(scan.error());
+    if (*scan) files.facts.scan = (*scan)->key.hex;
     auto ct = source.readVolume<std::int16_t>("ct");
     if (!ct) return tl::make_unexpected(ct.error());
     files.ct = std::move(*ct);

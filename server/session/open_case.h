@@ -19,6 +19,7 @@ namespace haustra::session {
 /// What sessions on a case share. Immutable.
 struct OpenCase {
     std::string name;
+    std::string scan;     ///< key of the scan that it is of: what bookmarks belong to
     std::string content;  ///< equal for equal products of the same case
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
