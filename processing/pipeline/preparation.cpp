@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <map>
+#include <sstream>
 #include <utility>
 
 namespace haustra::pipeline {
@@ -117,6 +119,41 @@ Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
             stage.name +
             (reused ? ": already done"
                     : ": done in " + exactText(std::round(meter.wallSeconds() * 10) / 10) + " s"));
+    }
+    return {};
+}
+
+Result<void> Preparation::noteBridges() {
+    const auto centerline = target_.readCenterline(product::centerline);
+    if (!centerline) return tl::make_unexpected(centerline.error());
+    report_.bridges = bridgesOf(*centerline);
+    for (const Bridge& bridge : report_.bridges) {
+        std::ostringstream line;
+        line << std::fixed << std::setprecision(0) << "centerline: a bridge of "
+             << bridge.lengthMm() << " mm, from " << bridge.fromArcMm << " to " << bridge.toArcMm
+             << " mm along the path: the colon is collapsed or filled there, and no wall is seen";
+        note(line.str());
+    }
+    return {};
+}
+
+Result<void> Preparation::noteBridgedWall() {
+    const auto surface = target_.readMesh(product::surface);
+    if (!surface) return tl::make_unexpected(surface.error());
+    const auto labels = target_.readVolume<std::uint8_t>(product::lumen);
+    if (!labels) return tl::make_unexpected(labels.error());
+    const auto bridged = bridgedTriangles(*surface, *labels);
+    for (std::size_t n = 0; n < bridged.size(); ++n) {
+        if (!bridged[n]) continue;
+        const glm::ivec3 t = surface->triangles[n];
+        const glm::dvec3 a = surface->vertices[std::size_t(t.x)];
+        report_.bridgedMm2 +=
+            0.5 * glm::length(glm::cross(surface->vertices[std::size_t(t.y)] - a,
+                                         surface->vertices[std::size_t(t.z)] - a));
+    }
+    if (report_.bridgedMm2 > 0.0) {
+        note("surface: " + exactText(std::round(report_.bridgedMm2)) +
+             " mm2 enclose bridges; all views hatch them, and they are no wall to be seen");
     }
     return {};
 }

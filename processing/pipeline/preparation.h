@@ -65,6 +65,10 @@ public:
 
     /// A line for the report, of something that no product tells.
     void note(const std::string& line) { report_.notes.push_back(line); }
+    /// The centerline's bridges, for the report.
+    Result<void> noteBridges();
+    /// How much of the surface encloses bridges.
+    Result<void> noteBridgedWall();
     PrepareReport takeReport() { return std::move(report_); }
 
 private:

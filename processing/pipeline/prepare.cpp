@@ -85,9 +85,13 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     if (!preparation.wanted("centerline")) return preparation.takeReport();
     const auto centerline = traceCenterline(preparation, *lumen, *distance);
     if (!centerline) return tl::make_unexpected(centerline.error());
+    if (const auto noted = preparation.noteBridges(); !noted)
+        return tl::make_unexpected(noted.error());
     if (!preparation.wanted("surface")) return preparation.takeReport();
     const auto surface = makeSurface(preparation, wall, *lumen);
     if (!surface) return tl::make_unexpected(surface.error());
+    if (const auto noted = preparation.noteBridgedWall(); !noted)
+        return tl::make_unexpected(noted.error());
     if (!preparation.wanted("flattening")) return preparation.takeReport();
     if (!preparation.organ().flatten) {
         preparation.note("flattening: left out, as the organ's profile does not ask for it");

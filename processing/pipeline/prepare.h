@@ -2,6 +2,7 @@
 // order of the stages.
 #pragma once
 
+#include "core/bridges.h"
 #include "core/result.h"
 #include "store/case_store.h"
 
@@ -51,6 +52,11 @@ struct StageReport {
 struct PrepareReport {
     std::string caseName;  ///< as the store has it
     std::vector<StageReport> stages;
+    /// Of the centerline: where it crosses from one segment of the lumen to the next, and the colon
+    /// is collapsed or filled. Nothing there is mucosa that a reader could see.
+    std::vector<Bridge> bridges;
+    /// Of the surface: what encloses bridges, those too that the path does not take.
+    double bridgedMm2 = 0.0;
     std::vector<std::string> notes;  ///< what the stages found worth telling, reused ones too
 };
 

@@ -61,10 +61,15 @@ std::string reportJson(const pipeline::PrepareReport& report) {
         wallSeconds += stage.wallSeconds;
         peakMemoryMib = std::max(peakMemoryMib, stage.peakMemoryMib);
     }
-    return nlohmann::ordered_json{{"case", report.caseName},
-                                  {"stages", stages},
-                                  {"wall_seconds", wallSeconds},
-                                  {"peak_memory_mib", peakMemoryMib},
+    auto bridges = nlohmann::ordered_json::array();
+    for (const Bridge& bridge : report.bridges) {
+        bridges.push_back({{"from_arc_mm", bridge.fromArcMm},
+                           {"to_arc_mm", bridge.toArcMm},
+                           {"length_mm", bridge.lengthMm()}});
+    }
+    return nlohmann::ordered_json{{"case", report.caseName},     {"stages", stages},
+                                  {"bridges", bridges},          {"bridged_mm2", report.bridgedMm2},
+                                  {"wall_seconds", wallSeconds}, {"peak_memory_mib", peakMemoryMib},
                                   {"notes", report.notes}}
                .dump(2) +
            "\n";
@@ -182,7 +187,8 @@ Command addPrepare(CLI::App& program) {
     addAreaWeightOption(*command, options.areaWeight);
     command
         ->add_option("--report", arguments->report,
-                     "Write wall seconds and peak memory of each stage, and notes, as JSON")
+                     "Write wall seconds and peak memory of each stage, the bridges over collapsed "
+                     "segments with their lengths, and notes, as JSON")
         ->type_name("FILE.json");
     addThreadsOption(*command, options.threads);
     command->callback([arguments] {
