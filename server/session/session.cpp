@@ -277,6 +277,7 @@ void Session::makeReading() {
     };
     ++readings_;
     reading_ = std::make_shared<WallReading>(io_, services_.painting, case_, std::move(outlet));
+    reading_->choose({});
     pictures_->setReading(reading_);
 }
 
