@@ -89,6 +89,7 @@ struct WindowLevel {
 
 struct CaseInfo {
     std::string name;
+    std::string scan;  ///< which the case is of; bookmarks belong to it
     Grid grid;
     Centerline centerline;
     PatientPosition position = PatientPosition::unknown;

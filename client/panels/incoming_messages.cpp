@@ -73,6 +73,7 @@ Result<FlatStrip> stripFrom(const protocol::FlatStrip& message) {
 Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     CaseInfo info;
     info.name = message.name();
+    info.scan = message.scan();
     for (const std::uint32_t extent : {message.size_x(), message.size_y(), message.size_z()})
         if (extent > 4096)
             return fail(ErrorKind::badInput, "the volume is too large", "case opened: size");

@@ -101,6 +101,11 @@ std::string toJson(const PlayReport& report) {
                 {"case", report.caseName},
                 {"centerline_mm", rounded(report.centerlineMm)},
                 {"round_trip_ms", rounded(report.roundTripMs)}};
+    out["bridges"] = json::array();
+    for (const Bridge& bridge : report.bridges)
+        out["bridges"].push_back({{"from_arc_mm", rounded(bridge.fromArcMm)},
+                                  {"to_arc_mm", rounded(bridge.toArcMm)},
+                                  {"length_mm", rounded(bridge.lengthMm())}});
     out["error"] = report.failure ? json(describe(*report.failure)) : json();
     out["actions"] = json::array();
     for (const ActionReport& action : report.actions)

@@ -1,6 +1,7 @@
 // What a played script measured, and its JSON form (latencies.json).
 #pragma once
 
+#include "core/bridges.h"
 #include "core/result.h"
 #include "panels/flat_strip.h"
 
@@ -41,6 +42,7 @@ struct ActionReport {
 struct PlayReport {
     std::string clientSoftware, serverSoftware, renderer, fingerprint, caseName;
     double centerlineMm = 0.0, roundTripMs = 0.0;
+    std::vector<Bridge> bridges;  ///< of the path, where no wall is seen
     std::vector<ActionReport> actions;
     std::optional<Error> failure;
 };

@@ -118,7 +118,7 @@ void Session::opened(const protocol::CaseOpened& message) {
     auto info = caseInfoFrom(message);
     if (!info) return giveUp(info.error());
     // After a reconnection the same case keeps its address, and the reader's flight with it.
-    const bool same = caseInfo_ && caseInfo_->name == info->name &&
+    const bool same = caseInfo_ && caseInfo_->name == info->name && caseInfo_->scan == info->scan &&
                       caseInfo_->centerline.points.size() == info->centerline.points.size() &&
                       caseInfo_->cleansed == info->cleansed &&
                       sameStrip(caseInfo_->flat, info->flat) &&
@@ -196,9 +196,18 @@ void Session::askAgain() {
         connection_.send(viewportMessage({++sequence_, id}, state.view, state.width, state.height));
         sayWhatWaited(id, state);
     }
-    for (const Owed& owed : owed_)
-        if (owed.caseName == caseName_)
+    std::size_t kept = 0;
+    for (const Owed& owed : owed_) {
+        if (isOfOpenCase(owed))
             connection_.send(bookmarkMessage(owed.request, owed.bookmark));
+        else
+            kept += owed.caseName == caseName_;
+    }
+    if (kept > 0)
+        refusals_.push_back({ErrorKind::badInput,
+                             "the case is of another scan now: " + std::to_string(kept) +
+                                 " bookmarks on the former one are not sent",
+                             {}});
     for (const auto& [request, question] : questions_)
         connection_.send(question);
     requestBookmarks();
@@ -300,13 +309,19 @@ void Session::answeredAboutWall(const Message& message, Result<Body> body) {
 
 // ---- bookmarks ------------------------------------------------------------------------------
 
+// One made on a scan that the case is no longer of belongs to another patient, it may be.
+bool Session::isOfOpenCase(const Owed& owed) const {
+    return owed.caseName == caseName_ && (!caseInfo_ || owed.scan == caseInfo_->scan);
+}
+
 std::string Session::addBookmark(const Camera& camera, double arcMm, std::string note) {
     Bookmark bookmark;
     bookmark.camera = camera;
     bookmark.arcMm = arcMm;
     bookmark.note = cutUtf8(std::move(note), maxNoteBytes);
     bookmark.clientKey = newClientKey();
-    owed_.push_back({caseName_, ++request_, bookmark});
+    owed_.push_back({caseName_, caseInfo_ && caseInfo_->name == caseName_ ? caseInfo_->scan : "",
+                     ++request_, bookmark});
     sendIfOpen(bookmarkMessage(request_, bookmark));
     return bookmark.clientKey;
 }
@@ -332,7 +347,7 @@ void Session::acknowledge(const Bookmark& bookmark) {
 std::vector<Bookmark> Session::bookmarks() const {
     std::vector<Bookmark> all = bookmarks_;
     for (const Owed& owed : owed_)
-        if (owed.caseName == caseName_) all.push_back(owed.bookmark);
+        if (isOfOpenCase(owed)) all.push_back(owed.bookmark);
     return all;
 }
 

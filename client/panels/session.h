@@ -119,10 +119,12 @@ private:
     };
     struct Owed {
         std::string caseName;
+        std::string scan;  // that the reader saw
         std::uint64_t request;
         Bookmark bookmark;
     };
 
+    bool isOfOpenCase(const Owed& owed) const;
     void handle(link::LinkUp up);
     void handle(const link::LinkDown& down);
     void handle(const protocol::ServerMessage& message);

@@ -1,4 +1,5 @@
 // The flattened strip and the window onto it: pictures, what is drawn on them, the mouse.
+#include "core/bridges.h"
 #include "window/pane.h"
 #include "window/widgets.h"
 
@@ -43,6 +44,18 @@ void drawFlag(Ui& ui, ImDrawList* list, ImVec2 p) {
     list->AddTriangleFilled({p.x, p.y - ui.px(13)}, {p.x + ui.px(8), p.y - ui.px(9.5f)},
                             {p.x, p.y - ui.px(6)}, color::bookmark);
     list->AddCircleFilled(p, ui.px(2), color::bookmark);
+}
+
+// Their lengths beside the hatched bridges: what the strip makes long or short is not to be read
+// off.
+void drawBridges(Ui& ui, const FlatArea& flat, ImDrawList* list) {
+    const panels::FlatStrip& strip = ui.reader.tour().strip();
+    for (const Bridge& bridge : bridgesOf(ui.reader.session().caseInfo()->centerline)) {
+        const double y = strip.yAtArc(0.5 * (bridge.fromArcMm + bridge.toArcMm));
+        const float row = flat.screen({0.0, y}).y - ui.fonts.small->FontSize / 2;
+        outlinedText(list, ui.fonts.small, {flat.area.min.x + ui.px(8), row}, color::bookmark,
+                     format("bridge %.0f mm", bridge.lengthMm()));
+    }
 }
 
 // The row of the camera, bookmarks, and the place that was picked.
@@ -244,6 +257,7 @@ void drawStripPane(Ui& ui, Rect area) {
             column.size};
         list->PushClipRect(flat.area.min, flat.area.max, true);
         drawZoomFrame(ui, flat, list);
+        drawBridges(ui, flat, list);
         drawMarks(ui, flat, list);
         list->PopClipRect();
     }
@@ -273,6 +287,7 @@ void drawZoomPane(Ui& ui, Rect area) {
     const FlatArea flat = here();  // as the hand has left it
     list->PushClipRect(area.min, area.max, true);
     drawZoomPicture(ui, flat, list);
+    drawBridges(ui, flat, list);
     drawMarks(ui, flat, list);
     drawMeasurement(ui, flat, list);
     drawZoomTexts(ui, flat, list);

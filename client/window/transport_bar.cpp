@@ -1,4 +1,5 @@
 // The bar along the bottom: the centerline from rectum to cecum, and the controls of the flight.
+#include "core/bridges.h"
 #include "window/ui.h"
 #include "window/widgets.h"
 
@@ -40,15 +41,9 @@ void drawTrack(Ui& ui, Rect area) {
                         thick);
     list->AddRectFilled({area.min.x, middle - thick}, {xOf(flight.arcMm()), middle + thick},
                         color::accentDim, thick);
-    for (std::size_t n = 0; n < path.points.size(); ++n) {
-        if (!path.points[n].gap) continue;
-        std::size_t end = n;
-        while (end + 1 < path.points.size() && path.points[end + 1].gap)
-            ++end;
-        list->AddRectFilled({xOf(path.points[n].arcMm), middle - thick},
-                            {xOf(path.points[end].arcMm) + 1, middle + thick}, color::trouble);
-        n = end;
-    }
+    for (const Bridge& bridge : bridgesOf(path))
+        list->AddRectFilled({xOf(bridge.fromArcMm), middle - thick},
+                            {xOf(bridge.toArcMm) + 1, middle + thick}, color::trouble);
     for (const panels::Bookmark& bookmark : ui.reader.session().bookmarks()) {
         const float x = xOf(bookmark.arcMm);
         list->AddLine({x, middle - ui.px(9)}, {x, middle + thick}, color::bookmark, ui.px(1.5f));

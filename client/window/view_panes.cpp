@@ -1,4 +1,5 @@
 // The endoscopic view and the slices: pictures, what is written on them, the mouse.
+#include "core/bridges.h"
 #include "panels/slice_map.h"
 #include "window/pane.h"
 #include "window/widgets.h"
@@ -135,9 +136,14 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
     const CenterlinePose pose = flight.centerline().points.empty()
                                     ? CenterlinePose{}
                                     : poseAtArc(flight.centerline(), flight.arcMm());
-    if (!flight.isFree() && pose.point.gap)
+    for (const Bridge& bridge : bridgesOf(flight.centerline())) {
+        if (flight.isFree() || flight.arcMm() < bridge.fromArcMm || flight.arcMm() > bridge.toArcMm)
+            continue;
         outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin + ui.px(46)},
-                     color::bookmark, "gap: the colon is collapsed or filled here");
+                     color::bookmark,
+                     format("bridge of %.0f mm: the colon is collapsed or filled, no wall is seen",
+                            bridge.lengthMm()));
+    }
     if (flight.yawDegrees() != 0.0 || flight.pitchDegrees() != 0.0) {
         const std::string look = format("look %+.0f°  %+.0f°   double-click: straight ahead",
                                         flight.yawDegrees(), flight.pitchDegrees());

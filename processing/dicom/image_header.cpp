@@ -232,6 +232,7 @@ Result<std::vector<FrameHeader>> readFrames(DcmItem& dataset, bool enhanced,
 /// Fills `image`; what was found before a failure stays.
 Result<void> readImage(DcmItem& dataset, bool enhanced, const std::string& place,
                        ImageHeader& image) {
+    image.studyUid = printable(text(dataset, DCM_StudyInstanceUID));
     image.seriesUid = printable(text(dataset, DCM_SeriesInstanceUID));
     image.instanceUid = text(dataset, DCM_SOPInstanceUID);
     image.description = printable(text(dataset, DCM_SeriesDescription));

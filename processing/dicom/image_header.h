@@ -25,6 +25,7 @@ struct FrameHeader {
 
 struct ImageHeader {
     std::filesystem::path file;
+    std::string studyUid;  ///< may be empty
     std::string seriesUid;
     std::string instanceUid;
     std::string description;  ///< printable ASCII

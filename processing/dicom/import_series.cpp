@@ -130,6 +130,14 @@ Result<std::vector<SeriesSummary>> listSeries(const std::filesystem::path& path)
     return summaries;
 }
 
+Result<SeriesSummary> findSeries(const std::filesystem::path& path, const ImportOptions& options) {
+    return findSeries(path, options.threads, {})
+        .and_then([&](FoundSeries found) {
+            return chooseSeries(std::move(found), options.seriesUid, path);
+        })
+        .map([](Series series) { return std::move(series.summary); });
+}
+
 Result<ImportedSeries> importSeries(const std::filesystem::path& path,
                                     const ImportOptions& options) try {
     auto found = findSeries(path, options.threads, [&](double fraction) {

@@ -14,6 +14,7 @@ namespace haustra::dicom {
 
 /// One CT series found in a folder. Holds nothing that identifies the patient.
 struct SeriesSummary {
+    std::string studyUid;  ///< may be empty
     std::string seriesUid;
     std::string description;
     int images = 0;
@@ -38,6 +39,10 @@ struct ImportedSeries {
 /// CT series in `path` (a folder, searched to any depth, or one file), by SeriesInstanceUID. Reads
 /// headers only. Fails where the path cannot be read; files that are not CT images are passed over.
 Result<std::vector<SeriesSummary>> listSeries(const std::filesystem::path& path);
+
+/// The series that importSeries would read with these options, of which threads count here. Reads
+/// headers only; fails where the series cannot be chosen, or a file of it is damaged.
+Result<SeriesSummary> findSeries(const std::filesystem::path& path, const ImportOptions& options);
 
 /// Reads one CT series whole: classic or enhanced multi-frame, any transfer syntax that DICOM has
 /// for still images but JPEG XL and HTJ2K; files in any order, any folder, under any name.

@@ -60,6 +60,7 @@ void summarise(Series& series) {
         summary.images += int(image.frames.size());
     if (series.images.empty()) return;
     const ImageHeader& first = series.images.front();
+    summary.studyUid = first.studyUid;
     summary.description = first.description;
     summary.matrix = first.matrix;
     summary.position = first.position;

@@ -94,7 +94,8 @@ void putPatientAndStudy(Attributes& out, const WriteOptions& options) {
     out.put(DCM_SeriesDescription, options.seriesDescription);
     out.put(DCM_PatientName, options.patientName);
     out.put(DCM_PatientID, options.patientId);
-    out.put(DCM_StudyInstanceUID, uidOf(options.uidSeed + "/study"));
+    out.put(DCM_StudyInstanceUID,
+            uidOf((options.studySeed.empty() ? options.uidSeed : options.studySeed) + "/study"));
     out.put(DCM_SeriesInstanceUID, uidOf(options.uidSeed + "/series"));
     out.put(DCM_FrameOfReferenceUID, uidOf(options.uidSeed + "/frame of reference"));
     out.put(DCM_StudyID, "1");

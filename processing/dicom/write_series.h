@@ -15,6 +15,7 @@ struct WriteOptions {
     std::string seriesDescription;
     /// Seeds the UIDs, so that the same phantom is the same files byte for byte.
     std::string uidSeed;
+    std::string studySeed;  ///< series of one study share it; empty: uidSeed
     int threads = 0;
 };
 

@@ -26,7 +26,7 @@ std::string objBytes(const FlatMap& map) {
     return bytes;
 }
 
-std::string plyBytes(const FlatMap& map) {
+std::string plyBytes(const FlatMap& map, const std::vector<std::uint8_t>& bridged) {
     const bool cameras = !map.cameras.empty();
     std::string bytes =
         "ply\nformat binary_little_endian 1.0\ncomment LPS mm; s, t in circumferences\n"
@@ -37,6 +37,7 @@ std::string plyBytes(const FlatMap& map) {
     if (cameras) bytes += "property int camera\nproperty double arc_mm\n";
     bytes += "element face " + std::to_string(map.surface.triangles.size()) +
              "\nproperty list uchar int vertex_indices\nproperty int source_triangle\n";
+    if (!bridged.empty()) bytes += "property uchar bridge\n";
     if (cameras) {
         bytes += "element camera " + std::to_string(map.cameras.size()) +
                  "\nproperty double x\nproperty double y\nproperty double z\n"
@@ -54,6 +55,7 @@ std::string plyBytes(const FlatMap& map) {
         bytes.push_back(3);
         appendRaw(bytes, map.surface.triangles[t]);
         appendRaw(bytes, map.sourceTriangle[t]);
+        if (!bridged.empty()) bytes.push_back(char(bridged[t]));
     }
     for (const FlatCamera& camera : map.cameras) {
         appendRaw(bytes, camera.positionMm);
@@ -64,10 +66,13 @@ std::string plyBytes(const FlatMap& map) {
 
 }  // namespace
 
-Result<void> writeFlatMap(const std::filesystem::path& file, const FlatMap& map) {
+Result<void> writeFlatMap(const std::filesystem::path& file, const FlatMap& map,
+                          const std::vector<std::uint8_t>& bridged) {
+    if (!bridged.empty() && bridged.size() != map.surface.triangles.size())
+        return fail(ErrorKind::badInput, "the bridges are of another flat map", file.string());
     const std::string ending = endingOf(file);
     if (ending == ".obj") return replaceFile(file, objBytes(map));
-    if (ending == ".ply") return replaceFile(file, plyBytes(map));
+    if (ending == ".ply") return replaceFile(file, plyBytes(map, bridged));
     return fail(ErrorKind::unsupported, "a flat map's file name must end in .obj or .ply",
                 file.string());
 }

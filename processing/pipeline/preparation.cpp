@@ -1,10 +1,13 @@
 #include "pipeline/preparation.h"
 
 #include "pipeline/product_attributes.h"
+#include "pipeline/scan_identity.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <map>
+#include <sstream>
 #include <utility>
 
 namespace haustra::pipeline {
@@ -32,8 +35,41 @@ const std::vector<std::string>& madeFrom(const std::string& product) {
 }
 
 Preparation::Preparation(store::Case target, const PrepareOptions& options,
-                         organs::OrganProfile organ)
-    : target_(std::move(target)), options_(options), organ_(std::move(organ)) {}
+                         organs::OrganProfile organ, std::string studyUid)
+    : target_(std::move(target)),
+      options_(options),
+      organ_(std::move(organ)),
+      studyUid_(std::move(studyUid)) {
+    report_.caseName = target_.name();
+}
+
+Result<void> Preparation::bind(store::ScanIdentity scan,
+                               const std::optional<store::ProductKey>& importKey) {
+    const auto refuse = [&](const std::string& why) {
+        return fail(ErrorKind::badInput, why, "case " + target_.name());
+    };
+    if (!studyUid_.empty() && !scan.studyUid.empty() && studyUid_ != scan.studyUid)
+        return refuse("this series is of another study than the case's other scans");
+    const auto held = target_.scan();
+    if (!held) return tl::make_unexpected(held.error());
+    // A case of before cases were bound, and the series that it was made from.
+    const bool adopted = *held && importKey && (*held)->key == *importKey;
+    if (*held && (adopted || sameScan(**held, scan))) {
+        scan.key = (*held)->key;
+        return target_.bind(scan);
+    }
+    const auto products = target_.products();
+    if (!products) return tl::make_unexpected(products.error());
+    if (!products->empty() && !options_.replace) {
+        const bool ofStudy = *held && !scan.studyUid.empty() && (*held)->studyUid == scan.studyUid;
+        return refuse(
+            std::string(ofStudy ? "the case holds another series of the same study: prepare this "
+                                  "one as a scan of its own (--scan prone)"
+                                : "the case holds another scan: choose another name (--case)") +
+            ", or let it take that one's place (--replace)");
+    }
+    return target_.bind(scan);
+}
 
 bool Preparation::wanted(const std::string& stage) const {
     const auto& names = stageNames();
@@ -83,6 +119,41 @@ Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
             stage.name +
             (reused ? ": already done"
                     : ": done in " + exactText(std::round(meter.wallSeconds() * 10) / 10) + " s"));
+    }
+    return {};
+}
+
+Result<void> Preparation::noteBridges() {
+    const auto centerline = target_.readCenterline(product::centerline);
+    if (!centerline) return tl::make_unexpected(centerline.error());
+    report_.bridges = bridgesOf(*centerline);
+    for (const Bridge& bridge : report_.bridges) {
+        std::ostringstream line;
+        line << std::fixed << std::setprecision(0) << "centerline: a bridge of "
+             << bridge.lengthMm() << " mm, from " << bridge.fromArcMm << " to " << bridge.toArcMm
+             << " mm along the path: the colon is collapsed or filled there, and no wall is seen";
+        note(line.str());
+    }
+    return {};
+}
+
+Result<void> Preparation::noteBridgedWall() {
+    const auto surface = target_.readMesh(product::surface);
+    if (!surface) return tl::make_unexpected(surface.error());
+    const auto labels = target_.readVolume<std::uint8_t>(product::lumen);
+    if (!labels) return tl::make_unexpected(labels.error());
+    const auto bridged = bridgedTriangles(*surface, *labels);
+    for (std::size_t n = 0; n < bridged.size(); ++n) {
+        if (!bridged[n]) continue;
+        const glm::ivec3 t = surface->triangles[n];
+        const glm::dvec3 a = surface->vertices[std::size_t(t.x)];
+        report_.bridgedMm2 +=
+            0.5 * glm::length(glm::cross(surface->vertices[std::size_t(t.y)] - a,
+                                         surface->vertices[std::size_t(t.z)] - a));
+    }
+    if (report_.bridgedMm2 > 0.0) {
+        note("surface: " + exactText(std::round(report_.bridgedMm2)) +
+             " mm2 enclose bridges; all views hatch them, and they are no wall to be seen");
     }
     return {};
 }

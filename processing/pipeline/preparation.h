@@ -38,11 +38,18 @@ struct Stage {
 /// Belongs to one thread.
 class Preparation {
 public:
-    Preparation(store::Case target, const PrepareOptions& options, organs::OrganProfile organ);
+    /// `studyUid`: of the case's other scans; empty where there are none, or it is not known.
+    Preparation(store::Case target, const PrepareOptions& options, organs::OrganProfile organ,
+                std::string studyUid);
 
     store::Case& target() { return target_; }
     const PrepareOptions& options() const { return options_; }
     const organs::OrganProfile& organ() const { return organ_; }
+
+    /// Binds the case to the scan that is prepared; `importKey`, where given, is what its product
+    /// "ct" has. Fails (badInput) where prepare refuses it.
+    Result<void> bind(store::ScanIdentity scan,
+                      const std::optional<store::ProductKey>& importKey = {});
 
     /// Not past `until`.
     bool wanted(const std::string& stage) const;
@@ -58,6 +65,10 @@ public:
 
     /// A line for the report, of something that no product tells.
     void note(const std::string& line) { report_.notes.push_back(line); }
+    /// The centerline's bridges, for the report.
+    Result<void> noteBridges();
+    /// How much of the surface encloses bridges.
+    Result<void> noteBridgedWall();
     PrepareReport takeReport() { return std::move(report_); }
 
 private:
@@ -66,6 +77,7 @@ private:
     store::Case target_;
     const PrepareOptions& options_;
     const organs::OrganProfile organ_;
+    const std::string studyUid_;
     PrepareReport report_;
 };
 

@@ -85,9 +85,13 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     if (!preparation.wanted("centerline")) return preparation.takeReport();
     const auto centerline = traceCenterline(preparation, *lumen, *distance);
     if (!centerline) return tl::make_unexpected(centerline.error());
+    if (const auto noted = preparation.noteBridges(); !noted)
+        return tl::make_unexpected(noted.error());
     if (!preparation.wanted("surface")) return preparation.takeReport();
     const auto surface = makeSurface(preparation, wall, *lumen);
     if (!surface) return tl::make_unexpected(surface.error());
+    if (const auto noted = preparation.noteBridgedWall(); !noted)
+        return tl::make_unexpected(noted.error());
     if (!preparation.wanted("flattening")) return preparation.takeReport();
     if (!preparation.organ().flatten) {
         preparation.note("flattening: left out, as the organ's profile does not ask for it");
@@ -96,6 +100,21 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     const auto flatMap = flattenSurface(preparation, *surface, *centerline);
     if (!flatMap) return tl::make_unexpected(flatMap.error());
     return preparation.takeReport();
+}
+
+// The study of the scans that a case has beside `scan`; empty where no UID tells it.
+Result<std::string> studyOfOtherScans(const store::CaseStore& store, const std::string& caseName,
+                                      const std::string& scan) {
+    const auto names = store.cases();
+    if (!names) return tl::make_unexpected(names.error());
+    for (const std::string& name : *names) {
+        if (name == scan || (name != caseName && !name.starts_with(caseName + "."))) continue;
+        const auto other =
+            store.openCase(name).and_then([](const store::Case& opened) { return opened.scan(); });
+        if (!other) return tl::make_unexpected(other.error());
+        if (*other && !(*other)->studyUid.empty()) return (*other)->studyUid;
+    }
+    return std::string();
 }
 
 // A case that was refused before its first product leaves no folder behind.
@@ -122,11 +141,15 @@ Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& 
     if (auto sound = checkOptions(options); !sound) return tl::make_unexpected(sound.error());
     auto organ = organs::readProfile(options.organ);
     if (!organ) return tl::make_unexpected(organ.error());
-    auto target = store.createCase(caseName);
+    const std::string name = options.scan.empty() ? caseName : caseName + "." + options.scan;
+    Result<std::string> study;
+    if (!options.scan.empty()) study = studyOfOtherScans(store, caseName, name);
+    if (!study) return tl::make_unexpected(study.error());
+    auto target = store.createCase(name);
     if (!target) return tl::make_unexpected(target.error());
     const store::Case held = *target;  // keeps the lock until the folder is tidied
     try {
-        Preparation preparation(std::move(*target), options, std::move(*organ));
+        Preparation preparation(std::move(*target), options, std::move(*organ), std::move(*study));
         auto report = runStages(preparation);
         if (!report) removeIfEmpty(held.folder());
         return report;

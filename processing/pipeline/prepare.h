@@ -2,6 +2,7 @@
 // order of the stages.
 #pragma once
 
+#include "core/bridges.h"
 #include "core/result.h"
 #include "store/case_store.h"
 
@@ -22,6 +23,9 @@ struct PrepareOptions {
         lumenMask;  ///< NIfTI; replaces the segmentation stage; not 0 is lumen, 2 is tagged
     std::string organ = "colon";  ///< a built-in profile or a profile's file (organs/README.md)
     std::string until;            ///< last stage to run; empty: all. Not import without a series
+    /// One of several scans of a case ("supine", "prone"): it is kept as the case "CASE.SCAN".
+    std::string scan;
+    bool replace = false;  ///< another scan may take the place of the one that the case is of
     /// Overrule the segmentation (patient, LPS); not with `lumenMask`.
     std::vector<glm::dvec3> seedsMm, excludesMm;
     /// How far the surface may be from the contoured one, at the samples that
@@ -46,7 +50,13 @@ struct StageReport {
 };
 
 struct PrepareReport {
+    std::string caseName;  ///< as the store has it
     std::vector<StageReport> stages;
+    /// Of the centerline: where it crosses from one segment of the lumen to the next, and the colon
+    /// is collapsed or filled. Nothing there is mucosa that a reader could see.
+    std::vector<Bridge> bridges;
+    /// Of the surface: what encloses bridges, those too that the path does not take.
+    double bridgedMm2 = 0.0;
     std::vector<std::string> notes;  ///< what the stages found worth telling, reused ones too
 };
 
@@ -75,6 +85,12 @@ const std::vector<std::string>& stageNames();
 /// key (stage version, options, input keys; the first input is the content of the source files),
 /// with sound bytes, are skipped. Killed at any moment it continues with the next call. Holds the
 /// case's lock while it runs. The products are the same bytes for any number of threads.
+///
+/// The case is bound to the scan (pipeline/scan_identity.h), or to the mask where there is no scan.
+/// Refused (badInput), with the case as it was: another scan than the case's without `replace`, and
+/// a `scan` of another study than the case's other scans. With `replace` the former scan's products
+/// go as the new scan's first is published; readers' bookmarks stay with the former scan, and are
+/// there again when it is.
 Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& caseName,
                               const PrepareOptions& options);
 

@@ -70,10 +70,14 @@ bool isNiftiName(const std::filesystem::path& file) {
     return endsIn(".nii") || endsIn(".nii.gz");
 }
 
+bool isNiftiFile(const std::filesystem::path& file) {
+    std::error_code ignored;
+    return isNiftiName(file) && !std::filesystem::is_directory(file, ignored);
+}
+
 Result<ScanInput> readScan(const std::filesystem::path& series, const std::string& seriesUid,
                            int threads, const Progress& progress) {
-    std::error_code ignored;
-    if (!isNiftiName(series) || std::filesystem::is_directory(series, ignored)) {
+    if (!isNiftiFile(series)) {
         auto imported = dicom::importSeries(series, {seriesUid, threads, progress});
         if (!imported) return tl::make_unexpected(imported.error());
         return inAxialOrder(

@@ -14,6 +14,8 @@ namespace haustra::pipeline {
 
 /// True for names that end in .nii or .nii.gz, in any case of letters.
 bool isNiftiName(const std::filesystem::path& file);
+/// True for what readScan reads as NIfTI: such a name, and no folder's.
+bool isNiftiFile(const std::filesystem::path& file);
 
 struct ScanInput {
     CtScan scan;

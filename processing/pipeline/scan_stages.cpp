@@ -5,6 +5,7 @@
 #include "cleansing/tissue_mixture.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/read_inputs.h"
+#include "pipeline/scan_identity.h"
 #include "pipeline/source_key.h"
 #include "segmentation/find_colon.h"
 #include "surface/wall_field.h"
@@ -96,6 +97,12 @@ Result<ProductKey> importScan(Preparation& preparation) {
     const auto source = sourceKey(options.series, options.threads);
     if (!source) return tl::make_unexpected(source.error());
     const ProductKey key = store::makeKey("import", importVersion, options.seriesUid, {*source});
+    if (const auto bound = identifyScan(options.series, options.seriesUid, *source, options.threads)
+                               .and_then([&](const store::ScanIdentity& scan) {
+                                   return preparation.bind(scan, key);
+                               });
+        !bound)
+        return tl::make_unexpected(bound.error());
     const auto make = [&](const Progress& progress) -> Result<void> {
         const auto input = readScan(options.series, options.seriesUid, options.threads, progress);
         if (!input) return tl::make_unexpected(input.error());
@@ -134,7 +141,11 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
     const auto mask = sourceKey(options.lumenMask, options.threads);
     if (!mask) return tl::make_unexpected(mask.error());
     std::vector<ProductKey> inputs{*mask};
-    if (ct) inputs.push_back(*ct);
+    if (ct) {
+        inputs.push_back(*ct);
+    } else if (const auto bound = preparation.bind({*mask, {}, {}}); !bound) {
+        return tl::make_unexpected(bound.error());
+    }
     // Of the organ, only how its tissues are told apart matters here.
     const bool fitted = ct && preparation.organ().finder == LumenFinder::gasAndTagged;
     const ProductKey key =

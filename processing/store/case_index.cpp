@@ -30,12 +30,12 @@ const std::string* text(const json& object, const char* field) {
 
 }  // namespace
 
-Result<std::vector<ProductEntry>> readCaseIndex(const std::filesystem::path& caseFolder) {
+Result<CaseIndex> readCaseIndex(const std::filesystem::path& caseFolder) {
     const std::filesystem::path file = caseFolder / caseIndexName;
     std::ifstream in(file, std::ios::binary);
     if (!in) {
         std::error_code error;
-        if (!std::filesystem::exists(file, error) && !error) return std::vector<ProductEntry>{};
+        if (!std::filesystem::exists(file, error) && !error) return CaseIndex{};
         return fail(ErrorKind::io, "cannot open", file.string());
     }
     const std::string content{std::istreambuf_iterator<char>(in), {}};
@@ -54,25 +54,37 @@ Result<std::vector<ProductEntry>> readCaseIndex(const std::filesystem::path& cas
     const auto products = index.find("products");
     if (products == index.end() || !products->is_object()) return damaged("it lists no products");
 
-    std::vector<ProductEntry> entries;
+    CaseIndex read;
+    if (const auto scan = index.find("scan"); scan != index.end()) {
+        const std::string* key = scan->is_object() ? text(*scan, "key") : nullptr;
+        const std::string* study = scan->is_object() ? text(*scan, "study_uid") : nullptr;
+        const std::string* series = scan->is_object() ? text(*scan, "series_uid") : nullptr;
+        if (!key || !isKey(*key) || !study || !series)
+            return damaged("it does not say which scan it is of");
+        read.scan = ScanIdentity{ProductKey{*key}, *study, *series};
+    }
     for (const auto& [name, value] : products->items()) {
         const std::string* key = value.is_object() ? text(value, "key") : nullptr;
         const std::string* productFile = value.is_object() ? text(value, "file") : nullptr;
         if (!key || !isKey(*key) || !productFile || !isPlainFileName(*productFile)) {
             return damaged("its entry of " + name + " has no sound key and file");
         }
-        entries.push_back({name, ProductKey{*key}, *productFile});
+        read.products.push_back({name, ProductKey{*key}, *productFile});
     }
-    return entries;
+    return read;
 }
 
-Result<void> writeCaseIndex(const std::filesystem::path& caseFolder,
-                            const std::vector<ProductEntry>& entries) {
+Result<void> writeCaseIndex(const std::filesystem::path& caseFolder, const CaseIndex& index) {
     json products = json::object();
-    for (const ProductEntry& entry : entries) {
+    for (const ProductEntry& entry : index.products) {
         products[entry.product] = {{"key", entry.key.hex}, {"file", entry.file}};
     }
-    const std::string content = json{{"format", 1}, {"products", products}}.dump(2) + "\n";
+    json all{{"format", 1}, {"products", products}};
+    if (const auto& scan = index.scan) {
+        all["scan"] = {
+            {"key", scan->key.hex}, {"study_uid", scan->studyUid}, {"series_uid", scan->seriesUid}};
+    }
+    const std::string content = all.dump(2) + "\n";
     return writeDurably(caseFolder, caseIndexName, {std::as_bytes(std::span(content))});
 }
 

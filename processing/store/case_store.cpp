@@ -52,6 +52,13 @@ Result<std::shared_ptr<const void>> lockCase(const fs::path& folder, const std::
     return std::shared_ptr<const void>(std::move(lock));
 }
 
+std::optional<ScanIdentity> scanOf(const CaseIndex& index) {
+    if (index.scan) return index.scan;
+    for (const ProductEntry& entry : index.products)
+        if (entry.product == "ct") return ScanIdentity{entry.key, {}, {}};
+    return std::nullopt;
+}
+
 }  // namespace
 
 ProductKey makeKey(std::string_view stage, int version, std::string_view options,
@@ -66,7 +73,22 @@ ProductKey makeKey(std::string_view stage, int version, std::string_view options
 }
 
 Result<std::vector<ProductEntry>> Case::products() const {
-    return readCaseIndex(folder_);
+    return readCaseIndex(folder_).map([](CaseIndex index) { return std::move(index.products); });
+}
+
+Result<std::optional<ScanIdentity>> Case::scan() const {
+    return readCaseIndex(folder_).map([](const CaseIndex& index) { return scanOf(index); });
+}
+
+Result<void> Case::bind(const ScanIdentity& scan) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    auto index = readCaseIndex(folder_);
+    if (!index) return tl::make_unexpected(index.error());
+    bound_ = scan;
+    const auto held = scanOf(*index);
+    if (!held || held->key != scan.key || index->scan == scan) return {};
+    index->scan = scan;
+    return writeCaseIndex(folder_, *index);
 }
 
 std::optional<ProductEntry> Case::find(std::string_view product) const {
@@ -132,21 +154,27 @@ Result<void> Case::checkWritable() const {
 }
 
 Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::string>& outdated) {
-    auto entries = products();
-    if (!entries) return tl::make_unexpected(entries.error());
+    auto index = readCaseIndex(folder_);
+    if (!index) return tl::make_unexpected(index.error());
+    if (bound_) {
+        const auto held = scanOf(*index);
+        if (!held || held->key != bound_->key) index->products.clear();
+        index->scan = bound_;
+    }
+    std::vector<ProductEntry>& entries = index->products;
     // Made again under its key, after damage, it leaves what came from it as good as it was.
     const bool unchanged =
-        std::any_of(entries->begin(), entries->end(), [&](const ProductEntry& old) {
+        std::any_of(entries.begin(), entries.end(), [&](const ProductEntry& old) {
             return old.product == entry.product && old.key == entry.key;
         });
-    std::erase_if(*entries, [&](const ProductEntry& old) {
+    std::erase_if(entries, [&](const ProductEntry& old) {
         if (old.product == entry.product) return true;
         return !unchanged &&
                std::find(outdated.begin(), outdated.end(), old.product) != outdated.end();
     });
-    entries->push_back(entry);
-    if (auto written = writeCaseIndex(folder_, *entries); !written) return written;
-    sweep(*entries);
+    entries.push_back(entry);
+    if (auto written = writeCaseIndex(folder_, *index); !written) return written;
+    sweep(entries);
     return {};
 }
 

@@ -1,6 +1,6 @@
 // The case store: one folder a case, one file a product, published whole or not at all.
 //
-//   STORE/cases/NAME/case.json              names the file of each product
+//   STORE/cases/NAME/case.json              names the case's scan and the file of each product
 //   STORE/cases/NAME/<product>-<key16>.hvol  a volume (layout: store/product_file.h)
 //   STORE/cases/NAME/<product>-<key16>.hline a centerline
 //   STORE/cases/NAME/<product>-<key16>.hmesh a triangle mesh
@@ -11,6 +11,10 @@
 // A product becomes visible when case.json names it, and case.json is replaced in one step after
 // the product's file is on the disk. A file never changes under its name's readers: what replaces
 // it is another file, and readers that have the old one mapped keep it.
+//
+// A case is of one scan, to which case.json binds it; a product of another scan takes the place of
+// all that the case had. Scans of one study (supine and prone) are cases beside each other, by
+// custom CASE and CASE.SCAN, which their study's UID holds together.
 #pragma once
 
 #include "core/centerline.h"
@@ -47,6 +51,14 @@ ProductKey makeKey(std::string_view stage, int version, std::string_view options
 /// Free text stored with a product: patient position, series facts. Nothing of the patient's.
 using Attributes = std::map<std::string, std::string>;
 
+/// Which scan a case is of. UIDs name no patient, but an archive finds one by them: they go into
+/// case.json and to no client and no log.
+struct ScanIdentity {
+    ProductKey key;  ///< names the scan under whatever case it lies; readers' records belong to it
+    std::string studyUid, seriesUid;  ///< DICOM's; empty where the files do not tell
+    bool operator==(const ScanIdentity&) const = default;
+};
+
 /// What `case.json` says of one product.
 struct ProductEntry {
     std::string product;  ///< "ct", "lumen", "centerline", "surface" …
@@ -66,6 +78,9 @@ public:
     Result<std::vector<ProductEntry>> products() const;
     std::optional<ProductEntry> find(std::string_view product) const;
     bool has(std::string_view product, const ProductKey& key) const;
+    /// The scan that the case is of. Where nothing has bound it (no UIDs are known then) its key is
+    /// that of the product "ct"; none where there is no such product either.
+    Result<std::optional<ScanIdentity>> scan() const;
 
     /// A view of the memory-mapped product; T (int16_t, uint8_t, float or TissueFractions) must be
     /// the type that was published. Reads the header alone: the values' pages come when they are
@@ -83,6 +98,11 @@ public:
     /// Fails, naming the file, where a product is not byte for byte what was published. Reads all
     /// of it, at the speed of SHA-256 on all cores.
     Result<void> verify(std::string_view product) const;
+
+    /// Binds the case to a scan. Where scan() has the same key this is durable when it returns;
+    /// else it is once a product is published, which takes the place of all that the case had, in
+    /// one step.
+    Result<void> bind(const ScanIdentity& scan);
 
     /// Published durably under `key`: when this returns, the product survives a power cut, and
     /// the file that it replaces is gone. Unless the key is the one published before, the products
@@ -112,7 +132,8 @@ private:
 
     std::string name_;
     std::filesystem::path folder_;
-    std::shared_ptr<const void> lock_;  // of a writer only
+    std::shared_ptr<const void> lock_;   // of a writer only
+    std::optional<ScanIdentity> bound_;  // what is published is of it
 };
 
 /// True where `name` can name a case: 1…64 of letters, digits, '.', '_', '-', not starting with

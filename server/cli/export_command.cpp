@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/flat_image_export.h"
 #include "cli/text_files.h"
+#include "core/bridges.h"
 #include "mesh/flat_map_file.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
@@ -89,7 +90,13 @@ Result<void> runExport(const Arguments& arguments) {
     if (product == "flatmap") {
         const auto map = source->readFlatMap();
         if (!map) return tl::make_unexpected(map.error());
-        return mesh::writeFlatMap(arguments.file, *map);
+        std::vector<std::uint8_t> bridged;
+        if (source->find("lumen")) {
+            const auto lumen = source->readVolume<std::uint8_t>("lumen");
+            if (!lumen) return tl::make_unexpected(lumen.error());
+            bridged = bridgedTriangles(map->surface, *lumen);
+        }
+        return mesh::writeFlatMap(arguments.file, *map, bridged);
     }
     if (product == "mixture") {
         const auto mixture = source->readVolume<TissueFractions>(product);
@@ -115,8 +122,9 @@ Command addExport(CLI::App& program) {
         "rectum to cecum) and branches likewise, each from an arc of 0 on; surface as .ply, .obj, "
         ".off or .stl (LPS, mm); flatmap, the cut surface, as .obj (vt: flat coordinates in "
         "circumferences) or .ply (s, t, and of each vertex the camera on the centerline that sees "
-        "it, its index and arc_mm); flat-image, the whole flattened wall seen from within, the "
-        "rectum at the bottom and black where the surface crosses air, as .png.");
+        "it, its index and arc_mm, and of each face whether it encloses a bridge); flat-image, the "
+        "whole flattened wall seen from within, the rectum at the bottom, black where the surface "
+        "crosses air and hatched along bridges, as .png.");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     command->add_option("PRODUCT", arguments->product, "What to write")
         ->required()

@@ -1,6 +1,7 @@
 #include "cli/flat_image_export.h"
 
 #include "cli/arguments.h"
+#include "cli/bridge_paint.h"
 #include "cli/case_scans.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
@@ -42,7 +43,7 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     const double height = map->height;
     auto function = render::opticsPreset(options.transferFunction);
     if (!function) return tl::make_unexpected(function.error());
-    const render::StripPicture picture{options.width, options.seamMargin, std::move(*function), {}};
+    render::StripPicture picture{options.width, options.seamMargin, std::move(*function), {}};
     const double widest = std::min(double(render::maxPixelsPerUnit),
                                    std::floor(double(render::maxStripRows) / height));
     if (options.width > widest) {
@@ -60,6 +61,9 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     auto prepared = render::prepareCase(scans->ct, scans->cleansed, options.threads);
     if (!prepared) return tl::make_unexpected(prepared.error());
     prepared->flatMap = std::make_shared<const FlatMap>(std::move(*map));
+    auto paint = paintBridges(source, prepared->flatMap, nullptr);
+    if (!paint) return tl::make_unexpected(paint.error());
+    picture.paint = std::move(*paint);
     auto context = gpu::Context::create();
     if (!context) return tl::make_unexpected(context.error());
     auto renderer =

@@ -1,8 +1,11 @@
 // haustra list: what a store holds.
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "pipeline/scan_identity.h"
 #include "store/case_store.h"
 
+#include <algorithm>
+#include <map>
 #include <memory>
 #include <system_error>
 
@@ -14,13 +17,56 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct Listed {
+    std::string name;
+    std::string study;     ///< its code; empty where it is not known
+    std::string position;  ///< "HFS" …; empty where there is no scan
+};
+
+Listed look(const store::CaseStore& store, const std::string& name) {
+    Listed listed{name, {}, {}};
+    const auto opened = store.openCase(name);
+    if (!opened) return listed;
+    if (const auto scan = opened->scan(); scan && *scan)
+        listed.study = pipeline::studyCode((*scan)->studyUid);
+    if (const auto attributes = opened->attributes("ct")) {
+        if (const auto at = attributes->find("position"); at != attributes->end())
+            listed.position = at->second;
+    }
+    return listed;
+}
+
+// Sorted by name, but for the scans of a study, which follow the first of them.
+std::vector<Listed> byStudy(const store::CaseStore& store, const std::vector<std::string>& names) {
+    std::vector<Listed> all;
+    std::map<std::string, std::size_t> firstOfStudy;
+    std::vector<std::size_t> place;
+    for (const std::string& name : names) {
+        all.push_back(look(store, name));
+        const std::string& study = all.back().study;
+        place.push_back(study.empty()
+                            ? all.size() - 1
+                            : firstOfStudy.try_emplace(study, all.size() - 1).first->second);
+    }
+    std::vector<std::size_t> order(all.size());
+    for (std::size_t n = 0; n < order.size(); ++n)
+        order[n] = n;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return place[a] < place[b]; });
+    std::vector<Listed> sorted;
+    for (const std::size_t n : order)
+        sorted.push_back(std::move(all[n]));
+    return sorted;
+}
+
 Result<void> runList(const fs::path& folder) {
     const auto store = store::CaseStore::open(folder, false);
     if (!store) return tl::make_unexpected(store.error());
     const auto names = store->cases();
     if (!names) return tl::make_unexpected(names.error());
-    for (const std::string& name : *names) {
-        fmt::print("{}\n", name);
+    for (const auto& [name, study, position] : byStudy(*store, *names)) {
+        fmt::print("{}{}{}\n", name, study.empty() ? "" : "  study " + study,
+                   position.empty() ? "" : "  " + position);
         const auto products =
             store->openCase(name).and_then([](const auto& opened) { return opened.products(); });
         if (!products) {
@@ -43,8 +89,10 @@ Result<void> runList(const fs::path& folder) {
 
 Command addList(CLI::App& program) {
     auto folder = std::make_shared<fs::path>();
-    CLI::App* command =
-        program.add_subcommand("list", "List the cases of a store, their products and sizes.");
+    CLI::App* command = program.add_subcommand("list",
+                                               "List the cases of a store, their products and "
+                                               "sizes; a study's scans one after the other, each "
+                                               "with the study's code and the patient's position.");
     addStoreOption(*command, *folder);
     return {command, [folder] { return runList(*folder); }};
 }

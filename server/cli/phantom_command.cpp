@@ -48,6 +48,9 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
     writing.seriesDescription = "Phantom " + arguments.preset + " " + arguments.position;
     writing.uidSeed = fmt::format("phantom {} {} {} {}", arguments.seed, arguments.preset,
                                   arguments.position, arguments.size);
+    // One patient lying on the back and on the belly.
+    writing.studySeed =
+        fmt::format("phantom {} {} {}", arguments.seed, arguments.preset, arguments.size);
     const nlohmann::ordered_json facts{{"version", phantom::phantomVersion},
                                        {"seed", arguments.seed},
                                        {"preset", arguments.preset},

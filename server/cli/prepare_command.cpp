@@ -4,6 +4,8 @@
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
 #include "pipeline/prepare.h"
+#include "pipeline/scan_identity.h"
+#include "pipeline/source_key.h"
 
 #include <algorithm>
 #include <memory>
@@ -23,18 +25,21 @@ struct Arguments {
     pipeline::PrepareOptions options;
 };
 
-// The series' own name without .nii or .nii.gz, with '_' for what a case name cannot have.
-std::string defaultCaseName(const fs::path& source) {
-    std::error_code ignored;
-    fs::path path = fs::weakly_canonical(source, ignored).filename();
-    if (path.extension() == ".gz") path = path.stem();
-    if (path.extension() == ".nii" || path.extension() == ".dcm") path = path.stem();
-    std::string name = path.string().substr(0, 64);
-    for (char& c : name) {
-        if (!store::isCaseName(std::string("a") + c)) c = '_';
-    }
-    if (!name.empty() && name[0] == '.') name[0] = '_';
-    return name.empty() ? "case" : name;
+// Of what identifies the scan, since no folder's name does.
+Result<std::string> defaultCaseName(const pipeline::PrepareOptions& options) {
+    const bool scanned = !options.series.empty();
+    const auto content =
+        pipeline::sourceKey(scanned ? options.series : options.lumenMask, options.threads);
+    if (!content) return tl::make_unexpected(content.error());
+    const store::ScanIdentity mask{*content, {}, {}};
+    return (scanned ? pipeline::identifyScan(options.series, options.seriesUid, *content,
+                                             options.threads)
+                    : mask)
+        .map(pipeline::defaultCaseName);
+}
+
+std::string checkCaseName(const std::string& name) {
+    return store::isCaseName(name) ? std::string() : "not a case name: \"" + name + "\"";
 }
 
 // CLI::Range lets NaN through.
@@ -45,7 +50,7 @@ std::string checkSurfaceError(const std::string& text) {
                : "\"" + text + "\" is not 0.001 to 10 mm";
 }
 
-std::string reportJson(const std::string& caseName, const pipeline::PrepareReport& report) {
+std::string reportJson(const pipeline::PrepareReport& report) {
     auto stages = nlohmann::ordered_json::array();
     double wallSeconds = 0.0, peakMemoryMib = 0.0;
     for (const pipeline::StageReport& stage : report.stages) {
@@ -56,10 +61,15 @@ std::string reportJson(const std::string& caseName, const pipeline::PrepareRepor
         wallSeconds += stage.wallSeconds;
         peakMemoryMib = std::max(peakMemoryMib, stage.peakMemoryMib);
     }
-    return nlohmann::ordered_json{{"case", caseName},
-                                  {"stages", stages},
-                                  {"wall_seconds", wallSeconds},
-                                  {"peak_memory_mib", peakMemoryMib},
+    auto bridges = nlohmann::ordered_json::array();
+    for (const Bridge& bridge : report.bridges) {
+        bridges.push_back({{"from_arc_mm", bridge.fromArcMm},
+                           {"to_arc_mm", bridge.toArcMm},
+                           {"length_mm", bridge.lengthMm()}});
+    }
+    return nlohmann::ordered_json{{"case", report.caseName},     {"stages", stages},
+                                  {"bridges", bridges},          {"bridged_mm2", report.bridgedMm2},
+                                  {"wall_seconds", wallSeconds}, {"peak_memory_mib", peakMemoryMib},
                                   {"notes", report.notes}}
                .dump(2) +
            "\n";
@@ -75,7 +85,11 @@ Result<void> runPrepare(Arguments arguments) {
     if (!arguments.report.empty()) {
         if (auto fit = checkOutputFile(arguments.report); !fit) return fit;
     }
-    if (arguments.caseName.empty()) arguments.caseName = defaultCaseName(source);
+    if (arguments.caseName.empty()) {
+        auto name = defaultCaseName(arguments.options);
+        if (!name) return tl::make_unexpected(name.error());
+        arguments.caseName = std::move(*name);
+    }
     const auto store = store::CaseStore::open(arguments.store, true);
     if (!store) return tl::make_unexpected(store.error());
 
@@ -92,9 +106,9 @@ Result<void> runPrepare(Arguments arguments) {
         fmt::print("{:<12} {:8.2f} s {:8.0f} MiB{}\n", stage.stage, stage.wallSeconds,
                    stage.peakMemoryMib, stage.reused ? "  reused" : "");
     }
-    fmt::print("case {} is prepared\n", arguments.caseName);
+    fmt::print("case {} is prepared\n", report->caseName);
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report, reportJson(arguments.caseName, *report));
+    return writeTextFile(arguments.report, reportJson(*report));
 }
 
 }  // namespace
@@ -113,13 +127,27 @@ Command addPrepare(CLI::App& program) {
                      "DICOM folder (files in any order and depth) or file, or one NIfTI file")
         ->type_name("PATH");
     addStoreOption(*command, arguments->store);
-    command
-        ->add_option("--case", arguments->caseName,
-                     "The case's name: letters, digits, '.', '_', '-' (default: the series' name)")
-        ->type_name("NAME")
-        ->check([](const std::string& name) {
-            return store::isCaseName(name) ? std::string() : "not a case name: \"" + name + "\"";
-        });
+    CLI::Option* name =
+        command
+            ->add_option(
+                "--case", arguments->caseName,
+                "The case's name: letters, digits, '.', '_', '-' (default: one made from the "
+                "study's and the series' UIDs, or from a NIfTI file's content). A case is of "
+                "one scan: another one is refused")
+            ->type_name("NAME")
+            ->check(checkCaseName);
+    CLI::Option* scan =
+        command
+            ->add_option("--scan", options.scan,
+                         "One of several scans of CASE, such as supine and prone of one study: it "
+                         "is kept beside them, as CASE.SCAN; a series of another study is refused")
+            ->type_name("SCAN")
+            ->check(checkCaseName);
+    scan->needs(name);
+    command->add_flag("--replace", options.replace,
+                      "Let this scan take the place of another one that the case is of. Its "
+                      "products go; bookmarks stay with their scan, and are there again when it "
+                      "is");
     command
         ->add_option("--organ", options.organ,
                      "How the organ is found, shaped and ended: colon (default), bladder, vessel, "
@@ -159,7 +187,8 @@ Command addPrepare(CLI::App& program) {
     addAreaWeightOption(*command, options.areaWeight);
     command
         ->add_option("--report", arguments->report,
-                     "Write wall seconds and peak memory of each stage, and notes, as JSON")
+                     "Write wall seconds and peak memory of each stage, the bridges over collapsed "
+                     "segments with their lengths, and notes, as JSON")
         ->type_name("FILE.json");
     addThreadsOption(*command, options.threads);
     command->callback([arguments] {

@@ -1,5 +1,6 @@
 // haustra render: one picture of a case, as the server draws it, or of a scan from a file.
 #include "cli/arguments.h"
+#include "cli/bridge_paint.h"
 #include "cli/case_scans.h"
 #include "cli/commands.h"
 #include "cli/input_volume.h"
@@ -38,6 +39,7 @@ using render::Lens, render::View;
 struct Products {
     Centerline centerline;
     std::shared_ptr<const FlatMap> flatMap;
+    std::shared_ptr<const render::WallPaint> paint;  ///< --paint, with the bridges hatched
     std::shared_ptr<const TriMesh> wall;
     CaseScans scans;
     Volume<TissueFractions> mixture;
@@ -87,16 +89,10 @@ Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Pro
                                      render::CaseRenderer& renderer) {
     const auto from = camera(arguments, products.centerline, products.flatMap);
     if (!from) return tl::make_unexpected(from.error());
-    std::shared_ptr<const render::WallPaint> paint;
-    if (!arguments.paint.empty()) {
-        auto read = render::readWallPaint(arguments.paint, products.flatMap->height);
-        if (!read) return tl::make_unexpected(read.error());
-        paint = std::move(*read);
-    }
     render::Camera camera{from->positionMm, from->forward, from->up,
                           fovOf(arguments, render::Camera{}.fovDegrees), arguments.lens};
     if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
-    return drawCamera(arguments, camera, std::move(paint), renderer);
+    return drawCamera(arguments, camera, products.paint, renderer);
 }
 
 Result<render::Image> drawFlattened(const RenderArguments& arguments, const Products& products,
@@ -105,13 +101,15 @@ Result<render::Image> drawFlattened(const RenderArguments& arguments, const Prod
     if (!optics) return tl::make_unexpected(optics.error());
     const auto [width, height] = std::pair(arguments.size.x, arguments.size.y);
     if (arguments.shown() == View::flattened)
-        return renderer.render(render::FlatOverview{std::move(*optics), marchOf(arguments)}, width,
-                               height);
+        return renderer.render(
+            render::FlatOverview{std::move(*optics), marchOf(arguments), products.paint}, width,
+            height);
     const auto center = wallPlace(arguments, products.centerline, FlatLookup(products.flatMap));
     if (!center) return tl::make_unexpected(center.error());
     const FlatWindow window{center->flat, arguments.pixelsPerCircumference};
-    return renderer.render(render::FlatView{window, std::move(*optics), marchOf(arguments)}, width,
-                           height);
+    return renderer.render(
+        render::FlatView{window, std::move(*optics), marchOf(arguments), products.paint}, width,
+        height);
 }
 
 Result<render::Image> drawOverview(const RenderArguments& arguments, const Products& products,
@@ -133,6 +131,7 @@ Result<render::Image> drawOverview(const RenderArguments& arguments, const Produ
     view.camera.lens = Lens::orthographic;
     view.camera.heightMm = orbit.heightMm;
     view.bookmarksMm = arguments.marksMm;
+    view.paint = products.paint;
     view.body = arguments.body;
     view.optics = std::move(*optics);
     view.march = marchOf(arguments, view.march);
@@ -239,8 +238,22 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
             !read)
             return tl::make_unexpected(read.error());
     const bool onWall = view == View::endoscopic && !isFree && !arguments.arcMm;
-    if (arguments.isFlattened() || onWall || !arguments.paint.empty())
+    const bool showsWall = arguments.castsRays() || arguments.isFlattened();
+    const auto bridged = showsWall && source.find("flatmap") ? hasBridges(source) : false;
+    if (!bridged) return tl::make_unexpected(bridged.error());
+    if (arguments.isFlattened() || onWall || !arguments.paint.empty() || *bridged) {
         if (auto read = keep(source.readFlatMap(), products.flatMap); !read)
+            return tl::make_unexpected(read.error());
+    }
+    if (!arguments.paint.empty())
+        if (auto read = keep(render::readWallPaint(arguments.paint, products.flatMap->height),
+                             products.paint);
+            !read)
+            return tl::make_unexpected(read.error());
+    if (*bridged)
+        if (auto read =
+                keep(paintBridges(source, products.flatMap, products.paint), products.paint);
+            !read)
             return tl::make_unexpected(read.error());
     if (view == View::overview ||
         (arguments.castsRays() && arguments.raycaster == render::RaycasterKind::polygonAssisted))
@@ -290,7 +303,7 @@ Result<render::Image> drawCase(const RenderArguments& arguments) {
             return drawOblique(arguments, products->centerline, window, scan, renderer);
         if (arguments.isSlice()) return drawSlice(arguments, *products, window, renderer);
         if (arguments.view == "camera")
-            return drawCamera(arguments, freeCamera(arguments, grid), nullptr, renderer);
+            return drawCamera(arguments, freeCamera(arguments, grid), products->paint, renderer);
         return drawEndoscopic(arguments, *products, renderer);
     });
 }

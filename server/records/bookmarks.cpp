@@ -11,9 +11,10 @@ namespace {
 constexpr char schema[] = R"(
     PRAGMA journal_mode = WAL;
     PRAGMA synchronous = FULL;
-    CREATE TABLE IF NOT EXISTS bookmarks(
+    CREATE TABLE IF NOT EXISTS scan_bookmarks(
         id INTEGER PRIMARY KEY AUTOINCREMENT,
         case_name TEXT NOT NULL,
+        scan TEXT NOT NULL,
         client_key TEXT NOT NULL,
         position_x REAL NOT NULL, position_y REAL NOT NULL, position_z REAL NOT NULL,
         forward_x REAL NOT NULL, forward_y REAL NOT NULL, forward_z REAL NOT NULL,
@@ -21,12 +22,27 @@ constexpr char schema[] = R"(
         arc_mm REAL NOT NULL,
         note TEXT NOT NULL,
         created_utc TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now')),
-        UNIQUE(case_name, client_key));
+        UNIQUE(scan, client_key));
+)";
+
+// Of before bookmarks had scans. Until its scan is known, a case stands for it; no key of a scan
+// holds a colon.
+constexpr char upgrade[] = R"(
+    BEGIN IMMEDIATE;
+    INSERT INTO scan_bookmarks SELECT id, case_name, 'case:' || case_name, client_key, position_x,
+        position_y, position_z, forward_x, forward_y, forward_z, up_x, up_y, up_z, arc_mm, note,
+        created_utc FROM bookmarks;
+    DROP TABLE bookmarks;
+    COMMIT;
 )";
 
 constexpr char columns[] =
-    "SELECT id, case_name, client_key, position_x, position_y, position_z, forward_x, forward_y, "
-    "forward_z, up_x, up_y, up_z, arc_mm, note, created_utc FROM bookmarks ";
+    "SELECT id, case_name, scan, client_key, position_x, position_y, position_z, forward_x, "
+    "forward_y, "
+    "forward_z, up_x, up_y, up_z, arc_mm, note, created_utc FROM "
+    "scan_bookmarks ";
+
+constexpr char caseForScan[] = "case:";  // as `upgrade` has it
 
 constexpr int busyMs = 5000;  // another process commits
 
@@ -44,13 +60,14 @@ Bookmark bookmarkAt(const Statement& row) {
     Bookmark bookmark;
     bookmark.id = std::uint64_t(row.integer(0));
     bookmark.caseName = row.text(1);
-    bookmark.clientKey = row.text(2);
-    bookmark.positionMm = {row.real(3), row.real(4), row.real(5)};
-    bookmark.forward = {row.real(6), row.real(7), row.real(8)};
-    bookmark.up = {row.real(9), row.real(10), row.real(11)};
-    bookmark.arcMm = row.real(12);
-    bookmark.note = row.text(13);
-    bookmark.createdUtc = row.text(14);
+    bookmark.scan = row.text(2);
+    bookmark.clientKey = row.text(3);
+    bookmark.positionMm = {row.real(4), row.real(5), row.real(6)};
+    bookmark.forward = {row.real(7), row.real(8), row.real(9)};
+    bookmark.up = {row.real(10), row.real(11), row.real(12)};
+    bookmark.arcMm = row.real(13);
+    bookmark.note = row.text(14);
+    bookmark.createdUtc = row.text(15);
     return bookmark;
 }
 
@@ -61,11 +78,12 @@ void BookmarkStore::Close::operator()(sqlite3* database) const {
 }
 
 BookmarkStore::BookmarkStore(std::unique_ptr<sqlite3, Close> database, Statement insert,
-                             Statement find, Statement select)
+                             Statement find, Statement select, Statement adopt)
     : database_(std::move(database)),
       insert_(std::move(insert)),
       find_(std::move(find)),
-      list_(std::move(select)) {}
+      list_(std::move(select)),
+      adopt_(std::move(adopt)) {}
 
 Result<BookmarkStore> BookmarkStore::open(const std::filesystem::path& file) {
     sqlite3* opened = nullptr;
@@ -77,36 +95,70 @@ Result<BookmarkStore> BookmarkStore::open(const std::filesystem::path& file) {
     sqlite3_busy_timeout(opened, busyMs);
     if (const auto made = run(opened, schema, "prepare the records"); !made)
         return tl::make_unexpected(made.error());
+    auto former =
+        Statement::prepare(opened, "SELECT 1 FROM sqlite_schema WHERE name = 'bookmarks'");
+    if (!former) return tl::make_unexpected(former.error());
+    const auto isFormer = former->step();
+    if (!isFormer) return tl::make_unexpected(isFormer.error());
+    former->reset();
+    if (*isFormer) {
+        if (const auto upgraded = run(opened, upgrade, "upgrade the records"); !upgraded)
+            return tl::make_unexpected(upgraded.error());
+    }
 
     auto insert = Statement::prepare(
         opened,
-        "INSERT INTO bookmarks(case_name, client_key, position_x, position_y, position_z, "
-        "forward_x, forward_y, forward_z, up_x, up_y, up_z, arc_mm, note) "
-        "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?) RETURNING id, created_utc");
+        "INSERT INTO scan_bookmarks(case_name, scan, client_key, position_x, position_y, "
+        "position_z, forward_x, forward_y, forward_z, up_x, up_y, up_z, arc_mm, note) "
+        "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?) RETURNING id, created_utc");
     if (!insert) return tl::make_unexpected(insert.error());
     const std::string select = columns;
-    auto find =
-        Statement::prepare(opened, (select + "WHERE case_name = ? AND client_key = ?").c_str());
+    auto find = Statement::prepare(opened, (select + "WHERE scan = ? AND client_key = ?").c_str());
     if (!find) return tl::make_unexpected(find.error());
-    auto list = Statement::prepare(opened, (select + "WHERE case_name = ? ORDER BY id").c_str());
+    auto list = Statement::prepare(opened, (select + "WHERE scan = ? ORDER BY id").c_str());
     if (!list) return tl::make_unexpected(list.error());
+    auto adopt =
+        Statement::prepare(opened, "UPDATE OR IGNORE scan_bookmarks SET scan = ? WHERE scan = ?");
+    if (!adopt) return tl::make_unexpected(adopt.error());
 
-    BookmarkStore store(std::move(database), std::move(*insert), std::move(*find),
-                        std::move(*list));
-    auto sizes = Statement::prepare(
-        opened,
-        "SELECT case_name, sum(length(CAST(note AS BLOB)) + length(CAST(client_key AS BLOB)) + "
-        "256) FROM bookmarks GROUP BY case_name");
-    if (!sizes) return tl::make_unexpected(sizes.error());
-    auto row = sizes->step();
-    for (; row && *row; row = sizes->step())
-        store.caseBytes_[sizes->text(0)] = std::size_t(sizes->integer(1));
-    if (!row) return tl::make_unexpected(row.error());
+    BookmarkStore store(std::move(database), std::move(*insert), std::move(*find), std::move(*list),
+                        std::move(*adopt));
+    if (const auto measured = store.measure(); !measured)
+        return tl::make_unexpected(measured.error());
     return store;
 }
 
+Result<void> BookmarkStore::measure() {
+    auto sizes = Statement::prepare(
+        database_.get(),
+        "SELECT scan, sum(length(CAST(note AS BLOB)) + length(CAST(client_key AS BLOB)) + "
+        "256) FROM scan_bookmarks GROUP BY scan");
+    if (!sizes) return tl::make_unexpected(sizes.error());
+    scanBytes_.clear();
+    unadopted_.clear();
+    auto row = sizes->step();
+    for (; row && *row; row = sizes->step()) {
+        const std::string scan = sizes->text(0);
+        scanBytes_[scan] = std::size_t(sizes->integer(1));
+        if (scan.starts_with(caseForScan)) unadopted_.insert(scan);
+    }
+    if (!row) return tl::make_unexpected(row.error());
+    return {};
+}
+
+Result<void> BookmarkStore::adopt(const std::string& caseName, const std::string& scan) {
+    const std::string former = caseForScan + caseName;
+    if (!unadopted_.contains(former)) return {};
+    adopt_.bind(1, scan);
+    adopt_.bind(2, former);
+    const auto adopted = adopt_.step();
+    adopt_.reset();
+    if (!adopted) return tl::make_unexpected(adopted.error());
+    return measure();
+}
+
 Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
-    find_.bind(1, bookmark.caseName);
+    find_.bind(1, bookmark.scan);
     find_.bind(2, bookmark.clientKey);
     const auto found = find_.step();
     std::optional<Bookmark> known;
@@ -115,10 +167,11 @@ Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
     if (!found) return tl::make_unexpected(found.error());
     if (known) return *known;
 
-    if (caseBytes_[bookmark.caseName] + listBytes(bookmark) > maxCaseBytes)
-        return fail(ErrorKind::badInput, "the case holds as many bookmarks as it can", "bookmarks");
+    if (scanBytes_[bookmark.scan] + listBytes(bookmark) > maxScanBytes)
+        return fail(ErrorKind::badInput, "the scan holds as many bookmarks as it can", "bookmarks");
     int parameter = 0;
     insert_.bind(++parameter, bookmark.caseName);
+    insert_.bind(++parameter, bookmark.scan);
     insert_.bind(++parameter, bookmark.clientKey);
     for (const glm::dvec3& vector : {bookmark.positionMm, bookmark.forward, bookmark.up})
         for (int axis = 0; axis < 3; ++axis)
@@ -133,7 +186,7 @@ Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
     }
     insert_.reset();
     if (!inserted) return tl::make_unexpected(inserted.error());
-    caseBytes_[bookmark.caseName] += listBytes(bookmark);
+    scanBytes_[bookmark.scan] += listBytes(bookmark);
     return added;
 }
 
@@ -143,10 +196,10 @@ Result<std::vector<Result<Bookmark>>> BookmarkStore::add(
     // IMMEDIATE: whoever else writes is waited for here, not found out half way.
     if (const auto begun = run(database, "BEGIN IMMEDIATE", "write the records"); !begun)
         return tl::make_unexpected(begun.error());
-    const auto bytesBefore = caseBytes_;
+    const auto bytesBefore = scanBytes_;
     const auto giveUp = [&](const Error& error) {
         sqlite3_exec(database, "ROLLBACK", nullptr, nullptr, nullptr);
-        caseBytes_ = bytesBefore;
+        scanBytes_ = bytesBefore;
         return tl::make_unexpected(error);
     };
     std::vector<Result<Bookmark>> added;
@@ -160,9 +213,9 @@ Result<std::vector<Result<Bookmark>>> BookmarkStore::add(
     return added;
 }
 
-Result<std::vector<Bookmark>> BookmarkStore::list(const std::string& caseName) {
+Result<std::vector<Bookmark>> BookmarkStore::list(const std::string& scan) {
     std::vector<Bookmark> bookmarks;
-    list_.bind(1, caseName);
+    list_.bind(1, scan);
     auto row = list_.step();
     for (; row && *row; row = list_.step())
         bookmarks.push_back(bookmarkAt(list_));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ namespace haustra::records {
 
 /// What a reader adds: a camera's place on a case, with a note. LPS, mm.
 struct NewBookmark {
-    std::string caseName;
-    std::string clientKey;  ///< chosen by the client, unique in the case
+    std::string caseName;   ///< under which it was added; what it is of is the scan
+    std::string scan;       ///< key of the scan that it is of
+    std::string clientKey;  ///< chosen by the client, unique in the scan
     glm::dvec3 positionMm{0.0}, forward{0.0}, up{0.0};
     double arcMm = 0.0;
     std::string note;  ///< UTF-8
@@ -29,38 +31,48 @@ struct Bookmark : NewBookmark {
     std::string createdUtc;  ///< "2020-01-31T23:59:59Z"
 };
 
-/// What all bookmarks of a case may take together, so that their list fits in one message: each
+/// What all bookmarks of a scan may take together, so that their list fits in one message: each
 /// counts its note's and key's bytes and 256 more.
-inline constexpr std::size_t maxCaseBytes = 4'000'000;
+inline constexpr std::size_t maxScanBytes = 4'000'000;
 
 /// The table of bookmarks. SQLite in WAL mode with synchronous=FULL: what add() has returned
 /// survives a crash of the process, and of the machine where its disk honours fsync. Belongs to
 /// one thread; other processes may have the same file open.
+///
+/// Bookmarks belong to a scan, not to the case that it lies in: another scan under the case's name
+/// shows none of them, and the scan under another name all. Files of before this was so had cases
+/// alone: what they hold is given to a scan by adopt().
 class BookmarkStore {
 public:
     /// Opens the file, making it where it does not exist.
     static Result<BookmarkStore> open(const std::filesystem::path& file);
 
-    /// Adds all in one transaction, which costs one fsync. Where a case already holds the client
+    /// Adds all in one transaction, which costs one fsync. Where a scan already holds the client
     /// key, the bookmark of that key is returned and nothing is stored: a client that has lost an
-    /// acknowledgement may ask again. One that would take its case past maxCaseBytes is refused
+    /// acknowledgement may ask again. One that would take its scan past maxScanBytes is refused
     /// (badInput), and the others are added. Where the transaction fails, none is there.
     Result<std::vector<Result<Bookmark>>> add(const std::vector<NewBookmark>& bookmarks);
 
-    /// A case's bookmarks in the order in which they were added.
-    Result<std::vector<Bookmark>> list(const std::string& caseName);
+    /// A scan's bookmarks in the order in which they were added.
+    Result<std::vector<Bookmark>> list(const std::string& scan);
+
+    /// The bookmarks of case `caseName` of which no scan is known are from now on of this one. For
+    /// the scan that the case is of when it is first opened.
+    Result<void> adopt(const std::string& caseName, const std::string& scan);
 
 private:
     struct Close {
         void operator()(sqlite3* database) const;
     };
-    BookmarkStore(std::unique_ptr<sqlite3, Close> database, Statement insert, Statement find,
-                  Statement select);
+    explicit BookmarkStore(std::unique_ptr<sqlite3, Close> database, Statement insert,
+                           Statement find, Statement select, Statement adopt);
+    Result<void> measure();
     Result<Bookmark> addOne(const NewBookmark& bookmark);
 
     std::unique_ptr<sqlite3, Close> database_;  // first: outlives the statements
-    Statement insert_, find_, list_;
-    std::map<std::string, std::size_t> caseBytes_;
+    Statement insert_, find_, list_, adopt_;
+    std::map<std::string, std::size_t> scanBytes_;
+    std::set<std::string> unadopted_;  // cases with bookmarks of no known scan
 };
 
 }  // namespace haustra::records

@@ -38,6 +38,11 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
     }
     if (!files->facts.centerline.points.empty())
         prepared->path = std::make_shared<const Centerline>(files->facts.centerline);
+    // Its products were read one after the other, and all must be of one scan.
+    const auto scan = source->scan();
+    if (!scan) return tl::make_unexpected(scan.error());
+    if (!*scan || (*scan)->key.hex != files->facts.scan)
+        return fail(ErrorKind::io, "the case became one of another scan while it was opened", name);
     return renderer.upload(std::move(files->facts), std::move(*prepared));
 }
 

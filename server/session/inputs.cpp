@@ -151,7 +151,7 @@ Result<WallPaintChoice> paintChoiceFrom(const protocol::SetWallPaint& message) {
 }
 
 Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
-                                          const std::string& caseName) {
+                                          const std::string& caseName, const std::string& scan) {
     const auto position = positionFrom(message.position_mm());
     if (!position) return tl::make_unexpected(position.error());
     const render::Camera camera{*position, vectorFrom(message.forward()), vectorFrom(message.up())};
@@ -171,8 +171,8 @@ Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
         return refuse("the client key is not 1 to " + std::to_string(maxClientKeyBytes) +
                           " visible ASCII characters",
                       "bookmark");
-    return records::NewBookmark{caseName,         key, camera.positionMm, camera.forward, camera.up,
-                                message.arc_mm(), note};
+    return records::NewBookmark{
+        caseName, scan, key, camera.positionMm, camera.forward, camera.up, message.arc_mm(), note};
 }
 
 }  // namespace haustra::session

@@ -51,6 +51,6 @@ Result<WallPaintChoice> paintChoiceFrom(const protocol::SetWallPaint& message);
 /// A camera's place with finite arc; the note is at most maxNoteBytes without control characters
 /// but line feed and tab; the key is 1 to maxClientKeyBytes of visible ASCII.
 Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
-                                          const std::string& caseName);
+                                          const std::string& caseName, const std::string& scan);
 
 }  // namespace haustra::session

@@ -44,6 +44,7 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
     protocol::ServerMessage answer;
     auto* message = answer.mutable_case_opened();
     message->set_name(opened.name);
+    message->set_scan(opened.scan);
     message->set_size_x(std::uint32_t(opened.grid.size.x));
     message->set_size_y(std::uint32_t(opened.grid.size.y));
     message->set_size_z(std::uint32_t(opened.grid.size.z));

@@ -1,5 +1,7 @@
 #include "session/open_case.h"
 
+#include "core/bridges.h"
+
 namespace haustra::session {
 
 Result<CaseFiles> readCase(const store::Case& source) {
@@ -8,6 +10,9 @@ Result<CaseFiles> readCase(const store::Case& source) {
 
     CaseFiles files;
     files.facts.name = source.name();
+    const auto scan = source.scan();
+    if (!scan) return tl::make_unexpected(scan.error());
+    if (*scan) files.facts.scan = (*scan)->key.hex;
     auto ct = source.readVolume<std::int16_t>("ct");
     if (!ct) return tl::make_unexpected(ct.error());
     files.ct = std::move(*ct);
@@ -48,7 +53,13 @@ Result<std::shared_ptr<const TriMesh>> readSurface(const store::Case& source) {
 Result<std::shared_ptr<const Wall>> readWall(const store::Case& source) {
     auto map = source.readFlatMap();
     if (!map) return tl::make_unexpected(map.error());
-    return makeWall(std::make_shared<const FlatMap>(std::move(*map)));
+    std::vector<std::uint8_t> bridged;
+    if (source.find("lumen")) {
+        const auto lumen = source.readVolume<std::uint8_t>("lumen");
+        if (!lumen) return tl::make_unexpected(lumen.error());
+        bridged = bridgedTriangles(map->surface, *lumen);
+    }
+    return makeWall(std::make_shared<const FlatMap>(std::move(*map)), std::move(bridged));
 }
 
 }  // namespace haustra::session

@@ -19,6 +19,7 @@ namespace haustra::session {
 /// What sessions on a case share. Immutable.
 struct OpenCase {
     std::string name;
+    std::string scan;     ///< key of the scan that it is of: what bookmarks belong to
     std::string content;  ///< equal for equal products of the same case
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
@@ -47,8 +48,8 @@ Result<CaseFiles> readCase(const store::Case& source);
 /// Reads product "surface", the wall's mesh.
 Result<std::shared_ptr<const TriMesh>> readSurface(const store::Case& source);
 
-/// Reads product "flatmap" and makes it ready for questions: about a second for a million
-/// triangles, and some hundred bytes for each.
+/// Reads product "flatmap", and which of it "lumen" knows for a bridge, and makes it ready for
+/// questions: about a second for a million triangles, and some hundred bytes for each.
 Result<std::shared_ptr<const Wall>> readWall(const store::Case& source);
 
 }  // namespace haustra::session

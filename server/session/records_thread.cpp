@@ -32,7 +32,9 @@ struct RecordsThread::Keeping {
     void serve(Add& add) { additions.push_back(std::move(add)); }
     void serve(List& list) {
         commit();
-        list.done(bookmarks.list(list.caseName));
+        list.done(bookmarks.adopt(list.caseName, list.scan).and_then([&] {
+            return bookmarks.list(list.scan);
+        }));
     }
     void serve(ListCases& list) {
         commit();
@@ -63,8 +65,8 @@ RecordsThread::~RecordsThread() {
 void RecordsThread::add(records::NewBookmark bookmark, Added done) {
     requests_.push(Add{std::move(bookmark), std::move(done)});
 }
-void RecordsThread::list(std::string caseName, Listed done) {
-    requests_.push(List{std::move(caseName), std::move(done)});
+void RecordsThread::list(std::string caseName, std::string scan, Listed done) {
+    requests_.push(List{std::move(caseName), std::move(scan), std::move(done)});
 }
 void RecordsThread::listCases(Cases done) {
     requests_.push(ListCases{std::move(done)});

@@ -30,7 +30,8 @@ public:
     using Added = std::function<void(Result<records::Bookmark>)>;
     void add(records::NewBookmark bookmark, Added done);
     using Listed = std::function<void(Result<std::vector<records::Bookmark>>)>;
-    void list(std::string caseName, Listed done);
+    /// `scan` is what the case of that name is of.
+    void list(std::string caseName, std::string scan, Listed done);
     using Cases = std::function<void(Result<std::vector<std::string>>)>;
     void listCases(Cases done);
 
@@ -40,7 +41,7 @@ private:
         Added done;
     };
     struct List {
-        std::string caseName;
+        std::string caseName, scan;
         Listed done;
     };
     struct ListCases {

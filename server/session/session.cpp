@@ -52,7 +52,7 @@ std::shared_ptr<Session> Session::create(SessionId id, asio::any_io_executor io,
                                                       services.presets, std::move(outlet));
     services.news.listen(weak, [weak](const records::Bookmark& bookmark) {
         const auto session = weak.lock();
-        if (session && session->reading_ && bookmark.caseName == session->case_->name)
+        if (session && session->reading_ && bookmark.scan == session->case_->scan)
             session->reading_->addBookmark(bookmark);
     });
     return self;
@@ -277,6 +277,7 @@ void Session::makeReading() {
     };
     ++readings_;
     reading_ = std::make_shared<WallReading>(io_, services_.painting, case_, std::move(outlet));
+    reading_->choose({});
     pictures_->setReading(reading_);
 }
 
@@ -284,7 +285,8 @@ void Session::handle(const protocol::SetWallPaint& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open");
     if (const auto taken = pictures_->input(message); !taken) return report(taken.error());
     if (message.marks())
-        services_.records.list(case_->name, answer(&Session::listedToPaint, readings_, listWeight));
+        services_.records.list(case_->name, case_->scan,
+                               answer(&Session::listedToPaint, readings_, listWeight));
 }
 
 void Session::listedToPaint(std::uint64_t ofReading,
@@ -327,7 +329,7 @@ void Session::tellSeen(std::uint64_t request, double share) {
 void Session::handle(const protocol::AddBookmark& message) {
     const std::uint64_t request = message.request();
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
-    auto bookmark = bookmarkFrom(message, case_->name);
+    auto bookmark = bookmarkFrom(message, case_->name, case_->scan);
     if (!bookmark) return report(bookmark.error(), request);
     services_.records.add(std::move(*bookmark), [io = io_, &news = services_.news,
                                                  told = answer(&Session::addedBookmark, request)](
@@ -349,7 +351,8 @@ void Session::addedBookmark(std::uint64_t request, Result<records::Bookmark> boo
 void Session::handle(const protocol::ListBookmarks& message) {
     const std::uint64_t request = message.request();
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
-    services_.records.list(case_->name, answer(&Session::listedBookmarks, request, listWeight));
+    services_.records.list(case_->name, case_->scan,
+                           answer(&Session::listedBookmarks, request, listWeight));
 }
 
 void Session::listedBookmarks(std::uint64_t request,

@@ -76,14 +76,15 @@ WallMeasure measure(const FlatLookup& lookup, const Measure& question) {
 
 }  // namespace
 
-Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map) {
+Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map,
+                                             std::vector<std::uint8_t> bridged) {
     const double area = areaMm2(map->surface);
     if (!(area > 0.0) || !std::isfinite(area))
         return fail(ErrorKind::badInput, "the flattened surface has no area", "flatmap");
     const double circumferenceMm = std::sqrt(area / map->height);
     std::vector<WallRow> rows = rowsOf(*map);
     FlatLookup lookup(map);
-    auto sight = render::WallSight::of(map);
+    auto sight = render::WallSight::of(map, std::move(bridged));
     if (!sight) return tl::make_unexpected(sight.error());
     auto painter = render::StripPainter::of(std::move(*sight));
     if (!painter) return tl::make_unexpected(painter.error());

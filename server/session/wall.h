@@ -32,7 +32,9 @@ struct Wall {
 /// The map must be sound, as store::Case::readFlatMap gives it. Fails (badInput) where the surface
 /// has no area, (device) where there is not enough memory. O(n log n): a few seconds for a million
 /// triangles.
-Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map);
+/// `bridged` as WallSight::of takes it.
+Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map,
+                                             std::vector<std::uint8_t> bridged = {});
 
 /// Which place of the wall is shown at a place in the strip, which must lie in it.
 struct LocateInStrip {

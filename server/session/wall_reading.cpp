@@ -80,11 +80,15 @@ WallReading::WallReading(asio::any_io_executor io, PaintThread& painting,
 
 // ---- paint --------------------------------------------------------------------------------------
 
+bool WallReading::paints() const {
+    return choice_.any() || work_->of->wall->painter->sight().hasBridges();
+}
+
 void WallReading::choose(const WallPaintChoice& choice) {
     choice_ = choice;
     listed_ = !choice.marks;
     chosen_ = ++wanted_;
-    ready_ = !choice.any();
+    ready_ = !paints();
     if (ready_)
         paint_ = nullptr;
     else
@@ -130,7 +134,7 @@ void WallReading::repaint(bool soon) {
     later_.expires_at(due);
     later_.async_wait([weak = weak_from_this()](const asio::error_code& error) {
         const auto self = weak.lock();
-        if (!error && self && self->choice_.any() && self->listed_ && !self->isPainting_)
+        if (!error && self && self->paints() && self->listed_ && !self->isPainting_)
             self->startPainting();
     });
 }
@@ -161,12 +165,12 @@ void WallReading::painted(std::uint64_t number, Result<Paint> paint) {
         gazesAreNew_ = true;
         paint = paint_;  // so that its views are drawn
     }
-    if (number >= chosen_ && choice_.any()) {
+    if (number >= chosen_ && paints()) {
         paint_ = std::move(*paint);
         ready_ = true;
         outlet_.painted();
     }
-    if (choice_.any() && paintAgain_) repaint(paintAgainSoon_);
+    if (paints() && paintAgain_) repaint(paintAgainSoon_);
 }
 
 // ---- what has been seen -------------------------------------------------------------------------

@@ -52,6 +52,7 @@ public:
 
     /// From now on paint() is to be this; until it is made, ready() is false. With marks,
     /// setBookmarks has to follow.
+    /// Bridges are hatched whatever the choice; a session chooses once to have them so.
     void choose(const WallPaintChoice& choice);
     const WallPaintChoice& choice() const { return choice_; }
     /// All bookmarks of the case, and one more, or one that is known already.
@@ -78,6 +79,7 @@ private:
         glm::dvec3 positionMm, forward;
     };
     using Paint = std::shared_ptr<const render::WallPaint>;
+    bool paints() const;
     void keep(const records::Bookmark& bookmark);
     void repaint(bool soon);
     void startPainting();

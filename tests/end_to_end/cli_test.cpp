@@ -39,6 +39,8 @@ TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
              {"prepare", "x"},
              {"prepare", "x", "--store", "s", "--until", "never"},
              {"prepare", "x", "--store", "s", "--case", "../up"},
+             {"prepare", "x", "--store", "s", "--scan", "prone"},
+             {"prepare", "x", "--store", "s", "--case", "p", "--scan", "../up"},
              {"prepare", "x", "--store", "s", "--seed", "1,2"},
              {"prepare", "x", "--store", "s", "--seed", "1,2,nan"},
              {"prepare", "x", "--store", "s", "--threads", "many"},
@@ -282,12 +284,44 @@ TEST_F(PreparedPhantom, TheReportHasTimeAndMemoryOfEachStage) {
         EXPECT_TRUE(stage["reused"].get<bool>()) << stage;
 }
 
+// Two discs, each with a folder of the usual name.
+TEST_F(PreparedPhantom, DiscsWithFoldersOfOneNameAreTwoCases) {
+    fs::create_directories(file("disc-1"));
+    fs::create_directories(file("disc-2/DICOM"));
+    fs::create_directory_symlink(series(), file("disc-1/DICOM"));
+    ASSERT_EQ(
+        haustra({"phantom", file("prone"), "--size", "small", "--position", "prone"}).exitCode, 0);
+    fs::rename(file("prone/series"), file("disc-2/DICOM/1"));
+    for (const char* disc : {"disc-1/DICOM", "disc-2/DICOM"}) {
+        const auto outcome =
+            haustra({"prepare", file(disc), "--store", file("two"), "--until", "import"});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.out.find("DICOM"), std::string::npos) << outcome.out;
+    }
+    const auto names = store::CaseStore::open(file("two"), false)->cases().value();
+    ASSERT_EQ(names.size(), 2u);
+    // One patient on the back and on the belly: of one study, and listed so.
+    EXPECT_EQ(names[0].substr(0, names[0].find('.')), names[1].substr(0, names[1].find('.')));
+    const std::string list = haustra({"list", "--store", file("two")}).out;
+    EXPECT_NE(list.find("prone"), std::string::npos) << list;
+    EXPECT_NE(list.find("supine"), std::string::npos) << list;
+
+    const auto refused = haustra({"prepare", file("disc-2/DICOM"), "--store", file("two"), "--case",
+                                  names[0], "--until", "import"});
+    const auto other = haustra({"prepare", file("disc-2/DICOM"), "--store", file("two"), "--case",
+                                names[1], "--until", "import"});
+    EXPECT_EQ(refused.exitCode + other.exitCode, 1) << "its own name and no other takes a series";
+    EXPECT_NE((refused.err + other.err).find("another series of the same study"),
+              std::string::npos);
+}
+
 TEST_F(PreparedPhantom, TheListNamesCasesProductsAndSizes) {
     const auto outcome = haustra({"list", "--store", store()});
     EXPECT_EQ(outcome.exitCode, 0);
     EXPECT_EQ(lineCount(outcome.out), 11u) << outcome.out;
-    for (const char* word : {"p\n", "ct", "segmentation", "mixture", "cleansed", "cleansed-lumen",
-                             "lumen", "distance", "centerline", "surface", "flatmap", " MB"}) {
+    for (const char* word :
+         {"p  study ", "  supine\n", "ct", "segmentation", "mixture", "cleansed", "cleansed-lumen",
+          "lumen", "distance", "centerline", "surface", "flatmap", " MB"}) {
         EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
     }
 }

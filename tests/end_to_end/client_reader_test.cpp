@@ -105,6 +105,17 @@ protected:
     ClientReaderWithALossyLink() : ClientReader(dropping()) {}
 };
 
+class ClientReaderOfAReplacedScan : public ClientReader {
+protected:
+    static Misbehaviour replacing() {
+        Misbehaviour misbehaviour;
+        misbehaviour.dropAfterBookmarks = 2;
+        misbehaviour.anotherScanLater = true;
+        return misbehaviour;
+    }
+    ClientReaderOfAReplacedScan() : ClientReader(replacing()) {}
+};
+
 class ClientReaderRefused : public ClientReader, public ::testing::WithParamInterface<int> {
 protected:
     static Misbehaviour refusing() {
@@ -218,6 +229,25 @@ TEST_F(ClientReaderWithALossyLink, ALostLinkComesBackWithViewsFlightAndBookmarks
     EXPECT_EQ(reader_->flight().arcMm(), 123.0);
     ASSERT_TRUE(runUntil([&] { return reader_->pictureCount(View::endoscopic) > before; }));
     expectPicturesOf(reader_->flight().camera().positionMm);
+}
+
+TEST_F(ClientReaderOfAReplacedScan, WhatWasMarkedOnTheOneIsNotSentToTheOther) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    reader_->addBookmark("first");
+    reader_->addBookmark("second: the link breaks");
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::lost; }));
+    reader_->addBookmark("third: on the former scan");
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::open && allAtRest(); }));
+    reader_->addBookmark("fourth: on the other");
+    ASSERT_TRUE(runUntil([&] { return server_.storedBookmarkKeys().size() == 3; }));
+    EXPECT_EQ(reader_->session().caseInfo()->scan, "B");
+    // The second was stored before the link broke; the third is still owed to its own scan.
+    const auto refusals = reader_->session().takeRefusals();
+    ASSERT_EQ(refusals.size(), 1u);
+    EXPECT_NE(refusals[0].message.find("another scan"), std::string::npos);
+    EXPECT_EQ(server_.storedBookmarkKeys().size(), 3u);
+    for (const Bookmark& bookmark : reader_->session().bookmarks())
+        EXPECT_EQ(bookmark.note.find("third"), std::string::npos);
 }
 
 }  // namespace

@@ -166,6 +166,7 @@ struct FakeServer::Impl {
         ServerMessage message;
         auto* opened = message.mutable_case_opened();
         opened->set_name(name);
+        opened->set_scan(misbehaviour.anotherScanLater && connections > 1 ? "B" : "A");
         opened->set_size_x(256);
         opened->set_size_y(256);
         opened->set_size_z(200);

@@ -19,7 +19,7 @@ inline void makeFlatStore(const std::filesystem::path& folder, const FlatTube& t
     orThrow(flattened.publishCenterline("centerline", key("centerline"), tube.centerline()));
     orThrow(flattened.publishFlatMap("flatmap", key("flatmap"), tube.map()));
     auto bare = orThrow(store.createCase("scan"));
-    orThrow(bare.publishVolume("ct", key("ct"), makeSmallCase().ct));
+    orThrow(bare.publishVolume("ct", key("another scan"), makeSmallCase().ct));
 }
 
 }  // namespace haustra::tests

@@ -281,5 +281,47 @@ TEST_F(ServerPaintTest, RefusesInOneSentenceAndGoesOn) {
     expectRefusal(early, ErrorReport::BAD_STATE);
 }
 
+// The same wall, of which a stretch is a bridge: without being asked, the server hatches it in
+// grey, and changes no other pixel.
+TEST_F(ServerPaintTest, BridgesAreHatchedWhateverIsPainted) {
+    const auto store = store::CaseStore::open(folder_->path(), false).value();
+    const auto plainCase = store.openCase(smallCaseName).value();
+    {
+        auto bridged = store.createCase("bridged").value();
+        const auto key = [](const char* stage) { return store::makeKey(stage, 2, "", {}); };
+        const auto ct = plainCase.readVolume<std::int16_t>("ct").value();
+        Volume<std::uint8_t> lumen(ct.grid(), std::uint8_t(0));
+        for (std::size_t n = 0; n < ct.grid().voxelCount(); ++n) {
+            const double z = ct.grid().patientFromVoxelPoint(ct.grid().voxelAt(n)).z;
+            if (ct[n] < -480) lumen.writable()[n] = z > 24.0 && z < 32.0 ? 3 : 1;
+        }
+        ASSERT_TRUE(bridged.publishVolume("ct", key("ct"), ct));
+        ASSERT_TRUE(bridged.publishVolume("lumen", key("lumen"), lumen));
+        ASSERT_TRUE(
+            bridged.publishCenterline("centerline", key("centerline"), tube().centerline()));
+        ASSERT_TRUE(bridged.publishFlatMap("flatmap", key("flatmap"), tube().map()));
+    }
+    auto ofPlain = reader(), ofBridged = reader("bridged");
+    const TestPicture plain = look(*ofPlain, 1), hatched = look(*ofBridged, 1);
+    ASSERT_EQ(plain.rgb.size(), hatched.rgb.size());
+    const auto spread = [](const std::uint8_t* rgb) {
+        return int(std::max({rgb[0], rgb[1], rgb[2]})) - int(std::min({rgb[0], rgb[1], rgb[2]}));
+    };
+    int changed = 0, grey = 0;
+    for (std::size_t n = 0; n < plain.rgb.size(); n += 3) {
+        const auto *before = &plain.rgb[n], *now = &hatched.rgb[n];
+        if (std::equal(now, now + 3, before)) continue;
+        ++changed;
+        grey += spread(now) <= 2;
+        // At the rim of the bridge grey goes over into the wall's colour.
+        EXPECT_LE(spread(now), spread(before) + 2);
+    }
+    EXPECT_GT(changed, side * side / 50);
+    EXPECT_LT(changed, side * side / 2);
+    EXPECT_GT(grey, changed / 3);
+    EXPECT_LT(seen(*ofBridged, 50), 1.0);
+    std::filesystem::remove_all(folder_->path() / "cases" / "bridged");
+}
+
 }  // namespace
 }  // namespace haustra::tests

@@ -63,7 +63,7 @@ inline void makeSmallStore(const std::filesystem::path& folder) {
     orThrow(whole.publishVolume("cleansed", key("cleansed"), made.cleansed));
     orThrow(whole.publishCenterline("centerline", key("centerline"), made.centerline));
     auto bare = orThrow(store.createCase("scan"));
-    orThrow(bare.publishVolume("ct", key("ct"), made.ct));
+    orThrow(bare.publishVolume("ct", key("another scan"), made.ct));
 }
 
 /// haustra-server on a free port of the loopback. Ended with the object.

@@ -417,5 +417,34 @@ TEST_F(ServerTest, BookmarksAreKeptOnceAndPerCase) {
     EXPECT_EQ(elsewhere->answer()->bookmark_list().bookmarks_size(), 0);
 }
 
+TEST_F(ServerTest, BookmarksStayWithTheirScanWhenAnotherTakesItsPlace) {
+    const auto cases = store::CaseStore::open(folder_->path(), false).value();
+    const auto ct = cases.openCase("scan")->readVolume<std::int16_t>("ct").value();
+    const auto become = [&](const char* scan) {
+        auto writer = cases.createCase("turned").value();
+        ASSERT_TRUE(
+            writer.bind({store::makeKey(scan, 1, "", {}), "1.2." + std::string(scan), "1"}));
+        ASSERT_TRUE(writer.publishVolume("ct", store::makeKey("ct of", 1, scan, {}), ct));
+    };
+    const auto listed = [&](TestClient& client) {
+        protocol::ClientMessage list;
+        list.mutable_list_bookmarks()->set_request(9);
+        client.send(list);
+        return client.answer()->bookmark_list().bookmarks_size();
+    };
+    become("A");
+    auto ofA = opened("turned");
+    ofA->send(TestClient::bookmark(5, "k", "on A"));
+    ASSERT_TRUE(ofA->answer()->has_bookmark_added());
+    become("B");
+    auto ofB = opened("turned");
+    EXPECT_EQ(listed(*ofB), 0);
+    EXPECT_EQ(listed(*ofA), 1) << "who still looks at A still sees what is on it";
+    become("A");
+    EXPECT_EQ(listed(*opened("turned")), 1);
+    EXPECT_EQ(listed(*ofB), 0);
+    std::filesystem::remove_all(folder_->path() / "cases" / "turned");
+}
+
 }  // namespace
 }  // namespace haustra::tests

@@ -394,5 +394,60 @@ TEST_F(Store, CasesAreListedSortedAndOnlyWithAnIndex) {
     EXPECT_FALSE(CaseStore::open(folder_ / "none", false));
 }
 
+// ---- whose case it is
+
+const ScanIdentity scanA{keyOf(100), "1.2.3", "1.2.3.4"}, scanB{keyOf(200), "1.2.9", ""};
+
+TEST_F(Store, ACaseIsOfTheScanThatItWasBoundTo) {
+    {
+        Case bound = writer();
+        EXPECT_EQ(bound.scan().value(), std::nullopt);
+        ASSERT_TRUE(bound.bind(scanA));
+        EXPECT_EQ(store().cases()->size(), 0u) << "a case of nothing is none";
+        ASSERT_TRUE(bound.publishCenterline("centerline", keyOf(1), {}));
+        ASSERT_TRUE(bound.publishCenterline("branches", keyOf(2), {}));
+    }
+    EXPECT_EQ(store().openCase("patient-1")->scan().value(), scanA);
+    // Whoever writes on need not know of it.
+    ASSERT_TRUE(writer().publishCenterline("branches", keyOf(3), {}));
+    EXPECT_EQ(store().openCase("patient-1")->scan().value(), scanA);
+    EXPECT_FALSE(store().openCase("patient-1")->bind(scanA)) << "open for reading only";
+}
+
+TEST_F(Store, AnotherScansFirstProductTakesThePlaceOfAll) {
+    Case bound = writer();
+    ASSERT_TRUE(bound.bind(scanA));
+    ASSERT_TRUE(bound.publishCenterline("centerline", keyOf(1), {}));
+    ASSERT_TRUE(bound.publishCenterline("branches", keyOf(2), {}));
+    ASSERT_TRUE(bound.bind(scanB));
+    EXPECT_EQ(bound.products()->size(), 2u);
+    EXPECT_EQ(bound.scan().value(), scanA) << "until there is something of the other";
+    ASSERT_TRUE(bound.publishCenterline("centerline", keyOf(3), {}));
+    EXPECT_EQ(bound.products()->size(), 1u);
+    EXPECT_EQ(bound.scan().value(), scanB);
+    ASSERT_TRUE(bound.publishCenterline("branches", keyOf(4), {}));
+    EXPECT_EQ(bound.products()->size(), 2u);
+}
+
+TEST_F(Store, AnUnboundCaseIsOfItsCtAndMayBeBoundUnderThatKey) {
+    Case unbound = writer();
+    ASSERT_TRUE(
+        unbound.publishVolume("ct", keyOf(7), Volume<std::int16_t>(obliqueGrid({2, 2, 2}))));
+    ASSERT_EQ(unbound.scan().value(), (ScanIdentity{keyOf(7), "", ""}));
+    ASSERT_TRUE(unbound.bind({keyOf(7), "1.2.3", "1.2.3.4"}));
+    EXPECT_EQ(unbound.scan().value(), (ScanIdentity{keyOf(7), "1.2.3", "1.2.3.4"}));
+    EXPECT_TRUE(unbound.find("ct"));
+}
+
+TEST_F(Store, AnIndexThatNamesNoSoundScanIsDamaged) {
+    ASSERT_TRUE(writer().publishCenterline("centerline", keyOf(1), {}));
+    const fs::path index = store().openCase("patient-1")->folder() / "case.json";
+    for (const char* scan : {"7", "{}", R"({"key":"abc","study_uid":"","series_uid":""})",
+                             R"({"key":null,"study_uid":"","series_uid":""})"}) {
+        overwrite(index, R"({"format":1,"products":{},"scan":)" + std::string(scan) + "}");
+        EXPECT_FALSE(store().openCase("patient-1")->scan()) << scan;
+    }
+}
+
 }  // namespace
 }  // namespace haustra::store

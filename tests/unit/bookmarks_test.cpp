@@ -6,13 +6,15 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 namespace haustra::records {
 namespace {
 
-NewBookmark bookmark(const std::string& caseName, int n) {
+NewBookmark bookmark(const std::string& scan, int n) {
     NewBookmark added;
-    added.caseName = caseName;
+    added.caseName = "the case of " + scan;
+    added.scan = scan;
     added.clientKey = "key-" + std::to_string(n);
     added.positionMm = {0.1 * n, -1.0 / 3.0, 1e-17};
     added.forward = {0, 0, 1};
@@ -24,6 +26,7 @@ NewBookmark bookmark(const std::string& caseName, int n) {
 
 void expectSame(const Bookmark& stored, const NewBookmark& added) {
     EXPECT_EQ(stored.caseName, added.caseName);
+    EXPECT_EQ(stored.scan, added.scan);
     EXPECT_EQ(stored.clientKey, added.clientKey);
     EXPECT_EQ(stored.positionMm, added.positionMm);
     EXPECT_EQ(stored.forward, added.forward);
@@ -80,13 +83,62 @@ TEST_F(Bookmarks, OneAddedAgainIsTheSame) {
         expectSame(*one, added);
     }
     EXPECT_EQ(store.list("a")->size(), 1u);
-    // The key counts within its case.
+    // The key counts within its scan.
     NewBookmark elsewhere = added;
-    elsewhere.caseName = "b";
+    elsewhere.scan = "b";
     EXPECT_NE((*store.add({elsewhere}))[0]->id, (*first)[0]->id);
 }
 
-TEST_F(Bookmarks, ACaseHoldsSoManyAndOthersGoOn) {
+TEST_F(Bookmarks, BelongToTheirScanWhateverTheCaseIsCalled) {
+    BookmarkStore store = open();
+    NewBookmark ofA = bookmark("a", 1), ofB = bookmark("b", 2), renamed = bookmark("a", 3);
+    ofA.caseName = ofB.caseName = "DICOM";
+    renamed.caseName = "elsewhere";
+    ASSERT_TRUE(store.add({ofA, ofB, renamed}));
+    ASSERT_EQ(store.list("a")->size(), 2u);
+    expectSame(store.list("a")->at(0), ofA);
+    expectSame(store.list("a")->at(1), renamed);
+    ASSERT_EQ(store.list("b")->size(), 1u);
+    expectSame(store.list("b")->at(0), ofB);
+}
+
+// A file of before bookmarks had scans: nothing of it is lost, and the first scan that its case is
+// opened with has it, later ones do not.
+TEST_F(Bookmarks, OfBeforeScansGoToTheScanThatTheirCaseIsOf) {
+    const auto file = folder_.path() / "records.sqlite3";
+    sqlite3* former = nullptr;
+    ASSERT_EQ(sqlite3_open(file.c_str(), &former), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(former, R"(
+        CREATE TABLE bookmarks(
+            id INTEGER PRIMARY KEY AUTOINCREMENT, case_name TEXT NOT NULL, client_key TEXT NOT NULL,
+            position_x REAL NOT NULL, position_y REAL NOT NULL, position_z REAL NOT NULL,
+            forward_x REAL NOT NULL, forward_y REAL NOT NULL, forward_z REAL NOT NULL,
+            up_x REAL NOT NULL, up_y REAL NOT NULL, up_z REAL NOT NULL, arc_mm REAL NOT NULL,
+            note TEXT NOT NULL, created_utc TEXT NOT NULL, UNIQUE(case_name, client_key));
+        INSERT INTO bookmarks VALUES
+            (7, 'p', 'k', 1, 2, 3, 0, 0, 1, 0, -1, 0, 40.5, 'of p', '2020-01-31T23:59:59Z'),
+            (9, 'q', 'k', 1, 2, 3, 0, 0, 1, 0, -1, 0, 40.5, 'of q', '2020-01-31T23:59:59Z');)",
+                           nullptr, nullptr, nullptr),
+              SQLITE_OK);
+    sqlite3_close(former);
+    for (int opening = 0; opening < 2; ++opening) {
+        BookmarkStore store = open();
+        ASSERT_TRUE(store.adopt("p", "first scan"));
+        ASSERT_TRUE(store.adopt("p", "second scan"));
+        EXPECT_TRUE(store.list("second scan")->empty());
+        const auto listed = store.list("first scan");
+        ASSERT_EQ(listed->size(), 1u);
+        EXPECT_EQ(listed->front().id, 7u);
+        EXPECT_EQ(listed->front().note, "of p");
+        EXPECT_EQ(listed->front().createdUtc, "2020-01-31T23:59:59Z");
+    }
+    BookmarkStore store = open();
+    ASSERT_TRUE(store.adopt("q", "another"));
+    EXPECT_EQ(store.list("another")->size(), 1u);
+    EXPECT_GT((*store.add({bookmark("another", 1)}))[0]->id, 9u);
+}
+
+TEST_F(Bookmarks, AScanHoldsSoManyAndOthersGoOn) {
     BookmarkStore store = open();
     const auto long1 = [](int n) {
         NewBookmark added = bookmark("a", n);

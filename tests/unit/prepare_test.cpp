@@ -96,8 +96,9 @@ TEST_F(Prepare, ChangedInputsRedoWhatComesFromThemAlone) {
     EXPECT_EQ(reused(options()), redone({"segmentation", "mixture", "cleansing", "denoising",
                                          "distance", "centerline", "surface", "flattening"}));
     writeScan(5.0);
-    EXPECT_EQ(reused(options()), all(false));
     PrepareOptions coarser = options();
+    coarser.replace = true;
+    EXPECT_EQ(reused(coarser), all(false));
     coarser.surfaceErrorMm = 0.3;
     EXPECT_EQ(reused(coarser), redone({"surface", "flattening"}));
     coarser.threads = 1;
@@ -111,6 +112,7 @@ TEST_F(Prepare, ANewScanLeavesNoProductOfTheOldOne) {
     ASSERT_TRUE(nifti::writeNifti(ctFile(), Volume<std::int16_t>(tubeMask(5.0).grid(), -7)));
     PrepareOptions only = options();
     only.until = "import";
+    only.replace = true;
     EXPECT_EQ(reused(only), (Stages{{"import", false}}));
     EXPECT_EQ(store().openCase("tube")->products()->size(), 1u);
 }

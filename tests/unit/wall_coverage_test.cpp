@@ -224,5 +224,84 @@ TEST_F(StripPainterTest, WhatHasNotBeenSeenHasAColourAndMarksLieOverIt) {
     EXPECT_EQ(both->at({0.0, 0.9}), paint->at({0.0, 0.9}));
 }
 
+// A stretch of the tube, from 20 to 26 mm, that is no wall.
+class BridgedWallTest : public StripPainterTest {
+protected:
+    static bool isBridged(double z) { return z > 20.0 && z < 26.0; }
+    std::vector<std::uint8_t> bridged() const {
+        std::vector<std::uint8_t> marks;
+        for (int t = 0; t < triangles; ++t)
+            marks.push_back(isBridged(middle(t).z));
+        return marks;
+    }
+    std::shared_ptr<const WallSight> bridgedSight() const {
+        auto made = WallSight::of(std::make_shared<const FlatMap>(map), bridged());
+        if (!made) throw std::runtime_error(describe(made.error()));
+        return *made;
+    }
+};
+
+TEST_F(BridgedWallTest, ABridgeIsNeverSeenAndNoPartOfTheWallsArea) {
+    const auto withBridge = bridgedSight();
+    double bridgeMm2 = 0.0;
+    for (int t = 0; t < triangles; ++t)
+        if (isBridged(middle(t).z)) bridgeMm2 += sight->facets()[std::size_t(t)].areaMm2;
+    EXPECT_NEAR(withBridge->areaMm2() + bridgeMm2, sight->areaMm2(), 1e-3);
+    WallCoverage coverage(withBridge), plain(sight);
+    for (double z = 1.0; z < 60.0; z += 3.0) {
+        coverage.show(onAxis(z), {512, 512});
+        plain.show(onAxis(z), {512, 512});
+    }
+    double seenMm2 = 0.0;
+    for (int t = 0; t < triangles; ++t) {
+        EXPECT_EQ(coverage.seen(t), plain.seen(t) && !isBridged(middle(t).z));
+        if (coverage.seen(t)) seenMm2 += sight->facets()[std::size_t(t)].areaMm2;
+    }
+    EXPECT_NEAR(coverage.share(), seenMm2 / withBridge->areaMm2(), 1e-6);
+    for (int t = 0; t < triangles; ++t) {
+        const glm::dvec3 inward(sight->facets()[std::size_t(t)].inward);
+        const glm::dvec3 up = std::abs(inward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+        coverage.show({middle(t) + 3.2 * inward, -inward, up, 90.0}, {512, 512});
+    }
+    EXPECT_EQ(coverage.share(), 1.0) << "all of the wall that there is";
+}
+
+TEST_F(BridgedWallTest, ABridgeIsHatchedAndNothingElseIs) {
+    const auto painter = painterOf(bridgedSight());
+    const std::vector<std::uint8_t> none(std::size_t(triangles), 0), all(std::size_t(triangles), 1);
+    WallPaint given;
+    given.size = {1, 1};
+    given.height = painter->paint({}, {})->height;
+    given.pixels = {{255, 0, 0, 255}};
+    std::set<int> greys;
+    for (const auto& paint : {painter->paint({}, {}), painter->paint({}, none),
+                              painter->paint({}, all), painter->bridgesOver(given)}) {
+        ASSERT_TRUE(checkWallPaint(*paint));
+        int hatched = 0;
+        for (int y = 0; y < paint->size.y; ++y) {
+            for (int x = 0; x < paint->size.x; ++x) {
+                const glm::dvec2 flat =
+                    (glm::dvec2(paint->size) - glm::dvec2(x, y) - 0.5) / double(paint->size.x);
+                if (flat.y > map.height) continue;
+                const glm::u8vec4 color =
+                    paint->pixels[std::size_t(y) * std::size_t(paint->size.x) + std::size_t(x)];
+                const bool grey = color.a == 255 && color.r == color.g && color.g == color.b;
+                const double z = tube.positionMm(flat).z;
+                // Of triangles across the bridge's ends, the middle decides.
+                if (std::min(std::abs(z - 20.0), std::abs(z - 26.0)) < 1.0) continue;
+                EXPECT_EQ(grey, isBridged(z)) << "at " << z << " mm";
+                hatched += grey;
+                if (grey) greys.insert(color.r);
+            }
+        }
+        EXPECT_GT(hatched, 1000);
+    }
+    EXPECT_EQ(greys.size(), 2u) << "stripes of two greys";
+}
+
+TEST_F(BridgedWallTest, MarksOfAnotherMapAreRefused) {
+    EXPECT_FALSE(WallSight::of(std::make_shared<const FlatMap>(map), {1, 0, 1}));
+}
+
 }  // namespace
 }  // namespace haustra::tests

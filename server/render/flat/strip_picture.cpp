@@ -37,7 +37,7 @@ Result<void> drawStrip(CaseRenderer& renderer, const StripPicture& picture, doub
     const double pixels = picture.pixelsPerCircumference;
     // The flat coordinates of the picture's top left corner, in pixels.
     const glm::dvec2 edge(picture.pixelsPerCircumference + marginPixels(picture), size->y);
-    FlatView view{{}, picture.optics, picture.march};
+    FlatView view{{}, picture.optics, picture.march, picture.paint};
     view.window.pixelsPerUnit = pixels;
     const int bandRows = std::clamp(bandPixels / size->x, 1, mostBandRows);
     for (int top = 0; top < size->y; top += bandRows) {

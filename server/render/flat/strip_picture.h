@@ -13,6 +13,7 @@ struct StripPicture {
     double seamMargin = 0.0;
     Optics optics;
     MarchOptions march;
+    std::shared_ptr<const WallPaint> paint = nullptr;  ///< as of a CameraView
 };
 
 inline constexpr int maxStripRows = 1 << 20;

@@ -13,6 +13,9 @@ namespace {
 
 constexpr glm::u8vec3 unseenColor(64, 132, 255), markColor(255, 224, 0);
 constexpr int unseenCover = 150, rimCover = 235, insideCover = 95;
+// A hatch's stripes are as wide as the gaps between them; both divide any paint's circumference.
+constexpr glm::u8vec3 hatchColors[2] = {{255, 255, 255}, {96, 96, 96}};
+constexpr int hatchPixels = 8, hatchCover = 255;
 constexpr double rimShare = 0.2, leastRimMm = 0.6;
 
 /// One colour over another, in display values.
@@ -104,6 +107,31 @@ std::vector<MarkedPixel> StripPainter::discs(std::span<const WallMark> marks,
     return pixels;
 }
 
+void StripPainter::hatch(WallPaint& paint) const {
+    if (!sight_->hasBridges()) return;
+    for (int y = 0; y < size_.y; ++y) {
+        for (int x = 0; x < size_.x; ++x) {
+            const std::int32_t triangle = triangle_[at({x, y})];
+            if (triangle >= 0 && sight_->isBridge(triangle))
+                paint.pixels[at({x, y})] =
+                    glm::u8vec4(hatchColors[(x + y) / hatchPixels % 2], hatchCover);
+        }
+    }
+}
+
+std::shared_ptr<const WallPaint> StripPainter::bridgesOver(const WallPaint& paint) const {
+    auto both = std::make_shared<WallPaint>();
+    both->size = size_;
+    both->height = double(size_.y) / size_.x;
+    both->smooth = true;
+    both->pixels.resize(triangle_.size());
+    for (int y = 0; y < size_.y; ++y)
+        for (int x = 0; x < size_.x; ++x)
+            both->pixels[at({x, y})] = paint.at(flatOf({x, y}));
+    hatch(*both);
+    return both;
+}
+
 std::shared_ptr<const WallPaint> StripPainter::paint(
     std::span<const MarkedPixel> marks, std::span<const std::uint8_t> seenTriangles) const {
     auto paint = std::make_shared<WallPaint>();
@@ -115,6 +143,7 @@ std::shared_ptr<const WallPaint> StripPainter::paint(
         for (std::size_t n = 0; n < triangle_.size(); ++n)
             if (triangle_[n] >= 0 && !seenTriangles[std::size_t(triangle_[n])])
                 paint->pixels[n] = glm::u8vec4(unseenColor, unseenCover);
+    hatch(*paint);
     for (const MarkedPixel& marked : marks) {
         glm::u8vec4& pixel = paint->pixels[std::size_t(marked.pixel)];
         pixel = over(markColor, marked.cover, pixel);

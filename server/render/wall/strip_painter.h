@@ -1,4 +1,4 @@
-// Paints for a flattened wall: bookmarked places, and what has not been seen.
+// Paints for a flattened wall: bridges, bookmarked places, and what has not been seen.
 #pragma once
 
 #include "render/wall/wall_paint.h"
@@ -45,14 +45,18 @@ public:
     /// and their insides leave more of the wall's own colour. The radius is within its bounds.
     std::vector<MarkedPixel> discs(std::span<const WallMark> marks, double radiusMm) const;
 
+    /// Bridges are hatched in grey, whatever else is painted, so that nobody takes one for mucosa.
     /// `seenTriangles` (0 or 1 each; empty: nothing is said of what has been seen) gives triangles
     /// that have not been seen one colour, and marks have another, over it. Smooth (WallPaint). A
     /// few milliseconds.
     std::shared_ptr<const WallPaint> paint(std::span<const MarkedPixel> marks,
                                            std::span<const std::uint8_t> seenTriangles) const;
+    /// The hatched bridges over another paint of this strip, as fine as this painter is.
+    std::shared_ptr<const WallPaint> bridgesOver(const WallPaint& paint) const;
 
 private:
     explicit StripPainter(std::shared_ptr<const WallSight> sight);
+    void hatch(WallPaint& paint) const;
     glm::dvec2 flatOf(glm::ivec2 pixel) const;
     glm::dvec3 placeOf(glm::ivec2 pixel) const;
     std::size_t at(glm::ivec2 pixel) const {

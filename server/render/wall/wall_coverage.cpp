@@ -71,7 +71,7 @@ void WallCoverage::makeCells() {
     const auto& facets = sight_->facets();
     std::map<std::tuple<int, int, int>, std::vector<int>> blocks;
     for (int t = 0; t < int(facets.size()); ++t) {
-        if (!(facets[std::size_t(t)].areaMm2 > 0.0f)) continue;
+        if (!(facets[std::size_t(t)].areaMm2 > 0.0f) || sight_->isBridge(t)) continue;
         const glm::ivec3 block(glm::floor(facets[std::size_t(t)].middleMm / cellMm));
         blocks[{block.x, block.y, block.z}].push_back(t);
     }

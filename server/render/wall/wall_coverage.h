@@ -29,6 +29,7 @@ inline constexpr SeenLimits seenLimits{};
 /// from a camera where its middle lies in the picture, within seenLimits, faces the camera, and
 /// nothing of the wall stands before it. Unlike a count of rays that meet it, this leaves no holes
 /// where triangles are smaller than pixels, and the size of pictures enters by mostPixelMm alone.
+/// A bridge's triangles are no wall: they are never seen, and no part of the share.
 /// Belongs to one thread.
 class WallCoverage {
 public:
@@ -43,7 +44,7 @@ public:
 
     bool seen(int triangle) const { return seen_[std::size_t(triangle)] != 0; }
     const std::vector<std::uint8_t>& seenTriangles() const { return seen_; }  ///< 0 or 1
-    /// Of the surface's area, 0…1: 1 only where every triangle with an area has been seen.
+    /// Of the wall's area, 0…1: 1 only where every triangle with an area has been seen.
     double share() const;
     const WallSight& sight() const { return *sight_; }
 

@@ -1,5 +1,6 @@
 #include "render/wall/wall_sight.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -38,8 +39,13 @@ WallSight::WallSight(std::shared_ptr<const FlatMap> map)
     : map_(std::move(map)), tree_(std::make_unique<Tree>()) {}
 WallSight::~WallSight() = default;
 
-Result<std::shared_ptr<const WallSight>> WallSight::of(std::shared_ptr<const FlatMap> map) {
+Result<std::shared_ptr<const WallSight>> WallSight::of(std::shared_ptr<const FlatMap> map,
+                                                       std::vector<std::uint8_t> bridged) {
     std::shared_ptr<WallSight> made(new WallSight(std::move(map)));
+    if (!bridged.empty() && bridged.size() != made->map_->surface.triangles.size())
+        return fail(ErrorKind::badInput, "the bridges are of another flat map", "wall");
+    if (std::any_of(bridged.begin(), bridged.end(), [](std::uint8_t is) { return is != 0; }))
+        made->bridged_ = std::move(bridged);
     const TriMesh& mesh = made->map_->surface;
     glm::dvec3 low(std::numeric_limits<double>::max()), high = -low;
     for (const glm::dvec3& vertex : mesh.vertices)
@@ -53,7 +59,7 @@ Result<std::shared_ptr<const WallSight>> WallSight::of(std::shared_ptr<const Fla
         made->facets_.push_back({glm::vec3((a + b + c) / 3.0 - made->originMm_),
                                  doubled > 0.0 ? glm::vec3(-outward / doubled) : glm::vec3(0.0f),
                                  float(0.5 * doubled)});
-        made->areaMm2_ += 0.5 * doubled;
+        if (!made->isBridge(int(made->facets_.size()) - 1)) made->areaMm2_ += 0.5 * doubled;
     }
 
     // One thread, so that the tree is the same each time and no case starts threads of its own.

@@ -4,6 +4,7 @@
 #include "core/flat_map.h"
 #include "core/result.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,7 +20,10 @@ public:
     /// The map must be sound, as store::Case::readFlatMap gives it. Fails (device) where there is
     /// not enough memory. O(n log n), about a second for a million triangles, and some 200 bytes
     /// each. Equal maps give equal answers.
-    static Result<std::shared_ptr<const WallSight>> of(std::shared_ptr<const FlatMap> map);
+    /// `bridged`, for each triangle of the map, is not 0 where it is no wall but a bridge's
+    /// (core/bridges.h); empty where there is no bridge.
+    static Result<std::shared_ptr<const WallSight>> of(std::shared_ptr<const FlatMap> map,
+                                                       std::vector<std::uint8_t> bridged = {});
     ~WallSight();
     WallSight(const WallSight&) = delete;
     WallSight& operator=(const WallSight&) = delete;
@@ -33,7 +37,11 @@ public:
     const FlatMap& map() const { return *map_; }
     glm::dvec3 originMm() const { return originMm_; }
     const std::vector<Facet>& facets() const { return facets_; }
-    double areaMm2() const { return areaMm2_; }  ///< of all triangles
+    double areaMm2() const { return areaMm2_; }  ///< of all triangles but bridges'
+    bool isBridge(int triangle) const {
+        return !bridged_.empty() && bridged_[std::size_t(triangle)] != 0;
+    }
+    bool hasBridges() const { return !bridged_.empty(); }
 
     /// Where a ray first meets the surface, from whichever side.
     struct Place {
@@ -55,6 +63,7 @@ private:
     explicit WallSight(std::shared_ptr<const FlatMap> map);
     std::shared_ptr<const FlatMap> map_;
     glm::dvec3 originMm_{0.0};
+    std::vector<std::uint8_t> bridged_;  // empty: none is
     std::vector<Facet> facets_;
     double areaMm2_ = 0.0;
     std::unique_ptr<Tree> tree_;

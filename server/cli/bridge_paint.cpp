@@ -1,0 +1,36 @@
+#include "cli/bridge_paint.h"
+
+#include "core/bridges.h"
+#include "core/ct_scan.h"
+#include "render/wall/strip_painter.h"
+
+#include <cstring>
+
+namespace haustra::cli {
+
+Result<bool> hasBridges(const store::Case& source) {
+    if (!source.find("lumen")) return false;
+    return source.readVolume<std::uint8_t>("lumen").map([](const Volume<std::uint8_t>& lumen) {
+        const auto labels = lumen.voxels();
+        return std::memchr(labels.data(), int(LumenLabel::bridge), labels.size()) != nullptr;
+    });
+}
+
+Result<std::shared_ptr<const render::WallPaint>> paintBridges(
+    const store::Case& source, std::shared_ptr<const FlatMap> map,
+    std::shared_ptr<const render::WallPaint> below) {
+    const auto has = hasBridges(source);
+    if (!has) return tl::make_unexpected(has.error());
+    if (!*has) return below;
+    const auto lumen = source.readVolume<std::uint8_t>("lumen");
+    if (!lumen) return tl::make_unexpected(lumen.error());
+    auto bridged = bridgedTriangles(map->surface, *lumen);
+    auto sight = render::WallSight::of(std::move(map), std::move(bridged));
+    if (!sight) return tl::make_unexpected(sight.error());
+    if (!(*sight)->hasBridges()) return below;
+    const auto painter = render::StripPainter::of(std::move(*sight));
+    if (!painter) return tl::make_unexpected(painter.error());
+    return below ? (*painter)->bridgesOver(*below) : (*painter)->paint({}, {});
+}
+
+}  // namespace haustra::cli
