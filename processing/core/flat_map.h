@@ -14,6 +14,16 @@ namespace haustra {
 /// these it is no colon's, and its squares no longer tell distances.
 inline constexpr double maxFlatHeight = 4096.0, maxWallMm = 1e6;
 
+/// Pictures of a flat map of this height are drawn of whole numbers: flat coordinates times this
+/// power of two, rounded. As many as leave 31 bits room for the strip's length; 2²⁶ up to a height
+/// of 30 circumferences.
+constexpr int flatUnitsPerCircumference(double height) {
+    int units = 1 << 26;
+    while ((height + 2.0) * units > 0x1p31)
+        units /= 2;
+    return units;
+}
+
 /// One place on the centerline that the wall is looked at from (dissertation §4.3.1).
 struct FlatCamera {
     glm::dvec3 positionMm{0.0};  ///< LPS

@@ -57,10 +57,12 @@ struct Contours {
     std::vector<double> lengthMm;
 };
 
-Contours traceContours(const FlatMap& map, int segments) {
+Contours traceContours(const FlatMap& map, int segments, const std::vector<char>& isPouch) {
     Contours contours{std::vector<glm::dvec3>(std::size_t(segments), glm::dvec3(0.0)),
                       std::vector<double>(std::size_t(segments), 0.0)};
-    for (const glm::ivec3& t : map.surface.triangles) {
+    for (std::size_t n = 0; n < map.surface.triangles.size(); ++n) {
+        if (!isPouch.empty() && isPouch[n]) continue;
+        const glm::ivec3& t = map.surface.triangles[n];
         std::array<double, 3> level{};  // in segments
         for (int c = 0; c < 3; ++c)
             level[std::size_t(c)] = map.flat[std::size_t(t[c])].y / map.height * segments;
@@ -254,7 +256,8 @@ Result<void> registerCameras(FlatMap& map, const Centerline& centerline,
     const int segments = options.segments > 0
                              ? options.segments
                              : std::max(1, int(std::lround(map.cameras.back().arcMm / segmentMm)));
-    registerNearest(map, divideCenterline(map.cameras, traceContours(map, segments)),
+    registerNearest(map,
+                    divideCenterline(map.cameras, traceContours(map, segments, options.isPouch)),
                     options.threads);
     level(map);
     return {};

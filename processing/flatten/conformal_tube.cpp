@@ -4,11 +4,9 @@
 #include "flatten/cotangent_laplacian.h"
 #include "flatten/flip_repair.h"
 #include "flatten/intrinsic_delaunay.h"
-#include "flatten/shape_relaxation.h"
 #include "flatten/tube_solver.h"
 #include "flatten/tube_topology.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -48,27 +46,6 @@ double signedArea(const TriMesh& tube, const std::vector<std::int8_t>& cornerTur
         area += a.x * b.y - a.y * b.x;
     }
     return area;
-}
-
-/// Unfolds flips, and straightens what is left of them and other slivers; where a flip remains,
-/// again from there. Returns the number of vertices moved.
-int repair(PeriodicMap& map, const TriMesh& tube) {
-    constexpr double kMostDilatation = 4.0;
-    constexpr int kSweeps = 20, kMostRounds = 4;
-    const VertexStars stars(tube);
-    std::vector<int> moved;
-    for (int round = 0; round < kMostRounds; ++round) {
-        const std::vector<int> unfolded = unfold(map, tube, stars);
-        if (round > 0 && unfolded.empty()) break;
-        const std::vector<int> stretched = stretchedVertices(map, tube, stars, kMostDilatation);
-        relaxShapes(map, tube, stars, stretched, kSweeps);
-        moved.insert(moved.end(), unfolded.begin(), unfolded.end());
-        moved.insert(moved.end(), stretched.begin(), stretched.end());
-    }
-    std::sort(moved.begin(), moved.end());
-    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
-    rotate(map, tube, 0.0);
-    return int(moved.size());
 }
 
 }  // namespace
@@ -125,7 +102,7 @@ Result<ConformalTube> conformalTube(const TriMesh& tube, int firstLoop,
     }
     const double sign = signedArea(tube, topology.cornerTurns, u, v) < 0.0 ? -1.0 : 1.0;
     made.map = periodicMap(tube, topology.cornerTurns, u, v, made.modulus, sign);
-    if (options.repairFlips) made.repaired = repair(made.map, tube);
+    if (options.repairFlips) made.repaired = repairMap(made.map, tube);
     report(1.0);
     return made;
 }

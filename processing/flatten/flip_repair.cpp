@@ -1,5 +1,7 @@
 #include "flatten/flip_repair.h"
 
+#include "flatten/shape_relaxation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -74,8 +76,9 @@ std::optional<glm::dvec2> farthestInside(const std::vector<Line>& lines) {
 
 class Repair {
 public:
-    Repair(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars)
-        : map_(map), tube_(tube), stars_(stars) {}
+    Repair(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars,
+           const std::vector<char>& held)
+        : map_(map), tube_(tube), stars_(stars), held_(held) {}
 
     /// The vertices moved, some more than once.
     std::vector<int> run(const std::vector<int>& bad) {
@@ -98,6 +101,7 @@ private:
     };
 
     bool isOnRim(int v) const {
+        if (!held_.empty() && held_[std::size_t(v)]) return true;
         const double y = map_.flat[std::size_t(v)].y;
         return y == 0.0 || y == map_.height;
     }
@@ -273,18 +277,68 @@ private:
     PeriodicMap& map_;
     const TriMesh& tube_;
     const VertexStars& stars_;
+    const std::vector<char>& held_;  ///< they count as on a rim
 };
 
 }  // namespace
 
-std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars) {
+std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars,
+                        const std::vector<char>& held) {
     std::vector<int> flipped;
     for (int t = 0; t < int(tube.triangles.size()); ++t) {
         if (isFlipped(map, tube, t)) flipped.push_back(t);
     }
-    std::vector<int> moved = Repair(map, tube, stars).run(flipped);
+    std::vector<int> moved = Repair(map, tube, stars, held).run(flipped);
     std::sort(moved.begin(), moved.end());
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    return moved;
+}
+
+namespace {
+
+int repair(PeriodicMap& map, const TriMesh& tube, const std::vector<char>& held) {
+    constexpr double kMostDilatation = 4.0;
+    constexpr int kSweeps = 20, kMostRounds = 4;
+    const VertexStars stars(tube);
+    std::vector<int> moved;
+    for (int round = 0; round < kMostRounds; ++round) {
+        const std::vector<int> unfolded = unfold(map, tube, stars, held);
+        if (round > 0 && unfolded.empty()) break;
+        std::vector<int> stretched = stretchedVertices(map, tube, stars, kMostDilatation);
+        std::erase_if(stretched, [&](int v) { return !held.empty() && held[std::size_t(v)]; });
+        relaxShapes(map, tube, stars, stretched, kSweeps);
+        moved.insert(moved.end(), unfolded.begin(), unfolded.end());
+        moved.insert(moved.end(), stretched.begin(), stretched.end());
+    }
+    std::sort(moved.begin(), moved.end());
+    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    return int(moved.size());
+}
+
+}  // namespace
+
+int repairMap(PeriodicMap& map, const TriMesh& tube, const std::vector<char>& apart) {
+    int moved = 0;
+    if (apart.empty()) {
+        moved = repair(map, tube, {});
+    } else {
+        // The map without these triangles; their vertices are held where they are.
+        TriMesh rest{tube.vertices, {}};
+        PeriodicMap restMap{std::move(map.flat), {}, map.height};
+        std::vector<char> held(tube.vertices.size(), 0);
+        for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
+            if (!apart[t]) {
+                rest.triangles.push_back(tube.triangles[t]);
+                restMap.turns.push_back(map.turns[t]);
+                continue;
+            }
+            for (int c = 0; c < 3; ++c)
+                held[std::size_t(tube.triangles[t][c])] = 1;
+        }
+        moved = repair(restMap, rest, held);
+        map.flat = std::move(restMap.flat);
+    }
+    rotate(map, tube, 0.0);
     return moved;
 }
 

@@ -14,8 +14,16 @@ namespace haustra::flatten {
 /// mean-value weights (Floater 2003), which are positive, so that a patch with a convex outline
 /// unfolds; where that does not help, the weights lean outwards, for blind fingers so long that
 /// doubles cannot tell their tips' vertices apart, and the patch is widened by rings of neighbours.
-/// A patch that gets no better is left alone. Rims do not move. x may leave [0, 1). Returns the
-/// vertices moved. O(n), beside small local systems.
-std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars);
+/// A patch that gets no better is left alone. Rims do not move, nor do vertices that are `held`
+/// (per vertex; empty: none). x may leave [0, 1). Returns the vertices moved. O(n), beside small
+/// local systems.
+std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars,
+                        const std::vector<char>& held = {});
+
+/// Unfolds flips, and relaxes the vertices of triangles that are stretched over four times as far
+/// one way as the other, with a ring around them (shape_relaxation.h); where a flip remains, again
+/// from there, up to four times. What is `apart` (per triangle; empty: nothing) is left alone, and
+/// its vertices stay. Returns the number of vertices moved.
+int repairMap(PeriodicMap& map, const TriMesh& tube, const std::vector<char>& apart = {});
 
 }  // namespace haustra::flatten

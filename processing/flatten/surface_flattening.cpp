@@ -82,7 +82,6 @@ Result<void> flattenStrip(SurfaceFlattening& made, const TriMesh& tube, int firs
     made.map = std::move(flat->map);
     made.certificate = flat->certificate;
     made.distortion = flat->distortion;
-    made.flips = flat->flips;
     made.strip = std::move(*flat);
     return {};
 }

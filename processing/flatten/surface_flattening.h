@@ -45,7 +45,7 @@ struct SurfaceFlattening {
     std::size_t formZeros = 0;                ///< of the form, with their orders
     double certificate = 0.0;
     Distortion distortion;
-    std::size_t flips = 0;
+    std::size_t flips = 0;  ///< 0 of a strip, which is not given with any
 };
 
 /// A tube, a sphere, a closed surface of any genus, and through its double cover (of which one half

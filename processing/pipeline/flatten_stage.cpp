@@ -4,6 +4,7 @@
 #include "pipeline/lumen_stages.h"
 #include "pipeline/product_attributes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -13,7 +14,7 @@ namespace {
 using store::Attributes;
 
 // Raise it whenever the flat map changes for the same input and options.
-constexpr int flatteningVersion = 2;
+constexpr int flatteningVersion = 3;
 // The chord at the centerline's ends that tells where it looks.
 constexpr double endWindowMm = 6.0;
 
@@ -30,6 +31,13 @@ Result<flatten::PunchedTube> punch(const TriMesh& surface, const Centerline& cen
     const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm},
                      outwards[2] = {-first.tangent, last.tangent};
     return flatten::punchEnds(surface, ends, outwards);
+}
+
+double nearestArcMm(const Centerline& centerline, const glm::dvec3& placeMm) {
+    const auto nearest = std::ranges::min_element(centerline.points, {}, [&](const auto& point) {
+        return glm::distance(point.positionMm, placeMm);
+    });
+    return nearest->arcMm;
 }
 
 // Of each spread: mean, 95 %, 99.9 %, largest.
@@ -53,12 +61,12 @@ std::string distortionNote(const flatten::Distortion& distortion) {
 }
 
 Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedTube& punched,
-                        double areaWeight) {
+                        double askedWeight) {
     Attributes attributes{
         {"modulus", exactText(flat.modulus)},
         {"certificate", exactText(flat.certificate)},
-        {"area-weight", exactText(areaWeight)},
-        {"flips", std::to_string(flat.flips)},
+        {"area-weight", exactText(flat.areaWeight)},
+        {"flips", "0"},  // flattenTube gives no map with any
         {"seam", exactText(flat.seam)},
         {"seam-mismatch", exactText(flat.seamMismatch)},
         {"cap-area-mm2", exactText(punched.capAreaMm2[0]) + "," + exactText(punched.capAreaMm2[1])},
@@ -71,11 +79,24 @@ Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedT
     char start[80];
     std::snprintf(start, sizeof start, "modulus %.3f (certificate %.1e), ", flat.modulus,
                   flat.certificate);
-    const std::string flips = ", " + std::to_string(flat.flips) + " triangles flipped";
-    std::vector<std::string> notes{start + distortionNote(flat.distortion) + flips};
-    if (areaWeight > 0.0) {
+    std::vector<std::string> notes{start + distortionNote(flat.distortion)};
+    if (flat.pouches > 0) {
+        setDistortion(attributes, "outside-", flat.outside);
+        attributes["pouches"] = std::to_string(flat.pouches);
+        attributes["pouch-area-mm2"] = exactText(flat.pouchAreaMm2);
+        char told[120];
+        std::snprintf(told, sizeof told,
+                      "%zu blind pouches of %.0f mm² in all are mapped apart; outside them ",
+                      flat.pouches, flat.pouchAreaMm2);
+        notes.push_back(told + distortionNote(flat.outside));
+    }
+    if (flat.areaWeight > 0.0) {
         setDistortion(attributes, "conformal-", flat.conformal);
         notes.push_back("before areas were weighted: " + distortionNote(flat.conformal));
+    } else if (askedWeight > 0.0) {
+        notes.push_back(
+            "warning: areas are not weighted, as that would fold the strip: it is the conformal "
+            "one");
     }
     setNotes(attributes, notes);
     return attributes;
@@ -103,12 +124,17 @@ Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& su
         flattening.areaWeight = options.areaWeight;
         flattening.threads = options.threads;
         flattening.progress = [&](double fraction) { progress(0.1 + 0.8 * fraction); };
+        flattening.placeName = [&](const glm::dvec3& placeMm) {
+            return std::to_string(std::lround(nearestArcMm(*centerline, placeMm))) +
+                   " mm of the centerline";
+        };
         auto flat = flatten::flattenTube(punched->tube, punched->firstLoop, flattening);
         if (!flat) return tl::make_unexpected(flat.error());
         for (std::int32_t& source : flat->map.sourceTriangle)
             source = punched->sourceTriangle[std::size_t(source)];
         flatten::CameraRegistrationOptions registration;
         registration.threads = options.threads;
+        registration.isPouch = flat->isPouch;
         if (auto seen = flatten::registerCameras(flat->map, *centerline, registration); !seen)
             return seen;
         return target.publishFlatMap(product::flatMap, key, flat->map,

@@ -42,7 +42,7 @@ Json distortionOf(const flatten::Distortion& distortion) {
             {"area_range", distortion.areaRange}};
 }
 
-Json reportOf(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, double areaWeight) {
+Json reportOf(const TriMesh& mesh, const flatten::SurfaceFlattening& flat) {
     Json report{{"genus", flat.shape.genus},
                 {"boundary_loops", flat.shape.boundaryLoops},
                 {"vertices", mesh.vertices.size()},
@@ -55,7 +55,10 @@ Json reportOf(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, doubl
         report["height"] = flat.map.height;
         report["seam_mismatch"] = flat.strip->seamMismatch;
         report["repaired_vertices"] = flat.strip->repaired;
-        report["area_weight"] = areaWeight;
+        report["area_weight"] = flat.strip->areaWeight;
+        report["pouches"] = flat.strip->pouches;
+        report["pouch_area_mm2"] = flat.strip->pouchAreaMm2;
+        if (flat.strip->pouches > 0) report["outside"] = distortionOf(flat.strip->outside);
     }
     if (flat.punched) {
         report["cap_area_mm2"] = {flat.punched->capAreaMm2[0], flat.punched->capAreaMm2[1]};
@@ -68,7 +71,8 @@ Json reportOf(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, doubl
     if (!flat.strip && !flat.tau) report["form_zeros"] = flat.formZeros;
     report.update(distortionOf(flat.distortion));
     report["flips"] = flat.flips;
-    if (areaWeight > 0.0 && flat.strip) report["conformal"] = distortionOf(flat.strip->conformal);
+    if (flat.strip && flat.strip->areaWeight > 0.0)
+        report["conformal"] = distortionOf(flat.strip->conformal);
     return report;
 }
 
@@ -107,8 +111,19 @@ void tell(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, double ar
         fmt::print("a holomorphic form with {}, certificate {:.2e}\n",
                    counted(flat.formZeros, "zero"), flat.certificate);
     }
-    if (areaWeight > 0.0 && flat.strip) tell("conformal: ", flat.strip->conformal);
+    if (flat.strip && flat.strip->areaWeight > 0.0) {
+        tell("conformal: ", flat.strip->conformal);
+    } else if (flat.strip && areaWeight > 0.0) {
+        fmt::print(
+            "warning: areas are not weighted, as that would fold the strip: it is the conformal "
+            "one\n");
+    }
     tell("", flat.distortion);
+    if (flat.strip && flat.strip->pouches > 0) {
+        fmt::print("{} of {:.0f} mm² in all mapped apart\n",
+                   counted(flat.strip->pouches, "blind finger"), flat.strip->pouchAreaMm2);
+        tell("outside: ", flat.strip->outside);
+    }
     fmt::print("{} flipped\n", counted(flat.flips, "triangle"));
     if (flat.shape.genus > 0 && flat.flips > 0) {
         fmt::print(
@@ -161,8 +176,7 @@ Result<void> runFlatten(const Arguments& arguments) {
     if (auto written = mesh::writeFlatMap(arguments.out, flat->map); !written) return written;
     tell(*mesh, *flat, options.areaWeight);
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report,
-                         reportOf(*mesh, *flat, options.areaWeight).dump(2) + "\n");
+    return writeTextFile(arguments.report, reportOf(*mesh, *flat).dump(2) + "\n");
 }
 
 void checkNames(const Arguments& arguments) {

@@ -2,6 +2,7 @@
 // parameterizers of the tube cut open, as Markdown tables. `--help` tells the options.
 #include "flatten/conformal_tube.h"
 #include "flatten/distortion.h"
+#include "flatten/flattening.h"
 #include "flatten/tube_topology.h"
 #include "flatten_cgal.h"
 #include "flatten_meshes.h"
@@ -28,6 +29,7 @@ struct Settings {
     int threads = 0;
     bench::RaceOptions race;  ///< where it has rounds
     bool cgal = false;
+    bool whole = false;             ///< flattenTube in place of its parts
     std::size_t arapTriangles = 0;  ///< as-rigid-as-possible up to this size
 };
 
@@ -153,7 +155,33 @@ void runCgal(const TriMesh& tube, double modulus, const Settings& settings) {
         run(bench::CgalMethod::asRigidAsPossible, "CGAL ARAP, cut open", 1.0);
 }
 
+/// Map, pouches, seam and cut as a case gets them, beside the same without its pouches' map.
+void runWhole(const bench::Tube& tube, const Settings& settings) {
+    flatten::ConformalTubeOptions plain;
+    plain.threads = settings.threads;
+    plain.repairFlips = false;
+    const Run bare = runTube(tube.mesh, plain);
+    flatten::FlatteningOptions options;
+    options.threads = settings.threads;
+    const Stopwatch watch;
+    const auto made = flatten::flattenTube(tube.mesh, -1, options);
+    const Cost cost = watch.read();
+    fmt::print("\n{}: {} triangles; the map alone, not repaired: {:.2f} s ({:.2f} CPU)\n",
+               tube.name, tube.mesh.triangles.size(), bare.cost.wallS, bare.cost.cpuS());
+    if (!made) {
+        fmt::print("refused after {:.2f} s: {}\n", cost.wallS, describe(made.error()));
+        return;
+    }
+    fmt::print("{} pouches, {:.0f} mm²; {} vertices repaired; {} folds on the lattice\n",
+               made->pouches, made->pouchAreaMm2, made->repaired,
+               flatten::foldedTriangles(made->map).size());
+    printHeader("flattening");
+    printRow("whole", cost, made->distortion);
+    printRow("outside the pouches", cost, made->outside);
+}
+
 void runAll(const bench::Tube& tube, const Settings& settings) {
+    if (settings.whole) return runWhole(tube, settings);
     flatten::ConformalTubeOptions options;
     options.threads = settings.threads;
     const Run direct = runTube(tube.mesh, options);
@@ -188,6 +216,9 @@ int main(int argc, char** argv) {
     Settings settings;
     app.add_option("meshes", files, "tubes, or closed surfaces that are punched");
     app.add_option("--generate-mm", voxelMm, "also a generated tube of this voxel size");
+    double pouchedMm = 0.0;
+    app.add_option("--pouched-mm", pouchedMm,
+                   "also one with 150 diverticula and a blind ileum of 300 mm");
     app.add_option("--case", cases, "also the finest surface of a case")
         ->needs(app.add_option("--store", storeFolder, "the store's folder"));
     app.add_flag("--simplified", choice.product, "the cases' product `surface` in its place");
@@ -197,6 +228,7 @@ int main(int argc, char** argv) {
                    "also conjugate gradients, so many times each between our maps");
     app.add_option("--race-seconds", settings.race.seconds, "for each at most")
         ->capture_default_str();
+    app.add_flag("--whole", settings.whole, "the whole flattening, as a case gets it");
     app.add_flag("--cgal", settings.cgal, "also CGAL's parameterizers");
     app.add_option("--arap-triangles", settings.arapTriangles,
                    "also CGAL's as-rigid-as-possible map up to so many triangles");
@@ -206,6 +238,7 @@ int main(int argc, char** argv) {
 
     std::vector<std::function<Result<bench::Tube>()>> tubes;
     if (voxelMm > 0.0) tubes.push_back([&] { return bench::generatedTube(voxelMm); });
+    if (pouchedMm > 0.0) tubes.push_back([&] { return bench::generatedTube(pouchedMm, true); });
     for (const std::string& file : files)
         tubes.push_back([&] { return bench::tubeOfFile(file); });
     for (const std::string& name : cases)

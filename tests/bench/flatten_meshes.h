@@ -14,8 +14,9 @@ struct Tube {
 };
 
 /// Two turns of a coil with haustra and three taeniae, contoured from voxels of `voxelMm` as a
-/// colon is, and punched at both ends. 0.6 mm gives about a million triangles.
-Result<Tube> generatedTube(double voxelMm);
+/// colon is, and punched at both ends. 0.6 mm gives about a million triangles. `pouched`: with 150
+/// diverticula and a blind ileum of 300 mm, and simplified to 0.1 mm.
+Result<Tube> generatedTube(double voxelMm, bool pouched = false);
 
 /// A tube as it is, or a closed surface of genus 0 punched at the two vertices that are farthest
 /// apart along its edges.

@@ -70,14 +70,6 @@ std::vector<shaders::FlatEye> eyes(const std::vector<FlatCamera>& cameras, glm::
     return result;
 }
 
-/// As many as leave 31 bits room for the strip's length and for the copies beside it.
-int unitsFor(double height) {
-    int units = 1 << 26;
-    while ((std::max(height, double(maxCircumferences)) + 2.0) * units > 0x1p31)
-        units /= 2;
-    return units;
-}
-
 }  // namespace
 
 Result<std::shared_ptr<const FlatGeometry>> FlatGeometry::of(const FlatMap& map,
@@ -86,7 +78,7 @@ Result<std::shared_ptr<const FlatGeometry>> FlatGeometry::of(const FlatMap& map,
     auto made = std::make_shared<FlatGeometry>();
     made->originMm_ = originMm;
     made->height_ = map.height;
-    made->unitsPerCircumference_ = unitsFor(map.height);
+    made->unitsPerCircumference_ = flatUnitsPerCircumference(map.height);
     made->cameras_ = eyes(map.cameras, originMm);
     const std::vector<glm::dvec3> normals = inwardNormals(map.surface);
     made->vertices_.resize(map.flat.size());

@@ -1,0 +1,891 @@
+#include "flatten/pouches.h"
+
+#include "core/flat_map.h"
+#include "flatten/conformal_tube.h"
+#include "flatten/disc_embedding.h"
+#include "flatten/flip_repair.h"
+#include "flatten/shape_relaxation.h"
+#include "flatten/vertex_stars.h"
+#include "mesh/halfedge_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+namespace haustra::flatten {
+namespace {
+
+using mesh::HalfedgeMesh;
+
+/// A triangle whose longest side is shorter than this may lose its shape to rounding.
+constexpr double crowdedUnits = 16.0;
+/// The same on a pouch, which is shrunk once more when it is set in; and how many of these may sit
+/// on each other.
+constexpr double fingerUnits = 4096.0;
+constexpr int mostDepth = 3;
+/// Borders that are less round than this leave a pouch too little of the hole.
+constexpr double leastRoundness = 0.4;
+/// What lies deepest in a pouch is shrunk by no more than the exponential of this.
+constexpr double mostFall = 7.0;
+/// Radii of necks and discs in the plane, in circumferences. The least leaves a pouch of a hundred
+/// thousand triangles some hundred units of the lattice for each; beyond the largest a circle would
+/// meet itself around the strip.
+constexpr double leastRadius = 0x1p-9, largestRadius = 0.25, radiusStep = 1.1892071150027210667;
+/// So near may a circle come to a rim, of the way there.
+constexpr double towardsRim = 0.8;
+
+/// The flat place of a vertex in the copy of the strip that is nearest to `middle`.
+glm::dvec2 placeNear(const PeriodicMap& map, int v, glm::dvec2 middle) {
+    const glm::dvec2 at = map.flat[std::size_t(v)];
+    return {at.x - std::round(at.x - middle.x), at.y};
+}
+
+double cross(glm::dvec2 a, glm::dvec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+double areaMm2(const TriMesh& tube, const glm::ivec3& t) {
+    const glm::dvec3 a = tube.vertices[std::size_t(t.x)];
+    return 0.5 * glm::length(glm::cross(tube.vertices[std::size_t(t.y)] - a,
+                                        tube.vertices[std::size_t(t.z)] - a));
+}
+
+/// Triangles that hang together over vertices, in ascending order of their lowest.
+std::vector<std::vector<int>> clustersOf(const TriMesh& tube, const VertexStars& stars,
+                                         const std::vector<int>& triangles) {
+    std::vector<char> waiting(tube.triangles.size(), 0);
+    for (const int t : triangles)
+        waiting[std::size_t(t)] = 1;
+    std::vector<std::vector<int>> clusters;
+    for (const int seed : triangles) {
+        if (!waiting[std::size_t(seed)]) continue;
+        std::vector<int>& cluster = clusters.emplace_back(1, seed);
+        waiting[std::size_t(seed)] = 0;
+        for (std::size_t n = 0; n < cluster.size(); ++n) {
+            for (int c = 0; c < 3; ++c) {
+                for (const int corner : stars.of(tube.triangles[std::size_t(cluster[n])][c])) {
+                    const auto t = std::size_t(corner / 3);
+                    if (!waiting[t]) continue;
+                    waiting[t] = 0;
+                    cluster.push_back(int(t));
+                }
+            }
+        }
+    }
+    return clusters;
+}
+
+/// Where a cluster lies in the plane, and how far it reaches from there.
+struct Spot {
+    std::vector<int> triangles;
+    glm::dvec2 middle{0.0};
+    double reach = 0.0;
+};
+
+Spot spotOf(const TriMesh& tube, const PeriodicMap& map, std::vector<int> triangles) {
+    Spot spot;
+    const glm::dvec2 first = map.corner(tube, std::size_t(triangles.front()), 0);
+    for (const int t : triangles) {
+        for (int c = 0; c < 3; ++c)
+            spot.middle += placeNear(map, tube.triangles[std::size_t(t)][c], first) - first;
+    }
+    spot.middle = first + spot.middle / (3.0 * double(triangles.size()));
+    for (const int t : triangles) {
+        for (int c = 0; c < 3; ++c) {
+            spot.reach = std::max(
+                spot.reach,
+                glm::distance(placeNear(map, tube.triangles[std::size_t(t)][c], spot.middle),
+                              spot.middle));
+        }
+    }
+    spot.triangles = std::move(triangles);
+    return spot;
+}
+
+/// Spots that are nearer to each other than two of the least circles become one.
+std::vector<Spot> merged(const TriMesh& tube, const PeriodicMap& map, std::vector<Spot> spots) {
+    for (bool again = true; again;) {
+        again = false;
+        for (std::size_t a = 0; a < spots.size() && !again; ++a) {
+            for (std::size_t b = a + 1; b < spots.size() && !again; ++b) {
+                glm::dvec2 away = spots[b].middle - spots[a].middle;
+                away.x -= std::round(away.x);
+                if (glm::length(away) > 2.0 * leastRadius) continue;
+                std::vector<int> both = std::move(spots[a].triangles);
+                both.insert(both.end(), spots[b].triangles.begin(), spots[b].triangles.end());
+                spots[a] = spotOf(tube, map, std::move(both));
+                spots.erase(spots.begin() + std::ptrdiff_t(b));
+                again = true;
+            }
+        }
+    }
+    return spots;
+}
+
+/// The radii from the least on that circles around `middle` may have, largest last.
+std::vector<double> radiiFor(const PeriodicMap& map, const std::vector<Spot>& spots,
+                             std::size_t spot) {
+    const glm::dvec2 middle = spots[spot].middle;
+    double most =
+        std::min({largestRadius, towardsRim * middle.y, towardsRim * (map.height - middle.y)});
+    for (std::size_t other = 0; other < spots.size(); ++other) {
+        if (other == spot) continue;
+        glm::dvec2 away = spots[other].middle - middle;
+        away.x -= std::round(away.x);
+        most = std::min(most, 0.5 * glm::length(away));
+    }
+    std::vector<double> radii;
+    for (double radius = leastRadius; radius < most; radius *= radiusStep)
+        radii.push_back(radius);
+    return radii;
+}
+
+/// Radii by how well their circle cuts a finger off: by its length squared over the area within.
+std::vector<double> neckFirst(const TriMesh& tube, const PeriodicMap& map, glm::dvec2 middle,
+                              std::vector<double> radii) {
+    std::vector<double> lengthMm(radii.size(), 0.0), within(radii.size(), 0.0);
+    for (const glm::ivec3& t : tube.triangles) {
+        double away[3];
+        for (int c = 0; c < 3; ++c)
+            away[c] = glm::distance(placeNear(map, t[c], middle), middle);
+        const auto [least, most] = std::minmax({away[0], away[1], away[2]});
+        if (radii.empty() || !(least < radii.back())) continue;
+        for (std::size_t r = 0; r < radii.size(); ++r) {
+            if (least >= radii[r]) continue;
+            if (most < radii[r]) {
+                within[r] += areaMm2(tube, t);
+                continue;
+            }
+            glm::dvec3 ends[2];
+            int found = 0;
+            for (int c = 0; c < 3 && found < 2; ++c) {
+                const double from = away[c], to = away[(c + 1) % 3];
+                if ((from < radii[r]) == (to < radii[r])) continue;
+                ends[found++] = glm::mix(tube.vertices[std::size_t(t[c])],
+                                         tube.vertices[std::size_t(t[(c + 1) % 3])],
+                                         (radii[r] - from) / (to - from));
+            }
+            if (found == 2) lengthMm[r] += glm::distance(ends[0], ends[1]);
+        }
+    }
+    std::vector<std::size_t> order(radii.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto ratio = [&](std::size_t r) {
+        return within[r] > 0.0 ? lengthMm[r] * lengthMm[r] / within[r]
+                               : std::numeric_limits<double>::infinity();
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return ratio(a) < ratio(b); });
+    std::vector<double> sorted;
+    for (const std::size_t r : order)
+        sorted.push_back(radii[r]);
+    return sorted;
+}
+
+std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units);
+SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
+              int depth);
+
+/// Discs of the surface that a circle in the plane encloses.
+class Discs {
+public:
+    Discs(const TriMesh& tube, const HalfedgeMesh& halfedges, const VertexStars& stars)
+        : tube_(tube), halfedges_(halfedges), stars_(stars), inside_(tube.triangles.size(), 0) {}
+
+    /// The triangles within the circle that hang together with one of `seeds`, which must be among
+    /// them, with what they enclose; nothing where these are no disc with a border that is seen
+    /// from a point within, or are already `taken`.
+    std::optional<Pouch> within(const PeriodicMap& map, const std::vector<int>& seeds,
+                                glm::dvec2 middle, double radius, const std::vector<char>& taken) {
+        const auto isWithin = [&](int t) {
+            for (int c = 0; c < 3; ++c) {
+                const int v = tube_.triangles[std::size_t(t)][c];
+                const double y = map.flat[std::size_t(v)].y;
+                if (y == 0.0 || y == map.height ||
+                    !(glm::distance(placeNear(map, v, middle), middle) < radius))
+                    return false;
+            }
+            return true;
+        };
+        std::vector<int> found;
+        const auto add = [&](int t) {
+            if (inside_[std::size_t(t)]) return;
+            inside_[std::size_t(t)] = 1;
+            found.push_back(t);
+        };
+        for (const int seed : seeds) {
+            if (isWithin(seed)) add(seed);
+        }
+        for (std::size_t n = 0; n < found.size(); ++n) {
+            for (int c = 0; c < 3; ++c) {
+                const int other = halfedges_.opposite(3 * found[n] + c);
+                if (other >= 0 && !inside_[std::size_t(other / 3)] && isWithin(other / 3))
+                    add(other / 3);
+            }
+        }
+        const bool whole =
+            std::ranges::all_of(seeds, [&](int t) { return inside_[std::size_t(t)] != 0; });
+        std::optional<Pouch> pouch;
+        if (whole && close(found) &&
+            std::ranges::none_of(found, [&](int t) { return taken[std::size_t(t)] != 0; }))
+            pouch = Pouch{found, middle, radius};
+        for (const int t : found)
+            inside_[std::size_t(t)] = 0;
+        return pouch;
+    }
+
+private:
+    bool isBorder(int h) const {
+        const int other = halfedges_.opposite(h);
+        return other < 0 || !inside_[std::size_t(other / 3)];
+    }
+
+    /// Adds what the triangles enclose, and what they meet at a vertex alone; false where they
+    /// still are no disc.
+    bool close(std::vector<int>& found) {
+        for (int round = 0; round < 8; ++round) {
+            std::unordered_map<int, int> leaves;  // border half-edges by their origins
+            std::vector<int> pinched, starts;
+            for (const int t : found) {
+                for (int h = 3 * t; h < 3 * t + 3; ++h) {
+                    if (!isBorder(h)) continue;
+                    if (halfedges_.opposite(h) < 0) return false;
+                    starts.push_back(h);
+                    if (!leaves.emplace(halfedges_.origin(h), h).second)
+                        pinched.push_back(halfedges_.origin(h));
+                }
+            }
+            for (const int v : pinched) {
+                for (const int corner : stars_.of(v)) {
+                    const auto t = std::size_t(corner / 3);
+                    if (inside_[t]) continue;
+                    inside_[t] = 1;
+                    found.push_back(int(t));
+                }
+            }
+            if (!pinched.empty()) continue;
+            std::unordered_map<int, int> loopOf;
+            int loops = 0;
+            for (const int start : starts) {
+                if (loopOf.contains(start)) continue;
+                for (int h = start; loopOf.emplace(h, loops).second;)
+                    h = leaves.at(halfedges_.target(h));
+                ++loops;
+            }
+            if (loops == 1) return true;
+            if (loops == 0) return false;
+            if (!fillHoles(found, starts)) return false;
+        }
+        return false;
+    }
+
+    /// Of the pieces that the triangles leave, all but the largest join them.
+    bool fillHoles(std::vector<int>& found, const std::vector<int>& starts) {
+        std::vector<char> seen(inside_.begin(), inside_.end());
+        std::vector<std::vector<int>> pieces;
+        for (const int start : starts) {
+            const int seed = halfedges_.opposite(start) / 3;
+            if (seen[std::size_t(seed)]) continue;
+            seen[std::size_t(seed)] = 1;
+            std::vector<int>& piece = pieces.emplace_back(1, seed);
+            for (std::size_t n = 0; n < piece.size(); ++n) {
+                for (int c = 0; c < 3; ++c) {
+                    const int other = halfedges_.opposite(3 * piece[n] + c);
+                    if (other < 0 || seen[std::size_t(other / 3)]) continue;
+                    seen[std::size_t(other / 3)] = 1;
+                    piece.push_back(other / 3);
+                }
+            }
+        }
+        if (pieces.size() < 2) return false;
+        const auto largest = std::ranges::max_element(
+            pieces, [](const auto& a, const auto& b) { return a.size() < b.size(); });
+        for (auto piece = pieces.begin(); piece != pieces.end(); ++piece) {
+            if (piece == largest) continue;
+            for (const int t : *piece) {
+                inside_[std::size_t(t)] = 1;
+                found.push_back(t);
+            }
+        }
+        return true;
+    }
+
+    const TriMesh& tube_;
+    const HalfedgeMesh& halfedges_;
+    const VertexStars& stars_;
+    std::vector<char> inside_;
+};
+
+/// How far a place is to the left of the nearest side of a polygon; negative beyond one.
+double clearance(const std::vector<glm::dvec2>& polygon, glm::dvec2 at) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < polygon.size(); ++n) {
+        const glm::dvec2 from = polygon[n], to = polygon[(n + 1) % polygon.size()];
+        const double length = glm::distance(from, to);
+        if (length > 0.0) least = std::min(least, cross(to - from, at - from) / length);
+    }
+    return least;
+}
+
+/// A place from which all of the polygon is seen, as far from its sides as descent finds.
+std::optional<glm::dvec2> centreOf(const std::vector<glm::dvec2>& polygon, glm::dvec2 middle,
+                                   double radius) {
+    glm::dvec2 mean(0.0);
+    for (const glm::dvec2& p : polygon)
+        mean += p / double(polygon.size());
+    glm::dvec2 best = clearance(polygon, mean) > clearance(polygon, middle) ? mean : middle;
+    double most = clearance(polygon, best);
+    double step = 0.5 * radius;
+    for (int n = 0; n < 60 && step > 1e-4 * radius; ++n) {
+        glm::dvec2 next = best;
+        double there = most;
+        for (int d = 0; d < 8; ++d) {
+            const double angle = 0.25 * std::numbers::pi * d;
+            const glm::dvec2 tried = best + step * glm::dvec2(std::cos(angle), std::sin(angle));
+            if (const double clear = clearance(polygon, tried); clear > there)
+                there = clear, next = tried;
+        }
+        if (!(there > most)) step *= 0.5;
+        best = next;
+        most = there;
+    }
+    if (!(most > 0.0)) return std::nullopt;
+    return best;
+}
+
+/// A pouch cut along its ring, with all that belongs to it numbered: the border's vertices, the
+/// ring's, and the others.
+class CutPouch {
+public:
+    CutPouch(const TriMesh& tube, const HalfedgeMesh& halfedges, const std::vector<char>& inside,
+             const Pouch& pouch, int depth)
+        : tube_(tube), halfedges_(halfedges), inside_(inside), pouch_(pouch), depth_(depth) {}
+
+    /// The radius of a circle within the border, from whose middle all of that is seen, as a share
+    /// of the pouch's; 0 where there is none. First of all.
+    double roundness(const PeriodicMap& map) {
+        if (!findBorder()) return 0.0;
+        for (const int v : border_)
+            borderFlat_.push_back(placeNear(map, v, pouch_.middle));
+        centre_ = centreOf(borderFlat_, pouch_.middle, pouch_.radius);
+        return centre_ ? clearance(borderFlat_, *centre_) / pouch_.radius : 0.0;
+    }
+
+    /// False where the map cannot be made.
+    bool place(double units) {
+        if (!centre_) return false;
+        splitInwards();
+        if (ring_ < 3) return false;
+        number();
+        cut();
+        shape();
+        const double clear = clearance(borderFlat_, *centre_);
+        for (const double fall : {mostFall, 0.75 * mostFall, 0.5 * mostFall}) {
+            rollUp(fall);
+            for (const double share : {0.9, 0.75, 0.5, 0.25}) {
+                if (tryCircle(*centre_, share * clear, units)) return true;
+            }
+            if (!strip_) break;
+        }
+        return false;
+    }
+
+    /// Puts the pouch's pieces in the place of its triangles.
+    void takeInto(SetIn& made, std::vector<char>& gone, std::vector<glm::ivec3>& triangles,
+                  std::vector<int>& sources, std::vector<std::array<std::int8_t, 3>>& turns) const {
+        for (const int t : pouch_.triangles)
+            gone[std::size_t(t)] = 1;
+        std::vector<int> vertex;  // of the inner ones
+        for (std::size_t n = 0; n < placesMm_.size(); ++n) {
+            const bool isNew = n < ring_ || n >= innerVertex_.size();
+            vertex.push_back(isNew ? int(made.tube.vertices.size()) : innerVertex_[n]);
+            if (isNew) {
+                made.tube.vertices.push_back(placesMm_[n]);
+                made.map.flat.push_back(places_[n]);
+            } else {
+                made.map.flat[std::size_t(vertex[n])] = places_[n];
+            }
+        }
+        const auto turnOf = [&](int v) {
+            const auto on = borderIndex_.find(v);
+            if (on == borderIndex_.end()) return std::int8_t(0);
+            const double x = made.map.flat[std::size_t(v)].x;
+            return std::int8_t(std::lround(borderFlat_[std::size_t(on->second)].x - x));
+        };
+        for (const Piece& piece : collarTriangles_) {
+            auto& turn = turns.emplace_back();
+            glm::ivec3& corners = triangles.emplace_back();
+            for (int c = 0; c < 3; ++c) {
+                const int key = piece.corners[c];
+                if (key >= 0) turn[std::size_t(c)] = turnOf(key);
+                corners[c] = key >= 0 ? key : vertex[std::size_t(-1 - key)];
+            }
+            sources.push_back(piece.source);
+        }
+        for (const Piece& piece : inner_) {
+            triangles.push_back({vertex[std::size_t(piece.corners.x)],
+                                 vertex[std::size_t(piece.corners.y)],
+                                 vertex[std::size_t(piece.corners.z)]});
+            sources.push_back(piece.source);
+            turns.emplace_back();
+        }
+    }
+
+private:
+    /// A part of a source triangle. A corner of one within the ring is an inner vertex; of one
+    /// outside a border vertex of the tube, or −1 − n for the ring's vertex n.
+    struct Piece {
+        glm::ivec3 corners;
+        int source;
+    };
+    struct Polygon {
+        std::vector<int> corners;
+        int source;
+    };
+
+    bool isBorder(int h) const { return !inside_[std::size_t(halfedges_.opposite(h) / 3)]; }
+
+    bool findBorder() {
+        std::unordered_map<int, int> leaves;
+        int start = -1;
+        for (const int t : pouch_.triangles) {
+            for (int h = 3 * t; h < 3 * t + 3; ++h) {
+                if (!isBorder(h)) continue;
+                leaves[halfedges_.origin(h)] = h;
+                if (start < 0) start = h;
+            }
+        }
+        if (start < 0) return false;
+        int h = start;
+        do {
+            borderIndex_.emplace(halfedges_.origin(h), int(border_.size()));
+            border_.push_back(halfedges_.origin(h));
+            leaving_.push_back(h);
+            const auto next = leaves.find(halfedges_.target(h));
+            if (next == leaves.end() || border_.size() > leaves.size()) return false;
+            h = next->second;
+        } while (h != start);
+        return border_.size() == leaves.size() && border_.size() >= 3;
+    }
+
+    static std::uint64_t keyOf(int from, int to) {
+        return std::uint64_t(std::uint32_t(from)) << 32 | std::uint32_t(to);
+    }
+
+    /// Cuts each edge that leads from the border inwards, in order around the ring.
+    void splitInwards() {
+        for (std::size_t n = 0; n < border_.size(); ++n) {
+            const int q = border_[n];
+            std::vector<int> inwards;
+            for (int h = leaving_[n];;) {
+                const int previous = HalfedgeMesh::previous(h);
+                if (isBorder(previous)) break;
+                h = halfedges_.opposite(previous);
+                inwards.push_back(halfedges_.target(h));
+            }
+            std::reverse(inwards.begin(), inwards.end());
+            for (std::size_t k = 0; k < inwards.size(); ++k) {
+                const int to = inwards[k];
+                // An edge from border to border is cut twice.
+                const double share = borderIndex_.contains(to) ? 1.0 / 3.0 : 0.5;
+                split_.emplace(keyOf(q, to), int(ring_++));
+                placesMm_.push_back(glm::mix(tube_.vertices[std::size_t(q)],
+                                             tube_.vertices[std::size_t(to)], share));
+                slot_.push_back({int(n), (double(k) + 0.5) / double(inwards.size())});
+            }
+        }
+    }
+
+    void number() {
+        innerVertex_.assign(ring_, -1);
+        for (const int t : pouch_.triangles) {
+            for (int c = 0; c < 3; ++c) {
+                const int v = tube_.triangles[std::size_t(t)][c];
+                if (borderIndex_.contains(v)) continue;
+                if (!innerNumber_.emplace(v, int(innerVertex_.size())).second) continue;
+                innerVertex_.push_back(v);
+                placesMm_.push_back(tube_.vertices[std::size_t(v)]);
+            }
+        }
+    }
+
+    /// Each triangle's part within the ring, as a fan, and its parts outside, as polygons.
+    void cut() {
+        for (const int t : pouch_.triangles) {
+            int corner[3];
+            bool on[3], side[3];  // the side from a corner to the next is one of the border
+            for (int c = 0; c < 3; ++c) {
+                corner[c] = halfedges_.origin(3 * t + c);
+                on[c] = borderIndex_.contains(corner[c]);
+                side[c] = isBorder(3 * t + c);
+            }
+            const auto splitAt = [&](int from, int to) {
+                return split_.at(keyOf(corner[from], corner[to]));
+            };
+            std::vector<int> within;
+            for (int c = 0; c < 3; ++c) {
+                const int next = (c + 1) % 3, last = (c + 2) % 3;
+                if (!on[c]) {
+                    within.push_back(innerNumber_.at(corner[c]));
+                    continue;
+                }
+                if (!side[last]) within.push_back(splitAt(c, last));
+                if (!side[c]) within.push_back(splitAt(c, next));
+            }
+            for (std::size_t n = 1; n + 1 < within.size(); ++n)
+                inner_.push_back({{within[0], within[n], within[n + 1]}, t});
+            // Corners along the border hang together.
+            for (int c = 0; c < 3; ++c) {
+                if (!on[c] || side[(c + 2) % 3]) continue;
+                Polygon polygon{{-1 - splitAt(c, (c + 2) % 3)}, t};
+                int at = c;
+                polygon.corners.push_back(corner[at]);
+                while (side[at]) {
+                    at = (at + 1) % 3;
+                    polygon.corners.push_back(corner[at]);
+                }
+                polygon.corners.push_back(-1 - splitAt(at, (at + 1) % 3));
+                collar_.push_back(std::move(polygon));
+            }
+        }
+    }
+
+    std::vector<glm::ivec3> innerTriangles() const {
+        std::vector<glm::ivec3> triangles;
+        for (const Piece& piece : inner_)
+            triangles.push_back(piece.corners);
+        return triangles;
+    }
+
+    /// The inner vertex that is most edges away from the ring; −1 where its triangles reach that.
+    int farthest() const {
+        TriMesh disc{placesMm_, innerTriangles()};
+        const VertexStars stars(disc);
+        std::vector<int> edges(placesMm_.size(), -1), front;
+        for (std::size_t n = 0; n < ring_; ++n) {
+            edges[n] = 0;
+            front.push_back(int(n));
+        }
+        for (std::size_t n = 0; n < front.size(); ++n) {
+            for (const int corner : stars.of(front[n])) {
+                for (int c = 0; c < 3; ++c) {
+                    const int w = disc.triangles[std::size_t(corner / 3)][c];
+                    if (edges[std::size_t(w)] >= 0) continue;
+                    edges[std::size_t(w)] = edges[std::size_t(front[n])] + 1;
+                    front.push_back(w);
+                }
+            }
+        }
+        return edges[std::size_t(front.back())] >= 3 ? front.back() : -1;
+    }
+
+    /// Finds strip_: what is within the ring without its tip is a tube, which a conformal map
+    /// gives room all along; fingers on it are pouches of their own. None where there are too few
+    /// vertices for that.
+    void shape() {
+        const int end = farthest();
+        if (end < 0) return;
+        TriMesh tube{placesMm_, {}};
+        std::vector<Piece> rest, atTip;
+        for (const Piece& piece : inner_) {
+            const glm::ivec3 t = piece.corners;
+            const bool touches = t.x == end || t.y == end || t.z == end;
+            (touches ? atTip : rest).push_back(piece);
+            if (!touches) tube.triangles.push_back(t);
+        }
+        ConformalTubeOptions options;
+        options.threads = 1;
+        options.repairFlips = false;
+        auto flat = conformalTube(tube, 0, options);
+        if (!flat) return;
+        PeriodicMap map = std::move(flat->map);
+        std::vector<Pouch> fingers;
+        if (depth_ < mostDepth) fingers = findPouches(tube, map, fingerUnits);
+        std::vector<char> apart;
+        if (!fingers.empty()) apart.assign(tube.triangles.size(), 0);
+        for (const Pouch& finger : fingers) {
+            for (const int t : finger.triangles)
+                apart[std::size_t(t)] = 1;
+        }
+        repairMap(map, tube, apart);
+        if (!fingers.empty()) {
+            SetIn made = setInAt(tube, map, fingers, depth_ + 1);
+            std::vector<Piece> pieces;
+            for (std::size_t t = 0; t < made.tube.triangles.size(); ++t) {
+                const auto source = std::size_t(made.sourceTriangle[t]);
+                pieces.push_back({made.tube.triangles[t], rest[source].source});
+            }
+            rest = std::move(pieces);
+            placesMm_ = std::move(made.tube.vertices);
+            map = std::move(made.map);
+        }
+        inner_ = std::move(rest);
+        inner_.insert(inner_.end(), atTip.begin(), atTip.end());
+        strip_ = std::move(map);
+        tip_ = end;
+    }
+
+    /// The strip rolled up to a disc, as what is to be aimed at. A conformal map would have radii
+    /// of exp(−2π y); they fall more gently where that leaves the tip no room. Without a strip all
+    /// vertices count alike.
+    void rollUp(double mostlyFall) {
+        target_.assign(placesMm_.size(), glm::dvec2(0.0));
+        if (!strip_) return;
+        const double fall = std::min(2.0 * std::numbers::pi, mostlyFall / strip_->height);
+        for (std::size_t v = 0; v < target_.size(); ++v) {
+            if (int(v) == tip_) continue;
+            const glm::dvec2 at = strip_->flat[v];
+            const double angle = 2.0 * std::numbers::pi * at.x;
+            target_[v] = std::exp(-fall * at.y) * glm::dvec2(std::cos(angle), std::sin(angle));
+        }
+    }
+
+    /// Whether three places, rounded however the strip is turned, are counter-clockwise.
+    static bool upright(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, double units) {
+        const glm::dvec2 p = b - a, q = c - a, r = q - p;
+        const double longest =
+            std::sqrt(std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)}));
+        // Each corner moves by up to 2^−½ of a unit.
+        return cross(p, q) > 2.0 * longest / units;
+    }
+
+    bool tryCircle(glm::dvec2 centre, double radius, double units) {
+        std::vector<double> angle;
+        for (std::size_t n = 0; n < borderFlat_.size(); ++n) {
+            const glm::dvec2 away = borderFlat_[n] - centre;
+            double at = std::atan2(away.y, away.x);
+            if (n > 0)
+                at += 2.0 * std::numbers::pi *
+                      std::ceil((angle.back() - at) / (2.0 * std::numbers::pi));
+            angle.push_back(at);
+        }
+        const auto count = int(angle.size());
+        const auto angleAt = [&](int n) {
+            if (n < 0) return angle.back() - 2.0 * std::numbers::pi;
+            if (n >= count) return angle.front() + 2.0 * std::numbers::pi;
+            return angle[std::size_t(n)];
+        };
+        std::vector<glm::dvec2> circle;
+        for (const auto& [n, share] : slot_) {
+            const double low = 0.5 * (angleAt(n - 1) + angleAt(n)),
+                         high = 0.5 * (angleAt(n) + angleAt(n + 1));
+            const double at = low + share * (high - low);
+            circle.push_back(centre + radius * glm::dvec2(std::cos(at), std::sin(at)));
+        }
+        const auto placeOf = [&](int key) {
+            return key >= 0 ? borderFlat_[std::size_t(borderIndex_.at(key))]
+                            : circle[std::size_t(-1 - key)];
+        };
+        collarTriangles_.clear();
+        for (const Polygon& polygon : collar_) {
+            const std::size_t corners = polygon.corners.size();
+            bool done = false;
+            for (std::size_t first = 0; first < corners && !done; ++first) {
+                // Of five corners four are on one edge: only from the fifth no piece is a line.
+                if (corners == 5 && first != 2) continue;
+                const auto at = [&](std::size_t n) {
+                    return polygon.corners[(first + n) % corners];
+                };
+                done = true;
+                for (std::size_t n = 1; n + 1 < corners && done; ++n)
+                    done = upright(placeOf(at(0)), placeOf(at(n)), placeOf(at(n + 1)), units);
+                if (!done) continue;
+                for (std::size_t n = 1; n + 1 < corners; ++n)
+                    collarTriangles_.push_back({{at(0), at(n), at(n + 1)}, polygon.source});
+            }
+            if (!done) return false;
+        }
+        const std::vector<glm::ivec3> triangles = innerTriangles();
+        auto places = embedDisc(triangles, circle, target_);
+        if (!places) return false;
+        places_ = std::move(*places);
+        const auto allUpright = [&] {
+            return std::ranges::all_of(triangles, [&](const glm::ivec3& t) {
+                return upright(places_[std::size_t(t.x)], places_[std::size_t(t.y)],
+                               places_[std::size_t(t.z)], units);
+            });
+        };
+        if (allUpright()) return true;
+        // What is thin is widened.
+        const TriMesh disc{placesMm_, triangles};
+        std::vector<char> held(placesMm_.size(), 0);
+        std::fill(held.begin(), held.begin() + std::ptrdiff_t(ring_), char(1));
+        PeriodicMap map{std::move(places_),
+                        std::vector<std::array<std::int8_t, 3>>(triangles.size()), 0.0};
+        const VertexStars stars(disc);
+        unfold(map, disc, stars, held);
+        std::vector<int> thin;
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            if (upright(map.corner(disc, t, 0), map.corner(disc, t, 1), map.corner(disc, t, 2),
+                        units))
+                continue;
+            for (int c = 0; c < 3; ++c) {
+                for (const int corner : stars.of(triangles[t][c])) {
+                    for (int n = 0; n < 3; ++n)
+                        thin.push_back(triangles[std::size_t(corner / 3)][n]);
+                }
+            }
+        }
+        std::sort(thin.begin(), thin.end());
+        thin.erase(std::unique(thin.begin(), thin.end()), thin.end());
+        std::erase_if(thin, [&](int v) { return held[std::size_t(v)] != 0; });
+        constexpr int sweeps = 20;
+        relaxShapes(map, disc, stars, thin, sweeps);
+        places_ = std::move(map.flat);
+        return allUpright();
+    }
+
+    const TriMesh& tube_;
+    const HalfedgeMesh& halfedges_;
+    const std::vector<char>& inside_;
+    const Pouch& pouch_;
+    std::vector<int> border_, leaving_;  ///< vertices in order, and the half-edges that leave them
+    std::unordered_map<int, int> borderIndex_;
+    std::vector<glm::dvec2> borderFlat_;
+    std::optional<glm::dvec2> centre_;
+    std::unordered_map<std::uint64_t, int> split_;  ///< the ring's vertices, by the edge's ends
+    std::size_t ring_ = 0;                          ///< vertices of the ring
+    std::vector<std::pair<int, double>> slot_;  ///< of the ring's vertices: which border vertex's,
+                                                ///< and where in its share of the circle
+    /// The ring's vertices, the pouch's others, and those that its own fingers' rings add.
+    std::vector<glm::dvec3> placesMm_;
+    std::vector<int> innerVertex_;  ///< the tube's, −1 on the ring
+    std::unordered_map<int, int> innerNumber_;
+    std::vector<Piece> inner_, collarTriangles_;
+    std::vector<Polygon> collar_;
+    std::optional<PeriodicMap> strip_;
+    int tip_ = -1;  ///< the vertex that is not on it
+    std::vector<glm::dvec2> target_, places_;
+    int depth_;  ///< of pouches that this is on
+};
+
+std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units) {
+    const double least = units / flatUnitsPerCircumference(map.height);
+    std::vector<int> crowded;
+    for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
+        double longest = 0.0;
+        for (int c = 0; c < 3; ++c) {
+            longest = std::max(
+                longest, glm::distance(map.corner(tube, t, c), map.corner(tube, t, (c + 1) % 3)));
+        }
+        if (!(longest >= least)) crowded.push_back(int(t));
+    }
+    if (crowded.empty()) return {};
+    const auto halfedges = HalfedgeMesh::of(tube);
+    if (!halfedges) return {};
+    const VertexStars stars(tube);
+    std::vector<Spot> spots;
+    for (std::vector<int>& cluster : clustersOf(tube, stars, crowded))
+        spots.push_back(spotOf(tube, map, std::move(cluster)));
+    spots = merged(tube, map, std::move(spots));
+    std::vector<Pouch> pouches;
+    std::vector<char> taken(tube.triangles.size(), 0);
+    Discs discs(tube, *halfedges, stars);
+    for (std::size_t n = 0; n < spots.size(); ++n) {
+        const Spot& spot = spots[n];
+        for (const double radius : neckFirst(tube, map, spot.middle, radiiFor(map, spots, n))) {
+            auto pouch = discs.within(map, spot.triangles, spot.middle, radius, taken);
+            if (!pouch) continue;
+            std::vector<char> inside(tube.triangles.size(), 0);
+            for (const int t : pouch->triangles)
+                inside[std::size_t(t)] = 1;
+            if (!(CutPouch(tube, *halfedges, inside, *pouch, 0).roundness(map) > leastRoundness))
+                continue;
+            for (const int t : pouch->triangles)
+                taken[std::size_t(t)] = 1;
+            pouches.push_back(std::move(*pouch));
+            break;
+        }
+    }
+    return pouches;
+}
+
+}  // namespace
+
+std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map) {
+    return findPouches(tube, map, crowdedUnits);
+}
+
+std::vector<Pouch> discsAround(const TriMesh& tube, const PeriodicMap& map,
+                               const std::vector<int>& folded) {
+    const auto halfedges = HalfedgeMesh::of(tube);
+    if (!halfedges) return {};
+    const VertexStars stars(tube);
+    std::vector<char> taken(tube.triangles.size(), 0);
+    std::vector<Pouch> found;
+    Discs discs(tube, *halfedges, stars);
+    for (std::vector<int>& cluster : clustersOf(tube, stars, folded)) {
+        const Spot spot = spotOf(tube, map, std::move(cluster));
+        const double most = std::min(
+            {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
+        for (double radius = 1.5 * spot.reach; radius < most; radius *= 1.5) {
+            auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
+            if (!disc || disc->triangles.size() < 3 * spot.triangles.size()) continue;
+            std::vector<char> inside(tube.triangles.size(), 0);
+            for (const int t : disc->triangles)
+                inside[std::size_t(t)] = 1;
+            CutPouch cut(tube, *halfedges, inside, *disc, 0);
+            if (!(cut.roundness(map) > leastRoundness) ||
+                !cut.place(flatUnitsPerCircumference(map.height)))
+                continue;
+            for (const int t : disc->triangles)
+                taken[std::size_t(t)] = 1;
+            found.push_back(std::move(*disc));
+            break;
+        }
+    }
+    return found;
+}
+
+SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches) {
+    return setInAt(tube, map, pouches, 0);
+}
+
+namespace {
+
+SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
+              int depth) {
+    SetIn made{tube, map, {}, {}, 0};
+    const auto halfedges = HalfedgeMesh::of(tube);
+    if (!halfedges) return made;
+    std::vector<char> gone(tube.triangles.size(), 0), inside(tube.triangles.size(), 0);
+    std::vector<glm::ivec3> triangles;
+    std::vector<int> sources;
+    std::vector<std::array<std::int8_t, 3>> turns;
+    for (const Pouch& pouch : pouches) {
+        for (const int t : pouch.triangles)
+            inside[std::size_t(t)] = 1;
+        CutPouch cut(tube, *halfedges, inside, pouch, depth);
+        if (cut.roundness(map) > 0.0 && cut.place(flatUnitsPerCircumference(map.height))) {
+            cut.takeInto(made, gone, triangles, sources, turns);
+            ++made.pouches;
+        }
+        for (const int t : pouch.triangles)
+            inside[std::size_t(t)] = 0;
+    }
+    made.tube.triangles.clear();
+    made.map.turns.clear();
+    for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
+        if (gone[t]) continue;
+        made.tube.triangles.push_back(tube.triangles[t]);
+        made.map.turns.push_back(map.turns[t]);
+        made.sourceTriangle.push_back(int(t));
+        made.apart.push_back(0);
+    }
+    made.tube.triangles.insert(made.tube.triangles.end(), triangles.begin(), triangles.end());
+    made.map.turns.insert(made.map.turns.end(), turns.begin(), turns.end());
+    made.sourceTriangle.insert(made.sourceTriangle.end(), sources.begin(), sources.end());
+    made.apart.resize(made.tube.triangles.size(), 1);
+    rotate(made.map, made.tube, 0.0);
+    return made;
+}
+
+}  // namespace
+
+}  // namespace haustra::flatten

@@ -1,0 +1,53 @@
+// Blind fingers of a tube, which its conformal map leaves no room: mapped apart, and set in.
+#pragma once
+
+#include "core/tri_mesh.h"
+#include "flatten/periodic_map.h"
+
+#include <vector>
+
+namespace haustra::flatten {
+
+/// A disc of the surface that is to be mapped apart.
+struct Pouch {
+    std::vector<int> triangles;
+    glm::dvec2 middle{0.0};  ///< where the map shrinks it to; x may be outside [0, 1)
+    double radius = 0.0;     ///< in the plane, of the round hole in the map that its neck leaves
+};
+
+/// Along a blind finger of radius r a conformal map shrinks as exp(−depth / r), until the corners
+/// of triangles fall together on the lattice that flat maps are drawn on (core/flat_map.h). Finds
+/// the triangles whose sides are shorter than 16 units of it, and around each of their clusters
+/// cuts the finger off at its neck: of the circles around that place in the plane, which are loops
+/// around the finger on the surface, the one whose square is least against the area that it
+/// encloses (after Cheeger), none being so small that it leaves no room itself. In ascending order
+/// of their lowest triangles. Nothing of a tube that has room everywhere; a cluster without such a
+/// circle, as beside a rim, is left out. `map` need not be without flips. O(n) for each cluster.
+std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map);
+
+/// The discs around folded triangles, which are mapped apart likewise: the least round hole in the
+/// map that holds each cluster of them and is otherwise upright. `folded` are triangles of `tube`.
+std::vector<Pouch> discsAround(const TriMesh& tube, const PeriodicMap& map,
+                               const std::vector<int>& folded);
+
+/// A map in which pouches have been set in. Their triangles are cut along a ring in them.
+struct SetIn {
+    TriMesh tube;  ///< the vertices of the tube before, and new ones
+    PeriodicMap map;
+    std::vector<int> sourceTriangle;  ///< per triangle: the one that it is, or is a part of
+    std::vector<char> apart;          ///< per triangle: mapped apart
+    std::size_t pouches = 0;          ///< how many; those with a border that could not be are left
+};
+
+/// Outside of the pouches the map stays as it is, to the bit. A pouch keeps its border's places,
+/// which must all be seen from one point between them. Its triangles are cut along the ring that
+/// runs through all edges from the border inwards; between border and ring each triangle's part is
+/// a polygon, and the ring becomes a circle around that point, small enough for all of these to be
+/// upright. What is within the ring goes on the circle's disc by embedDisc, without a fold. Its
+/// target: the disc without its tip is a tube, whose own conformal map has room all along (fingers
+/// on it are set into that likewise), rolled up with radii that fall by no more than e⁷ from neck
+/// to tip, where a conformal map's fall as exp(−2π y). A pouch that still comes out with a triangle
+/// that rounding to the lattice might turn over is left as it was. O(n), beside the systems.
+SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches);
+
+}  // namespace haustra::flatten

@@ -1,0 +1,273 @@
+// Laws of flat maps of tubes with blind fingers: no fold after rounding, nothing lost, and the wall
+// outside the fingers as it would be without all this.
+#include "flat_meshes.h"
+#include "flatten/disc_embedding.h"
+#include "flatten/flattening.h"
+#include "flatten/flip_repair.h"
+#include "flatten/pouches.h"
+#include "flatten/seam.h"
+#include "mesh/halfedge_mesh.h"
+#include "pouched_tubes.h"
+
+#include <cstring>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace haustra::flatten {
+namespace {
+
+using tests::areaMm2;
+using tests::Finger;
+using tests::FingeredTube;
+using tests::fingeredTube;
+
+constexpr double stepMm = 2.0;
+
+/// Blind fingers from so short that a conformal map has room for them to so long that its tips are
+/// e^-80 of their necks.
+FingeredTube manyFingers(double shake, unsigned seed) {
+    std::vector<Finger> fingers;
+    for (int n = 0; n < 24; ++n)
+        fingers.push_back({12 * (n % 5) + 2 * (n / 5 % 2), 8 + 9 * (n / 5) + n % 3, 4,
+                           2.0 + 0.5 * (n % 5), 5.0 + 12.0 * (n % 7)});
+    fingers.push_back({20, 62, 10, 8.0, 240.0});
+    return fingeredTube(64, 84, stepMm, fingers, shake, seed);
+}
+
+FingeredTube oneFinger(double lengthMm, double shake = 0.1) {
+    return fingeredTube(64, 60, stepMm, {{20, 26, 8, 6.0, lengthMm}}, shake);
+}
+
+double flatArea(const FlatMap& map, std::size_t t) {
+    const glm::ivec3 corners = map.surface.triangles[t];
+    const glm::dvec2 a = map.flat[std::size_t(corners.x)];
+    const glm::dvec2 u = map.flat[std::size_t(corners.y)] - a,
+                     v = map.flat[std::size_t(corners.z)] - a;
+    return 0.5 * (u.x * v.y - u.y * v.x);
+}
+
+TEST(Pouches, LeaveNoFoldAfterRounding) {
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        const FingeredTube tube = manyFingers(0.05 * seed, seed);
+        const auto made = flattenTube(tube.mesh, 0);
+        ASSERT_TRUE(made) << describe(made.error());
+        EXPECT_TRUE(foldedTriangles(made->map).empty());
+        EXPECT_GT(made->pouches, 0u);
+        EXPECT_EQ(made->seamMismatch, 0.0);
+        // The strip is covered once, and the surface is all there.
+        double flat = 0.0;
+        for (std::size_t t = 0; t < made->map.surface.triangles.size(); ++t)
+            flat += flatArea(made->map, t);
+        EXPECT_NEAR(flat, made->map.height, 1e-9);
+        EXPECT_NEAR(areaMm2(made->map.surface), areaMm2(tube.mesh), 1e-6 * areaMm2(tube.mesh));
+        std::set<int> sources(made->map.sourceTriangle.begin(), made->map.sourceTriangle.end());
+        EXPECT_EQ(sources.size(), tube.mesh.triangles.size());
+        EXPECT_GE(*sources.begin(), 0);
+        EXPECT_LT(*sources.rbegin(), int(tube.mesh.triangles.size()));
+    }
+}
+
+TEST(Pouches, AreOnFingersAlone) {
+    const FingeredTube tube = manyFingers(0.1, 5);
+    const auto made = flattenTube(tube.mesh, 0);
+    ASSERT_TRUE(made) << describe(made.error());
+    ASSERT_EQ(made->isPouch.size(), made->map.surface.triangles.size());
+    double wallMm2 = 0.0, pouchMm2 = 0.0, pouchWallMm2 = 0.0;
+    for (std::size_t t = 0; t < made->isPouch.size(); ++t) {
+        const double mm2 = areaMm2({made->map.surface.vertices, {made->map.surface.triangles[t]}});
+        const bool finger = tube.inFinger[std::size_t(made->map.sourceTriangle[t])];
+        if (!finger) wallMm2 += mm2;
+        if (made->isPouch[t]) pouchMm2 += mm2;
+        if (made->isPouch[t] && !finger) pouchWallMm2 += mm2;
+    }
+    EXPECT_NEAR(pouchMm2, made->pouchAreaMm2, 1e-6 * pouchMm2);
+    EXPECT_LT(pouchWallMm2, 0.02 * wallMm2);
+    EXPECT_GT(pouchMm2, 2.0 * std::numbers::pi * 8.0 * 200.0);  // the longest is one
+}
+
+/// A tube that a conformal map has room for gets that map, to the bit.
+TEST(Pouches, ChangeNothingWhereThereAreNone) {
+    for (const double lengthMm : {0.0, 10.0, 30.0}) {
+        const TriMesh tube =
+            lengthMm > 0.0 ? oneFinger(lengthMm).mesh : fingeredTube(64, 60, stepMm, {}, 0.1).mesh;
+        const auto plain = conformalTube(tube, 0);
+        const auto made = flattenTube(tube, 0);
+        ASSERT_TRUE(plain && made);
+        EXPECT_EQ(made->pouches, 0u);
+        EXPECT_TRUE(made->isPouch.empty());
+        const FlatMap cut = cutAlongSeam(tube, plain->map, made->seam);
+        ASSERT_EQ(cut.flat.size(), made->map.flat.size());
+        EXPECT_EQ(std::memcmp(cut.flat.data(), made->map.flat.data(),
+                              cut.flat.size() * sizeof(glm::dvec2)),
+                  0);
+        EXPECT_EQ(cut.surface.triangles, made->map.surface.triangles);
+        EXPECT_EQ(made->seam, bestSeam(tube, plain->map));
+    }
+}
+
+/// Setting a pouch in moves no vertex outside of it.
+TEST(Pouches, LeaveTheMapOutsideAsItIs) {
+    const TriMesh tube = oneFinger(240.0).mesh;
+    ConformalTubeOptions options;
+    options.repairFlips = false;
+    const auto plain = conformalTube(tube, 0, options);
+    ASSERT_TRUE(plain);
+    const auto pouches = findPouches(tube, plain->map);
+    ASSERT_EQ(pouches.size(), 1u);
+    const SetIn made = setIn(tube, plain->map, pouches);
+    EXPECT_EQ(made.pouches, 1u);
+    std::vector<char> inPouch(tube.triangles.size(), 0);
+    for (const int t : pouches[0].triangles)
+        inPouch[std::size_t(t)] = 1;
+    double outside = 0.0, inside = 0.0;
+    for (std::size_t t = 0; t < made.tube.triangles.size(); ++t) {
+        const auto source = std::size_t(made.sourceTriangle[t]);
+        EXPECT_EQ(made.apart[t], inPouch[source]);
+        const glm::dvec2 a = made.map.corner(made.tube, t, 0);
+        const glm::dvec2 u = made.map.corner(made.tube, t, 1) - a,
+                         v = made.map.corner(made.tube, t, 2) - a;
+        (inPouch[source] ? inside : outside) += 0.5 * (u.x * v.y - u.y * v.x);
+        if (inPouch[source]) {
+            EXPECT_GT(u.x * v.y - u.y * v.x, 0.0);
+            continue;
+        }
+        EXPECT_EQ(made.tube.triangles[t], tube.triangles[source]);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_EQ(made.map.flat[std::size_t(made.tube.triangles[t][c])],
+                      plain->map.flat[std::size_t(tube.triangles[source][c])]);
+        }
+    }
+    EXPECT_NEAR(inside + outside, made.map.height, 1e-9);
+    // As much as a circle that lies within the hole by less than an edge.
+    const double radius = pouches[0].radius;
+    EXPECT_LT(inside, std::numbers::pi * radius * radius);
+    EXPECT_GT(inside, 0.4 * std::numbers::pi * radius * radius);
+    EXPECT_TRUE(mesh::HalfedgeMesh::of(made.tube));
+    EXPECT_NEAR(areaMm2(made.tube), areaMm2(tube), 1e-9 * areaMm2(tube));
+}
+
+/// The wall far from a finger does not tell how long that is.
+TEST(Pouches, WallOutsideIsThatOfAShorterFinger) {
+    const auto shorter = oneFinger(60.0), longer = oneFinger(300.0);
+    const auto a = flattenTube(shorter.mesh, 0), b = flattenTube(longer.mesh, 0);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(b->pouches, 1u);
+    const auto wallArea = [](const FingeredTube& tube, const Flattening& flat) {
+        double sum = 0.0;
+        for (std::size_t t = 0; t < flat.map.surface.triangles.size(); ++t) {
+            if (!tube.inFinger[std::size_t(flat.map.sourceTriangle[t])])
+                sum += flatArea(flat.map, t);
+        }
+        return sum;
+    };
+    EXPECT_NEAR(wallArea(shorter, *a), wallArea(longer, *b), 1e-4 * wallArea(shorter, *a));
+    EXPECT_NEAR(a->map.height, b->map.height, 1e-6);
+    EXPECT_NEAR(a->outside.angleErrorDegrees.mean, b->outside.angleErrorDegrees.mean, 1.0);
+}
+
+TEST(Pouches, AreTheSameForAnyNumberOfThreads) {
+    const TriMesh tube = manyFingers(0.1, 7).mesh;
+    FlatteningOptions options;
+    options.threads = 1;
+    const auto one = flattenTube(tube, 0, options);
+    options.threads = 2;
+    const auto two = flattenTube(tube, 0, options);
+    ASSERT_TRUE(one && two);
+    ASSERT_EQ(one->map.flat.size(), two->map.flat.size());
+    EXPECT_EQ(std::memcmp(one->map.flat.data(), two->map.flat.data(),
+                          one->map.flat.size() * sizeof(glm::dvec2)),
+              0);
+    EXPECT_EQ(one->map.surface.triangles, two->map.surface.triangles);
+    EXPECT_EQ(one->map.sourceTriangle, two->map.sourceTriangle);
+}
+
+/// Rounding alone turns a triangle over that doubles still hold apart.
+TEST(FoldedTriangles, AreThoseOfTheLattice) {
+    FlatMap map;
+    map.height = 1.0;
+    const double unit = 1.0 / flatUnitsPerCircumference(map.height);
+    map.surface.vertices.resize(4);
+    map.surface.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 0, 2}};
+    map.flat = {{0.0, 0.0}, {0.5, 0.0}, {0.25, 0.4 * unit}, {0.25, 0.6 * unit}};
+    EXPECT_EQ(foldedTriangles(map), (std::vector<int>{0, 2}));
+}
+
+/// Triangles without area on the wall, between the rims' vertices alone, cannot be turned up: such
+/// a tube is refused.
+TEST(FoldedTriangles, AreNotPublished) {
+    TriMesh tube = tests::openTube([](double) { return 10.0; }, 50.0, 48, 39);
+    // A splinter along the rim: its three vertices stay on one straight line.
+    const int a = tube.triangles[0].x, b = tube.triangles[0].y;
+    const int middle = int(tube.vertices.size());
+    tube.vertices.push_back(0.5 * (tube.vertices[std::size_t(a)] + tube.vertices[std::size_t(b)]));
+    const int apex = tube.triangles[0].z;
+    tube.triangles[0] = {a, middle, apex};
+    tube.triangles.push_back({middle, b, apex});
+    const int outer = int(tube.vertices.size());
+    tube.vertices.push_back(0.5 *
+                            (tube.vertices[std::size_t(a)] + tube.vertices[std::size_t(middle)]));
+    tube.triangles.push_back({a, outer, middle});
+    FlatteningOptions options;
+    options.placeName = [](const glm::dvec3& at) { return at.z < 2.0 ? "the rim" : "elsewhere"; };
+    const auto made = flattenTube(tube, 0, options);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().kind, ErrorKind::noResult);
+    EXPECT_NE(made.error().message.find("1 of the flat map's triangles"), std::string::npos)
+        << made.error().message;
+    EXPECT_NE(made.error().message.find("the rim"), std::string::npos) << made.error().message;
+}
+
+/// embedDisc gives back a target without folds, and undoes those of another.
+TEST(EmbedDisc, KeepsTheTargetAndUnfolds) {
+    constexpr int side = 12;
+    std::vector<glm::ivec3> triangles;
+    std::vector<glm::dvec2> target;
+    // Rings around the middle, numbered from outside in.
+    std::vector<int> first(side + 1);
+    for (int r = side; r >= 1; --r) {
+        first[std::size_t(r)] = int(target.size());
+        for (int n = 0; n < 6 * side; ++n) {
+            const double angle = 2.0 * std::numbers::pi * n / (6 * side);
+            target.push_back(double(r) / side * glm::dvec2(std::cos(angle), std::sin(angle)));
+        }
+    }
+    const int middle = int(target.size());
+    target.push_back({0.0, 0.0});
+    for (int r = side; r >= 1; --r) {
+        for (int n = 0; n < 6 * side; ++n) {
+            const int a = first[std::size_t(r)] + n,
+                      b = first[std::size_t(r)] + (n + 1) % (6 * side);
+            if (r == 1) {
+                triangles.push_back({a, b, middle});
+                continue;
+            }
+            const int c = first[std::size_t(r - 1)] + n,
+                      d = first[std::size_t(r - 1)] + (n + 1) % (6 * side);
+            triangles.push_back({a, b, d});
+            triangles.push_back({a, d, c});
+        }
+    }
+    const std::vector<glm::dvec2> border(target.begin(), target.begin() + 6 * side);
+    const auto same = embedDisc(triangles, border, target);
+    ASSERT_TRUE(same);
+    for (std::size_t v = 0; v < target.size(); ++v)
+        EXPECT_LT(glm::distance((*same)[v], target[v]), 1e-10);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
+    std::vector<glm::dvec2> folded = target;
+    for (std::size_t v = border.size(); v < folded.size(); ++v) {
+        if (random() % 3 == 0) folded[v] = {anywhere(random), anywhere(random)};
+    }
+    const auto unfolded = embedDisc(triangles, border, folded);
+    ASSERT_TRUE(unfolded);
+    for (const glm::ivec3& t : triangles) {
+        const glm::dvec2 a = (*unfolded)[std::size_t(t.x)];
+        const glm::dvec2 u = (*unfolded)[std::size_t(t.y)] - a,
+                         v = (*unfolded)[std::size_t(t.z)] - a;
+        EXPECT_GT(u.x * v.y - u.y * v.x, 0.0);
+    }
+}
+
+}  // namespace
+}  // namespace haustra::flatten
