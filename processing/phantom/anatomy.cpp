@@ -18,8 +18,9 @@ public:
 
 private:
     void add(glm::dvec3 low, glm::dvec3 high, std::function<double(glm::dvec3)> distance,
-             std::function<double(glm::dvec3, double)> hu) {
-        solids_.push_back({low, high, std::move(distance), std::move(hu)});
+             std::function<double(glm::dvec3, double)> hu, Site site = Site::elsewhere) {
+        solids_.push_back(
+            {low, high, std::move(distance), std::move(hu), -1e9, std::uint8_t(site)});
     }
     void addEllipsoid(glm::dvec3 centre, glm::dvec3 semi,
                       std::function<double(glm::dvec3, double)> hu) {
@@ -63,7 +64,7 @@ void Builder::addTable() {
                        ? std::max(std::abs(depth(p) - 11.0) - 11.0, std::abs(p.x) - 205.0)
                        : 99.0;
         },
-        [=](glm::dvec3, double d) { return d > -2.2 ? -180.0 : -880.0; });
+        [=](glm::dvec3, double d) { return d > -2.2 ? -180.0 : -880.0; }, Site::outsideBody);
 }
 
 void Builder::addBodyWall() {
@@ -115,7 +116,8 @@ void Builder::addLungs() {
             const double vessel =
                 std::hypot(valueNoise(seed, p, 15.0), valueNoise(seed + 1, p, 15.0));
             return vessel < 0.09 ? -100.0 : -870.0 + 35.0 * valueNoise(seed + 2, p, 5.0);
-        });
+        },
+        Site::lung);
 }
 
 void Builder::addOrgans() {

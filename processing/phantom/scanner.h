@@ -4,6 +4,7 @@
 #include "core/volume.h"
 
 #include <cstdint>
+#include <span>
 
 namespace haustra::phantom {
 
@@ -17,8 +18,16 @@ struct Noise {
     double correlationMm = 1.1;  ///< full width at half maximum of the grain in the plane
 };
 
+/// How many slices beyond a slab its blur draws on.
+int blurReachSlices(const Grid& grid, glm::dvec3 fwhmMm);
+
 /// `clean` plus noise, rounded and clamped to [−1024, 3071]. The noise of a voxel depends on the
 /// seed and the place alone: two volumes on one grid with one seed get the same noise.
 Volume<std::int16_t> addNoise(const Volume<float>& clean, const Noise& noise, int threads);
+
+/// The same of `count` slices of a slab, from its slice `first` on, which is slice `firstOfAll` of
+/// the whole; into `out`.
+void addNoise(const Volume<float>& slab, int first, int count, int firstOfAll, const Noise& noise,
+              int threads, std::span<std::int16_t> out);
 
 }  // namespace haustra::phantom
