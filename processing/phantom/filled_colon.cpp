@@ -6,10 +6,11 @@
 
 namespace haustra::phantom {
 
-Grid gridOf(Size size) {
+Grid gridOf(Size size, double fieldOfViewMm) {
     const bool full = size == Size::full;
     const glm::ivec3 voxels = full ? glm::ivec3(512, 512, 400) : glm::ivec3(256, 256, 200);
-    const glm::dvec3 spacing = full ? glm::dvec3(0.75, 0.75, 1.05) : glm::dvec3(1.5, 1.5, 2.1);
+    glm::dvec3 spacing = full ? glm::dvec3(0.75, 0.75, 1.05) : glm::dvec3(1.5, 1.5, 2.1);
+    if (fieldOfViewMm > 0.0) spacing.x = spacing.y = fieldOfViewMm / voxels.x;
     const glm::dvec3 half = 0.5 * spacing * glm::dvec3(voxels - 1);
     return axisAlignedGrid(voxels, spacing, {-half.x, -half.y, 0.5 * spacing.z});
 }
@@ -29,7 +30,7 @@ FilledColon makeFilledColon(const PhantomOptions& options) {
     ColonShape shape(makeColonPath(options.seed, options.preset, body, bowel), options.seed,
                      bowel.septumMm);
     addGrowths(shape, options.seed, options.preset, body);
-    ColonField field(shape, gridOf(options.size), options.threads);
+    ColonField field(shape, gridOf(options.size, options.scan.fieldOfViewMm), options.threads);
     Fluid fluid = pourFluid(shape, field, options.seed, options.preset, body, bowel);
     // The levels stay: what a polyp displaces is little beside a pool.
     const std::size_t dry = shape.growths().size();

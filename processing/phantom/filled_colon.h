@@ -8,8 +8,8 @@
 
 namespace haustra::phantom {
 
-/// The grid of a phantom's volumes.
-Grid gridOf(Size size);
+/// The grid of a phantom's volumes; the field of view is the size's where it is 0.
+Grid gridOf(Size size, double fieldOfViewMm = 0.0);
 
 /// The body that the options' seed and position make.
 BodyPlan bodyOf(const PhantomOptions& options);

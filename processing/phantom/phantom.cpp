@@ -241,8 +241,22 @@ Result<void> check(const PhantomOptions& options) {
         return fail(ErrorKind::badInput, what, "phantom");
     };
     const auto share = [](double s) { return s >= 0.0 && s <= 1.0; };
-    if (options.position != PatientPosition::supine && options.position != PatientPosition::prone)
-        return bad("a phantom lies supine or prone");
+    if (options.position == PatientPosition::unknown)
+        return bad("a phantom lies supine, prone or on a side");
+    const ScanOptions& scan = options.scan;
+    const auto given = [](double value, double low, double high) {
+        return value == 0.0 || (value >= low && value <= high);
+    };
+    if (!given(scan.fieldOfViewMm, 320.0, 500.0)) return bad("a field of view is 320 to 500 mm");
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!given(scan.blurMm[axis], 0.3, 6.0)) return bad("a point spread is 0.3 to 6 mm wide");
+    }
+    if (!(scan.overshoot >= 0.0 && scan.overshoot <= 0.6))
+        return bad("a kernel's overshoot is 0 to 0.6");
+    if (!(scan.noiseSdHu >= 0.0 && scan.noiseSdHu <= 100.0)) return bad("noise is 0 to 100 HU");
+    if (!(scan.grainMm >= 0.5 && scan.grainMm <= 4.0)) return bad("grain is 0.5 to 4 mm");
+    if (!(scan.pseudoEnhancementHu >= 0.0 && scan.pseudoEnhancementHu <= 100.0))
+        return bad("pseudo-enhancement is 0 to 100 HU");
     if (!(bowel.ileumMm >= 0.0 && bowel.ileumMm <= 2000.0))
         return bad("an ileum is 0 to 2000 mm long");
     if (!(bowel.ileumCalibreMm >= 12.0 && bowel.ileumCalibreMm <= 30.0))
@@ -330,12 +344,17 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
 
     Random random(options.seed, 7);
     const double inPlaneMm = random.uniform(0.85, 1.15);
-    const glm::dvec3 fwhmMm{inPlaneMm, inPlaneMm, 1.2};
+    glm::dvec3 fwhmMm{inPlaneMm, inPlaneMm, 1.2};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (options.scan.blurMm[axis] > 0.0) fwhmMm[axis] = options.scan.blurMm[axis];
+    }
     Noise noise;
     noise.seed = mixBits(options.seed * 2 + (body.position == PatientPosition::prone));
     noise.sdHu = options.preset == Preset::easy       ? random.uniform(10.0, 13.0)
                  : options.preset == Preset::standard ? random.uniform(14.0, 20.0)
                                                       : random.uniform(26.0, 35.0);
+    if (options.scan.noiseSdHu > 0.0) noise.sdHu = options.scan.noiseSdHu;
+    noise.correlationMm = options.scan.grainMm;
 
     Phantom phantom;
     phantom.lumen = Volume<std::uint8_t>(grid);
@@ -376,10 +395,14 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
         std::copy_n(slab.lumen.data() + skip, count, phantom.lumen.writable().data() + at);
         std::copy_n(slab.sites.data() + skip, count, phantom.sites.writable().data() + at);
         const auto expose = [&](Volume<float>& clean, Volume<std::int16_t>& hu) {
-            blur(clean, fwhmMm, options.threads);
+            reconstruct(clean, fwhmMm, options.scan.overshoot, options.threads);
             addNoise(clean, slab.begin, to - from, from, noise, options.threads,
                      hu.writable().subspan(at, count));
         };
+        if (options.scan.pseudoEnhancementHu > 0.0) {
+            enhanceBesideTagging(slab.tagged, slab.untagged, options.scan.pseudoEnhancementHu,
+                                 options.threads);
+        }
         expose(slab.untagged, phantom.untaggedHu);
         expose(slab.tagged, phantom.scan.hu);
         report(0.3 + 0.65 * double(to) / grid.size.z);

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "core/result.h"
 #include "phantom/bowel_options.h"
+#include "phantom/scan_options.h"
 #include "phantom/structure.h"
 
 #include <cstdint>
@@ -31,9 +32,10 @@ enum class Size { small, full };
 struct PhantomOptions {
     std::uint64_t seed = 1;
     Preset preset = Preset::standard;
-    PatientPosition position = PatientPosition::supine;  ///< supine or prone
+    PatientPosition position = PatientPosition::supine;  ///< any but unknown
     Size size = Size::full;
     BowelOptions bowel;
+    ScanOptions scan;
     int threads = 0;
     Progress progress;
 };
@@ -73,7 +75,7 @@ struct Phantom {
     Structure structure;
 };
 
-/// Fails only for a position other than supine or prone, and for options out of their range.
+/// Fails only for an unknown position and for options out of their range.
 /// Deterministic in the options, byte for
 /// byte, whatever the number of threads.
 Result<Phantom> makePhantom(const PhantomOptions& options);

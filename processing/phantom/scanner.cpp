@@ -108,6 +108,29 @@ void blur(Volume<float>& volume, glm::dvec3 fwhmMm, int threads) {
     });
 }
 
+void reconstruct(Volume<float>& volume, glm::dvec3 fwhmMm, double overshoot, int threads) {
+    if (overshoot <= 0.0) return blur(volume, fwhmMm, threads);
+    Volume<float> wide = volume.clone();
+    blur(volume, fwhmMm, threads);
+    blur(wide, fwhmMm * glm::dvec3(2.2, 2.2, 1.0), threads);
+    const auto sharp = volume.writable();
+    for (std::size_t n = 0; n < sharp.size(); ++n)
+        sharp[n] += float(overshoot) * (sharp[n] - wide[n]);
+}
+
+void enhanceBesideTagging(Volume<float>& tagged, const Volume<float>& untagged, double edgeHu,
+                          int threads) {
+    constexpr double spreadMm = 16.0, stepHu = 1500.0;
+    Volume<float> excess(tagged.grid());
+    const auto added = excess.writable(), out = tagged.writable();
+    for (std::size_t n = 0; n < added.size(); ++n)
+        added[n] = std::max(0.0f, out[n] - untagged[n]);
+    blur(excess, {spreadMm, spreadMm, 0.0}, threads);
+    const float gain = float(edgeHu / (0.5 * stepHu));
+    for (std::size_t n = 0; n < added.size(); ++n)
+        out[n] += gain * added[n];
+}
+
 int blurReachSlices(const Grid& grid, glm::dvec3 fwhmMm) {
     return int(gaussian(fwhmMm.z / kFwhmPerSigma / grid.spacingMm().z).size()) - 1;
 }

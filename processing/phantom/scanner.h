@@ -12,6 +12,15 @@ namespace haustra::phantom {
 /// The same for any number of threads.
 void blur(Volume<float>& volume, glm::dvec3 fwhmMm, int threads);
 
+/// Blurs as a reconstruction kernel does: (1 + overshoot) G(fwhm) − overshoot G(2.2 fwhm) in the
+/// plane, a Gaussian across it. Keeps the sum.
+void reconstruct(Volume<float>& volume, glm::dvec3 fwhmMm, double overshoot, int threads);
+
+/// Adds pseudo-enhancement: what the tagging adds to the untagged body, spread over 16 mm (full
+/// width) within each slice and scaled so that a flat edge of 1500 HU gains `edgeHu`.
+void enhanceBesideTagging(Volume<float>& tagged, const Volume<float>& untagged, double edgeHu,
+                          int threads);
+
 struct Noise {
     std::uint64_t seed = 1;
     double sdHu = 15.0;

@@ -22,6 +22,16 @@ PhantomOptions wildOptions(std::uint64_t seed) {
     if (random.chance(0.6)) bowel.full = random.uniform(0.1, 0.5);
     if (random.chance(0.5)) bowel.diverticula = 10 + random.index(91);
     bowel.rectalTube = random.chance(0.5);
+    ScanOptions& scan = options.scan;
+    Random scanner(seed, 41);
+    scan.fieldOfViewMm = scanner.uniform(320.0, 500.0);
+    if (scanner.chance(0.5)) {
+        const double plane = scanner.uniform(0.6, 1.5);
+        scan.blurMm = {plane, plane * scanner.uniform(0.8, 1.25), scanner.uniform(0.8, 3.0)};
+    }
+    if (scanner.chance(0.5)) scan.overshoot = scanner.uniform(0.1, 0.6);
+    scan.grainMm = scanner.uniform(0.8, 2.5);
+    if (scanner.chance(0.6)) scan.pseudoEnhancementHu = scanner.uniform(10.0, 80.0);
     return options;
 }
 

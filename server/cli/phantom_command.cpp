@@ -33,6 +33,8 @@ struct Arguments {
     std::vector<double> collapsesMm;
     std::optional<double> untagged, layered, full;
     std::optional<int> diverticula;
+    std::optional<double> fieldOfViewMm, overshoot, noiseSdHu, grainMm, pseudoEnhancementHu;
+    std::vector<double> blurMm;
     bool force = false;
     int threads = 0;
 };
@@ -68,7 +70,22 @@ phantom::PhantomOptions optionsOf(const Arguments& arguments) {
     if (arguments.valve) bowel.valveOpen = *arguments.valve == "open";
     if (arguments.insufflated) bowel.insufflated = *arguments.insufflated == "yes";
     if (arguments.rectalTube) bowel.rectalTube = *arguments.rectalTube == "yes";
+    phantom::ScanOptions& scan = options.scan;
+    take(arguments.fieldOfViewMm, scan.fieldOfViewMm), take(arguments.overshoot, scan.overshoot);
+    take(arguments.noiseSdHu, scan.noiseSdHu), take(arguments.grainMm, scan.grainMm);
+    take(arguments.pseudoEnhancementHu, scan.pseudoEnhancementHu);
+    if (!arguments.blurMm.empty())
+        scan.blurMm = {arguments.blurMm[0], arguments.blurMm[1], arguments.blurMm[2]};
     return options;
+}
+
+nlohmann::ordered_json scanJson(const phantom::ScanOptions& scan) {
+    return {{"field_of_view_mm", scan.fieldOfViewMm},
+            {"blur_mm", {scan.blurMm.x, scan.blurMm.y, scan.blurMm.z}},
+            {"overshoot", scan.overshoot},
+            {"noise_sd_hu", scan.noiseSdHu},
+            {"grain_mm", scan.grainMm},
+            {"pseudo_enhancement_hu", scan.pseudoEnhancementHu}};
 }
 
 nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
@@ -155,12 +172,15 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
                                   arguments.position, arguments.size);
     const std::string extras = bowelJson(options.bowel).dump();
     if (extras != bowelJson({}).dump()) writing.uidSeed += " " + extras;
+    const std::string scanner = scanJson(options.scan).dump();
+    if (scanner != scanJson({}).dump()) writing.uidSeed += " " + scanner;
     const nlohmann::ordered_json facts{{"version", phantom::phantomVersion},
                                        {"seed", arguments.seed},
                                        {"preset", arguments.preset},
                                        {"position", arguments.position},
                                        {"size", arguments.size},
                                        {"bowel", bowelJson(options.bowel)},
+                                       {"scan", scanJson(options.scan)},
                                        {"centerline_mm", made.centerline.lengthMm()},
                                        {"polyps", made.polyps.findings.size()},
                                        {"noise_sd_hu", made.noiseSdHu},
@@ -310,6 +330,32 @@ void addBowelOptions(CLI::App& command, Arguments& arguments) {
         ->group(group);
 }
 
+/// How the patient is scanned; phantom/scan_options.h tells more.
+void addScanOptions(CLI::App& command, Arguments& arguments) {
+    constexpr const char* group = "Scanner (in place of what the preset draws)";
+    const auto add = [&](const char* name, std::optional<double>& value, const char* help,
+                         double low, double high, const char* unit) {
+        command.add_option(name, value, help)
+            ->check(CLI::Range(low, high))
+            ->type_name(unit)
+            ->group(group);
+    };
+    add("--fov", arguments.fieldOfViewMm, "Width of the field of view, 320 to 500", 320, 500, "MM");
+    command
+        .add_option("--blur", arguments.blurMm,
+                    "Full widths of the point spread along x, y and z, 0.3 to 6")
+        ->check(CLI::Range(0.3, 6.0))
+        ->expected(3)
+        ->type_name("MM")
+        ->group(group);
+    add("--overshoot", arguments.overshoot, "Edge enhancement of a sharp kernel, 0 to 0.6", 0, 0.6,
+        "SHARE");
+    add("--noise", arguments.noiseSdHu, "Standard deviation of the noise, 1 to 100", 1, 100, "HU");
+    add("--grain", arguments.grainMm, "Full width of the noise's grain, 0.5 to 4", 0.5, 4, "MM");
+    add("--pseudo-enhancement", arguments.pseudoEnhancementHu,
+        "How much brighter tissue is at the edge of a large tagged pool, 0 to 100", 0, 100, "HU");
+}
+
 }  // namespace
 
 Command addPhantom(CLI::App& program) {
@@ -338,7 +384,7 @@ Command addPhantom(CLI::App& program) {
         ->check(CLI::IsMember(presetNames))
         ->capture_default_str();
     command->add_option("--position", arguments->position, "How the patient lies")
-        ->check(CLI::IsMember({"supine", "prone"}))
+        ->check(CLI::IsMember({"supine", "prone", "left-decubitus", "right-decubitus"}))
         ->capture_default_str();
     command->add_option("--size", arguments->size, "small (256³ or so) or full (512×512×400)")
         ->check(CLI::IsMember(namesOf(sizes)))
@@ -347,6 +393,7 @@ Command addPhantom(CLI::App& program) {
                       "Replace series and truth in a folder that is not empty");
     addThreadsOption(*command, arguments->threads);
     addBowelOptions(*command, *arguments);
+    addScanOptions(*command, *arguments);
     return {command, [arguments] { return runPhantom(*arguments); }};
 }
 
