@@ -18,8 +18,9 @@ public:
 
 private:
     void add(glm::dvec3 low, glm::dvec3 high, std::function<double(glm::dvec3)> distance,
-             std::function<double(glm::dvec3, double)> hu) {
-        solids_.push_back({low, high, std::move(distance), std::move(hu)});
+             std::function<double(glm::dvec3, double)> hu, Site site = Site::elsewhere) {
+        solids_.push_back(
+            {low, high, std::move(distance), std::move(hu), -1e9, std::uint8_t(site)});
     }
     void addEllipsoid(glm::dvec3 centre, glm::dvec3 semi,
                       std::function<double(glm::dvec3, double)> hu) {
@@ -36,6 +37,7 @@ private:
     std::uint64_t next() { return mixBits(seed_ + ++counter_); }
 
     void addTable();
+    void addTableBeside();
     void addBodyWall();
     void addMuscles();
     void addLungs();
@@ -50,6 +52,9 @@ private:
 };
 
 void Builder::addTable() {
+    const bool lateral = body_.position == PatientPosition::leftDecubitus ||
+                         body_.position == PatientPosition::rightDecubitus;
+    if (lateral) return addTableBeside();
     const double side = body_.position == PatientPosition::prone ? -1.0 : 1.0;
     // A shallow trough of carbon fibre over foam, touching the body at its lowest line.
     constexpr double radius = 420.0;
@@ -63,7 +68,25 @@ void Builder::addTable() {
                        ? std::max(std::abs(depth(p) - 11.0) - 11.0, std::abs(p.x) - 205.0)
                        : 99.0;
         },
-        [=](glm::dvec3, double d) { return d > -2.2 ? -180.0 : -880.0; });
+        [=](glm::dvec3, double d) { return d > -2.2 ? -180.0 : -880.0; }, Site::outsideBody);
+}
+
+/// The same table under a patient who lies on the side.
+void Builder::addTableBeside() {
+    const double side = gravityDirection(body_.position).x;
+    const double top = 176.0 * body_.widthScale;
+    constexpr double radius = 420.0;
+    auto depth = [=](glm::dvec3 p) {
+        return std::hypot(p.y, side * p.x - (top - radius)) - radius;
+    };
+    add(
+        {-400, -210, -kTop}, {400, 210, kTop},
+        [=](glm::dvec3 p) {
+            return side * p.x > 0.0
+                       ? std::max(std::abs(depth(p) - 11.0) - 11.0, std::abs(p.y) - 205.0)
+                       : 99.0;
+        },
+        [=](glm::dvec3, double d) { return d > -2.2 ? -180.0 : -880.0; }, Site::outsideBody);
 }
 
 void Builder::addBodyWall() {
@@ -115,7 +138,8 @@ void Builder::addLungs() {
             const double vessel =
                 std::hypot(valueNoise(seed, p, 15.0), valueNoise(seed + 1, p, 15.0));
             return vessel < 0.09 ? -100.0 : -870.0 + 35.0 * valueNoise(seed + 2, p, 5.0);
-        });
+        },
+        Site::lung);
 }
 
 void Builder::addOrgans() {

@@ -6,9 +6,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace haustra::phantom {
 namespace {
+
+/// The least radius stands for a closed lumen.
+constexpr double kClosedMm = -3.0;
+
+/// The axis's radius at a distance beyond a closed stretch of a colon that is `radiusMm` wide.
+double taper(double radiusMm, double taperMm, double outsideMm) {
+    return glm::mix(
+        kClosedMm, radiusMm,
+        smoothstep(-4.0 * (taperMm / ColonPath::Collapse{}.taperMm), taperMm, outsideMm));
+}
+
+/// How far beyond its stretch of least radius the lumen stays closed; negative where the bulging
+/// ends of a wide colon reach into it.
+double closedBeyondMm(double radiusMm, double taperMm) {
+    double least = 1e9;
+    for (double outside = -4.0; outside <= 20.0; outside += 0.25)
+        least = std::min(least, outside - taper(radiusMm, taperMm, outside));
+    return least;
+}
 
 /// Frames carried along without twist (double reflection, Wang et al. 2008), then turned slowly,
 /// as the taeniae are.
@@ -45,7 +65,58 @@ void addFrames(ColonPath& path, double turnsPerMetre, double phase) {
     }
 }
 
+/// Puts each closed stretch somewhere between the rectum and the cecum, clear of the others; those
+/// for which there is no room are left out.
+std::vector<ColonPath::Collapse> drawCollapses(std::uint64_t seed, const ColonPath& path,
+                                               const std::vector<double>& lengthsMm,
+                                               const std::function<double(double)>& radiusAt) {
+    Random random(seed, 20);
+    std::vector<ColonPath::Collapse> collapses;
+    for (const double lengthMm : lengthsMm) {
+        for (int attempt = 0; attempt < 200; ++attempt) {
+            // Spasm and dependence close the left colon more often than the right.
+            const double from = path.rectumEndMm + 50.0;
+            const double to = random.chance(0.7) ? path.descendingEndMm : path.lengthMm() - 160.0;
+            const double begin = random.uniform(from, to - lengthMm);
+            const double taperMm = std::clamp(0.6 * lengthMm, 6.0, 18.0);
+            const double beyond = closedBeyondMm(radiusAt(begin + 0.5 * lengthMm), taperMm);
+            const double core = std::max(0.5, lengthMm - 2.0 * beyond);
+            const bool crowded =
+                std::any_of(collapses.begin(), collapses.end(), [&](const auto& c) {
+                    return begin < c.endMm + 70.0 && c.beginMm < begin + core + 70.0;
+                });
+            if (crowded) continue;
+            collapses.push_back({begin, begin + core, taperMm});
+            break;
+        }
+    }
+    std::sort(collapses.begin(), collapses.end(),
+              [](const auto& a, const auto& b) { return a.beginMm < b.beginMm; });
+    return collapses;
+}
+
+/// All of the colon but a few bubbles and, on the right, longer stretches of stool.
+std::vector<ColonPath::Collapse> squeeze(std::uint64_t seed, const ColonPath& path) {
+    Random random(seed, 21);
+    std::vector<ColonPath::Collapse> closed;
+    double arc = -20.0;
+    while (arc < path.lengthMm()) {
+        const bool right = arc > path.transverseEndMm - 60.0;
+        const double shut = right ? random.uniform(25.0, 50.0) : random.uniform(70.0, 160.0);
+        const double open = right ? random.uniform(80.0, 140.0) : random.uniform(30.0, 60.0);
+        closed.push_back({arc, std::min(arc + shut, path.lengthMm()), 18.0});
+        arc += shut + open;
+    }
+    return closed;
+}
+
 }  // namespace
+
+bool ColonPath::collapsedWithin(double arcMm, double marginMm) const {
+    return std::any_of(collapses.begin(), collapses.end(), [&](const Collapse& c) {
+        return arcMm > c.beginMm - marginMm && arcMm < c.endMm + marginMm;
+    });
+}
 
 PathSample ColonPath::at(double arcMm) const {
     const double u = std::clamp(arcMm / stepMm, 0.0, double(samples.size() - 1));
@@ -63,14 +134,15 @@ PathSample ColonPath::at(double arcMm) const {
     return s;
 }
 
-ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body) {
+ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body,
+                        const BowelOptions& bowel) {
     Random random(seed, 1);
     const double targetMm = random.uniform(1270.0, 1620.0);
     const double turns = random.uniform(-0.7, 0.7), phase = random.uniform(0.0, 6.28);
     // Crowded loops may not reach every length; then another variation does.
     Variation vary;
     Skeleton skeleton;
-    double error = 1e9;
+    double error = 1e9, drawn = 0.0;
     for (int attempt = 0; attempt < 6 && error > 40.0; ++attempt) {
         const Variation other = drawVariation(random);
         double lo = -0.2, hi = 2.0;
@@ -81,7 +153,20 @@ ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body)
             (length < targetMm ? lo : hi) = redundancy;
             if (std::abs(length - targetMm) >= error) continue;
             error = std::abs(length - targetMm);
-            skeleton = std::move(candidate), vary = other;
+            skeleton = std::move(candidate), vary = other, drawn = redundancy;
+        }
+    }
+    if (bowel.redundantSigmoidMm > 0.0) {
+        const double wantedMm = lengthOf(skeleton.nodes) + bowel.redundantSigmoidMm;
+        double lo = 0.0, hi = 5.0, best = 1e9;
+        for (int round = 0; round < 7; ++round) {
+            const double extra = 0.5 * (lo + hi);
+            Skeleton candidate = layOut(vary, drawn, body, extra);
+            const double length = lengthOf(candidate.nodes);
+            (length < wantedMm ? lo : hi) = extra;
+            if (std::abs(length - wantedMm) >= best) continue;
+            best = std::abs(length - wantedMm);
+            skeleton = std::move(candidate);
         }
     }
 
@@ -117,13 +202,20 @@ ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body)
     path.rectumEndMm = arcOf(rectumEnd), path.sigmoidEndMm = arcOf(sigmoidEnd);
     path.descendingEndMm = arcOf(descendingEnd), path.transverseEndMm = arcOf(transverseEnd);
 
-    if (preset == Preset::hard) {
+    if (!bowel.insufflated) {
+        path.collapses = squeeze(seed, path);
+    } else if (!bowel.collapsesMm.empty()) {
+        path.collapses = drawCollapses(seed, path, bowel.collapsesMm, [&](double arc) {
+            const std::size_t n = std::min(std::size_t(arc / path.stepMm), control.size() - 1);
+            return vary.scale * radiusAtControl(control[n]);
+        });
+    } else if (preset == Preset::hard) {
         const double length = random.uniform(28.0, 50.0);
         const bool sigmoid = random.chance(0.5);
         const double from = sigmoid ? path.rectumEndMm + 60.0 : path.sigmoidEndMm + 20.0;
         const double to = sigmoid ? path.sigmoidEndMm - 30.0 : path.descendingEndMm - 60.0;
-        path.collapseBeginMm = random.uniform(from, std::max(from, to - length));
-        path.collapseEndMm = path.collapseBeginMm + length;
+        const double begin = random.uniform(from, std::max(from, to - length));
+        path.collapses.push_back({begin, begin + length, 18.0});
     }
 
     const std::uint64_t widthNoise = mixBits(seed + 77);
@@ -141,9 +233,14 @@ ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body)
         s.haustration =
             0.25 + 0.75 * smoothstep(path.rectumEndMm - 20.0, path.sigmoidEndMm + 40.0, arc);
         s.haustration *= smoothstep(0.0, 30.0, arc) * smoothstep(0.0, 25.0, left);
-        if (path.collapseEndMm > path.collapseBeginMm) {
-            const double outside = std::max(path.collapseBeginMm - arc, arc - path.collapseEndMm);
-            s.radiusMm = glm::mix(-3.0, s.radiusMm, smoothstep(-4.0, 18.0, outside));
+        if (!bowel.insufflated) {
+            // What gas and stool hold open is narrower than what a pump does.
+            s.radiusMm *= arc < path.transverseEndMm ? 0.62 : 0.75;
+            s.haustration *= 0.5;
+        }
+        for (const ColonPath::Collapse& collapse : path.collapses) {
+            const double outside = std::max(collapse.beginMm - arc, arc - collapse.endMm);
+            s.radiusMm = taper(s.radiusMm, collapse.taperMm, outside);
             s.haustration *= smoothstep(0.0, 25.0, outside);
         }
     }

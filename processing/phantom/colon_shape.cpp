@@ -50,8 +50,31 @@ double Growth::reachMm() const {
                                : head;
 }
 
-ColonShape::ColonShape(ColonPath path, std::uint64_t seed)
-    : path_(std::move(path)), roughness_(mixBits(seed + 5)) {
+double Diverticulum::distance(glm::dvec3 p) const {
+    // The neck begins inside the lumen, so that no film is left across the mouth.
+    const glm::dvec3 within = mouth + (mouth - centre) * (1.0 / glm::distance(mouth, centre));
+    const double neck = capsule(p, within, centre, neckRadiusMm);
+    return -smoothMax(sacRadiusMm - glm::distance(p, centre), -neck, 0.6);
+}
+
+double Valve::slit(glm::dvec3 p) const {
+    const glm::dvec3 q = p - at;
+    const double a = glm::dot(q, along), b = glm::dot(q, glm::cross(inward, along));
+    return ellipsoid({a, b, 0.0}, glm::dvec3(0.0), {0.55 * semiAxes.x, 0.5 * slitMm, 1e6});
+}
+
+double Valve::lips(glm::dvec3 p) const {
+    const glm::dvec3 q = p - at;
+    const glm::dvec3 local{glm::dot(q, along), glm::dot(q, glm::cross(inward, along)),
+                           glm::dot(q, inward)};
+    const double mound = ellipsoid(local, glm::dvec3(0.0), semiAxes);
+    // Closed lips meet; only a groove tells where.
+    const double groove = open ? slit(p) : std::max(slit(p), 0.7 * semiAxes.z - local.z);
+    return smoothMax(mound, -groove, 1.0);
+}
+
+ColonShape::ColonShape(ColonPath path, std::uint64_t seed, double septumMm)
+    : path_(std::move(path)), roughness_(mixBits(seed + 5)), septumMm_(septumMm) {
     addFolds(seed);
 }
 
@@ -142,6 +165,7 @@ double ColonShape::tube(glm::dvec3 p, const PathSample& s, double arcMm) const {
 void ColonShape::findNearby(glm::dvec3 centre, double radiusMm, Nearby& nearby) const {
     nearby.segments.clear();
     nearby.growths.clear();
+    nearby.diverticula.clear();
     for (std::size_t n = 0; n + 1 < path_.samples.size(); ++n) {
         const PathSample& s = path_.samples[n];
         // Beyond the nearest tube's reach, a neighbour matters as far as the septum does.
@@ -154,6 +178,13 @@ void ColonShape::findNearby(glm::dvec3 centre, double radiusMm, Nearby& nearby) 
         const double reach = growths_[n].reachMm() + radiusMm + 3.0;
         const glm::dvec3 v = growths_[n].centre - centre;
         if (glm::dot(v, v) < reach * reach) nearby.growths.push_back(int(n));
+    }
+    for (std::size_t n = 0; n < diverticula_.size(); ++n) {
+        const Diverticulum& pouch = diverticula_[n];
+        const double reach =
+            glm::distance(pouch.mouth, pouch.centre) + pouch.sacRadiusMm + reachMm + radiusMm + 3.0;
+        const glm::dvec3 v = pouch.centre - centre;
+        if (glm::dot(v, v) < reach * reach) nearby.diverticula.push_back(int(n));
     }
 }
 
@@ -196,8 +227,15 @@ ColonPoint ColonShape::evaluate(glm::dvec3 p, const Nearby& nearby) const {
             other = std::min(other, depth[n]);
         }
     }
-    if (other < 1e8) d = smoothMax(d, 0.5 * (septumMm - (other - best)), 1.0);
+    if (other < 1e8) d = smoothMax(d, 0.5 * (septumMm_ - (other - best)), 1.0);
 
+    for (const int n : nearby.diverticula) {
+        const double pouch = diverticula_[n].distance(p);
+        d = std::min(d, pouch);
+        outer = std::min(outer, pouch - Diverticulum::wallMm);
+    }
+    if (valve_ && glm::distance(p, valve_->at) < valve_->reachMm() + 3.0)
+        d = smoothMax(d, -valve_->lips(p), 0.8);
     for (const int n : nearby.growths) {
         const Growth& growth = growths_[n];
         if (growth.kind == Growth::Kind::taggedStool) continue;
@@ -208,6 +246,18 @@ ColonPoint ColonShape::evaluate(glm::dvec3 p, const Nearby& nearby) const {
     point.lumenMm = d;
     point.outerMm = outer;
     return point;
+}
+
+double ColonShape::smoothTubeMm(glm::dvec3 p, double arcMm, double beyondMm) const {
+    double least = 1e9;
+    // Spheres 3 mm apart, whose hull is the tube to a tenth of a millimetre.
+    for (std::size_t n = 0; n < path_.samples.size(); n += 3) {
+        if (std::abs(path_.stepMm * double(n) - arcMm) <= beyondMm) continue;
+        const PathSample& s = path_.samples[n];
+        least = std::min(least,
+                         glm::distance(p, s.position) - std::max(s.radiusMm, kCollapsedRadiusMm));
+    }
+    return least;
 }
 
 ColonPoint ColonShape::evaluate(glm::dvec3 p) const {

@@ -199,7 +199,7 @@ Variation drawVariation(Random& random) {
     return vary;
 }
 
-Skeleton layOut(const Variation& vary, double redundancy, const BodyPlan& body) {
+Skeleton layOut(const Variation& vary, double redundancy, const BodyPlan& body, double sigmoid) {
     Points control;
     for (int n = 0; n < int(controlPoints.size()); ++n) {
         const double share = n <= sigmoidEnd      ? vary.sigmoid
@@ -207,6 +207,7 @@ Skeleton layOut(const Variation& vary, double redundancy, const BodyPlan& body) 
                                                   : 1.0;
         control.push_back(controlPoints[n].at + redundancy * share * controlPoints[n].longer +
                           vary.jitter[n]);
+        if (n <= sigmoidEnd) control.back() += sigmoid * controlPoints[n].longer;
     }
     Points fine;
     constexpr int perSpan = 24;

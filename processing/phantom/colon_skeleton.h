@@ -39,7 +39,8 @@ struct Skeleton {
 };
 
 /// `redundancy` is the share of the extra length, about −0.2…2: longer colons have longer sigmoid
-/// loops and a transverse colon that sags.
-Skeleton layOut(const Variation& vary, double redundancy, const BodyPlan& body);
+/// loops and a transverse colon that sags. `sigmoid` is more of the same for the sigmoid alone.
+Skeleton layOut(const Variation& vary, double redundancy, const BodyPlan& body,
+                double sigmoid = 0.0);
 
 }  // namespace haustra::phantom

@@ -1,14 +1,16 @@
 #include "phantom/filled_colon.h"
 
+#include "phantom/diverticula.h"
 #include "phantom/growths.h"
 #include "phantom/random.h"
 
 namespace haustra::phantom {
 
-Grid gridOf(Size size) {
+Grid gridOf(Size size, double fieldOfViewMm) {
     const bool full = size == Size::full;
     const glm::ivec3 voxels = full ? glm::ivec3(512, 512, 400) : glm::ivec3(256, 256, 200);
-    const glm::dvec3 spacing = full ? glm::dvec3(0.75, 0.75, 1.05) : glm::dvec3(1.5, 1.5, 2.1);
+    glm::dvec3 spacing = full ? glm::dvec3(0.75, 0.75, 1.05) : glm::dvec3(1.5, 1.5, 2.1);
+    if (fieldOfViewMm > 0.0) spacing.x = spacing.y = fieldOfViewMm / voxels.x;
     const glm::dvec3 half = 0.5 * spacing * glm::dvec3(voxels - 1);
     return axisAlignedGrid(voxels, spacing, {-half.x, -half.y, 0.5 * spacing.z});
 }
@@ -24,10 +26,12 @@ BodyPlan bodyOf(const PhantomOptions& options) {
 
 FilledColon makeFilledColon(const PhantomOptions& options) {
     const BodyPlan body = bodyOf(options);
-    ColonShape shape(makeColonPath(options.seed, options.preset, body), options.seed);
+    const BowelOptions& bowel = options.bowel;
+    ColonShape shape(makeColonPath(options.seed, options.preset, body, bowel), options.seed,
+                     bowel.septumMm);
     addGrowths(shape, options.seed, options.preset, body);
-    ColonField field(shape, gridOf(options.size), options.threads);
-    Fluid fluid = pourFluid(shape, field, options.seed, options.preset, body);
+    ColonField field(shape, gridOf(options.size, options.scan.fieldOfViewMm), options.threads);
+    Fluid fluid = pourFluid(shape, field, options.seed, options.preset, body, bowel);
     // The levels stay: what a polyp displaces is little beside a pool.
     const std::size_t dry = shape.growths().size();
     addSubmergedPolyps(shape, fluid, options.seed, options.preset);
@@ -35,7 +39,13 @@ FilledColon makeFilledColon(const PhantomOptions& options) {
         const Growth& growth = shape.growths()[n];
         field.resample(shape, growth.centre, growth.reachMm() + 3.0);
     }
-    return {std::move(shape), std::move(field), std::move(fluid)};
+    std::optional<Ileum> ileum;
+    if (bowel.ileumMm > 0.0) ileum = addIleum(shape, options.seed, body, bowel);
+    if (shape.valve()) field.resample(shape, shape.valve()->at, shape.valve()->reachMm() + 3.0);
+    addDiverticula(shape, options.seed, bowel.diverticula);
+    for (const Diverticulum& pouch : shape.diverticula())
+        field.resample(shape, pouch.centre, pouch.sacRadiusMm + ColonShape::reachMm + 6.0);
+    return {std::move(shape), std::move(field), std::move(fluid), std::move(ileum)};
 }
 
 }  // namespace haustra::phantom

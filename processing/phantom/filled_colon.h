@@ -3,12 +3,13 @@
 
 #include "phantom/colon_field.h"
 #include "phantom/fluid.h"
+#include "phantom/ileum.h"
 #include "phantom/phantom.h"
 
 namespace haustra::phantom {
 
-/// The grid of a phantom's volumes.
-Grid gridOf(Size size);
+/// The grid of a phantom's volumes; the field of view is the size's where it is 0.
+Grid gridOf(Size size, double fieldOfViewMm = 0.0);
 
 /// The body that the options' seed and position make.
 BodyPlan bodyOf(const PhantomOptions& options);
@@ -17,11 +18,13 @@ struct FilledColon {
     ColonShape shape;  ///< with its growths
     ColonField field;  ///< of `shape`, on gridOf(options.size)
     Fluid fluid;
+    std::optional<Ileum> ileum;
 };
 
 /// The colon of the options' patient: the path, what grows on its wall, the fluid that gravity
-/// levels, and the polyps that the fluid covers. Deterministic in seed, preset, position and size,
-/// whatever the number of threads; seconds at full size.
+/// levels, the polyps that the fluid covers, the ileum with its valve, and diverticula.
+/// Deterministic in seed, preset, position and size, whatever the number of threads; seconds at
+/// full size.
 FilledColon makeFilledColon(const PhantomOptions& options);
 
 }  // namespace haustra::phantom

@@ -1,5 +1,6 @@
 #include "phantom/fluid.h"
 
+#include "phantom/implicit.h"
 #include "phantom/random.h"
 
 #include <algorithm>
@@ -11,6 +12,8 @@ namespace {
 constexpr double kNoFloor = 1e9;
 /// Over which a meniscus falls off: the capillary length of water.
 constexpr double kMeniscusMm = 2.7;
+/// Bowel fluid without tagging.
+constexpr double kWaterHu = 12.0;
 
 /// Lowest and highest lumen voxel at each sample of the axis.
 void floorAndCeiling(const ColonShape& shape, const ColonField& field, const Fluid& fluid,
@@ -70,10 +73,21 @@ double Pool::levelAt(double lumenMm) const {
     return levelMm + riseMm * std::exp(std::min(0.0, lumenMm) / kMeniscusMm);
 }
 
+double Pool::taggedShareAt(double heightMm) const {
+    if (!tagged) return 0.0;
+    if (waterMm <= 0.0) return 1.0;
+    return 1.0 - smoothstep(-1.5, 1.5, heightMm - (levelMm - waterMm));
+}
+
 double Pool::huAt(glm::dvec3 p, double heightMm) const {
+    if (stool) {
+        const double crumb = valueNoise(seed, p, 5.0);
+        return crumb > 0.45 ? -450.0 : 25.0 + 45.0 * crumb;
+    }
     const double depth = std::min(1.0, std::max(0.0, levelMm - heightMm) / 40.0);
     const double blotches = 0.7 * valueNoise(seed, p, 14.0) + 0.3 * valueNoise(seed + 1, p, 5.0);
-    return hu * (1.0 + unevenness * (0.35 * blotches + 0.3 * (depth - 0.5)));
+    const double here = hu * (1.0 + unevenness * (0.35 * blotches + 0.3 * (depth - 0.5)));
+    return waterMm > 0.0 ? glm::mix(kWaterHu, here, taggedShareAt(heightMm)) : here;
 }
 
 const Pool& Fluid::poolAt(double arcMm) const {
@@ -84,7 +98,8 @@ const Pool& Fluid::poolAt(double arcMm) const {
 }
 
 Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t seed, Preset preset,
-                const BodyPlan& body) {
+                const BodyPlan& body, const BowelOptions& bowel) {
+    Random kinds(seed, 22 + 100 * std::uint64_t(body.position));
     Random random(seed, 4 + 100 * std::uint64_t(body.position)),
         menisci(seed, 8 + 100 * std::uint64_t(body.position));
     Fluid fluid;
@@ -121,8 +136,30 @@ Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t 
         double spill = top - 6.0;
         if (from > 0) spill = std::min(spill, smooth[from] - 2.5);
         if (to < count - 1) spill = std::min(spill, smooth[to] - 2.5);
-        const double level = std::min(spill, bottom + wantedMm);
-        if (!empty && bottom < kNoFloor && level > bottom + 2.0) pool.levelMm = level;
+        // Drawn whether wanted or not, so that one share does not move another.
+        const double untagged = kinds.uniform(), layered = kinds.uniform(), full = kinds.uniform();
+        const double depth = kinds.uniform(0.25, 0.7);
+        const bool filled = full < bowel.full;
+        if (filled) {
+            // Closed ends hold fluid however high it stands.
+            const bool closedBelow = from == 0 || smooth[from] >= kNoFloor,
+                       closedAbove = to == count - 1 || smooth[to] >= kNoFloor;
+            if (closedBelow && closedAbove) spill = top + 10.0;
+        }
+        const double level = filled ? spill : std::min(spill, bottom + wantedMm);
+        if (!bowel.insufflated) {
+            // Nobody has drunk a tagging agent; stool stands on the right.
+            pool.tagged = false;
+            pool.stool = (from + to) * 0.5 * step > shape.path().transverseEndMm - 60.0;
+            pool.hu = kWaterHu;
+        } else if (untagged < bowel.untagged) {
+            pool.tagged = false;
+            pool.hu = kWaterHu;
+            pool.unevenness = 0.2;
+        } else if (layered < bowel.layered) {
+            pool.waterMm = depth * std::max(0.0, level - bottom);
+        }
+        if ((filled || !empty) && bottom < kNoFloor && level > bottom + 2.0) pool.levelMm = level;
         fluid.pools.push_back(pool);
     }
     return fluid;

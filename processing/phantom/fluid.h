@@ -13,6 +13,9 @@ struct Pool {
     double levelMm = -1e9;              ///< height of the surface: −gravity · p
     double riseMm = 0.0;                ///< how far the meniscus climbs the wall
     double hu = 600.0;
+    bool tagged = true;       ///< or plain water, or stool
+    bool stool = false;       ///< formed stool with bubbles of gas
+    double waterMm = 0.0;     ///< how deep plain water stands over what is tagged
     double unevenness = 0.0;  ///< 0…1: how much the tagging varies within the pool
     std::uint64_t seed = 0;
 
@@ -21,6 +24,8 @@ struct Pool {
     double levelAt(double lumenMm) const;
     /// HU of the fluid at a point; denser toward the bottom.
     double huAt(glm::dvec3 p, double heightMm) const;
+    /// How much of the fluid is tagged at a height, 0…1; layers mix over a few millimetres.
+    double taggedShareAt(double heightMm) const;
 };
 
 struct Fluid {
@@ -35,6 +40,6 @@ struct Fluid {
 /// gives each a level. Each level is below the spill points at both ends of its bay, so no pool
 /// could flow into the next.
 Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t seed, Preset preset,
-                const BodyPlan& body);
+                const BodyPlan& body, const BowelOptions& bowel = {});
 
 }  // namespace haustra::phantom

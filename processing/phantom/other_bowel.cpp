@@ -50,7 +50,9 @@ void addStomach(std::vector<Solid>& solids, Random& random, Preset preset, glm::
                       {100, 60, 395},
                       distance,
                       contents(up, inside, wall, random.bits()),
-                      4.5});
+                      4.5,
+                      std::uint8_t(Site::otherBowel),
+                      wall});
 }
 
 }  // namespace
@@ -95,7 +97,8 @@ std::vector<Solid> makeOtherBowel(std::uint64_t seed, Preset preset, const BodyP
         };
         solids.push_back({low - radius - 2.0, high + radius + 2.0, distance,
                           contents(up, inside, 2.0, random.bits()),
-                          easy ? 10.0 : ColonShape::wallMm + 0.3});
+                          easy ? 10.0 : ColonShape::wallMm + 0.3, std::uint8_t(Site::otherBowel),
+                          2.0});
     }
     return solids;
 }

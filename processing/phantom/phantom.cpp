@@ -1,10 +1,13 @@
 #include "phantom/phantom.h"
 
 #include "phantom/anatomy.h"
+#include "phantom/colon_skeleton.h"
+#include "phantom/contacts.h"
 #include "phantom/filled_colon.h"
 #include "phantom/growths.h"
 #include "phantom/implicit.h"
 #include "phantom/random.h"
+#include "phantom/rectal_tube.h"
 #include "phantom/scanner.h"
 #include "phantom/truth.h"
 
@@ -16,6 +19,20 @@ namespace {
 
 constexpr double kLumenAirHu = -990.0;
 constexpr double kWallHu = 42.0;
+constexpr double kWaterHu = 12.0;
+constexpr double kBowelGasHu = -985.0;
+constexpr double kCecumMm = 60.0;  ///< of a colon whose valve nobody drew
+
+/// Some slices of a scan on its way through the scanner: those that are wanted, and as many on
+/// either side as their blur draws on.
+struct Slab {
+    int first = 0;           ///< of the whole's slices, the slab's first
+    int begin = 0, end = 0;  ///< of the slab's slices, those that are wanted
+    Volume<float> tagged, untagged;
+    std::vector<std::uint8_t> lumen, sites;
+
+    const Grid& grid() const { return tagged.grid(); }
+};
 
 /// Paints the colon's wall and growths over the anatomy, and its contents into two volumes.
 class ColonPainter {
@@ -31,14 +48,17 @@ public:
         }
     }
 
-    void paintBlock(int block, std::span<float> tagged, std::span<float> untagged,
-                    std::span<std::uint8_t> labels) const {
-        const Grid& grid = field_.grid();
+    /// `fieldOffset` is the field's slice at the slab's first.
+    void paintBlock(int block, int fieldOffset, Slab& slab) const {
+        const Grid& grid = slab.grid();
         const auto& samples = field_.block(block);
         const glm::ivec3 origin = field_.blockOrigin(block);
         constexpr int n = ColonField::blockSize;
+        if (origin.z + n <= fieldOffset || origin.z >= fieldOffset + grid.size.z) return;
+        const auto tagged = slab.tagged.writable(), untagged = slab.untagged.writable();
         std::vector<const Growth*> stool;
-        const glm::dvec3 centre = grid.patientFromVoxelPoint(glm::dvec3(origin) + 0.5 * (n - 1.0));
+        const glm::dvec3 centre =
+            field_.grid().patientFromVoxelPoint(glm::dvec3(origin) + 0.5 * (n - 1.0));
         for (const Growth* ball : stool_) {
             if (glm::distance(ball->centre, centre) <
                 ball->reachMm() + 2.0 + n * glm::length(grid.spacingMm())) {
@@ -48,28 +68,58 @@ public:
         for (int v = 0; v < ColonField::blockVoxels; ++v) {
             const ColonField::Sample& s = samples[v];
             if (std::min(s.outerMm, s.lumenMm) > width_) continue;
-            const glm::ivec3 voxel = origin + glm::ivec3(v % n, v / n % n, v / (n * n));
+            const glm::ivec3 inField = origin + glm::ivec3(v % n, v / n % n, v / (n * n));
+            const glm::ivec3 voxel = inField - glm::ivec3(0, 0, fieldOffset);
+            if (voxel.z < 0 || voxel.z >= grid.size.z) continue;
             const std::size_t at = grid.index(voxel);
-            const glm::dvec3 p = grid.patientFromVoxelPoint(voxel);
+            const glm::dvec3 p = field_.grid().patientFromVoxelPoint(inField);
             const double around = untagged[at];
             const double solid =
                 glm::mix(around, solidHu(s, p), coverage(std::min(s.outerMm, s.lumenMm), width_));
             const double share = coverage(s.lumenMm, width_);
             const Contents inside = contents(s, p, stool);
-            untagged[at] = float(glm::mix(solid, kLumenAirHu, share));
+            const double rest = glm::mix(kLumenAirHu, inside.untaggedHu, inside.untaggedShare);
+            untagged[at] = float(glm::mix(solid, rest, share));
             tagged[at] =
                 float(glm::mix(solid, glm::mix(kLumenAirHu, inside.hu, inside.share), share));
-            if (s.lumenMm < 0.0f) {
-                labels[at] = std::uint8_t(inside.tagged ? LumenLabel::tagged : LumenLabel::air);
+            if (s.lumenMm < 0.0f && !besideAnotherLoop(s, inField)) {
+                slab.lumen[at] = std::uint8_t(inside.tagged ? LumenLabel::tagged : LumenLabel::air);
+                slab.sites[at] =
+                    std::uint8_t(inside.tagged && inside.untaggedShare > 0.5 ? Site::untaggedFluid
+                                                                             : Site::elsewhere);
+            } else if (std::min(s.outerMm, s.lumenMm) < 0.0f) {
+                slab.sites[at] = std::uint8_t(Site::colonWall);
             }
         }
     }
 
 private:
     struct Contents {
-        double hu = 0.0, share = 0.0;  ///< of what is tagged
+        double hu = 0.0, share = 0.0;  ///< of what is not gas
         bool tagged = false;           ///< at the voxel's centre
+        /// Of what stays where the tagging is taken out.
+        double untaggedHu = 0.0, untaggedShare = 0.0;
     };
+
+    /// Whether a neighbour lies deeper in the lumen of another loop: where the septum is thinner
+    /// than a voxel, the shallower of the two voxels is the septum's.
+    bool besideAnotherLoop(const ColonField::Sample& s, glm::ivec3 voxel) const {
+        const Grid& grid = field_.grid();
+        const double spacing = grid.spacingMm().x;
+        if (shape_.septumMm() >= 3.0 || s.lumenMm < -2.0 * spacing) return false;
+        const double radius = shape_.path().at(s.arcMm).radiusMm;
+        for (int n = 0; n < 27; ++n) {
+            const glm::ivec3 w = voxel + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            if (n == 13 || !grid.contains(w)) continue;
+            const ColonField::Sample& other = field_.at(w.x, w.y, w.z);
+            if (other.lumenMm >= 0.0f) continue;
+            if (std::abs(other.arcMm - s.arcMm) <
+                loopSeparationMm(radius, shape_.path().at(other.arcMm).radiusMm))
+                continue;
+            if (other.lumenMm < s.lumenMm || (other.lumenMm == s.lumenMm && n < 13)) return true;
+        }
+        return false;
+    }
 
     double solidHu(const ColonField::Sample& s, glm::dvec3 p) const {
         if (s.growth < 0) return kWallHu + 6.0 * valueNoise(seed_, p, 6.0);
@@ -93,12 +143,17 @@ private:
         inside.share = coverage(height - level, levelWidth_);
         inside.tagged = height < level;
         if (inside.share > 0.0) inside.hu = pool.huAt(p, height);
+        if (inside.share > 0.0 && (!pool.tagged || pool.waterMm > 0.0)) {
+            inside.untaggedHu = pool.tagged ? kWaterHu : inside.hu;
+            inside.untaggedShare = inside.share * (1.0 - pool.taggedShareAt(height));
+        }
         for (const Growth* ball : stool) {
             const double d = ball->distance(p), share = coverage(d, width_);
             if (share <= inside.share && d >= 0.0) continue;
             inside.hu = ball->hu * (1.0 + 0.15 * valueNoise(ball->seed, p, 4.0));
             inside.share = std::max(share, inside.share);
             inside.tagged = inside.tagged || d < 0.0;
+            inside.untaggedShare = std::min(inside.untaggedShare, 1.0 - share);
         }
         return inside;
     }
@@ -111,67 +166,257 @@ private:
     std::vector<const Growth*> stool_;
 };
 
+/// Paints the ileum's contents over what the anatomy and the colon left.
+void paintIleum(const Ileum& ileum, glm::dvec3 up, const ColonField& field, int fieldOffset,
+                Slab& slab, int threads) {
+    const Grid& grid = slab.grid();
+    const glm::dvec3 spacing = grid.spacingMm();
+    const double width = std::cbrt(spacing.x * spacing.y * spacing.z);
+    const double levelWidth = glm::dot(glm::abs(up), spacing);
+    const auto tagged = slab.tagged.writable(), untagged = slab.untagged.writable();
+    parallelFor(std::size_t(grid.size.z), 1, threads, [&](std::size_t from, std::size_t to) {
+        for (int k = int(from); k < int(to); ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                for (int i = 0; i < grid.size.x; ++i) {
+                    const glm::dvec3 p = grid.patientFromVoxelPoint({i, j, k});
+                    const double d = ileum.lumenMm(p, field.at(i, j, k + fieldOffset).lumenMm);
+                    const double share = coverage(d, width);
+                    if (share <= 0.0) continue;
+                    const double fluid = coverage(glm::dot(up, p) - ileum.levelMm, levelWidth);
+                    const double hu = glm::mix(kBowelGasHu, ileum.fluidHu, fluid);
+                    const std::size_t at = grid.index(i, j, k);
+                    tagged[at] = float(glm::mix(double(tagged[at]), hu, share));
+                    untagged[at] = float(glm::mix(double(untagged[at]), hu, share));
+                    if (d < 0.0 && !slab.lumen[at]) slab.sites[at] = std::uint8_t(Site::ileum);
+                }
+            }
+        }
+    });
+}
+
+/// The ileum's wall, which the anatomy's painter paints.
+Solid wallOf(const Ileum& ileum) {
+    Solid solid;
+    solid.lowMm = glm::dvec3(1e9), solid.highMm = glm::dvec3(-1e9);
+    for (const Tube::Node& node : ileum.tube().nodes()) {
+        const double reach = node.radiusMm + Ileum::wallMm + 3.0;
+        solid.lowMm = glm::min(solid.lowMm, node.position - reach);
+        solid.highMm = glm::max(solid.highMm, node.position + reach);
+    }
+    solid.distance = [&ileum](glm::dvec3 p) { return ileum.outerMm(p); };
+    solid.hu = tissue(45.0, 0.0, 0);
+    return solid;
+}
+
+void paintRectalTube(const RectalTube& tube, const ColonField& field, int fieldOffset, Slab& slab) {
+    const Grid& grid = slab.grid();
+    const double width = std::cbrt(grid.voxelVolumeMm3());
+    const glm::dvec3 low = grid.voxelFromPatientPoint(tube.lowMm()),
+                     high = grid.voxelFromPatientPoint(tube.highMm());
+    const glm::ivec3 lo = glm::max(glm::ivec3(glm::floor(low)), glm::ivec3(0)),
+                     hi = glm::min(glm::ivec3(glm::ceil(high)), grid.size - 1);
+    const auto tagged = slab.tagged.writable(), untagged = slab.untagged.writable();
+    for (int k = lo.z; k <= hi.z; ++k) {
+        for (int j = lo.y; j <= hi.y; ++j) {
+            for (int i = lo.x; i <= hi.x; ++i) {
+                const RectalTube::Point point = tube.at(grid.patientFromVoxelPoint({i, j, k}),
+                                                        field.at(i, j, k + fieldOffset).lumenMm);
+                const double share = coverage(point.outerMm, width);
+                if (share <= 0.0) continue;
+                const std::size_t at = grid.index(i, j, k);
+                tagged[at] = float(glm::mix(double(tagged[at]), point.hu, share));
+                untagged[at] = float(glm::mix(double(untagged[at]), point.hu, share));
+                if (point.outerMm >= 0.0) continue;
+                slab.sites[at] = std::uint8_t(Site::device);
+                // What the device fills holds no fluid.
+                if (slab.lumen[at]) slab.lumen[at] = std::uint8_t(LumenLabel::air);
+            }
+        }
+    }
+}
+
+Result<void> check(const PhantomOptions& options) {
+    const BowelOptions& bowel = options.bowel;
+    const auto bad = [](const std::string& what) {
+        return fail(ErrorKind::badInput, what, "phantom");
+    };
+    const auto share = [](double s) { return s >= 0.0 && s <= 1.0; };
+    if (options.position == PatientPosition::unknown)
+        return bad("a phantom lies supine, prone or on a side");
+    const ScanOptions& scan = options.scan;
+    const auto given = [](double value, double low, double high) {
+        return value == 0.0 || (value >= low && value <= high);
+    };
+    if (!given(scan.fieldOfViewMm, 320.0, 500.0)) return bad("a field of view is 320 to 500 mm");
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!given(scan.blurMm[axis], 0.3, 6.0)) return bad("a point spread is 0.3 to 6 mm wide");
+    }
+    if (!(scan.overshoot >= 0.0 && scan.overshoot <= 0.6))
+        return bad("a kernel's overshoot is 0 to 0.6");
+    if (!(scan.noiseSdHu >= 0.0 && scan.noiseSdHu <= 100.0)) return bad("noise is 0 to 100 HU");
+    if (!(scan.grainMm >= 0.5 && scan.grainMm <= 4.0)) return bad("grain is 0.5 to 4 mm");
+    if (!(scan.pseudoEnhancementHu >= 0.0 && scan.pseudoEnhancementHu <= 100.0))
+        return bad("pseudo-enhancement is 0 to 100 HU");
+    if (!(bowel.ileumMm >= 0.0 && bowel.ileumMm <= 2000.0))
+        return bad("an ileum is 0 to 2000 mm long");
+    if (!(bowel.ileumCalibreMm >= 12.0 && bowel.ileumCalibreMm <= 30.0))
+        return bad("an ileum is 12 to 30 mm wide");
+    if (!(bowel.septumMm >= 0.5 && bowel.septumMm <= 5.0))
+        return bad("a septum is 0.5 to 5 mm thick");
+    for (const double length : bowel.collapsesMm) {
+        if (!(length >= 5.0 && length <= 60.0)) return bad("a collapse is 5 to 60 mm long");
+    }
+    if (!(bowel.redundantSigmoidMm >= 0.0 && bowel.redundantSigmoidMm <= 400.0))
+        return bad("a sigmoid is at most 400 mm longer");
+    if (!share(bowel.untagged) || !share(bowel.layered) || !share(bowel.full))
+        return bad("shares of the fluid are 0 to 1");
+    if (bowel.diverticula < 0 || bowel.diverticula > 500)
+        return bad("a colon has 0 to 500 diverticula");
+    return {};
+}
+
+Structure structureOf(const FilledColon& colon, const Phantom& phantom) {
+    Structure structure;
+    const ColonShape& shape = colon.shape;
+    const ColonPath& path = shape.path();
+    const auto& points = phantom.centerline.points;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        if (!points[n].gap || (n > 0 && points[n - 1].gap)) continue;
+        std::size_t last = n;
+        while (last + 1 < points.size() && points[last + 1].gap)
+            ++last;
+        structure.collapses.push_back(
+            {points[n].arcMm, points[last].arcMm, points[n].positionMm, points[last].positionMm});
+    }
+    if (const auto& valve = shape.valve())
+        structure.valve = {valve->at, valve->inward, valve->arcMm, valve->open};
+    for (const Diverticulum& pouch : shape.diverticula())
+        structure.diverticula.push_back({pouch.centre, 2.0 * pouch.sacRadiusMm});
+    structure.segmentEndsMm = {path.rectumEndMm,
+                               path.sigmoidEndMm,
+                               path.descendingEndMm,
+                               path.transverseEndMm,
+                               shape.valve() ? shape.valve()->arcMm : path.lengthMm() - kCecumMm,
+                               path.lengthMm()};
+    if (colon.ileum) structure.ileumMm = colon.ileum->tube().lengthMm();
+    const double ml = phantom.lumen.grid().voxelVolumeMm3() * 1e-3;
+    std::size_t air = 0, tagged = 0, untagged = 0, ileum = 0;
+    for (std::size_t n = 0; n < phantom.lumen.grid().voxelCount(); ++n) {
+        const bool water = phantom.sites[n] == std::uint8_t(Site::untaggedFluid);
+        air += phantom.lumen[n] == 1, untagged += water, tagged += phantom.lumen[n] == 2 && !water;
+        ileum += phantom.sites[n] == std::uint8_t(Site::ileum);
+    }
+    structure.airMl = ml * double(air), structure.taggedMl = ml * double(tagged);
+    structure.untaggedMl = ml * double(untagged), structure.ileumMl = ml * double(ileum);
+    return structure;
+}
+
+/// Slices begin…end − 1 of a grid.
+Grid slicesOf(const Grid& grid, int begin, int end) {
+    Grid some = grid;
+    some.size.z = end - begin;
+    some.patientFromVoxel[3] += double(begin) * grid.patientFromVoxel[2];
+    return some;
+}
+
+constexpr int kSlabSlices = 64;
+
 }  // namespace
 
 Result<Phantom> makePhantom(const PhantomOptions& options) {
-    if (options.position != PatientPosition::supine && options.position != PatientPosition::prone) {
-        return fail(ErrorKind::badInput, "a phantom lies supine or prone", "phantom");
-    }
+    if (auto sound = check(options); !sound) return tl::make_unexpected(sound.error());
     auto report = [&](double fraction) {
         if (options.progress) options.progress(fraction);
     };
     const BodyPlan body = bodyOf(options);
-    const auto [shape, field, fluid] = makeFilledColon(options);
+    const FilledColon filled = makeFilledColon(options);
+    const auto& [shape, field, fluid, ileum] = filled;
     const Grid& grid = field.grid();
     report(0.3);
 
-    Phantom phantom;
-    phantom.lumen = Volume<std::uint8_t>(grid, 0);
-    Volume<float> untagged(grid, -1000.0f);
     auto solids = makeAnatomy(options.seed, body);
     for (Solid& solid : makeOtherBowel(options.seed, options.preset, body))
         solids.push_back(std::move(solid));
-    const std::size_t slice = std::size_t(grid.size.x) * grid.size.y;
-    parallelFor(
-        std::size_t(grid.size.z), 1, options.threads, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                paintSlice(solids, grid, field, int(k), untagged.writable().data() + k * slice);
-            }
-        });
-    report(0.6);
-    Volume<float> tagged = untagged.clone();
+    if (ileum) solids.push_back(wallOf(*ileum));
+    std::optional<RectalTube> rectalTube;
+    if (options.bowel.rectalTube) rectalTube.emplace(shape.path(), options.seed);
     const ColonPainter painter(shape, field, fluid, options.seed);
-    const auto taggedOut = tagged.writable(), untaggedOut = untagged.writable();
-    const auto labels = phantom.lumen.writable();
-    parallelFor(std::size_t(field.blockCount()), 64, options.threads,
-                [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t b = begin; b < end; ++b)
-                        painter.paintBlock(int(b), taggedOut, untaggedOut, labels);
-                });
-    report(0.65);
 
     Random random(options.seed, 7);
     const double inPlaneMm = random.uniform(0.85, 1.15);
-    const glm::dvec3 fwhmMm{inPlaneMm, inPlaneMm, 1.2};
+    glm::dvec3 fwhmMm{inPlaneMm, inPlaneMm, 1.2};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (options.scan.blurMm[axis] > 0.0) fwhmMm[axis] = options.scan.blurMm[axis];
+    }
     Noise noise;
     noise.seed = mixBits(options.seed * 2 + (body.position == PatientPosition::prone));
     noise.sdHu = options.preset == Preset::easy       ? random.uniform(10.0, 13.0)
                  : options.preset == Preset::standard ? random.uniform(14.0, 20.0)
                                                       : random.uniform(26.0, 35.0);
-    blur(untagged, fwhmMm, options.threads);
-    phantom.untaggedHu = addNoise(untagged, noise, options.threads);
-    untagged = {};
-    report(0.8);
-    blur(tagged, fwhmMm, options.threads);
-    phantom.scan.hu = addNoise(tagged, noise, options.threads);
+    if (options.scan.noiseSdHu > 0.0) noise.sdHu = options.scan.noiseSdHu;
+    noise.correlationMm = options.scan.grainMm;
+
+    Phantom phantom;
+    phantom.lumen = Volume<std::uint8_t>(grid);
+    phantom.sites = Volume<std::uint8_t>(grid);
+    phantom.scan.hu = Volume<std::int16_t>(grid);
+    phantom.untaggedHu = Volume<std::int16_t>(grid);
     phantom.scan.position = options.position;
-    tagged = {};
-    report(0.95);
+    const std::size_t slice = std::size_t(grid.size.x) * grid.size.y;
+    const int halo = blurReachSlices(grid, fwhmMm);
+    for (int from = 0; from < grid.size.z; from += kSlabSlices) {
+        const int to = std::min(grid.size.z, from + kSlabSlices);
+        Slab slab;
+        slab.first = std::max(0, from - halo);
+        slab.begin = from - slab.first, slab.end = to - slab.first;
+        const Grid some = slicesOf(grid, slab.first, std::min(grid.size.z, to + halo));
+        slab.untagged = Volume<float>(some, -1000.0f);
+        slab.sites.assign(some.voxelCount(), std::uint8_t(Site::outsideBody));
+        slab.lumen.assign(some.voxelCount(), 0);
+        const auto untagged = slab.untagged.writable();
+        parallelFor(
+            std::size_t(some.size.z), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t k = begin; k < end; ++k) {
+                    paintSlice(solids, grid, field, slab.first + int(k), slab.first + int(k),
+                               untagged.data() + k * slice, slab.sites.data() + k * slice);
+                }
+            });
+        slab.tagged = slab.untagged.clone();
+        parallelFor(std::size_t(field.blockCount()), 64, options.threads,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t b = begin; b < end; ++b)
+                            painter.paintBlock(int(b), slab.first, slab);
+                    });
+        if (ileum) paintIleum(*ileum, fluid.up, field, slab.first, slab, options.threads);
+        if (rectalTube) paintRectalTube(*rectalTube, field, slab.first, slab);
+
+        const std::size_t at = std::size_t(from) * slice, skip = std::size_t(slab.begin) * slice,
+                          count = std::size_t(to - from) * slice;
+        std::copy_n(slab.lumen.data() + skip, count, phantom.lumen.writable().data() + at);
+        std::copy_n(slab.sites.data() + skip, count, phantom.sites.writable().data() + at);
+        const auto expose = [&](Volume<float>& clean, Volume<std::int16_t>& hu) {
+            reconstruct(clean, fwhmMm, options.scan.overshoot, options.threads);
+            addNoise(clean, slab.begin, to - from, from, noise, options.threads,
+                     hu.writable().subspan(at, count));
+        };
+        if (options.scan.pseudoEnhancementHu > 0.0) {
+            enhanceBesideTagging(slab.tagged, slab.untagged, options.scan.pseudoEnhancementHu,
+                                 options.threads);
+        }
+        expose(slab.untagged, phantom.untaggedHu);
+        expose(slab.tagged, phantom.scan.hu);
+        report(0.3 + 0.65 * double(to) / grid.size.z);
+    }
 
     phantom.centerline = trueCenterline(shape, phantom.lumen, options.threads);
     phantom.polyps = polypsOf(shape);
     phantom.polypVoxels = polypVoxels(shape, grid);
     phantom.noiseSdHu = noise.sdHu;
+    phantom.structure = structureOf(filled, phantom);
+    ContactFinder contacts(shape);
+    contacts.look(phantom.lumen, phantom.sites, field, 0, ileum ? &*ileum : nullptr, 0, grid.size.z,
+                  options.threads);
+    phantom.structure.contacts = contacts.contacts();
     report(1.0);
     return phantom;
 }

@@ -8,6 +8,9 @@
 #include "core/findings.h"
 #include "core/parallel.h"
 #include "core/result.h"
+#include "phantom/bowel_options.h"
+#include "phantom/scan_options.h"
+#include "phantom/structure.h"
 
 #include <cstdint>
 #include <string>
@@ -29,10 +32,24 @@ enum class Size { small, full };
 struct PhantomOptions {
     std::uint64_t seed = 1;
     Preset preset = Preset::standard;
-    PatientPosition position = PatientPosition::supine;  ///< supine or prone
+    PatientPosition position = PatientPosition::supine;  ///< any but unknown
     Size size = Size::full;
+    BowelOptions bowel;
+    ScanOptions scan;
     int threads = 0;
     Progress progress;
+};
+
+/// What else is where, for telling what a wrong voxel was taken from.
+enum class Site : std::uint8_t {
+    elsewhere = 0,   ///< the body, and the colon's lumen
+    ileum = 1,       ///< contents of the ileum that joins the cecum
+    otherBowel = 2,  ///< contents of stomach and other small bowel
+    lung = 3,
+    outsideBody = 4,    ///< air, table
+    colonWall = 5,      ///< wall, folds, growths, a closed stretch's muscle
+    device = 6,         ///< rectal tube and balloon, within the colon's lumen and outside it
+    untaggedFluid = 7,  ///< in the colon's lumen: water or stool that took no tagging
 };
 
 struct Phantom {
@@ -40,9 +57,13 @@ struct Phantom {
     /// The same scan and noise, with air where the colon's tagged fluid and stool were (what is
     /// opacified in other bowel stays).
     Volume<std::int16_t> untaggedHu;
-    /// LumenLabel from the implicit geometry at each voxel's centre. Tagged stool is lumen; folds,
-    /// polyps and untagged stool are not.
+    /// LumenLabel from the implicit geometry at each voxel's centre; `tagged` is all that is fluid,
+    /// be it tagged or not, and tagged stool. Diverticula are lumen; folds, polyps and untagged
+    /// stool are not, nor is what lies beyond the orifice of the ileocecal valve. Loops with a
+    /// septum thinner than a voxel still share no two neighbouring voxels.
     Volume<std::uint8_t> lumen;
+    /// Site of each voxel.
+    Volume<std::uint8_t> sites;
     /// The tube's axis; gaps where it is collapsed.
     Centerline centerline;
     /// Polyps of 4…15 mm. Hyperplastic bumps (smaller, not denser inside) are not among them.
@@ -51,9 +72,11 @@ struct Phantom {
     /// lie in the lumen without it, ascending.
     std::vector<std::vector<std::uint32_t>> polypVoxels;
     double noiseSdHu = 0.0;  ///< of both scans
+    Structure structure;
 };
 
-/// Fails only for a position other than supine or prone. Deterministic in the options, byte for
+/// Fails only for an unknown position and for options out of their range.
+/// Deterministic in the options, byte for
 /// byte, whatever the number of threads.
 Result<Phantom> makePhantom(const PhantomOptions& options);
 

@@ -108,8 +108,42 @@ void blur(Volume<float>& volume, glm::dvec3 fwhmMm, int threads) {
     });
 }
 
+void reconstruct(Volume<float>& volume, glm::dvec3 fwhmMm, double overshoot, int threads) {
+    if (overshoot <= 0.0) return blur(volume, fwhmMm, threads);
+    Volume<float> wide = volume.clone();
+    blur(volume, fwhmMm, threads);
+    blur(wide, fwhmMm * glm::dvec3(2.2, 2.2, 1.0), threads);
+    const auto sharp = volume.writable();
+    for (std::size_t n = 0; n < sharp.size(); ++n)
+        sharp[n] += float(overshoot) * (sharp[n] - wide[n]);
+}
+
+void enhanceBesideTagging(Volume<float>& tagged, const Volume<float>& untagged, double edgeHu,
+                          int threads) {
+    constexpr double spreadMm = 16.0, stepHu = 1500.0;
+    Volume<float> excess(tagged.grid());
+    const auto added = excess.writable(), out = tagged.writable();
+    for (std::size_t n = 0; n < added.size(); ++n)
+        added[n] = std::max(0.0f, out[n] - untagged[n]);
+    blur(excess, {spreadMm, spreadMm, 0.0}, threads);
+    const float gain = float(edgeHu / (0.5 * stepHu));
+    for (std::size_t n = 0; n < added.size(); ++n)
+        out[n] += gain * added[n];
+}
+
+int blurReachSlices(const Grid& grid, glm::dvec3 fwhmMm) {
+    return int(gaussian(fwhmMm.z / kFwhmPerSigma / grid.spacingMm().z).size()) - 1;
+}
+
 Volume<std::int16_t> addNoise(const Volume<float>& clean, const Noise& noise, int threads) {
-    const Grid& grid = clean.grid();
+    Volume<std::int16_t> hu(clean.grid());
+    addNoise(clean, 0, clean.grid().size.z, 0, noise, threads, hu.writable());
+    return hu;
+}
+
+void addNoise(const Volume<float>& slab, int first, int count, int firstOfAll, const Noise& noise,
+              int threads, std::span<std::int16_t> out) {
+    const Grid& grid = slab.grid();
     const std::size_t slice = std::size_t(grid.size.x) * grid.size.y;
     const glm::dvec3 sigma = glm::dvec3(noise.correlationMm) / kFwhmPerSigma / grid.spacingMm();
     const auto alongX = gaussian(sigma.x), alongY = gaussian(sigma.y);
@@ -118,25 +152,22 @@ Volume<std::int16_t> addNoise(const Volume<float>& clean, const Noise& noise, in
     const double gain = noise.sdHu / std::sqrt(sumOfSquares(alongX) * sumOfSquares(alongY) *
                                                (1.0 + 2.0 * beside * beside));
     const std::uint64_t key = mixBits(noise.seed ^ 0x6E6F697365ull);
-    Volume<std::int16_t> hu(grid);
-    const auto out = hu.writable();
-    parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
+    parallelFor(std::size_t(count), 4, threads, [&](std::size_t begin, std::size_t end) {
         std::vector<float> grain(slice), scratch;
         for (std::size_t k = begin; k < end; ++k) {
             for (std::size_t n = 0; n < slice; ++n) {
                 // Slices are numbered from 1 so that the one below the first has a number too.
-                const std::size_t v = (k + 1) * slice + n;
+                const std::size_t v = (k + std::size_t(firstOfAll) + 1) * slice + n;
                 grain[n] = white(key, v) + beside * (white(key, v - slice) + white(key, v + slice));
             }
             blurSlice(grain.data(), {grid.size.x, grid.size.y}, alongX, alongY, scratch);
-            const float* in = clean.voxels().data() + k * slice;
+            const float* in = slab.voxels().data() + (k + std::size_t(first)) * slice;
             for (std::size_t n = 0; n < slice; ++n) {
                 const float v = std::clamp(in[n] + float(gain) * grain[n], -1024.0f, 3071.0f);
                 out[k * slice + n] = std::int16_t(std::lrintf(v));
             }
         }
     });
-    return hu;
 }
 
 }  // namespace haustra::phantom

@@ -22,8 +22,8 @@ std::function<double(glm::dvec3, double)> bone(double cortexMm, double cortexHu,
     };
 }
 
-void paintSlice(const std::vector<Solid>& solids, const Grid& grid, const ColonField& colon, int k,
-                float* slice) {
+void paintSlice(const std::vector<Solid>& solids, const Grid& grid, const ColonField& colon,
+                int colonK, int k, float* slice, std::uint8_t* sites) {
     const glm::dvec3 spacing = grid.spacingMm();
     const double width = std::cbrt(spacing.x * spacing.y * spacing.z);
     const glm::dvec3 origin = grid.patientFromVoxelPoint({0, 0, k});
@@ -41,10 +41,12 @@ void paintSlice(const std::vector<Solid>& solids, const Grid& grid, const ColonF
                 double d = solid.distance(p);
                 if (d >= width) continue;
                 if (solid.clearOfColonMm > 0.0)
-                    d = std::max(d, solid.clearOfColonMm - colon.at(i, j, k).lumenMm);
+                    d = std::max(d, solid.clearOfColonMm - colon.at(i, j, colonK).lumenMm);
                 const double share = coverage(d, width);
                 if (share <= 0.0) continue;
-                float& voxel = slice[std::size_t(j) * grid.size.x + i];
+                const std::size_t at = std::size_t(j) * grid.size.x + i;
+                if (d < 0.0) sites[at] = d < -solid.siteBelowMm ? solid.site : 0;
+                float& voxel = slice[at];
                 voxel += float(share * (solid.hu(p, std::min(d, 0.0)) - voxel));
             }
         }

@@ -16,6 +16,8 @@ struct Solid {
     std::function<double(glm::dvec3 p)> distance;  ///< signed, mm, first order
     std::function<double(glm::dvec3 p, double distance)> hu;
     double clearOfColonMm = -1e9;  ///< keeps this far from the colon's lumen
+    std::uint8_t site = 0;         ///< what its voxels are from `siteBelowMm` under its surface on
+    double siteBelowMm = 0.0;
 };
 
 /// One tissue with a little texture.
@@ -26,8 +28,9 @@ std::function<double(glm::dvec3, double)> bone(double cortexMm, double cortexHu,
                                                std::uint64_t seed);
 
 /// Paints slice k (grid.size.x × grid.size.y values) with each solid in order, partial volume at
-/// the surfaces. Thread-safe for different slices.
-void paintSlice(const std::vector<Solid>& solids, const Grid& grid, const ColonField& colon, int k,
-                float* slice);
+/// the surfaces, and says in `sites` what the voxels' centres lie in; `colon` has the slice as its
+/// slice `colonK`. Thread-safe for different slices.
+void paintSlice(const std::vector<Solid>& solids, const Grid& grid, const ColonField& colon,
+                int colonK, int k, float* slice, std::uint8_t* sites);
 
 }  // namespace haustra::phantom

@@ -232,11 +232,7 @@ public:
     }
 
     bool collapsedAt(glm::dvec3 p) const {
-        const ColonPath& path = shape_.path();
-        if (path.collapseEndMm <= path.collapseBeginMm) return false;
-        const double arc = (*this)(p).arcMm;
-        return arc > path.collapseBeginMm - kCollapseMarginMm &&
-               arc < path.collapseEndMm + kCollapseMarginMm;
+        return shape_.path().collapsedWithin((*this)(p).arcMm, kCollapseMarginMm);
     }
 
 private:

@@ -5,10 +5,11 @@
 #include "cli/text_files.h"
 #include "dicom/write_series.h"
 #include "nifti/nifti_file.h"
-#include "phantom/phantom.h"
+#include "phantom/wild.h"
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -21,23 +22,144 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The options as text: chosen on the command line, and written into phantom.json.
+// The options as text: chosen on the command line, and written into phantom.json. What is not
+// given is the preset's.
 struct Arguments {
     fs::path out;
     std::uint64_t seed = 1;
     std::string preset = "standard", position = "supine", size = "full";
+    std::optional<double> ileumMm, ileumCalibreMm, septumMm, redundantSigmoidMm;
+    std::optional<std::string> valve, insufflated, rectalTube;
+    std::vector<double> collapsesMm;
+    std::optional<double> untagged, layered, full;
+    std::optional<int> diverticula;
+    std::optional<double> fieldOfViewMm, overshoot, noiseSdHu, grainMm, pseudoEnhancementHu;
+    std::vector<double> blurMm;
     bool force = false;
     int threads = 0;
 };
 
+constexpr const char* kWild = "wild";
 const std::map<std::string, phantom::Preset> presets{{"easy", phantom::Preset::easy},
                                                      {"standard", phantom::Preset::standard},
                                                      {"hard", phantom::Preset::hard}};
 const std::map<std::string, phantom::Size> sizes{{"small", phantom::Size::small},
                                                  {"full", phantom::Size::full}};
 
+phantom::PhantomOptions optionsOf(const Arguments& arguments) {
+    phantom::PhantomOptions options;
+    if (arguments.preset == kWild) {
+        options = phantom::wildOptions(arguments.seed);
+    } else {
+        options.preset = presets.at(arguments.preset);
+    }
+    options.seed = arguments.seed;
+    options.position = patientPositionFromString(arguments.position);
+    options.size = sizes.at(arguments.size);
+    options.threads = arguments.threads;
+    phantom::BowelOptions& bowel = options.bowel;
+    const auto take = [](const auto& given, auto& value) {
+        if (given) value = *given;
+    };
+    take(arguments.ileumMm, bowel.ileumMm), take(arguments.ileumCalibreMm, bowel.ileumCalibreMm);
+    take(arguments.septumMm, bowel.septumMm);
+    take(arguments.redundantSigmoidMm, bowel.redundantSigmoidMm);
+    take(arguments.untagged, bowel.untagged), take(arguments.layered, bowel.layered);
+    take(arguments.full, bowel.full), take(arguments.diverticula, bowel.diverticula);
+    if (!arguments.collapsesMm.empty()) bowel.collapsesMm = arguments.collapsesMm;
+    if (arguments.valve) bowel.valveOpen = *arguments.valve == "open";
+    if (arguments.insufflated) bowel.insufflated = *arguments.insufflated == "yes";
+    if (arguments.rectalTube) bowel.rectalTube = *arguments.rectalTube == "yes";
+    phantom::ScanOptions& scan = options.scan;
+    take(arguments.fieldOfViewMm, scan.fieldOfViewMm), take(arguments.overshoot, scan.overshoot);
+    take(arguments.noiseSdHu, scan.noiseSdHu), take(arguments.grainMm, scan.grainMm);
+    take(arguments.pseudoEnhancementHu, scan.pseudoEnhancementHu);
+    if (!arguments.blurMm.empty())
+        scan.blurMm = {arguments.blurMm[0], arguments.blurMm[1], arguments.blurMm[2]};
+    return options;
+}
+
+nlohmann::ordered_json scanJson(const phantom::ScanOptions& scan) {
+    return {{"field_of_view_mm", scan.fieldOfViewMm},
+            {"blur_mm", {scan.blurMm.x, scan.blurMm.y, scan.blurMm.z}},
+            {"overshoot", scan.overshoot},
+            {"noise_sd_hu", scan.noiseSdHu},
+            {"grain_mm", scan.grainMm},
+            {"pseudo_enhancement_hu", scan.pseudoEnhancementHu}};
+}
+
+nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
+    return {{"ileum_mm", bowel.ileumMm},
+            {"ileum_calibre_mm", bowel.ileumCalibreMm},
+            {"valve", bowel.valveOpen ? "open" : "closed"},
+            {"septum_mm", bowel.septumMm},
+            {"collapses_mm", bowel.collapsesMm},
+            {"redundant_sigmoid_mm", bowel.redundantSigmoidMm},
+            {"untagged_fluid", bowel.untagged},
+            {"layered_fluid", bowel.layered},
+            {"full_sections", bowel.full},
+            {"diverticula", bowel.diverticula},
+            {"insufflated", bowel.insufflated},
+            {"rectal_tube", bowel.rectalTube}};
+}
+
+nlohmann::ordered_json pointJson(glm::dvec3 p) {
+    return {p.x, p.y, p.z};
+}
+
+std::string structureJson(const phantom::Structure& structure) {
+    using nlohmann::ordered_json;
+    ordered_json segments = ordered_json::array(), collapses = segments, contacts = segments,
+                 diverticula = segments;
+    double begin = 0.0;
+    for (std::size_t n = 0; n < structure.segmentEndsMm.size(); ++n) {
+        const double end = structure.segmentEndsMm[n];
+        segments.push_back(
+            {{"name", phantom::kSegmentNames[n]}, {"begin_mm", begin}, {"end_mm", end}});
+        begin = end;
+    }
+    for (const auto& c : structure.collapses) {
+        collapses.push_back({{"begin_mm", c.beginMm},
+                             {"end_mm", c.endMm},
+                             {"length_mm", c.lengthMm()},
+                             {"begin_at_mm", pointJson(c.beginAtMm)},
+                             {"end_at_mm", pointJson(c.endAtMm)}});
+    }
+    for (const auto& c : structure.contacts) {
+        contacts.push_back({{"with", c.ileum ? "ileum" : "colon"},
+                            {"arc_mm", c.arcMm},
+                            {"other_arc_mm", c.otherArcMm},
+                            {"position_mm", pointJson(c.positionMm)},
+                            {"least_mm", c.leastMm},
+                            {"area_mm2", c.areaMm2}});
+    }
+    for (const auto& d : structure.diverticula) {
+        diverticula.push_back(
+            {{"position_mm", pointJson(d.positionMm)}, {"diameter_mm", d.diameterMm}});
+    }
+    ordered_json valve;
+    if (structure.valve) {
+        valve = {{"position_mm", pointJson(structure.valve->positionMm)},
+                 {"inward", pointJson(structure.valve->inward)},
+                 {"arc_mm", structure.valve->arcMm},
+                 {"open", structure.valve->open}};
+    }
+    return ordered_json{{"segments", segments},
+                        {"collapses", collapses},
+                        {"contacts", contacts},
+                        {"valve", valve},
+                        {"diverticula", diverticula},
+                        {"ileum_mm", structure.ileumMm},
+                        {"ileum_ml", structure.ileumMl},
+                        {"air_ml", structure.airMl},
+                        {"tagged_ml", structure.taggedMl},
+                        {"untagged_ml", structure.untaggedMl}}
+               .dump(2) +
+           "\n";
+}
+
 Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
-                      const Arguments& arguments) {
+                      const Arguments& arguments, const phantom::PhantomOptions& options) {
     std::error_code error;
     fs::create_directories(folder / "series", error);
     fs::create_directories(folder / "truth", error);
@@ -51,11 +173,19 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
     // One patient lying on the back and on the belly.
     writing.studySeed =
         fmt::format("phantom {} {} {}", arguments.seed, arguments.preset, arguments.size);
+    if (const std::string bowel = bowelJson(options.bowel).dump(); bowel != bowelJson({}).dump()) {
+        writing.uidSeed += " " + bowel;
+        writing.studySeed += " " + bowel;
+    }
+    if (const std::string scanner = scanJson(options.scan).dump(); scanner != scanJson({}).dump())
+        writing.uidSeed += " " + scanner;
     const nlohmann::ordered_json facts{{"version", phantom::phantomVersion},
                                        {"seed", arguments.seed},
                                        {"preset", arguments.preset},
                                        {"position", arguments.position},
                                        {"size", arguments.size},
+                                       {"bowel", bowelJson(options.bowel)},
+                                       {"scan", scanJson(options.scan)},
                                        {"centerline_mm", made.centerline.lengthMm()},
                                        {"polyps", made.polyps.findings.size()},
                                        {"noise_sd_hu", made.noiseSdHu},
@@ -63,10 +193,13 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
     const fs::path truth = folder / "truth";
     return dicom::writeSeries(folder / "series", made.scan, writing)
         .and_then([&] { return nifti::writeNifti(truth / "lumen.nii.gz", made.lumen); })
+        .and_then([&] { return nifti::writeNifti(truth / "sites.nii.gz", made.sites); })
         .and_then([&] { return nifti::writeNifti(truth / "untagged.nii.gz", made.untaggedHu); })
         .and_then(
             [&] { return writeTextFile(truth / "centerline.csv", centerlineCsv(made.centerline)); })
         .and_then([&] { return writeTextFile(truth / "polyps.json", findingsJson(made.polyps)); })
+        .and_then(
+            [&] { return writeTextFile(truth / "structure.json", structureJson(made.structure)); })
         .and_then([&] { return writeTextFile(truth / "phantom.json", facts.dump(2) + "\n"); });
 }
 
@@ -104,12 +237,7 @@ Result<void> runPhantom(const Arguments& arguments) {
         return fail(ErrorKind::io, "this folder cannot be made", out.string());
 
     ProgressBar bar;
-    phantom::PhantomOptions options;
-    options.seed = arguments.seed;
-    options.preset = presets.at(arguments.preset);
-    options.position = patientPositionFromString(arguments.position);
-    options.size = sizes.at(arguments.size);
-    options.threads = arguments.threads;
+    phantom::PhantomOptions options = optionsOf(arguments);
     options.progress = [&](double fraction) { bar.show("phantom", fraction); };
     const auto made = phantom::makePhantom(options);
     if (!made) return tl::make_unexpected(made.error());
@@ -117,8 +245,9 @@ Result<void> runPhantom(const Arguments& arguments) {
     bar.show("write", 0.0);
     const fs::path unfinished =
         out.parent_path() / fmt::format(".tmp-{}-{}", out.filename().string(), ::getpid());
-    const auto written =
-        writeAll(unfinished, *made, arguments).and_then([&] { return moveInto(out, unfinished); });
+    const auto written = writeAll(unfinished, *made, arguments, options).and_then([&] {
+        return moveInto(out, unfinished);
+    });
     if (!written) {
         fs::remove_all(unfinished, error);
         return written;
@@ -136,6 +265,102 @@ std::vector<std::string> namesOf(const std::map<std::string, T>& map) {
     return names;
 }
 
+/// What a patient's bowel may have beyond the preset's; phantom/bowel_options.h tells more.
+void addBowelOptions(CLI::App& command, Arguments& arguments) {
+    constexpr const char* group = "Bowel (each adds to the preset; wild draws what is not given)";
+    const auto share = CLI::Range(0.0, 1.0);
+    command
+        .add_option("--ileum", arguments.ileumMm,
+                    "Length of a gas-filled ileum that joins the cecum and runs along the colon, "
+                    "0 to 2000")
+        ->check(CLI::Range(0.0, 2000.0))
+        ->type_name("MM")
+        ->group(group);
+    command.add_option("--ileum-calibre", arguments.ileumCalibreMm, "Its inner diameter, 12 to 30")
+        ->check(CLI::Range(12.0, 30.0))
+        ->type_name("MM")
+        ->group(group);
+    command.add_option("--valve", arguments.valve, "Whether gas passes the ileocecal valve's lips")
+        ->check(CLI::IsMember({"open", "closed"}))
+        ->group(group);
+    command
+        .add_option("--septum", arguments.septumMm,
+                    "Least tissue between loops that touch, 0.5 to 5 (3.2)")
+        ->check(CLI::Range(0.5, 5.0))
+        ->type_name("MM")
+        ->group(group);
+    command
+        .add_option("--collapse", arguments.collapsesMm,
+                    "Lengths of collapsed stretches, 5 to 60, in place of the preset's")
+        ->check(CLI::Range(5.0, 60.0))
+        ->type_name("MM …")
+        ->group(group);
+    command
+        .add_option("--redundant-sigmoid", arguments.redundantSigmoidMm,
+                    "How much longer the sigmoid's loops are, 0 to 400")
+        ->check(CLI::Range(0.0, 400.0))
+        ->type_name("MM")
+        ->group(group);
+    command
+        .add_option("--untagged-fluid", arguments.untagged, "Share of the pools without tagging")
+        ->check(share)
+        ->type_name("SHARE")
+        ->group(group);
+    command
+        .add_option("--layered-fluid", arguments.layered,
+                    "Share of the pools where water stands over tagged sediment")
+        ->check(share)
+        ->type_name("SHARE")
+        ->group(group);
+    command
+        .add_option("--full-sections", arguments.full,
+                    "Share of the pools as full as gravity lets them be, up to the roof")
+        ->check(share)
+        ->type_name("SHARE")
+        ->group(group);
+    command
+        .add_option("--diverticula", arguments.diverticula,
+                    "How many, 0 to 500; most of them in the sigmoid")
+        ->check(CLI::Range(0, 500))
+        ->type_name("N")
+        ->group(group);
+    command
+        .add_option("--insufflated", arguments.insufflated,
+                    "no: an abdominal CT without colonography, the colon collapsed but for a "
+                    "little gas and stool")
+        ->check(CLI::IsMember({"yes", "no"}))
+        ->group(group);
+    command.add_option("--rectal-tube", arguments.rectalTube, "A tube with an inflated balloon")
+        ->check(CLI::IsMember({"yes", "no"}))
+        ->group(group);
+}
+
+/// How the patient is scanned; phantom/scan_options.h tells more.
+void addScanOptions(CLI::App& command, Arguments& arguments) {
+    constexpr const char* group = "Scanner (in place of what the preset draws)";
+    const auto add = [&](const char* name, std::optional<double>& value, const char* help,
+                         double low, double high, const char* unit) {
+        command.add_option(name, value, help)
+            ->check(CLI::Range(low, high))
+            ->type_name(unit)
+            ->group(group);
+    };
+    add("--fov", arguments.fieldOfViewMm, "Width of the field of view, 320 to 500", 320, 500, "MM");
+    command
+        .add_option("--blur", arguments.blurMm,
+                    "Full widths of the point spread along x, y and z, 0.3 to 6")
+        ->check(CLI::Range(0.3, 6.0))
+        ->expected(3)
+        ->type_name("MM")
+        ->group(group);
+    add("--overshoot", arguments.overshoot, "Edge enhancement of a sharp kernel, 0 to 0.6", 0, 0.6,
+        "SHARE");
+    add("--noise", arguments.noiseSdHu, "Standard deviation of the noise, 1 to 100", 1, 100, "HU");
+    add("--grain", arguments.grainMm, "Full width of the noise's grain, 0.5 to 4", 0.5, 4, "MM");
+    add("--pseudo-enhancement", arguments.pseudoEnhancementHu,
+        "How much brighter tissue is at the edge of a large tagged pool, 0 to 100", 0, 100, "HU");
+}
+
 }  // namespace
 
 Command addPhantom(CLI::App& program) {
@@ -143,8 +368,10 @@ Command addPhantom(CLI::App& program) {
     CLI::App* command = program.add_subcommand(
         "phantom",
         "Make a synthetic abdominal CT: OUT/series/*.dcm, and beside it OUT/truth with "
-        "lumen.nii.gz, untagged.nii.gz, centerline.csv, polyps.json and phantom.json. Equal "
-        "options make equal files.");
+        "lumen.nii.gz, sites.nii.gz (what else is where: 1 ileum, 2 other bowel, 3 lung, 4 outside "
+        "the body, 5 colon wall, 6 rectal tube, 7 fluid without tagging), untagged.nii.gz, "
+        "centerline.csv, polyps.json, structure.json (segments, collapses, contacts, valve, "
+        "diverticula, volumes) and phantom.json. Equal options make equal files.");
     command->add_option("OUT", arguments->out, "The folder to make")->required();
     command->add_option("--seed", arguments->seed, "Which patient")
         ->check([](const std::string& text) {
@@ -154,11 +381,15 @@ Command addPhantom(CLI::App& program) {
         })
         ->type_name("N")
         ->capture_default_str();
-    command->add_option("--preset", arguments->preset, "How hard to read")
-        ->check(CLI::IsMember(namesOf(presets)))
+    std::vector<std::string> presetNames = namesOf(presets);
+    presetNames.emplace_back(kWild);
+    command
+        ->add_option("--preset", arguments->preset,
+                     "How hard to read; wild draws from all the options below")
+        ->check(CLI::IsMember(presetNames))
         ->capture_default_str();
     command->add_option("--position", arguments->position, "How the patient lies")
-        ->check(CLI::IsMember({"supine", "prone"}))
+        ->check(CLI::IsMember({"supine", "prone", "left-decubitus", "right-decubitus"}))
         ->capture_default_str();
     command->add_option("--size", arguments->size, "small (256³ or so) or full (512×512×400)")
         ->check(CLI::IsMember(namesOf(sizes)))
@@ -166,6 +397,8 @@ Command addPhantom(CLI::App& program) {
     command->add_flag("--force", arguments->force,
                       "Replace series and truth in a folder that is not empty");
     addThreadsOption(*command, arguments->threads);
+    addBowelOptions(*command, *arguments);
+    addScanOptions(*command, *arguments);
     return {command, [arguments] { return runPhantom(*arguments); }};
 }
 

@@ -399,7 +399,8 @@ TEST_F(PreparedPhantom, APhantomDoesNotOverwriteAFolderUnlessTold) {
     EXPECT_EQ(haustra(forced).exitCode, 0);
     EXPECT_EQ(tests::fileContent(file("full/mine.txt")), "keep");
     for (const char* name :
-         {"lumen.nii.gz", "untagged.nii.gz", "centerline.csv", "polyps.json", "phantom.json"}) {
+         {"lumen.nii.gz", "sites.nii.gz", "untagged.nii.gz", "centerline.csv", "polyps.json",
+          "structure.json", "phantom.json"}) {
         EXPECT_GT(fs::file_size(fs::path(file("full/truth")) / name), 0u) << name;
     }
     for (const auto& left : fs::directory_iterator(folder_.path())) {

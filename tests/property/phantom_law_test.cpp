@@ -362,7 +362,7 @@ TEST(Phantom, IsTheSameForAnyNumberOfThreads) {
 
 TEST(Phantom, RefusesAPositionItCannotLieIn) {
     PhantomOptions options;
-    options.position = PatientPosition::leftDecubitus;
+    options.position = PatientPosition::unknown;
     const auto phantom = makePhantom(options);
     ASSERT_FALSE(phantom.has_value());
     EXPECT_EQ(phantom.error().kind, ErrorKind::badInput);

@@ -7,6 +7,7 @@
 #include "phantom/random.h"
 #include "phantom/scanner.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -155,6 +156,41 @@ TEST(Scanner, BlurHasTheGivenWidthAndKeepsTheSum) {
     EXPECT_NEAR(volume.at(22, 20, 20) / top, 0.5, 0.01);
     EXPECT_NEAR(volume.at(20, 22, 20) / top, 0.5, 0.01);
     EXPECT_NEAR(volume.at(20, 20, 23) / top, 0.5, 0.01);
+}
+
+TEST(Scanner, ASharpKernelOvershootsAtAnEdgeAndKeepsWhatIsFlat) {
+    const Grid grid = axisAlignedGrid({81, 41, 9}, {0.5, 0.5, 1.0});
+    const auto edge = [&] {
+        Volume<float> volume(grid, -1000.0f);
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            if (grid.voxelAt(n).x >= 40) volume.writable()[n] = 40.0f;
+        }
+        return volume;
+    };
+    Volume<float> soft = edge(), sharp = edge();
+    reconstruct(soft, {1.2, 1.2, 1.0}, 0.0, 2);
+    reconstruct(sharp, {1.2, 1.2, 1.0}, 0.5, 2);
+    const auto highest = [](const Volume<float>& v) {
+        return *std::max_element(v.voxels().begin(), v.voxels().end());
+    };
+    EXPECT_NEAR(highest(soft), 40.0, 0.1);
+    EXPECT_GT(highest(sharp), 40.0 + 0.03 * 1040.0);
+    EXPECT_LT(highest(sharp), 40.0 + 0.2 * 1040.0);
+    EXPECT_NEAR(sharp.at(5, 20, 4), -1000.0, 0.1);
+    EXPECT_NEAR(sharp.at(75, 20, 4), 40.0, 0.1);
+}
+
+TEST(Scanner, PseudoEnhancementHasItsHeightAtAFlatEdgeAndFallsOff) {
+    const Grid grid = axisAlignedGrid({160, 120, 3}, {0.5, 0.5, 1.0});
+    const Volume<float> untagged(grid, -1000.0f);
+    Volume<float> tagged = untagged.clone();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        if (grid.voxelAt(n).x >= 80) tagged.writable()[n] = 500.0f;
+    }
+    enhanceBesideTagging(tagged, untagged, 40.0, 2);
+    EXPECT_NEAR(tagged.at(79, 60, 1) + 1000.0, 40.0, 3.0);
+    EXPECT_LT(tagged.at(63, 60, 1) + 1000.0, 15.0) << "8 mm away";
+    EXPECT_NEAR(tagged.at(5, 60, 1), -1000.0, 0.1);
 }
 
 TEST(Scanner, NoiseHasItsStandardDeviationAndIsCorrelated) {

@@ -1,0 +1,55 @@
+// What a chain of bowel is made of, in truth: so that junctions can be judged, not only voxels.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra::phantom {
+
+/// Arcs are of the true centerline, mm from the anus.
+struct Structure {
+    /// A stretch where the true lumen is closed.
+    struct Collapse {
+        double beginMm = 0.0, endMm = 0.0;
+        glm::dvec3 beginAtMm{0.0}, endAtMm{0.0};
+        double lengthMm() const { return endMm - beginMm; }
+    };
+    /// Where two lumens that do not join there are less than kContactMm apart.
+    struct Contact {
+        bool ileum = false;  ///< of colon and ileum; or of two loops of colon
+        double arcMm = 0.0;
+        double otherArcMm = 0.0;  ///< of the other loop; of the ileum from the valve
+        glm::dvec3 positionMm{0.0};
+        double leastMm = 0.0;  ///< tissue between them where it is thinnest
+        double areaMm2 = 0.0;  ///< about
+    };
+    struct Valve {
+        glm::dvec3 positionMm{0.0};
+        glm::dvec3 inward{0.0};  ///< unit, into the cecum
+        double arcMm = 0.0;
+        bool open = false;
+    };
+    struct Pouch {
+        glm::dvec3 positionMm{0.0};
+        double diameterMm = 0.0;
+    };
+
+    std::vector<Collapse> collapses;
+    std::vector<Contact> contacts;  ///< the largest first
+    std::optional<Valve> valve;
+    std::vector<Pouch> diverticula;
+    /// Where rectum, sigmoid, descending, transverse, ascending colon and cecum end.
+    std::array<double, 6> segmentEndsMm{};
+    double ileumMm = 0.0;                                  ///< length of the gas-filled ileum
+    double airMl = 0.0, taggedMl = 0.0, untaggedMl = 0.0;  ///< of the colon's lumen
+    double ileumMl = 0.0;
+};
+
+inline constexpr std::array<const char*, 6> kSegmentNames{"rectum",     "sigmoid",   "descending",
+                                                          "transverse", "ascending", "cecum"};
+inline constexpr double kContactMm = 4.0;
+
+}  // namespace haustra::phantom
