@@ -84,6 +84,34 @@ struct ColonRecord {
     std::vector<RebuiltWallRecord> walls;
     double noiseSdHu = 0.0;             ///< in gas
     std::vector<std::string> warnings;  ///< where a reader must look
+    double lengthMm() const;            ///< of the pieces and of what is crossed between them
 };
+
+/// The six segments in which colonoscopy reports, from the rectum on; the flexures count with the
+/// ascending and the descending colon.
+enum class ColonSegment : std::uint8_t {
+    rectum,
+    sigmoid,
+    descending,
+    transverse,
+    ascending,
+    cecum
+};
+inline constexpr int colonSegments = 6;
+const char* toString(ColonSegment segment);
+ColonSegment segmentOf(ColonPart part);
+
+/// How well one segment is shown.
+struct SegmentDistension {
+    double lengthMm = 0.0;
+    double diameterMm = 0.0;  ///< of the largest balls inside, mean over the length
+    double gasMl = 0.0, taggedMl = 0.0;
+    double collapsedMm = 0.0;  ///< crossed by bridges that begin in it
+};
+std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& record);
+
+/// The `quality` product: JSON with all of the record, and the segments' distension; lengths in mm,
+/// places in LPS mm, shares from 0 to 1. Ends with a new line.
+std::string qualityJson(const ColonRecord& record);
 
 }  // namespace haustra

@@ -16,11 +16,12 @@ const std::vector<std::string>& madeFrom(const std::string& product) {
     using namespace product;
     static const std::map<std::string, std::vector<std::string>> dependents{
         {ct,
-         {segmentation, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches,
+         {segmentation, quality, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches,
           surface, flatMap}},
         {segmentation,
-         {mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches, surface,
+         {quality, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches, surface,
           flatMap}},
+        {quality, {}},
         {mixture,
          {cleansedLumen, cleansed, lumen, distance, centerline, branches, surface, flatMap}},
         {cleansedLumen, {cleansed, lumen, distance, centerline, branches, surface, flatMap}},
@@ -30,7 +31,8 @@ const std::vector<std::string>& madeFrom(const std::string& product) {
         {centerline, {branches, flatMap}},
         {branches, {}},
         {surface, {flatMap}},
-        {flatMap, {}}};
+        {flatMap, {}},
+        {edits, {}}};
     return dependents.at(product);
 }
 

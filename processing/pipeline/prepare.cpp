@@ -27,7 +27,8 @@ Result<void> checkOptions(const PrepareOptions& options) {
     if (options.series.empty() && options.until == "import") {
         return fail(ErrorKind::badInput, "a mask has no import: there is nothing to make");
     }
-    if (!options.lumenMask.empty() && !(options.seedsMm.empty() && options.excludesMm.empty())) {
+    if (!options.lumenMask.empty() && !(options.seedsMm.empty() && options.excludesMm.empty() &&
+                                        options.cuts.empty() && options.joins.empty())) {
         return fail(ErrorKind::badInput,
                     "points to seed or to exclude are of no use where a mask is the lumen");
     }

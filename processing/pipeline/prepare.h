@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/bridges.h"
+#include "core/colon_edits.h"
 #include "core/result.h"
 #include "store/case_store.h"
 
@@ -28,6 +29,10 @@ struct PrepareOptions {
     bool replace = false;  ///< another scan may take the place of the one that the case is of
     /// Overrule the segmentation (patient, LPS); not with `lumenMask`.
     std::vector<glm::dvec3> seedsMm, excludesMm;
+    std::vector<CutBall> cuts;  ///< of a colon: core/colon_edits.h
+    std::vector<std::pair<glm::dvec3, glm::dvec3>> joins;
+    /// Forget what earlier calls said of a colon; else that stands where this call says nothing.
+    bool forgetEdits = false;
     /// How far the surface may be from the contoured one, at the samples that
     /// surface/simplification.h names; between them it is not bounded. 0.001 to 10.
     double surfaceErrorMm = 0.1;
@@ -68,6 +73,7 @@ const std::vector<std::string>& stageNames();
 ///
 ///   import        ct              the scan in HU
 ///   segmentation  segmentation    the lumen as the organ's profile finds it, or the mask
+///                 quality         of a colon: how sure it is, and where to look (JSON)
 ///   mixture       mixture         the tissues in each voxel
 ///   cleansing     cleansed-lumen  the lumen once the tagging is taken out
 ///                 cleansed        the scan in HU with air in the tagging's place
@@ -78,6 +84,8 @@ const std::vector<std::string>& stageNames();
 ///   surface       surface         the lumen's closed surface
 ///   flattening    flatmap         the surface on the plane, with the centerline's places that it
 ///                                 is seen from
+///
+/// What seeds, excludes, cuts and joins say of a colon is kept as the product `edits` (JSON).
 ///
 /// Mixture and cleansing run where there is a scan and the organ's profile says so; `lumen` comes
 /// from the segmentation otherwise. Flattening runs where the profile says so. A stage that fails

@@ -19,7 +19,7 @@ using store::Attributes;
 
 // Raise a stage's version whenever its products change for the same input and options.
 constexpr int importVersion = 1;
-constexpr int segmentationVersion = 2;
+constexpr int segmentationVersion = 3;
 constexpr int maskVersion = 1;
 constexpr int mixtureVersion = 7;
 constexpr int cleansingVersion = 5;
@@ -30,15 +30,34 @@ Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key
                                               madeFrom(product::segmentation));
 }
 
+// What this call says of the colon, which the case keeps; or what an earlier one said.
+Result<ColonEdits> takeEdits(Preparation& preparation) {
+    const PrepareOptions& options = preparation.options();
+    store::Case& target = preparation.target();
+    ColonEdits edits{options.seedsMm, options.excludesMm, options.cuts, options.joins};
+    if (edits.empty() && !options.forgetEdits) {
+        if (!target.find(product::edits)) return edits;
+        const auto text = target.readText(product::edits);
+        if (!text) return tl::make_unexpected(text.error());
+        auto kept = editsFromJson(*text);
+        if (kept && !kept->empty())
+            preparation.note("segmentation: what an earlier call said of the colon stands (edits)");
+        return kept;
+    }
+    if (edits.empty() && !target.find(product::edits)) return edits;
+    const std::string text = editsJson(edits);
+    const ProductKey key = store::makeKey("edits", 1, text, {});
+    return target.publishText(product::edits, key, text).map([&] { return edits; });
+}
+
 Result<void> findGasAndTagged(Preparation& preparation, const CtScan& scan, const ProductKey& key,
-                              const Progress& progress) {
+                              const ColonEdits& edits, const Progress& progress) {
     const PrepareOptions& options = preparation.options();
     const auto tissue =
         cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues);
     if (!tissue) return tl::make_unexpected(tissue.error());
     segmentation::ColonOptions finding;
-    finding.edits.seedsMm = options.seedsMm, finding.edits.excludesMm = options.excludesMm;
-    finding.threads = options.threads, finding.progress = progress;
+    finding.edits = edits, finding.threads = options.threads, finding.progress = progress;
     const auto colon = segmentation::findColon(scan, *tissue, finding);
     if (!colon) return tl::make_unexpected(colon.error());
     Attributes attributes{{"source", "scan"}, {"gravity", exactText(colon->gravity)}};
@@ -46,7 +65,10 @@ Result<void> findGasAndTagged(Preparation& preparation, const CtScan& scan, cons
     std::vector<std::string> notes = colon->notes;
     notes.insert(notes.end(), colon->record.warnings.begin(), colon->record.warnings.end());
     setNotes(attributes, notes);
-    return publishSegmentation(preparation, key, colon->labels, attributes);
+    return publishSegmentation(preparation, key, colon->labels, attributes).and_then([&] {
+        return preparation.target().publishText(product::quality, key, qualityJson(colon->record),
+                                                {}, madeFrom(product::quality));
+    });
 }
 
 Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const ProductKey& key,
@@ -118,21 +140,29 @@ Result<ProductKey> importScan(Preparation& preparation) {
 Result<ProductKey> segmentScan(Preparation& preparation, const ProductKey& ct) {
     const StageMeter meter;
     const PrepareOptions& options = preparation.options();
-    const ProductKey key = store::makeKey("segmentation", segmentationVersion,
-                                          organs::segmentationOptions(preparation.organ()) +
-                                              exactText("seed", options.seedsMm) +
-                                              exactText("exclude", options.excludesMm),
-                                          {ct});
+    const bool colon = preparation.organ().finder == LumenFinder::gasAndTagged;
+    if (!colon && !(options.cuts.empty() && options.joins.empty())) {
+        return fail(ErrorKind::badInput,
+                    "only a colon can be cut or joined; this organ is not one");
+    }
+    ColonEdits edits{options.seedsMm, options.excludesMm, {}, {}};
+    if (colon) {
+        auto taken = takeEdits(preparation);
+        if (!taken) return tl::make_unexpected(taken.error());
+        edits = std::move(*taken);
+    }
+    const ProductKey key =
+        store::makeKey("segmentation", segmentationVersion,
+                       organs::segmentationOptions(preparation.organ()) + editsJson(edits), {ct});
     const auto make = [&](const Progress& progress) -> Result<void> {
         const auto scan = preparation.readScan();
         if (!scan) return tl::make_unexpected(scan.error());
-        return preparation.organ().finder == LumenFinder::huRange
-                   ? findHuRange(preparation, *scan, key, progress)
-                   : findGasAndTagged(preparation, *scan, key, progress);
+        return colon ? findGasAndTagged(preparation, *scan, key, edits, progress)
+                     : findHuRange(preparation, *scan, key, progress);
     };
-    return preparation.run({"segmentation", key, {product::segmentation}}, meter, make).map([&] {
-        return key;
-    });
+    std::vector<std::string> products{product::segmentation};
+    if (colon) products.push_back(product::quality);
+    return preparation.run({"segmentation", key, products}, meter, make).map([&] { return key; });
 }
 
 Result<ProductKey> takeMask(Preparation& preparation, const std::optional<ProductKey>& ct) {

@@ -1,6 +1,7 @@
 // Finding the colon in a CT scan: its lumen, and how sure that is.
 #pragma once
 
+#include "core/colon_edits.h"
 #include "core/colon_record.h"
 #include "core/ct_scan.h"
 #include "core/parallel.h"
@@ -8,27 +9,9 @@
 #include "core/tissue.h"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace haustra::segmentation {
-
-/// A ball in which there is no lumen, as a person said.
-struct CutBall {
-    glm::dvec3 centreMm{0.0};  ///< patient, LPS
-    double radiusMm = 3.0;
-    bool operator==(const CutBall&) const = default;
-};
-
-/// What a person said of the scan (patient, LPS).
-struct ColonEdits {
-    std::vector<glm::dvec3> seedsMm;     ///< the gas or fluid at these points is colon
-    std::vector<glm::dvec3> excludesMm;  ///< the gas or fluid at these points is not
-    std::vector<CutBall> cuts;           ///< here is a wall
-    std::vector<std::pair<glm::dvec3, glm::dvec3>>
-        joins;  ///< the colon goes on from one to the other
-    bool operator==(const ColonEdits&) const = default;
-};
 
 struct ColonOptions {
     ColonEdits edits;

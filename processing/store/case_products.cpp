@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 namespace haustra::store {
 namespace {
@@ -131,6 +132,26 @@ Result<void> Case::publishCenterline(std::string_view product, const ProductKey&
     header.grid.size = {int(samples.size()), 1, 1};
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hline")};
     return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(samples)))
+        .and_then([&] { return announce(entry, outdated); });
+}
+
+Result<std::string> Case::readText(std::string_view product) const {
+    const auto mapped = map(product);
+    if (!mapped) return tl::make_unexpected(mapped.error());
+    if (auto right = checkContent(*mapped, Content::text, product, folder_); !right)
+        return tl::make_unexpected(right.error());
+    return std::string(reinterpret_cast<const char*>(mapped->values.data()),
+                       mapped->values.size());
+}
+
+Result<void> Case::publishText(std::string_view product, const ProductKey& key,
+                               std::string_view text, const Attributes& attributes,
+                               const std::vector<std::string>& outdated) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    ProductHeader header{Content::text, {}, digestFromHex(key.hex), {}, attributes};
+    header.grid.size = {int(text.size()), 1, 1};
+    const ProductEntry entry{std::string(product), key, productFileName(product, key, ".htext")};
+    return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(text)))
         .and_then([&] { return announce(entry, outdated); });
 }
 

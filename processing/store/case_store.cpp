@@ -191,7 +191,8 @@ void Case::sweep(const std::vector<ProductEntry>& kept) const {
         const std::string extension = file.path().extension().string();
         const bool temporary = name.rfind(temporaryPrefix, 0) == 0;
         const bool product = extension == ".hvol" || extension == ".hline" ||
-                             extension == ".hmesh" || extension == ".hflat";
+                             extension == ".hmesh" || extension == ".hflat" ||
+                             extension == ".htext";
         if (temporary || (product && !names.count(name))) rubbish.push_back(file.path());
     }
     for (const fs::path& file : rubbish)

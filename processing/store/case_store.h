@@ -5,6 +5,7 @@
 //   STORE/cases/NAME/<product>-<key16>.hline a centerline
 //   STORE/cases/NAME/<product>-<key16>.hmesh a triangle mesh
 //   STORE/cases/NAME/<product>-<key16>.hflat a flat map
+//   STORE/cases/NAME/<product>-<key16>.htext a text
 //   STORE/cases/NAME/.lock                  flocked by the one writer
 //   STORE/cases/NAME/.tmp-*                 being written, or left by a writer that was killed
 //
@@ -94,6 +95,7 @@ public:
     /// [0, 1], y in [0, height], arcs that do not fall, and at least one triangle and one camera.
     /// How many triangles the closed surface has it cannot know.
     Result<FlatMap> readFlatMap(std::string_view product = "flatmap") const;
+    Result<std::string> readText(std::string_view product) const;
     Result<Attributes> attributes(std::string_view product) const;
     /// Fails, naming the file, where a product is not byte for byte what was published. Reads all
     /// of it, at the speed of SHA-256 on all cores.
@@ -122,6 +124,10 @@ public:
     Result<void> publishFlatMap(std::string_view product, const ProductKey& key, const FlatMap& map,
                                 const Attributes& attributes = {},
                                 const std::vector<std::string>& outdated = {});
+    /// UTF-8, at most 2^24 bytes.
+    Result<void> publishText(std::string_view product, const ProductKey& key, std::string_view text,
+                             const Attributes& attributes = {},
+                             const std::vector<std::string>& outdated = {});
 
 private:
     friend class CaseStore;

@@ -41,7 +41,7 @@ static_assert(sizeof(FixedHeader) == 240 && std::is_trivially_copyable_v<FixedHe
 
 bool isVolume(Content content) {
     return content != Content::centerline && content != Content::mesh &&
-           content != Content::flatMap;
+           content != Content::flatMap && content != Content::text;
 }
 
 std::size_t mostElements(Content content) {
@@ -69,12 +69,14 @@ std::size_t valuesBytes(Content content, const Grid& grid) {
             return sizeof(double) + std::size_t(grid.size.x) * flatMapVertexBytes +
                    std::size_t(grid.size.y) * flatMapTriangleBytes +
                    std::size_t(grid.size.z) * flatMapCameraBytes;
+        case Content::text:
+            return std::size_t(grid.size.x);
     }
     return 0;
 }
 
 bool isKnown(Content content) {
-    return content >= Content::int16Volume && content <= Content::flatMap;
+    return content >= Content::int16Volume && content <= Content::text;
 }
 
 Digest headerDigest(const FixedHeader& fixed, std::string_view attributes) {
@@ -174,7 +176,7 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
     for (int n = 0; n < 12; ++n) {
         product.header.grid.patientFromVoxel[n / 3][n % 3] = fixed.patientFromVoxel[n];
     }
-    const bool oneCount = content == Content::centerline;
+    const bool oneCount = content == Content::centerline || content == Content::text;
     if ((oneCount && fixed.size[1] != 1) ||
         ((oneCount || content == Content::mesh) && fixed.size[2] != 1)) {
         return damaged("its size is absurd", file);

@@ -4,9 +4,9 @@
 //        0      8  "HAUSTRA\n"
 //        8      4  version of this layout, 1
 //       12      4  content: 1 int16 volume, 2 uint8 volume, 3 float volume, 4 centerline,
-//                  5 volume of tissue fractions, 6 mesh, 7 flat map
+//                  5 volume of tissue fractions, 6 mesh, 7 flat map, 8 text
 //       16     12  size i, j, k (volume); samples, 1, 1 (centerline); vertices, triangles, 1
-//       (mesh);
+//       (mesh); bytes, 1, 1 (text);
 //                  vertices, triangles, cameras (flat map)
 //       28      4  bytes of attributes, A
 //       32     96  patientFromVoxel, four columns of three doubles
@@ -23,7 +23,7 @@
 // flat map: its height, a double; its vertices, three doubles each (LPS, mm); their flat places,
 // two doubles each (unit: the circumference); its cameras, four doubles each (LPS and arc, mm); its
 // triangles, three int32 each; for each triangle the one of the closed surface that it is a part
-// of, an int32; and for each vertex its camera, an int32.
+// of, an int32; and for each vertex its camera, an int32. A text: UTF-8, not ended by a zero.
 //
 // The values end the file. A reader believes no field before the file's length bears it out.
 #pragma once
@@ -49,6 +49,7 @@ enum class Content : std::uint32_t {
     fractionsVolume = 5,
     mesh = 6,
     flatMap = 7,
+    text = 8,
 };
 inline constexpr std::size_t centerlineSampleBytes = 6 * sizeof(double);
 inline constexpr std::size_t meshVertexBytes = 3 * sizeof(double);

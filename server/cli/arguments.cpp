@@ -63,6 +63,48 @@ CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
         ->allow_extra_args(false);
 }
 
+CLI::Option* addBallsOption(CLI::App& command, const std::string& name, std::vector<CutBall>& balls,
+                            const std::string& description) {
+    const auto take = [&balls, name](const std::vector<std::string>& texts) {
+        balls.clear();
+        for (const std::string& text : texts) {
+            auto numbers = parseNumbers(text, ',', 4);
+            if (!numbers) numbers = parseNumbers(text, ',', 3);
+            if (!numbers ||
+                (numbers->size() == 4 && !((*numbers)[3] > 0.0 && (*numbers)[3] <= 100.0)))
+                throw CLI::ValidationError(name, "\"" + text + "\" is not x,y,z or x,y,z,r");
+            CutBall ball{{(*numbers)[0], (*numbers)[1], (*numbers)[2]}};
+            if (numbers->size() == 4) ball.radiusMm = (*numbers)[3];
+            balls.push_back(ball);
+        }
+    };
+    return command.add_option_function<std::vector<std::string>>(name, take, description)
+        ->type_name("X,Y,Z[,R]")
+        ->allow_extra_args(false);
+}
+
+CLI::Option* addPairsOption(CLI::App& command, const std::string& name,
+                            std::vector<std::pair<glm::dvec3, glm::dvec3>>& pairs,
+                            const std::string& description) {
+    const auto take = [&pairs, name](const std::vector<std::string>& texts) {
+        pairs.clear();
+        if (texts.size() % 2 != 0) throw CLI::ValidationError(name, "points come in pairs");
+        for (std::size_t n = 0; n < texts.size(); n += 2) {
+            const auto a = parseNumbers(texts[n], ',', 3), b = parseNumbers(texts[n + 1], ',', 3);
+            if (!a || !b) {
+                throw CLI::ValidationError(
+                    name, "\"" + texts[n] + "\" and \"" + texts[n + 1] + "\" are not x,y,z x,y,z");
+            }
+            pairs.emplace_back(glm::dvec3((*a)[0], (*a)[1], (*a)[2]),
+                               glm::dvec3((*b)[0], (*b)[1], (*b)[2]));
+        }
+    };
+    return command.add_option_function<std::vector<std::string>>(name, take, description)
+        ->type_name("X,Y,Z X,Y,Z")
+        ->type_size(2)
+        ->allow_extra_args(false);
+}
+
 CLI::Option* addEndsOption(CLI::App& command, std::vector<glm::dvec3>& endsMm,
                            const std::string& description) {
     return addPoints(command, "--ends", endsMm, description)->type_name("X,Y,Z")->expected(2);

@@ -1,9 +1,12 @@
 // Options that several subcommands take, and values written as text.
 #pragma once
 
+#include "core/colon_edits.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -29,6 +32,16 @@ void addThreadsOption(CLI::App& command, int& threads);
 /// may be negative.
 CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
                              std::vector<glm::dvec3>& points, const std::string& description);
+
+/// --NAME x,y,z or x,y,z,r in patient millimetres: balls, of 3 mm radius where none is given; may be
+/// given again and again.
+CLI::Option* addBallsOption(CLI::App& command, const std::string& name, std::vector<CutBall>& balls,
+                            const std::string& description);
+
+/// --NAME x,y,z x,y,z in patient millimetres: pairs of points, which may be given again and again.
+CLI::Option* addPairsOption(CLI::App& command, const std::string& name,
+                            std::vector<std::pair<glm::dvec3, glm::dvec3>>& pairs,
+                            const std::string& description);
 
 /// --ends x,y,z x,y,z in patient millimetres: none, or two points.
 CLI::Option* addEndsOption(CLI::App& command, std::vector<glm::dvec3>& endsMm,

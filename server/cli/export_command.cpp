@@ -37,6 +37,8 @@ const std::map<std::string, Endings>& formats() {
         {"branches", {".csv"}},
         {"surface", {".ply", ".obj", ".off", ".stl"}},
         {"flatmap", {".obj", ".ply"}},
+        {"quality", {".json"}},
+        {"edits", {".json"}},
         {"flat-image", {".png"}}};
     return endings;
 }
@@ -82,6 +84,11 @@ Result<void> runExport(const Arguments& arguments) {
         if (!centerline) return tl::make_unexpected(centerline.error());
         return writeTextFile(arguments.file, centerlineCsv(*centerline));
     }
+    if (product == "quality" || product == "edits") {
+        const auto text = source->readText(product);
+        if (!text) return tl::make_unexpected(text.error());
+        return writeTextFile(arguments.file, *text);
+    }
     if (product == "surface") {
         const auto mesh = source->readMesh();
         if (!mesh) return tl::make_unexpected(mesh.error());
@@ -124,7 +131,8 @@ Command addExport(CLI::App& program) {
         "circumferences) or .ply (s, t, and of each vertex the camera on the centerline that sees "
         "it, its index and arc_mm, and of each face whether it encloses a bridge); flat-image, the "
         "whole flattened wall seen from within, the rectum at the bottom, black where the surface "
-        "crosses air and hatched along bridges, as .png.");
+        "crosses air and hatched along bridges, as .png; quality, how sure the colon is and where to "
+        "look, and edits, what a person said of it, as .json.");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     command->add_option("PRODUCT", arguments->product, "What to write")
         ->required()

@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace haustra::cli {
 namespace {
@@ -59,6 +60,21 @@ std::vector<Listed> byStudy(const store::CaseStore& store, const std::vector<std
     return sorted;
 }
 
+// How sure the colon is, in a line; empty where the case does not say.
+std::string trustOf(const store::CaseStore& store, const std::string& name) {
+    const auto opened = store.openCase(name);
+    if (!opened || !opened->find("quality")) return {};
+    const auto text = opened->readText("quality");
+    if (!text) return "quality: " + describe(text.error());
+    const auto quality = nlohmann::json::parse(*text, nullptr, false);
+    if (!quality.is_object() || !quality.contains("confidence") || !quality.contains("warnings"))
+        return "quality: not readable";
+    const std::size_t warnings = quality["warnings"].size();
+    return fmt::format("colon found with confidence {:.0f} %, {} to look at",
+                       100.0 * quality["confidence"].get<double>(),
+                       warnings == 1 ? "1 place" : fmt::format("{} places", warnings));
+}
+
 Result<void> runList(const fs::path& folder) {
     const auto store = store::CaseStore::open(folder, false);
     if (!store) return tl::make_unexpected(store.error());
@@ -67,6 +83,8 @@ Result<void> runList(const fs::path& folder) {
     for (const auto& [name, study, position] : byStudy(*store, *names)) {
         fmt::print("{}{}{}\n", name, study.empty() ? "" : "  study " + study,
                    position.empty() ? "" : "  " + position);
+        if (const std::string line = trustOf(*store, name); !line.empty())
+            fmt::print("    {}\n", line);
         const auto products =
             store->openCase(name).and_then([](const auto& opened) { return opened.products(); });
         if (!products) {
@@ -92,7 +110,8 @@ Command addList(CLI::App& program) {
     CLI::App* command = program.add_subcommand("list",
                                                "List the cases of a store, their products and "
                                                "sizes; a study's scans one after the other, each "
-                                               "with the study's code and the patient's position.");
+                                               "with the study's code, the patient's position, and how sure "
+                                               "its colon is.");
     addStoreOption(*command, *folder);
     return {command, [folder] { return runList(*folder); }};
 }

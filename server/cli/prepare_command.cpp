@@ -50,7 +50,8 @@ std::string checkSurfaceError(const std::string& text) {
                : "\"" + text + "\" is not 0.001 to 10 mm";
 }
 
-std::string reportJson(const pipeline::PrepareReport& report) {
+// `quality` is the case's product of that name; empty where it has none.
+std::string reportJson(const pipeline::PrepareReport& report, const std::string& quality) {
     auto stages = nlohmann::ordered_json::array();
     double wallSeconds = 0.0, peakMemoryMib = 0.0;
     for (const pipeline::StageReport& stage : report.stages) {
@@ -67,12 +68,12 @@ std::string reportJson(const pipeline::PrepareReport& report) {
                            {"to_arc_mm", bridge.toArcMm},
                            {"length_mm", bridge.lengthMm()}});
     }
-    return nlohmann::ordered_json{{"case", report.caseName},     {"stages", stages},
-                                  {"bridges", bridges},          {"bridged_mm2", report.bridgedMm2},
-                                  {"wall_seconds", wallSeconds}, {"peak_memory_mib", peakMemoryMib},
-                                  {"notes", report.notes}}
-               .dump(2) +
-           "\n";
+    nlohmann::ordered_json json{{"case", report.caseName},     {"stages", stages},
+                                {"bridges", bridges},          {"bridged_mm2", report.bridgedMm2},
+                                {"wall_seconds", wallSeconds}, {"peak_memory_mib", peakMemoryMib},
+                                {"notes", report.notes}};
+    if (!quality.empty()) json["quality"] = nlohmann::ordered_json::parse(quality, nullptr, false);
+    return json.dump(2) + "\n";
 }
 
 Result<void> runPrepare(Arguments arguments) {
@@ -108,7 +109,13 @@ Result<void> runPrepare(Arguments arguments) {
     }
     fmt::print("case {} is prepared\n", report->caseName);
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report, reportJson(*report));
+    std::string quality;
+    if (const auto made = store->openCase(report->caseName); made && made->find("quality")) {
+        auto text = made->readText("quality");
+        if (!text) return tl::make_unexpected(text.error());
+        quality = std::move(*text);
+    }
+    return writeTextFile(arguments.report, reportJson(*report, quality));
 }
 
 }  // namespace
@@ -175,6 +182,16 @@ Command addPrepare(CLI::App& program) {
     addPointsOption(*command, "--exclude", options.excludesMm,
                     "The air or fluid at this point (LPS, mm) is not the organ; may be repeated")
         ->excludes(lumen);
+    addBallsOption(*command, "--cut", options.cuts,
+                   "There is no lumen in the ball at this point (LPS, mm; 3 mm where no radius is "
+                   "given): a wall that the scan does not show; may be repeated")
+        ->excludes(lumen);
+    addPairsOption(*command, "--join", options.joins,
+                   "The colon goes on from the first point to the second (LPS, mm); may be repeated")
+        ->excludes(lumen);
+    command->add_flag("--forget-edits", options.forgetEdits,
+                      "Forget the points that earlier calls gave; without it they stand where this "
+                      "call gives none");
     command
         ->add_option(
             "--surface-error-mm", options.surfaceErrorMm,
@@ -188,7 +205,8 @@ Command addPrepare(CLI::App& program) {
     command
         ->add_option("--report", arguments->report,
                      "Write wall seconds and peak memory of each stage, the bridges over collapsed "
-                     "segments with their lengths, and notes, as JSON")
+                     "segments with their lengths, notes, and how sure the colon is, as "
+                     "JSON")
         ->type_name("FILE.json");
     addThreadsOption(*command, options.threads);
     command->callback([arguments] {
@@ -198,7 +216,8 @@ Command addPrepare(CLI::App& program) {
         if (arguments->options.series.empty() && arguments->options.until == "import")
             throw CLI::ValidationError("--until import", "a mask has no import without SERIES");
     });
-    return {command, [arguments] { return runPrepare(*arguments); }};
+    return {command, [arguments] {
+        return runPrepare(*arguments); }};
 }
 
 }  // namespace haustra::cli

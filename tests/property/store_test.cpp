@@ -142,6 +142,20 @@ TEST_F(Store, ACenterlineComesBackBitForBit) {
     }
 }
 
+TEST_F(Store, ATextComesBackBitForBit) {
+    Case writing = writer();
+    for (const std::string& text :
+         {std::string(), std::string("{\"µ\": 1}\n"), std::string("a\0b", 3),
+          std::string(100000, 'x')}) {
+        ASSERT_TRUE(writing.publishText("quality", keyOf(int(text.size())), text));
+        const auto back = writing.readText("quality");
+        ASSERT_TRUE(back) << describe(back.error());
+        EXPECT_EQ(*back, text);
+        EXPECT_TRUE(writing.verify("quality"));
+        EXPECT_FALSE(writing.readMesh("quality")) << "it is no mesh";
+    }
+}
+
 TEST_F(Store, AMeshComesBackBitForBit) {
     Case writing = writer();
     for (const glm::ivec2 size :

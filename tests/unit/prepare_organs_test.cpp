@@ -82,6 +82,7 @@ protected:
         options.series = folder_ / "scan.nii.gz";
         options.organ = organ;
         options.seedsMm = seedsMm;
+        options.replace = true;  // one case, whichever scan
         return prepare(store::CaseStore::open(folder_ / "store", true).value(), "organ", options);
     }
     store::Case opened() const {

@@ -1,0 +1,75 @@
+// What the colon was found to be, and what a person said of it, as JSON.
+#include "core/colon_record.h"
+
+#include "core/colon_edits.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+using namespace haustra;
+
+namespace {
+
+ColonRecord collapsedColon() {
+    ColonRecord record;
+    record.pieces = {{ColonPart::rectum, {0, 40, -300}, 20, 120, 150, 10},
+                     {ColonPart::sigmoid, {30, 10, -250}, 14, 200, 90, 30},
+                     {ColonPart::splenicFlexure, {90, 10, -20}, 15, 180, 100, 20},
+                     {ColonPart::cecum, {-80, 0, -200}, 25, 90, 160, 5}};
+    record.junctions = {{JunctionKind::openLumen, {10, 30, -280}, 0, 8, 1.0},
+                        {JunctionKind::collapse, {60, 10, -150}, 31, 0, 0.9},
+                        {JunctionKind::openLumen, {0, 10, -50}, 0, 9, 1.0}};
+    record.confidence = 0.875;
+    record.leftOut = {{{-40, 0, -220}, 28.0, true, ColonPart::cecum, 4.0, true}};
+    record.warnings = {"the sigmoid is collapsed over 31 mm, at (60, 10, -150) mm"};
+    return record;
+}
+
+TEST(ColonRecord, SegmentsHoldWhatThePiecesHold) {
+    const ColonRecord record = collapsedColon();
+    double lengthMm = 0.0, gasMl = 0.0, taggedMl = 0.0, collapsedMm = 0.0;
+    for (const SegmentDistension& segment : distensionOf(record)) {
+        lengthMm += segment.lengthMm, collapsedMm += segment.collapsedMm;
+        gasMl += segment.gasMl, taggedMl += segment.taggedMl;
+    }
+    EXPECT_DOUBLE_EQ(lengthMm + collapsedMm, record.lengthMm());
+    EXPECT_DOUBLE_EQ(gasMl, 500.0);
+    EXPECT_DOUBLE_EQ(taggedMl, 65.0);
+    EXPECT_DOUBLE_EQ(distensionOf(record)[std::size_t(ColonSegment::sigmoid)].collapsedMm, 31.0);
+    EXPECT_DOUBLE_EQ(distensionOf(record)[std::size_t(ColonSegment::descending)].diameterMm, 30.0);
+}
+
+TEST(ColonRecord, ItsJsonSaysAllOfIt) {
+    const auto json = nlohmann::json::parse(qualityJson(collapsedColon()));
+    EXPECT_EQ(json.at("confidence"), 0.88);
+    EXPECT_EQ(json.at("pieces").size(), json.at("junctions").size() + 1);
+    EXPECT_EQ(json.at("junctions")[1].at("kind"), "collapse");
+    EXPECT_EQ(json.at("segments").size(), 6u);
+    EXPECT_EQ(json.at("left_out_gas_ml"), 28.0);
+    EXPECT_EQ(json.at("warnings").size(), 1u);
+}
+
+TEST(ColonEdits, ReadBackAsTheyWereBitForBit) {
+    ColonEdits edits;
+    edits.seedsMm = {{1.0 / 3.0, -2e-9, 417.25}};
+    edits.excludesMm = {{-0.1, 0.2, 0.3}, {5, 6, 7}};
+    edits.cuts = {{{10.1, 20.2, 30.3}, 4.7}};
+    edits.joins = {{{1, 2, 3}, {4, 5, 6.0000001}}};
+    const auto back = editsFromJson(editsJson(edits));
+    ASSERT_TRUE(back) << describe(back.error());
+    EXPECT_EQ(*back, edits);
+    EXPECT_TRUE(editsFromJson(editsJson({}))->empty());
+}
+
+TEST(ColonEdits, WhatIsNoneIsRefused) {
+    for (const char* text :
+         {"", "{}", "[1,2]",
+          "{\"seeds_mm\":[[1,2]],\"excludes_mm\":[],\"cuts\":[],\"joins_mm\":[]}",
+          "{\"seeds_mm\":[[1,2,\"x\"]],\"excludes_mm\":[],\"cuts\":[],\"joins_mm\":[]}"}) {
+        const auto edits = editsFromJson(text);
+        ASSERT_FALSE(edits) << text;
+        EXPECT_EQ(edits.error().kind, ErrorKind::badInput);
+    }
+}
+
+}  // namespace
