@@ -52,21 +52,22 @@ double logDensity(const Region& region, glm::dvec3 place) {
 }
 
 // One lumen holds one fluid: where tagged material of quite another HU begins, there is a wall too
-// thin to show beside the brighter side's blur.
+// thin to show beside the brighter side's blur. |ln| of the ratio of both heights over soft tissue,
+// where mostly fluid meets fluid; else 0.
 double fluidMismatch(const Orifice& orifice, const TubePieces& cut, double softHu) {
     const TubePiece &a = cut.pieces[std::size_t(orifice.a)],
                     &b = cut.pieces[std::size_t(orifice.b)];
     if (orifice.openTaggedMm2 < 0.7 * orifice.openMm2 || a.coreHu <= softHu || b.coreHu <= softHu)
         return 0.0;
-    const double ratio = std::abs(std::log((a.coreHu - softHu) / (b.coreHu - softHu)));
-    return std::min(10.0, 20.0 * std::max(0.0, ratio - 0.2));
+    return std::abs(std::log((a.coreHu - softHu) / (b.coreHu - softHu)));
 }
 
 double orificeLogOdds(const Orifice& orifice, const TubePieces& cut, double softHu) {
     const double wallShare = orifice.wallMm2 / (orifice.wallMm2 + orifice.openMm2);
-    return std::clamp(2.5 * (orifice.radiusMm - 2.5) - 6.0 * (wallShare - 0.35) -
-                          fluidMismatch(orifice, cut, softHu),
-                      -8.0, 20.0);
+    return std::clamp(
+        2.5 * (orifice.radiusMm - 2.5) - 6.0 * (wallShare - 0.35) -
+            std::min(10.0, 20.0 * std::max(0.0, fluidMismatch(orifice, cut, softHu) - 0.2)),
+        -8.0, 20.0);
 }
 
 }  // namespace
@@ -168,6 +169,7 @@ PieceGraph makePieceGraph(const CtScan& scan, const BowelContents& contents,
         if (a < 0 || b < 0) continue;
         ChainJunction junction;
         junction.path = int(o);
+        junction.mismatch = fluidMismatch(orifice, cut, softHu);
         junction.a = a, junction.b = b;
         junction.logOdds = named[std::size_t(orifice.a)] == 2 || named[std::size_t(orifice.b)] == 2
                                ? -60.0

@@ -117,10 +117,12 @@ private:
     double reachBehindMm(int j, int side) const {
         return glm::distance(node(side).centreMm, junction(j).placeMm) + node(side).radiusMm;
     }
+    /// Not fluids that one lumen would have mixed: opacified ileum beside the colon's fluid.
+    bool holdsTheSame(int j) const { return junction(j).mismatch < 0.5; }
     /// A small piece that reaches little farther out than the wall that it hangs on.
     bool isSac(int j, int home) const {
         const int side = otherEnd(j, home);
-        return reachBehindMm(j, side) < sacReachMm(home) &&
+        return holdsTheSame(j) && reachBehindMm(j, side) < sacReachMm(home) &&
                node(side).volumeMl < 0.5 * node(home).volumeMl + 5.0;
     }
 
@@ -434,7 +436,7 @@ private:
                 }
                 const bool named = std::any_of(body.begin(), body.end(),
                                                [&](int n) { return node(n).given > 0.0; });
-                const bool sac = named || (farthestMm < sacReachMm(home) &&
+                const bool sac = named || (holdsTheSame(j) && farthestMm < sacReachMm(home) &&
                                            volumeMl < 0.5 * node(home).volumeMl + 5.0 &&
                                            opensToOnePlace(chain, doors, visited));
                 if (sac) {

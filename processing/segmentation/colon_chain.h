@@ -26,6 +26,8 @@ struct ChainJunction {
     JunctionKind kind = JunctionKind::openLumen;
     double logOdds = 0.0;   ///< ln P(lumen passes) / P(it does not)
     double lengthMm = 0.0;  ///< of a collapse
+    double mismatch =
+        0.0;  ///< |ln| of the ratio of two fluids' heights over soft tissue that meet in it
     double radiusMm = 0.0, openMm2 = 0.0, wallMm2 = 0.0;
     glm::dvec3 placeMm{0.0};
     int path = -1;  ///< index of the collapse's path, or else of the orifice

@@ -3,6 +3,7 @@
 #include "core/connected_labels.h"
 #include "core/ct_scan.h"
 #include "segmentation/tagged_stool.h"
+#include "topology/hu_range_lumen.h"
 
 #include <algorithm>
 #include <array>
@@ -45,7 +46,8 @@ public:
           chain_(chain),
           softHu_(tissue.meanHu[int(Tissue::soft)]),
           kept_(cut.pieces.size(), 0),
-          barred_(hu.voxels().size(), false) {
+          barred_(hu.voxels().size(), false),
+          smooth_(topology::smoothHu(hu, 0.8, 0)) {
         result_.labels = Volume<std::uint8_t>(grid_, outside);
         labels_ = result_.labels.writable();
     }
@@ -312,7 +314,7 @@ private:
                 bool byAir = false;
                 visitFaces(grid_, n,
                            [&](std::size_t m, int) { byAir = byAir || labels_[m] == air; });
-                if (!byAir && hu_[n] < halfHeightAt(n)) off.push_back(n);
+                if (!byAir && smooth_[n] < halfHeightAt(n)) off.push_back(n);
             }
             front.clear();
             for (const std::uint32_t n : off)
@@ -334,7 +336,7 @@ private:
                 visitFaces(grid_, n, [&](std::size_t m, int) {
                     if (labels_[m] == outside && !barred_[m] &&
                         Content(contents_.content[m]) == Content::tissue &&
-                        hu_[m] > halfHeightAt(n) && !besideOthers(m))
+                        smooth_[m] > halfHeightAt(n) && !besideOthers(m))
                         on.push_back(std::uint32_t(m));
                 });
             }
@@ -357,7 +359,7 @@ private:
             for (int j = lo.y; j <= hi.y; ++j) {
                 for (std::size_t m = grid_.index(lo.x, j, k), end = grid_.index(hi.x, j, k);
                      m <= end; ++m) {
-                    if (labels_[m] == tagged) most = std::max<int>(most, hu_[m]);
+                    if (labels_[m] == tagged) most = std::max<int>(most, smooth_[m]);
                 }
             }
         }
@@ -376,34 +378,45 @@ private:
     // Pieces that are no bowel of their own, open to the lumen more than to anything else; and
     // tagged stool in its gas.
     void takeCrumbs() {
-        std::map<std::int32_t, std::pair<double, double>>
-            contactMm2;  // to the lumen, to other bowel
+        struct Contact {
+            double openToLumen = 0.0, openToBowel = 0.0;  ///< mm²
+            double lumen = 0.0, others = 0.0;             ///< with walls, and any other piece
+        };
+        std::map<std::int32_t, Contact> contacts;
         for (const Orifice& orifice : cut_.orifices) {
             for (const auto& [crumb, other] :
                  {std::pair(orifice.a, orifice.b), std::pair(orifice.b, orifice.a)}) {
                 if (isKept(crumb) || graph_.nodeOf[std::size_t(crumb)] >= 0) continue;
-                if (!cut_.pieces[std::size_t(crumb)].mostlyGas()) continue;
+                Contact& contact = contacts[crumb];
+                (isKept(other) ? contact.lumen : contact.others) +=
+                    orifice.openMm2 + orifice.wallMm2;
                 if (isKept(other))
-                    contactMm2[crumb].first += orifice.openMm2;
+                    contact.openToLumen += orifice.openMm2;
                 else if (graph_.nodeOf[std::size_t(other)] >= 0)
-                    contactMm2[crumb].second += orifice.openMm2;
+                    contact.openToBowel += orifice.openMm2;
             }
         }
         std::set<std::int32_t> taken;
-        for (const auto& [crumb, mm2] : contactMm2) {
+        std::set<std::int32_t> others;  // tagged, and more beside other bowel than the lumen
+        for (const auto& [crumb, contact] : contacts) {
             constexpr double largestMl = 1.0;
             const TubePiece& piece = cut_.pieces[std::size_t(crumb)];
-            if (mm2.first > 3.0 * mm2.second && mm2.first > 0.05 * piece.surfaceMm2 &&
-                piece.volumeMl < largestMl && piece.excludedAirMm2 == 0.0)
+            if (!piece.mostlyGas()) {
+                if (contact.others > contact.lumen) others.insert(crumb);
+            } else if (contact.openToLumen > 3.0 * contact.openToBowel &&
+                       contact.openToLumen > 0.05 * piece.surfaceMm2 &&
+                       piece.volumeMl < largestMl && piece.excludedAirMm2 == 0.0) {
                 taken.insert(crumb);
+            }
         }
         std::vector<std::uint32_t> barredVoxels;
         for (std::size_t n = 0; n < labels_.size(); ++n) {
             const std::int32_t p = cut_.pieceAt[n];
             if (p >= 0 && labels_[n] == outside && !barred_[n] && taken.count(p))
                 labels_[n] = hu_[n] < tissue_.airBelowHu ? air : tagged;
-            if (barred_[n] || (p >= 0 && !isKept(p) && graph_.nodeOf[std::size_t(p)] >= 0))
-                barredVoxels.push_back(std::uint32_t(n));
+            const bool elsewhere = p >= 0 && !isKept(p) &&
+                                   (graph_.nodeOf[std::size_t(p)] >= 0 || others.count(p));
+            if (barred_[n] || elsewhere) barredVoxels.push_back(std::uint32_t(n));
         }
         addTaggedStool(result_.labels, hu_, tissue_, barredVoxels);
         labels_ = result_.labels.writable();
@@ -506,6 +519,7 @@ private:
     const double softHu_;
     std::vector<char> kept_;                            ///< pieces
     std::vector<bool> barred_;                          ///< voxels of rebuilt walls
+    const Volume<std::int16_t> smooth_;                 ///< HU, against noise
     std::vector<char> open_;                            ///< orifices
     std::vector<int> inner_;                            ///< orifices between kept pieces
     std::set<int> cuts_;                                ///< orifices that the chain closes

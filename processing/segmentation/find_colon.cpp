@@ -313,7 +313,9 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
         walls.threads = options.threads;
         const Volume<std::uint8_t> thin = findThinWalls(scan.hu, contents, walls);
         progress(0.4);
-        cut = cutIntoPieces(scan.hu, contents.content, thin, {.threads = options.threads});
+        cut =
+            cutIntoPieces(scan.hu, contents.content, thin,
+                          {.softHu = tissue.meanHu[int(Tissue::soft)], .threads = options.threads});
     }
     progress(0.65);
     const auto given = givenPieces(cut, options.edits);

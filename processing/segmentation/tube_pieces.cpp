@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -14,7 +15,7 @@ namespace haustra::segmentation {
 namespace {
 
 constexpr double ticksPerMm = 32.0;
-constexpr std::int32_t none = -1, waiting = -2;
+constexpr std::int32_t none = -1;
 
 bool isContent(std::uint8_t content) {
     return Content(content) == Content::gas || Content(content) == Content::tagged ||
@@ -202,42 +203,55 @@ void numberByVolume(std::span<std::int32_t> label, std::vector<std::int32_t>& ro
     rootOfBasin = std::move(roots);
 }
 
-/// Thin walls, and what no basin reached, go to the nearest piece.
-void spread(std::span<std::int32_t> label, const Volume<std::uint8_t>& content, const Grid& grid) {
+/// Mean HU of each piece's tagged voxels more than 2.5 mm deep; −∞ where it has none.
+std::vector<double> coreHuOf(std::span<const std::int32_t> label, std::size_t pieces,
+                             const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
+                             const Volume<float>& distanceMm) {
+    std::vector<double> sum(pieces, 0.0), count(pieces, 0.0);
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] < 0 || Content(content[n]) != Content::tagged || !(distanceMm[n] > 2.5f))
+            continue;
+        sum[std::size_t(label[n])] += hu[n], count[std::size_t(label[n])] += 1.0;
+    }
+    for (std::size_t p = 0; p < pieces; ++p)
+        sum[p] = count[p] > 0.0 ? sum[p] / count[p] : -std::numeric_limits<double>::infinity();
+    return sum;
+}
+
+/// Gives what no basin has, layer by layer and `layers` far, to the piece beside it for which
+/// `takes(voxel, piece)` holds; the rest stays without one.
+template <class Takes>
+void spread(std::span<std::int32_t> label, const Volume<std::uint8_t>& content, const Grid& grid,
+            int layers, const Takes& takes) {
     std::vector<std::uint32_t> front;
     for (std::size_t n = 0; n < label.size(); ++n) {
         if (label[n] >= 0 || !isContent(content[n])) continue;
-        label[n] = waiting;
-    }
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        if (label[n] != waiting) continue;
         bool near = false;
         visitFaces(grid, n, [&](std::size_t m, int) { near = near || label[m] >= 0; });
         if (near) front.push_back(std::uint32_t(n));
     }
-    while (!front.empty()) {
+    for (int layer = 0; layer < layers && !front.empty(); ++layer) {
         std::vector<std::pair<std::uint32_t, std::int32_t>> given;
         for (const std::uint32_t n : front) {
-            std::int32_t nearest = waiting;
+            std::int32_t nearest = none;
             visitFaces(grid, n, [&](std::size_t m, int) {
-                if (label[m] >= 0 && (nearest < 0 || label[m] < nearest)) nearest = label[m];
+                if (label[m] >= 0 && (nearest < 0 || label[m] < nearest) && takes(n, label[m]))
+                    nearest = label[m];
             });
-            given.emplace_back(n, nearest);
+            if (nearest >= 0) given.emplace_back(n, nearest);
         }
         for (const auto& [n, to] : given)
             label[n] = to;
         std::vector<std::uint32_t> next;
-        for (const std::uint32_t n : front) {
+        for (const auto& [n, to] : given) {
             visitFaces(grid, n, [&](std::size_t m, int) {
-                if (label[m] == waiting) label[m] = waiting - 1, next.push_back(std::uint32_t(m));
+                if (label[m] < 0 && isContent(content[m])) next.push_back(std::uint32_t(m));
             });
         }
-        for (const std::uint32_t n : next)
-            label[n] = waiting;
+        std::sort(next.begin(), next.end());
+        next.erase(std::unique(next.begin(), next.end()), next.end());
         front = std::move(next);
     }
-    for (std::int32_t& l : label)
-        l = std::max(l, none);
 }
 
 /// A face between voxel `n` and the next along `axis`, of two pieces.
@@ -343,7 +357,21 @@ TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8
     std::vector<std::int32_t> basins = floodBasins(cut.distanceMm, options.neck, label, grid);
     splitLong(label, basins, options.lengthMm, grid);
     numberByVolume(label, basins);
-    spread(label, content, grid);
+    {
+        // Thin walls go to the piece beside them, but what is dimmer than half a fluid's height
+        // over soft tissue lies beyond that fluid's wall: it is another's, or nobody's.
+        const std::vector<double> coreHu =
+            coreHuOf(label, basins.size(), hu, content, cut.distanceMm);
+        const auto layers = [&](double mm) {
+            const glm::dvec3 step = grid.spacingMm();
+            return std::max(1, int(std::lround(mm / std::min({step.x, step.y, step.z}))));
+        };
+        spread(label, content, grid, layers(6.0), [&](std::size_t n, std::int32_t piece) {
+            return Content(content[n]) != Content::tagged ||
+                   hu[n] - options.softHu > 0.45 * (coreHu[std::size_t(piece)] - options.softHu);
+        });
+        spread(label, content, grid, layers(1.5), [](std::size_t, std::int32_t) { return true; });
+    }
 
     const glm::dvec3 spacing = grid.spacingMm();
     const double voxelMm3 = grid.voxelVolumeMm3();

@@ -45,6 +45,7 @@ struct TubePieces {
 struct TubePieceOptions {
     double neck = 0.75;  ///< a ball that passes is smaller than this part of the lesser piece's
     double lengthMm = 110.0;  ///< a piece half as long again is cut, by the way from face to face
+    double softHu = 40.0;     ///< what walls are made of
     int threads = 0;
 };
 
