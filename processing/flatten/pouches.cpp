@@ -1009,7 +1009,7 @@ std::vector<Pouch> discsAround(const TriMesh& tube, const PeriodicMap& map,
             for (const int t : disc->triangles)
                 inside[std::size_t(t)] = 1;
             Pouch tried = *disc;
-            if (!placed(tube, *halfedges, map, inside, tried, 0, leastRoundness)) continue;
+            if (!placed(tube, *halfedges, map, inside, tried, 0, 0.0)) continue;
             for (const int t : disc->triangles)
                 taken[std::size_t(t)] = 1;
             found.push_back(std::move(*disc));
