@@ -114,7 +114,7 @@ Cut cutAt(const Mapped& mapped, double seam) {
 /// The strip cut open; where that leaves folds, with a seam a hair aside, and discs around the
 /// folds set in.
 Cut cutOpen(Mapped& mapped, const SeamOptions& options) {
-    constexpr int rounds = 6;
+    constexpr int rounds = 40;
     constexpr double aside = 1.0 / 5760.0;  // an eighth of a column of bestSeam's
     Cut cut = cutAt(mapped, bestSeam(mapped.tube, mapped.map, options));
     std::vector<int> before;

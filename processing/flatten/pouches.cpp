@@ -4,6 +4,7 @@
 #include "flatten/conformal_tube.h"
 #include "flatten/disc_embedding.h"
 #include "flatten/flip_repair.h"
+#include "flatten/grid_drawing.h"
 #include "flatten/shape_relaxation.h"
 #include "flatten/vertex_stars.h"
 #include "mesh/halfedge_mesh.h"
@@ -48,6 +49,14 @@ glm::dvec2 placeNear(const PeriodicMap& map, int v, glm::dvec2 middle) {
 
 double cross(glm::dvec2 a, glm::dvec2 b) {
     return a.x * b.y - a.y * b.x;
+}
+
+/// Whether three places, rounded however the strip is turned, are counter-clockwise.
+bool upright(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, double units) {
+    const glm::dvec2 p = b - a, q = c - a, r = q - p;
+    const double longest = std::sqrt(std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)}));
+    // Each corner moves by up to 2^−½ of a unit.
+    return cross(p, q) > 2.0 * longest / units;
 }
 
 double areaMm2(const TriMesh& tube, const glm::ivec3& t) {
@@ -377,13 +386,10 @@ public:
         return centre_ ? clearance(borderFlat_, *centre_) / pouch_.radius : 0.0;
     }
 
-    /// False where the map cannot be made.
+    /// Embeds what is within the ring as its own conformal map would have it. False where that
+    /// cannot be made, or is too thin for the lattice.
     bool place(double units) {
-        if (!centre_) return false;
-        splitInwards();
-        if (ring_ < 3) return false;
-        number();
-        cut();
+        if (!cutAlong(1)) return false;
         shape();
         const double clear = clearance(borderFlat_, *centre_);
         for (const double fall : {mostFall, 0.75 * mostFall, 0.5 * mostFall}) {
@@ -396,6 +402,55 @@ public:
         return false;
     }
 
+    /// The ring becomes a triangle with round corners, which lets a second one within it, and all
+    /// that this encloses, be drawn in the triangle of these corners. False where the grid is too
+    /// fine for the lattice.
+    bool placeOnGrid(double units) {
+        if (!cutAlong(2)) return false;
+        // Both rings would run along one edge.
+        if (std::ranges::any_of(collar_, [](const Polygon& p) { return p.corners.size() == 5; }))
+            return false;
+        const std::vector<double> angles = ringAngles(*centre_);
+        const auto corners = cornersFor(angles);
+        if (!corners) return false;
+        std::vector<int> number(placesMm_.size());
+        for (std::size_t n = 0; n < number.size(); ++n)
+            number[n] = n < ring_ ? corners->of[n] : int(n - ring_) + 3;
+        std::vector<glm::ivec3> triangles;
+        for (const Piece& piece : inner_) {
+            const glm::ivec3 t(number[std::size_t(piece.corners.x)],
+                               number[std::size_t(piece.corners.y)],
+                               number[std::size_t(piece.corners.z)]);
+            if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
+        }
+        const int count = int(placesMm_.size() - ring_) + 3;
+        const auto drawn = drawOnGrid(triangles, count);
+        if (!drawn) return false;
+        // In which corners 0, 1 and 2 have their own weights.
+        const glm::dmat3 weights = glm::inverse(
+            glm::dmat3(glm::dvec3((*drawn)[0]), glm::dvec3((*drawn)[1]), glm::dvec3((*drawn)[2])));
+        const double clear = clearance(borderFlat_, *centre_);
+        for (const double share : {0.9, 0.75, 0.5, 0.25}) {
+            for (const double round : {0.125, 0.03125, 0.0078125}) {
+                places_.clear();
+                for (std::size_t n = 0; n < ring_; ++n) {
+                    const glm::dvec2 outward(std::cos(angles[n]), std::sin(angles[n]));
+                    places_.push_back((1.0 - round) * corners->at[std::size_t(corners->of[n])] +
+                                      round * outward);
+                }
+                for (std::size_t n = ring_; n < placesMm_.size(); ++n) {
+                    const glm::dvec3 w = weights * glm::dvec3((*drawn)[std::size_t(number[n])]);
+                    places_.push_back((1.0 - round) * (w.x * corners->at[0] + w.y * corners->at[1] +
+                                                       w.z * corners->at[2]));
+                }
+                for (glm::dvec2& at : places_)
+                    at = *centre_ + share * clear * at;
+                if (fillCollar(units) && allUpright(innerTriangles(), units)) return true;
+            }
+        }
+        return false;
+    }
+
     /// Puts the pouch's pieces in the place of its triangles.
     void takeInto(SetIn& made, std::vector<char>& gone, std::vector<glm::ivec3>& triangles,
                   std::vector<int>& sources, std::vector<std::array<std::int8_t, 3>>& turns) const {
@@ -403,7 +458,7 @@ public:
             gone[std::size_t(t)] = 1;
         std::vector<int> vertex;  // of the inner ones
         for (std::size_t n = 0; n < placesMm_.size(); ++n) {
-            const bool isNew = n < ring_ || n >= innerVertex_.size();
+            const bool isNew = n >= innerVertex_.size() || innerVertex_[n] < 0;
             vertex.push_back(isNew ? int(made.tube.vertices.size()) : innerVertex_[n]);
             if (isNew) {
                 made.tube.vertices.push_back(placesMm_[n]);
@@ -478,8 +533,21 @@ private:
         return std::uint64_t(std::uint32_t(from)) << 32 | std::uint32_t(to);
     }
 
-    /// Cuts each edge that leads from the border inwards, in order around the ring.
+    /// Numbers and cuts what is within the border, along one ring or two; false where that is
+    /// none.
+    bool cutAlong(int rings) {
+        if (!centre_) return false;
+        rings_ = rings;
+        splitInwards();
+        if (ring_ < 3) return false;
+        number();
+        cut();
+        return true;
+    }
+
+    /// Cuts each edge that leads from the border inwards, in order around the rings.
     void splitInwards() {
+        std::vector<glm::dvec3> second;
         for (std::size_t n = 0; n < border_.size(); ++n) {
             const int q = border_[n];
             std::vector<int> inwards;
@@ -492,18 +560,21 @@ private:
             std::reverse(inwards.begin(), inwards.end());
             for (std::size_t k = 0; k < inwards.size(); ++k) {
                 const int to = inwards[k];
-                // An edge from border to border is cut twice.
-                const double share = borderIndex_.contains(to) ? 1.0 / 3.0 : 0.5;
+                // An edge from border to border is cut from both ends.
+                const double share = 1.0 / ((borderIndex_.contains(to) ? 2 : 1) * rings_ + 1);
+                const glm::dvec3 from = tube_.vertices[std::size_t(q)],
+                                 towards = tube_.vertices[std::size_t(to)];
                 split_.emplace(keyOf(q, to), int(ring_++));
-                placesMm_.push_back(glm::mix(tube_.vertices[std::size_t(q)],
-                                             tube_.vertices[std::size_t(to)], share));
+                placesMm_.push_back(glm::mix(from, towards, share));
+                if (rings_ > 1) second.push_back(glm::mix(from, towards, 2.0 * share));
                 slot_.push_back({int(n), (double(k) + 0.5) / double(inwards.size())});
             }
         }
+        placesMm_.insert(placesMm_.end(), second.begin(), second.end());
     }
 
     void number() {
-        innerVertex_.assign(ring_, -1);
+        innerVertex_.assign(placesMm_.size(), -1);
         for (const int t : pouch_.triangles) {
             for (int c = 0; c < 3; ++c) {
                 const int v = tube_.triangles[std::size_t(t)][c];
@@ -515,8 +586,10 @@ private:
         }
     }
 
-    /// Each triangle's part within the ring, as a fan, and its parts outside, as polygons.
+    /// Each triangle's part within the last ring, as a fan, its parts between two, and its parts
+    /// outside, as polygons.
     void cut() {
+        const int lastRing = (rings_ - 1) * int(ring_);
         for (const int t : pouch_.triangles) {
             int corner[3];
             bool on[3], side[3];  // the side from a corner to the next is one of the border
@@ -535,23 +608,28 @@ private:
                     within.push_back(innerNumber_.at(corner[c]));
                     continue;
                 }
-                if (!side[last]) within.push_back(splitAt(c, last));
-                if (!side[c]) within.push_back(splitAt(c, next));
+                if (!side[last]) within.push_back(lastRing + splitAt(c, last));
+                if (!side[c]) within.push_back(lastRing + splitAt(c, next));
             }
             for (std::size_t n = 1; n + 1 < within.size(); ++n)
                 inner_.push_back({{within[0], within[n], within[n + 1]}, t});
             // Corners along the border hang together.
             for (int c = 0; c < 3; ++c) {
                 if (!on[c] || side[(c + 2) % 3]) continue;
-                Polygon polygon{{-1 - splitAt(c, (c + 2) % 3)}, t};
+                const int first = splitAt(c, (c + 2) % 3);
+                Polygon polygon{{-1 - first}, t};
                 int at = c;
                 polygon.corners.push_back(corner[at]);
                 while (side[at]) {
                     at = (at + 1) % 3;
                     polygon.corners.push_back(corner[at]);
                 }
-                polygon.corners.push_back(-1 - splitAt(at, (at + 1) % 3));
+                const int second = splitAt(at, (at + 1) % 3);
+                polygon.corners.push_back(-1 - second);
                 collar_.push_back(std::move(polygon));
+                if (rings_ == 1) continue;
+                inner_.push_back({{first, second, lastRing + second}, t});
+                inner_.push_back({{first, lastRing + second, lastRing + first}, t});
             }
         }
     }
@@ -646,16 +724,8 @@ private:
         }
     }
 
-    /// Whether three places, rounded however the strip is turned, are counter-clockwise.
-    static bool upright(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, double units) {
-        const glm::dvec2 p = b - a, q = c - a, r = q - p;
-        const double longest =
-            std::sqrt(std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)}));
-        // Each corner moves by up to 2^−½ of a unit.
-        return cross(p, q) > 2.0 * longest / units;
-    }
-
-    bool tryCircle(glm::dvec2 centre, double radius, double units) {
+    /// The directions from `centre` in which the ring's vertices may lie, in order.
+    std::vector<double> ringAngles(glm::dvec2 centre) const {
         std::vector<double> angle;
         for (std::size_t n = 0; n < borderFlat_.size(); ++n) {
             const glm::dvec2 away = borderFlat_[n] - centre;
@@ -671,16 +741,78 @@ private:
             if (n >= count) return angle.front() + 2.0 * std::numbers::pi;
             return angle[std::size_t(n)];
         };
-        std::vector<glm::dvec2> circle;
+        std::vector<double> ring;
         for (const auto& [n, share] : slot_) {
             const double low = 0.5 * (angleAt(n - 1) + angleAt(n)),
                          high = 0.5 * (angleAt(n) + angleAt(n + 1));
-            const double at = low + share * (high - low);
-            circle.push_back(centre + radius * glm::dvec2(std::cos(at), std::sin(at)));
+            ring.push_back(low + share * (high - low));
         }
+        return ring;
+    }
+
+    /// A triangle within the unit circle, and for each of the ring's vertices the corner whose
+    /// supporting directions its own is among.
+    struct Corners {
+        glm::dvec2 at[3];
+        std::vector<int> of;
+    };
+
+    /// As regular as the ring's directions, in ascending order, allow; nothing where one is without
+    /// any near enough.
+    static std::optional<Corners> cornersFor(const std::vector<double>& angles) {
+        constexpr double turn = 2.0 * std::numbers::pi, third = turn / 3.0, widest = 0.47 * turn;
+        const std::size_t count = angles.size();
+        // A side of the triangle looks in the middle between two vertices.
+        const auto between = [&](std::size_t n) {
+            return 0.5 * (angles[n] + (n + 1 < count ? angles[n + 1] : angles[0] + turn));
+        };
+        double best = widest;
+        std::array<std::size_t, 3> sides{};
+        for (std::size_t a = 0; a < count; ++a) {
+            const auto nearest = [&](double away) {
+                std::size_t found = a;
+                double least = turn;
+                for (std::size_t n = 0; n < count; ++n) {
+                    const double there = between(n) - between(a) + (n < a ? turn : 0.0);
+                    if (n == a || !(std::abs(there - away) < least)) continue;
+                    least = std::abs(there - away);
+                    found = n;
+                }
+                return found;
+            };
+            std::array<std::size_t, 3> tried{a, nearest(third), nearest(2.0 * third)};
+            if (tried[0] == tried[1] || tried[1] == tried[2] || tried[2] == tried[0]) continue;
+            std::sort(tried.begin(), tried.end());
+            const double gap = std::max({between(tried[1]) - between(tried[0]),
+                                         between(tried[2]) - between(tried[1]),
+                                         between(tried[0]) + turn - between(tried[2])});
+            if (gap < best) best = gap, sides = tried;
+        }
+        if (!(best < widest)) return std::nullopt;
+        Corners corners;
+        double farthest = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            // Between the sides c and c + 1, both of which touch the unit circle.
+            const double low = between(sides[c]),
+                         high = c < 2 ? between(sides[c + 1]) : between(sides[0]) + turn;
+            const double middle = 0.5 * (low + high), away = 1.0 / std::cos(0.5 * (high - low));
+            corners.at[c] = away * glm::dvec2(std::cos(middle), std::sin(middle));
+            farthest = std::max(farthest, away);
+        }
+        for (glm::dvec2& at : corners.at)
+            at /= farthest;
+        for (std::size_t n = 0; n < count; ++n)
+            corners.of.push_back(n > sides[0] && n <= sides[1]   ? 0
+                                 : n > sides[1] && n <= sides[2] ? 1
+                                                                 : 2);
+        return corners;
+    }
+
+    /// Triangulates what is between the border and the ring in its places; false where it cannot.
+    bool fillCollar(double units) {
         const auto placeOf = [&](int key) {
             return key >= 0 ? borderFlat_[std::size_t(borderIndex_.at(key))]
-                            : circle[std::size_t(-1 - key)];
+                            : places_[std::size_t(-1 - key)];
         };
         collarTriangles_.clear();
         for (const Polygon& polygon : collar_) {
@@ -701,17 +833,26 @@ private:
             }
             if (!done) return false;
         }
+        return true;
+    }
+
+    bool allUpright(const std::vector<glm::ivec3>& triangles, double units) const {
+        return std::ranges::all_of(triangles, [&](const glm::ivec3& t) {
+            return upright(places_[std::size_t(t.x)], places_[std::size_t(t.y)],
+                           places_[std::size_t(t.z)], units);
+        });
+    }
+
+    bool tryCircle(glm::dvec2 centre, double radius, double units) {
+        places_.clear();
+        for (const double angle : ringAngles(centre))
+            places_.push_back(centre + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+        if (!fillCollar(units)) return false;
         const std::vector<glm::ivec3> triangles = innerTriangles();
-        auto places = embedDisc(triangles, circle, target_);
+        auto places = embedDisc(triangles, places_, target_);
         if (!places) return false;
         places_ = std::move(*places);
-        const auto allUpright = [&] {
-            return std::ranges::all_of(triangles, [&](const glm::ivec3& t) {
-                return upright(places_[std::size_t(t.x)], places_[std::size_t(t.y)],
-                               places_[std::size_t(t.z)], units);
-            });
-        };
-        if (allUpright()) return true;
+        if (allUpright(triangles, units)) return true;
         // What is thin is widened.
         const TriMesh disc{placesMm_, triangles};
         std::vector<char> held(placesMm_.size(), 0);
@@ -738,7 +879,7 @@ private:
         constexpr int sweeps = 20;
         relaxShapes(map, disc, stars, thin, sweeps);
         places_ = std::move(map.flat);
-        return allUpright();
+        return allUpright(triangles, units);
     }
 
     const TriMesh& tube_;
@@ -750,10 +891,11 @@ private:
     std::vector<glm::dvec2> borderFlat_;
     std::optional<glm::dvec2> centre_;
     std::unordered_map<std::uint64_t, int> split_;  ///< the ring's vertices, by the edge's ends
-    std::size_t ring_ = 0;                          ///< vertices of the ring
+    int rings_ = 1;
+    std::size_t ring_ = 0;                      ///< vertices of a ring
     std::vector<std::pair<int, double>> slot_;  ///< of the ring's vertices: which border vertex's,
                                                 ///< and where in its share of the circle
-    /// The ring's vertices, the pouch's others, and those that its own fingers' rings add.
+    /// The rings' vertices, the pouch's others, and those that its own fingers' rings add.
     std::vector<glm::dvec3> placesMm_;
     std::vector<int> innerVertex_;  ///< the tube's, −1 on the ring
     std::unordered_map<int, int> innerNumber_;
@@ -764,6 +906,41 @@ private:
     std::vector<glm::dvec2> target_, places_;
     int depth_;  ///< of pouches that this is on
 };
+
+/// Leaves out the triangles that have two sides on the border and lie well where they are.
+void trim(const TriMesh& tube, const HalfedgeMesh& halfedges, const PeriodicMap& map,
+          std::vector<char>& inside, Pouch& pouch) {
+    const double units = flatUnitsPerCircumference(map.height);
+    for (bool again = true; again;) {
+        again = false;
+        for (const int t : pouch.triangles) {
+            if (!inside[std::size_t(t)]) continue;
+            int sides = 0;
+            for (int h = 3 * t; h < 3 * t + 3; ++h)
+                sides += !inside[std::size_t(halfedges.opposite(h) / 3)];
+            const auto at = [&](int c) { return map.corner(tube, std::size_t(t), c); };
+            if (sides != 2 || !upright(at(0), at(1), at(2), units)) continue;
+            inside[std::size_t(t)] = 0;
+            again = true;
+        }
+    }
+    std::erase_if(pouch.triangles, [&](int t) { return !inside[std::size_t(t)]; });
+}
+
+/// The pouch, whose triangles `inside` marks, in its place: in its own shape, or else, trimmed, on
+/// a grid. Nothing where its border is not rounder than `roundness`, or neither is possible.
+std::optional<CutPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfedges,
+                               const PeriodicMap& map, std::vector<char>& inside, Pouch& pouch,
+                               int depth, double roundness) {
+    const double units = flatUnitsPerCircumference(map.height);
+    CutPouch shaped(tube, halfedges, inside, pouch, depth);
+    if (!(shaped.roundness(map) > roundness)) return std::nullopt;
+    if (shaped.place(units)) return shaped;
+    trim(tube, halfedges, map, inside, pouch);
+    CutPouch drawn(tube, halfedges, inside, pouch, depth);
+    if (drawn.roundness(map) > 0.0 && drawn.placeOnGrid(units)) return drawn;
+    return std::nullopt;
+}
 
 std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units) {
     const double least = units / flatUnitsPerCircumference(map.height);
@@ -822,18 +999,17 @@ std::vector<Pouch> discsAround(const TriMesh& tube, const PeriodicMap& map,
     Discs discs(tube, *halfedges, stars);
     for (std::vector<int>& cluster : clustersOf(tube, stars, folded)) {
         const Spot spot = spotOf(tube, map, std::move(cluster));
+        const double leastDisc = crowdedUnits / flatUnitsPerCircumference(map.height);
         const double most = std::min(
             {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
-        for (double radius = 1.5 * spot.reach; radius < most; radius *= 1.5) {
+        for (double radius = std::max(1.5 * spot.reach, leastDisc); radius < most; radius *= 1.5) {
             auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
             if (!disc || disc->triangles.size() < 3 * spot.triangles.size()) continue;
             std::vector<char> inside(tube.triangles.size(), 0);
             for (const int t : disc->triangles)
                 inside[std::size_t(t)] = 1;
-            CutPouch cut(tube, *halfedges, inside, *disc, 0);
-            if (!(cut.roundness(map) > leastRoundness) ||
-                !cut.place(flatUnitsPerCircumference(map.height)))
-                continue;
+            Pouch tried = *disc;
+            if (!placed(tube, *halfedges, map, inside, tried, 0, 0.0)) continue;
             for (const int t : disc->triangles)
                 taken[std::size_t(t)] = 1;
             found.push_back(std::move(*disc));
@@ -861,9 +1037,9 @@ SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pou
     for (const Pouch& pouch : pouches) {
         for (const int t : pouch.triangles)
             inside[std::size_t(t)] = 1;
-        CutPouch cut(tube, *halfedges, inside, pouch, depth);
-        if (cut.roundness(map) > 0.0 && cut.place(flatUnitsPerCircumference(map.height))) {
-            cut.takeInto(made, gone, triangles, sources, turns);
+        Pouch held = pouch;
+        if (const auto cut = placed(tube, *halfedges, map, inside, held, depth, 0.0)) {
+            cut->takeInto(made, gone, triangles, sources, turns);
             ++made.pouches;
         }
         for (const int t : pouch.triangles)

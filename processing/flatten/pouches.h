@@ -47,7 +47,11 @@ struct SetIn {
 /// target: the disc without its tip is a tube, whose own conformal map has room all along (fingers
 /// on it are set into that likewise), rolled up with radii that fall by no more than e⁷ from neck
 /// to tip, where a conformal map's fall as exp(−2π y). A pouch that still comes out with a triangle
-/// that rounding to the lattice might turn over is left as it was. O(n), beside the systems.
+/// that rounding to the lattice might turn over, as a thread does whose every cross-section is a
+/// narrow neck, is cut along two rings instead; the outer one becomes a triangle with round
+/// corners, in which drawOnGrid draws the rest. Triangles with two sides on its border then stay
+/// out. One that has too many vertices for that (some hundreds to thousands, as its hole is wide)
+/// is left as it was. O(n), beside the systems.
 SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches);
 
 }  // namespace haustra::flatten

@@ -4,12 +4,14 @@
 #include "flatten/disc_embedding.h"
 #include "flatten/flattening.h"
 #include "flatten/flip_repair.h"
+#include "flatten/grid_drawing.h"
 #include "flatten/pouches.h"
 #include "flatten/seam.h"
 #include "mesh/halfedge_mesh.h"
 #include "pouched_tubes.h"
 
 #include <cstring>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -37,6 +39,41 @@ FingeredTube manyFingers(double shake, unsigned seed) {
 
 FingeredTube oneFinger(double lengthMm, double shake = 0.1) {
     return fingeredTube(64, 60, stepMm, {{20, 26, 8, 6.0, lengthMm}}, shake);
+}
+
+/// A tube with a thread on its wall, as thin as three edges all along, whose beads have narrow
+/// necks between them: each cross-section is a triangle of edges that parts the surface. Sections
+/// are flattened to a share of their width.
+TriMesh threadedTube(int sections, double flatness) {
+    TriMesh mesh = fingeredTube(48, 40, stepMm, {}, 0.1).mesh;
+    const auto chosen = std::size_t(48 * 2 * 20);  // in the middle of the wall
+    const glm::ivec3 foot = mesh.triangles[chosen];
+    mesh.triangles.erase(mesh.triangles.begin() + std::ptrdiff_t(chosen));
+    const glm::dvec3 at[3] = {mesh.vertices[std::size_t(foot.x)],
+                              mesh.vertices[std::size_t(foot.y)],
+                              mesh.vertices[std::size_t(foot.z)]};
+    const glm::dvec3 middle = (at[0] + at[1] + at[2]) / 3.0;
+    const glm::dvec3 out = glm::normalize(glm::cross(at[1] - at[0], at[2] - at[0]));
+    const glm::dvec3 thin = glm::normalize(at[1] - at[0]);
+    glm::ivec3 ring = foot;
+    for (int n = 1; n <= sections; ++n) {
+        const double wide = n % 3 == 0 ? 0.9 : 0.3;
+        glm::ivec3 next;
+        for (int c = 0; c < 3; ++c) {
+            glm::dvec3 away = wide * (at[c] - middle);
+            away -= (1.0 - flatness) * glm::dot(away, thin) * thin;
+            next[c] = int(mesh.vertices.size());
+            mesh.vertices.push_back(middle + away + 0.8 * stepMm * n * out);
+        }
+        for (int c = 0; c < 3; ++c) {
+            const int d = (c + 1) % 3;
+            mesh.triangles.push_back({ring[c], ring[d], next[d]});
+            mesh.triangles.push_back({ring[c], next[d], next[c]});
+        }
+        ring = next;
+    }
+    mesh.triangles.push_back(ring);
+    return mesh;
 }
 
 double flatArea(const FlatMap& map, std::size_t t) {
@@ -103,6 +140,24 @@ TEST(Pouches, ChangeNothingWhereThereAreNone) {
                   0);
         EXPECT_EQ(cut.surface.triangles, made->map.surface.triangles);
         EXPECT_EQ(made->seam, bestSeam(tube, plain->map));
+    }
+}
+
+/// However thin and long a thread is, the strip covers each place of the plane once.
+TEST(Pouches, HoldThreadsOfThreeEdges) {
+    for (const int sections : {4, 12, 24, 48}) {
+        for (const double flatness : {1.0, 0.02}) {
+            const TriMesh tube = threadedTube(sections, flatness);
+            const auto made = flattenTube(tube, 0);
+            ASSERT_TRUE(made) << sections << " sections: " << describe(made.error());
+            EXPECT_TRUE(foldedTriangles(made->map).empty());
+            double flat = 0.0;
+            for (std::size_t t = 0; t < made->map.surface.triangles.size(); ++t)
+                flat += flatArea(made->map, t);
+            EXPECT_NEAR(flat, made->map.height, 1e-9);
+            EXPECT_NEAR(areaMm2(made->map.surface), areaMm2(tube), 1e-9 * areaMm2(tube));
+            EXPECT_TRUE(mesh::HalfedgeMesh::of(made->map.surface));
+        }
     }
 }
 
@@ -267,6 +322,78 @@ TEST(EmbedDisc, KeepsTheTargetAndUnfolds) {
                          v = (*unfolded)[std::size_t(t.z)] - a;
         EXPECT_GT(u.x * v.y - u.y * v.x, 0.0);
     }
+}
+
+/// Triangulations of a triangle: vertices set into triangles, and edges flipped where they may be.
+std::vector<glm::ivec3> randomTriangulation(int vertices, int flips, std::mt19937& random) {
+    std::vector<glm::ivec3> triangles{{0, 1, 2}};
+    std::set<std::pair<int, int>> edges{{0, 1}, {1, 2}, {0, 2}};
+    for (int v = 3; v < vertices; ++v) {
+        const std::size_t n = random() % triangles.size();
+        const glm::ivec3 t = triangles[n];
+        triangles[n] = {t.x, t.y, v};
+        triangles.push_back({t.y, t.z, v});
+        triangles.push_back({t.z, t.x, v});
+        for (int c = 0; c < 3; ++c)
+            edges.insert({t[c], v});
+    }
+    for (int flip = 0; flip < flips; ++flip) {
+        glm::ivec3& one = triangles[random() % triangles.size()];
+        const int c = int(random() % 3), a = one[c], b = one[(c + 1) % 3], p = one[(c + 2) % 3];
+        for (glm::ivec3& other : triangles) {
+            for (int d = 0; d < 3; ++d) {
+                const int q = other[(d + 2) % 3];
+                if (other[d] != b || other[(d + 1) % 3] != a) continue;
+                if (!edges.insert(std::minmax(p, q)).second) continue;
+                edges.erase(std::minmax(a, b));
+                one = {a, q, p};
+                other = {q, b, p};
+                d = 3;
+            }
+        }
+    }
+    return triangles;
+}
+
+TEST(GridDrawing, IsUprightForAnyTriangulation) {
+    std::mt19937 random(11);
+    const auto check = [](const std::vector<glm::ivec3>& triangles, int vertices) {
+        const auto drawn = drawOnGrid(triangles, vertices);
+        ASSERT_TRUE(drawn);
+        for (const glm::ivec3& at : *drawn) {
+            EXPECT_TRUE(at.x >= 0 && at.y >= 0 && at.z >= 0);
+            EXPECT_EQ(at.x + at.y + at.z, vertices - 1);
+        }
+        for (const glm::ivec3& t : triangles) {
+            const glm::ivec3 a = (*drawn)[std::size_t(t.x)];
+            const glm::ivec3 u = (*drawn)[std::size_t(t.y)] - a, v = (*drawn)[std::size_t(t.z)] - a;
+            EXPECT_GT(u.x * v.y - u.y * v.x, 0);
+        }
+    };
+    for (int n = 0; n < 100; ++n) {
+        const int vertices = 3 + int(random() % 120);
+        check(randomTriangulation(vertices, n % 2 ? 200 : 0, random), vertices);
+    }
+    // Triangles in triangles, which embeddings by means shrink by a factor each.
+    constexpr int nested = 200;
+    std::vector<glm::ivec3> tower;
+    for (int n = 0; n < nested; ++n) {
+        for (int c = 0; c < 3; ++c) {
+            const int d = (c + 1) % 3;
+            tower.push_back({3 * n + c, 3 * n + d, 3 * n + 3 + d});
+            tower.push_back({3 * n + c, 3 * n + 3 + d, 3 * n + 3 + c});
+        }
+    }
+    tower.push_back({3 * nested, 3 * nested + 1, 3 * nested + 2});
+    check(tower, 3 * nested + 3);
+}
+
+/// What is no triangulation of a triangle is told.
+TEST(GridDrawing, RefusesWhatIsNoTriangulation) {
+    EXPECT_TRUE(drawOnGrid({{0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, 4));
+    EXPECT_FALSE(drawOnGrid({{0, 1, 3}, {1, 2, 3}}, 4));             // a part is missing
+    EXPECT_FALSE(drawOnGrid({{0, 1, 3}, {0, 1, 3}, {2, 0, 3}}, 4));  // one is there twice
+    EXPECT_FALSE(drawOnGrid({{0, 1, 2}}, 4));                        // a vertex without a triangle
 }
 
 }  // namespace
