@@ -140,4 +140,28 @@ std::string qualityJson(const ColonRecord& record) {
            "\n";
 }
 
+Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text) {
+    try {
+        std::vector<ColonPiece> pieces;
+        const Json json = Json::parse(text);
+        for (const Json& piece : json.at("pieces")) {
+            ColonPiece read;
+            const std::string part = piece.at("part");
+            while (part != toString(read.part)) {
+                if (read.part == ColonPart::cecum) throw std::invalid_argument("no part: " + part);
+                read.part = ColonPart(int(read.part) + 1);
+            }
+            const Json& centre = piece.at("center_mm");
+            read.centreMm = {centre.at(0).get<double>(), centre.at(1).get<double>(),
+                             centre.at(2).get<double>()};
+            read.radiusMm = piece.at("radius_mm"), read.lengthMm = piece.at("length_mm");
+            pieces.push_back(read);
+        }
+        return pieces;
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("this tells no quality: ") + error.what(),
+                    "quality");
+    }
+}
+
 }  // namespace haustra

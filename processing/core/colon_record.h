@@ -1,6 +1,8 @@
 // What the colon was found to be: its pieces in order, what joins them, and how sure that is.
 #pragma once
 
+#include "core/result.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -113,5 +115,8 @@ std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& rec
 /// The `quality` product: JSON with all of the record, and the segments' distension; lengths in mm,
 /// places in LPS mm, shares from 0 to 1. Ends with a new line.
 std::string qualityJson(const ColonRecord& record);
+/// The pieces of such a text, with part, centre, radius and length. Fails (badInput) where it is
+/// none.
+Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text);
 
 }  // namespace haustra

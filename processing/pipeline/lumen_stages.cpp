@@ -1,12 +1,15 @@
 #include "pipeline/lumen_stages.h"
 
+#include "core/colon_record.h"
 #include "pipeline/product_attributes.h"
 #include "topology/centerline_path.h"
 #include "topology/digital_topology.h"
 #include "topology/distance_field.h"
 #include "topology/handle_cutting.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace haustra::pipeline {
 namespace {
@@ -17,7 +20,7 @@ using store::Attributes;
 // Raise a stage's version whenever its product changes for the same input and options.
 constexpr int denoisingVersion = 1;
 constexpr int distanceVersion = 1;
-constexpr int centerlineVersion = 2;
+constexpr int centerlineVersion = 3;
 
 // The distance transform goes axis by axis, which needs axes at right angles.
 Result<void> checkOrthogonal(const Grid& grid) {
@@ -39,6 +42,38 @@ Centerline joined(const std::vector<Centerline>& branches) {
     for (const Centerline& branch : branches)
         all.points.insert(all.points.end(), branch.points.begin(), branch.points.end());
     return all;
+}
+
+// Pieces of the colon that the path passes by: it went another way there, through a wall that was
+// taken for lumen. A line for each run of them.
+std::vector<std::string> piecesPassedBy(const Centerline& path,
+                                        const std::vector<ColonPiece>& pieces) {
+    std::vector<std::string> lines;
+    double missedMm = 0.0;
+    for (std::size_t n = 0; n <= pieces.size(); ++n) {
+        bool missed = false;
+        if (n < pieces.size()) {
+            // The path keeps to the middle of what it passes.
+            double nearest = 1e30;
+            for (const CenterlinePoint& p : path.points)
+                nearest = std::min(nearest, glm::distance(p.positionMm, pieces[n].centreMm));
+            missed = nearest > pieces[n].radiusMm + 5.0;
+        }
+        if (missed) {
+            missedMm += pieces[n].lengthMm;
+        } else if (missedMm > 0.0) {
+            const ColonPiece& last = pieces[n - 1];
+            char line[200];
+            std::snprintf(line, sizeof line,
+                          "about %.0f mm of the colon have no centerline, up to the %s at (%.0f, "
+                          "%.0f, %.0f) mm",
+                          missedMm, toString(last.part), last.centreMm.x, last.centreMm.y,
+                          last.centreMm.z);
+            lines.push_back(line);
+            missedMm = 0.0;
+        }
+    }
+    return lines;
 }
 
 }  // namespace
@@ -140,7 +175,14 @@ Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& l
         const auto traced = topology::traceCenterline(*labels, *distanceMm, tracing);
         if (!traced) return tl::make_unexpected(traced.error());
         Attributes attributes{{"length-mm", exactText(traced->centerline.lengthMm())}};
-        setNotes(attributes, traced->notes);
+        std::vector<std::string> notes = traced->notes;
+        if (target.find(product::quality)) {
+            const auto pieces = target.readText(product::quality).and_then(piecesOfQuality);
+            if (!pieces) return tl::make_unexpected(pieces.error());
+            const auto missed = piecesPassedBy(traced->centerline, *pieces);
+            notes.insert(notes.end(), missed.begin(), missed.end());
+        }
+        setNotes(attributes, notes);
         auto published = target.publishCenterline(product::centerline, key, traced->centerline,
                                                   attributes, madeFrom(product::centerline));
         if (!published || !organ.branches) return published;

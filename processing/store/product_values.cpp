@@ -19,6 +19,8 @@ const char* describeContent(Content content) {
             return "a mesh";
         case Content::flatMap:
             return "a flat map";
+        case Content::text:
+            return "a text";
     }
     return "something unknown";
 }

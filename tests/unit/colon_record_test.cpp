@@ -49,6 +49,19 @@ TEST(ColonRecord, ItsJsonSaysAllOfIt) {
     EXPECT_EQ(json.at("warnings").size(), 1u);
 }
 
+TEST(ColonRecord, PiecesReadBack) {
+    const ColonRecord record = collapsedColon();
+    const auto pieces = piecesOfQuality(qualityJson(record));
+    ASSERT_TRUE(pieces) << describe(pieces.error());
+    ASSERT_EQ(pieces->size(), record.pieces.size());
+    for (std::size_t n = 0; n < pieces->size(); ++n) {
+        EXPECT_EQ((*pieces)[n].part, record.pieces[n].part);
+        EXPECT_EQ((*pieces)[n].centreMm, record.pieces[n].centreMm);
+        EXPECT_EQ((*pieces)[n].radiusMm, record.pieces[n].radiusMm);
+    }
+    EXPECT_FALSE(piecesOfQuality("{\"pieces\":[{\"part\":\"spleen\"}]}"));
+}
+
 TEST(ColonEdits, ReadBackAsTheyWereBitForBit) {
     ColonEdits edits;
     edits.seedsMm = {{1.0 / 3.0, -2e-9, 417.25}};
