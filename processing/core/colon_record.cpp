@@ -27,7 +27,7 @@ const char* toString(ColonPart part) {
 }
 
 const char* toString(JunctionKind kind) {
-    static const char* const names[] = {"open lumen", "air-fluid level", "thin wall", "collapse"};
+    static const char* const names[] = {"open lumen", "thin wall", "collapse"};
     return names[std::size_t(kind)];
 }
 

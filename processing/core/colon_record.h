@@ -29,10 +29,9 @@ const char* toString(ColonPart part);
 
 /// How the lumen goes on from one piece to the next.
 enum class JunctionKind : std::uint8_t {
-    openLumen,      ///< gas or fluid goes through
-    airFluidLevel,  ///< … across the level between them
-    thinWall,       ///< what looks like a thin wall was taken for a fold or a film
-    collapse,       ///< the lumen is closed; a way through soft tissue was taken
+    openLumen,  ///< gas or fluid goes through
+    thinWall,   ///< what looks like a thin wall was taken for a fold or a film
+    collapse,   ///< the lumen is closed; a way through soft tissue was taken
 };
 /// "open lumen", "collapse" …
 const char* toString(JunctionKind kind);

@@ -10,17 +10,6 @@
 namespace haustra {
 namespace {
 
-template <class Visit>
-void visitFaces(const Grid& grid, std::size_t n, const Visit& visit) {
-    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
-                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
-    const glm::ivec3 v = grid.voxelAt(n);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (v[axis] > 0) visit(n - strides[axis]);
-        if (v[axis] + 1 < grid.size[axis]) visit(n + strides[axis]);
-    }
-}
-
 constexpr std::int32_t none = -1;
 
 struct Bodies {
@@ -41,7 +30,7 @@ Bodies bodiesOf(const Grid& grid, std::span<const std::uint8_t> labels) {
             const std::size_t from = front.back();
             front.pop_back();
             ++size;
-            visitFaces(grid, from, [&](std::size_t m) {
+            visitFaces(grid, from, [&](std::size_t m, int) {
                 if (labels[m] == 0 || bodies.at[m] != none) return;
                 bodies.at[m] = number;
                 front.push_back(m);
@@ -73,14 +62,14 @@ double joinBodies(Volume<std::uint8_t>& labels, const std::function<bool(std::si
         for (std::size_t n = 0; n < out.size(); ++n) {
             if (bodies.at[n] == none || !joined[std::size_t(bodies.at[n])]) continue;
             bool edge = false;
-            visitFaces(grid, n, [&](std::size_t m) {
+            visitFaces(grid, n, [&](std::size_t m, int) {
                 edge = edge || (bodies.at[m] == none && passable(m));
             });
             if (edge) front.push_back(n);
         }
         for (std::size_t head = 0; head < front.size() && !more; ++head) {
             const std::size_t n = front[head];
-            visitFaces(grid, n, [&](std::size_t m) {
+            visitFaces(grid, n, [&](std::size_t m, int) {
                 if (more) return;
                 if (bodies.at[m] != none) {
                     const std::size_t met = std::size_t(bodies.at[m]);

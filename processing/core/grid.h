@@ -45,6 +45,19 @@ struct Grid {
     }
 };
 
+/// Calls visit(neighbour's index, axis) for each of the at most six voxels that share a face with the
+/// voxel of this index; the lower one first, along i, j, k.
+template <class Visit>
+void visitFaces(const Grid& grid, std::size_t index, const Visit& visit) {
+    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
+                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
+    const glm::ivec3 v = grid.voxelAt(index);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (v[axis] > 0) visit(index - strides[axis], axis);
+        if (v[axis] + 1 < grid.size[axis]) visit(index + strides[axis], axis);
+    }
+}
+
 /// Axis-aligned grid: spacing in mm, centre of voxel (0,0,0) at originMm.
 Grid axisAlignedGrid(glm::ivec3 size, glm::dvec3 spacingMm, glm::dvec3 originMm = glm::dvec3(0.0));
 

@@ -21,22 +21,11 @@ constexpr std::uint8_t outside = std::uint8_t(LumenLabel::outside),
                        tagged = std::uint8_t(LumenLabel::tagged),
                        bridge = std::uint8_t(LumenLabel::bridge);
 
-template <class Visit>
-void visitFaces(const Grid& grid, std::size_t n, const Visit& visit) {
-    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
-                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
-    const glm::ivec3 v = grid.voxelAt(n);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (v[axis] > 0) visit(n - strides[axis], axis);
-        if (v[axis] + 1 < grid.size[axis]) visit(n + strides[axis], axis);
-    }
-}
-
 class Labelling {
 public:
     Labelling(const Volume<std::int16_t>& hu, const TissueModel& tissue,
               const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-              const ColonChain& chain)
+              const ColonChain& chain, int threads)
         : hu_(hu),
           grid_(hu.grid()),
           tissue_(tissue),
@@ -47,7 +36,7 @@ public:
           softHu_(tissue.meanHu[int(Tissue::soft)]),
           kept_(cut.pieces.size(), 0),
           barred_(hu.voxels().size(), false),
-          smooth_(topology::smoothHu(hu, 0.8, 0)) {
+          smooth_(topology::smoothHu(hu, 0.8, threads)) {
         result_.labels = Volume<std::uint8_t>(grid_, outside);
         labels_ = result_.labels.writable();
     }
@@ -414,8 +403,8 @@ private:
             const std::int32_t p = cut_.pieceAt[n];
             if (p >= 0 && labels_[n] == outside && !barred_[n] && taken.count(p))
                 labels_[n] = hu_[n] < tissue_.airBelowHu ? air : tagged;
-            const bool elsewhere = p >= 0 && !isKept(p) &&
-                                   (graph_.nodeOf[std::size_t(p)] >= 0 || others.count(p));
+            const bool elsewhere =
+                p >= 0 && !isKept(p) && (graph_.nodeOf[std::size_t(p)] >= 0 || others.count(p));
             if (barred_[n] || elsewhere) barredVoxels.push_back(std::uint32_t(n));
         }
         addTaggedStool(result_.labels, hu_, tissue_, barredVoxels);
@@ -532,8 +521,8 @@ private:
 
 ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                       const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-                      const ColonChain& chain, double bridgeRadiusMm) {
-    return Labelling(hu, tissue, contents, cut, graph, chain).run(bridgeRadiusMm);
+                      const ColonChain& chain, double bridgeRadiusMm, int threads) {
+    return Labelling(hu, tissue, contents, cut, graph, chain, threads).run(bridgeRadiusMm);
 }
 
 }  // namespace haustra::segmentation

@@ -36,6 +36,6 @@ struct ColonLabels {
 /// bridge of `bridgeRadiusMm` follows its path. The same for any number of threads. O(voxels).
 ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                       const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-                      const ColonChain& chain, double bridgeRadiusMm = 1.5);
+                      const ColonChain& chain, double bridgeRadiusMm = 1.5, int threads = 0);
 
 }  // namespace haustra::segmentation

@@ -335,7 +335,8 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
                     "segmentation");
     }
     progress(0.8);
-    ColonLabels labels = layLabels(scan.hu, tissue, contents, cut, graph, chains.front());
+    ColonLabels labels =
+        layLabels(scan.hu, tissue, contents, cut, graph, chains.front(), 1.5, options.threads);
     FoundColon found;
     found.record = Recorder(contents, cut, graph, chains, labels).record();
     found.labels = std::move(labels.labels);

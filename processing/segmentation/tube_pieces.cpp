@@ -28,17 +28,6 @@ std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t n) {
     return n;
 }
 
-template <class Visit>
-void visitFaces(const Grid& grid, std::size_t n, const Visit& visit) {
-    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
-                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
-    const glm::ivec3 v = grid.voxelAt(n);
-    for (int axis = 0; axis < 3; ++axis) {
-        if (v[axis] > 0) visit(n - strides[axis], axis);
-        if (v[axis] + 1 < grid.size[axis]) visit(n + strides[axis], axis);
-    }
-}
-
 /// Voxels with a distance, the farthest from the boundary first, of equals the first.
 std::vector<std::uint32_t> byFallingDistance(const Volume<float>& distanceMm) {
     std::vector<std::size_t> begin;
