@@ -19,7 +19,7 @@ using store::Attributes;
 
 // Raise a stage's version whenever its products change for the same input and options.
 constexpr int importVersion = 1;
-constexpr int segmentationVersion = 4;
+constexpr int segmentationVersion = 5;
 constexpr int maskVersion = 1;
 constexpr int mixtureVersion = 7;
 constexpr int cleansingVersion = 5;

@@ -32,33 +32,45 @@ std::vector<LevelColumn> columnsOfSlice(const Volume<std::int16_t>& hu, const Ti
         int airRun = 0, airEnd = -1, gap = 0, fluidRun = 0, fluidBegin = -1;
         bool armed = false;
     };
-    std::vector<State> states(static_cast<std::size_t>(width));
+    const int airBelowHu = int(std::ceil(tissue.airBelowHu)),
+              taggedAboveHu = int(std::floor(tissue.taggedAboveHu));
     std::vector<LevelColumn> columns;
-    for (int step = 0; step < length; ++step) {
-        const int at = down.sign > 0 ? step : length - 1 - step;
-        glm::ivec3 v(0, 0, k);
-        v[down.axis] = at;
+    const auto pass = [&](State& s, int n, int at, int value) {
+        if (value < airBelowHu) {
+            s.airRun = s.armed && s.gap == 0 ? s.airRun + 1 : 1;
+            s.armed = true, s.gap = 0, s.fluidRun = 0, s.airEnd = at;
+        } else if (!s.armed) {
+            return;
+        } else if (value > taggedAboveHu) {
+            if (s.fluidRun++ == 0) s.fluidBegin = at;
+            if (s.fluidRun < thinnestLayer) return;
+            s.armed = false;
+            if (s.airRun < thinnestLayer) return;
+            LevelColumn column{glm::ivec3(k), glm::ivec3(k)};
+            column.above[across] = column.below[across] = n;
+            column.above[down.axis] = s.airEnd;
+            column.below[down.axis] = s.fluidBegin;
+            if (Content(content.at(column.above)) == Content::gas) columns.push_back(column);
+        } else if (s.fluidRun > 0 || ++s.gap > longestGap) {
+            s.armed = false;
+        }
+    };
+    const auto atOf = [&](int step) { return down.sign > 0 ? step : length - 1 - step; };
+    // In the order of memory, whichever way down is.
+    const std::int16_t* const slice = &hu.voxels()[grid.index(0, 0, k)];
+    if (down.axis == 0) {
         for (int n = 0; n < width; ++n) {
-            v[across] = n;
-            State& s = states[n];
-            const int value = hu.at(v);
-            if (value < tissue.airBelowHu) {
-                s.airRun = s.armed && s.gap == 0 ? s.airRun + 1 : 1;
-                s.armed = true, s.gap = 0, s.fluidRun = 0, s.airEnd = at;
-            } else if (!s.armed) {
-                continue;
-            } else if (value > tissue.taggedAboveHu) {
-                if (s.fluidRun++ == 0) s.fluidBegin = at;
-                if (s.fluidRun < thinnestLayer) continue;
-                s.armed = false;
-                if (s.airRun < thinnestLayer) continue;
-                LevelColumn column{v, v};
-                column.above[down.axis] = s.airEnd;
-                column.below[down.axis] = s.fluidBegin;
-                if (Content(content.at(column.above)) == Content::gas) columns.push_back(column);
-            } else if (s.fluidRun > 0 || ++s.gap > longestGap) {
-                s.armed = false;
-            }
+            const std::int16_t* const row = slice + std::ptrdiff_t(n) * grid.size.x;
+            State state;
+            for (int step = 0; step < length; ++step)
+                pass(state, n, atOf(step), row[atOf(step)]);
+        }
+    } else {
+        std::vector<State> states(static_cast<std::size_t>(width));
+        for (int step = 0; step < length; ++step) {
+            const std::int16_t* const row = slice + std::ptrdiff_t(atOf(step)) * grid.size.x;
+            for (int n = 0; n < width; ++n)
+                pass(states[std::size_t(n)], n, atOf(step), row[n]);
         }
     }
     return columns;

@@ -5,12 +5,12 @@
 
 namespace haustra::segmentation {
 
-BodyFrame findBodyFrame(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
-                        double lowMm, double highMm) {
+std::vector<glm::vec3> softTissueSamples(const Volume<std::int16_t>& hu,
+                                         const Volume<std::uint8_t>& content) {
     constexpr int step = 4;
     constexpr int softFromHu = -20, softToHu = 120;
     const Grid& grid = hu.grid();
-    std::vector<double> x, y;
+    std::vector<glm::vec3> samples;
     for (int k = 0; k < grid.size.z; k += step) {
         for (int j = 0; j < grid.size.y; j += step) {
             for (int i = 0; i < grid.size.x; i += step) {
@@ -18,11 +18,18 @@ BodyFrame findBodyFrame(const Volume<std::int16_t>& hu, const Volume<std::uint8_
                 if (Content(content[n]) != Content::tissue || hu[n] < softFromHu ||
                     hu[n] > softToHu)
                     continue;
-                const glm::dvec3 p = grid.patientFromVoxelPoint({i, j, k});
-                if (p.z < lowMm || p.z > highMm) continue;
-                x.push_back(p.x), y.push_back(p.y);
+                samples.emplace_back(grid.patientFromVoxelPoint({i, j, k}));
             }
         }
+    }
+    return samples;
+}
+
+BodyFrame findBodyFrame(std::span<const glm::vec3> softTissueMm, double lowMm, double highMm) {
+    std::vector<double> x, y;
+    for (const glm::dvec3 p : softTissueMm) {
+        if (p.z < lowMm || p.z > highMm) continue;
+        x.push_back(p.x), y.push_back(p.y);
     }
     BodyFrame frame;
     frame.lowMm = lowMm, frame.highMm = std::max(highMm, lowMm + 1.0);

@@ -3,6 +3,9 @@
 
 #include "segmentation/bowel_contents.h"
 
+#include <span>
+#include <vector>
+
 #include <glm/glm.hpp>
 
 namespace haustra::segmentation {
@@ -20,9 +23,12 @@ struct BodyFrame {
     }
 };
 
-/// Width and depth from the soft tissue of all slices (their 2nd and 98th percentiles), so that
-/// table and arms count little; `lowMm` and `highMm` are given.
-BodyFrame findBodyFrame(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
-                        double lowMm, double highMm);
+/// Places of soft tissue (LPS, mm): of every fourth voxel along each axis.
+std::vector<glm::vec3> softTissueSamples(const Volume<std::int16_t>& hu,
+                                         const Volume<std::uint8_t>& content);
+
+/// Width and depth from the soft tissue between `lowMm` and `highMm` (the 2nd and 98th percentiles
+/// of its samples), so that table and arms count little.
+BodyFrame findBodyFrame(std::span<const glm::vec3> softTissueMm, double lowMm, double highMm);
 
 }  // namespace haustra::segmentation

@@ -158,25 +158,31 @@ std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::u
 
 /// Gas from the outside cells on, as far as the outside reaches into narrower places.
 void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
-             const std::vector<std::uint8_t>& outside) {
+             const std::vector<std::uint8_t>& outside, int threads) {
     const Grid& grid = content.grid();
     const auto voxels = content.writable();
-    std::vector<std::uint32_t> front;
-    for (int k = 0; k < grid.size.z; ++k) {
-        for (int j = 0; j < grid.size.y; ++j) {
-            for (int i = 0; i < grid.size.x; ++i) {
-                const glm::ivec3 v(i, j, k);
-                if (Content(voxels[grid.index(v)]) != Content::gas) continue;
-                bool near = i == 0 || j == 0 || i == grid.size.x - 1 || j == grid.size.y - 1;
-                for (const glm::ivec3 step : faces) {
-                    if (near) break;
-                    near =
-                        grid.contains(v + step) && outside[cells.index((v + step) / cells.block)];
+    std::vector<std::vector<std::uint32_t>> slices(std::size_t(grid.size.z));
+    parallelFor(slices.size(), 4, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                const std::size_t row = grid.index(0, j, int(k));
+                for (int i = 0; i < grid.size.x; ++i) {
+                    if (Content(voxels[row + std::size_t(i)]) != Content::gas) continue;
+                    const glm::ivec3 v(i, j, int(k));
+                    bool near = i == 0 || j == 0 || i == grid.size.x - 1 || j == grid.size.y - 1;
+                    for (const glm::ivec3 step : faces) {
+                        if (near) break;
+                        near = grid.contains(v + step) &&
+                               outside[cells.index((v + step) / cells.block)];
+                    }
+                    if (near) slices[k].push_back(std::uint32_t(row + std::size_t(i)));
                 }
-                if (near) front.push_back(std::uint32_t(grid.index(v)));
             }
         }
-    }
+    });
+    std::vector<std::uint32_t> front;
+    for (const auto& slice : slices)
+        front.insert(front.end(), slice.begin(), slice.end());
     for (const std::uint32_t n : front)
         voxels[n] = std::uint8_t(Content::outside);
     const glm::dvec3 spacing = grid.spacingMm();
@@ -219,18 +225,18 @@ const char* lyingName(glm::dvec3 gravity) {
 
 // The patient position says which way is down; the levels must agree, and overrule it where they
 // clearly do not.
-void findGravity(const CtScan& scan, const TissueModel& tissue, int threads,
-                 BowelContents& contents) {
+void findGravity(const Volume<std::int16_t>& hu, PatientPosition position,
+                 const TissueModel& tissue, int threads, BowelContents& contents) {
     constexpr double clearMm2 = 400.0, clearRatio = 3.0;
-    const glm::dvec3 told = gravityDirection(scan.position);
+    const glm::dvec3 told = gravityDirection(position);
     const bool known = glm::length(told) > 0.0;
     const std::array<glm::dvec3, 4> directions{{{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}}};
     std::array<std::vector<Level>, 4> levels;
     std::array<double, 4> areaMm2{};
     std::size_t best = 0, toldIndex = 0;
     for (std::size_t n = 0; n < directions.size(); ++n) {
-        levels[n] = findLevels(scan.hu, tissue, contents.content,
-                               axisOf(scan.hu.grid(), directions[n]), threads);
+        levels[n] =
+            findLevels(hu, tissue, contents.content, axisOf(hu.grid(), directions[n]), threads);
         areaMm2[n] = totalAreaMm2(levels[n]);
         if (areaMm2[n] > areaMm2[best]) best = n;
         if (known && glm::dot(directions[n], told) > 0.5) toldIndex = n;
@@ -239,7 +245,7 @@ void findGravity(const CtScan& scan, const TissueModel& tissue, int threads,
         if (areaMm2[best] > clearMm2 && areaMm2[best] > clearRatio * areaMm2[toldIndex]) {
             contents.notes.push_back(
                 std::string("the air-fluid levels show that the patient lay ") +
-                lyingName(directions[best]) + ", not " + toString(scan.position) +
+                lyingName(directions[best]) + ", not " + toString(position) +
                 " as the series says; the levels are believed");
         } else {
             best = toldIndex;
@@ -252,7 +258,7 @@ void findGravity(const CtScan& scan, const TissueModel& tissue, int threads,
             lyingName(directions[best]));
     }
     contents.gravity = directions[best];
-    contents.down = axisOf(scan.hu.grid(), directions[best]);
+    contents.down = axisOf(hu.grid(), directions[best]);
     contents.levels = std::move(levels[best]);
 }
 
@@ -306,9 +312,10 @@ void measureGas(const Volume<std::int16_t>& hu, BowelContents& contents, int thr
 
 }  // namespace
 
-BowelContents findContents(const CtScan& scan, const TissueModel& tissue, int threads) {
-    const Grid& grid = scan.hu.grid();
-    const Cells cells = makeCells(scan.hu, tissue.airBelowHu, threads);
+BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition position,
+                           const TissueModel& tissue, int threads) {
+    const Grid& grid = hu.grid();
+    const Cells cells = makeCells(hu, tissue.airBelowHu, threads);
     const std::vector<std::uint8_t> outside = outsideCells(cells);
     const std::vector<std::uint8_t> lung =
         lungCells(cells, outside, tissue.meanHu[int(Tissue::air)]);
@@ -320,7 +327,7 @@ BowelContents findContents(const CtScan& scan, const TissueModel& tissue, int th
             for (int j = 0; j < grid.size.y; ++j) {
                 const std::size_t row = grid.index(0, j, int(k));
                 for (int i = 0; i < grid.size.x; ++i) {
-                    const int value = scan.hu[row + std::size_t(i)];
+                    const int value = hu[row + std::size_t(i)];
                     Content content = Content::tissue;
                     if (value < tissue.airBelowHu) {
                         const std::size_t cell =
@@ -336,9 +343,9 @@ BowelContents findContents(const CtScan& scan, const TissueModel& tissue, int th
             }
         }
     });
-    reachIn(contents.content, cells, outside);
-    measureGas(scan.hu, contents, threads);
-    findGravity(scan, tissue, threads, contents);
+    reachIn(contents.content, cells, outside, threads);
+    measureGas(hu, contents, threads);
+    findGravity(hu, position, tissue, threads, contents);
     markInterfaces(contents);
     return contents;
 }

@@ -72,9 +72,10 @@ double orificeLogOdds(const Orifice& orifice, const TubePieces& cut, double soft
 
 }  // namespace
 
-PieceGraph makePieceGraph(const CtScan& scan, const BowelContents& contents,
+PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& contents,
                           const TissueModel& tissue, const TubePieces& cut,
-                          const GivenPieces& given, int threads) {
+                          std::span<const glm::vec3> softTissueMm, const GivenPieces& given,
+                          int threads) {
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     double brightestHu = 3000.0;
     {
@@ -84,10 +85,10 @@ PieceGraph makePieceGraph(const CtScan& scan, const BowelContents& contents,
             fluids.emplace_back(level.fluidHu, level.areaMm2), area += level.areaMm2;
         std::sort(fluids.begin(), fluids.end());
         double sum = 0.0;
-        for (const auto& [hu, mm2] : fluids) {
+        for (const auto& [fluidHu, mm2] : fluids) {
             sum += mm2;
             if (sum >= 0.95 * area) {
-                brightestHu = softHu + 1.5 * (hu - softHu) + 100.0;
+                brightestHu = softHu + 1.5 * (fluidHu - softHu) + 100.0;
                 break;
             }
         }
@@ -115,7 +116,7 @@ PieceGraph makePieceGraph(const CtScan& scan, const BowelContents& contents,
             high = std::max(high, piece.centreMm.z + piece.radiusMm);
     }
     // Samples of each piece: where its voxels lie, and its lowest end.
-    const Grid& grid = scan.hu.grid();
+    const Grid& grid = hu.grid();
     std::vector<std::vector<glm::dvec3>> samples(made.pieceOf.size());
     std::vector<glm::dvec3> lowest(made.pieceOf.size(), glm::dvec3(0.0, 0.0, 1e9));
     std::vector<glm::dvec3> lowCorner(made.pieceOf.size(), glm::dvec3(1e9)),
@@ -134,7 +135,7 @@ PieceGraph makePieceGraph(const CtScan& scan, const BowelContents& contents,
         const TubePiece& piece = cut.pieces[std::size_t(made.pieceOf[n])];
         if (piece.radiusMm > 8.0 && piece.volumeMl > 10.0) low = std::min(low, lowest[n].z);
     }
-    made.frame = findBodyFrame(scan.hu, contents.content, low, high);
+    made.frame = findBodyFrame(softTissueMm, low, high);
     for (std::size_t n = 0; n < made.pieceOf.size(); ++n) {
         const TubePiece& piece = cut.pieces[std::size_t(made.pieceOf[n])];
         ChainNode node;
@@ -190,7 +191,7 @@ PieceGraph makePieceGraph(const CtScan& scan, const BowelContents& contents,
     }
     CollapseOptions collapse;
     collapse.threads = threads;
-    made.collapses = findCollapsePaths(scan.hu, contents, cut, made.pieceOf, doors, collapse);
+    made.collapses = findCollapsePaths(hu, contents, cut, made.pieceOf, doors, collapse);
     for (std::size_t n = 0; n < made.collapses.size(); ++n) {
         const CollapsePath& path = made.collapses[n];
         ChainJunction junction;

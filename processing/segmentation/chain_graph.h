@@ -28,9 +28,11 @@ struct GivenPieces {
     std::vector<Join> joins;  ///< the lumen goes on from the one to the other, straight
 };
 
-/// Pieces that can be bowel, or are given, and their orifices as junctions.
-PieceGraph makePieceGraph(const CtScan& scan, const BowelContents& contents,
+/// Pieces that can be bowel, or are given, and their orifices as junctions. `softTissueMm` are
+/// places of the body's soft tissue (softTissueSamples), by which the pieces' own are told.
+PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& contents,
                           const TissueModel& tissue, const TubePieces& cut,
-                          const GivenPieces& given, int threads);
+                          std::span<const glm::vec3> softTissueMm, const GivenPieces& given,
+                          int threads);
 
 }  // namespace haustra::segmentation

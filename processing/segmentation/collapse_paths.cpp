@@ -247,26 +247,30 @@ std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
 
     const auto steps = stepsOf(cells.grid);
     std::vector<std::vector<CollapsePath>> found(caps.size());
-    parallelFor(caps.size(), 1, options.threads, [&](std::size_t first, std::size_t last) {
+    // A step costs at least a cell's size, so what lies in one bucket is final when its turn comes.
+    const glm::dvec3 cellSizeMm = cells.grid.spacingMm();
+    const float bucketMm = 0.5f * float(std::min({cellSizeMm.x, cellSizeMm.y, cellSizeMm.z}));
+    const std::size_t grain = std::max<std::size_t>(1, caps.size() / 16);
+    parallelFor(caps.size(), grain, options.threads, [&](std::size_t first, std::size_t last) {
+        std::vector<std::vector<std::pair<float, std::uint32_t>>> buckets(
+            std::size_t(options.mostCostMm / bucketMm) + 1);
         std::vector<float> cost(cells.node.size(), blocked);
         std::vector<std::uint8_t> from(cells.node.size(), 255);
         for (std::size_t c = first; c < last; ++c) {
             std::vector<std::uint32_t> touched;
-            Queue queue;
             std::map<std::int32_t, std::pair<float, std::uint32_t>> best[2];
             for (const std::uint32_t n : caps[c].cells)
-                cost[n] = 0.0f, from[n] = 255, touched.push_back(n), queue.emplace(0.0f, n);
-            while (!queue.empty()) {
-                const auto [d, n] = queue.top();
-                queue.pop();
-                if (d > cost[n]) continue;
+                cost[n] = 0.0f, from[n] = 255, touched.push_back(n),
+                buckets[0].emplace_back(0.0f, n);
+            const auto leave = [&](float d, std::uint32_t n) {
+                if (d > cost[n]) return;
                 const std::int32_t at = cells.node[n];
                 if (at >= 0 && at != caps[c].node) {
-                    auto& known = best[capAt[n] >= 0 ? 1 : 0];
-                    known.try_emplace(at, d, n);
-                    continue;  // no way on through another piece
+                    const auto [known, isNew] = best[capAt[n] >= 0 ? 1 : 0].try_emplace(at, d, n);
+                    if (!isNew && std::pair(d, n) < known->second) known->second = {d, n};
+                    return;  // no way on through another piece
                 }
-                if (at == caps[c].node && d > 0.0f) continue;  // nor back
+                if (at == caps[c].node && d > 0.0f) return;  // nor back
                 const glm::ivec3 v = cells.grid.voxelAt(n);
                 const float here = at >= 0 ? 1.0f : cells.costPerMm[n];
                 for (std::size_t s = 0; s < steps.size(); ++s) {
@@ -278,8 +282,13 @@ std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
                     if (through > float(options.mostCostMm) || through >= cost[next]) continue;
                     if (cost[next] == blocked) touched.push_back(next);
                     cost[next] = through, from[next] = std::uint8_t(s);
-                    queue.emplace(through, next);
+                    buckets[std::size_t(through / bucketMm)].emplace_back(through, next);
                 }
+            };
+            for (auto& bucket : buckets) {
+                for (const auto& [d, n] : bucket)
+                    leave(d, n);
+                bucket.clear();
             }
             for (int tip = 0; tip < 2; ++tip) {
                 std::vector<std::pair<std::int32_t, std::pair<float, std::uint32_t>>> ends(

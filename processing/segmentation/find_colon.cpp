@@ -5,6 +5,7 @@
 #include "segmentation/colon_labels.h"
 #include "segmentation/thin_walls.h"
 #include "segmentation/tube_pieces.h"
+#include "segmentation/working_scan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -280,6 +281,41 @@ private:
     ColonRecord made_;
 };
 
+// What a person said of the scan, as places.
+std::vector<glm::dvec3> placesOf(const ColonEdits& edits) {
+    std::vector<glm::dvec3> places = edits.seedsMm;
+    places.insert(places.end(), edits.excludesMm.begin(), edits.excludesMm.end());
+    for (const CutBall& ball : edits.cuts)
+        places.push_back(ball.centreMm);
+    for (const auto& [a, b] : edits.joins)
+        places.push_back(a), places.push_back(b);
+    return places;
+}
+
+// Labels of the bowel's box, of the binned scan, as labels of the scan.
+Volume<std::uint8_t> onTheScan(const Volume<std::int16_t>& hu, Volume<std::uint8_t> labels,
+                               const Volume<std::uint8_t>& content, glm::ivec3 by,
+                               const VoxelBox& box, double airBelowHu, int threads) {
+    const Grid& grid = hu.grid();
+    if (labels.grid().size == grid.size) return labels;
+    VoxelBox fine = box;
+    if (by != glm::ivec3(1)) {
+        Volume<std::uint8_t> barred(labels.grid());
+        const auto out = barred.writable();
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            out[n] = LumenLabel(labels[n]) == LumenLabel::outside &&
+                     Content(content[n]) != Content::tissue;
+        }
+        fine.lo = box.lo * by;
+        fine.size = glm::min(box.size * by, grid.size - fine.lo);
+        labels =
+            atFullResolution(labels, barred, cropped(hu, fine, threads), by, airBelowHu, threads);
+    }
+    Volume<std::uint8_t> whole(grid, std::uint8_t(LumenLabel::outside));
+    paste(labels, fine, whole, threads);
+    return whole;
+}
+
 // Half of the shortest adult colon, distended (Khashab et al., Endoscopy 2009: 120 to 250 cm at CT
 // colonography).
 constexpr double leastDistendedMm = 500.0, distendedRadiusMm = 8.0;
@@ -303,7 +339,15 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
         if (options.progress) options.progress(fraction);
     };
     progress(0.0);
-    BowelContents contents = findContents(scan, tissue, options.threads);
+    // Not all of the scan is looked at in full: voxels finer than walls are told by are binned, and
+    // only the bowel's surroundings are cut into pieces.
+    const glm::ivec3 by = binningOf(scan.hu.grid());
+    Volume<std::int16_t> hu = binned(scan.hu, by, options.threads);
+    BowelContents contents = findContents(hu, scan.position, tissue, options.threads);
+    const std::vector<glm::vec3> softTissueMm = softTissueSamples(hu, contents.content);
+    const VoxelBox box = bowelBox(contents.content, placesOf(options.edits), options.threads);
+    hu = cropped(hu, box, options.threads);
+    contents = cropped(contents, box, options.threads);
     cutBalls(contents, options.edits.cuts);
     progress(0.2);
     TubePieces cut;
@@ -311,16 +355,17 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
         ThinWallOptions walls;
         walls.softHu = tissue.meanHu[int(Tissue::soft)];
         walls.threads = options.threads;
-        const Volume<std::uint8_t> thin = findThinWalls(scan.hu, contents, walls);
+        const Volume<std::uint8_t> thin = findThinWalls(hu, contents, walls);
         progress(0.4);
         cut =
-            cutIntoPieces(scan.hu, contents.content, thin,
+            cutIntoPieces(hu, contents.content, thin,
                           {.softHu = tissue.meanHu[int(Tissue::soft)], .threads = options.threads});
     }
     progress(0.65);
     const auto given = givenPieces(cut, options.edits);
     if (!given) return tl::make_unexpected(given.error());
-    const PieceGraph graph = makePieceGraph(scan, contents, tissue, cut, *given, options.threads);
+    const PieceGraph graph =
+        makePieceGraph(hu, contents, tissue, cut, softTissueMm, *given, options.threads);
     progress(0.75);
     const std::vector<ColonChain> chains = findChains(graph.graph, {.chains = 12});
     const bool asked = !options.edits.seedsMm.empty() || !options.edits.joins.empty();
@@ -336,10 +381,11 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     }
     progress(0.8);
     ColonLabels labels =
-        layLabels(scan.hu, tissue, contents, cut, graph, chains.front(), 1.5, options.threads);
+        layLabels(hu, tissue, contents, cut, graph, chains.front(), 1.5, options.threads);
     FoundColon found;
     found.record = Recorder(contents, cut, graph, chains, labels).record();
-    found.labels = std::move(labels.labels);
+    found.labels = onTheScan(scan.hu, std::move(labels.labels), contents.content, by, box,
+                             tissue.airBelowHu, options.threads);
     found.gravity = contents.gravity;
     found.notes = contents.notes;
     progress(1.0);

@@ -99,6 +99,70 @@ double noiseSd(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& conte
     return (double(median) + 0.5) / 0.6745 / std::sqrt(1.5);
 }
 
+glm::ivec3 reachOf(const std::array<Ray, 13>& rays) {
+    glm::ivec3 reach(1);
+    for (const Ray& ray : rays)
+        reach = glm::max(reach, ray.steps * glm::abs(ray.step));
+    return reach;
+}
+
+/// The brightest tagged HU near a voxel: over blocks as long as the reach, and those around.
+class BrightestTagged {
+public:
+    BrightestTagged(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
+                    glm::ivec3 reach, int threads)
+        : block_(reach), size_((hu.grid().size + reach - 1) / reach) {
+        const Grid& grid = hu.grid();
+        std::vector<std::int16_t> own(count(), std::int16_t(-32768));
+        near_.assign(count(), std::int16_t(-32768));
+        parallelFor(std::size_t(size_.z), 1, threads, [&](std::size_t first, std::size_t last) {
+            for (int k = int(first) * block_.z; k < std::min(int(last) * block_.z, grid.size.z);
+                 ++k) {
+                for (int j = 0; j < grid.size.y; ++j) {
+                    const std::size_t row = grid.index(0, j, k);
+                    std::int16_t* const blocks = &own[at(glm::ivec3(0, j, k) / block_)];
+                    for (int i = 0; i < grid.size.x; ++i) {
+                        if (Content(content[row + std::size_t(i)]) != Content::tagged) continue;
+                        std::int16_t& most = blocks[i / block_.x];
+                        most = std::max(most, hu[row + std::size_t(i)]);
+                    }
+                }
+            }
+        });
+        parallelFor(std::size_t(size_.z), 1, threads, [&](std::size_t first, std::size_t last) {
+            for (std::size_t z = first; z < last; ++z) {
+                for (int y = 0; y < size_.y; ++y) {
+                    for (int x = 0; x < size_.x; ++x) {
+                        const glm::ivec3 c(x, y, int(z)), lo = glm::max(c - 1, glm::ivec3(0)),
+                                                          hi = glm::min(c + 1, size_ - 1);
+                        std::int16_t most = -32768;
+                        for (int k = lo.z; k <= hi.z; ++k) {
+                            for (int j = lo.y; j <= hi.y; ++j) {
+                                for (int i = lo.x; i <= hi.x; ++i)
+                                    most = std::max(most, own[at({i, j, k})]);
+                            }
+                        }
+                        near_[at(c)] = most;
+                    }
+                }
+            }
+        });
+    }
+    double near(glm::ivec3 v) const { return near_[at(v / block_)]; }
+
+private:
+    std::size_t count() const {
+        return std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z);
+    }
+    std::size_t at(glm::ivec3 c) const {
+        return std::size_t(c.x) +
+               std::size_t(size_.x) * (std::size_t(c.y) + std::size_t(size_.y) * std::size_t(c.z));
+    }
+
+    const glm::ivec3 block_, size_;
+    std::vector<std::int16_t> near_;
+};
+
 class Search {
 public:
     Search(const Volume<std::int16_t>& hu, const BowelContents& contents,
@@ -106,7 +170,9 @@ public:
         : hu_(hu),
           content_(contents.content),
           grid_(hu.grid()),
-          rays_(raysOf(grid_, options.reachMm)) {
+          rays_(raysOf(grid_, options.reachMm)),
+          reach_(reachOf(rays_)),
+          brightest_(hu, contents.content, reach_, options.threads) {
         const double gasSd = noiseSd(hu, contents.content, Content::gas);
         taggedSdsHu_ = options.leastSds * std::clamp(noiseSd(hu, contents.content, Content::tagged),
                                                      gasSd, 1.5 * gasSd);
@@ -124,14 +190,22 @@ public:
             return hu_[n] > gasHu_ + gasRiseHu_ &&
                    isSheet(v, n, content, 1, [&](int) { return gasRiseHu_; });
         if (content == Content::tagged) {
-            return isStep(v, n) || isSheet(v, n, content, -1, [&](int sides) {
-                       return std::max(share_ * (sides - softHu_), taggedSdsHu_);
-                   });
+            // Most of a fluid lies far under nothing: what is brightest around says so at once.
+            const double most = brightest_.near(v), above = hu_[n] - softHu_;
+            const bool step = above < half * (most - softHu_);
+            const bool sheet =
+                most - hu_[n] > taggedSdsHu_ && above < (1.0 - share_) * (most - softHu_);
+            return (step && isStep(v, n)) ||
+                   (sheet && isSheet(v, n, content, -1, [&](int sides) {
+                        return std::max(share_ * (sides - softHu_), taggedSdsHu_);
+                    }));
         }
         return false;
     }
 
 private:
+    static constexpr double half = 0.45;
+
     /// Fluid lies under gas at a level; where they touch elsewhere there is a wall between, or
     /// stool sticks to one.
     bool touchesGas(glm::ivec3 v) const {
@@ -149,7 +223,6 @@ private:
     /// height over soft tissue: two fluids so near each other have a wall between them, whose own
     /// HU does not show.
     bool isStep(glm::ivec3 v, std::size_t n) const {
-        constexpr double half = 0.45;
         for (const Ray& ray : rays_) {
             std::array<int, 2> highest{-32768, -32768}, tagged{0, 0};
             for (int side = 0; side < 2; ++side) {
@@ -180,25 +253,26 @@ private:
     template <class Least>
     bool isSheet(glm::ivec3 v, std::size_t n, Content content, int sign,
                  const Least& leastHu) const {
-        for (const Ray& ray : rays_) {
-            std::array<int, 2> lowest{};
-            bool both = true;
-            for (int side = 0; side < 2 && both; ++side) {
-                const int direction = side == 0 ? 1 : -1;
-                int low = 1 << 20;
-                for (int step = 1; step <= ray.steps; ++step) {
-                    const glm::ivec3 w = v + direction * step * ray.step;
-                    if (!grid_.contains(w)) break;
-                    const std::size_t m =
-                        std::size_t(std::ptrdiff_t(n) + direction * step * ray.offset);
-                    if (Content(content_[m]) == content) low = std::min(low, sign * hu_[m]);
-                }
-                lowest[std::size_t(side)] = low;
-                both = low < (1 << 20);
+        constexpr int nothing = 1 << 20;
+        const bool interior = glm::all(glm::greaterThanEqual(v, reach_)) &&
+                              glm::all(glm::lessThan(v, grid_.size - reach_));
+        const std::int16_t* const hu = &hu_.voxels()[n];
+        const std::uint8_t* const contents = &content_.voxels()[n];
+        const auto lowestOn = [&](const Ray& ray, int direction) {
+            int low = nothing;
+            for (int step = 1; step <= ray.steps; ++step) {
+                if (!interior && !grid_.contains(v + direction * step * ray.step)) break;
+                const std::ptrdiff_t m = direction * step * ray.offset;
+                if (Content(contents[m]) == content) low = std::min(low, sign * hu[m]);
             }
-            if (!both) continue;
-            const int sides = std::max(lowest[0], lowest[1]);
-            if (sign * hu_[n] - sides > leastHu(sign * sides)) return true;
+            return low;
+        };
+        // The higher the lesser side, the less the voxel stands out: one side alone may refuse it.
+        const auto standsOut = [&](int sides) {
+            return sides < nothing && sign * *hu - sides > leastHu(sign * sides);
+        };
+        for (const Ray& ray : rays_) {
+            if (standsOut(lowestOn(ray, 1)) && standsOut(lowestOn(ray, -1))) return true;
         }
         return false;
     }
@@ -207,6 +281,8 @@ private:
     const Volume<std::uint8_t>& content_;
     const Grid grid_;
     const std::array<Ray, 13> rays_;
+    const glm::ivec3 reach_;
+    const BrightestTagged brightest_;
     double gasRiseHu_, taggedSdsHu_, softHu_, share_, gasHu_;
 };
 

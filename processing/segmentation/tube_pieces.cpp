@@ -143,31 +143,26 @@ void splitLong(std::span<std::int32_t> label, std::vector<std::int32_t>& rootOfB
         // Each connected part of a band is a piece.
         std::vector<std::uint32_t> front;
         std::vector<std::pair<std::uint32_t, std::int32_t>> moved;
-        std::vector<char> seen(reached.size(), 0);
-        std::unordered_map<std::uint32_t, std::uint32_t> at;
-        at.reserve(reached.size());
-        for (std::size_t n = 0; n < reached.size(); ++n)
-            at.emplace(reached[n], std::uint32_t(n));
-        for (std::size_t n = 0; n < reached.size(); ++n) {
-            if (seen[n]) continue;
+        for (const std::uint32_t seed : reached) {
+            if (way[seed] < 0.0f) continue;  // in a part already
             const std::int32_t number = std::int32_t(rootOfBasin.size());
             rootOfBasin.push_back(number);
-            const int band = bandOf(reached[n]);
-            front.assign(1, reached[n]);
-            seen[n] = 1;
+            const int band = bandOf(seed);
+            front.assign(1, seed);
+            way[seed] = -1.0f;
             for (std::size_t head = 0; head < front.size(); ++head) {
                 moved.emplace_back(front[head], number);
                 visitFaces(grid, front[head], [&](std::size_t m, int) {
-                    if (label[m] != std::int32_t(basin)) return;
-                    const std::uint32_t place = at.at(std::uint32_t(m));
-                    if (seen[place] || bandOf(std::uint32_t(m)) != band) return;
-                    seen[place] = 1;
+                    if (label[m] != std::int32_t(basin) || way[m] < 0.0f ||
+                        bandOf(std::uint32_t(m)) != band)
+                        return;
+                    way[m] = -1.0f;
                     front.push_back(std::uint32_t(m));
                 });
             }
         }
         for (const auto& [n, number] : moved)
-            label[n] = number, way[n] = -1.0f;
+            label[n] = number;
     }
 }
 

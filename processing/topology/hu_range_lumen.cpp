@@ -218,28 +218,45 @@ Volume<std::int16_t> smoothHu(const Volume<std::int16_t>& hu, double sdMm, int t
         const auto passes = std::lround(2.0 * sdMm * sdMm / (spacing[axis] * spacing[axis]));
         const auto length = std::size_t(grid.size[axis]);
         if (passes == 0 || length < 2) continue;
+        // Lines along the axis, a bundle of neighbours at a time.
         glm::ivec3 across = grid.size, unit(0);
         across[axis] = 1;
         unit[axis] = 1;
-        const Grid lines{across, glm::dmat4(1.0)};
-        const std::size_t stride = grid.index(unit);
-        parallelFor(lines.voxelCount(), 256, threads, [&](std::size_t begin, std::size_t end) {
-            std::vector<float> line(length);
+        const int side = axis == 0 ? 1 : 0;
+        const std::size_t stride = grid.index(unit),
+                          apart = axis == 0 ? std::size_t(grid.size.x) : 1;
+        constexpr int most = 32;
+        across[side] = (across[side] + most - 1) / most;
+        const Grid bundles{across, glm::dmat4(1.0)};
+        parallelFor(bundles.voxelCount(), 8, threads, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::array<float, most>> line(length + 2);
             for (std::size_t n = begin; n < end; ++n) {
-                const std::size_t first = grid.index(lines.voxelAt(n));
-                for (std::size_t at = 0; at < length; ++at)
-                    line[at] = voxels[first + at * stride];
+                glm::ivec3 v = bundles.voxelAt(n);
+                v[side] *= most;
+                const std::size_t first = grid.index(v);
+                const auto width = std::size_t(std::min(most, grid.size[side] - v[side]));
+                for (std::size_t at = 0; at < length; ++at) {
+                    for (std::size_t l = 0; l < width; ++l)
+                        line[at + 1][l] = voxels[first + at * stride + l * apart];
+                }
                 for (long pass = 0; pass < passes; ++pass) {
-                    float before = line[0];
-                    for (std::size_t at = 0; at < length; ++at) {
-                        const float here = line[at];
-                        const float after = at + 1 < length ? line[at + 1] : here;
-                        line[at] = 0.25f * before + 0.5f * here + 0.25f * after;
+                    line[length + 1] = line[length];
+                    std::array<float, most> before = line[1];
+                    for (std::size_t at = 1; at <= length; ++at) {
+                        const std::array<float, most> here = line[at];
+                        for (std::size_t l = 0; l < most; ++l)
+                            line[at][l] =
+                                0.25f * before[l] + 0.5f * here[l] + 0.25f * line[at + 1][l];
                         before = here;
                     }
                 }
-                for (std::size_t at = 0; at < length; ++at)
-                    voxels[first + at * stride] = std::int16_t(std::lround(line[at]));
+                for (std::size_t at = 0; at < length; ++at) {
+                    for (std::size_t l = 0; l < width; ++l) {
+                        const float value = line[at + 1][l];
+                        voxels[first + at * stride + l * apart] =
+                            std::int16_t(value + std::copysign(0.5f, value));
+                    }
+                }
             }
         });
     }
