@@ -20,9 +20,13 @@ using store::Attributes;
 // Raise a stage's version whenever its products change for the same input and options.
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 5;
-constexpr int maskVersion = 1;
+constexpr int maskVersion = 2;
 constexpr int mixtureVersion = 7;
 constexpr int cleansingVersion = 5;
+
+// How a mask without a scan is drawn.
+const TissueModel drawnTissue{
+    {-1000.0, -100.0, 40.0, 600.0}, {20.0, 20.0, 20.0, 100.0}, {0.1, 0.2, 0.6, 0.1}, -480.0, 320.0};
 
 Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,
                                  const Volume<std::uint8_t>& labels, const Attributes& attributes) {
@@ -177,11 +181,12 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
         return tl::make_unexpected(bound.error());
     }
     // Of the organ, only how its tissues are told apart matters here.
-    const bool fitted = ct && preparation.organ().finder == LumenFinder::gasAndTagged;
+    const bool colon = preparation.organ().finder == LumenFinder::gasAndTagged,
+               fitted = ct && colon;
     const ProductKey key =
         store::makeKey("segmentation-mask", maskVersion,
                        fitted ? organs::segmentationOptions(preparation.organ()) : "", inputs);
-    const auto make = [&](const Progress&) -> Result<void> {
+    const auto make = [&](const Progress& progress) -> Result<void> {
         CtScan scan;
         if (ct) {
             auto read = preparation.readScan();
@@ -192,19 +197,48 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
         const auto input = readLumenMask(options.lumenMask, ct ? &grid : nullptr, options.threads);
         if (!input) return tl::make_unexpected(input.error());
         Attributes attributes{{"source", "mask"}};
+        TissueModel tissue = drawnTissue;
         if (fitted) {
-            const auto tissue =
+            const auto fit =
                 cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues);
-            if (!tissue) return tl::make_unexpected(tissue.error());
+            if (!fit) return tl::make_unexpected(fit.error());
+            tissue = *fit;
             attributes["gravity"] = exactText(gravityDirection(scan.position));
-            setTissueModel(attributes, *tissue);
+            setTissueModel(attributes, tissue);
         }
-        setNotes(attributes, input->notes);
-        return publishSegmentation(preparation, key, input->labels, attributes);
+        std::vector<std::string> notes = input->notes;
+        if (!colon) {
+            setNotes(attributes, notes);
+            return publishSegmentation(preparation, key, input->labels, attributes);
+        }
+        segmentation::ColonOptions finding;
+        finding.threads = options.threads, finding.progress = progress;
+        const auto found =
+            segmentation::findColonInMask(input->labels, ct ? &scan : nullptr, tissue, finding);
+        ColonRecord record;
+        if (found) {
+            record = found->record;
+            notes.insert(notes.end(), found->notes.begin(), found->notes.end());
+            if (fitted) attributes["gravity"] = exactText(found->gravity);
+        } else if (found.error().kind == ErrorKind::noResult) {
+            record.confidence = 0.0;
+            record.warnings.push_back(
+                "no course of a colon was found in the mask; it is taken as it is");
+        } else {
+            return tl::make_unexpected(found.error());
+        }
+        notes.insert(notes.end(), record.warnings.begin(), record.warnings.end());
+        setNotes(attributes, notes);
+        return publishSegmentation(preparation, key, found ? found->labels : input->labels,
+                                   attributes)
+            .and_then([&] {
+                return preparation.target().publishText(product::quality, key, qualityJson(record),
+                                                        {}, madeFrom(product::quality));
+            });
     };
-    return preparation.run({"segmentation", key, {product::segmentation}}, meter, make).map([&] {
-        return key;
-    });
+    std::vector<std::string> products{product::segmentation};
+    if (colon) products.push_back(product::quality);
+    return preparation.run({"segmentation", key, products}, meter, make).map([&] { return key; });
 }
 
 Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,

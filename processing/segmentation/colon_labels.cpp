@@ -25,7 +25,7 @@ class Labelling {
 public:
     Labelling(const Volume<std::int16_t>& hu, const TissueModel& tissue,
               const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-              const ColonChain& chain, int threads)
+              const ColonChain& chain, const LabelOptions& options)
         : hu_(hu),
           grid_(hu.grid()),
           tissue_(tissue),
@@ -34,22 +34,24 @@ public:
           graph_(graph),
           chain_(chain),
           softHu_(tissue.meanHu[int(Tissue::soft)]),
+          options_(options),
           kept_(cut.pieces.size(), 0),
-          barred_(hu.voxels().size(), false),
-          smooth_(topology::smoothHu(hu, 0.8, threads)) {
+          barred_(hu.voxels().size(), false) {
         result_.labels = Volume<std::uint8_t>(grid_, outside);
         labels_ = result_.labels.writable();
     }
 
-    ColonLabels run(double bridgeRadiusMm) {
+    ColonLabels run() {
         keepPieces();
         openDoors();
         label();
         closeDoors();
-        fillInterfaces();
-        fitToHalfHeight();
+        if (!options_.asGiven) {
+            fillInterfaces();
+            fitToHalfHeight();
+        }
         takeCrumbs();
-        layBridges(bridgeRadiusMm);
+        layBridges(options_.bridgeRadiusMm);
         joinUp();
         return std::move(result_);
     }
@@ -286,7 +288,8 @@ private:
     // Tagged material ends where the HU are half-way between it and soft tissue: its own, as it is
     // not equally bright everywhere. One layer of voxels at a time, off or on.
     void fitToHalfHeight() {
-        constexpr double layersMm = 1.6;
+        constexpr double layersMm = 1.6, smoothMm = 0.8;
+        smooth_ = topology::smoothHu(hu_, smoothMm, options_.threads);
         std::vector<std::uint32_t> front;
         for (std::size_t n = 0; n < labels_.size(); ++n) {
             if (labels_[n] != tagged || Content(contents_.content[n]) == Content::interface)
@@ -407,6 +410,7 @@ private:
                 p >= 0 && !isKept(p) && (graph_.nodeOf[std::size_t(p)] >= 0 || others.count(p));
             if (barred_[n] || elsewhere) barredVoxels.push_back(std::uint32_t(n));
         }
+        if (options_.asGiven) return;
         addTaggedStool(result_.labels, hu_, tissue_, barredVoxels);
         labels_ = result_.labels.writable();
     }
@@ -506,9 +510,10 @@ private:
     const PieceGraph& graph_;
     const ColonChain& chain_;
     const double softHu_;
+    const LabelOptions options_;
     std::vector<char> kept_;                            ///< pieces
     std::vector<bool> barred_;                          ///< voxels of rebuilt walls
-    const Volume<std::int16_t> smooth_;                 ///< HU, against noise
+    Volume<std::int16_t> smooth_;                       ///< HU, against noise
     std::vector<char> open_;                            ///< orifices
     std::vector<int> inner_;                            ///< orifices between kept pieces
     std::set<int> cuts_;                                ///< orifices that the chain closes
@@ -521,8 +526,8 @@ private:
 
 ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                       const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-                      const ColonChain& chain, double bridgeRadiusMm, int threads) {
-    return Labelling(hu, tissue, contents, cut, graph, chain, threads).run(bridgeRadiusMm);
+                      const ColonChain& chain, const LabelOptions& options) {
+    return Labelling(hu, tissue, contents, cut, graph, chain, options).run();
 }
 
 }  // namespace haustra::segmentation

@@ -18,6 +18,12 @@ struct RebuiltWall {
     bool betweenLoops = false;  ///< both sides are the colon's
 };
 
+struct LabelOptions {
+    double bridgeRadiusMm = 1.5;
+    bool asGiven = false;  ///< the contents end where they end: no fit to HU, no stool added
+    int threads = 0;
+};
+
 struct ColonLabels {
     Volume<std::uint8_t> labels;  ///< LumenLabel; one 6-connected piece
     std::vector<RebuiltWall> walls;
@@ -36,6 +42,6 @@ struct ColonLabels {
 /// bridge of `bridgeRadiusMm` follows its path. The same for any number of threads. O(voxels).
 ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                       const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-                      const ColonChain& chain, double bridgeRadiusMm = 1.5, int threads = 0);
+                      const ColonChain& chain, const LabelOptions& options = {});
 
 }  // namespace haustra::segmentation

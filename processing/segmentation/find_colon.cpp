@@ -316,6 +316,80 @@ Volume<std::uint8_t> onTheScan(const Volume<std::int16_t>& hu, Volume<std::uint8
     return whole;
 }
 
+// HU of a mask that has no scan: gas in soft tissue, as where its levels are is not known.
+Volume<std::int16_t> drawnHu(const Volume<std::uint8_t>& mask, const TissueModel& tissue) {
+    Volume<std::int16_t> hu(mask.grid());
+    const auto out = hu.writable();
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        const Tissue is = mask[n] == 0 ? Tissue::soft : Tissue::air;
+        out[n] = std::int16_t(std::lround(tissue.meanHu[std::size_t(is)]));
+    }
+    return hu;
+}
+
+// The outline of the trunk in which a colon's mask may lie, as places: the flexures and the cecum
+// come within a fifth of its sides, the transverse colon within a fifth of its front, and the
+// rectum lies in the middle of its back half.
+std::vector<glm::vec3> trunkAround(const Volume<std::uint8_t>& mask) {
+    glm::dvec3 lo(1e9), hi(-1e9);
+    for (std::size_t n = 0; n < mask.voxels().size(); ++n) {
+        if (mask[n] == 0) continue;
+        const glm::dvec3 p = mask.grid().patientFromVoxelPoint(mask.grid().voxelAt(n));
+        lo = glm::min(lo, p), hi = glm::max(hi, p);
+    }
+    const glm::dvec2 half = glm::dvec2(hi - lo) * glm::dvec2(0.5 / 0.8, 1.0 / 1.3);
+    const glm::dvec2 middle(0.5 * (lo.x + hi.x), lo.y + 0.8 * half.y);
+    std::vector<glm::vec3> places;
+    for (int n = 0; n < 400; ++n) {
+        const double angle = 2.0 * M_PI * n / 400.0;
+        const glm::dvec2 p = middle + half * glm::dvec2(std::cos(angle), std::sin(angle));
+        places.emplace_back(p.x, p.y, 0.5 * (lo.z + hi.z));
+    }
+    return places;
+}
+
+// Contents of the mask alone. Its voxels between gas and tagged material in HU are the wall's, or
+// the level's where tagged material lies near. What else a scan shows to be no soft tissue is no
+// way for a collapse, but for what the mask falls short of at its own border.
+void restrictToMask(BowelContents& contents, const Volume<std::int16_t>& hu,
+                    const Volume<std::uint8_t>& mask, const TissueModel& tissue) {
+    const Grid& grid = mask.grid();
+    const auto voxels = contents.content.writable();
+    for (std::size_t n = 0; n < voxels.size(); ++n) {
+        if (mask[n] != 0) {
+            if (Content(voxels[n]) == Content::interface) continue;  // of a level
+            voxels[n] = std::uint8_t(hu[n] < tissue.airBelowHu      ? Content::gas
+                                     : hu[n] > tissue.taggedAboveHu ? Content::tagged
+                                                                    : Content::interface);
+        } else if (Content(voxels[n]) != Content::tissue) {
+            bool atMask = false;
+            visitFaces(grid, n, [&](std::size_t m, int) { atMask = atMask || mask[m] != 0; });
+            voxels[n] = std::uint8_t(atMask ? Content::tissue : Content::outside);
+        }
+    }
+    // Of the voxels in between, those far from tagged material belong to the gas.
+    constexpr int reach = 2;
+    std::vector<std::size_t> walls;
+    for (std::size_t n = 0; n < voxels.size(); ++n) {
+        if (Content(voxels[n]) != Content::interface || mask[n] == 0 ||
+            hu[n] < tissue.airBelowHu || hu[n] > tissue.taggedAboveHu)
+            continue;
+        const glm::ivec3 v = grid.voxelAt(n);
+        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
+                         hi = glm::min(v + reach, grid.size - 1);
+        bool byTagged = false;
+        for (int k = lo.z; k <= hi.z && !byTagged; ++k) {
+            for (int j = lo.y; j <= hi.y && !byTagged; ++j) {
+                for (int i = lo.x; i <= hi.x && !byTagged; ++i)
+                    byTagged = Content(voxels[grid.index(i, j, k)]) == Content::tagged;
+            }
+        }
+        if (!byTagged) walls.push_back(n);
+    }
+    for (const std::size_t n : walls)
+        voxels[n] = std::uint8_t(Content::gas);
+}
+
 // Half of the shortest adult colon, distended (Khashab et al., Endoscopy 2009: 120 to 250 cm at CT
 // colonography).
 constexpr double leastDistendedMm = 500.0, distendedRadiusMm = 8.0;
@@ -329,26 +403,22 @@ double distendedMm(const PieceGraph& graph, const ColonChain& chain) {
     return sum;
 }
 
-}  // namespace
+/// What the chain is sought in: HU and contents of one grid, and soft tissue of the whole body.
+struct Surroundings {
+    Volume<std::int16_t> hu;
+    BowelContents contents;
+    std::vector<glm::vec3> softTissueMm;
+    bool given = false;  ///< the contents are a mask's, which ends where it ends
+};
 
-Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
+/// The colon among the contents, its labels on their grid.
+Result<FoundColon> findAmong(const Surroundings& among, const TissueModel& tissue,
                              const ColonOptions& options) {
-    if (scan.hu.grid().voxelCount() > std::numeric_limits<std::uint32_t>::max())
-        return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "segmentation");
     const auto progress = [&](double fraction) {
         if (options.progress) options.progress(fraction);
     };
-    progress(0.0);
-    // Not all of the scan is looked at in full: voxels finer than walls are told by are binned, and
-    // only the bowel's surroundings are cut into pieces.
-    const glm::ivec3 by = binningOf(scan.hu.grid());
-    Volume<std::int16_t> hu = binned(scan.hu, by, options.threads);
-    BowelContents contents = findContents(hu, scan.position, tissue, options.threads);
-    const std::vector<glm::vec3> softTissueMm = softTissueSamples(hu, contents.content);
-    const VoxelBox box = bowelBox(contents.content, placesOf(options.edits), options.threads);
-    hu = cropped(hu, box, options.threads);
-    contents = cropped(contents, box, options.threads);
-    cutBalls(contents, options.edits.cuts);
+    const Volume<std::int16_t>& hu = among.hu;
+    const BowelContents& contents = among.contents;
     progress(0.2);
     TubePieces cut;
     {
@@ -365,7 +435,7 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     const auto given = givenPieces(cut, options.edits);
     if (!given) return tl::make_unexpected(given.error());
     const PieceGraph graph =
-        makePieceGraph(hu, contents, tissue, cut, softTissueMm, *given, options.threads);
+        makePieceGraph(hu, contents, tissue, cut, among.softTissueMm, *given, options.threads);
     progress(0.75);
     const std::vector<ColonChain> chains = findChains(graph.graph, {.chains = 12});
     const bool asked = !options.edits.seedsMm.empty() || !options.edits.joins.empty();
@@ -380,15 +450,88 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
                     "segmentation");
     }
     progress(0.8);
-    ColonLabels labels =
-        layLabels(hu, tissue, contents, cut, graph, chains.front(), 1.5, options.threads);
+    ColonLabels labels = layLabels(hu, tissue, contents, cut, graph, chains.front(),
+                                   {.asGiven = among.given, .threads = options.threads});
     FoundColon found;
     found.record = Recorder(contents, cut, graph, chains, labels).record();
-    found.labels = onTheScan(scan.hu, std::move(labels.labels), contents.content, by, box,
-                             tissue.airBelowHu, options.threads);
+    found.labels = std::move(labels.labels);
     found.gravity = contents.gravity;
     found.notes = contents.notes;
-    progress(1.0);
+    return found;
+}
+
+}  // namespace
+
+Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
+                             const ColonOptions& options) {
+    if (scan.hu.grid().voxelCount() > std::numeric_limits<std::uint32_t>::max())
+        return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "segmentation");
+    if (options.progress) options.progress(0.0);
+    // Not all of the scan is looked at in full: voxels finer than walls are told by are binned, and
+    // only the bowel's surroundings are cut into pieces.
+    const glm::ivec3 by = binningOf(scan.hu.grid());
+    Surroundings among;
+    among.hu = binned(scan.hu, by, options.threads);
+    among.contents = findContents(among.hu, scan.position, tissue, options.threads);
+    among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
+    const VoxelBox box = bowelBox(among.contents.content, placesOf(options.edits), options.threads);
+    among.hu = cropped(among.hu, box, options.threads);
+    among.contents = cropped(among.contents, box, options.threads);
+    cutBalls(among.contents, options.edits.cuts);
+    auto found = findAmong(among, tissue, options);
+    if (!found) return found;
+    found->labels = onTheScan(scan.hu, std::move(found->labels), among.contents.content, by, box,
+                              tissue.airBelowHu, options.threads);
+    if (options.progress) options.progress(1.0);
+    return found;
+}
+
+Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtScan* scan,
+                                   const TissueModel& tissue, const ColonOptions& options) {
+    const Grid& grid = mask.grid();
+    if (grid.voxelCount() > std::numeric_limits<std::uint32_t>::max())
+        return fail(ErrorKind::unsupported, "the mask has more than 2^32 voxels", "segmentation");
+    if (scan && !sameGrid(grid, scan->hu.grid()))
+        return fail(ErrorKind::badInput, "the mask is not on the scan's grid", "segmentation");
+    Surroundings among;
+    among.given = true;
+    if (scan) {
+        among.hu = scan->hu.share();
+        among.contents = findContents(among.hu, scan->position, tissue, options.threads);
+        among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
+    } else {
+        among.hu = drawnHu(mask, tissue);
+        among.contents.content = Volume<std::uint8_t>(grid, std::uint8_t(Content::tissue));
+        among.contents.gasHu = tissue.meanHu[int(Tissue::air)];
+        among.softTissueMm = trunkAround(mask);
+    }
+    restrictToMask(among.contents, among.hu, mask, tissue);
+    const VoxelBox box = bowelBox(among.contents.content, {}, options.threads);
+    among.hu = cropped(among.hu, box, options.threads);
+    among.contents = cropped(among.contents, box, options.threads);
+    auto found = findAmong(among, tissue, options);
+    if (!found) return found;
+    Volume<std::uint8_t> whole(grid, std::uint8_t(LumenLabel::outside));
+    paste(found->labels, box, whole, options.threads);
+    found->labels = std::move(whole);
+    if (!scan) {
+        found->gravity = glm::dvec3(0.0);
+        const auto labels = found->labels.writable();
+        for (std::size_t n = 0; n < labels.size(); ++n) {
+            if (LumenLabel(labels[n]) == LumenLabel::air &&
+                LumenLabel(mask[n]) == LumenLabel::tagged)
+                labels[n] = mask[n];
+        }
+    }
+    double maskMl = 0.0, keptMl = 0.0;
+    for (std::size_t n = 0; n < mask.voxels().size(); ++n) {
+        maskMl += mask[n] != 0;
+        keptMl += mask[n] != 0 && found->labels[n] != 0;
+    }
+    const double leftMl = (maskMl - keptMl) * grid.voxelVolumeMm3() / 1000.0;
+    if (leftMl >= 0.5)
+        found->notes.push_back(
+            text("%.1f ml of the mask are no part of the colon that was found in it", leftMl));
     return found;
 }
 

@@ -318,10 +318,10 @@ TEST_F(PreparedPhantom, DiscsWithFoldersOfOneNameAreTwoCases) {
 TEST_F(PreparedPhantom, TheListNamesCasesProductsAndSizes) {
     const auto outcome = haustra({"list", "--store", store()});
     EXPECT_EQ(outcome.exitCode, 0);
-    EXPECT_EQ(lineCount(outcome.out), 11u) << outcome.out;
-    for (const char* word :
-         {"p  study ", "  supine\n", "ct", "segmentation", "mixture", "cleansed", "cleansed-lumen",
-          "lumen", "distance", "centerline", "surface", "flatmap", " MB"}) {
+    EXPECT_EQ(lineCount(outcome.out), 13u) << outcome.out;
+    for (const char* word : {"p  study ", "  supine\n", "colon found with confidence", "ct",
+                             "segmentation", "quality", "mixture", "cleansed", "cleansed-lumen",
+                             "lumen", "distance", "centerline", "surface", "flatmap", " MB"}) {
         EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
     }
 }
@@ -398,9 +398,8 @@ TEST_F(PreparedPhantom, APhantomDoesNotOverwriteAFolderUnlessTold) {
     forced.push_back("--force");
     EXPECT_EQ(haustra(forced).exitCode, 0);
     EXPECT_EQ(tests::fileContent(file("full/mine.txt")), "keep");
-    for (const char* name :
-         {"lumen.nii.gz", "sites.nii.gz", "untagged.nii.gz", "centerline.csv", "polyps.json",
-          "structure.json", "phantom.json"}) {
+    for (const char* name : {"lumen.nii.gz", "sites.nii.gz", "untagged.nii.gz", "centerline.csv",
+                             "polyps.json", "structure.json", "phantom.json"}) {
         EXPECT_GT(fs::file_size(fs::path(file("full/truth")) / name), 0u) << name;
     }
     for (const auto& left : fs::directory_iterator(folder_.path())) {

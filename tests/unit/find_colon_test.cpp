@@ -156,6 +156,67 @@ TEST(FindColon, IsTheColonWithItsFluidAndNothingElse) {
     EXPECT_LT(found->record.pieces.back().centreMm.x, 110.0) << "the cecum lies on the right";
 }
 
+Volume<std::uint8_t> maskOf(const Grid& grid, const std::function<bool(glm::dvec3)>& inside) {
+    Volume<std::uint8_t> mask(grid);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+        mask.writable()[n] = inside(grid.patientFromVoxelPoint(grid.voxelAt(n)));
+    return mask;
+}
+
+TEST(FindColonInMask, TheScanSaysWhatIsTaggedAndWhereDownIs) {
+    const CtScan scan = Drawing::supine().scan(PatientPosition::unknown);
+    const auto tissue = cleansing::fitTissueModel(scan);
+    ASSERT_TRUE(tissue);
+    const Volume<std::uint8_t> mask =
+        maskOf(scan.hu.grid(), [](glm::dvec3 p) { return inColon(p) || inGasIleum(p); });
+    const auto found = segmentation::findColonInMask(mask, &scan, *tissue);
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_EQ(found->gravity, glm::dvec3(0, 1, 0));
+    EXPECT_GT(diceWithDrawing(*found), 0.995);
+    EXPECT_EQ(labelledMl(*found, inGasIleum), 0.0) << "what the mask holds beside the colon";
+    EXPECT_TRUE(isOnePiece(*found));
+    bool told = false;
+    for (const std::string& note : found->notes)
+        told = told || note.find("ml of the mask are no part of the colon") != std::string::npos;
+    EXPECT_TRUE(told);
+    for (std::size_t n = 0; n < mask.voxels().size(); ++n) {
+        const glm::dvec3 p = mask.grid().patientFromVoxelPoint(mask.grid().voxelAt(n));
+        if (found->labels[n] == 0) continue;
+        ASSERT_NE(mask[n], 0) << "nothing is added";
+        if (std::abs(p.y - levelMm) > 6.0) {
+            ASSERT_EQ(LumenLabel(found->labels[n]),
+                      p.y > levelMm ? LumenLabel::tagged : LumenLabel::air);
+        }
+    }
+}
+
+TEST(FindColonInMask, NeedsNoScan) {
+    const CtScan scan = Drawing::supine().scan();
+    const auto tissue = cleansing::fitTissueModel(scan);
+    ASSERT_TRUE(tissue);
+    const Volume<std::uint8_t> mask = maskOf(scan.hu.grid(), inColon);
+    const auto found = segmentation::findColonInMask(mask, nullptr, *tissue);
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_GT(diceWithDrawing(*found), 0.995);
+    EXPECT_EQ(found->gravity, glm::dvec3(0.0));
+    EXPECT_EQ(found->record.pieces.front().part, ColonPart::rectum);
+    EXPECT_LT(found->record.pieces.back().centreMm.x, 110.0) << "the cecum lies on the right";
+}
+
+TEST(FindColonInMask, RefusesWhatIsNoColonAndWhatIsElsewhere) {
+    const CtScan scan = Drawing::supine().scan();
+    const auto tissue = cleansing::fitTissueModel(scan);
+    ASSERT_TRUE(tissue);
+    const auto ball =
+        segmentation::findColonInMask(maskOf(scan.hu.grid(), inStomach), nullptr, *tissue);
+    ASSERT_FALSE(ball);
+    EXPECT_EQ(ball.error().kind, ErrorKind::noResult);
+    const auto elsewhere = segmentation::findColonInMask(
+        maskOf(axisAlignedGrid({130, 100, 152}, glm::dvec3(2.4)), inColon), &scan, *tissue);
+    ASSERT_FALSE(elsewhere);
+    EXPECT_EQ(elsewhere.error().kind, ErrorKind::badInput);
+}
+
 TEST(FindColon, EachVoxelIsLabelledByWhatItHolds) {
     const CtScan scan = Drawing::supine().scan();
     const auto found = find(scan);
