@@ -20,6 +20,8 @@ inline constexpr std::size_t frameHeaderBytes = 5;
 inline constexpr std::uint32_t maxClientControlBytes = 64 * 1024;
 inline constexpr std::uint32_t maxServerControlBytes = 4 * 1024 * 1024;
 inline constexpr std::uint32_t maxTileBytes = 16 * 1024 * 1024;
+inline constexpr int maxWarnings = 200;  ///< of ColonTrust
+inline constexpr std::size_t maxWarningBytes = 400;
 inline constexpr std::uint32_t maxViewports = 8;
 inline constexpr std::uint32_t maxViewportPixels = 2048;  ///< width and height, each
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/centerline.h"
+#include "core/colon_record.h"
 #include "core/grid.h"
 #include "core/histogram.h"
 #include "core/optics_preset.h"
@@ -96,6 +97,7 @@ struct CaseInfo {
     std::vector<OpticsPreset> presets;  ///< one at least, the default first
     Histogram histogram;                ///< of the scan; may be empty
     bool cleansed = false;              ///< there is a cleansed scan
+    std::optional<ColonTrust> trust;    ///< how sure the colon is, where one was searched for
     std::optional<FlatStrip> flat;      ///< where the case has been flattened
 };
 

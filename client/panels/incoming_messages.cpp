@@ -1,5 +1,6 @@
 #include "panels/incoming_messages.h"
 
+#include "protocol/framing.h"
 #include "protocol/optics_message.h"
 
 #include <cmath>
@@ -68,6 +69,34 @@ Result<FlatStrip> stripFrom(const protocol::FlatStrip& message) {
     return strip;
 }
 
+Result<ColonTrust> trustFrom(const protocol::ColonTrust& message) {
+    const auto refuse = [](const char* what) {
+        return fail(ErrorKind::badInput, what, "case opened: trust");
+    };
+    ColonTrust trust;
+    trust.confidence = message.confidence(), trust.lengthMm = message.length_mm();
+    if (!(trust.confidence >= 0.0 && trust.confidence <= 1.0 && trust.lengthMm >= 0.0 &&
+          trust.lengthMm < INFINITY))
+        return refuse("its confidence or length is none");
+    if (message.warnings_size() > protocol::maxWarnings) return refuse("too many warnings");
+    for (const std::string& warning : message.warnings()) {
+        if (warning.size() > protocol::maxWarningBytes) return refuse("a warning is too long");
+        trust.warnings.push_back(warning);
+    }
+    if (message.segments_size() != colonSegments) return refuse("not six segments");
+    for (int n = 0; n < colonSegments; ++n) {
+        const protocol::ColonSegment& segment = message.segments(n);
+        trust.segments[std::size_t(n)] = {segment.length_mm(), segment.diameter_mm(),
+                                          segment.gas_ml(), segment.tagged_ml(),
+                                          segment.collapsed_mm()};
+        for (const double number : {segment.length_mm(), segment.diameter_mm(), segment.gas_ml(),
+                                    segment.tagged_ml(), segment.collapsed_mm()}) {
+            if (!(number >= 0.0 && number < INFINITY)) return refuse("a segment's figure is none");
+        }
+    }
+    return trust;
+}
+
 }  // namespace
 
 Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
@@ -105,6 +134,11 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
           info.histogram.huPerBin <= maxBinHu && info.histogram.voxels.size() <= maxBins))
         return fail(ErrorKind::badInput, "its bins are none", "case opened: histogram");
     info.cleansed = message.cleansed();
+    if (message.has_trust()) {
+        auto trust = trustFrom(message.trust());
+        if (!trust) return tl::make_unexpected(trust.error());
+        info.trust = std::move(*trust);
+    }
     if (message.has_flat()) {
         auto strip = stripFrom(message.flat());
         if (!strip) return tl::make_unexpected(strip.error());

@@ -19,6 +19,7 @@ PlayReport play(Session& session, const std::vector<Action>& actions, const Play
     if (auto opened = player.awaitCase(); !opened) return finish(opened.error());
     report.caseName = session.caseInfo()->name;
     report.bridges = bridgesOf(session.caseInfo()->centerline);
+    report.trust = session.caseInfo()->trust;
     report.centerlineMm = session.caseInfo()->centerline.lengthMm();
     for (const Action& action : actions) {
         ActionReport measured;

@@ -106,6 +106,19 @@ std::string toJson(const PlayReport& report) {
         out["bridges"].push_back({{"from_arc_mm", rounded(bridge.fromArcMm)},
                                   {"to_arc_mm", rounded(bridge.toArcMm)},
                                   {"length_mm", rounded(bridge.lengthMm())}});
+    if (report.trust) {
+        auto segments = json::object();
+        for (int n = 0; n < colonSegments; ++n) {
+            const SegmentDistension& segment = report.trust->segments[std::size_t(n)];
+            segments[toString(ColonSegment(n))] = {{"length_mm", rounded(segment.lengthMm)},
+                                                   {"diameter_mm", rounded(segment.diameterMm)},
+                                                   {"collapsed_mm", rounded(segment.collapsedMm)}};
+        }
+        out["trust"] = {{"confidence", rounded(report.trust->confidence)},
+                        {"length_mm", rounded(report.trust->lengthMm)},
+                        {"warnings", report.trust->warnings},
+                        {"segments", segments}};
+    }
     out["error"] = report.failure ? json(describe(*report.failure)) : json();
     out["actions"] = json::array();
     for (const ActionReport& action : report.actions)

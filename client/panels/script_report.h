@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/bridges.h"
+#include "core/colon_record.h"
 #include "core/result.h"
 #include "panels/flat_strip.h"
 
@@ -42,7 +43,8 @@ struct ActionReport {
 struct PlayReport {
     std::string clientSoftware, serverSoftware, renderer, fingerprint, caseName;
     double centerlineMm = 0.0, roundTripMs = 0.0;
-    std::vector<Bridge> bridges;  ///< of the path, where no wall is seen
+    std::vector<Bridge> bridges;      ///< of the path, where no wall is seen
+    std::optional<ColonTrust> trust;  ///< as the case tells it
     std::vector<ActionReport> actions;
     std::optional<Error> failure;
 };

@@ -44,6 +44,21 @@ void drawTopBar(Ui& ui, Rect area) {
                         info.grid.size.y, info.grid.size.z);
         write(ui.fonts.small, color::muted, about);
         if (!info.cleansed) write(ui.fonts.small, color::bookmark, "not cleansed");
+        if (info.trust) {
+            const float from = x;
+            const std::size_t places = info.trust->warnings.size();
+            write(ui.fonts.small, places > 0 ? color::bookmark : color::muted,
+                  format("colon %.0f %% sure", 100.0 * info.trust->confidence) +
+                      (places == 0   ? std::string()
+                       : places == 1 ? std::string(", 1 place to look at")
+                                     : format(", %d places to look at", int(places))));
+            if (places > 0 && ImGui::IsMouseHoveringRect({from, area.min.y}, {x, area.max.y})) {
+                std::string all;
+                for (const std::string& warning : info.trust->warnings)
+                    all += (all.empty() ? "" : "\n") + warning;
+                ImGui::SetTooltip("%s", all.c_str());
+            }
+        }
     }
 
     const float side = ui.px(28);

@@ -133,9 +133,6 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
                  flight.isFree() ? std::string("W A S D move, drag to look, C returns to the path")
                                  : format("of %.0f mm, %s", length,
                                           antegrade ? "towards the cecum" : "towards the rectum"));
-    const CenterlinePose pose = flight.centerline().points.empty()
-                                    ? CenterlinePose{}
-                                    : poseAtArc(flight.centerline(), flight.arcMm());
     for (const Bridge& bridge : bridgesOf(flight.centerline())) {
         if (flight.isFree() || flight.arcMm() < bridge.fromArcMm || flight.arcMm() > bridge.toArcMm)
             continue;

@@ -140,6 +140,22 @@ std::string qualityJson(const ColonRecord& record) {
            "\n";
 }
 
+Result<ColonTrust> trustOfQuality(const std::string& text) {
+    try {
+        const Json json = Json::parse(text);
+        ColonTrust trust{json.at("confidence"), json.at("length_mm"), json.at("warnings"), {}};
+        for (std::size_t n = 0; n < colonSegments; ++n) {
+            const Json& read = json.at("segments").at(n);
+            trust.segments[n] = {read.at("length_mm"), read.at("diameter_mm"), read.at("gas_ml"),
+                                 read.at("tagged_ml"), read.at("collapsed_mm")};
+        }
+        return trust;
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("this tells no quality: ") + error.what(),
+                    "quality");
+    }
+}
+
 Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text) {
     try {
         std::vector<ColonPiece> pieces;

@@ -114,6 +114,14 @@ std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& rec
 /// The `quality` product: JSON with all of the record, and the segments' distension; lengths in mm,
 /// places in LPS mm, shares from 0 to 1. Ends with a new line.
 std::string qualityJson(const ColonRecord& record);
+/// What such a text says a reader must know before anything is seen.
+struct ColonTrust {
+    double confidence = 0.0, lengthMm = 0.0;
+    std::vector<std::string> warnings;
+    std::array<SegmentDistension, colonSegments> segments;
+};
+/// Fails (badInput) where the text is no quality.
+Result<ColonTrust> trustOfQuality(const std::string& text);
 /// The pieces of such a text, with part, centre, radius and length. Fails (badInput) where it is
 /// none.
 Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text);

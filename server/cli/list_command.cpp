@@ -1,6 +1,7 @@
 // haustra list: what a store holds.
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "core/colon_record.h"
 #include "pipeline/scan_identity.h"
 #include "store/case_store.h"
 
@@ -64,14 +65,11 @@ std::vector<Listed> byStudy(const store::CaseStore& store, const std::vector<std
 std::string trustOf(const store::CaseStore& store, const std::string& name) {
     const auto opened = store.openCase(name);
     if (!opened || !opened->find("quality")) return {};
-    const auto text = opened->readText("quality");
-    if (!text) return "quality: " + describe(text.error());
-    const auto quality = nlohmann::json::parse(*text, nullptr, false);
-    if (!quality.is_object() || !quality.contains("confidence") || !quality.contains("warnings"))
-        return "quality: not readable";
-    const std::size_t warnings = quality["warnings"].size();
+    const auto trust = opened->readText("quality").and_then(trustOfQuality);
+    if (!trust) return "quality: " + describe(trust.error());
+    const std::size_t warnings = trust->warnings.size();
     return fmt::format("colon found with confidence {:.0f} %, {} to look at",
-                       100.0 * quality["confidence"].get<double>(),
+                       100.0 * trust->confidence,
                        warnings == 1 ? "1 place" : fmt::format("{} places", warnings));
 }
 

@@ -7,6 +7,35 @@
 namespace haustra::session {
 namespace {
 
+// Of texts the first bytes that fit, not cut within a character.
+std::string shortened(const std::string& text, std::size_t most) {
+    if (text.size() <= most) return text;
+    std::size_t end = most;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+        --end;
+    return text.substr(0, end);
+}
+
+void fill(protocol::ColonTrust& message, const ColonTrust& trust) {
+    message.set_confidence(trust.confidence);
+    message.set_length_mm(trust.lengthMm);
+    for (const std::string& warning : trust.warnings) {
+        if (message.warnings_size() == protocol::maxWarnings) break;
+        message.add_warnings(shortened(warning, protocol::maxWarningBytes));
+    }
+    for (const SegmentDistension& segment : trust.segments) {
+        auto* told = message.add_segments();
+        told->set_length_mm(segment.lengthMm);
+        told->set_diameter_mm(segment.diameterMm);
+        told->set_gas_ml(segment.gasMl);
+        told->set_tagged_ml(segment.taggedMl);
+        told->set_collapsed_mm(segment.collapsedMm);
+    }
+}
+
+}  // namespace
+namespace {
+
 void fill(protocol::Vec3& message, glm::dvec3 v) {
     message.set_x(v.x);
     message.set_y(v.y);
@@ -63,6 +92,7 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
     for (const OpticsPreset& preset : presets.presets)
         fill(*message->add_presets(), preset);
     message->set_cleansed(opened.cleansed);
+    if (opened.trust) fill(*message->mutable_trust(), *opened.trust);
     message->set_raycaster(toString(opened.raycaster));
     for (const render::RaycasterTrial& trial : opened.trials) {
         auto* tried = message->add_trials();

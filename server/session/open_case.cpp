@@ -32,6 +32,10 @@ Result<CaseFiles> readCase(const store::Case& source) {
             auto centerline = source.readCenterline();
             if (!centerline) return tl::make_unexpected(centerline.error());
             files.facts.centerline = std::move(*centerline);
+        } else if (entry.product == "quality") {
+            auto trust = source.readText("quality").and_then(trustOfQuality);
+            if (!trust) return tl::make_unexpected(trust.error());
+            files.facts.trust = std::move(*trust);
         } else if (entry.product == "flatmap") {
             files.flattened = true;
         } else if (entry.product == "surface") {

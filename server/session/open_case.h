@@ -3,6 +3,7 @@
 
 #include "core/centerline.h"
 #include "core/ct_scan.h"
+#include "core/colon_record.h"
 #include "core/histogram.h"
 #include "core/tri_mesh.h"
 #include "render/raycaster_choice.h"
@@ -11,6 +12,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,7 @@ struct OpenCase {
     std::string content;  ///< equal for equal products of the same case
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
+    std::optional<ColonTrust> trust;   ///< where a colon was searched for
     Centerline centerline;             ///< empty where the case has none yet
     Histogram histogram;               ///< of the scan that the endoscopic view shows
     bool cleansed = false;             ///< the endoscopic view shows the cleansed scan, slices can

@@ -2,6 +2,7 @@
 // that a server should not send.
 #include "panels/incoming_messages.h"
 #include "panels/strip_tour.h"
+#include "protocol/framing.h"
 #include "protocol/optics_message.h"
 
 #include <cmath>
@@ -142,7 +143,41 @@ protocol::CaseOpened soundCase() {
     OpticsPreset preset{"wall", "", {}};
     preset.optics.transferFunction.points = {{-750.0, {}, 0.0}, {-550.0, {}, 1.0}};
     fill(*opened.add_presets(), preset);
+    auto* trust = opened.mutable_trust();
+    trust->set_confidence(0.9);
+    trust->set_length_mm(1500.0);
+    trust->add_warnings("the sigmoid is collapsed over 31 mm, at (1, 2, 3) mm");
+    for (int n = 0; n < colonSegments; ++n)
+        trust->add_segments()->set_length_mm(250.0);
     return opened;
+}
+
+TEST(ClientCase, OnlySoundTrustIsTakenFromAServer) {
+    const auto info = caseInfoFrom(soundCase());
+    ASSERT_TRUE(info && info->trust);
+    EXPECT_EQ(info->trust->confidence, 0.9);
+    EXPECT_EQ(info->trust->warnings.size(), 1u);
+    EXPECT_EQ(info->trust->segments[5].lengthMm, 250.0);
+    const auto refused = [](const auto& spoil) {
+        protocol::CaseOpened opened = soundCase();
+        spoil(*opened.mutable_trust());
+        return !caseInfoFrom(opened);
+    };
+    for (const double bad : {-0.1, 1.1, std::nan("")})
+        EXPECT_TRUE(refused([&](protocol::ColonTrust& trust) { trust.set_confidence(bad); }));
+    for (const double bad : {-1.0, std::nan(""), double(INFINITY)}) {
+        EXPECT_TRUE(refused([&](protocol::ColonTrust& trust) { trust.set_length_mm(bad); }));
+        EXPECT_TRUE(refused(
+            [&](protocol::ColonTrust& trust) { trust.mutable_segments(2)->set_gas_ml(bad); }));
+    }
+    EXPECT_TRUE(refused([](protocol::ColonTrust& trust) { trust.add_segments(); }));
+    EXPECT_TRUE(refused([](protocol::ColonTrust& trust) {
+        trust.add_warnings(std::string(protocol::maxWarningBytes + 1, 'x'));
+    }));
+    EXPECT_TRUE(refused([](protocol::ColonTrust& trust) {
+        for (int n = 0; n < protocol::maxWarnings; ++n)
+            trust.add_warnings("too many");
+    }));
 }
 
 TEST(ClientCase, OnlySoundPresetsAndHistogramsAreTakenFromAServer) {
