@@ -82,9 +82,31 @@ void addAcross(const BlockGraph& graph, std::int32_t node, int axis, int sign, F
     });
 }
 
+/// The nodes of the 26 blocks around a node's where all 27 are full of lumen, as most are: joints
+/// lead to every one of them. Else nothing is added, and false returned.
+bool appendFullNeighbours(const BlockGraph& graph, std::int32_t node,
+                          std::vector<std::int32_t>& neighbours) {
+    constexpr std::uint8_t full = 0xff;
+    const glm::ivec3 block = graph.blockOf(node);
+    if (graph.nodes[std::size_t(node)].inside != full ||
+        glm::any(glm::equal(block, glm::ivec3(0))) || glm::any(glm::equal(block, graph.blocks - 1)))
+        return false;
+    std::array<std::int32_t, 27> around;
+    for (int n = 0; n < 27; ++n) {
+        const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const std::int32_t other = graph.nodeAt[graph.blockIndex(block + step)];
+        if (other < 0 || graph.nodes[std::size_t(other)].inside != full) return false;
+        around[std::size_t(n)] = other;
+    }
+    neighbours.insert(neighbours.end(), around.begin(), around.begin() + 13);
+    neighbours.insert(neighbours.end(), around.begin() + 14, around.end());
+    return true;
+}
+
 /// The nodes in the 26 blocks around a node's that joints lead straight to.
 void appendNeighbours(const BlockGraph& graph, std::int32_t node,
                       std::vector<std::int32_t>& neighbours) {
+    if (appendFullNeighbours(graph, node, neighbours)) return;
     // By the step (−1, 0 or 1 along each axis) to their block; those with fewer axes come first.
     std::array<FewNodes, 27> reached;
     const auto place = [](glm::ivec3 s) { return std::size_t(13 + s.x + 3 * s.y + 9 * s.z); };
