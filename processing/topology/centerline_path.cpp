@@ -2,6 +2,7 @@
 
 #include "core/ct_scan.h"
 #include "topology/centerline_branches.h"
+#include "topology/centerline_cross_sections.h"
 #include "topology/centerline_graph.h"
 #include "topology/centerline_search.h"
 #include "topology/centerline_segments.h"
@@ -109,8 +110,11 @@ Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
                                 bool keepLast) {
         std::vector<glm::ivec3> path = refineToVoxels(graph, distanceMm, centreRoute(graph, route));
         trimEnds(path, distanceMm, !keepFirst, !keepLast);
-        return path.size() < 2 ? std::vector<glm::dvec3>()
-                               : smoothInsideLumen(path, labels, distanceMm);
+        if (path.size() < 2) return std::vector<glm::dvec3>();
+        std::vector<glm::dvec3> smooth = smoothInsideLumen(path, labels, distanceMm);
+        return options.middle == Middle::deepest
+                   ? smooth
+                   : atCrossSections(smooth, labels, distanceMm, options.threads);
     };
     std::vector<CurvePoint> curve;
     for (std::size_t n = 0; n < segments.size(); ++n) {

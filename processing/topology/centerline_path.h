@@ -13,8 +13,13 @@
 
 namespace haustra::topology {
 
+/// What of the lumen is its middle: where a plane across the path cuts it, the centroid, or what is
+/// farthest from the wall.
+enum class Middle { crossSections, deepest };
+
 struct CenterlineOptions {
     double stepMm = 1.0;
+    Middle middle = Middle::crossSections;
     int threads = 0;
     std::optional<glm::dvec3> rectumMm;  ///< overrules the automatic end point (patient, LPS)
     std::optional<glm::dvec3> cecumMm;
@@ -38,7 +43,8 @@ struct TracedCenterline {
 ///
 /// In each 6-connected segment the ends are found automatically, the route between them is the
 /// minimum-cost spanning tree's (it passes no leak while the colon is wider), the line within it
-/// minimises ∫ ds / distance from the boundary, and a B-spline smooths it. Every sample outside a
+/// minimises ∫ ds / distance from the boundary, a B-spline smooths it, and its points move to the
+/// middle of the lumen's cross-sections (centerline_cross_sections.h). Every sample outside a
 /// gap is inside the lumen; its radius is the distance field there. A straight line of samples
 /// marked as a gap joins one segment to the next; samples in voxels labelled LumenLabel::bridge are
 /// marked so as well. Samples are `stepMm` apart but for rounding so
