@@ -17,7 +17,8 @@ namespace haustra::cleansing {
 namespace {
 
 /// The share of the colon's own residue in each voxel of the surroundings. It falls from shell to
-/// shell from the second on: where it rises again, another bowel or bone lies across the wall.
+/// shell once it is not beside the tagging: where it rises again, another bowel or bone lies across
+/// the wall.
 std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& around,
                                                      const Volume<TissueFractions>& mixture) {
     constexpr int notRising = 25;  // in 255ths, for the noise
@@ -28,7 +29,7 @@ std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& a
     for (std::size_t shell = 0; shell < around.shells.size(); ++shell) {
         for (std::uint32_t n : around.shells[shell]) {
             int tagged = mixture[n].tagged;
-            if (shell > 1 && tagged > 0) {
+            if (int(shell) > around.besideShells && tagged > 0) {
                 const glm::ivec3 v = grid.voxelAt(n);
                 const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
                                  hi = glm::min(v + 1, grid.size - 1);
