@@ -26,6 +26,7 @@ public:
     }
     glm::ivec3 voxelsPerCell() const { return perCell_; }
     float at(int i, int j, int k) const;
+    bool empty() const { return values_.empty(); }
     std::vector<float>& values() { return values_; }
 
 private:

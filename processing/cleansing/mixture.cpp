@@ -6,6 +6,7 @@
 #include "cleansing/local_means.h"
 #include "cleansing/menisci.h"
 #include "cleansing/partial_volume_em.h"
+#include "cleansing/pseudo_enhancement.h"
 #include "cleansing/tagged_surroundings.h"
 #include "cleansing/thin_films.h"
 #include "cleansing/water_level.h"
@@ -229,13 +230,18 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     const TaggedSurroundings around = taggedSurroundings(labels, options.threads);
     progress(0.3);
     if (around.shells[0].empty()) return mixture;
-    const LocalMeans means = measureLocalMeans(scan, tissue, labels, around, options.threads);
+    const PseudoEnhancement enhancement =
+        measurePseudoEnhancement(scan, tissue, labels, options.threads);
+    const CtScan corrected =
+        enhancement ? withoutPseudoEnhancement(scan, enhancement, options.threads) : CtScan{};
+    const CtScan& seen = enhancement ? corrected : scan;
+    const LocalMeans means = measureLocalMeans(seen, tissue, labels, around, options.threads);
     progress(0.5);
-    const PointSpread spread = measurePointSpread(scan, labels, means, options.threads);
-    const InterfaceLayer interfaces(scan, labels, means, spread, gravity);
+    const PointSpread spread = measurePointSpread(seen, labels, means, options.threads);
+    const InterfaceLayer interfaces(seen, labels, means, spread, gravity);
     progress(0.6);
-    const WaterLevel level(scan, means, interfaces, around, gravity, options.threads);
-    const ColonMixture colon(scan, labels, means, interfaces, level);
+    const WaterLevel level(seen, means, interfaces, around, gravity, options.threads);
+    const ColonMixture colon(seen, labels, means, interfaces, level);
     for (const auto& shell : around.shells) {
         parallelFor(shell.size(), 4096, options.threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n)
@@ -244,8 +250,8 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     }
     progress(0.8);
     const Volume<std::uint8_t> films =
-        settleFilms(scan, labels, means, spread, around, mixture, options.threads);
-    settleRim(scan, labels, means, level, spread, around, films, mixture, options.threads);
+        settleFilms(seen, labels, means, spread, around, mixture, options.threads);
+    settleRim(seen, labels, means, level, spread, around, films, mixture, options.threads);
     // Where no tagging is left fat, which the two-tissue model has not, is told from air as far
     // off.
     for (const auto& shell : around.shells) {
