@@ -35,8 +35,9 @@ struct Scene {
 /// `taggedHu` and `noiseSd` in HU. Labels: what is more tagged than soft and air together, or lies
 /// in the blur between air and tagged, is tagged; what is mostly air is air.
 inline Scene makeScene(glm::ivec3 size, double taggedHu, double noiseSd,
-                       std::function<Shares(glm::dvec3)> sharesAt) {
-    const Grid grid = axisAlignedGrid(size, {0.75, 0.75, 1.0});
+                       std::function<Shares(glm::dvec3)> sharesAt,
+                       glm::dvec3 spacingMm = {0.75, 0.75, 1.0}) {
+    const Grid grid = axisAlignedGrid(size, spacingMm);
     Scene scene{{Volume<std::int16_t>(grid), PatientPosition::supine},
                 Volume<std::int16_t>(grid),
                 Volume<std::uint8_t>(grid),
@@ -68,15 +69,19 @@ inline Scene makeScene(glm::ivec3 size, double taggedHu, double noiseSd,
 
 /// A tube of radius 12 mm along z in soft tissue, filled with tagged fluid below y = `levelMm`
 /// from its middle (y points down) and air above.
-inline Scene tubeWithLevel(double taggedHu, double noiseSd, double levelMm = 0.0) {
-    const glm::ivec3 size(56, 56, 24);
-    const glm::dvec2 middle(0.75 * 27.6, 0.75 * 27.4);
-    return makeScene(size, taggedHu, noiseSd, [=](glm::dvec3 p) {
-        const glm::dvec2 d = glm::dvec2(p) - middle;
-        const double open = blurredStep(12.0 - glm::length(d));
-        const double fluid = blurredStep(d.y - levelMm);
-        return Shares{open * (1.0 - fluid), open * fluid};
-    });
+inline Scene tubeWithLevel(double taggedHu, double noiseSd, double levelMm = 0.0,
+                           glm::dvec3 spacingMm = {0.75, 0.75, 1.0}) {
+    const glm::ivec3 size(glm::round(glm::dvec3(42.0, 42.0, 24.0) / spacingMm));
+    const glm::dvec2 middle(20.7, 20.55);
+    return makeScene(
+        size, taggedHu, noiseSd,
+        [=](glm::dvec3 p) {
+            const glm::dvec2 d = glm::dvec2(p) - middle;
+            const double open = blurredStep(12.0 - glm::length(d));
+            const double fluid = blurredStep(d.y - levelMm);
+            return Shares{open * (1.0 - fluid), open * fluid};
+        },
+        spacingMm);
 }
 
 struct CleansedScene {

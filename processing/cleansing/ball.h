@@ -1,4 +1,4 @@
-// Balls of voxels around a voxel.
+// How far one looks around a voxel: in millimetres, whatever its size.
 #pragma once
 
 #include "core/grid.h"
@@ -10,9 +10,28 @@ namespace haustra::cleansing {
 /// Farther than this from a border the scanner's blur does not reach, mm.
 inline constexpr double blurReachMm = 1.6;
 
-/// Offsets of the voxels within `radiusMm` but the centre, always with the six face neighbours;
-/// the farthest first, as they are the likeliest to differ from it.
-std::vector<glm::ivec3> ballOffsets(const Grid& grid, double radiusMm);
+/// Voxels along each axis that are nearest to `mm`, at least 1.
+glm::ivec3 voxelsIn(const Grid& grid, double mm);
+
+/// Voxels along each axis to a step of 0.7 mm, at least 1: what looks at a voxel's neighbours looks
+/// this far. Looks over a wider place go by such steps too, so that smaller voxels make no look
+/// dearer.
+inline glm::ivec3 lookStep(const Grid& grid) {
+    return voxelsIn(grid, 0.7);
+}
+
+/// Voxels along each axis that the blur reaches from within a border's own voxel.
+glm::ivec3 blurReachVoxels(const Grid& grid);
+
+/// Offsets by look steps within an ellipsoid of these radii but the centre, always with the six
+/// along the axes; the farthest first, as they are the likeliest to differ from it.
+std::vector<glm::ivec3> ballOffsets(const Grid& grid, glm::dvec3 radiusMm);
+
+/// Where all of these hold one material no other's blur reaches, wherever the border lies within
+/// its voxel.
+inline std::vector<glm::ivec3> blurBall(const Grid& grid) {
+    return ballOffsets(grid, blurReachMm + 0.5 * grid.spacingMm());
+}
 
 /// Whether `holds(index)` at every voxel of the ball that is within the grid.
 template <class Predicate>
@@ -23,6 +42,20 @@ bool everywhere(const Grid& grid, const std::vector<glm::ivec3>& offsets, glm::i
         if (grid.contains(n) && !holds(grid.index(n))) return false;
     }
     return true;
+}
+
+/// Calls visit(voxel) for those of the grid within `reach` voxels of `v` along each axis, from it
+/// by `step`.
+template <class Visit>
+void eachStep(const Grid& grid, glm::ivec3 v, glm::ivec3 reach, glm::ivec3 step,
+              const Visit& visit) {
+    const glm::ivec3 lo = glm::min(reach, v) / step, hi = glm::min(reach, grid.size - 1 - v) / step;
+    for (int k = -lo.z; k <= hi.z; ++k) {
+        for (int j = -lo.y; j <= hi.y; ++j) {
+            for (int i = -lo.x; i <= hi.x; ++i)
+                visit(v + glm::ivec3(i, j, k) * step);
+        }
+    }
 }
 
 }  // namespace haustra::cleansing

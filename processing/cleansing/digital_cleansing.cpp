@@ -2,6 +2,7 @@
 
 #include "cleansing/local_means.h"
 #include "cleansing/menisci.h"
+#include "cleansing/pseudo_enhancement.h"
 #include "cleansing/refined_lumen.h"
 #include "cleansing/rim_smoothing.h"
 #include "cleansing/tagged_surroundings.h"
@@ -17,7 +18,8 @@ namespace haustra::cleansing {
 namespace {
 
 /// The share of the colon's own residue in each voxel of the surroundings. It falls from shell to
-/// shell from the second on: where it rises again, another bowel or bone lies across the wall.
+/// shell once it is not beside the tagging: where it rises again, another bowel or bone lies across
+/// the wall.
 std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& around,
                                                      const Volume<TissueFractions>& mixture) {
     constexpr int notRising = 25;  // in 255ths, for the noise
@@ -28,7 +30,7 @@ std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& a
     for (std::size_t shell = 0; shell < around.shells.size(); ++shell) {
         for (std::uint32_t n : around.shells[shell]) {
             int tagged = mixture[n].tagged;
-            if (shell > 1 && tagged > 0) {
+            if (int(shell) > around.besideShells && tagged > 0) {
                 const glm::ivec3 v = grid.voxelAt(n);
                 const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
                                  hi = glm::min(v + 1, grid.size - 1);
@@ -66,14 +68,15 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
     if (grid.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
         return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "cleansing");
     }
-    Cleansed cleansed{scan.hu.clone(), {}};
     const Volume<std::uint8_t> labels = withMenisci(scan, tissue, segmentation);
     const TaggedSurroundings around = taggedSurroundings(labels, threads);
-    if (around.shells[0].empty()) {
-        cleansed.lumen = segmentation.clone();
-        return cleansed;
-    }
-    const LocalMeans means = measureLocalMeans(scan, tissue, labels, around, threads);
+    if (around.shells[0].empty()) return Cleansed{scan.hu.clone(), segmentation.clone()};
+    const PseudoEnhancement enhancement = measurePseudoEnhancement(scan, tissue, labels, threads);
+    const CtScan corrected =
+        enhancement ? withoutPseudoEnhancement(scan, enhancement, threads) : CtScan{};
+    const CtScan& seen = enhancement ? corrected : scan;
+    Cleansed cleansed{seen.hu.clone(), {}};
+    const LocalMeans means = measureLocalMeans(seen, tissue, labels, around, threads);
     const auto shares = residueShares(around, mixture);
     std::vector<CleansedVoxel> changed;
     for (std::size_t shell = 0; shell < shares.size(); ++shell) {
@@ -93,7 +96,7 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
             const CleansedVoxel& voxel = changed[m];
             const glm::ivec3 v = grid.voxelAt(voxel.index);
             const double contrast = means.taggedHu.at(v) - means.airHu.at(v.x, v.y, v.z);
-            const double hu = scan.hu[voxel.index] - voxel.tagged / 255.0 * contrast;
+            const double hu = seen.hu[voxel.index] - voxel.tagged / 255.0 * contrast;
             out[voxel.index] = std::int16_t(std::clamp(std::lround(hu), -1024L, 3071L));
         }
     });

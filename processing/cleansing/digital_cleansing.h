@@ -8,14 +8,16 @@
 namespace haustra::cleansing {
 
 struct Cleansed {
-    Volume<std::int16_t> hu;  ///< equals the scan everywhere but in and at the tagged lumen
+    /// Equals the scan everywhere but in and at the tagged lumen, and where that made it brighter.
+    Volume<std::int16_t> hu;
     /// LumenLabel by the cleansed scan: HU below the model's airBelowHu, in and right around the
     /// segmentation. tagged where the residue was more than the air.
     Volume<std::uint8_t> lumen;
 };
 
 /// Equation 3.3 of the dissertation and its counterpart for the enhanced mucosa:
-/// y_new = y − m_tag μ_tag + m_tag μ_air, with the local mean of the tagging. Only what
+/// y_new = y − m_tag μ_tag + m_tag μ_air, with the local mean of the tagging, on the scan
+/// without pseudo-enhancement (pseudo_enhancement.h), where there is any. But for that only what
 /// `segmentation` (LumenLabel) holds, and the partial volume around it, changes; a scan with no
 /// tagged label comes back unchanged. The same bytes for any number of threads.
 Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,

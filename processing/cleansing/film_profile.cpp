@@ -1,5 +1,7 @@
 #include "cleansing/film_profile.h"
 
+#include "cleansing/normal_distribution.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,13 +11,6 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr double thinnestWallMm = 1.2;  // that holds a film, with air behind it
-
-double normalCdf(double x) {
-    return 0.5 * std::erfc(-x * M_SQRT1_2);
-}
-double normalDensity(double x) {
-    return std::exp(-0.5 * x * x) * (0.5 * M_SQRT1_2 * M_2_SQRTPI);
-}
 
 /// Of the samples `first` to `last`.
 class Fit {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cleansing/local_means.h"
+#include "cleansing/point_spread.h"
 #include "core/ct_scan.h"
 
 namespace haustra::cleansing {
@@ -13,7 +14,7 @@ namespace haustra::cleansing {
 class InterfaceLayer {
 public:
     InterfaceLayer(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
-                   const LocalMeans& means, glm::dvec3 gravity, int threads);
+                   const LocalMeans& means, const PointSpread& spread, glm::dvec3 gravity);
 
     /// The way from air to tagging through a voxel.
     struct Crossing {
@@ -28,14 +29,14 @@ public:
         return crossing(voxel, taggedHu, softHu).bareness;
     }
 
-    /// Standard deviation of the scanner's blur, as the scan's own interfaces show it.
-    double blurMm() const { return blurMm_; }
+    const PointSpread& spread() const { return spread_; }
 
 private:
     /// Length of the way from air to tagging through a voxel, mm, and that of a bare step of unit
     /// blur; negative where there is none.
     struct Step {
         double lengthMm = -1.0, unitLength = 1.0;
+        glm::dvec3 direction{0.0};  ///< unit, along the grid's axes
         bool level = false;
         glm::ivec3 tagged{0};
     };
@@ -46,7 +47,7 @@ private:
     const LocalMeans& means_;
     glm::dvec3 spacingMm_;
     glm::dvec3 down_;  ///< gravity along the grid's axes; zero where unknown
-    double blurMm_ = 0.55;
+    const PointSpread& spread_;
 };
 
 }  // namespace haustra::cleansing

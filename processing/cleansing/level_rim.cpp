@@ -1,5 +1,6 @@
 #include "cleansing/level_rim.h"
 
+#include "cleansing/ball.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -22,7 +23,8 @@ public:
           means_(means),
           level_(level),
           halfHeightMm_(halfHeightMm),
-          spacingMm_(cleansed.grid().spacingMm()) {
+          spacingMm_(cleansed.grid().spacingMm()),
+          look_(lookStep(cleansed.grid())) {
         for (int axis = 0; axis < 3; ++axis) {
             if (level.down()[axis] != 0) vertical_ = axis;
         }
@@ -54,49 +56,37 @@ private:
     bool besideWall(glm::ivec3 v) const {
         const double air = means_.airHu.at(v.x, v.y, v.z), soft = means_.softHu.at(v.x, v.y, v.z);
         const double least = air + 0.3 * (soft - air);
-        const glm::ivec3 reach = glm::max(glm::ivec3(glm::round(1.5 / spacingMm_)), glm::ivec3(1));
-        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
-                         hi = glm::min(v + reach, hu_.grid().size - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    if (hu_.at(i, j, k) > least) return true;
-                }
-            }
-        }
-        return false;
+        bool found = false;
+        eachStep(hu_.grid(), v, voxelsIn(hu_.grid(), 1.5), look_,
+                 [&](glm::ivec3 n) { found = found || hu_.at(n) > least; });
+        return found;
     }
 
     /// How far the wall leans, mm across per mm of depth: least squares over the gradients above
     /// and below the level's blur.
     std::optional<glm::dvec2> direction(glm::ivec3 v, double depthMm) const {
         const Grid& grid = hu_.grid();
-        const glm::ivec3 reach = glm::ivec3(windowMm / spacingMm_);
-        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(1)),
-                         hi = glm::min(v + reach, grid.size - 2);
         const double clear = halfHeightMm_ + spacingMm_[vertical_];
         double aa = 0.0, ab = 0.0, bb = 0.0, av = 0.0, bv = 0.0, vv = 0.0;
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    const glm::ivec3 n(i, j, k);
-                    const glm::dvec3 d = glm::dvec3(n - v) * spacingMm_;
-                    const double there = depthMm + d[vertical_] * level_.down()[vertical_];
-                    const double distance2 = glm::dot(d, d);
-                    if (std::abs(there) < clear || distance2 > windowMm * windowMm) continue;
-                    const auto along = [&](int axis) {
-                        glm::ivec3 step(0);
-                        step[axis] = 1;
-                        return (hu_.at(n + step) - hu_.at(n - step)) / (2.0 * spacingMm_[axis]);
-                    };
-                    const double a = along(across_[0]), b = along(across_[1]),
-                                 down = along(vertical_) * level_.down()[vertical_];
-                    const double w = std::exp(-0.5 * distance2 / 4.0);
-                    aa += w * a * a, ab += w * a * b, bb += w * b * b;
-                    av += w * a * down, bv += w * b * down, vv += w * down * down;
-                }
-            }
-        }
+        eachStep(grid, v, glm::ivec3(windowMm / spacingMm_), look_, [&](glm::ivec3 n) {
+            const glm::dvec3 d = glm::dvec3(n - v) * spacingMm_;
+            const double there = depthMm + d[vertical_] * level_.down()[vertical_];
+            const double distance2 = glm::dot(d, d);
+            if (std::abs(there) < clear || distance2 > windowMm * windowMm ||
+                !grid.contains(n - look_) || !grid.contains(n + look_))
+                return;
+            const auto along = [&](int axis) {
+                glm::ivec3 step(0);
+                step[axis] = look_[axis];
+                return (hu_.at(n + step) - hu_.at(n - step)) /
+                       (2.0 * look_[axis] * spacingMm_[axis]);
+            };
+            const double a = along(across_[0]), b = along(across_[1]),
+                         down = along(vertical_) * level_.down()[vertical_];
+            const double w = std::exp(-0.5 * distance2 / 4.0);
+            aa += w * a * a, ab += w * a * b, bb += w * b * b;
+            av += w * a * down, bv += w * b * down, vv += w * down * down;
+        });
         // Upright unless the gradients say otherwise.
         const double ridge = 0.01 * (aa + bb + vv) + 1e-3;
         aa += ridge, bb += ridge;
@@ -116,14 +106,16 @@ private:
     const WaterLevel& level_;
     double halfHeightMm_;
     glm::dvec3 spacingMm_;
+    glm::ivec3 look_;
     int vertical_ = 1;
     glm::ivec2 across_{0, 2};
 };
 
-/// Whether the segmentation has both air and tagging within 2 voxels.
+/// Whether the segmentation has both air and tagging within 1.5 mm.
 bool betweenAirAndFluid(const Volume<std::uint8_t>& segmentation, glm::ivec3 v) {
-    const glm::ivec3 lo = glm::max(v - 2, glm::ivec3(0)),
-                     hi = glm::min(v + 2, segmentation.grid().size - 1);
+    const glm::ivec3 reach = voxelsIn(segmentation.grid(), 1.5);
+    const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
+                     hi = glm::min(v + reach, segmentation.grid().size - 1);
     bool air = false, tagged = false;
     for (int k = lo.z; k <= hi.z; ++k) {
         for (int j = lo.y; j <= hi.y; ++j) {
@@ -137,15 +129,16 @@ bool betweenAirAndFluid(const Volume<std::uint8_t>& segmentation, glm::ivec3 v) 
     return false;
 }
 
-/// The third lowest HU of the face neighbours: a sheet one voxel thin has but two that are open, a
+/// The third lowest HU one look away along the axes: a sheet as thin has but two that are open, a
 /// ridge or speck has three and more.
 double thirdLowestAround(const Volume<std::int16_t>& hu, glm::ivec3 v) {
+    const glm::ivec3 look = lookStep(hu.grid());
     std::array<std::int16_t, 6> values;
     std::size_t count = 0;
     for (int axis = 0; axis < 3; ++axis) {
         for (int side = -1; side <= 1; side += 2) {
             glm::ivec3 n = v;
-            n[axis] += side;
+            n[axis] += side * look[axis];
             values[count++] = hu.at(glm::clamp(n, glm::ivec3(0), hu.grid().size - 1));
         }
     }
@@ -156,7 +149,7 @@ double thirdLowestAround(const Volume<std::int16_t>& hu, glm::ivec3 v) {
 }  // namespace
 
 void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
-               const LocalMeans& means, const WaterLevel& level, double halfHeightMm,
+               const LocalMeans& means, const WaterLevel& level, const PointSpread& spread,
                const TaggedSurroundings& around, const Volume<std::uint8_t>& settled,
                Volume<TissueFractions>& mixture, int threads) {
     if (level.down() == glm::ivec3(0)) return;
@@ -176,7 +169,7 @@ void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
             }
         });
     }
-    const Rim rim(cleansed, means, level, halfHeightMm);
+    const Rim rim(cleansed, means, level, 2.5 * spread.acrossMm(glm::dvec3(level.down())));
     for (const auto& shell : around.shells) {
         parallelFor(shell.size(), 1 << 12, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t m = begin; m < end; ++m) {
@@ -186,7 +179,7 @@ void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                 auto straight = rim.huAt(v);
                 if (!straight && betweenAirAndFluid(segmentation, v)) {
                     const double open = thirdLowestAround(cleansed, v);
-                    if (cleansed[n] > open + 6.0 * means.noiseSd) straight = open;
+                    if (cleansed[n] > open + 6.0 * means.noise.tagged) straight = open;
                 }
                 if (!straight) continue;
                 const double air = airAt(v), soft = means.softHu.at(v.x, v.y, v.z);
@@ -194,7 +187,7 @@ void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                 // A voxel as dense as fluid has no room for wall.
                 const double room = (taggedHu - scan.hu[n]) / (taggedHu - soft);
                 const double hu = std::min(
-                    *straight, air + (soft - air) * std::max(0.0, room) + 2.0 * means.noiseSd);
+                    *straight, air + (soft - air) * std::max(0.0, room) + 2.0 * means.noise.tagged);
                 const double tagged = std::clamp((scan.hu[n] - hu) / (taggedHu - air), 0.0, 1.0);
                 const double open = std::clamp((soft - hu) / (soft - air), 0.0, 1.0);
                 const int t = int(std::lround(255.0 * tagged));

@@ -11,6 +11,8 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr double cellMm = 3.0;
+constexpr double sampleMm3 = 1.8;  // of gas, one voxel of so much is looked at
+constexpr double voxelMm3 = 0.6;   // whose weight is 1
 
 // Sums over one cell.
 struct CellSums {
@@ -101,14 +103,19 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     const glm::ivec3 cells = taggedHu.cells();
     const auto hu = scan.hu.voxels();
     const auto label = segmentation.voxels();
-    const std::vector<glm::ivec3> ball = ballOffsets(grid, blurReachMm);
+    const std::vector<glm::ivec3> ball = blurBall(grid);
+    const glm::ivec3 look = lookStep(grid);
     const auto isTagged = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::tagged; };
     const auto isAir = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::air; };
+
+    means.noise = measureNoise(scan, tissue, segmentation, threads);
+    const float unit = float(grid.voxelVolumeMm3() / voxelMm3);
+    const int every = std::max(1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())));
 
     // One slab of cells is one thread's, so sums do not depend on the threads.
     CellSums air(taggedHu.values().size()), tagged(taggedHu.values().size()),
         soft(means.softHu.values().size());
-    std::vector<double> airSum(std::size_t(cells.z), 0.0), airSquare(airSum), airCount(airSum);
+    std::vector<double> airSum(std::size_t(cells.z), 0.0), airCount(airSum);
     std::vector<char> holdsTagged(tagged.weight.size(), 0);
     parallelFor(std::size_t(cells.z), 1, threads, [&](std::size_t begin, std::size_t end) {
         for (int k = int(begin) * perCell.z; k < std::min(int(end) * perCell.z, grid.size.z); ++k) {
@@ -129,39 +136,36 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                             for (int axis = 0; crest && axis < 3; ++axis) {
                                 for (int side = -1; side <= 1; side += 2) {
                                     glm::ivec3 v(i, j, k);
-                                    v[axis] += side;
+                                    v[axis] += side * look[axis];
                                     if (grid.contains(v) && scan.hu.at(v) > hu[n]) crest = false;
                                 }
                             }
                             if (crest) weight = 0.02f;
                         }
+                        weight *= unit;
                         tagged.weight[cell] += weight, tagged.value[cell] += weight * hu[n];
-                    } else if (isAir(n) && (i + j + k) % 3 == 0 && i > 1 && i + 2 < grid.size.x) {
+                    } else if (isAir(n) && (i + j + k) % every == 0) {
                         if (!everywhere(grid, ball, {i, j, k}, isAir)) continue;
                         const std::size_t slab = std::size_t(k / perCell.z);
                         airSum[slab] += hu[n], airCount[slab] += 1.0;
                         const std::size_t cell = taggedHu.cellOf(i, j, k);
-                        air.weight[cell] += 1.0f, air.value[cell] += hu[n];
-                        // The difference of voxels two apart: free of what changes slowly.
-                        const double d = hu[n + 2] - hu[n];
-                        airSquare[slab] += 0.5 * d * d;
+                        const float weight = unit * float(every) / 3.0f;
+                        air.weight[cell] += weight, air.value[cell] += weight * hu[n];
                     }
                 }
             }
         }
     });
-    double count = 0.0, sum = 0.0, square = 0.0;
+    double count = 0.0, sum = 0.0;
     for (std::size_t s = 0; s < airSum.size(); ++s)
-        count += airCount[s], sum += airSum[s], square += airSquare[s];
+        count += airCount[s], sum += airSum[s];
     means.airHu = SmoothField(grid, perCell);
     fill(means.airHu, air, count > 100.0 ? sum / count : tissue.meanHu[int(Tissue::air)], 1.0);
-    means.noiseSd = count > 100.0 ? std::clamp(std::sqrt(square / count), 4.0, 60.0)
-                                  : std::clamp(tissue.sdHu[int(Tissue::soft)], 4.0, 60.0);
 
     // Soft tissue within two cells of the tagging.
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     const double fatHu = tissue.meanHu[int(Tissue::fat)];
-    const double leastHu = std::max(0.5 * (softHu + fatHu), softHu - 3.0 * means.noiseSd);
+    const double leastHu = std::max(0.5 * (softHu + fatHu), softHu - 3.0 * means.noise.soft);
     const auto isSoft = [&](std::size_t n) {
         return label[n] == 0 && hu[n] > leastHu && hu[n] < tissue.taggedAboveHu;
     };
@@ -189,7 +193,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                     if (!wanted[cell]) continue;
                     const std::size_t n = grid.index(i, j, k);
                     if (!isSoft(n) || !everywhere(grid, ball, {i, j, k}, isSoft)) continue;
-                    soft.weight[cell] += 1.0f, soft.value[cell] += hu[n];
+                    soft.weight[cell] += unit, soft.value[cell] += unit * hu[n];
                 }
             }
         }

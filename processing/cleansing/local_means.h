@@ -1,6 +1,7 @@
 // How dense the tagging, and how dense the soft tissue, is at each place of the colon.
 #pragma once
 
+#include "cleansing/noise.h"
 #include "cleansing/tagged_surroundings.h"
 #include "core/ct_scan.h"
 #include "core/tissue.h"
@@ -25,6 +26,7 @@ public:
     }
     glm::ivec3 voxelsPerCell() const { return perCell_; }
     float at(int i, int j, int k) const;
+    bool empty() const { return values_.empty(); }
     std::vector<float>& values() { return values_; }
 
 private:
@@ -38,9 +40,9 @@ struct LocalMeans {
     /// Tagging is uneven: from pool to pool, by depth, in blotches, stool in fluid. HU that each
     /// voxel would have were it all tagged; set in the surroundings only, 0 elsewhere.
     Volume<std::int16_t> taggedHu;
-    SmoothField softHu;    ///< the wall, its folds and growths
-    SmoothField airHu;     ///< the colon's own gas: scatter from dense fluid lifts it nearby
-    double noiseSd = 0.0;  ///< of one voxel, as pure gas shows it
+    SmoothField softHu;  ///< the wall, its folds and growths
+    SmoothField airHu;   ///< the colon's own gas: scatter from dense fluid lifts it nearby
+    NoiseSd noise;
 };
 
 /// Means over the voxels that lie deeper inside their material than the scanner's blur reaches

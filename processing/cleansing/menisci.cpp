@@ -1,5 +1,6 @@
 #include "cleansing/menisci.h"
 
+#include "cleansing/ball.h"
 #include "core/connected_labels.h"
 
 #include <algorithm>
@@ -8,13 +9,14 @@
 namespace haustra::cleansing {
 namespace {
 
-constexpr int farthest = 6;  // face steps from the pool
-constexpr int lagging = 2;   // steps that a segmentation may fall short of the half-way surface
-constexpr int airWithin = 4;
+constexpr double farthestMm = 4.5;  // from the pool, along the grid's axes
+constexpr double laggingMm = 1.5;   // that a segmentation may fall short of the half-way surface
+constexpr double airWithinMm = 3.0;
 
 bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
-    const glm::ivec3 lo = glm::max(v - airWithin, glm::ivec3(0)),
-                     hi = glm::min(v + airWithin, labels.grid().size - 1);
+    const glm::ivec3 reach = voxelsIn(labels.grid(), airWithinMm);
+    const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
+                     hi = glm::min(v + reach, labels.grid().size - 1);
     for (int k = lo.z; k <= hi.z; ++k) {
         for (int j = lo.y; j <= hi.y; ++j) {
             for (int i = lo.x; i <= hi.x; ++i) {
@@ -27,8 +29,9 @@ bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
 
 /// Densest HU of the pool around one of its voxels.
 int rimHu(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels, glm::ivec3 v) {
-    const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
-                     hi = glm::min(v + 1, labels.grid().size - 1);
+    const glm::ivec3 look = lookStep(labels.grid());
+    const glm::ivec3 lo = glm::max(v - look, glm::ivec3(0)),
+                     hi = glm::min(v + look, labels.grid().size - 1);
     int most = hu.at(v);
     for (int k = lo.z; k <= hi.z; ++k) {
         for (int j = lo.y; j <= hi.y; ++j) {
@@ -52,9 +55,11 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
     struct Rim {
         glm::ivec3 voxel;
         double leastHu;
+        double mm;  ///< of the way to it
     };
     std::vector<Rim> front, next;
-    const auto spread = [&](glm::ivec3 v, int step, auto&& leastHuOf) {
+    const glm::dvec3 spacing = grid.spacingMm();
+    const auto spread = [&](glm::ivec3 v, double mm, auto&& leastHuOf) {
         for (int axis = 0; axis < 3; ++axis) {
             for (int side = -1; side <= 1; side += 2) {
                 glm::ivec3 n = v;
@@ -66,23 +71,28 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                     continue;
                 const double least = leastHuOf();
                 if (scan.hu[index] <= least) continue;
-                if (step > lagging && !airNear(segmentation, n)) continue;
+                const bool first =
+                    mm == 0.0;  // a voxel may be larger than what a label falls short
+                const double there = mm + spacing[axis];
+                if (!first && there > farthestMm) continue;
+                if (!first && there > laggingMm + 0.5 * spacing[axis] && !airNear(segmentation, n))
+                    continue;
                 if (!joinsNothing(labels, index)) continue;  // there may be a wall too thin to show
                 out[index] = std::uint8_t(LumenLabel::tagged);
-                next.push_back({n, least});
+                next.push_back({n, least, there});
             }
         }
     };
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         if (LumenLabel(segmentation[n]) != LumenLabel::tagged) continue;
         const glm::ivec3 v = grid.voxelAt(n);
-        spread(v, 1, [&] { return 0.5 * (softHu + rimHu(scan.hu, segmentation, v)); });
+        spread(v, 0.0, [&] { return 0.5 * (softHu + rimHu(scan.hu, segmentation, v)); });
     }
-    for (int step = 1; step < farthest && !next.empty(); ++step) {
+    while (!next.empty()) {
         front.swap(next);
         next.clear();
         for (const Rim& rim : front)
-            spread(rim.voxel, step + 1, [&] { return rim.leastHu; });
+            spread(rim.voxel, rim.mm, [&] { return rim.leastHu; });
     }
     return labels;
 }

@@ -11,9 +11,9 @@ namespace haustra::cleansing {
 
 /// `segmentation` (LumenLabel) with the menisci labelled as tagged: fluid climbs a wall by surface
 /// tension, past the flat level where a segmentation by levels ends. Added are unlabelled voxels at
-/// most 6 face steps from a pool, with air of the lumen within 4 voxels, along voxels that are more
-/// than half as dense, from soft tissue on, as the pool's rim where they begin; and within 2 steps
-/// of any pool what the segmentation fell short of. O(voxels).
+/// most 4.5 mm from a pool along the axes, with air of the lumen within 3 mm, along voxels that are
+/// more than half as dense, from soft tissue on, as the pool's rim where they begin; and within 1.5
+/// mm of any pool what the segmentation fell short of. O(voxels).
 Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                                  const Volume<std::uint8_t>& segmentation);
 

@@ -1,10 +1,12 @@
 #include "cleansing/mixture.h"
 
+#include "cleansing/ball.h"
 #include "cleansing/interface_layer.h"
 #include "cleansing/level_rim.h"
 #include "cleansing/local_means.h"
 #include "cleansing/menisci.h"
 #include "cleansing/partial_volume_em.h"
+#include "cleansing/pseudo_enhancement.h"
 #include "cleansing/tagged_surroundings.h"
 #include "cleansing/thin_films.h"
 #include "cleansing/water_level.h"
@@ -26,7 +28,10 @@ public:
           segmentation_(segmentation),
           means_(means),
           interfaces_(interfaces),
-          level_(level) {}
+          level_(level),
+          look_(lookStep(scan.hu.grid())),
+          levelMm_(glm::dot(glm::abs(glm::dvec3(level.down())), scan.hu.grid().spacingMm())),
+          levelBlurMm_(interfaces.spread().acrossMm(glm::dvec3(level.down()))) {}
 
     TissueFractions at(std::size_t index) const {
         const Grid& grid = hu_.grid();
@@ -41,7 +46,7 @@ public:
         const Neighbours around = look(v, softHu, taggedHu);
         if (!around.tagged && y > softHu) return roundedFractions(0.0, 0.0);
         // As sure as the noise lets the tagging be told from the wall.
-        const double noise = means_.noiseSd / (taggedHu - softHu);
+        const double noise = means_.noise.tagged / (taggedHu - softHu);
         if (around.meanShare > 1.0 - std::max(0.1, 0.8 * noise) &&
             around.leastShare > 1.0 - std::max(0.5, 4.0 * noise))
             return roundedFractions(0.0, 1.0);
@@ -84,31 +89,32 @@ private:
     /// wall. Where that HU is soft tissue's own, the voxels above and below tell its share.
     std::optional<TissueFractions> atLevel(glm::ivec3 v, double softHu, double taggedHu) const {
         const auto depth = level_.depthMm(v);
-        if (!depth || std::abs(*depth) > 2.5 * interfaces_.blurMm()) return std::nullopt;
+        if (!depth || std::abs(*depth) > 2.5 * levelBlurMm_) return std::nullopt;
         const glm::ivec3 down = level_.down();
-        const double stepMm = glm::dot(glm::dvec3(glm::abs(down)), hu_.grid().spacingMm());
         const double airHu = means_.airHu.at(v.x, v.y, v.z);
         const auto fluidAt = [&](double depthMm) {
-            return 0.5 * std::erfc(-depthMm / (interfaces_.blurMm() * std::sqrt(2.0)));
+            return 0.5 * std::erfc(-depthMm / (levelBlurMm_ * std::sqrt(2.0)));
         };
         double sum = 0.0, weight = 1e-9;
         const auto add = [&](int step) {
             const glm::ivec3 n = v + step * down;
             if (!hu_.grid().contains(n)) return;
-            const double open = airHu + fluidAt(*depth + step * stepMm) * (taggedHu - airHu);
+            const double open = airHu + fluidAt(*depth + step * levelMm_) * (taggedHu - airHu);
             // Of what the noise leaves sure; farther rows count only where this one says little.
             const double certainty = (softHu - open) / (softHu - airHu);
-            const double w = certainty * certainty * (step == 0 ? 1.0 : 0.02 / std::abs(step));
+            const double w =
+                certainty * certainty * (step == 0 ? 1.0 : 0.015 / (std::abs(step) * levelMm_));
             sum += w *
                    std::clamp((hu_.at(n) - open) / (softHu - open + (softHu > open ? 1e-3 : -1e-3)),
                               0.0, 1.0);
             weight += w;
         };
-        for (int step = -2; step <= 2; ++step)
+        const int rows = std::max(1, int(std::lround(1.5 / levelMm_)));
+        for (int step = -rows; step <= rows; ++step)
             add(step);
         // A level that the voxel contradicts is that of another pool.
         const double open = airHu + fluidAt(*depth) * (taggedHu - airHu), y = hu_.at(v);
-        const double slack = 4.0 * means_.noiseSd +
+        const double slack = 4.0 * means_.noise.tagged +
                              0.3 * fluidAt(*depth) * (1.0 - fluidAt(*depth)) * (taggedHu - airHu);
         if (y < std::min(open, softHu) - slack || y > std::max(open, softHu) + slack)
             return std::nullopt;
@@ -123,18 +129,18 @@ private:
         return roundedFractions(1.0 - tagged - std::clamp(wall, 0.0, 1.0 - tagged), tagged);
     }
 
-    /// Whether some of the nine voxels below hold fluid that this one can hold the top of.
+    /// Whether fluid that this voxel can hold the top of lies below it or one look aside of that.
     bool aboveFluid(glm::ivec3 v, double softHu, double taggedHu) const {
         const glm::ivec3 down = level_.down();
         if (down == glm::ivec3(0)) return false;
-        const glm::ivec3 across = glm::ivec3(1) - glm::abs(down);
-        const double least = softHu + std::max(0.15 * (taggedHu - softHu), 2.0 * means_.noiseSd);
+        const double least =
+            softHu + std::max(0.15 * (taggedHu - softHu), 2.0 * means_.noise.tagged);
         for (int b = -1; b <= 1; ++b) {
             for (int a = -1; a <= 1; ++a) {
                 const glm::ivec3 aside = down.x   ? glm::ivec3(0, a, b)
                                          : down.y ? glm::ivec3(a, 0, b)
                                                   : glm::ivec3(a, b, 0);
-                const glm::ivec3 n = v + down + aside * across;
+                const glm::ivec3 n = v + (down + aside) * look_;
                 if (hu_.grid().contains(n) && hu_.at(n) > least) return true;
             }
         }
@@ -148,22 +154,16 @@ private:
         if (down == glm::ivec3(0)) return false;
         const glm::ivec3 reach =
             glm::max(glm::ivec3(glm::floor(2.0 / grid.spacingMm())), glm::ivec3(1));
-        const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(1)),
-                         hi = glm::min(v + reach, grid.size - 2);
-        const double tolerance = std::max(3.0 * means_.noiseSd, 0.15 * (taggedHu - softHu));
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    const glm::ivec3 n(i, j, k);
-                    if (std::abs(hu_.at(n) - softHu) > tolerance) continue;
-                    // Wall goes on above or below; a level does not.
-                    if (std::abs(hu_.at(n + down) - softHu) < tolerance ||
-                        std::abs(hu_.at(n - down) - softHu) < tolerance)
-                        return true;
-                }
-            }
-        }
-        return false;
+        const double tolerance = std::max(3.0 * means_.noise.soft, 0.15 * (taggedHu - softHu));
+        const auto isSoft = [&](glm::ivec3 n) {
+            return grid.contains(n) && std::abs(hu_.at(n) - softHu) < tolerance;
+        };
+        bool found = false;
+        eachStep(grid, v, reach, look_, [&](glm::ivec3 n) {
+            // Wall goes on above or below; a level does not.
+            found = found || (isSoft(n) && (isSoft(n + down * look_) || isSoft(n - down * look_)));
+        });
+        return found;
     }
 
     Neighbours look(glm::ivec3 v, double softHu, double taggedHu) const {
@@ -173,7 +173,7 @@ private:
             for (int b = -1; b <= 1; ++b) {
                 for (int a = -1; a <= 1; ++a) {
                     const std::size_t n = grid.index(
-                        glm::clamp(v + glm::ivec3(a, b, c), glm::ivec3(0), grid.size - 1));
+                        glm::clamp(v + glm::ivec3(a, b, c) * look_, glm::ivec3(0), grid.size - 1));
                     const int away = a * a + b * b + c * c;
                     const double share = (hu_[n] - softHu) / (taggedHu - softHu);
                     around.meanShare += share / 27.0;
@@ -194,6 +194,9 @@ private:
     const LocalMeans& means_;
     const InterfaceLayer& interfaces_;
     const WaterLevel& level_;
+    glm::ivec3 look_;
+    double levelMm_;      ///< between rows
+    double levelBlurMm_;  ///< of a level, standard deviation
 };
 
 }  // namespace
@@ -227,12 +230,18 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     const TaggedSurroundings around = taggedSurroundings(labels, options.threads);
     progress(0.3);
     if (around.shells[0].empty()) return mixture;
-    const LocalMeans means = measureLocalMeans(scan, tissue, labels, around, options.threads);
+    const PseudoEnhancement enhancement =
+        measurePseudoEnhancement(scan, tissue, labels, options.threads);
+    const CtScan corrected =
+        enhancement ? withoutPseudoEnhancement(scan, enhancement, options.threads) : CtScan{};
+    const CtScan& seen = enhancement ? corrected : scan;
+    const LocalMeans means = measureLocalMeans(seen, tissue, labels, around, options.threads);
     progress(0.5);
-    const InterfaceLayer interfaces(scan, labels, means, gravity, options.threads);
+    const PointSpread spread = measurePointSpread(seen, labels, means, options.threads);
+    const InterfaceLayer interfaces(seen, labels, means, spread, gravity);
     progress(0.6);
-    const WaterLevel level(scan, means, interfaces, around, gravity, options.threads);
-    const ColonMixture colon(scan, labels, means, interfaces, level);
+    const WaterLevel level(seen, means, interfaces, around, gravity, options.threads);
+    const ColonMixture colon(seen, labels, means, interfaces, level);
     for (const auto& shell : around.shells) {
         parallelFor(shell.size(), 4096, options.threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n)
@@ -241,9 +250,8 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
     }
     progress(0.8);
     const Volume<std::uint8_t> films =
-        settleFilms(scan, labels, means, interfaces.blurMm(), around, mixture, options.threads);
-    settleRim(scan, labels, means, level, 2.5 * interfaces.blurMm(), around, films, mixture,
-              options.threads);
+        settleFilms(seen, labels, means, spread, around, mixture, options.threads);
+    settleRim(seen, labels, means, level, spread, around, films, mixture, options.threads);
     // Where no tagging is left fat, which the two-tissue model has not, is told from air as far
     // off.
     for (const auto& shell : around.shells) {

@@ -21,8 +21,10 @@ struct MixtureOptions {
 /// holds, which HU alone cannot tell, is settled by the length of the step through it
 /// (interface_layer.h), the water level (water_level.h), the profile of thin films (thin_films.h)
 /// and the wall's course (level_rim.h).
-/// `segmentation` (LumenLabel) tells which tagged material and air is bowel content; `gravity`
-/// (unit LPS, zero where unknown) points down. The same bytes for any number of threads.
+/// What tagging adds to its surroundings by beam hardening is taken off before
+/// (pseudo_enhancement.h). `segmentation` (LumenLabel) tells which tagged material and air is bowel
+/// content; `gravity` (unit LPS, zero where unknown) points down. The same bytes for any number of
+/// threads.
 Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const TissueModel& tissue,
                                                 const Volume<std::uint8_t>& segmentation,
                                                 glm::dvec3 gravity,

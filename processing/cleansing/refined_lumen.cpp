@@ -1,5 +1,6 @@
 #include "cleansing/refined_lumen.h"
 
+#include "cleansing/ball.h"
 #include "core/connected_labels.h"
 
 #include <algorithm>
@@ -11,27 +12,32 @@ namespace {
 
 constexpr double speckMm3 = 12.0;
 
-/// The 26-connected piece of wall around `seed`, or empty where it has more than `most` voxels.
+/// The 26-connected piece of wall around `seed`, or empty where it has more than `most` voxels:
+/// then those that were seen are `large` from now on, and what meets them is.
 std::vector<std::uint32_t> pieceOfWall(const Volume<std::uint8_t>& labels, std::uint32_t seed,
-                                       std::size_t most) {
+                                       std::size_t most, std::vector<bool>& large) {
     const Grid& grid = labels.grid();
     std::vector<std::uint32_t> piece{seed};
-    for (std::size_t head = 0; head < piece.size(); ++head) {
+    bool whole = !large[seed];
+    for (std::size_t head = 0; whole && head < piece.size(); ++head) {
         const glm::ivec3 v = grid.voxelAt(piece[head]);
         const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)), hi = glm::min(v + 1, grid.size - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
+        for (int k = lo.z; whole && k <= hi.z; ++k) {
+            for (int j = lo.y; whole && j <= hi.y; ++j) {
+                for (int i = lo.x; whole && i <= hi.x; ++i) {
                     const std::size_t n = grid.index(i, j, k);
                     if (LumenLabel(labels[n]) != LumenLabel::outside) continue;
                     if (std::find(piece.begin(), piece.end(), n) != piece.end()) continue;
-                    if (piece.size() == most) return {};
+                    whole = piece.size() < most && !large[n];
                     piece.push_back(std::uint32_t(n));
                 }
             }
         }
     }
-    return piece;
+    if (whole) return piece;
+    for (const std::uint32_t n : piece)
+        large[n] = true;
+    return {};
 }
 
 bool touchesLumen(const Volume<std::uint8_t>& labels, std::size_t index) {
@@ -72,7 +78,8 @@ Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& ti
         }
     }
     // Each pass is one step outward.
-    for (int pass = 0; pass < 2; ++pass) {
+    const glm::ivec3 steps = voxelsIn(hu.grid(), 1.5);
+    for (int pass = 0; pass < std::max({steps.x, steps.y, steps.z}); ++pass) {
         std::vector<const CleansedVoxel*> touching, left;
         for (const CleansedVoxel* voxel : beside)
             (touchesLumen(labels, voxel->index) ? touching : left).push_back(voxel);
@@ -86,11 +93,12 @@ Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& ti
     }
     const std::size_t most =
         std::size_t(std::max(1.0, std::floor(speckMm3 / hu.grid().voxelVolumeMm3())));
+    std::vector<bool> large(labels.grid().voxelCount(), false);
     for (const CleansedVoxel& voxel : changed) {
         if (LumenLabel(out[voxel.index]) != LumenLabel::outside ||
             !touchesLumen(labels, voxel.index))
             continue;
-        for (std::uint32_t n : pieceOfWall(labels, voxel.index, most)) {
+        for (std::uint32_t n : pieceOfWall(labels, voxel.index, most, large)) {
             out[n] = std::uint8_t(LumenLabel::tagged);
             cleansed[n] = std::int16_t(std::lround(airAt(n)));
         }

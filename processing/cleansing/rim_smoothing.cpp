@@ -15,18 +15,21 @@ constexpr double airReachMm = 2.1;      // the line's band: air and tagging are 
 constexpr double flowMm2 = 0.5;         // time that the curvature acts
 constexpr double faintHuPerMm = 300.0;  // a slope that is no wall's face
 constexpr double roughHu = 150.0;       // what moves a voxel by more is no wall's shape
+constexpr double aroundRoughMm = 1.5;
 constexpr double stableStep = 0.1;      // of the squared smallest spacing
 constexpr double besideWallHu = 150.0;  // how far from the wall's HU its blur is still seen
 
 using Neighbourhood = std::array<std::uint32_t, 27>;
 
-/// The wall passes a voxel or its neighbours.
-bool besideWall(const Volume<std::int16_t>& hu, glm::ivec3 v, double wallHu) {
+/// The wall passes a voxel or those one look around it.
+bool besideWall(const Volume<std::int16_t>& hu, glm::ivec3 v, glm::ivec3 look, double wallHu) {
+    const glm::ivec3 last = hu.grid().size - 1;
     int least = 32767, most = -32768;
     for (int c = -1; c <= 1; ++c) {
         for (int b = -1; b <= 1; ++b) {
             for (int a = -1; a <= 1; ++a) {
-                const int there = hu.at(v + glm::ivec3(a, b, c));
+                const int there =
+                    hu.at(glm::clamp(v + glm::ivec3(a, b, c) * look, glm::ivec3(0), last));
                 least = std::min(least, there), most = std::max(most, there);
             }
         }
@@ -87,7 +90,8 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
                                      const TissueModel& tissue, const TaggedSurroundings& around,
                                      int threads) {
     const Grid& grid = hu.grid();
-    const std::vector<glm::ivec3> reach = ballOffsets(grid, airReachMm);
+    const glm::ivec3 look = lookStep(grid);
+    const std::vector<glm::ivec3> reach = ballOffsets(grid, glm::dvec3(airReachMm));
     const auto isAir = [&](std::size_t n) { return LumenLabel(labels[n]) == LumenLabel::air; };
     std::vector<std::uint32_t> band;
     for (const auto& shell : around.shells) {
@@ -95,7 +99,7 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
         parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t m = begin; m < end; ++m) {
                 const glm::ivec3 v = grid.voxelAt(shell[m]);
-                in[m] = isInterior(grid, v) && besideWall(hu, v, tissue.airBelowHu) &&
+                in[m] = isInterior(grid, v) && besideWall(hu, v, look, tissue.airBelowHu) &&
                         (isAir(shell[m]) ||
                          !everywhere(grid, reach, v, [&](std::size_t n) { return !isAir(n); }));
             }
@@ -148,18 +152,18 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
         });
         std::swap(now, next);
     }
-    // Only where something rough has gone, and a voxel or two around it: the rest stays as it was.
-    std::vector<char> rough(voxels.size(), 0), moves;
+    // Only where something rough has gone, and 1.5 mm around it: the rest stays as it was.
+    std::vector<char> moves(voxels.size(), 0);
     for (std::size_t m = 0; m < band.size(); ++m) {
-        if (std::abs(now[near[m][13]] - float(hu[band[m]])) <= roughHu) continue;
-        for (const std::uint32_t n : near[m])
-            rough[n] = 1;
+        if (std::abs(now[near[m][13]] - float(hu[band[m]])) > roughHu) moves[near[m][13]] = 1;
     }
-    moves = rough;
-    for (std::size_t m = 0; m < band.size(); ++m) {
-        if (!rough[near[m][13]]) continue;
-        for (const std::uint32_t n : near[m])
-            moves[n] = 1;
+    for (int ring = 0; ring < std::max(1, int(std::lround(aroundRoughMm / least))); ++ring) {
+        const std::vector<char> before = moves;
+        for (std::size_t m = 0; m < band.size(); ++m) {
+            if (!before[near[m][13]]) continue;
+            for (const std::uint32_t n : near[m])
+                moves[n] = 1;
+        }
     }
     const auto out = hu.writable();
     std::vector<std::uint32_t> moved;

@@ -16,7 +16,7 @@ namespace haustra::cleansing {
 /// a voxel or two wide. Of all walls through what surrounds them the one of least bending is drawn:
 /// the level surfaces of the HU move by their mean curvature (Osher and Sethian 1988) for 0.5 mm²,
 /// which flattens what is narrower than 2 mm. Within that line's band only what is rough moves, and
-/// two voxels around it. A ball of radius r mm that crosses it loses at most 1/r mm there; a thin
+/// 1.5 mm around it. A ball of radius r mm that crosses it loses at most 1/r mm there; a thin
 /// sheet, which does not bend, stays. `labels` (LumenLabel) says what was air before cleansing,
 /// `around` where the tagging's blur reaches. Returns the voxels that moved, in memory order.
 /// O(surroundings); the same for any number of threads.

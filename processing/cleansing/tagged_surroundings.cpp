@@ -1,5 +1,6 @@
 #include "cleansing/tagged_surroundings.h"
 
+#include "cleansing/ball.h"
 #include "core/ct_scan.h"
 #include "core/parallel.h"
 
@@ -10,7 +11,6 @@ namespace haustra::cleansing {
 TaggedSurroundings taggedSurroundings(const Volume<std::uint8_t>& segmentation, int threads) {
     const Grid& grid = segmentation.grid();
     const auto label = segmentation.voxels();
-    constexpr int reach = TaggedSurroundings::reach;
     // Slice by slice, so that the order is that of memory whatever the threads.
     std::vector<std::vector<std::uint32_t>> slices(std::size_t(grid.size.z));
     parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
@@ -24,7 +24,12 @@ TaggedSurroundings taggedSurroundings(const Volume<std::uint8_t>& segmentation, 
         }
     });
     TaggedSurroundings around;
-    around.shells.resize(reach + 1);
+    const glm::ivec3 reach = blurReachVoxels(grid);
+    const int steps = std::max({reach.x, reach.y, reach.z});
+    const glm::dvec3 spacing = grid.spacingMm();
+    around.shells.resize(std::size_t(steps) + 1);
+    around.besideShells =
+        std::max(1, int(std::lround(0.75 / std::min({spacing.x, spacing.y, spacing.z}))));
     std::vector<char> seen(label.size(), 0);
     for (const auto& slice : slices)
         around.shells[0].insert(around.shells[0].end(), slice.begin(), slice.end());
@@ -32,10 +37,12 @@ TaggedSurroundings taggedSurroundings(const Volume<std::uint8_t>& segmentation, 
         seen[n] = 1;
     for (std::size_t shell = 1; shell < around.shells.size(); ++shell) {
         auto& out = around.shells[shell];
+        // An axis' steps are spread over the shells.
+        const glm::ivec3 side = reach * int(shell) / steps - reach * int(shell - 1) / steps;
         for (std::uint32_t n : around.shells[shell - 1]) {
             const glm::ivec3 v = grid.voxelAt(n);
-            const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
-                             hi = glm::min(v + 1, grid.size - 1);
+            const glm::ivec3 lo = glm::max(v - side, glm::ivec3(0)),
+                             hi = glm::min(v + side, grid.size - 1);
             for (int k = lo.z; k <= hi.z; ++k) {
                 for (int j = lo.y; j <= hi.y; ++j) {
                     for (int i = lo.x; i <= hi.x; ++i) {

@@ -8,11 +8,13 @@
 
 namespace haustra::cleansing {
 
-/// Voxels by their distance from the tagged lumen in 26-neighbour steps: shell 0 is the voxels
-/// labelled tagged, shell n those n steps away. Each shell in memory order.
+/// Voxels by their distance from the tagged lumen: shell 0 is the voxels labelled tagged, each
+/// other the neighbours of the one before, out to where the blur reaches from within a border's
+/// voxel (blurReachVoxels) along each axis. Axes with larger voxels take part in fewer shells. Each
+/// shell in memory order.
 struct TaggedSurroundings {
-    static constexpr int reach = 3;
     std::vector<std::vector<std::uint32_t>> shells;
+    int besideShells = 1;  ///< shells 1 to this one lie within 0.75 mm, or touch the tagging
 };
 
 /// O(voxels). The grid must have fewer than 2^32 voxels.

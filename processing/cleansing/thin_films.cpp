@@ -1,5 +1,6 @@
 #include "cleansing/thin_films.h"
 
+#include "cleansing/ball.h"
 #include "cleansing/film_profile.h"
 #include "core/parallel.h"
 
@@ -25,31 +26,32 @@ struct Crest {
 class Films {
 public:
     Films(const CtScan& scan, const Volume<std::uint8_t>& segmentation, const LocalMeans& means,
-          double blurMm)
+          const PointSpread& spread)
         : hu_(scan.hu),
           segmentation_(segmentation),
           means_(means),
-          blurMm_(blurMm),
-          spacingMm_(scan.hu.grid().spacingMm()) {}
+          spread_(spread),
+          spacingMm_(scan.hu.grid().spacingMm()),
+          look_(lookStep(scan.hu.grid())) {}
 
     std::optional<Crest> crestAt(glm::ivec3 v) const {
         const Grid& grid = hu_.grid();
-        if (!grid.contains(v - 1) || !grid.contains(v + 1)) return std::nullopt;
+        if (!grid.contains(v - look_) || !grid.contains(v + look_)) return std::nullopt;
         FilmProfile start;
         start.softHu = means_.softHu.at(v.x, v.y, v.z);
         start.airHu = means_.airHu.at(v.x, v.y, v.z);
         const double taggedHu = std::max<double>(means_.taggedHu.at(v), start.softHu + 60.0);
         const double here = hu_.at(v);
-        const double least = std::max(2.0 * means_.noiseSd, 0.08 * (taggedHu - start.softHu));
+        const double least = std::max(2.0 * means_.noise.tagged, 0.08 * (taggedHu - start.softHu));
         if (here < start.softHu + least || !airNear(v)) return std::nullopt;
         const auto normal = crestNormal(v);
         if (!normal) return std::nullopt;
         start.taggedHu = std::max(taggedHu, here);
-        start.blurMm = blurMm_;
+        start.blurMm = spread_.drawnMm(*normal);
         std::optional<Crest> best;
         for (const double side : {-1.0, 1.0}) {
             const glm::dvec3 across = side * *normal;
-            const auto profile = fitFilm(line(v, across), start, means_.noiseSd, thickestMm);
+            const auto profile = fitFilm(line(v, across), start, means_.noise.tagged, thickestMm);
             if (profile && (!best || profile->misfitHu < best->profile.misfitHu))
                 best = Crest{glm::dvec3(v), across, *profile};
         }
@@ -91,7 +93,6 @@ private:
 
     /// Whether fluid deep enough to show its own HU is near.
     bool besidePool(glm::ivec3 v) const {
-        constexpr int window = 6;
         const glm::ivec3 depth = glm::max(glm::ivec3(glm::round(1.6 / spacingMm_)), glm::ivec3(1));
         const auto tagged = [&](glm::ivec3 n) {
             return hu_.grid().contains(n) && LumenLabel(segmentation_.at(n)) == LumenLabel::tagged;
@@ -104,14 +105,10 @@ private:
             }
             return tagged(n);
         };
-        for (int k = -window; k <= window; ++k) {
-            for (int j = -window; j <= window; ++j) {
-                for (int i = -window; i <= window; ++i) {
-                    if (deep(v + glm::ivec3(i, j, k))) return true;
-                }
-            }
-        }
-        return false;
+        bool found = false;
+        eachStep(hu_.grid(), v, voxelsIn(hu_.grid(), 4.5), look_,
+                 [&](glm::ivec3 n) { found = found || deep(n); });
+        return found;
     }
 
     /// HU per mm, by differences of `reachMm` to either side.
@@ -145,16 +142,16 @@ private:
     std::optional<glm::dvec3> crestNormal(glm::ivec3 v) const {
         glm::dmat3 hessian;
         glm::dvec3 gradient;
-        const glm::dvec3 h = spacingMm_;
+        const glm::dvec3 h = spacingMm_ * glm::dvec3(look_);
         for (int a = 0; a < 3; ++a) {
             glm::ivec3 u(0);
-            u[a] = 1;
+            u[a] = look_[a];
             const double before = hu_.at(v - u), after = hu_.at(v + u);
             gradient[a] = (after - before) / (2.0 * h[a]);
             hessian[a][a] = (after - 2.0 * hu_.at(v) + before) / (h[a] * h[a]);
             for (int b = 0; b < a; ++b) {
                 glm::ivec3 w(0);
-                w[b] = 1;
+                w[b] = look_[b];
                 hessian[a][b] = hessian[b][a] = (hu_.at(v + u + w) - hu_.at(v + u - w) -
                                                  hu_.at(v - u + w) + hu_.at(v - u - w)) /
                                                 (4.0 * h[a] * h[b]);
@@ -170,24 +167,26 @@ private:
         }
         n = glm::normalize(n);
         const double bend = glm::dot(n, hessian * n);
-        if (bend > -4.0 * means_.noiseSd) return std::nullopt;
+        if (bend > -4.0 * means_.noise.tagged) return std::nullopt;
         const double topMm = -glm::dot(gradient, n) / bend;
-        if (std::abs(topMm) * glm::length(n / h) > 0.6) return std::nullopt;
+        if (std::abs(topMm) * glm::length(n / spacingMm_) > 0.6) return std::nullopt;
         return n;
     }
 
     const Volume<std::int16_t>& hu_;
     const Volume<std::uint8_t>& segmentation_;
     const LocalMeans& means_;
-    double blurMm_;
+    const PointSpread& spread_;
     glm::dvec3 spacingMm_;
+    glm::ivec3 look_;
 };
 
 std::vector<Crest> findCrests(const Films& films, const Grid& grid,
                               const TaggedSurroundings& around, int threads) {
     constexpr std::size_t blockSize = 1 << 12;
     std::vector<Crest> crests;
-    for (std::size_t shell = 0; shell + 1 < around.shells.size(); ++shell) {
+    // The outer third of the surroundings holds no crest whose film reaches the tagging.
+    for (std::size_t shell = 0; 3 * shell < 2 * around.shells.size(); ++shell) {
         const auto& voxels = around.shells[shell];
         std::vector<std::vector<Crest>> found((voxels.size() + blockSize - 1) / blockSize);
         parallelFor(found.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
@@ -231,11 +230,11 @@ void eachAround(const Grid& grid, const Crest& crest, const Visit& visit) {
 }  // namespace
 
 Volume<std::uint8_t> settleFilms(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
-                                 const LocalMeans& means, double blurMm,
+                                 const LocalMeans& means, const PointSpread& spread,
                                  const TaggedSurroundings& around, Volume<TissueFractions>& mixture,
                                  int threads) {
     const Grid& grid = scan.hu.grid();
-    const auto crests = findCrests(Films(scan, segmentation, means, blurMm), grid, around, threads);
+    const auto crests = findCrests(Films(scan, segmentation, means, spread), grid, around, threads);
     Volume<std::uint8_t> settled(grid, std::uint8_t(0));
     const auto mark = settled.writable();
     std::vector<std::uint32_t> places;
@@ -253,7 +252,7 @@ Volume<std::uint8_t> settleFilms(const CtScan& scan, const Volume<std::uint8_t>&
     std::vector<Sums> sums(places.size());
     for (const Crest& crest : crests) {
         const FilmProfile& p = crest.profile;
-        const double misfit = p.misfitHu / means.noiseSd;
+        const double misfit = p.misfitHu / means.noise.tagged;
         eachAround(grid, crest, [&](std::size_t n, double mm, double along2) {
             const auto at = std::lower_bound(places.begin(), places.end(), std::uint32_t(n));
             Sums& sum = sums[std::size_t(at - places.begin())];
@@ -272,7 +271,7 @@ Volume<std::uint8_t> settleFilms(const CtScan& scan, const Volume<std::uint8_t>&
         const double film = sums[m].film / sums[m].weight,
                      rest = std::max(0.0, sums[m].rest / sums[m].weight);
         const double unexplained = y - air - film - rest;
-        if (taggedHu <= soft || std::abs(unexplained) > 0.15 * film + 3.0 * means.noiseSd) {
+        if (taggedHu <= soft || std::abs(unexplained) > 0.15 * film + 3.0 * means.noise.tagged) {
             mark[n] = 0;
             continue;
         }

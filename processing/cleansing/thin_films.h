@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cleansing/local_means.h"
+#include "cleansing/point_spread.h"
 #include "cleansing/tagged_surroundings.h"
 #include "core/ct_scan.h"
 #include "core/tissue.h"
@@ -16,7 +17,7 @@ namespace haustra::cleansing {
 /// only a film with parallel faces and the pool's HU counts. `segmentation` is LumenLabel. Returns
 /// 1 for the voxels settled, else 0. The same for any number of threads.
 Volume<std::uint8_t> settleFilms(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
-                                 const LocalMeans& means, double blurMm,
+                                 const LocalMeans& means, const PointSpread& spread,
                                  const TaggedSurroundings& around, Volume<TissueFractions>& mixture,
                                  int threads);
 

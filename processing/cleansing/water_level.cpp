@@ -1,5 +1,6 @@
 #include "cleansing/water_level.h"
 
+#include "cleansing/ball.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -9,8 +10,9 @@
 namespace haustra::cleansing {
 namespace {
 
-/// Fewer level columns are the top of a ball of stool, which needs no wall to hold it.
-constexpr int fewestColumns = 12;
+/// A smaller level is the top of a ball of stool, which needs no wall to hold it.
+constexpr double smallestMm2 = 9.5;
+constexpr double acrossMm = 6.0, heightMm = 3.0;  // as far as a level is known from a column
 
 }  // namespace
 
@@ -26,6 +28,13 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
         stepMm_ = grid.spacingMm()[axis];
     }
     if (down_ == glm::ivec3(0)) return;
+    const glm::ivec3 look = lookStep(grid);
+    const glm::dvec3 spacing = grid.spacingMm();
+    const glm::ivec3 flat = glm::ivec3(1) - glm::abs(down_);
+    acrossStep_ = glm::max(look * flat, glm::ivec3(1));
+    fewestColumns_ = smallestMm2 * stepMm_ / grid.voxelVolumeMm3() /
+                     (acrossStep_.x * acrossStep_.y * acrossStep_.z);
+    blockVoxels_ = voxelsIn(grid, heightMm);
     crossing_ = Volume<std::uint8_t>(grid, std::uint8_t(0));
     const auto out = crossing_.writable();
     // A steeper surface is no level, or a wall's blur has tilted it.
@@ -34,8 +43,8 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
         parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t m = begin; m < end; ++m) {
                 const glm::ivec3 v = grid.voxelAt(shell[m]), below = v + down_;
-                if (!grid.contains(below + 1) || !grid.contains(v - 1) ||
-                    !grid.contains(below - 1) || !grid.contains(v + 1))
+                if (!grid.contains(below + look) || !grid.contains(v - look) ||
+                    !grid.contains(below - look) || !grid.contains(v + look))
                     continue;
                 const double tagged = means.taggedHu.at(v);
                 const double middle = 0.5 * (means.airHu.at(v.x, v.y, v.z) + tagged);
@@ -45,12 +54,12 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
                 for (int axis = 0; axis < 3; ++axis) {
                     if (down_[axis] != 0) continue;
                     glm::ivec3 d(0);
-                    d[axis] = 1;
-                    const double slope = 0.25 * (scan.hu.at(v + d) - scan.hu.at(v - d) +
-                                                 scan.hu.at(below + d) - scan.hu.at(below - d));
-                    aside = std::max(aside, std::abs(slope));
+                    d[axis] = look[axis];
+                    const double rise = scan.hu.at(v + d) - scan.hu.at(v - d) +
+                                        scan.hu.at(below + d) - scan.hu.at(below - d);
+                    aside = std::max(aside, std::abs(rise) / (4.0 * look[axis] * spacing[axis]));
                 }
-                if (aside > steepest * (next - here)) continue;
+                if (aside > steepest * (next - here) / stepMm_) continue;
                 const glm::ivec3 nearer = middle - here < next - middle ? v : below;
                 if (interfaces.bareness(nearer, tagged, means.softHu.at(v.x, v.y, v.z)) <
                     surelyBare)
@@ -61,13 +70,13 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
         });
     }
     Grid coarse = grid;
-    coarse.size = (grid.size + blockVoxels - 1) / blockVoxels;
+    coarse.size = (grid.size + blockVoxels_ - 1) / blockVoxels_;
     blocks_ = Volume<std::uint8_t>(coarse, std::uint8_t(0));
     const auto block = blocks_.writable();
     for (const auto& shell : around.shells) {
         for (std::uint32_t n : shell) {
             if (out[n] == 0) continue;
-            const glm::ivec3 b = grid.voxelAt(n) / blockVoxels;
+            const glm::ivec3 b = grid.voxelAt(n) / blockVoxels_;
             const glm::ivec3 reach = glm::ivec3(2) - glm::abs(down_);
             const glm::ivec3 lo = glm::max(b - reach, glm::ivec3(0)),
                              hi = glm::min(b + reach, coarse.size - 1);
@@ -83,8 +92,8 @@ WaterLevel::WaterLevel(const CtScan& scan, const LocalMeans& means,
 
 bool WaterLevel::standsAbove(glm::ivec3 voxel, const Volume<std::uint8_t>& segmentation) const {
     if (crossing_.empty()) return false;
-    constexpr int widestGap = 3, across = 8, height = 3;
     const Grid& grid = crossing_.grid();
+    const int widestGap = std::max(1, int(std::lround(2.3 / stepMm_)));
     glm::ivec3 top = voxel;
     int gap = 0;
     for (glm::ivec3 v = voxel - down_; grid.contains(v) && gap <= widestGap; v -= down_) {
@@ -93,47 +102,35 @@ bool WaterLevel::standsAbove(glm::ivec3 voxel, const Volume<std::uint8_t>& segme
         gap = label == LumenLabel::tagged ? 0 : gap + 1;
         if (gap == 0) top = v;
     }
-    const glm::ivec3 reach = glm::ivec3(across) - (across - height) * glm::abs(down_);
-    const glm::ivec3 lo = glm::max(top - reach, glm::ivec3(0)),
-                     hi = glm::min(top + reach, grid.size - 1);
+    const glm::ivec3 vertical = glm::abs(down_);
+    const glm::ivec3 reach =
+        voxelsIn(grid, acrossMm) * (1 - vertical) + voxelsIn(grid, 2.3) * vertical;
     int count = 0;
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                if (crossing_.at(i, j, k) != 0 && ++count == fewestColumns) return true;
-            }
-        }
-    }
-    return false;
+    eachStep(grid, top, reach, acrossStep_, [&](glm::ivec3 v) { count += crossing_.at(v) != 0; });
+    return count >= fewestColumns_;
 }
 
 std::optional<double> WaterLevel::depthMm(glm::ivec3 voxel) const {
-    constexpr int across = 8, height = 4;
     if (crossing_.empty()) return std::nullopt;
     const Grid& grid = crossing_.grid();
     const glm::ivec3 level = glm::ivec3(1) - glm::abs(down_);
-    const glm::ivec3 reach = across * level + height * glm::abs(down_);
-    const glm::ivec3 lo = glm::max(voxel - reach, glm::ivec3(0)),
-                     hi = glm::min(voxel + reach, grid.size - 1);
+    const glm::ivec3 reach =
+        voxelsIn(grid, acrossMm) * level + voxelsIn(grid, heightMm) * glm::abs(down_);
+    const glm::dvec3 flatMm = glm::dvec3(level) * grid.spacingMm();
     double weight = 0.0, sum = 0.0;
     int count = 0;
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            const std::size_t row = grid.index(0, j, k);
-            for (int i = lo.x; i <= hi.x; ++i) {
-                const std::uint8_t crossing = crossing_[row + std::size_t(i)];
-                if (crossing == 0) continue;
-                const glm::ivec3 d = glm::ivec3(i, j, k) - voxel;
-                const glm::vec3 flat(d * level);
-                const double w = 1.0 / (1.0 + double(glm::dot(flat, flat)));
-                // The voxel lies this far below the crossing, in voxels.
-                sum += w * (-double(d.x * down_.x + d.y * down_.y + d.z * down_.z) -
-                            (crossing - 1) / 254.0);
-                weight += w, ++count;
-            }
-        }
-    }
-    if (count < fewestColumns) return std::nullopt;
+    eachStep(grid, voxel, reach, acrossStep_, [&](glm::ivec3 at) {
+        const std::uint8_t crossing = crossing_.at(at);
+        if (crossing == 0) return;
+        const glm::ivec3 d = at - voxel;
+        const glm::dvec3 flat = glm::dvec3(d) * flatMm;
+        const double w = 1.0 / (0.75 + glm::dot(flat, flat));
+        // The voxel lies this far below the crossing, in voxels.
+        sum +=
+            w * (-double(d.x * down_.x + d.y * down_.y + d.z * down_.z) - (crossing - 1) / 254.0);
+        weight += w, ++count;
+    });
+    if (count < fewestColumns_) return std::nullopt;
     return sum / weight * stepMm_;
 }
 

@@ -21,16 +21,16 @@ public:
                const TaggedSurroundings& around, glm::dvec3 gravity, int threads);
 
     /// Depth of a voxel's centre below the level, mm (negative above), where one is known within
-    /// 4 voxels of height and 8 across. Thread-safe.
+    /// 3 mm of height and 6 across. Thread-safe.
     std::optional<double> depthMm(glm::ivec3 voxel) const;
 
     /// Whether a level can be known at a voxel: cheap, and false in most places. Thread-safe.
     bool near(glm::ivec3 voxel) const {
-        return !blocks_.empty() && blocks_.at(voxel / blockVoxels) != 0;
+        return !blocks_.empty() && blocks_.at(voxel / blockVoxels_) != 0;
     }
 
     /// Whether a level lies straight above, at the end of a column of `segmentation`'s tagged
-    /// voxels with gaps of at most 3 voxels, or within 8 across of it. Thread-safe.
+    /// voxels with gaps of at most 2.3 mm, or within 6 mm across of it. Thread-safe.
     bool standsAbove(glm::ivec3 voxel, const Volume<std::uint8_t>& segmentation) const;
 
     /// Along the grid: a unit step down. Zero where there is no gravity.
@@ -41,7 +41,9 @@ private:
     double stepMm_ = 1.0;
     /// 0, or 1 + 254 f where the level crosses between this voxel and the one below, f of the way.
     Volume<std::uint8_t> crossing_;
-    static constexpr int blockVoxels = 4;
+    glm::ivec3 acrossStep_{1};     ///< columns that are looked at lie so far apart
+    double fewestColumns_ = 12.0;  ///< that make a level
+    glm::ivec3 blockVoxels_{4};    ///< 3 mm
     Volume<std::uint8_t> blocks_;  ///< 1 where a crossing is 1 block above or below, 2 across
 };
 

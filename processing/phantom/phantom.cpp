@@ -247,7 +247,7 @@ Result<void> check(const PhantomOptions& options) {
     const auto given = [](double value, double low, double high) {
         return value == 0.0 || (value >= low && value <= high);
     };
-    if (!given(scan.fieldOfViewMm, 320.0, 500.0)) return bad("a field of view is 320 to 500 mm");
+    if (!given(scan.fieldOfViewMm, 250.0, 500.0)) return bad("a field of view is 250 to 500 mm");
     for (int axis = 0; axis < 3; ++axis) {
         if (!given(scan.blurMm[axis], 0.3, 6.0)) return bad("a point spread is 0.3 to 6 mm wide");
     }

@@ -7,7 +7,7 @@ namespace haustra::phantom {
 
 /// Zero, or what is given here, leaves what the preset draws.
 struct ScanOptions {
-    /// Width of the reconstructed field, mm, 320…500, in place of the size's 384: small fields cut
+    /// Width of the reconstructed field, mm, 250…500, in place of the size's 384: small fields cut
     /// the arms and sides off, large ones have large pixels.
     double fieldOfViewMm = 0.0;
     /// Full widths at half maximum of the point spread along x, y and z, mm; z is the slice's

@@ -21,8 +21,8 @@ using store::Attributes;
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 5;
 constexpr int maskVersion = 2;
-constexpr int mixtureVersion = 7;
-constexpr int cleansingVersion = 5;
+constexpr int mixtureVersion = 10;
+constexpr int cleansingVersion = 8;
 
 // How a mask without a scan is drawn.
 const TissueModel drawnTissue{

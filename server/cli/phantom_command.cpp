@@ -345,7 +345,7 @@ void addScanOptions(CLI::App& command, Arguments& arguments) {
             ->type_name(unit)
             ->group(group);
     };
-    add("--fov", arguments.fieldOfViewMm, "Width of the field of view, 320 to 500", 320, 500, "MM");
+    add("--fov", arguments.fieldOfViewMm, "Width of the field of view, 250 to 500", 250, 500, "MM");
     command
         .add_option("--blur", arguments.blurMm,
                     "Full widths of the point spread along x, y and z, 0.3 to 6")

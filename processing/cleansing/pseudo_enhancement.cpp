@@ -1,0 +1,181 @@
+#include "cleansing/pseudo_enhancement.h"
+
+#include "cleansing/ball.h"
+#include "cleansing/noise.h"
+#include "cleansing/normal_distribution.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace haustra::cleansing {
+namespace {
+
+constexpr std::array<double, 5> widthsMm = {8.0, 12.0, 16.0, 24.0, 32.0};
+constexpr double cellMm = 3.0;     // in the slice
+constexpr double sampleMm3 = 4.0;  // one voxel of so much is looked at
+constexpr double leastEdgeHu = 4.0;
+constexpr double fewest = 500.0;
+
+/// The tagging's excess over gas, in cells of one slice each.
+SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentation, double airHu,
+                     int threads) {
+    const Grid& grid = scan.hu.grid();
+    glm::ivec3 perCell = voxelsIn(grid, cellMm);
+    perCell.z = 1;
+    SmoothField excess(grid, perCell);
+    std::vector<float>& values = excess.values();
+    const float share = 1.0f / float(perCell.x * perCell.y);
+    parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (int k = int(begin); k < int(end); ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                for (int i = 0; i < grid.size.x; ++i) {
+                    if (LumenLabel(segmentation.at(i, j, k)) == LumenLabel::tagged)
+                        values[excess.cellOf(i, j, k)] +=
+                            share * std::max(0.0f, float(scan.hu.at(i, j, k) - airHu));
+                }
+            }
+        }
+    });
+    return excess;
+}
+
+/// Convolves the rows, or columns, of each slice with a Gaussian; nothing lies beyond the field.
+void spreadAlong(SmoothField& field, int axis, double sigmaCells, int threads) {
+    const int reach = int(std::ceil(3.0 * sigmaCells));
+    std::vector<float> kernel;
+    float sum = 0.0f;
+    for (int r = -reach; r <= reach; ++r) {
+        kernel.push_back(float(std::exp(-0.5 * r * r / (sigmaCells * sigmaCells))));
+        sum += kernel.back();
+    }
+    for (float& w : kernel)
+        w /= sum;
+    const glm::ivec3 size = field.cells();
+    const std::size_t stride = axis == 0 ? 1 : std::size_t(size.x);
+    const int lines = axis == 0 ? size.y : size.x, length = size[axis];
+    std::vector<float>& values = field.values();
+    parallelFor(std::size_t(size.z), 8, threads, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> line(static_cast<std::size_t>(length));
+        for (std::size_t k = begin; k < end; ++k) {
+            for (int l = 0; l < lines; ++l) {
+                const std::size_t first = k * std::size_t(size.x) * std::size_t(size.y) +
+                                          std::size_t(l) * (axis == 0 ? std::size_t(size.x) : 1);
+                bool any = false;
+                for (int n = 0; n < length; ++n) {
+                    line[std::size_t(n)] = values[first + std::size_t(n) * stride];
+                    any |= line[std::size_t(n)] != 0.0f;
+                }
+                if (!any) continue;
+                for (int n = 0; n < length; ++n) {
+                    float here = 0.0f;
+                    for (int m = std::max(0, n - reach); m <= std::min(length - 1, n + reach); ++m)
+                        here += kernel[std::size_t(m - n + reach)] * line[std::size_t(m)];
+                    values[first + std::size_t(n) * stride] = here;
+                }
+            }
+        }
+    });
+}
+
+/// Sums for a straight line through (spread excess, HU).
+struct Line {
+    double count = 0.0, p = 0.0, y = 0.0, pp = 0.0, py = 0.0;
+
+    void add(double excess, double hu) {
+        count += 1.0, p += excess, y += hu;
+        pp += excess * excess, py += excess * hu;
+    }
+    void add(const Line& other) {
+        count += other.count, p += other.p, y += other.y;
+        pp += other.pp, py += other.py;
+    }
+    // About the means.
+    double spread() const { return count > 0.0 ? pp - p * p / count : 0.0; }
+    double joint() const { return count > 0.0 ? py - p * y / count : 0.0; }
+    double slope() const { return spread() > 0.0 ? joint() / spread() : 0.0; }
+};
+
+}  // namespace
+
+PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
+                                           const Volume<std::uint8_t>& segmentation, int threads) {
+    const Grid& grid = scan.hu.grid();
+    const double airHu = tissue.meanHu[int(Tissue::air)];
+    const SmoothField excess = excessOf(scan, segmentation, airHu, threads);
+    std::vector<SmoothField> fields;
+    for (const double width : widthsMm) {
+        fields.push_back(excess);
+        for (int axis = 0; axis < 2; ++axis) {
+            const double cell = grid.spacingMm()[axis] * excess.voxelsPerCell()[axis];
+            spreadAlong(fields.back(), axis, width / 2.3548 / cell, threads);
+        }
+    }
+    const auto ball = blurBall(grid);
+    const int every = std::max(1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())));
+    const auto isGas = [&](std::size_t n) {
+        return LumenLabel(segmentation[n]) == LumenLabel::air;
+    };
+    using Lines = std::array<Line, widthsMm.size()>;  // by spread
+    std::vector<Lines> slices(std::size_t(grid.size.z));
+    parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                const int first = (j + 2 * int(k)) % every;
+                for (int i = first; i < grid.size.x; i += every) {
+                    const glm::ivec3 v(i, j, int(k));
+                    const std::size_t n = grid.index(v);
+                    if (!isGas(n) || !everywhere(grid, ball, v, isGas)) continue;
+                    for (std::size_t w = 0; w < fields.size(); ++w)
+                        slices[k][w].add(fields[w].at(i, j, int(k)), scan.hu[n]);
+                }
+            }
+        }
+    });
+    Lines lines;
+    for (const Lines& slice : slices) {
+        for (std::size_t w = 0; w < lines.size(); ++w)
+            lines[w].add(slice[w]);
+    }
+    const double sd = measureNoise(scan, tissue, segmentation, threads).soft;
+    const double seen = normalCdf((airHu + 1024.0) / sd);
+    PseudoEnhancement best;
+    double most = 0.0;
+    std::size_t at = 0;
+    for (std::size_t w = 0; w < lines.size(); ++w) {
+        const Line& line = lines[w];
+        if (line.count < fewest || line.joint() <= 0.0) continue;
+        const double explained = line.joint() * line.slope();  // of the squares
+        if (explained <= most) continue;
+        most = explained, at = w;
+        best.widthMm = widthsMm[w], best.gain = line.slope() / std::max(seen, 0.5);
+    }
+    if (best.edgeHu() < leastEdgeHu) return {};
+    best.excessHu = std::move(fields[at]);
+    return best;
+}
+
+CtScan withoutPseudoEnhancement(const CtScan& scan, const PseudoEnhancement& enhancement,
+                                int threads) {
+    CtScan corrected{scan.hu.clone(), scan.position};
+    if (!enhancement) return corrected;
+    const Grid& grid = scan.hu.grid();
+    const auto out = corrected.hu.writable();
+    parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (int k = int(begin); k < int(end); ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                for (int i = 0; i < grid.size.x; ++i) {
+                    std::int16_t& hu = out[grid.index(i, j, k)];
+                    if (hu > -1024)
+                        hu = std::int16_t(
+                            std::max(-1024L, std::lround(hu - enhancement.at(i, j, k))));
+                }
+            }
+        }
+    });
+    return corrected;
+}
+
+}  // namespace haustra::cleansing

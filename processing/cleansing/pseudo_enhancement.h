@@ -1,0 +1,36 @@
+// How much brighter beam hardening and scatter make what lies beside tagging.
+#pragma once
+
+#include "cleansing/local_means.h"
+#include "core/ct_scan.h"
+#include "core/tissue.h"
+
+namespace haustra::cleansing {
+
+/// The HU that dense contents add to what is around them within the slice, in which the rays lie:
+/// the tagging's excess over gas, spread by a Gaussian and scaled (adaptive density correction,
+/// Näppi and Yoshida, Med. Image Anal. 2008; 12: 413). Spread and scale are the scan's own.
+struct PseudoEnhancement {
+    double widthMm = 0.0;  ///< of the spread, full at half maximum; 0 where there is none
+    double gain = 0.0;     ///< HU for each HU of spread excess
+    SmoothField excessHu;  ///< spread; empty where there is none
+
+    explicit operator bool() const { return gain > 0.0; }
+    double at(int i, int j, int k) const { return gain * excessHu.at(i, j, k); }
+    /// What the flat edge of a large pool gains that is 1500 HU denser than gas.
+    double edgeHu() const { return 750.0 * gain; }
+};
+
+/// Fits scale and one of five spreads, 8 to 32 mm wide, by least squares to the colon's gas, which
+/// is the same everywhere else, deeper inside than the blur reaches: soft tissue beside a pool is
+/// wall, and farther off another tissue. Where the lowest HU cuts gas' noise off, the share of it
+/// that is left shows the scale. None where the edge of a pool would gain less than 4 HU.
+/// O(voxels); the same for any number of threads.
+PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
+                                           const Volume<std::uint8_t>& segmentation, int threads);
+
+/// The scan less that.
+CtScan withoutPseudoEnhancement(const CtScan& scan, const PseudoEnhancement& enhancement,
+                                int threads);
+
+}  // namespace haustra::cleansing
