@@ -3,6 +3,8 @@
 #include "cleansing/digital_cleansing.h"
 #include "cleansing/mixture.h"
 #include "cleansing/tissue_mixture.h"
+#include "flatten/end_holes.h"
+#include "flatten/flattening.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "segmentation/find_colon.h"
@@ -105,6 +107,34 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
     return {};
 }
 
+/// Surface and flat map as prepare makes them; the flat map's folded triangles.
+Result<std::size_t> flattenLumen(const Volume<std::int16_t>& cleansedHu,
+                                 const Volume<std::uint8_t>& lumen, const Centerline& path,
+                                 const StudyOptions& options, PhantomStudy& study) {
+    constexpr double endWindowMm = 6.0;
+    const int threads = options.phantom.threads;
+    Stopwatch watch;
+    const auto fine = surface::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
+    if (!fine) return tl::make_unexpected(fine.error());
+    surface::SimplificationOptions simplification;
+    simplification.errorMm = options.prepareErrorMm, simplification.threads = threads;
+    const auto simple = surface::simplify(*fine, simplification);
+    if (!simple) return tl::make_unexpected(simple.error());
+    study.colon.surfaceSeconds = watch.lap();
+    const CenterlinePose first = poseAtArc(path, 0.0, endWindowMm),
+                         last = poseAtArc(path, path.lengthMm(), endWindowMm);
+    const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm},
+                     outwards[2] = {-first.tangent, last.tangent};
+    const auto punched = flatten::punchEnds(*simple, ends, outwards);
+    if (!punched) return tl::make_unexpected(punched.error());
+    flatten::FlatteningOptions flattening;
+    flattening.threads = threads;
+    const auto flat = flatten::flattenTube(punched->tube, punched->firstLoop, flattening);
+    study.colon.flatteningSeconds = watch.lap();
+    if (!flat) return tl::make_unexpected(flat.error());
+    return flatten::foldedTriangles(flat->map).size();
+}
+
 }  // namespace
 
 Result<SurfaceStudy> studySurface(std::string what, const TriMesh& mesh,
@@ -186,9 +216,30 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     const auto fine = phantom::scoreLumen(truth->lumen, truth->centerline, lumen, found);
     if (!fine) return tl::make_unexpected(fine.error());
     study.lumen = *fine;
-    auto clean = phantom::scoreCleansing(*truth, cleansed->hu);
-    if (!clean) return tl::make_unexpected(clean.error());
-    study.cleansing = std::move(*clean);
+    if (options.cleansing) {
+        auto clean = phantom::scoreCleansing(*truth, cleansed->hu);
+        if (!clean) return tl::make_unexpected(clean.error());
+        study.cleansing = std::move(*clean);
+    }
+    if (options.colon) {
+        const ColonRecord& record = segmentation->record;
+        std::vector<std::string> warnings = record.warnings;
+        for (std::string& line : piecesPassedBy(found, record.pieces))
+            warnings.push_back(std::move(line));
+        study.colon.score = phantom::scoreColon(*truth, lumen, found, record, warnings);
+        study.colon.confidence = record.confidence;
+        study.colon.warnings = warnings.size();
+        for (const std::string& line : warnings)
+            options.log("warned: " + line);
+        if (!traced) {
+            study.colon.failed = "centerline: " + describe(traced.error());
+        } else {
+            options.log("flattening");
+            const auto flips = flattenLumen(cleansed->hu, lumen, found, options, study);
+            if (flips) study.colon.flips = *flips;
+            if (!flips) study.colon.failed = "flattening: " + describe(flips.error());
+        }
+    }
 
     if (!options.out.empty()) {
         std::error_code ignored;  // the writers tell
@@ -199,7 +250,13 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
                 .and_then([&] {
                     return nifti::writeNifti(options.out / "segmentation.nii.gz",
                                              segmentation->labels);
-                });
+                })
+                .and_then(
+                    [&] { return nifti::writeNifti(options.out / "ct.nii.gz", truth->scan.hu); })
+                .and_then(
+                    [&] { return nifti::writeNifti(options.out / "truth.nii.gz", truth->lumen); })
+                .and_then(
+                    [&] { return nifti::writeNifti(options.out / "sites.nii.gz", truth->sites); });
         if (!written) return tl::make_unexpected(written.error());
     }
     if (options.surface) {
