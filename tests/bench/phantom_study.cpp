@@ -285,6 +285,9 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
         if (!traced) {
             study.colon.failed = "centerline: " + describe(traced.error());
         } else {
+            study.colon.failed = "flattening not done";
+            if (options.beforeFlattening) options.beforeFlattening(study);
+            study.colon.failed.clear();
             options.log("flattening");
             const auto flips = flattenLumen(cleansed->hu, lumen, found, options, study);
             if (flips) study.colon.flips = *flips;

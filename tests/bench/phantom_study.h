@@ -15,6 +15,8 @@
 
 namespace haustra::bench {
 
+struct PhantomStudy;
+
 struct StudyOptions {
     phantom::PhantomOptions phantom;
     std::vector<double> errorBoundsMm = {0.05, 0.1, 0.2};
@@ -24,6 +26,7 @@ struct StudyOptions {
     double prepareErrorMm = 0.1;  ///< bound of the surface that is flattened
     std::filesystem::path out;    ///< for the cleansed scan, the lumen and the meshes; empty: none
     std::function<void(const std::string&)> log;
+    std::function<void(const PhantomStudy&)> beforeFlattening;  ///< which may take long; or empty
 };
 
 /// Of each triangle's smallest angle, degrees.

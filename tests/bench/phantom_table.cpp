@@ -285,19 +285,35 @@ std::vector<Table> tablesOf(const StudyOptions& options, bool worst) {
     return tables;
 }
 
-Row studyRow(Row row, const StudyOptions& options, const std::vector<Table>& tables) {
-    const auto study = studyPhantom(options);
-    if (!study) {
-        row.failed = describe(study.error());
-        return row;
-    }
+Row filled(Row row, const PhantomStudy& study, bool colon, const std::vector<Table>& tables) {
     for (const Table& table : tables)
-        row.tables[table.heading] = table.cells(*study);
-    if (options.colon) {
-        row.tables[kColonTable.heading] = colonCells(*study);
-        row.colon = colonFigures(*study);
+        row.tables[table.heading] = table.cells(study);
+    if (colon) {
+        row.tables[kColonTable.heading] = colonCells(study);
+        row.colon = colonFigures(study);
     }
     return row;
+}
+
+/// A line of JSON, whole or not at all.
+bool writeRow(int file, const Row& row) {
+    const std::string text = nlohmann::json(row).dump() + "\n";
+    for (std::size_t at = 0; at < text.size();) {
+        const ssize_t wrote = write(file, text.data() + at, text.size() - at);
+        if (wrote <= 0) return false;
+        at += std::size_t(wrote);
+    }
+    return true;
+}
+
+/// Writes what is known before the flattening, and all in the end.
+bool studyRow(int file, Row row, StudyOptions options, const std::vector<Table>& tables) {
+    options.beforeFlattening = [&](const PhantomStudy& study) {
+        writeRow(file, filled(row, study, options.colon, {}));
+    };
+    const auto study = studyPhantom(options);
+    if (!study) row.failed = describe(study.error());
+    return writeRow(file, study ? filled(row, *study, options.colon, tables) : row);
 }
 
 /// studyRow in a process of its own, which is ended after `limitSeconds` (0: never).
@@ -312,13 +328,7 @@ Row studyApart(const Row& row, const StudyOptions& options, const std::vector<Ta
     if (child == 0) {
         close(ends[0]);
         alarm(limitSeconds);
-        const std::string text = nlohmann::json(studyRow(row, options, tables)).dump();
-        for (std::size_t at = 0; at < text.size();) {
-            const ssize_t wrote = write(ends[1], text.data() + at, text.size() - at);
-            if (wrote <= 0) _exit(1);
-            at += std::size_t(wrote);
-        }
-        _exit(0);
+        _exit(studyRow(ends[1], row, options, tables) ? 0 : 1);
     }
     close(ends[1]);
     std::string text;
@@ -328,7 +338,10 @@ Row studyApart(const Row& row, const StudyOptions& options, const std::vector<Ta
     close(ends[0]);
     int status = 0;
     waitpid(child, &status, 0);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return nlohmann::json::parse(text);
+    if (const auto last = text.rfind('\n'); last != std::string::npos) {
+        const auto before = text.rfind('\n', last - 1);
+        return nlohmann::json::parse(text.substr(before == std::string::npos ? 0 : before + 1));
+    }
     failed.failed = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM
                         ? fmt::format("not done after {} s", limitSeconds)
                         : fmt::format("crashed (status {})", status);
