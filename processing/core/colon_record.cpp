@@ -1,6 +1,8 @@
 #include "core/colon_record.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -51,6 +53,36 @@ double ColonRecord::lengthMm() const {
     for (const ColonJunction& junction : junctions)
         sum += junction.lengthMm;
     return sum;
+}
+
+std::vector<std::string> piecesPassedBy(const Centerline& path,
+                                        const std::vector<ColonPiece>& pieces) {
+    std::vector<std::string> lines;
+    double missedMm = 0.0;
+    for (std::size_t n = 0; n <= pieces.size(); ++n) {
+        bool missed = false;
+        if (n < pieces.size()) {
+            // The path keeps to the middle of what it passes.
+            double nearest = 1e30;
+            for (const CenterlinePoint& p : path.points)
+                nearest = std::min(nearest, glm::distance(p.positionMm, pieces[n].centreMm));
+            missed = nearest > pieces[n].radiusMm + 5.0;
+        }
+        if (missed) {
+            missedMm += pieces[n].lengthMm;
+        } else if (missedMm > 0.0) {
+            const ColonPiece& last = pieces[n - 1];
+            char line[200];
+            std::snprintf(line, sizeof line,
+                          "about %.0f mm of the colon have no centerline, up to the %s at (%.0f, "
+                          "%.0f, %.0f) mm",
+                          missedMm, toString(last.part), last.centreMm.x, last.centreMm.y,
+                          last.centreMm.z);
+            lines.push_back(line);
+            missedMm = 0.0;
+        }
+    }
+    return lines;
 }
 
 std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& record) {

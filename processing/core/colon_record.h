@@ -1,6 +1,7 @@
 // What the colon was found to be: its pieces in order, what joins them, and how sure that is.
 #pragma once
 
+#include "core/centerline.h"
 #include "core/result.h"
 
 #include <array>
@@ -87,6 +88,11 @@ struct ColonRecord {
     std::vector<std::string> warnings;  ///< where a reader must look
     double lengthMm() const;            ///< of the pieces and of what is crossed between them
 };
+
+/// Pieces of the colon that the path passes by: it went another way there, through a wall that was
+/// taken for lumen. A line for each run of them, with its length and its last piece's place.
+std::vector<std::string> piecesPassedBy(const Centerline& path,
+                                        const std::vector<ColonPiece>& pieces);
 
 /// The six segments in which colonoscopy reports, from the rectum on; the flexures count with the
 /// ascending and the descending colon.

@@ -46,20 +46,42 @@ std::string decimals(std::initializer_list<double> values) {
     return text;
 }
 
-const char* patientPositionCode(PatientPosition position) {
+std::string patientPositionCode(PatientPosition position, bool feetFirst) {
+    const std::string end = feetFirst ? "FF" : "HF";
     switch (position) {
         case PatientPosition::supine:
-            return "HFS";
+            return end + "S";
         case PatientPosition::prone:
-            return "HFP";
+            return end + "P";
         case PatientPosition::leftDecubitus:
-            return "HFDL";
+            return end + "DL";
         case PatientPosition::rightDecubitus:
-            return "HFDR";
+            return end + "DR";
         case PatientPosition::unknown:
             break;
     }
     return "";
+}
+
+/// Slice k of the series: the patient's, or with the feet first the one from the other end, each
+/// row the other way round, as the gantry sees it.
+Volume<std::int16_t> sliceOf(const CtScan& scan, int k, bool feetFirst) {
+    const Grid& from = scan.hu.grid();
+    const std::size_t plane = std::size_t(from.size.x) * std::size_t(from.size.y);
+    const glm::ivec3 corner =
+        feetFirst ? glm::ivec3(from.size.x - 1, 0, from.size.z - 1 - k) : glm::ivec3(0, 0, k);
+    Grid grid = from;
+    grid.size.z = 1;
+    grid.patientFromVoxel[3] = glm::dvec4(from.patientFromVoxelPoint(corner), 1.0);
+    const auto voxels = scan.hu.voxels().subspan(std::size_t(corner.z) * plane, plane);
+    if (!feetFirst) return Volume<std::int16_t>::view(grid, voxels.data(), nullptr);
+    grid.patientFromVoxel[0] = -from.patientFromVoxel[0];
+    grid.patientFromVoxel[2] = -from.patientFromVoxel[2];
+    Volume<std::int16_t> slice(grid);
+    for (std::size_t row = 0; row < plane; row += std::size_t(from.size.x))
+        std::reverse_copy(voxels.data() + row, voxels.data() + row + from.size.x,
+                          slice.writable().data() + row);
+    return slice;
 }
 
 /// Collects the first failure of many insertions.
@@ -109,14 +131,15 @@ void putPatientAndStudy(Attributes& out, const WriteOptions& options) {
 }
 
 void putSlice(Attributes& out, const CtScan& scan, int k, const WriteOptions& options) {
-    const Grid& grid = scan.hu.grid();
+    const Volume<std::int16_t> slice = sliceOf(scan, k, options.feetFirst);
+    const Grid& grid = slice.grid();
     const glm::dvec3 spacing = grid.spacingMm();
     const glm::dvec3 row = glm::dvec3(grid.patientFromVoxel[0]) / spacing.x;
     const glm::dvec3 column = glm::dvec3(grid.patientFromVoxel[1]) / spacing.y;
-    const glm::dvec3 position = grid.patientFromVoxelPoint({0, 0, k});
+    const glm::dvec3 position = grid.patientFromVoxelPoint({0, 0, 0});
     out.put(DCM_SOPClassUID, UID_CTImageStorage);
     out.put(DCM_SOPInstanceUID, uidOf(options.uidSeed + "/slice " + std::to_string(k)));
-    out.put(DCM_PatientPosition, patientPositionCode(scan.position));
+    out.put(DCM_PatientPosition, patientPositionCode(scan.position, options.feetFirst));
     out.put(DCM_InstanceNumber, std::to_string(k + 1));
     out.put(DCM_ImagePositionPatient, decimals({position.x, position.y, position.z}));
     out.put(DCM_ImageOrientationPatient,
@@ -134,8 +157,7 @@ void putSlice(Attributes& out, const CtScan& scan, int k, const WriteOptions& op
     out.put(DCM_RescaleIntercept, "0");
     out.put(DCM_RescaleSlope, "1");
     out.put(DCM_RescaleType, "HU");
-    const std::size_t plane = std::size_t(grid.size.x) * std::size_t(grid.size.y);
-    out.putPixels(scan.hu.voxels().subspan(std::size_t(k) * plane, plane));
+    out.putPixels(slice.voxels());
 }
 
 Result<void> writeSlice(const std::filesystem::path& file, const CtScan& scan, int k,

@@ -279,7 +279,33 @@ std::vector<Solid> Builder::build() {
     return std::move(solids_);
 }
 
+constexpr double kTitaniumHu = 8000.0, kCobaltChromeHu = 20000.0, kPolyethyleneHu = -80.0;
+
 }  // namespace
+
+std::vector<Solid> makeMetalHip(std::uint64_t seed) {
+    Random random(seed, 45);
+    const double side = random.chance(0.5) ? 1.0 : -1.0;
+    const double headMm = 14.0 + 2.0 * random.index(3), linerMm = headMm + 7.0,
+                 cupMm = linerMm + 4.0;
+    const glm::dvec3 head{side * 90, 4, 70}, neck{side * 116, 13, 47}, stem{side * 122, 11, -40};
+    const glm::dvec3 outward = glm::normalize(glm::dvec3(side, -0.3, -0.9));
+    std::vector<Solid> solids;
+    const auto add = [&](double hu, std::function<double(glm::dvec3)> distance) {
+        solids.push_back({head - glm::dvec3(60, 40, 130), head + glm::dvec3(60, 40, 40),
+                          std::move(distance), tissue(hu, 0.0, 0)});
+    };
+    const auto ball = [=](glm::dvec3 p, double radius) { return glm::distance(p, head) - radius; };
+    const auto cap = [=](glm::dvec3 p) { return glm::dot(p - head, outward) - 2.0; };
+    add(45.0, [=](glm::dvec3 p) { return ball(p, cupMm); });  // what was the joint
+    add(kTitaniumHu, [=](glm::dvec3 p) { return std::max(ball(p, cupMm), cap(p)); });
+    add(kPolyethyleneHu, [=](glm::dvec3 p) { return std::max(ball(p, linerMm), cap(p)); });
+    add(kTitaniumHu, [=](glm::dvec3 p) {
+        return std::min(capsule(p, head, neck, 6.5), capsule(p, neck, stem, 7.0));
+    });
+    add(kCobaltChromeHu, [=](glm::dvec3 p) { return ball(p, headMm); });
+    return solids;
+}
 
 std::vector<Solid> makeAnatomy(std::uint64_t seed, const BodyPlan& body) {
     return Builder(mixBits(seed + 11), body).build();

@@ -7,9 +7,10 @@
 namespace haustra::phantom {
 
 Grid gridOf(Size size, double fieldOfViewMm) {
-    const bool full = size == Size::full;
-    const glm::ivec3 voxels = full ? glm::ivec3(512, 512, 400) : glm::ivec3(256, 256, 200);
-    glm::dvec3 spacing = full ? glm::dvec3(0.75, 0.75, 1.05) : glm::dvec3(1.5, 1.5, 2.1);
+    glm::ivec3 voxels(512, 512, 400);
+    glm::dvec3 spacing(0.75, 0.75, 1.05);
+    if (size == Size::small) voxels = {256, 256, 200}, spacing = {1.5, 1.5, 2.1};
+    if (size == Size::photonCounting) voxels = {1024, 1024, 1000}, spacing = {0.35, 0.35, 0.4};
     if (fieldOfViewMm > 0.0) spacing.x = spacing.y = fieldOfViewMm / voxels.x;
     const glm::dvec3 half = 0.5 * spacing * glm::dvec3(voxels - 1);
     return axisAlignedGrid(voxels, spacing, {-half.x, -half.y, 0.5 * spacing.z});

@@ -9,6 +9,7 @@
 #include "phantom/random.h"
 #include "phantom/rectal_tube.h"
 #include "phantom/scanner.h"
+#include "phantom/streaks.h"
 #include "phantom/truth.h"
 
 #include <algorithm>
@@ -257,6 +258,7 @@ Result<void> check(const PhantomOptions& options) {
     if (!(scan.grainMm >= 0.5 && scan.grainMm <= 4.0)) return bad("grain is 0.5 to 4 mm");
     if (!(scan.pseudoEnhancementHu >= 0.0 && scan.pseudoEnhancementHu <= 100.0))
         return bad("pseudo-enhancement is 0 to 100 HU");
+    if (!(scan.streakHu >= 0.0 && scan.streakHu <= 100.0)) return bad("streaks are 0 to 100 HU");
     if (!(bowel.ileumMm >= 0.0 && bowel.ileumMm <= 2000.0))
         return bad("an ileum is 0 to 2000 mm long");
     if (!(bowel.ileumCalibreMm >= 12.0 && bowel.ileumCalibreMm <= 30.0))
@@ -335,6 +337,10 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
     report(0.3);
 
     auto solids = makeAnatomy(options.seed, body);
+    if (options.scan.metalHip) {
+        for (Solid& solid : makeMetalHip(options.seed))
+            solids.push_back(std::move(solid));
+    }
     for (Solid& solid : makeOtherBowel(options.seed, options.preset, body))
         solids.push_back(std::move(solid));
     if (ileum) solids.push_back(wallOf(*ileum));
@@ -355,6 +361,8 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
                                                       : random.uniform(26.0, 35.0);
     if (options.scan.noiseSdHu > 0.0) noise.sdHu = options.scan.noiseSdHu;
     noise.correlationMm = options.scan.grainMm;
+    const Streaks streaking{noise.seed, options.scan.streakHu, options.scan.metalHip};
+    const bool streaked = streaking.noiseHu > 0.0 || streaking.hardening;
 
     Phantom phantom;
     phantom.lumen = Volume<std::uint8_t>(grid);
@@ -394,8 +402,14 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
                           count = std::size_t(to - from) * slice;
         std::copy_n(slab.lumen.data() + skip, count, phantom.lumen.writable().data() + at);
         std::copy_n(slab.sites.data() + skip, count, phantom.sites.writable().data() + at);
+        Volume<float> streaks;
+        if (streaked)
+            streaks =
+                streaksOf(slab.untagged, slab.begin, to - from, from, streaking, options.threads);
         const auto expose = [&](Volume<float>& clean, Volume<std::int16_t>& hu) {
             reconstruct(clean, fwhmMm, options.scan.overshoot, options.threads);
+            for (std::size_t n = 0; n < streaks.grid().voxelCount(); ++n)
+                clean.writable()[skip + n] += streaks[n];
             addNoise(clean, slab.begin, to - from, from, noise, options.threads,
                      hu.writable().subspan(at, count));
         };

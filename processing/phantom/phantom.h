@@ -26,8 +26,9 @@ inline constexpr int phantomVersion = 2;
 /// the colon. hard: weak (200…400 HU), patchy tagging, untagged stool on the wall, twice the
 /// noise, and a collapsed stretch of colon.
 enum class Preset { easy, standard, hard };
-/// small: 256×256×200 voxels of 1.5×1.5×2.1 mm; full: 512×512×400 of 0.75×0.75×1.05 mm.
-enum class Size { small, full };
+/// small: 256×256×200 voxels of 1.5×1.5×2.1 mm; full: 512×512×400 of 0.75×0.75×1.05 mm;
+/// photonCounting: 1024×1024×1000 of 0.35×0.35×0.4 mm, which takes some 10 GiB to make.
+enum class Size { small, full, photonCounting };
 
 struct PhantomOptions {
     std::uint64_t seed = 1;

@@ -16,6 +16,15 @@ inline std::uint64_t mixBits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
+/// A number for each place, roughly normal, of mean 0 and variance 1: the sum of four uniform
+/// numbers from one hash.
+inline float whiteNoise(std::uint64_t key, std::size_t place) {
+    const std::uint64_t h = mixBits(key + place);
+    const int sum = int(h & 0xFFFF) + int(h >> 16 & 0xFFFF) + int(h >> 32 & 0xFFFF) + int(h >> 48);
+    constexpr float scale = 1.7320508f / 65536.0f;
+    return (float(sum) - 131070.0f) * scale;
+}
+
 /// A stream of numbers for one purpose. Streams with different names are independent, so that
 /// adding a polyp does not move the spine.
 class Random {

@@ -22,6 +22,17 @@ struct ScanOptions {
     /// the flat edge of a large pool 1500 HU above gas. It falls off over about a centimetre within
     /// the slice, in which the rays lie (Näppi & Yoshida, Med. Image Anal. 2008; 12: 413).
     double pseudoEnhancementHu = 0.0;
+    /// Streak noise where few photons pass, as between the hips, HU, 0…100: Streaks::noiseHu. In a
+    /// pelvis as wide as 400 mm of water it comes in addition to noiseSdHu.
+    double streakHu = 0.0;
+    /// A total hip prosthesis, on a side and with a head (28, 32 or 36 mm, the usual ones of hip
+    /// registries) that the seed draws: titanium cup and stem, head of cobalt-chrome, with the
+    /// streaks of hardened beams.
+    bool metalHip = false;
+    /// The patient enters the scanner with the feet first: rows of the series run from left to
+    /// right and its slices from head to feet (DICOM PS3.3 C.7.3.1.1.2). Of the series that is
+    /// written alone: the phantom's volumes are the same.
+    bool feetFirst = false;
 };
 
 }  // namespace haustra::phantom

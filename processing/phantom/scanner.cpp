@@ -70,14 +70,6 @@ void blurSlice(float* slice, glm::ivec2 size, const std::vector<float>& alongX,
     blurLines(slice, size.y, std::size_t(size.x), size.x, alongY, scratch);
 }
 
-/// Roughly normal, variance 1: the sum of four uniform numbers from one hash.
-float white(std::uint64_t key, std::size_t voxel) {
-    const std::uint64_t h = mixBits(key + voxel);
-    const int sum = int(h & 0xFFFF) + int(h >> 16 & 0xFFFF) + int(h >> 32 & 0xFFFF) + int(h >> 48);
-    constexpr float scale = 1.7320508f / 65536.0f;
-    return (float(sum) - 131070.0f) * scale;
-}
-
 double sumOfSquares(const std::vector<float>& kernel) {
     double sum = double(kernel[0]) * kernel[0];
     for (std::size_t n = 1; n < kernel.size(); ++n)
@@ -158,7 +150,7 @@ void addNoise(const Volume<float>& slab, int first, int count, int firstOfAll, c
             for (std::size_t n = 0; n < slice; ++n) {
                 // Slices are numbered from 1 so that the one below the first has a number too.
                 const std::size_t v = (k + std::size_t(firstOfAll) + 1) * slice + n;
-                grain[n] = white(key, v) + beside * (white(key, v - slice) + white(key, v + slice));
+                grain[n] = whiteNoise(key, v) + beside * (whiteNoise(key, v - slice) + whiteNoise(key, v + slice));
             }
             blurSlice(grain.data(), {grid.size.x, grid.size.y}, alongX, alongY, scratch);
             const float* in = slab.voxels().data() + (k + std::size_t(first)) * slice;

@@ -32,6 +32,10 @@ PhantomOptions wildOptions(std::uint64_t seed) {
     if (scanner.chance(0.5)) scan.overshoot = scanner.uniform(0.1, 0.6);
     scan.grainMm = scanner.uniform(0.8, 2.5);
     if (scanner.chance(0.6)) scan.pseudoEnhancementHu = scanner.uniform(10.0, 80.0);
+    Random room(seed, 42);
+    if (room.chance(0.5)) scan.streakHu = room.uniform(5.0, 40.0);
+    scan.metalHip = room.chance(0.15);
+    scan.feetFirst = room.chance(0.3);
     return options;
 }
 

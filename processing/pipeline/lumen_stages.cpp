@@ -44,38 +44,6 @@ Centerline joined(const std::vector<Centerline>& branches) {
     return all;
 }
 
-// Pieces of the colon that the path passes by: it went another way there, through a wall that was
-// taken for lumen. A line for each run of them.
-std::vector<std::string> piecesPassedBy(const Centerline& path,
-                                        const std::vector<ColonPiece>& pieces) {
-    std::vector<std::string> lines;
-    double missedMm = 0.0;
-    for (std::size_t n = 0; n <= pieces.size(); ++n) {
-        bool missed = false;
-        if (n < pieces.size()) {
-            // The path keeps to the middle of what it passes.
-            double nearest = 1e30;
-            for (const CenterlinePoint& p : path.points)
-                nearest = std::min(nearest, glm::distance(p.positionMm, pieces[n].centreMm));
-            missed = nearest > pieces[n].radiusMm + 5.0;
-        }
-        if (missed) {
-            missedMm += pieces[n].lengthMm;
-        } else if (missedMm > 0.0) {
-            const ColonPiece& last = pieces[n - 1];
-            char line[200];
-            std::snprintf(line, sizeof line,
-                          "about %.0f mm of the colon have no centerline, up to the %s at (%.0f, "
-                          "%.0f, %.0f) mm",
-                          missedMm, toString(last.part), last.centreMm.x, last.centreMm.y,
-                          last.centreMm.z);
-            lines.push_back(line);
-            missedMm = 0.0;
-        }
-    }
-    return lines;
-}
-
 }  // namespace
 
 Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& source) {

@@ -29,11 +29,12 @@ struct Arguments {
     std::uint64_t seed = 1;
     std::string preset = "standard", position = "supine", size = "full";
     std::optional<double> ileumMm, ileumCalibreMm, septumMm, redundantSigmoidMm;
-    std::optional<std::string> valve, insufflated, rectalTube;
+    std::optional<std::string> valve, insufflated, rectalTube, metalHip, feetFirst;
     std::vector<double> collapsesMm;
     std::optional<double> untagged, layered, full;
     std::optional<int> diverticula;
-    std::optional<double> fieldOfViewMm, overshoot, noiseSdHu, grainMm, pseudoEnhancementHu;
+    std::optional<double> fieldOfViewMm, overshoot, noiseSdHu, grainMm, pseudoEnhancementHu,
+        streakHu;
     std::vector<double> blurMm;
     bool force = false;
     int threads = 0;
@@ -43,8 +44,10 @@ constexpr const char* kWild = "wild";
 const std::map<std::string, phantom::Preset> presets{{"easy", phantom::Preset::easy},
                                                      {"standard", phantom::Preset::standard},
                                                      {"hard", phantom::Preset::hard}};
-const std::map<std::string, phantom::Size> sizes{{"small", phantom::Size::small},
-                                                 {"full", phantom::Size::full}};
+const std::map<std::string, phantom::Size> sizes{
+    {"small", phantom::Size::small},
+    {"full", phantom::Size::full},
+    {"photon-counting", phantom::Size::photonCounting}};
 
 phantom::PhantomOptions optionsOf(const Arguments& arguments) {
     phantom::PhantomOptions options;
@@ -74,18 +77,26 @@ phantom::PhantomOptions optionsOf(const Arguments& arguments) {
     take(arguments.fieldOfViewMm, scan.fieldOfViewMm), take(arguments.overshoot, scan.overshoot);
     take(arguments.noiseSdHu, scan.noiseSdHu), take(arguments.grainMm, scan.grainMm);
     take(arguments.pseudoEnhancementHu, scan.pseudoEnhancementHu);
+    take(arguments.streakHu, scan.streakHu);
+    if (arguments.metalHip) scan.metalHip = *arguments.metalHip == "yes";
+    if (arguments.feetFirst) scan.feetFirst = *arguments.feetFirst == "yes";
     if (!arguments.blurMm.empty())
         scan.blurMm = {arguments.blurMm[0], arguments.blurMm[1], arguments.blurMm[2]};
     return options;
 }
 
 nlohmann::ordered_json scanJson(const phantom::ScanOptions& scan) {
-    return {{"field_of_view_mm", scan.fieldOfViewMm},
-            {"blur_mm", {scan.blurMm.x, scan.blurMm.y, scan.blurMm.z}},
-            {"overshoot", scan.overshoot},
-            {"noise_sd_hu", scan.noiseSdHu},
-            {"grain_mm", scan.grainMm},
-            {"pseudo_enhancement_hu", scan.pseudoEnhancementHu}};
+    nlohmann::ordered_json json{{"field_of_view_mm", scan.fieldOfViewMm},
+                                {"blur_mm", {scan.blurMm.x, scan.blurMm.y, scan.blurMm.z}},
+                                {"overshoot", scan.overshoot},
+                                {"noise_sd_hu", scan.noiseSdHu},
+                                {"grain_mm", scan.grainMm},
+                                {"pseudo_enhancement_hu", scan.pseudoEnhancementHu}};
+    // Only what is there, so that phantoms from before these options stay the same files.
+    if (scan.streakHu > 0.0) json["streak_hu"] = scan.streakHu;
+    if (scan.metalHip) json["metal_hip"] = true;
+    if (scan.feetFirst) json["feet_first"] = true;
+    return json;
 }
 
 nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
@@ -179,6 +190,7 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
     }
     if (const std::string scanner = scanJson(options.scan).dump(); scanner != scanJson({}).dump())
         writing.uidSeed += " " + scanner;
+    writing.feetFirst = options.scan.feetFirst;
     const nlohmann::ordered_json facts{{"version", phantom::phantomVersion},
                                        {"seed", arguments.seed},
                                        {"preset", arguments.preset},
@@ -359,6 +371,19 @@ void addScanOptions(CLI::App& command, Arguments& arguments) {
     add("--grain", arguments.grainMm, "Full width of the noise's grain, 0.5 to 4", 0.5, 4, "MM");
     add("--pseudo-enhancement", arguments.pseudoEnhancementHu,
         "How much brighter tissue is at the edge of a large tagged pool, 0 to 100", 0, 100, "HU");
+    add("--streaks", arguments.streakHu,
+        "Streak noise where few photons pass: its standard deviation where all rays cross 400 mm "
+        "of water, 0 to 100",
+        0, 100, "HU");
+    command.add_option("--metal-hip", arguments.metalHip, "A hip prosthesis, with its streaks")
+        ->check(CLI::IsMember({"yes", "no"}))
+        ->group(group);
+    command
+        .add_option("--feet-first", arguments.feetFirst,
+                    "The patient enters feet first: the series has its rows and slices the other "
+                    "way round")
+        ->check(CLI::IsMember({"yes", "no"}))
+        ->group(group);
 }
 
 }  // namespace
@@ -391,7 +416,10 @@ Command addPhantom(CLI::App& program) {
     command->add_option("--position", arguments->position, "How the patient lies")
         ->check(CLI::IsMember({"supine", "prone", "left-decubitus", "right-decubitus"}))
         ->capture_default_str();
-    command->add_option("--size", arguments->size, "small (256³ or so) or full (512×512×400)")
+    command
+        ->add_option("--size", arguments->size,
+                     "small (256³ or so), full (512×512×400) or photon-counting (1024×1024×1000; "
+                     "10 GiB of memory)")
         ->check(CLI::IsMember(namesOf(sizes)))
         ->capture_default_str();
     command->add_flag("--force", arguments->force,

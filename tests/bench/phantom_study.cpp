@@ -3,6 +3,8 @@
 #include "cleansing/digital_cleansing.h"
 #include "cleansing/mixture.h"
 #include "cleansing/tissue_mixture.h"
+#include "flatten/end_holes.h"
+#include "flatten/flattening.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "segmentation/find_colon.h"
@@ -16,6 +18,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
 namespace haustra::bench {
 namespace {
@@ -30,6 +33,37 @@ public:
 
 private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Writes what is made into a folder, for looking at; without one, nothing.
+class Keeper {
+public:
+    explicit Keeper(std::filesystem::path folder) : folder_(std::move(folder)) {
+        std::error_code ignored;  // the writers tell
+        if (!folder_.empty()) std::filesystem::create_directories(folder_, ignored);
+    }
+    template <class T>
+    Result<void> keep(const std::string& name, const Volume<T>& volume) const {
+        return folder_.empty() ? Result<void>{}
+                               : nifti::writeNifti(folder_ / (name + ".nii.gz"), volume);
+    }
+    Result<void> keep(const std::string& name, const Centerline& line) const {
+        std::string text = "x_mm,y_mm,z_mm,arc_mm,radius_mm,gap\n";
+        for (const CenterlinePoint& p : line.points) {
+            char row[160];
+            std::snprintf(row, sizeof row, "%.3f,%.3f,%.3f,%.3f,%.3f,%d\n", p.positionMm.x,
+                          p.positionMm.y, p.positionMm.z, p.arcMm, p.radiusMm, int(p.gap));
+            text += row;
+        }
+        return keepText(name + ".csv", text);
+    }
+    Result<void> keepText(const std::string& name, const std::string& text) const {
+        if (folder_.empty() || std::ofstream(folder_ / name) << text) return {};
+        return fail(ErrorKind::io, "the file cannot be written", (folder_ / name).string());
+    }
+
+private:
+    std::filesystem::path folder_;
 };
 
 SmallestAngles smallestAngles(const TriMesh& mesh) {
@@ -105,6 +139,34 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
     return {};
 }
 
+/// Surface and flat map as prepare makes them; the flat map's folded triangles.
+Result<std::size_t> flattenLumen(const Volume<std::int16_t>& cleansedHu,
+                                 const Volume<std::uint8_t>& lumen, const Centerline& path,
+                                 const StudyOptions& options, PhantomStudy& study) {
+    constexpr double endWindowMm = 6.0;
+    const int threads = options.phantom.threads;
+    Stopwatch watch;
+    const auto fine = surface::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
+    if (!fine) return tl::make_unexpected(fine.error());
+    surface::SimplificationOptions simplification;
+    simplification.errorMm = options.prepareErrorMm, simplification.threads = threads;
+    const auto simple = surface::simplify(*fine, simplification);
+    if (!simple) return tl::make_unexpected(simple.error());
+    study.colon.surfaceSeconds = watch.lap();
+    const CenterlinePose first = poseAtArc(path, 0.0, endWindowMm),
+                         last = poseAtArc(path, path.lengthMm(), endWindowMm);
+    const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm},
+                     outwards[2] = {-first.tangent, last.tangent};
+    const auto punched = flatten::punchEnds(*simple, ends, outwards);
+    if (!punched) return tl::make_unexpected(punched.error());
+    flatten::FlatteningOptions flattening;
+    flattening.threads = threads;
+    const auto flat = flatten::flattenTube(punched->tube, punched->firstLoop, flattening);
+    study.colon.flatteningSeconds = watch.lap();
+    if (!flat) return tl::make_unexpected(flat.error());
+    return flatten::foldedTriangles(flat->map).size();
+}
+
 }  // namespace
 
 Result<SurfaceStudy> studySurface(std::string what, const TriMesh& mesh,
@@ -131,6 +193,13 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     const auto truth = phantom::makePhantom(options.phantom);
     if (!truth) return tl::make_unexpected(truth.error());
     study.phantomSeconds = watch.lap();
+    const Keeper keeper(options.out);
+    if (auto kept = keeper.keep("ct", truth->scan.hu)
+                        .and_then([&] { return keeper.keep("truth", truth->lumen); })
+                        .and_then([&] { return keeper.keep("sites", truth->sites); })
+                        .and_then([&] { return keeper.keep("true line", truth->centerline); });
+        !kept)
+        return tl::make_unexpected(kept.error());
     study.noiseSdHu = truth->noiseSdHu;
     study.lengthMm = truth->centerline.lengthMm();
     const auto voxels = truth->lumen.voxels();
@@ -148,8 +217,14 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     const auto segmentation = segmentation::findColon(truth->scan, *tissue, finding);
     if (!segmentation) return tl::make_unexpected(segmentation.error());
     study.segmentationSeconds = watch.lap();
+    if (auto kept = keeper.keep("segmentation", segmentation->labels).and_then([&] {
+            return keeper.keepText("quality.json", qualityJson(segmentation->record));
+        });
+        !kept)
+        return tl::make_unexpected(kept.error());
 
     options.log("mixture");
+    watch.lap();
     const auto mixture = cleansing::estimateMixture(truth->scan, *tissue, segmentation->labels,
                                                     segmentation->gravity, {threads, {}});
     if (!mixture) return tl::make_unexpected(mixture.error());
@@ -174,11 +249,17 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
         topology::traceCenterline(lumen, topology::distanceToBoundaryMm(lumen, threads), tracing);
     study.centerlineSeconds = watch.lap();
 
+    // A lumen without a centerline still has a score of its own.
+    const Centerline found = traced ? traced->centerline : Centerline{};
+    if (auto kept = keeper.keep("cleansed", cleansed->hu)
+                        .and_then([&] { return keeper.keep("lumen", lumen); })
+                        .and_then([&] { return keeper.keep("line", found); });
+        !kept)
+        return tl::make_unexpected(kept.error());
+
     options.log("scores");
     study.before = topology::digitalTopology(cleansed->lumen, threads);
     study.after = topology::digitalTopology(lumen, threads);
-    // A lumen without a centerline still has a score of its own.
-    const Centerline found = traced ? traced->centerline : Centerline{};
     const auto rough =
         phantom::scoreLumen(truth->lumen, truth->centerline, segmentation->labels, found);
     if (!rough) return tl::make_unexpected(rough.error());
@@ -186,22 +267,34 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     const auto fine = phantom::scoreLumen(truth->lumen, truth->centerline, lumen, found);
     if (!fine) return tl::make_unexpected(fine.error());
     study.lumen = *fine;
-    auto clean = phantom::scoreCleansing(*truth, cleansed->hu);
-    if (!clean) return tl::make_unexpected(clean.error());
-    study.cleansing = std::move(*clean);
-
-    if (!options.out.empty()) {
-        std::error_code ignored;  // the writers tell
-        std::filesystem::create_directories(options.out, ignored);
-        const auto written =
-            nifti::writeNifti(options.out / "cleansed.nii.gz", cleansed->hu)
-                .and_then([&] { return nifti::writeNifti(options.out / "lumen.nii.gz", lumen); })
-                .and_then([&] {
-                    return nifti::writeNifti(options.out / "segmentation.nii.gz",
-                                             segmentation->labels);
-                });
-        if (!written) return tl::make_unexpected(written.error());
+    if (options.cleansing) {
+        auto clean = phantom::scoreCleansing(*truth, cleansed->hu);
+        if (!clean) return tl::make_unexpected(clean.error());
+        study.cleansing = std::move(*clean);
     }
+    if (options.colon) {
+        const ColonRecord& record = segmentation->record;
+        std::vector<std::string> warnings = record.warnings;
+        for (std::string& line : piecesPassedBy(found, record.pieces))
+            warnings.push_back(std::move(line));
+        study.colon.score = phantom::scoreColon(*truth, lumen, found, record, warnings);
+        study.colon.confidence = record.confidence;
+        study.colon.warnings = warnings.size();
+        for (const std::string& line : warnings)
+            options.log("warned: " + line);
+        if (!traced) {
+            study.colon.failed = "centerline: " + describe(traced.error());
+        } else {
+            study.colon.failed = "flattening not done";
+            if (options.beforeFlattening) options.beforeFlattening(study);
+            study.colon.failed.clear();
+            options.log("flattening");
+            const auto flips = flattenLumen(cleansed->hu, lumen, found, options, study);
+            if (flips) study.colon.flips = *flips;
+            if (!flips) study.colon.failed = "flattening: " + describe(flips.error());
+        }
+    }
+
     if (options.surface) {
         if (auto done = studySurfaces(*truth, cleansed->hu, lumen, options, study); !done)
             return tl::make_unexpected(done.error());

@@ -319,6 +319,37 @@ TEST(RectalTubeOption, LeavesTheLumenAsItIsAndSaysWhereTheDeviceLies) {
     EXPECT_GT(double(gas) * grid.voxelVolumeMm3() * 1e-3, 4.0);
 }
 
+TEST(MetalHip, IsMetalInOneHipAndLeavesTheLumenAsItIs) {
+    PhantomOptions options = small(9);
+    const Phantom without = made(options);
+    options.scan.metalHip = true, options.scan.streakHu = 20.0;
+    const Phantom with = made(options);
+    const Grid& grid = with.lumen.grid();
+    std::size_t left = 0, right = 0;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        ASSERT_EQ(with.lumen[n], without.lumen[n]);
+        const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
+        if (with.scan.hu[n] < 3000) continue;
+        (p.x < 0.0 ? left : right) += 1;
+        EXPECT_LT(glm::distance(glm::dvec2(std::abs(p.x), p.y), glm::dvec2(105.0, 8.0)), 45.0);
+    }
+    EXPECT_EQ(std::min(left, right), 0u) << "one side";
+    EXPECT_GT(double(left + right) * grid.voxelVolumeMm3() * 1e-3, 15.0);
+    // The tagged and the untagged scan have the same streaks (but for the rounding to whole HU),
+    // as far as HU are not cut off.
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        if (without.scan.hu[n] == without.untaggedHu[n] && without.scan.hu[n] > -1000) {
+            ASSERT_LE(std::abs(with.scan.hu[n] - with.untaggedHu[n]), 1);
+        }
+    }
+}
+
+TEST(PhotonCountingSize, IsTheGridOfSuchAScanner) {
+    const Grid grid = gridOf(Size::photonCounting);
+    EXPECT_EQ(grid.size, glm::ivec3(1024, 1024, 1000));
+    EXPECT_EQ(grid.spacingMm(), glm::dvec3(0.35, 0.35, 0.4));
+}
+
 TEST(Wild, IsOnePatientInEveryPositionAndDiffersBySeed) {
     bool open = false, closed = false, thin = false, pouches = false, collapses = false;
     for (std::uint64_t seed = 1; seed <= 24; ++seed) {

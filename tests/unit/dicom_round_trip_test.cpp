@@ -49,6 +49,29 @@ TEST(DicomRoundTrip, KeepsObliqueAndReversedAxes) {
     }
 }
 
+TEST(DicomRoundTrip, FeetFirstIsTheSamePatient) {
+    for (PatientPosition position : {PatientPosition::supine, PatientPosition::leftDecubitus}) {
+        const TemporaryFolder folder;
+        const CtScan scan = patternScan(smallGrid(), position);
+        dicom::WriteOptions writing;
+        writing.uidSeed = "feet first", writing.feetFirst = true;
+        ASSERT_TRUE(dicom::writeSeries(folder.path(), scan, writing));
+        const auto imported = importSeries(folder.path());
+        ASSERT_TRUE(imported) << describe(imported.error());
+        EXPECT_EQ(imported->scan.position, position);
+        const Grid &grid = scan.hu.grid(), &back = imported->scan.hu.grid();
+        EXPECT_LT(back.patientFromVoxel[0].x, 0.0) << "rows run the other way";
+        ASSERT_EQ(back.voxelCount(), grid.voxelCount());
+        for (std::size_t n = 0; n < back.voxelCount(); ++n) {
+            const glm::dvec3 at =
+                grid.voxelFromPatientPoint(back.patientFromVoxelPoint(back.voxelAt(n)));
+            const glm::ivec3 v(glm::round(at));
+            ASSERT_LT(glm::distance(at, glm::dvec3(v)), 1e-6);
+            ASSERT_EQ(imported->scan.hu[n], scan.hu.at(v));
+        }
+    }
+}
+
 TEST(DicomRoundTrip, IgnoresNamesFoldersAndOtherFiles) {
     const TemporaryFolder folder;
     const CtScan scan = patternScan(smallGrid());

@@ -1,0 +1,59 @@
+// Which chain is the best one, in graphs of a few pieces.
+#include "segmentation/colon_chain.h"
+
+#include <gtest/gtest.h>
+
+using namespace haustra;
+using namespace haustra::segmentation;
+
+namespace {
+
+ChainNode piece(double lengthMm, double rectumLogOdds) {
+    ChainNode node;
+    node.lengthMm = lengthMm, node.radiusMm = 12.0, node.volumeMl = 0.4 * lengthMm;
+    node.rectumLogOdds = rectumLogOdds;
+    return node;
+}
+
+ChainJunction junction(int a, int b, JunctionKind kind, double logOdds) {
+    ChainJunction made;
+    made.a = a, made.b = b, made.kind = kind, made.logOdds = logOdds;
+    made.radiusMm = kind == JunctionKind::collapse ? 0.0 : 6.0;
+    return made;
+}
+
+/// Twelve pieces of 120 mm in a row, the first at the anus, closed after the third.
+ChainGraph row(double collapseLogOdds) {
+    ChainGraph graph;
+    for (int n = 0; n < 12; ++n) {
+        graph.nodes.push_back(piece(120.0, n == 0 ? 0.0 : -15.0));
+        graph.nodes.back().centreMm = {0.0, 0.0, 120.0 * n};
+        if (n == 0) continue;
+        const bool closed = n == 3;
+        graph.junctions.push_back(closed
+                                      ? junction(n - 1, n, JunctionKind::collapse, collapseLogOdds)
+                                      : junction(n - 1, n, JunctionKind::openLumen, 20.0));
+    }
+    return graph;
+}
+
+TEST(ColonChain, AnUnlikelyCollapseIsLikelierThanAColonOfAThirdOfAMetre) {
+    const auto chains = findChains(row(-12.0));
+    ASSERT_FALSE(chains.empty());
+    EXPECT_EQ(chains.front().nodes.size(), 12u);
+}
+
+TEST(ColonChain, HolesOfOneWallCountOnce) {
+    // The third piece and the tenth touch.
+    const auto scoreWith = [](int holes) {
+        ChainGraph graph = row(-4.0);
+        for (int n = 0; n < holes; ++n)
+            graph.junctions.push_back(
+                junction(2, 9, JunctionKind::openLumen, n == holes - 1 ? 3.0 : 0.6));
+        return findChains(graph).front().score;
+    };
+    EXPECT_LT(scoreWith(1), scoreWith(0) - 2.0);
+    EXPECT_DOUBLE_EQ(scoreWith(8), scoreWith(1));
+}
+
+}  // namespace
