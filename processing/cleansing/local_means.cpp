@@ -20,7 +20,7 @@ struct CellSums {
     explicit CellSums(std::size_t cells) : weight(cells, 0.0f), value(cells, 0.0f) {}
 };
 
-void blurAxis(std::vector<float>& data, glm::ivec3 size, int axis, float sigma) {
+void blurAxis(std::vector<float>& data, glm::ivec3 size, int axis, float sigma, int threads) {
     const int reach = std::max(1, int(std::ceil(2.5f * sigma)));
     std::vector<float> kernel(std::size_t(reach) + 1);
     for (int r = 0; r <= reach; ++r)
@@ -29,34 +29,36 @@ void blurAxis(std::vector<float>& data, glm::ivec3 size, int axis, float sigma) 
                                : axis == 1 ? std::size_t(size.x)
                                            : std::size_t(size.x) * std::size_t(size.y);
     const int length = size[axis];
-    std::vector<float> line(static_cast<std::size_t>(length));
     const std::size_t count = data.size() / std::size_t(length);
-    for (std::size_t l = 0; l < count; ++l) {
-        const std::size_t begin = l % stride + l / stride * stride * std::size_t(length);
-        bool any = false;
-        for (int n = 0; n < length; ++n) {
-            line[std::size_t(n)] = data[begin + std::size_t(n) * stride];
-            any |= line[std::size_t(n)] != 0.0f;
+    parallelFor(count, 256, threads, [&](std::size_t first, std::size_t last) {
+        std::vector<float> line(static_cast<std::size_t>(length));
+        for (std::size_t l = first; l < last; ++l) {
+            const std::size_t begin = l % stride + l / stride * stride * std::size_t(length);
+            bool any = false;
+            for (int n = 0; n < length; ++n) {
+                line[std::size_t(n)] = data[begin + std::size_t(n) * stride];
+                any |= line[std::size_t(n)] != 0.0f;
+            }
+            if (!any) continue;
+            for (int n = 0; n < length; ++n) {
+                float sum = 0.0f;
+                for (int m = std::max(0, n - reach); m <= std::min(length - 1, n + reach); ++m)
+                    sum += kernel[std::size_t(std::abs(m - n))] * line[std::size_t(m)];
+                data[begin + std::size_t(n) * stride] = sum;
+            }
         }
-        if (!any) continue;
-        for (int n = 0; n < length; ++n) {
-            float sum = 0.0f;
-            for (int m = std::max(0, n - reach); m <= std::min(length - 1, n + reach); ++m)
-                sum += kernel[std::size_t(std::abs(m - n))] * line[std::size_t(m)];
-            data[begin + std::size_t(n) * stride] = sum;
-        }
-    }
+    });
 }
 
 // From the widest neighbourhood to the narrowest, each the prior of the next.
-void fill(SmoothField& field, const CellSums& sums, double prior, double priorVoxels) {
+void fill(SmoothField& field, const CellSums& sums, double prior, double priorVoxels, int threads) {
     std::vector<float>& mean = field.values();
     std::fill(mean.begin(), mean.end(), float(prior));
     for (const float sigma : {8.0f, 4.0f, 2.0f, 1.0f, 0.6f}) {
         CellSums wide = sums;
         for (int axis = 0; axis < 3; ++axis) {
-            blurAxis(wide.weight, field.cells(), axis, sigma);
-            blurAxis(wide.value, field.cells(), axis, sigma);
+            blurAxis(wide.weight, field.cells(), axis, sigma, threads);
+            blurAxis(wide.value, field.cells(), axis, sigma, threads);
         }
         for (std::size_t c = 0; c < mean.size(); ++c) {
             mean[c] = (wide.value[c] + float(priorVoxels) * mean[c]) /
@@ -89,6 +91,30 @@ float SmoothField::at(int i, int j, int k) const {
     };
     const float a = y(lo.z);
     return a + f.z * (y(hi.z) - a);
+}
+
+void SmoothField::row(int j, int k, std::span<float> values) const {
+    const glm::vec2 p =
+        glm::clamp((glm::vec2(j, k) + 0.5f) * glm::vec2(perVoxel_.y, perVoxel_.z) - 0.5f,
+                   glm::vec2(0.0f), glm::vec2(cells_.y - 1, cells_.z - 1));
+    const glm::ivec2 lo = glm::min(glm::ivec2(p), glm::max(glm::ivec2(cells_.y, cells_.z) - 2, 0));
+    const glm::ivec2 hi = glm::min(lo + 1, glm::ivec2(cells_.y, cells_.z) - 1);
+    const glm::vec2 f = p - glm::vec2(lo);
+    std::vector<float> across(std::size_t(cells_.x));
+    for (int x = 0; x < cells_.x; ++x) {
+        const auto mixed = [&](int z) {
+            return glm::mix(values_[cellIndex(x, lo.x, z)], values_[cellIndex(x, hi.x, z)], f.x);
+        };
+        across[std::size_t(x)] = glm::mix(mixed(lo.y), mixed(hi.y), f.y);
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float at =
+            std::clamp((float(i) + 0.5f) * perVoxel_.x - 0.5f, 0.0f, float(cells_.x - 1));
+        const int left = std::min(int(at), std::max(cells_.x - 2, 0)),
+                  right = std::min(left + 1, cells_.x - 1);
+        values[i] =
+            glm::mix(across[std::size_t(left)], across[std::size_t(right)], at - float(left));
+    }
 }
 
 LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
@@ -160,7 +186,8 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     for (std::size_t s = 0; s < airSum.size(); ++s)
         count += airCount[s], sum += airSum[s];
     means.airHu = SmoothField(grid, perCell);
-    fill(means.airHu, air, count > 100.0 ? sum / count : tissue.meanHu[int(Tissue::air)], 1.0);
+    fill(means.airHu, air, count > 100.0 ? sum / count : tissue.meanHu[int(Tissue::air)], 1.0,
+         threads);
 
     // Soft tissue within two cells of the tagging.
     const double softHu = tissue.meanHu[int(Tissue::soft)];
@@ -199,8 +226,9 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
         }
     });
     fill(taggedHu, tagged,
-         std::max(tissue.meanHu[int(Tissue::taggedOrBone)], tissue.taggedAboveHu + 20.0), 0.05);
-    fill(means.softHu, soft, softHu, 8.0);
+         std::max(tissue.meanHu[int(Tissue::taggedOrBone)], tissue.taggedAboveHu + 20.0), 0.05,
+         threads);
+    fill(means.softHu, soft, softHu, 8.0, threads);
     means.taggedHu =
         refineTagging(scan, segmentation, around, taggedHu, means, tissue.taggedAboveHu, threads);
     return means;

@@ -6,6 +6,7 @@
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 
+#include <span>
 #include <vector>
 
 namespace haustra::cleansing {
@@ -26,6 +27,8 @@ public:
     }
     glm::ivec3 voxelsPerCell() const { return perCell_; }
     float at(int i, int j, int k) const;
+    /// The values at (0, j, k), (1, j, k) …
+    void row(int j, int k, std::span<float> values) const;
     bool empty() const { return values_.empty(); }
     std::vector<float>& values() { return values_; }
 

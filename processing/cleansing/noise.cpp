@@ -14,7 +14,8 @@ namespace {
 
 constexpr double apartMm = 2.4;
 constexpr double apartFromTaggingMm = 6.0;  // soft tissue farther off is another place
-constexpr double sampleMm3 = 1.0;           // one voxel of so much is looked at
+constexpr double sampleMm3 = 1.0;           // one voxel of so much is looked at at most,
+constexpr std::size_t samples = 200'000;    // and about so many: 0.2 % of the deviation
 constexpr std::uint64_t fewest = 100;
 constexpr int farthest = 4096;
 
@@ -68,13 +69,16 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
     const Grid& grid = scan.hu.grid();
     const std::vector<glm::ivec3> ball = blurBall(grid);
     const glm::ivec3 apart(glm::ceil(apartMm / grid.spacingMm()));
-    const int every = std::max(1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())));
+    const auto everyOf = [&](std::size_t voxels) {
+        return std::max(
+            {1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())), int(voxels / samples)});
+    };
     const glm::ivec3 block = voxelsIn(grid, apartFromTaggingMm),
                      blocks = (grid.size + block - 1) / block;
     const std::vector<char> near = blocksNearTagging(segmentation, block, blocks);
 
     /// Differences about the voxels of which `is` holds, each deep inside.
-    const auto differences = [&](const auto& wanted, const auto& is) {
+    const auto differences = [&](const auto& wanted, const auto& is, int every) {
         Counts counts{};
         std::mutex mutex;
         parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
@@ -114,8 +118,13 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
         return [&, label](std::size_t n) { return LumenLabel(segmentation[n]) == label; };
     };
     NoiseSd sd;
-    sd.gas = differences(anywhere, labelled(LumenLabel::air));
-    sd.tagged = differences(anywhere, labelled(LumenLabel::tagged));
+    const auto voxelsOf = [&](LumenLabel label) {
+        return std::size_t(std::count(segmentation.voxels().begin(), segmentation.voxels().end(),
+                                      std::uint8_t(label)));
+    };
+    sd.gas = differences(anywhere, labelled(LumenLabel::air), everyOf(voxelsOf(LumenLabel::air)));
+    sd.tagged =
+        differences(anywhere, labelled(LumenLabel::tagged), everyOf(voxelsOf(LumenLabel::tagged)));
     // Wide enough that the window cuts off none of the noise.
     const double softHu = tissue.meanHu[int(Tissue::soft)],
                  window = std::max(70.0, 4.5 * std::max(sd.gas, sd.tagged));
@@ -128,7 +137,9 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
         },
         [&](std::size_t n) {
             return segmentation[n] == 0 && std::abs(scan.hu[n] - softHu) < window;
-        });
+        },
+        everyOf(std::size_t(std::count(near.begin(), near.end(), 1)) * std::size_t(block.x) *
+                std::size_t(block.y) * std::size_t(block.z) / 4));
     const double any = sd.gas > 0.0      ? sd.gas
                        : sd.tagged > 0.0 ? sd.tagged
                        : sd.soft > 0.0   ? sd.soft

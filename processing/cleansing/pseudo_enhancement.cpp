@@ -164,13 +164,15 @@ CtScan withoutPseudoEnhancement(const CtScan& scan, const PseudoEnhancement& enh
     const Grid& grid = scan.hu.grid();
     const auto out = corrected.hu.writable();
     parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> excess(std::size_t(grid.size.x));
         for (int k = int(begin); k < int(end); ++k) {
             for (int j = 0; j < grid.size.y; ++j) {
+                enhancement.excessHu.row(j, k, excess);
                 for (int i = 0; i < grid.size.x; ++i) {
                     std::int16_t& hu = out[grid.index(i, j, k)];
-                    if (hu > -1024)
-                        hu = std::int16_t(
-                            std::max(-1024L, std::lround(hu - enhancement.at(i, j, k))));
+                    const double added = enhancement.gain * excess[std::size_t(i)];
+                    if (hu > -1024 && added != 0.0)
+                        hu = std::int16_t(std::max(-1024L, std::lround(hu - added)));
                 }
             }
         }
