@@ -331,8 +331,9 @@ private:
             }
             std::sort(on.begin(), on.end());
             on.erase(std::unique(on.begin(), on.end()), on.end());
-            for (const std::uint32_t n : on)
-                labels_[n] = tagged;
+            for (const std::uint32_t n : on) {  // the wall between two loops parts them still
+                if (joinsNothing(result_.labels, n)) labels_[n] = tagged;
+            }
             front = std::move(on);
         }
     }
