@@ -334,8 +334,9 @@ private:
             }
             std::sort(on.begin(), on.end());
             on.erase(std::unique(on.begin(), on.end()), on.end());
-            for (const std::uint32_t n : on)
-                labels_[n] = tagged;
+            for (const std::uint32_t n : on) {  // the wall between two loops parts them still
+                if (joinsNothing(result_.labels, n)) labels_[n] = tagged;
+            }
             front = std::move(on);
         }
     }
@@ -415,15 +416,27 @@ private:
         labels_ = result_.labels.writable();
     }
 
-    // The voxel of a labelled piece nearest to a point.
+    // The voxel of a labelled piece nearest to a point, of its body where that is near, else of a
+    // crumb: a bridge to a crumb joins nothing.
     std::optional<glm::ivec3> nearestOf(std::int32_t piece, glm::dvec3 pointMm) const {
         constexpr double reachMm = 12.0;
         const glm::ivec3 centre(glm::round(grid_.voxelFromPatientPoint(pointMm)));
         const glm::ivec3 reach = glm::ivec3(reachMm / grid_.spacingMm()) + 1;
         const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)),
                          hi = glm::min(centre + reach, grid_.size - 1);
-        std::optional<glm::ivec3> nearest;
-        double nearestMm = 1e9;
+        const auto ofBody = [&](glm::ivec3 v) {
+            constexpr int leastFaces = 3;
+            int faces = 0;
+            for (int n = 0; n < 6; ++n) {
+                glm::ivec3 w = v;
+                w[n / 2] += n % 2 ? 1 : -1;
+                if (grid_.contains(w) && cut_.pieceAt.at(w) == piece)
+                    faces += labels_[grid_.index(w)] != outside;
+            }
+            return faces >= leastFaces;
+        };
+        std::optional<glm::ivec3> nearest, crumb;
+        double nearestMm = 1e9, crumbMm = 1e9;
         for (int k = lo.z; k <= hi.z; ++k) {
             for (int j = lo.y; j <= hi.y; ++j) {
                 for (int i = lo.x; i <= hi.x; ++i) {
@@ -432,11 +445,13 @@ private:
                         continue;
                     const double mm =
                         glm::distance(grid_.patientFromVoxelPoint(glm::dvec3(i, j, k)), pointMm);
-                    if (mm < nearestMm) nearestMm = mm, nearest = glm::ivec3(i, j, k);
+                    if (mm < crumbMm) crumbMm = mm, crumb = glm::ivec3(i, j, k);
+                    if (mm < nearestMm && ofBody({i, j, k}))
+                        nearestMm = mm, nearest = glm::ivec3(i, j, k);
                 }
             }
         }
-        return nearest;
+        return nearest ? nearest : crumb;
     }
 
     void layBridges(double radiusMm) {
@@ -453,8 +468,35 @@ private:
             for (const glm::dvec3 p : path.pointsMm)
                 corners.push_back(glm::ivec3(glm::round(grid_.voxelFromPatientPoint(p))));
             corners.push_back(*to);
+            laid_.clear();
             for (std::size_t n = 1; n < corners.size(); ++n)
                 result_.bridgeMm[step] += layStraight(corners[n - 1], corners[n], radiusMm);
+            wallOff(path.from, path.to);
+        }
+    }
+    // A collapsed colon that runs along the wall of another loop does not open into it: where the
+    // bridge just laid faces lumen of other pieces than the two that it joins, that becomes wall.
+    void wallOff(std::int32_t from, std::int32_t to) {
+        const auto isSide = [&](glm::ivec3 v) {
+            if (cut_.pieceAt.at(v) >= 0)
+                return cut_.pieceAt.at(v) == from || cut_.pieceAt.at(v) == to;
+            for (int n = 0; n < 27; ++n) {  // a voxel that labelling added
+                const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+                if (grid_.contains(w) && cut_.pieceAt.at(w) >= 0 &&
+                    (cut_.pieceAt.at(w) == from || cut_.pieceAt.at(w) == to))
+                    return true;
+            }
+            return false;
+        };
+        for (const glm::ivec3 v : laid_) {
+            for (int n = 0; n < 6; ++n) {
+                glm::ivec3 w = v;
+                w[n / 2] += n % 2 ? 1 : -1;
+                if (!grid_.contains(w)) continue;
+                const std::size_t at = grid_.index(w);
+                if (labels_[at] == outside || labels_[at] == bridge || isSide(w)) continue;
+                labels_[at] = outside, barred_[at] = true;
+            }
         }
     }
     // Returns the length outside the lumen.
@@ -493,6 +535,7 @@ private:
         if (labels_[n] != outside) return;
         if (!middle && (barred_[n] || Content(contents_.content[n]) != Content::tissue)) return;
         labels_[n] = bridge;
+        laid_.push_back(v);
     }
 
     // What the labels' fitting has parted is joined again through the pieces as they were cut.
@@ -516,6 +559,7 @@ private:
     Volume<std::int16_t> smooth_;                       ///< HU, against noise
     std::vector<char> open_;                            ///< orifices
     std::vector<int> inner_;                            ///< orifices between kept pieces
+    std::vector<glm::ivec3> laid_;                      ///< voxels of the last bridge
     std::set<int> cuts_;                                ///< orifices that the chain closes
     std::vector<std::pair<std::uint32_t, int>> faces_;  ///< first voxel, inner orifice; sorted
     ColonLabels result_;
