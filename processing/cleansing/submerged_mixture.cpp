@@ -11,7 +11,7 @@
 namespace haustra::cleansing {
 namespace {
 
-constexpr double coupling = 10.0;  // β; on seeds 1 and 2 of the phantoms 10 and 60 were tried
+constexpr double coupling = 10.0;  // β; of 10 and 60, on phantoms 1 and 2
 constexpr int sweeps = 6;
 constexpr double gasReach = 2.6;  // standard deviations of the blur
 
@@ -25,18 +25,26 @@ struct Place {
     float coupling;
 };
 
-/// Mean of a voxel and those a look to either side along the axes.
-double crossMean(const Volume<std::int16_t>& hu, glm::ivec3 v) {
-    const glm::ivec3 look = lookStep(hu.grid()), last = hu.grid().size - 1;
-    double sum = hu.at(v);
-    for (int axis = 0; axis < 3; ++axis) {
-        for (int side = -1; side <= 1; side += 2) {
-            glm::ivec3 n = v;
-            n[axis] += side * look[axis];
-            sum += hu.at(glm::clamp(n, glm::ivec3(0), last));
+/// HU at a voxel as those a look around it have it: of the quadratic fitted to the 27, and by
+/// binomial weights.
+struct Filtered {
+    double quadratic = 0.0, binomial = 0.0;
+};
+Filtered filteredAt(const Volume<std::int16_t>& hu, glm::ivec3 v, glm::ivec3 look) {
+    const glm::ivec3 last = hu.grid().size - 1;
+    Filtered sum;
+    for (int c = -1; c <= 1; ++c) {
+        for (int b = -1; b <= 1; ++b) {
+            for (int a = -1; a <= 1; ++a) {
+                const int away = a * a + b * b + c * c;
+                const double y =
+                    hu.at(glm::clamp(v + glm::ivec3(a, b, c) * look, glm::ivec3(0), last));
+                sum.quadratic += y * (7 - 3 * away) / 27.0;
+                sum.binomial += y * double(8 >> away) / 64.0;
+            }
         }
     }
-    return sum / 7.0;
+    return sum;
 }
 
 }  // namespace
@@ -50,6 +58,7 @@ void settleSubmerged(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
     const glm::dvec3 apart = grid.spacingMm() / spread.sdMm;
     const glm::dvec3 near = glm::exp(-0.5 * apart * apart);
     const double sd = std::max(means.noise.soft, means.noise.tagged);
+    const glm::ivec3 look = lookStep(grid);
     const auto isNoGas = [&](std::size_t n) {
         return LumenLabel(segmentation[n]) != LumenLabel::air;
     };
@@ -67,12 +76,21 @@ void settleSubmerged(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
                 if (mixture[n].tagged == 255 || mixture[n].air > 0 || !isNoGas(n) ||
                     !everywhere(grid, reach, v, isNoGas))
                     continue;
+                const Filtered filtered = filteredAt(scan.hu, v, look);
                 if (mixture[n].tagged == 0 &&
-                    crossMean(scan.hu, v) - soft < std::max(unlabelledShare * contrast, 2.0 * sd))
+                    filtered.binomial - soft < std::max(unlabelledShare * contrast, 2.0 * sd))
                     continue;
-                found[m].share = float(std::clamp((scan.hu[n] - soft) / contrast, 0.0, 1.0));
+                // Taking tagging out amplifies the noise by the contrast of air: where that is
+                // worse than the blur of a filter, the neighbours say what the scan shows.
+                const double noise = sd / contrast, bend = structureSignature(scan.hu, v, sd);
+                const double weak = (1.0 - bend) * std::clamp((noise - 0.06) / 0.08, 0.0, 1.0);
+                const double weaker = std::clamp((noise - 0.14) / 0.1, 0.0, 1.0);
+                const double y =
+                    glm::mix(double(scan.hu[n]),
+                             glm::mix(filtered.quadratic, filtered.binomial, weaker), weak);
+                found[m].share = float(std::clamp((y - soft) / contrast, 0.0, 1.0));
                 found[m].certainty = float(contrast * contrast / (sd * sd));
-                found[m].coupling = float(coupling * (1.0 - structureSignature(scan.hu, v, sd)));
+                found[m].coupling = float(coupling * (1.0 - bend));
             }
         });
         for (const Place& place : found) {

@@ -14,8 +14,9 @@ namespace haustra::cleansing {
 /// field as prior, Σ (y − μ_soft − t (μ_tag − μ_soft))² / 2σ² + β Σ w (t − t')² / 2 over neighbours
 /// along the axes, with the local means and w = exp(−d²/2) at the distance d in standard deviations
 /// of the blur. Where the tagging is dense the scan decides; where it is weak, and taking it out
-/// would amplify the noise by the contrast of air, its neighbours do more. Folds and polyps by
-/// their bend (structure_signature.h) are left to the scan. Six sweeps of simultaneous
+/// would amplify the noise by the contrast of air, y is that of a quadratic fitted to the voxels
+/// around, and the prior does more. Folds and polyps by their bend (structure_signature.h) are left
+/// to the scan. Tagging that no label holds counts where it is no noise. Six sweeps of simultaneous
 /// minimisation; the same for any number of threads.
 void settleSubmerged(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                      const LocalMeans& means, const PointSpread& spread,
