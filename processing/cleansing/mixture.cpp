@@ -7,6 +7,7 @@
 #include "cleansing/menisci.h"
 #include "cleansing/partial_volume_em.h"
 #include "cleansing/pseudo_enhancement.h"
+#include "cleansing/submerged_mixture.h"
 #include "cleansing/tagged_surroundings.h"
 #include "cleansing/thin_films.h"
 #include "cleansing/water_level.h"
@@ -50,15 +51,6 @@ public:
         if (around.meanShare > 1.0 - std::max(0.1, 0.8 * noise) &&
             around.leastShare > 1.0 - std::max(0.5, 4.0 * noise))
             return roundedFractions(0.0, 1.0);
-        if (around.leastShare > -std::max(0.2, 4.0 * noise)) {
-            // No air near. What is taken out amplifies the noise by the contrast of air: where that
-            // is worse than the blur of a filter, the neighbours take some of it out.
-            const double weak = std::clamp((noise - 0.06) / 0.08, 0.0, 1.0);
-            const double weaker = std::clamp((noise - 0.14) / 0.1, 0.0, 1.0);
-            const double filtered = glm::mix(around.quadraticShare, around.smoothShare, weaker);
-            tagged =
-                std::clamp(glm::mix((y - softHu) / (taggedHu - softHu), filtered, weak), 0.0, 1.0);
-        }
         if (!around.tagged) tagged = 0.0;
         const InterfaceLayer::Crossing crossing = interfaces_.crossing(v, taggedHu, softHu);
         // Fluid does not stand beside air: under a level, a slanted step hides a wall.
@@ -80,8 +72,6 @@ private:
         bool tagged = false;     ///< some are more tagged than soft
         double meanShare = 0.0;  ///< of tagged material, over the 27 voxels
         double leastShare = 1.0;
-        double quadraticShare = 0.0;  ///< of the quadratic fitted to the 27 voxels
-        double smoothShare = 0.0;     ///< by binomial weights
     };
 
     /// Where the level meets the wall all three tissues may share a voxel. The level tells how much
@@ -174,11 +164,8 @@ private:
                 for (int a = -1; a <= 1; ++a) {
                     const std::size_t n = grid.index(
                         glm::clamp(v + glm::ivec3(a, b, c) * look_, glm::ivec3(0), grid.size - 1));
-                    const int away = a * a + b * b + c * c;
                     const double share = (hu_[n] - softHu) / (taggedHu - softHu);
                     around.meanShare += share / 27.0;
-                    around.quadraticShare += share * (7 - 3 * away) / 27.0;
-                    around.smoothShare += share * double(8 >> away) / 64.0;
                     around.leastShare = std::min(around.leastShare, share);
                     around.tagged |=
                         share > 0.4 && LumenLabel(segmentation_[n]) == LumenLabel::tagged;
@@ -248,6 +235,7 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
                 out[shell[n]] = colon.at(shell[n]);
         });
     }
+    settleSubmerged(seen, labels, means, spread, around, mixture, options.threads);
     progress(0.8);
     const Volume<std::uint8_t> films =
         settleFilms(seen, labels, means, spread, around, mixture, options.threads);
