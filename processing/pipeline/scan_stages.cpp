@@ -24,6 +24,10 @@ constexpr int maskVersion = 3;
 constexpr int mixtureVersion = 11;
 constexpr int cleansingVersion = 9;
 
+// How a mask without a scan is drawn.
+const TissueModel drawnTissue{
+    {-1000.0, -100.0, 40.0, 600.0}, {20.0, 20.0, 20.0, 100.0}, {0.1, 0.2, 0.6, 0.1}, -480.0, 320.0};
+
 Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,
                                  const Volume<std::uint8_t>& labels, const Attributes& attributes) {
     return preparation.target().publishVolume(product::segmentation, key, labels, attributes,
