@@ -21,8 +21,8 @@ using store::Attributes;
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 4;
 constexpr int maskVersion = 1;
-constexpr int mixtureVersion = 11;
-constexpr int cleansingVersion = 9;
+constexpr int mixtureVersion = 12;
+constexpr int cleansingVersion = 10;
 
 Result<void> publishSegmentation(Preparation& preparation, const ProductKey& key,
                                  const Volume<std::uint8_t>& labels, const Attributes& attributes) {
