@@ -4,17 +4,18 @@
 #include "core/connected_labels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace haustra::cleansing {
 namespace {
 
-constexpr double farthestMm = 4.5;  // from the pool, along the grid's axes
-constexpr double laggingMm = 1.5;   // that a segmentation may fall short of the half-way surface
-constexpr double airWithinMm = 3.0;
+/// A segmentation falls short by whole voxels where they are large.
+double reachMm(const Grid& grid, double mm, double voxels) {
+    return std::max(mm, voxels * std::cbrt(grid.voxelVolumeMm3()));
+}
 
-bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
-    const glm::ivec3 reach = voxelsIn(labels.grid(), airWithinMm);
+bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v, glm::ivec3 reach) {
     const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
                      hi = glm::min(v + reach, labels.grid().size - 1);
     for (int k = lo.z; k <= hi.z; ++k) {
@@ -59,6 +60,9 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
     };
     std::vector<Rim> front, next;
     const glm::dvec3 spacing = grid.spacingMm();
+    const double farthestMm = reachMm(grid, 4.5, 6.0),  // from the pool, along the grid's axes
+        laggingMm = reachMm(grid, 1.5, 2.0);  // that it may fall short of the half-way surface
+    const glm::ivec3 airWithin = voxelsIn(grid, reachMm(grid, 3.0, 4.0));
     const auto spread = [&](glm::ivec3 v, double mm, auto&& leastHuOf) {
         for (int axis = 0; axis < 3; ++axis) {
             for (int side = -1; side <= 1; side += 2) {
@@ -75,7 +79,8 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                     mm == 0.0;  // a voxel may be larger than what a label falls short
                 const double there = mm + spacing[axis];
                 if (!first && there > farthestMm) continue;
-                if (!first && there > laggingMm + 0.5 * spacing[axis] && !airNear(segmentation, n))
+                if (!first && there > laggingMm + 0.5 * spacing[axis] &&
+                    !airNear(segmentation, n, airWithin))
                     continue;
                 if (!joinsNothing(labels, index)) continue;  // there may be a wall too thin to show
                 out[index] = std::uint8_t(LumenLabel::tagged);

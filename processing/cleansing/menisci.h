@@ -13,7 +13,8 @@ namespace haustra::cleansing {
 /// tension, past the flat level where a segmentation by levels ends. Added are unlabelled voxels at
 /// most 4.5 mm from a pool along the axes, with air of the lumen within 3 mm, along voxels that are
 /// more than half as dense, from soft tissue on, as the pool's rim where they begin; and within 1.5
-/// mm of any pool what the segmentation fell short of. O(voxels).
+/// mm of any pool what the segmentation fell short of. Where voxels are large, 6, 4 and 2 of them.
+/// O(voxels).
 Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                                  const Volume<std::uint8_t>& segmentation);
 

@@ -21,8 +21,8 @@ using store::Attributes;
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 6;
 constexpr int maskVersion = 3;
-constexpr int mixtureVersion = 11;
-constexpr int cleansingVersion = 9;
+constexpr int mixtureVersion = 12;
+constexpr int cleansingVersion = 10;
 
 // How a mask without a scan is drawn.
 const TissueModel drawnTissue{
