@@ -107,11 +107,10 @@ protected:
         return result;
     }
     static std::string stageOf(const std::string& product) {
-        static const std::map<std::string, std::string> stages{{"ct", "import"},
-                                                               {"cleansed", "cleansing"},
-                                                               {"cleansed-lumen", "cleansing"},
-                                                               {"lumen", "denoising"},
-                                                               {"flatmap", "flattening"}};
+        static const std::map<std::string, std::string> stages{
+            {"ct", "import"},          {"quality", "segmentation"},
+            {"cleansed", "cleansing"}, {"cleansed-lumen", "cleansing"},
+            {"lumen", "denoising"},    {"flatmap", "flattening"}};
         const auto found = stages.find(product);
         return found == stages.end() ? product : found->second;
     }

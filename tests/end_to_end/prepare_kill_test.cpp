@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono;
 
-constexpr int productCount = 10;
+constexpr int productCount = 11;
 
 class PrepareKilled : public testing::Test {
 protected:

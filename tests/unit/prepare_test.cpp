@@ -17,7 +17,7 @@ namespace {
 TEST_F(Prepare, ASecondRunReusesEverythingAndChangesNothing) {
     EXPECT_EQ(reused(options()), all(false));
     const auto before = bytesOf(store().openCase("tube").value());
-    EXPECT_EQ(before.size(), 10u);
+    EXPECT_EQ(before.size(), 11u);
     EXPECT_EQ(reused(options()), all(true));
     EXPECT_EQ(bytesOf(store().openCase("tube").value()), before);
 }
@@ -143,7 +143,7 @@ TEST_F(Prepare, OldProductsAreMadeAgain) {
     PrepareOptions found = options();
     found.until = "segmentation";
     reused(found);
-    EXPECT_EQ(store().openCase("tube")->products()->size(), 2u)
+    EXPECT_EQ(store().openCase("tube")->products()->size(), 3u)
         << "old products outlive their input";
     reused(options());
     EXPECT_EQ(bytesOf(store().openCase("tube").value()), now);
