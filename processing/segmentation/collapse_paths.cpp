@@ -250,10 +250,11 @@ std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
     // A step costs at least a cell's size, so what lies in one bucket is final when its turn comes.
     const glm::dvec3 cellSizeMm = cells.grid.spacingMm();
     const float bucketMm = 0.5f * float(std::min({cellSizeMm.x, cellSizeMm.y, cellSizeMm.z}));
+    const auto bucketOf = [&](float costMm) { return std::size_t(costMm / bucketMm); };
     const std::size_t grain = std::max<std::size_t>(1, caps.size() / 16);
     parallelFor(caps.size(), grain, options.threads, [&](std::size_t first, std::size_t last) {
         std::vector<std::vector<std::pair<float, std::uint32_t>>> buckets(
-            std::size_t(options.mostCostMm / bucketMm) + 1);
+            bucketOf(float(options.mostCostMm)) + 1);
         std::vector<float> cost(cells.node.size(), blocked);
         std::vector<std::uint8_t> from(cells.node.size(), 255);
         for (std::size_t c = first; c < last; ++c) {
@@ -282,7 +283,7 @@ std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
                     if (through > float(options.mostCostMm) || through >= cost[next]) continue;
                     if (cost[next] == blocked) touched.push_back(next);
                     cost[next] = through, from[next] = std::uint8_t(s);
-                    buckets[std::size_t(through / bucketMm)].emplace_back(through, next);
+                    buckets[bucketOf(through)].emplace_back(through, next);
                 }
             };
             for (auto& bucket : buckets) {

@@ -117,6 +117,10 @@ BowelContents cropped(const BowelContents& contents, const VoxelBox& box, int th
     for (Level& level : part.levels) {
         for (LevelColumn& column : level.columns)
             column.above -= box.lo, column.below -= box.lo;
+        std::erase_if(level.columns, [&](const LevelColumn& column) {
+            return !part.content.grid().contains(column.above) ||
+                   !part.content.grid().contains(column.below);
+        });
         const int before = box.lo[contents.down.axis];
         level.height -= before;
         level.heightMm -= before * contents.content.grid().spacingMm()[contents.down.axis];
