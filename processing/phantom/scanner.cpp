@@ -150,7 +150,8 @@ void addNoise(const Volume<float>& slab, int first, int count, int firstOfAll, c
             for (std::size_t n = 0; n < slice; ++n) {
                 // Slices are numbered from 1 so that the one below the first has a number too.
                 const std::size_t v = (k + std::size_t(firstOfAll) + 1) * slice + n;
-                grain[n] = whiteNoise(key, v) + beside * (whiteNoise(key, v - slice) + whiteNoise(key, v + slice));
+                grain[n] = whiteNoise(key, v) +
+                           beside * (whiteNoise(key, v - slice) + whiteNoise(key, v + slice));
             }
             blurSlice(grain.data(), {grid.size.x, grid.size.y}, alongX, alongY, scratch);
             const float* in = slab.voxels().data() + (k + std::size_t(first)) * slice;

@@ -371,8 +371,8 @@ void restrictToMask(BowelContents& contents, const Volume<std::int16_t>& hu,
     constexpr int reach = 2;
     std::vector<std::size_t> walls;
     for (std::size_t n = 0; n < voxels.size(); ++n) {
-        if (Content(voxels[n]) != Content::interface || mask[n] == 0 ||
-            hu[n] < tissue.airBelowHu || hu[n] > tissue.taggedAboveHu)
+        if (Content(voxels[n]) != Content::interface || mask[n] == 0 || hu[n] < tissue.airBelowHu ||
+            hu[n] > tissue.taggedAboveHu)
             continue;
         const glm::ivec3 v = grid.voxelAt(n);
         const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),

@@ -105,11 +105,12 @@ Result<void> runList(const fs::path& folder) {
 
 Command addList(CLI::App& program) {
     auto folder = std::make_shared<fs::path>();
-    CLI::App* command = program.add_subcommand("list",
-                                               "List the cases of a store, their products and "
-                                               "sizes; a study's scans one after the other, each "
-                                               "with the study's code, the patient's position, and how sure "
-                                               "its colon is.");
+    CLI::App* command =
+        program.add_subcommand("list",
+                               "List the cases of a store, their products and "
+                               "sizes; a study's scans one after the other, each "
+                               "with the study's code, the patient's position, and how sure "
+                               "its colon is.");
     addStoreOption(*command, *folder);
     return {command, [folder] { return runList(*folder); }};
 }

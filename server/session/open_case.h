@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/centerline.h"
-#include "core/ct_scan.h"
 #include "core/colon_record.h"
+#include "core/ct_scan.h"
 #include "core/histogram.h"
 #include "core/tri_mesh.h"
 #include "render/raycaster_choice.h"

@@ -11,8 +11,8 @@
 namespace haustra::topology {
 namespace {
 
-// VMTK's line runs where the largest balls fit; ours does so too, until it moves to the middle of the
-// cross-sections, which lies to the side of haustra.
+// VMTK's line runs where the largest balls fit; ours does so too, until it moves to the middle of
+// the cross-sections, which lies to the side of haustra.
 TEST(CenterlinePath, LiesWithinTwoMillimetresOfVmtksInARealColon) {
     HAUSTRA_REAL_DATA(maskFile, "masks/lumen460.nii.gz");
     HAUSTRA_REAL_DATA(vmtkFile, "masks/lumen460_centerline.vtp");
