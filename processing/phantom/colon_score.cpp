@@ -282,7 +282,9 @@ private:
     void scorePath(ColonScore& score) const {
         double pathMm = -1.0, trueMm = 0.0;
         for (const CenterlinePoint& point : path_.points) {
-            const int sample = course_.sampleNear(point.positionMm, voxelMm_);
+            // A bridge may pass beside another loop, not through it.
+            const double reachMm = point.gap ? 0.5 * voxelMm_ : voxelMm_;
+            const int sample = course_.sampleNear(point.positionMm, reachMm);
             if (sample < 0) continue;
             const double now = course_.arcMm(sample);
             const bool leaps = pathMm >= 0.0 &&

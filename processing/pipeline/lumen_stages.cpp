@@ -18,9 +18,9 @@ using organs::ExpectedTopology;
 using store::Attributes;
 
 // Raise a stage's version whenever its product changes for the same input and options.
-constexpr int denoisingVersion = 1;
+constexpr int denoisingVersion = 2;
 constexpr int distanceVersion = 1;
-constexpr int centerlineVersion = 4;
+constexpr int centerlineVersion = 5;
 
 // The distance transform goes axis by axis, which needs axes at right angles.
 Result<void> checkOrthogonal(const Grid& grid) {

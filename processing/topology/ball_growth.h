@@ -28,8 +28,8 @@ struct BallGrowthOptions {
 /// end what has become simple since is taken, until no voxel left of the domain is simple.
 ///
 /// `path` must not be empty and its first voxel be in the domain; `distanceMm` is
-/// distanceToBoundaryMm(domain). Linear in the domain's voxels but for those tried again; one
-/// thread.
+/// distanceToBoundaryMm(domain), or more where no handle is to be cut. Linear in the domain's
+/// voxels but for those tried again; one thread.
 BitMask growBall(const BitMask& domain, const Volume<float>& distanceMm,
                  const std::vector<glm::ivec3>& path, const BallGrowthOptions& options = {});
 

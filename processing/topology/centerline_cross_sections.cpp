@@ -75,6 +75,11 @@ public:
         return labels_.grid().contains(v) && LumenLabel(labels_.at(v)) == LumenLabel::bridge;
     }
 
+    /// Whether the straight way between two points stays in the lumen.
+    bool leads(glm::dvec3 p, glm::dvec3 q) const {
+        return staysInside(labels_, voxel(p), voxel(q));
+    }
+
     /// Middle of what the plane through `p` across `along` (unit) cuts; `p` where it cuts nothing.
     glm::dvec3 centroid(glm::dvec3 p, glm::dvec3 along) const {
         const double reachMm = std::min(reachPerRadius * distanceMm(p) + reachMoreMm, farthestMm);
@@ -82,11 +87,10 @@ public:
         const glm::dvec3 aside =
             std::abs(along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
         const glm::dvec3 u = glm::normalize(glm::cross(along, aside)), v = glm::cross(along, u);
-        const auto holds = [&](int a, int b) {
-            return a * a + b * b <= reach * reach &&
-                   insideLumen(labels_, voxel(p + stepMm * (double(a) * u + double(b) * v)));
+        const auto place = [&](int a, int b) {
+            return voxel(p + stepMm * (double(a) * u + double(b) * v));
         };
-        if (!holds(0, 0)) return p;
+        if (!insideLumen(labels_, place(0, 0))) return p;
         std::vector<char> seen(std::size_t(width) * std::size_t(width), 0);
         std::vector<std::array<int, 2>> front{{0, 0}};
         const auto at = [&](int a, int b) {
@@ -100,9 +104,10 @@ public:
             for (const auto& [da, db] :
                  {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}, std::array{0, -1}}) {
                 const int c = a + da, d = b + db;
-                if (std::abs(c) > reach || std::abs(d) > reach || seen[at(c, d)]) continue;
+                if (c * c + d * d > reach * reach || seen[at(c, d)]) continue;
+                if (!staysInside(labels_, place(a, b), place(c, d))) continue;
                 seen[at(c, d)] = 1;
-                if (holds(c, d)) front.push_back({c, d});
+                front.push_back({c, d});
             }
         }
         sum *= stepMm / double(front.size());
@@ -141,7 +146,9 @@ std::vector<glm::dvec3> atCrossSections(const std::vector<glm::dvec3>& curve,
                 continue;
             }
             const double leastMm = 0.5 * sections.distanceMm(points[n]);
-            for (int h = 0; h <= halvings && sections.distanceMm(moved[n]) < leastMm; ++h)
+            for (int h = 0; h <= halvings && (sections.distanceMm(moved[n]) < leastMm ||
+                                              !sections.leads(points[n], moved[n]));
+                 ++h)
                 moved[n] = h < halvings ? glm::mix(moved[n], points[n], 0.5) : points[n];
         }
         points = atSteps(moved);

@@ -11,6 +11,10 @@ constexpr double smoothingPerRadius = 0.3;           // ℓ over the distance to
 constexpr double shortestMm = 1.5, longestMm = 8.0;  // bounds of ℓ at first
 constexpr int samplesPerKnot = 8;
 constexpr int relaxations = 12;
+// ℓ over the knots' distance at which a spline follows its samples as well as knots let it. Under
+// it weights, which go with ℓ⁻⁴, would only drown each other: at 1/1000 of the longest ℓ nothing of
+// the rest is left in a double, and the curve swings across walls.
+constexpr double leastPerKnot = 1.0 / 16.0;
 
 /// One point of the path, where the spline's parameter is its place in the list.
 struct PathSample {
@@ -135,6 +139,30 @@ bool insideLumen(const Volume<std::uint8_t>& labels, glm::dvec3 voxel) {
     return labels.grid().contains(nearest) && labels.at(nearest) != 0;
 }
 
+bool staysInside(const Volume<std::uint8_t>& labels, glm::dvec3 a, glm::dvec3 b) {
+    glm::ivec3 at(glm::floor(a + 0.5));
+    const glm::ivec3 last(glm::floor(b + 0.5));
+    const auto isInside = [&](glm::ivec3 v) {
+        return labels.grid().contains(v) && labels.at(v) != 0;
+    };
+    const glm::dvec3 way = b - a;
+    // Of the way from 0 to 1: where it next passes a face across each axis.
+    const auto faceAhead = [&](int axis) {
+        if (at[axis] == last[axis]) return 2.0;
+        const double face = double(at[axis]) + (way[axis] > 0.0 ? 0.5 : -0.5);
+        return (face - a[axis]) / way[axis];
+    };
+    while (at != last) {
+        if (!isInside(at)) return false;
+        int axis = 0;
+        for (int n = 1; n < 3; ++n) {
+            if (faceAhead(n) < faceAhead(axis)) axis = n;
+        }
+        at[axis] += way[axis] > 0.0 ? 1 : -1;
+    }
+    return isInside(at);
+}
+
 std::vector<glm::dvec3> smoothInsideLumen(const std::vector<glm::ivec3>& path,
                                           const Volume<std::uint8_t>& labels,
                                           const Volume<float>& distanceMm) {
@@ -148,6 +176,7 @@ std::vector<glm::dvec3> smoothInsideLumen(const std::vector<glm::ivec3>& path,
         return !insideLumen(labels, voxel) || trilinear(distanceMm, voxel) < 0.5 * radiusMm;
     };
 
+    const double leastMm = leastPerKnot * sampleMm * samplesPerKnot;
     std::vector<glm::dvec3> curve;
     std::vector<bool> relax(samples.size());
     for (int round = 0; round <= relaxations; ++round) {
@@ -163,9 +192,13 @@ std::vector<glm::dvec3> smoothInsideLumen(const std::vector<glm::ivec3>& path,
                 relax[near] = true;
         }
         if (!anyLeaves) return curve;
+        bool anyRelaxed = false;
         for (std::size_t n = 0; n < samples.size(); ++n) {
-            if (relax[n]) samples[n].smoothingMm *= 0.5;
+            if (!relax[n] || samples[n].smoothingMm <= leastMm) continue;
+            samples[n].smoothingMm = std::max(0.5 * samples[n].smoothingMm, leastMm);
+            anyRelaxed = true;
         }
+        if (!anyRelaxed) break;
     }
     // What no spline of this knot spacing follows, the path itself does.
     for (std::size_t n = 0; n < samples.size(); ++n) {

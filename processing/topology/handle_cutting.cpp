@@ -51,6 +51,14 @@ Volume<std::uint8_t> cropped(const Volume<std::uint8_t>& labels, const Box& box)
     return part;
 }
 
+BitMask bridgesOf(const Volume<std::uint8_t>& labels) {
+    BitMask bridges(labels.grid().size);
+    for (std::size_t n = 0; n < labels.voxels().size(); ++n) {
+        if (LumenLabel(labels[n]) == LumenLabel::bridge) bridges.set(labels.grid().voxelAt(n));
+    }
+    return bridges;
+}
+
 }  // namespace
 
 Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
@@ -68,8 +76,11 @@ Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
     }
     const Volume<std::uint8_t> part = cropped(labels, box);
     const BitMask mask = maskOf(part, options.threads);
-    JoinedLumen joined = joinPieces(
-        mask, part.grid(), {.bridgeRadiusMm = options.bridgeRadiusMm, .threads = options.threads});
+    const BitMask bridges = bridgesOf(part);
+    JoinedLumen joined = joinPieces(mask, part.grid(),
+                                    {.bridgeRadiusMm = options.bridgeRadiusMm,
+                                     .sureWay = bridges.count() > 0 ? &bridges : nullptr,
+                                     .threads = options.threads});
     progress(0.3);
     BallGrowthOptions growth{options.priorityStep, options.priorityThreshold, {}};
     if (options.progress) growth.progress = [&](double done) { progress(0.3 + 0.65 * done); };

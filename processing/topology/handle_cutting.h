@@ -27,7 +27,9 @@ struct CutLumen {
 };
 
 /// The largest-distance-first region growing of §3.3.2.2 from a path through the lumen, adding
-/// simple points alone, so that each handle is cut where it is thinnest (growBall). Large pieces of
+/// simple points alone, so that each handle is cut where it is thinnest (growBall), but not at a
+/// voxel labelled bridge: what leads around a collapse that the segmentation crossed is a leak,
+/// however wide (joinPieces). Large pieces of
 /// the lumen are joined by thin bridges, labelled so, in the order in which the colon passes them;
 /// small pieces, and those too far off the way, are left out; islands of background that float in
 /// the lumen are filled, with the label of the voxel before them on their row (joinPieces). What is

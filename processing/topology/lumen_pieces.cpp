@@ -100,6 +100,34 @@ Volume<std::uint8_t> labelsOf(const BitMask& mask, const Grid& grid, int threads
     return labels;
 }
 
+/// distanceToBoundaryMm of a piece; voxels of the sure way are the deepest, and what tapers towards
+/// it, within 8 mm from face to face, is 4 mm deep at least.
+Volume<float> depthOf(const Volume<std::uint8_t>& labels, const LumenJoinOptions& options) {
+    constexpr float taperReachMm = 8.0f, taperMm = 4.0f;
+    Volume<float> mm = distanceToBoundaryMm(labels, options.threads);
+    if (!options.sureWay) return mm;
+    const auto out = mm.writable();
+    const float deepest = *std::max_element(out.begin(), out.end());
+    const Grid& grid = labels.grid();
+    std::vector<std::pair<std::uint32_t, float>> front;  // voxel, way from the sure one
+    std::vector<bool> seen(out.size(), false);
+    for (std::size_t n = 0; n < out.size(); ++n) {
+        if (labels[n] == 0 || !options.sureWay->test(grid.voxelAt(n))) continue;
+        out[n] = deepest, seen[n] = true;
+        front.emplace_back(std::uint32_t(n), 0.0f);
+    }
+    for (std::size_t head = 0; head < front.size(); ++head) {
+        const auto [n, way] = front[head];
+        visitFaces(grid, n, [&](std::size_t m, int axis) {
+            const float there = way + float(grid.spacingMm()[axis]);
+            if (labels[m] == 0 || seen[m] || there > taperReachMm) return;
+            out[m] = std::max(out[m], std::min(taperMm, deepest)), seen[m] = true;
+            front.emplace_back(std::uint32_t(m), there);
+        });
+    }
+    return mm;
+}
+
 /// Appends a 6-connected way from the path's last voxel to `target` within the two voxels' blocks
 /// and the mask; where there is none, `target` alone.
 void connect(Path& path, glm::ivec3 target, const BitMask& mask) {
@@ -238,7 +266,7 @@ JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOpt
         joined.domain = std::move(pieces.front());
         joined.cavitiesFilled = fillCavities(joined.domain, grid, joined.notes);
         const Volume<std::uint8_t> labels = labelsOf(joined.domain, grid, options.threads);
-        joined.distanceMm = distanceToBoundaryMm(labels, options.threads);
+        joined.distanceMm = depthOf(labels, options);
         joined.path = skeletonOf(joined.domain, labels, joined.distanceMm, SkeletonEnds::anywhere,
                                  options.threads);
         return joined;
@@ -246,8 +274,8 @@ JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOpt
     std::vector<Path> paths;
     for (const BitMask& piece : pieces) {
         const Volume<std::uint8_t> labels = labelsOf(piece, grid, options.threads);
-        paths.push_back(skeletonOf(piece, labels, distanceToBoundaryMm(labels, options.threads),
-                                   SkeletonEnds::tips, options.threads));
+        paths.push_back(skeletonOf(piece, labels, depthOf(labels, options), SkeletonEnds::tips,
+                                   options.threads));
     }
     for (const std::size_t n : orderPaths(paths, grid, joined.notes)) {
         joined.domain.add(pieces[n]);
@@ -264,8 +292,7 @@ JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOpt
     joined.bridges.remove(joined.domain);
     joined.domain.add(joined.bridges);
     joined.cavitiesFilled = fillCavities(joined.domain, grid, joined.notes);
-    joined.distanceMm =
-        distanceToBoundaryMm(labelsOf(joined.domain, grid, options.threads), options.threads);
+    joined.distanceMm = depthOf(labelsOf(joined.domain, grid, options.threads), options);
     return joined;
 }
 

@@ -13,7 +13,7 @@ namespace haustra::topology {
 struct JoinedLumen {
     BitMask domain;
     BitMask bridges;           ///< of the domain, what joins the pieces
-    Volume<float> distanceMm;  ///< distanceToBoundaryMm of the domain
+    Volume<float> distanceMm;  ///< distanceToBoundaryMm of the domain; sure ways are the deepest
     std::vector<glm::ivec3> path;
     long cavitiesFilled = 0;
     std::vector<std::string> notes;
@@ -22,6 +22,7 @@ struct JoinedLumen {
 struct LumenJoinOptions {
     double smallestPieceMl = 2.0;  ///< smaller pieces are left out, but for the largest
     double bridgeRadiusMm = 1.5;
+    const BitMask* sureWay = nullptr;  ///< voxels in which no way is too narrow: see joinPieces
     int threads = 0;
 };
 
@@ -30,6 +31,12 @@ struct LumenJoinOptions {
 /// small pieces are left out. Islands of background in the pieces are filled. The path is the
 /// widest way between two far ends, piece by piece: the skeleton from which dissertation §3.3.2.2
 /// grows the lumen; 6-connected where the lumen lets it be.
+///
+/// Voxels of `sureWay` count as deep as any: a bridge that the segmentation laid across a collapse
+/// is thin as it is drawn, not as the colon is, and so are the tips that taper towards it. Where
+/// lumen leads around it too, that is a leak, as the chain has no two ways to one place; so a
+/// handle through a bridge is cut elsewhere, but for a leak over 4 mm in radius, which beats the
+/// tips.
 ///
 /// `mask` has at least one voxel and is on `grid`. The same for any number of threads.
 /// O(n log n) in the voxels of the mask, and linear in the grid's.

@@ -223,17 +223,21 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
         !kept)
         return tl::make_unexpected(kept.error());
 
-    options.log("mixture");
-    watch.lap();
-    const auto mixture = cleansing::estimateMixture(truth->scan, *tissue, segmentation->labels,
-                                                    segmentation->gravity, {threads, {}});
-    if (!mixture) return tl::make_unexpected(mixture.error());
-    study.mixtureSeconds = watch.lap();
-    options.log("cleansing");
-    const auto cleansed =
-        cleansing::cleanse(truth->scan, *tissue, *mixture, segmentation->labels, threads);
-    if (!cleansed) return tl::make_unexpected(cleansed.error());
-    study.cleansingSeconds = watch.lap();
+    Result<cleansing::Cleansed> cleansed =
+        cleansing::Cleansed{truth->scan.hu.share(), segmentation->labels.share()};
+    if (!options.onlySegmentation) {
+        options.log("mixture");
+        watch.lap();
+        const auto mixture = cleansing::estimateMixture(truth->scan, *tissue, segmentation->labels,
+                                                        segmentation->gravity, {threads, {}});
+        if (!mixture) return tl::make_unexpected(mixture.error());
+        study.mixtureSeconds = watch.lap();
+        options.log("cleansing");
+        cleansed =
+            cleansing::cleanse(truth->scan, *tissue, *mixture, segmentation->labels, threads);
+        if (!cleansed) return tl::make_unexpected(cleansed.error());
+        study.cleansingSeconds = watch.lap();
+    }
     options.log("denoising");
     topology::HandleCuttingOptions cutting;
     cutting.threads = threads;
@@ -284,7 +288,7 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
             options.log("warned: " + line);
         if (!traced) {
             study.colon.failed = "centerline: " + describe(traced.error());
-        } else {
+        } else if (!options.onlySegmentation) {
             study.colon.failed = "flattening not done";
             if (options.beforeFlattening) options.beforeFlattening(study);
             study.colon.failed.clear();

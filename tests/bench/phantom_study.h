@@ -22,6 +22,7 @@ struct StudyOptions {
     std::vector<double> errorBoundsMm = {0.05, 0.1, 0.2};
     bool colon = true;  ///< surface and flattening as prepare makes them
     bool cleansing = true;
+    bool onlySegmentation = false;  ///< the path through the segmentation's own lumen; no flat map
     bool surface = true;          ///< the surface against the true one
     double prepareErrorMm = 0.1;  ///< bound of the surface that is flattened
     std::filesystem::path out;    ///< for the cleansed scan, the lumen and the meshes; empty: none

@@ -396,6 +396,8 @@ int main(int count, char** arguments) {
     program.add_option("--seeds", seeds, "How many patients")->check(CLI::Range(1, 1000));
     program.add_flag("--colon", onlyColon,
                      "Only the Colon table: which chain was found, its path, its flat map");
+    program.add_flag("--segmentation", options.onlySegmentation,
+                     "With --colon: neither cleanse nor flatten; the path of what was segmented");
     program.add_option("--limit", limitSeconds, "Seconds that one phantom may take; 0: any");
     program.add_option("--bound", options.errorBoundsMm, "Simplify to within these, mm")
         ->check(CLI::PositiveNumber)

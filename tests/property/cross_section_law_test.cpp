@@ -1,6 +1,7 @@
 // Laws of the path in the middle of the lumen's cross-sections.
 #include "topology/centerline_cross_sections.h"
 #include "topology/centerline_path.h"
+#include "topology/centerline_spline.h"
 #include "topology/distance_field.h"
 
 #include <algorithm>
@@ -77,6 +78,70 @@ TEST(CrossSections, StayOffTheWallAndInBridgesWhereTheyAre) {
     const auto still = atCrossSections(curve, labels, distanceMm, 1);
     for (const glm::dvec3 p : still)
         EXPECT_NEAR(p.z, 4.0, 1e-9);
+}
+
+// Two wide stretches that a thread of single voxels joins, to and fro, as a bridge across a
+// collapse on a coarse grid may: no spline follows its turns, however little it smooths there.
+TEST(SmoothInsideLumen, IsAsLongAsItsPathWhereNoSplineFits) {
+    Volume<std::uint8_t> labels(axisAlignedGrid({60, 60, 60}, glm::dvec3(1.9)));
+    const auto set = [&](glm::ivec3 v) { labels.writable()[labels.grid().index(v)] = 1; };
+    for (int k = 0; k < 60; ++k) {
+        for (int j = 0; j < 60; ++j) {
+            for (int i = 0; i < 60; ++i) {
+                const glm::dvec2 aside(i - 30, j - 30);
+                if (glm::length(aside) < 9.0 && k > 2 && k < 57 && (k < 20 || k > 40))
+                    set({i, j, k});
+            }
+        }
+    }
+    std::vector<glm::ivec3> path;
+    for (int k = 5; k < 20; ++k)
+        path.push_back({30, 30, k});
+    glm::ivec3 at(30, 30, 19);
+    const auto go = [&](int axis, int sign, int voxels) {
+        for (; voxels > 0; --voxels)
+            at[axis] += sign, path.push_back(at), set(at);
+    };
+    for (int n = 0; at.z <= 38; ++n) {  // by edges, with a voxel that leads face by face on one side
+        glm::ivec3 side = at;
+        side[2] += 1, set(side);
+        at = side, at[n % 2] += n / 2 % 2 ? 1 : -1;
+        path.push_back(at), set(at);
+    }
+    go(2, 1, 41 - at.z);
+    go(2, 1, 14);
+    const auto curve = smoothInsideLumen(path, labels, distanceToBoundaryMm(labels, 1));
+    double pathMm = 0.0, curveMm = 0.0, longestMm = 0.0;
+    for (std::size_t n = 1; n < path.size(); ++n)
+        pathMm += 1.9 * glm::length(glm::dvec3(path[n] - path[n - 1]));
+    for (std::size_t n = 1; n < curve.size(); ++n) {
+        curveMm += glm::distance(curve[n], curve[n - 1]);
+        longestMm = std::max(longestMm, glm::distance(curve[n], curve[n - 1]));
+    }
+    EXPECT_LT(curveMm, 1.1 * pathMm);
+    EXPECT_LT(longestMm, 1.9);
+    for (const glm::dvec3 p : curve)
+        EXPECT_TRUE(insideLumen(labels, labels.grid().voxelFromPatientPoint(p)));
+}
+
+TEST(StaysInside, SeesAWallOneVoxelThickHoweverItLies) {
+    Volume<std::uint8_t> labels(axisAlignedGrid({20, 20, 20}, glm::dvec3(1.0)), std::uint8_t(1));
+    // Oblique, and parted face by face alone: its voxels touch at edges and corners.
+    for (std::size_t n = 0; n < labels.voxels().size(); ++n) {
+        const glm::ivec3 v = labels.grid().voxelAt(n);
+        labels.writable()[n] = v.x + v.y + v.z != 28;
+    }
+    for (int n = 0; n < 500; ++n) {
+        const glm::dvec3 a(0.1 + 0.013 * n, 6.0 - 0.007 * n, 3.0 + 0.004 * n),
+            b(18.0 - 0.011 * n, 12.0 + 0.009 * n, 17.0 - 0.005 * n);
+        const auto below = [](glm::dvec3 p) {
+            const glm::ivec3 v(glm::floor(p + 0.5));
+            return v.x + v.y + v.z < 28;
+        };
+        if (below(a) == below(b)) continue;
+        EXPECT_FALSE(staysInside(labels, a, b));
+        EXPECT_TRUE(staysInside(labels, a, glm::mix(a, glm::dvec3(0.0), 0.5)));
+    }
 }
 
 }  // namespace

@@ -203,6 +203,34 @@ TEST(HandleCutting, JoinsPiecesAndLeavesCrumbsOut) {
     EXPECT_GT(bridge, 50u);
 }
 
+TEST(HandleCutting, CutsTheLeakAndNotTheBridgeAcrossACollapse) {
+    // An arch that is collapsed at its top, crossed by a thin bridge; its legs touch over a hole
+    // that is wider. Without the bridge's label the hole is the colon's way.
+    const auto arch = [](double t) {
+        return glm::dvec3(-30.0 * std::cos(pi * t), 0.0, 60.0 * std::sin(pi * t));
+    };
+    const auto whole = sampleCurve(arch);
+    const auto gap = sampleCurve([&](double t) { return arch(0.4 + 0.2 * t); });
+    for (const bool labelled : {true, false}) {
+        Volume<std::uint8_t> mask(gridAround(whole, 12.0, {0.8, 0.8, 1.0}), std::uint8_t(0));
+        fillTube(mask, gap, 1.5, std::uint8_t(labelled ? LumenLabel::bridge : LumenLabel::air));
+        fillTube(mask, sampleCurve([&](double t) { return arch(0.4 * t); }), 8.0);
+        fillTube(mask, sampleCurve([&](double t) { return arch(0.6 + 0.4 * t); }), 8.0);
+        fillStrut(mask, {{-26, 0, 15}, {26, 0, 15}, 0.5, 3.0, 0.1});
+        ASSERT_EQ(digitalTopology(mask).handles(), 1);
+        const CutLumen result = cut(mask);
+        EXPECT_TRUE(digitalTopology(result.labels).isBall());
+        std::size_t leakCut = 0, bridgeCut = 0;
+        for (std::size_t n = 0; n < mask.voxels().size(); ++n) {
+            if (mask[n] == 0 || result.labels[n] != 0) continue;
+            const glm::dvec3 p = mask.grid().patientFromVoxelPoint(mask.grid().voxelAt(n));
+            (p.z < 40.0 ? leakCut : bridgeCut) += 1;
+        }
+        EXPECT_EQ(leakCut > 0, labelled);
+        EXPECT_EQ(bridgeCut > 0, !labelled);
+    }
+}
+
 TEST(HandleCutting, MakesABallOfAnything) {
     // Noise, thresholded at all levels: handles and cavities by the hundred. In the end no voxel
     // of the body that was left out could be added.
