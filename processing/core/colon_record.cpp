@@ -107,7 +107,8 @@ std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& rec
 
 std::string qualityJson(const ColonRecord& record) {
     Json pieces = Json::array(), junctions = Json::array(), leftOut = Json::array(),
-         walls = Json::array(), segments = Json::array(), runnersUp = Json::array();
+         walls = Json::array(), segments = Json::array(), runnersUp = Json::array(),
+         untagged = Json::array(), doubts = Json::array();
     for (const ColonPiece& piece : record.pieces) {
         pieces.push_back({{"part", toString(piece.part)},
                           {"center_mm", place(piece.centreMm)},
@@ -144,6 +145,14 @@ std::string qualityJson(const ColonRecord& record) {
                          {"area_mm2", rounded(wall.areaMm2)},
                          {"between", wall.betweenLoops ? "loops" : "other bowel"}});
     }
+    for (const UntaggedPool& pool : record.untaggedPools) {
+        untagged.push_back({{"part", toString(pool.part)},
+                            {"place_mm", place(pool.placeMm)},
+                            {"area_mm2", rounded(pool.areaMm2)},
+                            {"fluid_hu", rounded(pool.fluidHu)}});
+    }
+    for (const Doubt& doubt : record.doubts)
+        doubts.push_back({{"about", doubt.about}, {"probability", rounded(doubt.probability)}});
     const auto distension = distensionOf(record);
     for (int n = 0; n < colonSegments; ++n) {
         const SegmentDistension& segment = distension[std::size_t(n)];
@@ -157,6 +166,8 @@ std::string qualityJson(const ColonRecord& record) {
                             {"collapsed_mm", rounded(segment.collapsedMm)}});
     }
     return Json{{"confidence", rounded(record.confidence)},
+                {"chain_confidence", rounded(record.chainConfidence)},
+                {"doubts", doubts},
                 {"length_mm", rounded(record.lengthMm())},
                 {"warnings", record.warnings},
                 {"segments", segments},
@@ -167,6 +178,7 @@ std::string qualityJson(const ColonRecord& record) {
                 {"left_out_tagged_ml", rounded(taggedMl)},
                 {"left_out", leftOut},
                 {"rebuilt_walls", walls},
+                {"untagged_fluid", untagged},
                 {"noise_sd_hu", rounded(record.noiseSdHu)}}
                .dump(2) +
            "\n";

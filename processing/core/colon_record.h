@@ -70,6 +70,14 @@ struct RebuiltWallRecord {
     bool betweenLoops = false;  ///< both sides are the colon's; else other bowel lies behind
 };
 
+/// Fluid that took no tagging stands under the colon's gas: its surface is seen, its wall is not.
+struct UntaggedPool {
+    ColonPart part = ColonPart::rectum;
+    glm::dvec3 placeMm{0.0};  ///< the middle of its surface
+    double areaMm2 = 0.0;     ///< of the surface
+    double fluidHu = 0.0;
+};
+
 /// Another chain that explains the scan nearly as well.
 struct RunnerUp {
     double probability = 0.0;  ///< beside the one that was taken
@@ -77,16 +85,25 @@ struct RunnerUp {
     glm::dvec3 placeMm{0.0};  ///< middle of the largest piece in which they differ
 };
 
+/// A way in which the course may be wrong, though no other explains the scan better.
+struct Doubt {
+    std::string about;
+    double probability = 0.0;  ///< that it is wrong there
+};
+
 struct ColonRecord {
     std::vector<ColonPiece> pieces;        ///< from the rectum on
     std::vector<ColonJunction> junctions;  ///< one fewer than pieces
-    double confidence = 0.0;           ///< that the chain is right, among those that were weighed
+    double confidence = 0.0;  ///< that the course is right: among those weighed, and all doubts
+    double chainConfidence = 0.0;      ///< that it is right among those that were weighed
+    std::vector<Doubt> doubts;         ///< the gravest first
     std::vector<RunnerUp> runnersUp;   ///< none or one
     std::vector<LeftOutBody> leftOut;  ///< near the chain, the largest first
     std::vector<RebuiltWallRecord> walls;
-    double noiseSdHu = 0.0;             ///< in gas
-    std::vector<std::string> warnings;  ///< where a reader must look
-    double lengthMm() const;            ///< of the pieces and of what is crossed between them
+    std::vector<UntaggedPool> untaggedPools;  ///< not in the lumen; the largest surface first
+    double noiseSdHu = 0.0;                   ///< in gas
+    std::vector<std::string> warnings;        ///< where a reader must look
+    double lengthMm() const;                  ///< of the pieces and of what is crossed between them
 };
 
 /// Pieces of the colon that the path passes by: it went another way there, through a wall that was

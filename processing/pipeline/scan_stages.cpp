@@ -19,8 +19,8 @@ using store::Attributes;
 
 // Raise a stage's version whenever its products change for the same input and options.
 constexpr int importVersion = 1;
-constexpr int segmentationVersion = 6;
-constexpr int maskVersion = 3;
+constexpr int segmentationVersion = 7;
+constexpr int maskVersion = 4;
 constexpr int mixtureVersion = 12;
 constexpr int cleansingVersion = 10;
 

@@ -3,8 +3,10 @@
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
+#include "segmentation/course_doubts.h"
 #include "segmentation/thin_walls.h"
 #include "segmentation/tube_pieces.h"
+#include "segmentation/untagged_levels.h"
 #include "segmentation/working_scan.h"
 
 #include <algorithm>
@@ -148,13 +150,15 @@ std::vector<RunnerUp> runnersUp(const PieceGraph& graph, const std::vector<Colon
 class Recorder {
 public:
     Recorder(const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-             const std::vector<ColonChain>& chains, const ColonLabels& labels)
+             const std::vector<ColonChain>& chains, const ColonLabels& labels,
+             const std::vector<UntaggedLevel>& untagged)
         : contents_(contents),
           cut_(cut),
           graph_(graph),
           chains_(chains),
           chain_(chains.front()),
-          labels_(labels) {}
+          labels_(labels),
+          untagged_(untagged) {}
 
     ColonRecord record() {
         const std::vector<double> weights = posterior(chains_);
@@ -178,13 +182,18 @@ public:
                                        junction.radiusMm, confidence});
         }
         made_.runnersUp = runnersUp(graph_, chains_, weights);
-        made_.confidence = made_.runnersUp.empty()
-                               ? 1.0
-                               : weights[0] / (weights[0] + made_.runnersUp[0].probability);
-        if (!made_.runnersUp.empty()) made_.runnersUp[0].probability = 1.0 - made_.confidence;
+        made_.chainConfidence = made_.runnersUp.empty()
+                                    ? 1.0
+                                    : weights[0] / (weights[0] + made_.runnersUp[0].probability);
+        if (!made_.runnersUp.empty()) made_.runnersUp[0].probability = 1.0 - made_.chainConfidence;
         for (const RebuiltWall& wall : labels_.walls)
             made_.walls.push_back({wall.placeMm, wall.areaMm2, wall.betweenLoops});
         findLeftOut();
+        for (const UntaggedLevel& level : untagged_)
+            made_.untaggedPools.push_back(
+                {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
+        made_.doubts = doubtsOf(made_);
+        made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
         warn();
         return std::move(made_);
     }
@@ -192,6 +201,17 @@ public:
 private:
     const TubePiece& pieceOf(int node) const {
         return cut_.pieces[std::size_t(graph_.pieceOf[std::size_t(node)])];
+    }
+
+    // Of the piece that is nearest, as far as its ball reaches.
+    ColonPart partAt(glm::dvec3 placeMm) const {
+        ColonPart part = ColonPart::rectum;
+        double nearest = 1e9;
+        for (const ColonPiece& piece : made_.pieces) {
+            const double mm = glm::distance(piece.centreMm, placeMm) - piece.radiusMm;
+            if (mm < nearest) nearest = mm, part = piece.part;
+        }
+        return part;
     }
 
     void findLeftOut() {
@@ -254,12 +274,22 @@ private:
                 say(text("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
                          placeText(wall.placeMm).c_str()));
         }
-        if (made_.confidence < doubtful && !made_.runnersUp.empty()) {
+        for (const UntaggedPool& pool : made_.untaggedPools)
+            say(text(
+                "fluid without tagging stands under the gas in the %s, its surface %.0f mm2; what "
+                "lies in it and beneath is not seen, at %s",
+                toString(pool.part), pool.areaMm2, placeText(pool.placeMm).c_str()));
+        if (made_.chainConfidence < doubtful && !made_.runnersUp.empty()) {
             const RunnerUp& up = made_.runnersUp.front();
             say(
                 text("another course is nearly as likely (%.0f %%): it adds %.0f ml and drops %.0f "
                      "ml, at %s",
                      100.0 * up.probability, up.addsMl, up.dropsMl, placeText(up.placeMm).c_str()));
+        }
+        if (made_.confidence < doubtful && !made_.doubts.empty() &&
+            made_.doubts.front().probability > 1.0 - made_.chainConfidence) {
+            say(text("the course is right with no more than %.0f %%; gravest: %s",
+                     100.0 * made_.confidence, made_.doubts.front().about.c_str()));
         }
         // Places of neighbouring parts overlap: only what lies farther off is told.
         if (made_.pieces.front().part > ColonPart::sigmoid)
@@ -278,6 +308,7 @@ private:
     const std::vector<ColonChain>& chains_;
     const ColonChain& chain_;
     const ColonLabels& labels_;
+    const std::vector<UntaggedLevel>& untagged_;
     ColonRecord made_;
 };
 
@@ -453,7 +484,11 @@ Result<FoundColon> findAmong(const Surroundings& among, const TissueModel& tissu
     ColonLabels labels = layLabels(hu, tissue, contents, cut, graph, chains.front(),
                                    {.asGiven = among.given, .threads = options.threads});
     FoundColon found;
-    found.record = Recorder(contents, cut, graph, chains, labels).record();
+    const std::vector<UntaggedLevel> untagged =
+        glm::length(contents.gravity) > 0.0
+            ? findUntaggedLevels(hu, tissue, labels.labels, contents.down, options.threads)
+            : std::vector<UntaggedLevel>();
+    found.record = Recorder(contents, cut, graph, chains, labels, untagged).record();
     found.labels = std::move(labels.labels);
     found.gravity = contents.gravity;
     found.notes = contents.notes;

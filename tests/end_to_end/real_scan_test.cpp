@@ -35,7 +35,7 @@ TEST(RealScan, TheWholeColonIsFoundAndNothingElse) {
     EXPECT_EQ(pieces.front().part, ColonPart::rectum);
     EXPECT_EQ(pieces.back().part, ColonPart::cecum);
     const ColonTrust trust = trustOfQuality(*quality).value();
-    EXPECT_GT(trust.confidence, 0.95);
+    EXPECT_GT(trust.confidence, 0.85) << "one thin place in the sigmoid is doubted";
     for (const SegmentDistension& segment : trust.segments) {
         EXPECT_GT(segment.lengthMm, 40.0);
         EXPECT_GT(segment.diameterMm, 16.0) << "it is well distended";

@@ -257,6 +257,30 @@ TEST(FindColon, GravityIsAsTheLevelsShowIt) {
     }
 }
 
+TEST(FindColon, FluidWithoutTaggingIsToldByItsLevel) {
+    const auto water = [](glm::dvec3 p) { return inColon(p) && p.y >= 140.0 && p.x < 120; };
+    for (const bool isWater : {true, false}) {
+        Drawing drawing;
+        drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
+        // The same place with soft tissue is no fluid, however flat its border.
+        drawing.paint(isWater ? 8 : 45, water);
+        const auto found = find(drawing.scan());
+        ASSERT_TRUE(found) << describe(found.error());
+        const std::vector<UntaggedPool>& pools = found->record.untaggedPools;
+        const auto told = std::count_if(
+            found->record.warnings.begin(), found->record.warnings.end(),
+            [](const std::string& line) { return line.find("without tagging") != line.npos; });
+        ASSERT_EQ(pools.size(), isWater ? 1u : 0u);
+        EXPECT_EQ(told, isWater ? 1 : 0);
+        if (!isWater) continue;
+        EXPECT_NEAR(pools[0].placeMm.y, 139.0, 2.5);
+        EXPECT_LT(pools[0].placeMm.x, 120.0);
+        EXPECT_NEAR(pools[0].fluidHu, 8.0, 6.0);
+        EXPECT_GT(pools[0].areaMm2, 1000.0);
+        EXPECT_LT(found->record.confidence, found->record.chainConfidence);
+    }
+}
+
 // A stretch of the descending colon of 20 mm holds nothing; its walls lie against each other in
 // fat.
 struct CollapsedDrawing {

@@ -1,0 +1,88 @@
+#include "segmentation/course_doubts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace haustra::segmentation {
+namespace {
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+    char line[200];
+    std::snprintf(line, sizeof line, format, values...);
+    return line;
+}
+
+double wrongCollapse(double lengthMm, double calibreRatio) {
+    constexpr double evenMm = 70.0, spreadMm = 14.0, otherCalibre = 0.5;
+    const double longWay = 1.0 / (1.0 + std::exp((evenMm - lengthMm) / spreadMm));
+    const double mismatch = std::abs(std::log(calibreRatio)) > otherCalibre ? 0.4 : 0.0;
+    return 1.0 - (1.0 - 0.02) * (1.0 - longWay) * (1.0 - mismatch);
+}
+
+}  // namespace
+
+std::vector<Doubt> doubtsOf(const ColonRecord& record) {
+    std::vector<Doubt> doubts;
+    const auto doubt = [&](double probability, std::string about) {
+        if (probability > 0.0) doubts.push_back({std::move(about), probability});
+    };
+    std::array<double, colonParts> lengthMm{};
+    for (const ColonPiece& piece : record.pieces)
+        lengthMm[std::size_t(piece.part)] += piece.lengthMm;
+    for (std::size_t n = 0; n < record.junctions.size(); ++n) {
+        const ColonJunction& junction = record.junctions[n];
+        const ColonPiece &a = record.pieces[n], &b = record.pieces[n + 1];
+        if (junction.kind == JunctionKind::collapse) {
+            lengthMm[std::size_t(a.part)] += junction.lengthMm;
+            doubt(wrongCollapse(junction.lengthMm, a.radiusMm / b.radiusMm),
+                  text("a loop may lie in the %.0f mm that were crossed from the %s on",
+                       junction.lengthMm, toString(a.part)));
+        } else if (junction.kind == JunctionKind::thinWall) {
+            doubt(0.12, text("what was taken for open in the %s may be a wall", toString(a.part)));
+        }
+    }
+    constexpr std::array<std::pair<ColonPart, double>, 4> leastMm{{{ColonPart::sigmoid, 130.0},
+                                                                   {ColonPart::descending, 80.0},
+                                                                   {ColonPart::transverse, 150.0},
+                                                                   {ColonPart::ascending, 60.0}}};
+    for (const auto& [part, least] : leastMm) {
+        const double mm = lengthMm[std::size_t(part)];
+        if (mm < least)
+            doubt(0.4 * (1.0 - mm / least),
+                  text("no more than %.0f mm of %s%s were found", mm, toString(part),
+                       part == ColonPart::sigmoid ? "" : " in all"));
+    }
+    if (!record.pieces.empty() && record.pieces.front().part > ColonPart::sigmoid)
+        doubt(0.7, "the rectum was not found");
+    if (!record.pieces.empty() && record.pieces.back().part < ColonPart::ascending)
+        doubt(0.7, "the cecum was not found");
+    for (const LeftOutBody& body : record.leftOut) {
+        constexpr double tellMl = 5.0, muchMl = 25.0;
+        if (!body.gas || body.volumeMl < tellMl) continue;
+        doubt(
+            0.03 * std::min(1.0, body.volumeMl / muchMl) + (body.opens ? 0.05 : 0.0),
+            text("%.0f ml of gas near the %s may be colon", body.volumeMl, toString(body.nearest)));
+    }
+    for (const RebuiltWallRecord& wall : record.walls) {
+        constexpr double tellMm2 = 20.0;
+        if (wall.betweenLoops && wall.areaMm2 > tellMm2)
+            doubt(0.02, text("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
+    }
+    for (const UntaggedPool& pool : record.untaggedPools)
+        doubt(0.1 * std::min(1.0, pool.areaMm2 / 1000.0),
+              text("untagged fluid in the %s may hide lumen", toString(pool.part)));
+    std::stable_sort(doubts.begin(), doubts.end(),
+                     [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
+    return doubts;
+}
+
+double courseConfidence(double chainConfidence, const std::vector<Doubt>& doubts) {
+    for (const Doubt& doubt : doubts)
+        chainConfidence *= 1.0 - doubt.probability;
+    return chainConfidence;
+}
+
+}  // namespace haustra::segmentation

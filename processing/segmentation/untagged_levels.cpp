@@ -1,0 +1,196 @@
+#include "segmentation/untagged_levels.h"
+
+#include "core/ct_scan.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+namespace haustra::segmentation {
+namespace {
+
+constexpr double leastMm2 = 100.0;
+constexpr double flatMm = 0.3, flatShare = 0.6;
+constexpr double gentleSlope = 0.6;                   // of a floor that goes on
+constexpr double edgeMm = 4.0;                        // of blur between gas and what is beneath
+constexpr double beneathMm = 1.5, deepMm = 6.0;       // where the fluid's own HU shows
+constexpr double unlikeDown = 10.0, unlikeUp = 25.0;  // HU off soft tissue's
+
+/// Where a column of gas ends.
+struct Floor {
+    int across, z;
+    int voxel;        ///< the last of gas, along the gravity axis
+    double heightMm;  ///< of the middle between gas and soft tissue, along the axis
+    double huBeneath;
+    int samples;
+};
+
+class Floors {
+public:
+    Floors(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+           const Volume<std::uint8_t>& labels, GravityAxis down)
+        : hu_(hu),
+          labels_(labels),
+          down_(down),
+          stepMm_(hu.grid().spacingMm()[down.axis]),
+          softHu_(tissue.meanHu[int(Tissue::soft)]),
+          middleHu_(0.5 * (softHu_ + tissue.meanHu[int(Tissue::air)])),
+          taggedAboveHu_(tissue.taggedAboveHu) {}
+
+    std::vector<Floor> ofSlice(int z) const {
+        const Grid& grid = hu_.grid();
+        const int across = 1 - down_.axis, length = grid.size[down_.axis];
+        std::vector<Floor> floors;
+        glm::ivec3 v(0, 0, z);
+        for (int n = 0; n < grid.size[across]; ++n) {
+            v[across] = n;
+            for (int at = 0; at + 1 < length; ++at) {
+                v[down_.axis] = down_.sign > 0 ? at : length - 1 - at;
+                if (LumenLabel(labels_.at(v)) != LumenLabel::air) continue;
+                glm::ivec3 next = v;
+                next[down_.axis] += down_.sign;
+                if (LumenLabel(labels_.at(next)) != LumenLabel::outside) continue;
+                if (const auto floor = below(v)) floors.push_back(*floor);
+            }
+        }
+        return floors;
+    }
+
+private:
+    std::optional<Floor> below(glm::ivec3 gas) const {
+        const Grid& grid = hu_.grid();
+        Floor floor{gas[1 - down_.axis], gas.z, gas[down_.axis], 0.0, 0.0, 0};
+        glm::ivec3 v = gas;
+        double last = hu_.at(v), crossedMm = -1.0;
+        for (int step = 1; crossedMm < 0.0; ++step) {
+            v[down_.axis] += down_.sign;
+            if (!grid.contains(v) || step * stepMm_ > edgeMm + stepMm_) return {};
+            const double here = hu_.at(v);
+            if (here > middleHu_)
+                crossedMm =
+                    stepMm_ *
+                    (step - 1 + (last < middleHu_ ? (middleHu_ - last) / (here - last) : 0.0));
+            last = here;
+        }
+        floor.heightMm = down_.sign * stepMm_ * gas[down_.axis] + crossedMm;
+        double sum = 0.0;
+        for (int step = int(std::ceil((crossedMm + beneathMm) / stepMm_));
+             step * stepMm_ <= crossedMm + deepMm; ++step) {
+            v = gas, v[down_.axis] += step * down_.sign;
+            if (!grid.contains(v) || hu_.at(v) > taggedAboveHu_) break;
+            sum += hu_.at(v), ++floor.samples;
+        }
+        if (floor.samples == 0) return {};
+        floor.huBeneath = sum / floor.samples;
+        return floor;
+    }
+
+    const Volume<std::int16_t>& hu_;
+    const Volume<std::uint8_t>& labels_;
+    const GravityAxis down_;
+    const double stepMm_, softHu_, middleHu_, taggedAboveHu_;
+};
+
+/// The height that most floors of a patch share, and how many do.
+std::pair<double, std::size_t> commonHeight(const std::vector<Floor>& patch) {
+    std::vector<double> heights;
+    for (const Floor& floor : patch)
+        heights.push_back(floor.heightMm);
+    std::sort(heights.begin(), heights.end());
+    std::pair<double, std::size_t> best{0.0, 0};
+    for (std::size_t first = 0, last = 0; first < heights.size(); ++first) {
+        while (last < heights.size() && heights[last] <= heights[first] + 2.0 * flatMm)
+            ++last;
+        if (last - first > best.second) best = {heights[(first + last) / 2], last - first};
+    }
+    return best;
+}
+
+}  // namespace
+
+std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
+                                              const TissueModel& tissue,
+                                              const Volume<std::uint8_t>& labels, GravityAxis down,
+                                              int threads) {
+    const Grid& grid = hu.grid();
+    const Floors columns(hu, tissue, labels, down);
+    std::vector<std::vector<Floor>> slices(std::size_t(grid.size.z));
+    parallelFor(slices.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k)
+            slices[k] = columns.ofSlice(int(k));
+    });
+    std::vector<Floor> floors;
+    std::unordered_map<std::size_t, std::vector<std::uint32_t>> atPlace;
+    const int across = 1 - down.axis;
+    const std::size_t width = std::size_t(grid.size[across]);
+    for (const auto& slice : slices) {
+        for (const Floor& floor : slice) {
+            atPlace[std::size_t(floor.across) + width * std::size_t(floor.z)].push_back(
+                std::uint32_t(floors.size()));
+            floors.push_back(floor);
+        }
+    }
+    const double columnMm2 = grid.spacingMm()[across] * grid.spacingMm().z;
+    const double softHu = tissue.meanHu[int(Tissue::soft)];
+    // visit(floor, way to it in mm) of the floors of the eight columns around one.
+    const auto visitAround = [&](const Floor& from, const auto& visit) {
+        for (int dz = -1; dz <= 1; ++dz) {
+            for (int dn = -1; dn <= 1; ++dn) {
+                const int n = from.across + dn, z = from.z + dz;
+                if (n < 0 || z < 0 || n >= int(width) || (dz == 0 && dn == 0)) continue;
+                const auto near = atPlace.find(std::size_t(n) + width * std::size_t(z));
+                if (near == atPlace.end()) continue;
+                for (const std::uint32_t other : near->second)
+                    visit(other,
+                          std::hypot(dn * grid.spacingMm()[across], dz * grid.spacingMm().z));
+            }
+        }
+    };
+    std::vector<bool> seen(floors.size(), false);
+    std::vector<UntaggedLevel> levels;
+    for (std::size_t seed = 0; seed < floors.size(); ++seed) {
+        if (seen[seed]) continue;
+        std::vector<Floor> patch{floors[seed]};
+        seen[seed] = true;
+        for (std::size_t head = 0; head < patch.size(); ++head) {
+            const Floor from = patch[head];
+            visitAround(from, [&](std::uint32_t other, double mm) {
+                const double step = std::abs(floors[other].heightMm - from.heightMm);
+                if (seen[other] || step > std::max(flatMm, gentleSlope * mm)) return;
+                seen[other] = true;
+                patch.push_back(floors[other]);
+            });
+        }
+        if (double(patch.size()) * columnMm2 < leastMm2) continue;
+        const auto [heightMm, count] = commonHeight(patch);
+        if (double(count) < flatShare * double(patch.size()) ||
+            double(count) * columnMm2 < leastMm2)
+            continue;
+        UntaggedLevel level;
+        std::vector<double> beneath;
+        glm::dvec3 middle(0.0);
+        for (const Floor& floor : patch) {
+            if (std::abs(floor.heightMm - heightMm) > flatMm) continue;
+            glm::dvec3 at(0.0);
+            at[down.axis] = floor.voxel, at[across] = floor.across, at.z = floor.z;
+            middle += at;
+            beneath.push_back(floor.huBeneath);
+        }
+        const auto half = beneath.begin() + std::ptrdiff_t(beneath.size() / 2);
+        std::nth_element(beneath.begin(), half, beneath.end());
+        level.fluidHu = *half;
+        if (level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp) continue;
+        if (level.fluidHu < 0.5 * (softHu + tissue.meanHu[int(Tissue::fat)])) continue;
+        level.areaMm2 = double(beneath.size()) * columnMm2;
+        level.placeMm = grid.patientFromVoxelPoint(middle / double(beneath.size()));
+        levels.push_back(level);
+    }
+    std::stable_sort(
+        levels.begin(), levels.end(),
+        [](const UntaggedLevel& a, const UntaggedLevel& b) { return a.areaMm2 > b.areaMm2; });
+    return levels;
+}
+
+}  // namespace haustra::segmentation

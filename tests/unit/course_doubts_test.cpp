@@ -1,0 +1,94 @@
+// How sure a course is said to be: less with everything by which courses are known to go wrong.
+#include "segmentation/course_doubts.h"
+
+#include <gtest/gtest.h>
+
+using namespace haustra;
+using segmentation::courseConfidence;
+using segmentation::doubtsOf;
+
+namespace {
+
+/// All parts, of the usual lengths, open from end to end.
+ColonRecord wholeColon() {
+    constexpr double mm[colonParts] = {150, 400, 200, 80, 450, 80, 160, 70};
+    ColonRecord record;
+    for (int part = 0; part < colonParts; ++part) {
+        record.pieces.push_back({ColonPart(part), glm::dvec3(0.0), 15.0, mm[part], 100.0, 10.0});
+        if (part > 0) record.junctions.push_back({});
+    }
+    record.chainConfidence = 1.0;
+    return record;
+}
+double confidence(const ColonRecord& record) {
+    return courseConfidence(record.chainConfidence, doubtsOf(record));
+}
+ColonRecord collapsed(double mm, double radiusMm = 15.0) {
+    ColonRecord record = wholeColon();
+    record.junctions[1] = {JunctionKind::collapse, glm::dvec3(0.0), mm, 0.0, 1.0};
+    record.pieces[2].radiusMm = radiusMm;
+    return record;
+}
+
+TEST(CourseDoubts, AWholeOpenColonHasNone) {
+    EXPECT_TRUE(doubtsOf(wholeColon()).empty());
+    EXPECT_EQ(confidence(wholeColon()), 1.0);
+}
+
+TEST(CourseDoubts, GrowWithTheCollapseAndTheStepInCalibre) {
+    double last = 1.0;
+    for (double mm = 5.0; mm <= 90.0; mm += 5.0) {
+        EXPECT_LT(confidence(collapsed(mm)), last);
+        EXPECT_LT(confidence(collapsed(mm, 28.0)), confidence(collapsed(mm)) - 0.05);
+        last = confidence(collapsed(mm));
+    }
+    EXPECT_GT(confidence(collapsed(10.0)), 0.9);
+    EXPECT_LT(last, 0.3);
+}
+
+TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
+    const auto lowers = [](const auto& change) {
+        ColonRecord record = collapsed(30.0);
+        const double before = confidence(record);
+        change(record);
+        const auto doubts = doubtsOf(record);
+        for (std::size_t n = 1; n < doubts.size(); ++n)
+            EXPECT_GE(doubts[n - 1].probability, doubts[n].probability);
+        for (const Doubt& doubt : doubts) {
+            EXPECT_GT(doubt.probability, 0.0);
+            EXPECT_LT(doubt.probability, 1.0);
+            EXPECT_FALSE(doubt.about.empty());
+        }
+        return confidence(record) < before;
+    };
+    EXPECT_TRUE(lowers([](ColonRecord& r) {
+        r.pieces.erase(r.pieces.begin() + 2), r.junctions.erase(r.junctions.begin() + 2);
+    }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) { r.pieces.resize(5), r.junctions.resize(4); }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) { r.junctions[4].kind = JunctionKind::thinWall; }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) {
+        r.leftOut.push_back({{}, 30.0, true, {}, 3.0, true});
+    }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, true}); }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) { r.untaggedPools.push_back({{}, {}, 900.0, 10.0}); }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) { r.chainConfidence = 0.8; }));
+    // What is no news of the course.
+    EXPECT_FALSE(lowers([](ColonRecord& r) {
+        r.leftOut.push_back({{}, 3.0, true, {}, 3.0, false});
+    }));
+    EXPECT_FALSE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, false}); }));
+}
+
+TEST(CourseDoubts, AreInTheQuality) {
+    ColonRecord record = collapsed(40.0);
+    record.doubts = doubtsOf(record);
+    record.confidence = confidence(record);
+    const std::string json = qualityJson(record);
+    EXPECT_NE(json.find(record.doubts.front().about), std::string::npos);
+    EXPECT_NE(json.find("\"chain_confidence\": 1.0"), std::string::npos);
+    const auto trust = trustOfQuality(json);
+    ASSERT_TRUE(trust);
+    EXPECT_NEAR(trust->confidence, record.confidence, 0.01);
+}
+
+}  // namespace
