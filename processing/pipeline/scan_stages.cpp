@@ -21,8 +21,8 @@ using store::Attributes;
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 6;
 constexpr int maskVersion = 3;
-constexpr int mixtureVersion = 12;
-constexpr int cleansingVersion = 10;
+constexpr int mixtureVersion = 13;
+constexpr int cleansingVersion = 11;
 
 // How a mask without a scan is drawn.
 const TissueModel drawnTissue{
@@ -95,12 +95,16 @@ Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const Pro
     return publishSegmentation(preparation, key, lumen->labels, attributes);
 }
 
-// What mixture and cleansing start from.
+// What mixture and cleansing start from, mapped.
 struct SegmentedScan {
     CtScan scan;
     Volume<std::uint8_t> labels;
     TissueModel tissue;
     glm::dvec3 gravity{0.0};
+
+    Result<std::optional<cleansing::TaggedLumen>> tagged(int threads) const {
+        return cleansing::findTaggedLumen(scan, tissue, labels, threads);
+    }
 };
 
 Result<SegmentedScan> readSegmentedScan(Preparation& preparation) {
@@ -242,19 +246,30 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
 }
 
 Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
-                              const ProductKey& segmentation) {
+                              const ProductKey& segmentation,
+                              std::optional<cleansing::TaggedLumen>& lumen) {
     const StageMeter meter;
     const ProductKey key = store::makeKey("mixture", mixtureVersion, "", {ct, segmentation});
     const auto make = [&](const Progress& progress) -> Result<void> {
-        store::Case& target = preparation.target();
+        const int threads = preparation.options().threads;
+        cleansing::PartialVolumeModel model;
+        {
+            const auto input = readSegmentedScan(preparation);
+            if (!input) return tl::make_unexpected(input.error());
+            model = cleansing::fitPartialVolume(input->scan, input->tissue, threads);
+            auto found = input->tagged(threads);
+            if (!found) return tl::make_unexpected(found.error());
+            lumen = std::move(*found);
+        }
+        progress(0.4);
+        // Mapped anew, so that only what is read from now on is in memory.
         const auto input = readSegmentedScan(preparation);
         if (!input) return tl::make_unexpected(input.error());
-        const auto mixture =
-            cleansing::estimateMixture(input->scan, input->tissue, input->labels, input->gravity,
-                                       {preparation.options().threads, progress});
-        if (!mixture) return tl::make_unexpected(mixture.error());
-        return target.publishVolume(product::mixture, key, *mixture, {},
-                                    madeFrom(product::mixture));
+        const auto rest = [&](double fraction) { progress(0.4 + 0.5 * fraction); };
+        const auto mixture = cleansing::estimateMixture(
+            input->scan, model, lumen ? &*lumen : nullptr, input->gravity, {threads, rest});
+        return preparation.target().publishVolume(product::mixture, key, mixture, {},
+                                                  madeFrom(product::mixture), threads);
     };
     return preparation.run({"mixture", key, {product::mixture}}, meter, make).map([&] {
         return key;
@@ -262,27 +277,41 @@ Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
 }
 
 Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
-                               const ProductKey& segmentation, const ProductKey& mixture) {
+                               const ProductKey& segmentation, const ProductKey& mixture,
+                               std::optional<cleansing::TaggedLumen> lumen) {
     const StageMeter meter;
     const ProductKey key =
         store::makeKey("cleansing", cleansingVersion, "", {ct, segmentation, mixture});
-    const auto make = [&](const Progress&) -> Result<void> {
+    const auto make = [&](const Progress& progress) -> Result<void> {
         store::Case& target = preparation.target();
+        const int threads = preparation.options().threads;
+        if (!lumen) {
+            auto found = readSegmentedScan(preparation).and_then([&](const SegmentedScan& input) {
+                return input.tagged(threads);
+            });
+            if (!found) return tl::make_unexpected(found.error());
+            lumen = std::move(*found);
+        }
+        progress(0.3);
         const auto input = readSegmentedScan(preparation);
         if (!input) return tl::make_unexpected(input.error());
+        const Attributes wall{{"air-below-hu", exactText(input->tissue.airBelowHu)}};
+        const auto publish = [&](const auto& labels, const auto& hu) {
+            return target
+                .publishVolume(product::cleansedLumen, key, labels, wall,
+                               madeFrom(product::cleansedLumen))
+                .and_then([&] {
+                    return target.publishVolume(product::cleansed, key, hu, wall,
+                                                madeFrom(product::cleansed));
+                });
+        };
+        if (!lumen) return publish(input->labels, input->scan.hu);
         const auto fractions = target.readVolume<TissueFractions>(product::mixture);
         if (!fractions) return tl::make_unexpected(fractions.error());
-        const auto cleansed = cleansing::cleanse(input->scan, input->tissue, *fractions,
-                                                 input->labels, preparation.options().threads);
-        if (!cleansed) return tl::make_unexpected(cleansed.error());
-        const Attributes wall{{"air-below-hu", exactText(input->tissue.airBelowHu)}};
-        return target
-            .publishVolume(product::cleansedLumen, key, cleansed->lumen, wall,
-                           madeFrom(product::cleansedLumen))
-            .and_then([&] {
-                return target.publishVolume(product::cleansed, key, cleansed->hu, wall,
-                                            madeFrom(product::cleansed));
-            });
+        const cleansing::CleansedLumen cleansed = cleansing::cleanse(
+            input->scan, input->tissue, *fractions, std::move(*lumen), threads);
+        progress(0.8);
+        return publish(cleansed.lumen, cleansed.hu);
     };
     return preparation
         .run({"cleansing", key, {product::cleansedLumen, product::cleansed}}, meter, make)
