@@ -65,17 +65,17 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
         return fail(ErrorKind::badInput, "the mixture or segmentation is not on the scan's grid",
                     "cleansing");
     }
-    auto lumen = findTaggedLumen(scan, tissue, segmentation, threads);
-    if (!lumen) return tl::make_unexpected(lumen.error());
-    if (!*lumen) return Cleansed{scan.hu.clone(), segmentation.clone()};
-    CleansedLumen cleansed = cleanse(scan, tissue, mixture, std::move(**lumen), threads);
+    auto part = cropToLumen(scan, segmentation, threads);
+    if (!part) return tl::make_unexpected(part.error());
+    if (!*part) return Cleansed{scan.hu.clone(), segmentation.clone()};
+    CleansedLumen cleansed = cleanse(
+        scan, tissue, mixture, measureTaggedLumen(std::move(**part), tissue, threads), threads);
     return Cleansed{std::move(cleansed.hu).whole(threads),
                     std::move(cleansed.lumen).whole(threads)};
 }
 
 CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
-                      const Volume<TissueFractions>& wholeMixture, TaggedLumen&& lumen,
-                      int threads) {
+                      const Volume<TissueFractions>& wholeMixture, TaggedLumen lumen, int threads) {
     const Grid grid = lumen.scan.hu.grid();
     const TaggedSurroundings& around = lumen.around;
     const auto mixture = [&](std::size_t n) {

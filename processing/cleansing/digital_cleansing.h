@@ -32,10 +32,10 @@ struct CleansedLumen {
     BoxedVolume<std::uint8_t> lumen;
 };
 
-/// The same of what findTaggedLumen has measured; beyond its box HU follow from the scan, whose
+/// The same of what measureTaggedLumen has measured; beyond its box HU follow from the scan, whose
 /// memory the result shares, as they are read. Takes some 4 bytes for each voxel of the box beside
 /// `lumen`'s own.
 CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
-                      const Volume<TissueFractions>& mixture, TaggedLumen&& lumen, int threads = 0);
+                      const Volume<TissueFractions>& mixture, TaggedLumen lumen, int threads = 0);
 
 }  // namespace haustra::cleansing

@@ -190,16 +190,31 @@ private:
 Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const TissueModel& tissue,
                                                 const Volume<std::uint8_t>& segmentation,
                                                 glm::dvec3 gravity, const MixtureOptions& options) {
-    const auto lumen = findTaggedLumen(scan, tissue, segmentation, options.threads);
-    if (!lumen) return tl::make_unexpected(lumen.error());
-    return estimateMixture(scan, fitPartialVolume(scan, tissue, options.threads),
-                           *lumen ? &**lumen : nullptr, gravity, options)
+    auto part = cropToLumen(scan, segmentation, options.threads);
+    if (!part) return tl::make_unexpected(part.error());
+    const PartialVolumeModel model = fitPartialVolume(scan, tissue, options.threads);
+    if (!*part)
+        return estimateMixture(scan, model, {}, nullptr, gravity, options).whole(options.threads);
+    auto byHu = fractionsByHu((*part)->scan.hu, model, options.threads);
+    const TaggedLumen lumen = measureTaggedLumen(std::move(**part), tissue, options.threads);
+    return estimateMixture(scan, model, std::move(byHu), &lumen, gravity, options)
         .whole(options.threads);
 }
 
+Volume<TissueFractions> fractionsByHu(const Volume<std::int16_t>& hu,
+                                      const PartialVolumeModel& model, int threads) {
+    Volume<TissueFractions> fractions(hu.grid());
+    const auto out = fractions.writable();
+    parallelFor(out.size(), std::size_t(1) << 20, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            out[n] = model.fractionsOf(hu[n]);
+    });
+    return fractions;
+}
+
 BoxedVolume<TissueFractions> estimateMixture(const CtScan& scan, const PartialVolumeModel& model,
-                                             const TaggedLumen* lumen, glm::dvec3 gravity,
-                                             const MixtureOptions& options) {
+                                             Volume<TissueFractions> byHu, const TaggedLumen* lumen,
+                                             glm::dvec3 gravity, const MixtureOptions& options) {
     auto progress = [&](double fraction) {
         if (options.progress) options.progress(fraction);
     };
@@ -214,22 +229,13 @@ BoxedVolume<TissueFractions> estimateMixture(const CtScan& scan, const PartialVo
             row[i] = model.fractionsOf(from[i]);
     };
     if (!lumen) return result;
-    const Grid& grid = lumen->scan.hu.grid();
     const int threads = options.threads;
     const CtScan& seen = lumen->scan;
     const Volume<std::uint8_t>& labels = lumen->labels;
     const LocalMeans& means = lumen->means;
     const TaggedSurroundings& around = lumen->around;
-    Volume<TissueFractions> mixture(grid);
+    Volume<TissueFractions> mixture = std::move(byHu);
     const auto out = mixture.writable();
-    parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
-        for (int k = int(begin); k < int(end); ++k) {
-            for (int j = 0; j < grid.size.y; ++j) {
-                result.beyond(lumen->box.lo + glm::ivec3(0, j, k),
-                              out.subspan(grid.index(0, j, k), std::size_t(grid.size.x)));
-            }
-        }
-    });
     progress(0.2);
     const PointSpread spread = measurePointSpread(seen, labels, means, threads);
     const InterfaceLayer interfaces(seen, labels, means, spread, gravity);

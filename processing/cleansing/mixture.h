@@ -33,12 +33,18 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
                                                 glm::dvec3 gravity,
                                                 const MixtureOptions& options = {});
 
-/// The same of what findTaggedLumen and fitPartialVolume have measured; `lumen` is null where there
-/// is no tagging. Held is the lumen's box: beyond it fractions follow from the scan, whose memory
-/// the result shares, as they are read. Takes some 5 bytes for each voxel of the box, and 12 for
-/// each voxel of the tagging's surroundings.
+/// The fractions by HU alone.
+Volume<TissueFractions> fractionsByHu(const Volume<std::int16_t>& hu,
+                                      const PartialVolumeModel& model, int threads);
+
+/// estimateMixture in its steps, each with no more in memory than it needs: `model` of the scan,
+/// the fractions `byHu` of its LumenPart, and what was measured of that; `lumen` is null where
+/// there is no tagging. Held is the lumen's box: beyond it fractions follow from the scan, whose
+/// memory the result shares, as they are read. Takes some 2 bytes for each voxel of the box beside
+/// `byHu`.
 BoxedVolume<TissueFractions> estimateMixture(const CtScan& scan, const PartialVolumeModel& model,
-                                             const TaggedLumen* lumen, glm::dvec3 gravity,
+                                             Volume<TissueFractions> byHu, const TaggedLumen* lumen,
+                                             glm::dvec3 gravity,
                                              const MixtureOptions& options = {});
 
 }  // namespace haustra::cleansing

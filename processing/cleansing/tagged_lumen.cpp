@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace haustra::cleansing {
@@ -56,26 +57,33 @@ VoxelBox boxOf(const Volume<std::uint8_t>& segmentation, int threads) {
 
 }  // namespace
 
-Result<std::optional<TaggedLumen>> findTaggedLumen(const CtScan& scan, const TissueModel& tissue,
-                                                   const Volume<std::uint8_t>& segmentation,
-                                                   int threads) {
-    if (!sameGrid(scan.hu.grid(), segmentation.grid())) {
+Result<std::optional<LumenPart>> cropToLumen(const CtScan& scan,
+                                             const Volume<std::uint8_t>& segmentation,
+                                             int threads) {
+    const Grid& grid = scan.hu.grid();
+    if (!sameGrid(grid, segmentation.grid())) {
         return fail(ErrorKind::badInput, "the segmentation is not on the scan's grid",
                     "tagged lumen");
     }
-    TaggedLumen lumen;
-    lumen.scanGrid = scan.hu.grid();
-    lumen.box = boxOf(segmentation, threads);
-    if (lumen.box.size == glm::ivec3(0)) return std::nullopt;
-    if (cropped(lumen.scanGrid, lumen.box).voxelCount() >
-        std::numeric_limits<std::uint32_t>::max()) {
+    const VoxelBox box = boxOf(segmentation, threads);
+    if (box.size == glm::ivec3(0)) return std::nullopt;
+    if (cropped(grid, box).voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
         return fail(ErrorKind::unsupported, "the colon's surroundings have more than 2^32 voxels",
                     "tagged lumen");
     }
+    return LumenPart{grid,
+                     box,
+                     {croppedCopy(scan.hu, box, threads), scan.position},
+                     croppedCopy(segmentation, box, threads)};
+}
+
+TaggedLumen measureTaggedLumen(LumenPart part, const TissueModel& tissue, int threads) {
+    TaggedLumen lumen;
+    lumen.scanGrid = part.scanGrid, lumen.box = part.box;
     const glm::ivec3 from = lumen.box.lo;
-    lumen.scan = {croppedCopy(scan.hu, lumen.box, threads), scan.position};
-    LabelledMenisci menisci =
-        withMenisci(lumen.scan, tissue, cropped(segmentation, lumen.box, threads));
+    lumen.scan = std::move(part.scan);
+    LabelledMenisci menisci = withMenisci(lumen.scan, tissue, part.labels);
+    part.labels = {};
     lumen.labels = std::move(menisci.labels), lumen.menisci = std::move(menisci.added);
     lumen.around = taggedSurroundings(lumen.labels, threads);
     lumen.enhancement =

@@ -15,24 +15,32 @@
 
 namespace haustra::cleansing {
 
-/// Held is the box of the scan that has all labels and what is within 20 mm of them; volumes,
-/// indices and `means` are the box's.
+/// The box of a scan that has all labels (LumenLabel) and what is within 20 mm of them.
+struct LumenPart {
+    Grid scanGrid;
+    VoxelBox box;
+    CtScan scan;
+    Volume<std::uint8_t> labels;
+};
+
+/// None where nothing is labelled tagged. Fails where `scan` and `segmentation` are on different
+/// grids (badInput), or the box has 2^32 voxels (unsupported).
+Result<std::optional<LumenPart>> cropToLumen(const CtScan& scan,
+                                             const Volume<std::uint8_t>& segmentation, int threads);
+
+/// Volumes, indices and `means` are the box's.
 struct TaggedLumen {
     Grid scanGrid;
     VoxelBox box;
     CtScan scan;                         ///< less pseudo-enhancement
-    Volume<std::uint8_t> labels;         ///< LumenLabel, with menisci (menisci.h)
+    Volume<std::uint8_t> labels;         ///< with menisci (menisci.h)
     std::vector<std::uint32_t> menisci;  ///< voxels that the segmentation has not, in memory order
     PseudoEnhancement enhancement;       ///< on the scan's grid
     TaggedSurroundings around;
     LocalMeans means;
 };
 
-/// None where nothing is labelled tagged. What is measured is the same as of the whole scan. Fails
-/// where `scan` and `segmentation` (LumenLabel) are on different grids (badInput), or the box has
-/// 2^32 voxels (unsupported). O(voxels of the box); the same for any number of threads.
-Result<std::optional<TaggedLumen>> findTaggedLumen(const CtScan& scan, const TissueModel& tissue,
-                                                   const Volume<std::uint8_t>& segmentation,
-                                                   int threads);
+/// The same as of the whole scan. O(voxels of the box); the same for any number of threads.
+TaggedLumen measureTaggedLumen(LumenPart part, const TissueModel& tissue, int threads);
 
 }  // namespace haustra::cleansing

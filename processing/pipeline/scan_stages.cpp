@@ -101,10 +101,6 @@ struct SegmentedScan {
     Volume<std::uint8_t> labels;
     TissueModel tissue;
     glm::dvec3 gravity{0.0};
-
-    Result<std::optional<cleansing::TaggedLumen>> tagged(int threads) const {
-        return cleansing::findTaggedLumen(scan, tissue, labels, threads);
-    }
 };
 
 Result<SegmentedScan> readSegmentedScan(Preparation& preparation) {
@@ -253,21 +249,29 @@ Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
     const auto make = [&](const Progress& progress) -> Result<void> {
         const int threads = preparation.options().threads;
         cleansing::PartialVolumeModel model;
+        std::optional<cleansing::LumenPart> part;
         {
             const auto input = readSegmentedScan(preparation);
             if (!input) return tl::make_unexpected(input.error());
             model = cleansing::fitPartialVolume(input->scan, input->tissue, threads);
-            auto found = input->tagged(threads);
-            if (!found) return tl::make_unexpected(found.error());
-            lumen = std::move(*found);
+            auto cropped = cleansing::cropToLumen(input->scan, input->labels, threads);
+            if (!cropped) return tl::make_unexpected(cropped.error());
+            part = std::move(*cropped);
         }
-        progress(0.4);
-        // Mapped anew, so that only what is read from now on is in memory.
+        progress(0.1);
+        // Mapped anew: until the mixture is written none of the whole scan is in memory.
         const auto input = readSegmentedScan(preparation);
         if (!input) return tl::make_unexpected(input.error());
+        Volume<TissueFractions> byHu;
+        if (part) {
+            byHu = cleansing::fractionsByHu(part->scan.hu, model, threads);
+            lumen = cleansing::measureTaggedLumen(std::move(*part), input->tissue, threads);
+        }
+        progress(0.4);
         const auto rest = [&](double fraction) { progress(0.4 + 0.5 * fraction); };
-        const auto mixture = cleansing::estimateMixture(
-            input->scan, model, lumen ? &*lumen : nullptr, input->gravity, {threads, rest});
+        const auto mixture =
+            cleansing::estimateMixture(input->scan, model, std::move(byHu),
+                                       lumen ? &*lumen : nullptr, input->gravity, {threads, rest});
         return preparation.target().publishVolume(product::mixture, key, mixture, {},
                                                   madeFrom(product::mixture), threads);
     };
@@ -286,11 +290,12 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
         store::Case& target = preparation.target();
         const int threads = preparation.options().threads;
         if (!lumen) {
-            auto found = readSegmentedScan(preparation).and_then([&](const SegmentedScan& input) {
-                return input.tagged(threads);
-            });
-            if (!found) return tl::make_unexpected(found.error());
-            lumen = std::move(*found);
+            const auto input = readSegmentedScan(preparation);
+            if (!input) return tl::make_unexpected(input.error());
+            auto part = cleansing::cropToLumen(input->scan, input->labels, threads);
+            if (!part) return tl::make_unexpected(part.error());
+            if (*part)
+                lumen = cleansing::measureTaggedLumen(std::move(**part), input->tissue, threads);
         }
         progress(0.3);
         const auto input = readSegmentedScan(preparation);
@@ -306,12 +311,15 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
                 });
         };
         if (!lumen) return publish(input->labels, input->scan.hu);
-        const auto fractions = target.readVolume<TissueFractions>(product::mixture);
-        if (!fractions) return tl::make_unexpected(fractions.error());
-        const cleansing::CleansedLumen cleansed = cleansing::cleanse(
-            input->scan, input->tissue, *fractions, std::move(*lumen), threads);
+        const auto cleansed =
+            target.readVolume<TissueFractions>(product::mixture)
+                .map([&](const Volume<TissueFractions>& fractions) {
+                    return cleansing::cleanse(input->scan, input->tissue, fractions,
+                                              std::move(*lumen), threads);
+                });
+        if (!cleansed) return tl::make_unexpected(cleansed.error());
         progress(0.8);
-        return publish(cleansed.lumen, cleansed.hu);
+        return publish(cleansed->lumen, cleansed->hu);
     };
     return preparation
         .run({"cleansing", key, {product::cleansedLumen, product::cleansed}}, meter, make)

@@ -63,10 +63,13 @@ TEST_P(Confinement, ALargerFieldOfViewChangesNothing) {
         cleansing::Cleansed cleansed;
     };
     const auto make = [&](const CtScan& scan, const Volume<std::uint8_t>& labelled) {
-        const auto lumen = cleansing::findTaggedLumen(scan, scene.tissue, labelled, 2).value();
-        EXPECT_EQ(bool(lumen->enhancement), enhancedHu > 0.0);
-        EXPECT_LT(lumen->scan.hu.grid().voxelCount(), scene.labels.grid().voxelCount());
-        auto mixture = cleansing::estimateMixture(scan, model, &*lumen, gravity).whole(2);
+        auto part = cleansing::cropToLumen(scan, labelled, 2).value();
+        EXPECT_LT(part->labels.grid().voxelCount(), scene.labels.grid().voxelCount());
+        auto byHu = cleansing::fractionsByHu(part->scan.hu, model, 2);
+        const auto lumen = cleansing::measureTaggedLumen(std::move(*part), scene.tissue, 2);
+        EXPECT_EQ(bool(lumen.enhancement), enhancedHu > 0.0);
+        auto mixture =
+            cleansing::estimateMixture(scan, model, std::move(byHu), &lumen, gravity).whole(2);
         auto cleansed = cleansing::cleanse(scan, scene.tissue, mixture, labelled, 2).value();
         return Made{std::move(mixture), std::move(cleansed)};
     };
