@@ -30,6 +30,13 @@ public:
             if (level.down()[axis] != 0) vertical_ = axis;
         }
         across_ = {vertical_ == 0 ? 1 : 0, vertical_ == 2 ? 1 : 2};
+        const glm::ivec3 near = voxelsIn(cleansed.grid(), 1.5) / look_;
+        for (int k = -near.z; k <= near.z; ++k) {
+            for (int j = -near.y; j <= near.y; ++j) {
+                for (int i = -near.x; i <= near.x; ++i)
+                    beside_.push_back(glm::ivec3(i, j, k) * look_);
+            }
+        }
         const glm::ivec3 reach = glm::ivec3(windowMm / spacingMm_) / look_;
         for (int k = -reach.z; k <= reach.z; ++k) {
             for (int j = -reach.y; j <= reach.y; ++j) {
@@ -70,10 +77,9 @@ private:
     bool besideWall(glm::ivec3 v) const {
         const double air = means_.airHu.at(v.x, v.y, v.z), soft = means_.softHu.at(v.x, v.y, v.z);
         const double least = air + 0.3 * (soft - air);
-        bool found = false;
-        eachStep(hu_.grid(), v, voxelsIn(hu_.grid(), 1.5), look_,
-                 [&](glm::ivec3 n) { found = found || hu_.at(n) > least; });
-        return found;
+        return std::any_of(beside_.begin(), beside_.end(), [&](glm::ivec3 step) {
+            return hu_.grid().contains(v + step) && hu_.at(v + step) > least;
+        });
     }
 
     /// How far the wall leans, mm across per mm of depth: least squares over the gradients above
@@ -122,6 +128,7 @@ private:
     const Volume<std::int16_t>& hu_;
     const LocalMeans& means_;
     const WaterLevel& level_;
+    std::vector<glm::ivec3> beside_;
     std::vector<Place> window_;
     double halfHeightMm_;
     glm::dvec3 spacingMm_;
@@ -196,9 +203,11 @@ void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                 const glm::ivec3 v = grid.voxelAt(n);
                 if (settled[n] || !level.near(v)) continue;
                 auto straight = rim.huAt(v);
-                if (!straight && betweenAirAndFluid(segmentation, v)) {
+                if (!straight) {
                     const double open = thirdLowestAround(cleansed, v);
-                    if (cleansed[n] > open + 6.0 * means.noise.tagged) straight = open;
+                    if (cleansed[n] > open + 6.0 * means.noise.tagged &&
+                        betweenAirAndFluid(segmentation, v))
+                        straight = open;
                 }
                 if (!straight) continue;
                 const double air = airAt(v), soft = means.softHu.at(v.x, v.y, v.z);

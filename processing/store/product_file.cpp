@@ -164,8 +164,9 @@ std::optional<Digest> writeValues(int descriptor, std::size_t offset, std::size_
                                   const ValueSource& values, int threads) {
     std::vector<Digest> blocks((bytes + digestBlockBytes - 1) / digestBlockBytes);
     std::atomic<int> error{0};
-    parallelFor(blocks.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::byte> buffer(digestBlockBytes);
+    // A buffer serves several blocks.
+    parallelFor(blocks.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::byte> buffer(std::min(digestBlockBytes, bytes));
         for (std::size_t n = begin; n < end && error == 0; ++n) {
             const std::size_t start = n * digestBlockBytes;
             const auto block = std::span(buffer).first(std::min(digestBlockBytes, bytes - start));
