@@ -44,6 +44,12 @@ bool everywhere(const Grid& grid, const std::vector<glm::ivec3>& offsets, glm::i
     return true;
 }
 
+/// Of every `every`th voxel of a scan's row from `first` on, the first that is not before voxel
+/// `from`, counted from there.
+inline int firstSample(int first, int from, int every) {
+    return ((first - from) % every + every) % every;
+}
+
 /// Calls visit(voxel) for those of the grid within `reach` voxels of `v` along each axis, from it
 /// by `step`.
 template <class Visit>

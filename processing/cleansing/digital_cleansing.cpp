@@ -1,18 +1,17 @@
 #include "cleansing/digital_cleansing.h"
 
-#include "cleansing/local_means.h"
-#include "cleansing/menisci.h"
-#include "cleansing/pseudo_enhancement.h"
 #include "cleansing/refined_lumen.h"
 #include "cleansing/rim_smoothing.h"
-#include "cleansing/tagged_surroundings.h"
 #include "core/connected_labels.h"
 #include "core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace haustra::cleansing {
 namespace {
@@ -20,16 +19,17 @@ namespace {
 /// The share of the colon's own residue in each voxel of the surroundings. It falls from shell to
 /// shell once it is not beside the tagging: where it rises again, another bowel or bone lies across
 /// the wall.
+template <class Mixture>
 std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& around,
-                                                     const Volume<TissueFractions>& mixture) {
+                                                     const Grid& grid, const Mixture& mixture) {
     constexpr int notRising = 25;  // in 255ths, for the noise
-    const Grid& grid = mixture.grid();
     std::vector<std::vector<std::uint8_t>> shares(around.shells.size());
     // Share and shell (from 1) of each voxel so far.
-    std::vector<std::uint8_t> share(grid.voxelCount(), 0), shellOf(grid.voxelCount(), 0);
+    Volume<std::uint8_t> shareAt(grid, std::uint8_t(0)), shellAt(grid, std::uint8_t(0));
+    const auto share = shareAt.writable(), shellOf = shellAt.writable();
     for (std::size_t shell = 0; shell < around.shells.size(); ++shell) {
         for (std::uint32_t n : around.shells[shell]) {
-            int tagged = mixture[n].tagged;
+            int tagged = mixture(n).tagged;
             if (int(shell) > around.besideShells && tagged > 0) {
                 const glm::ivec3 v = grid.voxelAt(n);
                 const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
@@ -65,57 +65,76 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
         return fail(ErrorKind::badInput, "the mixture or segmentation is not on the scan's grid",
                     "cleansing");
     }
-    if (grid.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
-        return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "cleansing");
-    }
-    const Volume<std::uint8_t> labels = withMenisci(scan, tissue, segmentation);
-    const TaggedSurroundings around = taggedSurroundings(labels, threads);
-    if (around.shells[0].empty()) return Cleansed{scan.hu.clone(), segmentation.clone()};
-    const PseudoEnhancement enhancement = measurePseudoEnhancement(scan, tissue, labels, threads);
-    const CtScan corrected =
-        enhancement ? withoutPseudoEnhancement(scan, enhancement, threads) : CtScan{};
-    const CtScan& seen = enhancement ? corrected : scan;
-    Cleansed cleansed{seen.hu.clone(), {}};
-    const LocalMeans means = measureLocalMeans(seen, tissue, labels, around, threads);
-    const auto shares = residueShares(around, mixture);
+    auto part = cropToLumen(scan, segmentation, threads);
+    if (!part) return tl::make_unexpected(part.error());
+    if (!*part) return Cleansed{scan.hu.clone(), segmentation.clone()};
+    CleansedLumen cleansed = cleanse(
+        scan, tissue, mixture, measureTaggedLumen(std::move(**part), tissue, threads), threads);
+    return Cleansed{std::move(cleansed.hu).whole(threads),
+                    std::move(cleansed.lumen).whole(threads)};
+}
+
+CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
+                      const Volume<TissueFractions>& wholeMixture, TaggedLumen lumen, int threads) {
+    const Grid grid = lumen.scan.hu.grid();
+    const TaggedSurroundings& around = lumen.around;
+    const auto mixture = [&](std::size_t n) {
+        return wholeMixture.at(grid.voxelAt(n) + lumen.box.lo);
+    };
+    const auto shares = residueShares(around, grid, mixture);
     std::vector<CleansedVoxel> changed;
     for (std::size_t shell = 0; shell < shares.size(); ++shell) {
         for (std::size_t m = 0; m < shares[shell].size(); ++m) {
             const std::uint32_t n = around.shells[shell][m];
             if (shares[shell][m] > 0 || shell == 0)
-                changed.push_back({n, shares[shell][m], mixture[n].air});
+                changed.push_back({n, shares[shell][m], mixture(n).air});
         }
     }
     const auto byIndex = [](const CleansedVoxel& a, const CleansedVoxel& b) {
         return a.index < b.index;
     };
     std::sort(changed.begin(), changed.end(), byIndex);
-    const auto out = cleansed.hu.writable();
+    Volume<std::int16_t> hu = std::move(lumen.scan.hu);
+    const auto out = hu.writable();
+    const LocalMeans& means = lumen.means;
     parallelFor(changed.size(), 1 << 14, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t m = begin; m < end; ++m) {
             const CleansedVoxel& voxel = changed[m];
             const glm::ivec3 v = grid.voxelAt(voxel.index);
             const double contrast = means.taggedHu.at(v) - means.airHu.at(v.x, v.y, v.z);
-            const double hu = seen.hu[voxel.index] - voxel.tagged / 255.0 * contrast;
-            out[voxel.index] = std::int16_t(std::clamp(std::lround(hu), -1024L, 3071L));
+            const double cleansed = out[voxel.index] - voxel.tagged / 255.0 * contrast;
+            out[voxel.index] = std::int16_t(std::clamp(std::lround(cleansed), -1024L, 3071L));
         }
     });
     // What the smoothing moves beside them may be wall, or air, from now on as well.
     const std::size_t cleansedVoxels = changed.size();
-    for (const std::uint32_t n : smoothRim(cleansed.hu, labels, tissue, around, threads)) {
-        const CleansedVoxel voxel{n, 0, mixture[n].air};
+    for (const std::uint32_t n : smoothRim(hu, lumen.labels, tissue, around, threads)) {
+        const CleansedVoxel voxel{n, 0, mixture(n).air};
         const auto sorted = std::span(changed).first(cleansedVoxels);
         if (!std::binary_search(sorted.begin(), sorted.end(), voxel, byIndex))
             changed.push_back(voxel);
     }
     std::inplace_merge(changed.begin(), changed.begin() + std::ptrdiff_t(cleansedVoxels),
                        changed.end(), byIndex);
-    cleansed.lumen = refineLumen(cleansed.hu, tissue, means.airHu, labels, changed);
+    Volume<std::uint8_t> open = refineLumen(hu, tissue, means.airHu, lumen.labels, changed);
     // The way on through a narrow place is no less there because its wall looks thicker now.
-    joinBodies(
-        cleansed.lumen,
-        [&](std::size_t n) { return LumenLabel(segmentation[n]) != LumenLabel::outside; },
-        [&](std::size_t n) { return segmentation[n]; }, {.dropOthers = false});
+    const auto segmented = [&](std::size_t n) {
+        const bool isMeniscus =
+            std::binary_search(lumen.menisci.begin(), lumen.menisci.end(), std::uint32_t(n));
+        return isMeniscus ? std::uint8_t(LumenLabel::outside) : lumen.labels[n];
+    };
+    joinBodies(open, [&](std::size_t n) { return LumenLabel(segmented(n)) != LumenLabel::outside; },
+               segmented, {.dropOthers = false});
+
+    CleansedLumen cleansed;
+    cleansed.hu = {lumen.scanGrid, lumen.box, std::move(hu), {}};
+    cleansed.lumen = {lumen.scanGrid, lumen.box, std::move(open), {}};
+    cleansed.hu.beyond = [enhancement = std::move(lumen.enhancement),
+                          before = std::make_shared<const Volume<std::int16_t>>(scan.hu.share())](
+                             glm::ivec3 first, std::span<std::int16_t> row) {
+        std::copy_n(&before->voxels()[before->grid().index(first)], row.size(), row.begin());
+        if (enhancement) enhancement.takeOff(first, row);
+    };
     return cleansed;
 }
 

@@ -1,6 +1,8 @@
 // Digital cleansing: the scan as it would be had the tagged residue in the colon been air.
 #pragma once
 
+#include "cleansing/tagged_lumen.h"
+#include "core/boxed_volume.h"
 #include "core/ct_scan.h"
 #include "core/result.h"
 #include "core/tissue.h"
@@ -23,5 +25,17 @@ struct Cleansed {
 Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
                          const Volume<TissueFractions>& mixture,
                          const Volume<std::uint8_t>& segmentation, int threads = 0);
+
+/// The same with the lumen's box alone held.
+struct CleansedLumen {
+    BoxedVolume<std::int16_t> hu;
+    BoxedVolume<std::uint8_t> lumen;
+};
+
+/// The same of what measureTaggedLumen has measured; beyond its box HU follow from the scan, whose
+/// memory the result shares, as they are read. Takes some 4 bytes for each voxel of the box beside
+/// `lumen`'s own.
+CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
+                      const Volume<TissueFractions>& mixture, TaggedLumen lumen, int threads = 0);
 
 }  // namespace haustra::cleansing

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace haustra::cleansing {
 namespace {
@@ -29,6 +30,26 @@ public:
             if (level.down()[axis] != 0) vertical_ = axis;
         }
         across_ = {vertical_ == 0 ? 1 : 0, vertical_ == 2 ? 1 : 2};
+        const glm::ivec3 near = voxelsIn(cleansed.grid(), 1.5) / look_;
+        for (int k = -near.z; k <= near.z; ++k) {
+            for (int j = -near.y; j <= near.y; ++j) {
+                for (int i = -near.x; i <= near.x; ++i)
+                    beside_.push_back(glm::ivec3(i, j, k) * look_);
+            }
+        }
+        const glm::ivec3 reach = glm::ivec3(windowMm / spacingMm_) / look_;
+        for (int k = -reach.z; k <= reach.z; ++k) {
+            for (int j = -reach.y; j <= reach.y; ++j) {
+                for (int i = -reach.x; i <= reach.x; ++i) {
+                    const glm::ivec3 voxels = glm::ivec3(i, j, k) * look_;
+                    const glm::dvec3 d = glm::dvec3(voxels) * spacingMm_;
+                    const double distance2 = glm::dot(d, d);
+                    if (distance2 > windowMm * windowMm) continue;
+                    window_.push_back({voxels, d[vertical_] * level.down()[vertical_],
+                                       std::exp(-0.5 * distance2 / 4.0)});
+                }
+            }
+        }
     }
 
     /// HU that the wall above and below gives a voxel.
@@ -56,10 +77,9 @@ private:
     bool besideWall(glm::ivec3 v) const {
         const double air = means_.airHu.at(v.x, v.y, v.z), soft = means_.softHu.at(v.x, v.y, v.z);
         const double least = air + 0.3 * (soft - air);
-        bool found = false;
-        eachStep(hu_.grid(), v, voxelsIn(hu_.grid(), 1.5), look_,
-                 [&](glm::ivec3 n) { found = found || hu_.at(n) > least; });
-        return found;
+        return std::any_of(beside_.begin(), beside_.end(), [&](glm::ivec3 step) {
+            return hu_.grid().contains(v + step) && hu_.at(v + step) > least;
+        });
     }
 
     /// How far the wall leans, mm across per mm of depth: least squares over the gradients above
@@ -68,13 +88,11 @@ private:
         const Grid& grid = hu_.grid();
         const double clear = halfHeightMm_ + spacingMm_[vertical_];
         double aa = 0.0, ab = 0.0, bb = 0.0, av = 0.0, bv = 0.0, vv = 0.0;
-        eachStep(grid, v, glm::ivec3(windowMm / spacingMm_), look_, [&](glm::ivec3 n) {
-            const glm::dvec3 d = glm::dvec3(n - v) * spacingMm_;
-            const double there = depthMm + d[vertical_] * level_.down()[vertical_];
-            const double distance2 = glm::dot(d, d);
-            if (std::abs(there) < clear || distance2 > windowMm * windowMm ||
-                !grid.contains(n - look_) || !grid.contains(n + look_))
-                return;
+        for (const Place& place : window_) {
+            const glm::ivec3 n = v + place.voxels;
+            if (std::abs(depthMm + place.downMm) < clear || !grid.contains(n - look_) ||
+                !grid.contains(n + look_))
+                continue;
             const auto along = [&](int axis) {
                 glm::ivec3 step(0);
                 step[axis] = look_[axis];
@@ -83,10 +101,10 @@ private:
             };
             const double a = along(across_[0]), b = along(across_[1]),
                          down = along(vertical_) * level_.down()[vertical_];
-            const double w = std::exp(-0.5 * distance2 / 4.0);
+            const double w = place.weight;
             aa += w * a * a, ab += w * a * b, bb += w * b * b;
             av += w * a * down, bv += w * b * down, vv += w * down * down;
-        });
+        }
         // Upright unless the gradients say otherwise.
         const double ridge = 0.01 * (aa + bb + vv) + 1e-3;
         aa += ridge, bb += ridge;
@@ -101,9 +119,17 @@ private:
         return slope;
     }
 
+    /// Of the window in which the wall's direction is sought.
+    struct Place {
+        glm::ivec3 voxels;
+        double downMm, weight;
+    };
+
     const Volume<std::int16_t>& hu_;
     const LocalMeans& means_;
     const WaterLevel& level_;
+    std::vector<glm::ivec3> beside_;
+    std::vector<Place> window_;
     double halfHeightMm_;
     glm::dvec3 spacingMm_;
     glm::ivec3 look_;
@@ -177,9 +203,11 @@ void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                 const glm::ivec3 v = grid.voxelAt(n);
                 if (settled[n] || !level.near(v)) continue;
                 auto straight = rim.huAt(v);
-                if (!straight && betweenAirAndFluid(segmentation, v)) {
+                if (!straight) {
                     const double open = thirdLowestAround(cleansed, v);
-                    if (cleansed[n] > open + 6.0 * means.noise.tagged) straight = open;
+                    if (cleansed[n] > open + 6.0 * means.noise.tagged &&
+                        betweenAirAndFluid(segmentation, v))
+                        straight = open;
                 }
                 if (!straight) continue;
                 const double air = airAt(v), soft = means.softHu.at(v.x, v.y, v.z);

@@ -72,57 +72,60 @@ void fill(SmoothField& field, const CellSums& sums, double prior, double priorVo
 SmoothField::SmoothField(const Grid& grid, glm::ivec3 voxelsPerCell)
     : perCell_(voxelsPerCell),
       cells_((grid.size + voxelsPerCell - 1) / voxelsPerCell),
-      perVoxel_(1.0f / glm::vec3(voxelsPerCell)),
-      values_(std::size_t(cells_.x) * std::size_t(cells_.y) * std::size_t(cells_.z), 0.0f) {}
-
-float SmoothField::at(int i, int j, int k) const {
-    const glm::vec3 p = glm::clamp((glm::vec3(i, j, k) + 0.5f) * perVoxel_ - 0.5f, glm::vec3(0.0f),
-                                   glm::vec3(cells_ - 1));
-    const glm::ivec3 lo = glm::min(glm::ivec3(p), glm::max(cells_ - 2, glm::ivec3(0)));
-    const glm::ivec3 hi = glm::min(lo + 1, cells_ - 1);
-    const glm::vec3 f = p - glm::vec3(lo);
-    auto x = [&](int b, int c) {
-        const float a = values_[cellIndex(lo.x, b, c)];
-        return a + f.x * (values_[cellIndex(hi.x, b, c)] - a);
-    };
-    auto y = [&](int c) {
-        const float a = x(lo.y, c);
-        return a + f.y * (x(hi.y, c) - a);
-    };
-    const float a = y(lo.z);
-    return a + f.z * (y(hi.z) - a);
+      values_(std::size_t(cells_.x) * std::size_t(cells_.y) * std::size_t(cells_.z), 0.0f) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const int per = perCell_[axis], last = cells_[axis] - 1;
+        for (int n = 0; n < grid.size[axis]; ++n) {
+            // Of the voxel's place in its cell alone: wherever a grid begins, the same.
+            const float past = (float(n % per) + 0.5f) / float(per) - 0.5f;
+            const int cell = past < 0.0f ? n / per - 1 : n / per;
+            const float share = past < 0.0f ? past + 1.0f : past;
+            between_[std::size_t(axis)].push_back(
+                {std::max(cell, 0), std::min(cell + 1, last), cell < 0 ? 0.0f : share});
+        }
+    }
 }
 
-void SmoothField::row(int j, int k, std::span<float> values) const {
-    const glm::vec2 p =
-        glm::clamp((glm::vec2(j, k) + 0.5f) * glm::vec2(perVoxel_.y, perVoxel_.z) - 0.5f,
-                   glm::vec2(0.0f), glm::vec2(cells_.y - 1, cells_.z - 1));
-    const glm::ivec2 lo = glm::min(glm::ivec2(p), glm::max(glm::ivec2(cells_.y, cells_.z) - 2, 0));
-    const glm::ivec2 hi = glm::min(lo + 1, glm::ivec2(cells_.y, cells_.z) - 1);
-    const glm::vec2 f = p - glm::vec2(lo);
+float SmoothField::at(int i, int j, int k) const {
+    const Between &x = between_[0][std::size_t(i)], &y = between_[1][std::size_t(j)],
+                  &z = between_[2][std::size_t(k)];
+    const auto along = [&](int b, int c) {
+        const float* row = &values_[cellIndex(0, b, c)];
+        return row[x.lo] + x.share * (row[x.hi] - row[x.lo]);
+    };
+    const auto across = [&](int c) {
+        const float a = along(y.lo, c);
+        return a + y.share * (along(y.hi, c) - a);
+    };
+    const float a = across(z.lo);
+    return z.share == 0.0f ? a : a + z.share * (across(z.hi) - a);
+}
+
+void SmoothField::row(glm::ivec3 first, std::span<float> values) const {
+    const Between &y = between_[1][std::size_t(first.y)], &z = between_[2][std::size_t(first.z)];
     std::vector<float> across(std::size_t(cells_.x));
     for (int x = 0; x < cells_.x; ++x) {
-        const auto mixed = [&](int z) {
-            return glm::mix(values_[cellIndex(x, lo.x, z)], values_[cellIndex(x, hi.x, z)], f.x);
+        const auto mixed = [&](int c) {
+            return glm::mix(values_[cellIndex(x, y.lo, c)], values_[cellIndex(x, y.hi, c)],
+                            y.share);
         };
-        across[std::size_t(x)] = glm::mix(mixed(lo.y), mixed(hi.y), f.y);
+        across[std::size_t(x)] = glm::mix(mixed(z.lo), mixed(z.hi), z.share);
     }
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const float at =
-            std::clamp((float(i) + 0.5f) * perVoxel_.x - 0.5f, 0.0f, float(cells_.x - 1));
-        const int left = std::min(int(at), std::max(cells_.x - 2, 0)),
-                  right = std::min(left + 1, cells_.x - 1);
-        values[i] =
-            glm::mix(across[std::size_t(left)], across[std::size_t(right)], at - float(left));
+        const Between& x = between_[0][std::size_t(first.x) + i];
+        values[i] = glm::mix(across[std::size_t(x.lo)], across[std::size_t(x.hi)], x.share);
     }
+}
+
+glm::ivec3 cellVoxels(const Grid& grid) {
+    return voxelsIn(grid, cellMm);
 }
 
 LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                              const Volume<std::uint8_t>& segmentation,
-                             const TaggedSurroundings& around, int threads) {
+                             const TaggedSurroundings& around, int threads, glm::ivec3 from) {
     const Grid& grid = scan.hu.grid();
-    const glm::ivec3 perCell =
-        glm::max(glm::ivec3(glm::round(cellMm / grid.spacingMm())), glm::ivec3(1));
+    const glm::ivec3 perCell = cellVoxels(grid);
     LocalMeans means;
     SmoothField taggedHu(grid, perCell);
     means.softHu = SmoothField(grid, perCell);
@@ -134,9 +137,10 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     const auto isTagged = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::tagged; };
     const auto isAir = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::air; };
 
-    means.noise = measureNoise(scan, tissue, segmentation, threads);
+    means.noise = measureNoise(scan, tissue, segmentation, threads, from);
     const float unit = float(grid.voxelVolumeMm3() / voxelMm3);
     const int every = std::max(1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())));
+    const int sampled = from.x + from.y + from.z;
 
     // One slab of cells is one thread's, so sums do not depend on the threads.
     CellSums air(taggedHu.values().size()), tagged(taggedHu.values().size()),
@@ -170,7 +174,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                         }
                         weight *= unit;
                         tagged.weight[cell] += weight, tagged.value[cell] += weight * hu[n];
-                    } else if (isAir(n) && (i + j + k) % every == 0) {
+                    } else if (isAir(n) && (i + j + k + sampled) % every == 0) {
                         if (!everywhere(grid, ball, {i, j, k}, isAir)) continue;
                         const std::size_t slab = std::size_t(k / perCell.z);
                         airSum[slab] += hu[n], airCount[slab] += 1.0;

@@ -6,6 +6,7 @@
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -27,16 +28,25 @@ public:
     }
     glm::ivec3 voxelsPerCell() const { return perCell_; }
     float at(int i, int j, int k) const;
-    /// The values at (0, j, k), (1, j, k) …
-    void row(int j, int k, std::span<float> values) const;
+    /// The values at `first` and the voxels after it along i.
+    void row(glm::ivec3 first, std::span<float> values) const;
     bool empty() const { return values_.empty(); }
     std::vector<float>& values() { return values_; }
 
 private:
+    /// The cells between whose centres a voxel's lies, and the second one's share.
+    struct Between {
+        int lo, hi;
+        float share;
+    };
+
     glm::ivec3 perCell_{1}, cells_{0};
-    glm::vec3 perVoxel_{1.0f};
+    std::array<std::vector<Between>, 3> between_;  // of the voxels along each axis
     std::vector<float> values_;
 };
+
+/// Voxels along each axis of the cells that LocalMeans are measured in.
+glm::ivec3 cellVoxels(const Grid& grid);
 
 /// What pure contents and pure wall measure near the tagged colon.
 struct LocalMeans {
@@ -51,9 +61,12 @@ struct LocalMeans {
 /// Means over the voxels that lie deeper inside their material than the scanner's blur reaches
 /// (1.6 mm), by normalised convolution: a place that has none nearby takes the mean of a wider
 /// neighbourhood, and in the end the class's own. Tagged material is what `segmentation` says it
-/// is; `around` is its surroundings. O(labelled voxels); the same for any number of threads.
+/// is; `around` is its surroundings. Of a scan's box that begins at its voxel `from`, a whole
+/// number of cells (cellVoxels), and holds what is within 20 mm of the labels, the same as of the
+/// whole. O(labelled voxels); the same for any number of threads.
 LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                              const Volume<std::uint8_t>& segmentation,
-                             const TaggedSurroundings& around, int threads);
+                             const TaggedSurroundings& around, int threads,
+                             glm::ivec3 from = glm::ivec3(0));
 
 }  // namespace haustra::cleansing

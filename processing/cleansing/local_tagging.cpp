@@ -53,7 +53,8 @@ Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t
     };
 
     // Even contents: the blur of nothing else reaches in.
-    std::vector<std::uint8_t> even(grid.voxelCount(), 0);
+    Volume<std::uint8_t> evenVoxels(grid, std::uint8_t(0));
+    const auto even = evenVoxels.writable();
     for (const auto& shell : around.shells) {
         parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t m = begin; m < end; ++m) {

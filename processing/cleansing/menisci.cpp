@@ -47,11 +47,12 @@ int rimHu(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels, gl
 
 }  // namespace
 
-Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
-                                 const Volume<std::uint8_t>& segmentation) {
+LabelledMenisci withMenisci(const CtScan& scan, const TissueModel& tissue,
+                            const Volume<std::uint8_t>& segmentation) {
     const Grid& grid = scan.hu.grid();
     const double softHu = tissue.meanHu[int(Tissue::soft)];
-    Volume<std::uint8_t> labels = segmentation.clone();
+    LabelledMenisci menisci{segmentation.clone(), {}};
+    Volume<std::uint8_t>& labels = menisci.labels;
     const auto out = labels.writable();
     struct Rim {
         glm::ivec3 voxel;
@@ -84,6 +85,7 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
                     continue;
                 if (!joinsNothing(labels, index)) continue;  // there may be a wall too thin to show
                 out[index] = std::uint8_t(LumenLabel::tagged);
+                menisci.added.push_back(std::uint32_t(index));
                 next.push_back({n, least, there});
             }
         }
@@ -99,7 +101,8 @@ Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
         for (const Rim& rim : front)
             spread(rim.voxel, rim.mm, [&] { return rim.leastHu; });
     }
-    return labels;
+    std::sort(menisci.added.begin(), menisci.added.end());
+    return menisci;
 }
 
 }  // namespace haustra::cleansing

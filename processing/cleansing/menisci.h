@@ -6,8 +6,15 @@
 #include "core/volume.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace haustra::cleansing {
+
+/// Labels (LumenLabel), and the voxels, in memory order, that were none before.
+struct LabelledMenisci {
+    Volume<std::uint8_t> labels;
+    std::vector<std::uint32_t> added;
+};
 
 /// `segmentation` (LumenLabel) with the menisci labelled as tagged: fluid climbs a wall by surface
 /// tension, past the flat level where a segmentation by levels ends. Added are unlabelled voxels at
@@ -15,7 +22,7 @@ namespace haustra::cleansing {
 /// more than half as dense, from soft tissue on, as the pool's rim where they begin; and within 1.5
 /// mm of any pool what the segmentation fell short of. Where voxels are large, 6, 4 and 2 of them.
 /// O(voxels).
-Volume<std::uint8_t> withMenisci(const CtScan& scan, const TissueModel& tissue,
-                                 const Volume<std::uint8_t>& segmentation);
+LabelledMenisci withMenisci(const CtScan& scan, const TissueModel& tissue,
+                            const Volume<std::uint8_t>& segmentation);
 
 }  // namespace haustra::cleansing

@@ -4,18 +4,17 @@
 #include "cleansing/interface_layer.h"
 #include "cleansing/level_rim.h"
 #include "cleansing/local_means.h"
-#include "cleansing/menisci.h"
-#include "cleansing/partial_volume_em.h"
-#include "cleansing/pseudo_enhancement.h"
 #include "cleansing/submerged_mixture.h"
-#include "cleansing/tagged_surroundings.h"
 #include "cleansing/thin_films.h"
 #include "cleansing/water_level.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
 #include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace haustra::cleansing {
 namespace {
@@ -191,66 +190,86 @@ private:
 Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const TissueModel& tissue,
                                                 const Volume<std::uint8_t>& segmentation,
                                                 glm::dvec3 gravity, const MixtureOptions& options) {
-    const Grid& grid = scan.hu.grid();
-    if (!sameGrid(grid, segmentation.grid())) {
-        return fail(ErrorKind::badInput, "the segmentation is not on the scan's grid", "mixture");
-    }
-    if (grid.voxelCount() > std::numeric_limits<std::uint32_t>::max()) {
-        return fail(ErrorKind::unsupported, "the scan has more than 2^32 voxels", "mixture");
-    }
+    auto part = cropToLumen(scan, segmentation, options.threads);
+    if (!part) return tl::make_unexpected(part.error());
+    const PartialVolumeModel model = fitPartialVolume(scan, tissue, options.threads);
+    if (!*part)
+        return estimateMixture(scan, model, {}, nullptr, gravity, options).whole(options.threads);
+    auto byHu = fractionsByHu((*part)->scan.hu, model, options.threads);
+    const TaggedLumen lumen = measureTaggedLumen(std::move(**part), tissue, options.threads);
+    return estimateMixture(scan, model, std::move(byHu), &lumen, gravity, options)
+        .whole(options.threads);
+}
+
+Volume<TissueFractions> fractionsByHu(const Volume<std::int16_t>& hu,
+                                      const PartialVolumeModel& model, int threads) {
+    Volume<TissueFractions> fractions(hu.grid());
+    const auto out = fractions.writable();
+    parallelFor(out.size(), std::size_t(1) << 20, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            out[n] = model.fractionsOf(hu[n]);
+    });
+    return fractions;
+}
+
+BoxedVolume<TissueFractions> estimateMixture(const CtScan& scan, const PartialVolumeModel& model,
+                                             Volume<TissueFractions> byHu, const TaggedLumen* lumen,
+                                             glm::dvec3 gravity, const MixtureOptions& options) {
     auto progress = [&](double fraction) {
         if (options.progress) options.progress(fraction);
     };
     progress(0.0);
-    const PartialVolumeModel model = fitPartialVolume(scan, tissue, options.threads);
-    progress(0.1);
-    Volume<TissueFractions> mixture(grid);
+    BoxedVolume<TissueFractions> result;
+    result.grid = scan.hu.grid();
+    // A function can be copied, which a volume is not.
+    result.beyond = [model, hu = std::make_shared<const Volume<std::int16_t>>(scan.hu.share())](
+                        glm::ivec3 first, std::span<TissueFractions> row) {
+        const std::int16_t* from = &hu->voxels()[hu->grid().index(first)];
+        for (std::size_t i = 0; i < row.size(); ++i)
+            row[i] = model.fractionsOf(from[i]);
+    };
+    if (!lumen) return result;
+    const int threads = options.threads;
+    const CtScan& seen = lumen->scan;
+    const Volume<std::uint8_t>& labels = lumen->labels;
+    const LocalMeans& means = lumen->means;
+    const TaggedSurroundings& around = lumen->around;
+    Volume<TissueFractions> mixture = std::move(byHu);
     const auto out = mixture.writable();
-    const auto hu = scan.hu.voxels();
-    parallelFor(out.size(), std::size_t(1) << 20, options.threads,
-                [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t n = begin; n < end; ++n)
-                        out[n] = model.fractionsOf(hu[n]);
-                });
     progress(0.2);
-    const Volume<std::uint8_t> labels = withMenisci(scan, tissue, segmentation);
-    const TaggedSurroundings around = taggedSurroundings(labels, options.threads);
-    progress(0.3);
-    if (around.shells[0].empty()) return mixture;
-    const PseudoEnhancement enhancement =
-        measurePseudoEnhancement(scan, tissue, labels, options.threads);
-    const CtScan corrected =
-        enhancement ? withoutPseudoEnhancement(scan, enhancement, options.threads) : CtScan{};
-    const CtScan& seen = enhancement ? corrected : scan;
-    const LocalMeans means = measureLocalMeans(seen, tissue, labels, around, options.threads);
-    progress(0.5);
-    const PointSpread spread = measurePointSpread(seen, labels, means, options.threads);
+    const PointSpread spread = measurePointSpread(seen, labels, means, threads);
     const InterfaceLayer interfaces(seen, labels, means, spread, gravity);
-    progress(0.6);
-    const WaterLevel level(seen, means, interfaces, around, gravity, options.threads);
+    progress(0.4);
+    const WaterLevel level(seen, means, interfaces, around, gravity, threads);
     const ColonMixture colon(seen, labels, means, interfaces, level);
-    for (const auto& shell : around.shells) {
-        parallelFor(shell.size(), 4096, options.threads, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n)
-                out[shell[n]] = colon.at(shell[n]);
-        });
-    }
-    settleSubmerged(seen, labels, means, spread, around, mixture, options.threads);
-    progress(0.8);
-    const Volume<std::uint8_t> films =
-        settleFilms(seen, labels, means, spread, around, mixture, options.threads);
-    settleRim(seen, labels, means, level, spread, around, films, mixture, options.threads);
     // Where no tagging is left fat, which the two-tissue model has not, is told from air as far
     // off.
-    for (const auto& shell : around.shells) {
-        for (const std::uint32_t index : shell) {
-            TissueFractions& fractions = out[index];
-            if (fractions.tagged == 0)
-                fractions.air = std::min(fractions.air, model.fractionsOf(hu[index]).air);
+    std::vector<std::vector<std::uint8_t>> mostAir(around.shells.size());
+    for (std::size_t s = 0; s < around.shells.size(); ++s) {
+        const auto& shell = around.shells[s];
+        mostAir[s].resize(shell.size());
+        parallelFor(shell.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                mostAir[s][n] = out[shell[n]].air;
+                out[shell[n]] = colon.at(shell[n]);
+            }
+        });
+    }
+    progress(0.6);
+    settleSubmerged(seen, labels, means, spread, around, mixture, threads);
+    progress(0.8);
+    const Volume<std::uint8_t> films =
+        settleFilms(seen, labels, means, spread, around, mixture, threads);
+    settleRim(seen, labels, means, level, spread, around, films, mixture, threads);
+    for (std::size_t s = 0; s < around.shells.size(); ++s) {
+        for (std::size_t n = 0; n < mostAir[s].size(); ++n) {
+            TissueFractions& fractions = out[around.shells[s][n]];
+            if (fractions.tagged == 0) fractions.air = std::min(fractions.air, mostAir[s][n]);
         }
     }
+    result.box = lumen->box, result.part = std::move(mixture);
     progress(1.0);
-    return mixture;
+    return result;
 }
 
 }  // namespace haustra::cleansing

@@ -1,6 +1,9 @@
 // Which tissues each voxel holds, and how much of each.
 #pragma once
 
+#include "cleansing/partial_volume_em.h"
+#include "cleansing/tagged_lumen.h"
+#include "core/boxed_volume.h"
 #include "core/ct_scan.h"
 #include "core/parallel.h"
 #include "core/result.h"
@@ -29,5 +32,19 @@ Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const Tissue
                                                 const Volume<std::uint8_t>& segmentation,
                                                 glm::dvec3 gravity,
                                                 const MixtureOptions& options = {});
+
+/// The fractions by HU alone.
+Volume<TissueFractions> fractionsByHu(const Volume<std::int16_t>& hu,
+                                      const PartialVolumeModel& model, int threads);
+
+/// estimateMixture in its steps, each with no more in memory than it needs: `model` of the scan,
+/// the fractions `byHu` of its LumenPart, and what was measured of that; `lumen` is null where
+/// there is no tagging. Held is the lumen's box: beyond it fractions follow from the scan, whose
+/// memory the result shares, as they are read. Takes some 2 bytes for each voxel of the box beside
+/// `byHu`.
+BoxedVolume<TissueFractions> estimateMixture(const CtScan& scan, const PartialVolumeModel& model,
+                                             Volume<TissueFractions> byHu, const TaggedLumen* lumen,
+                                             glm::dvec3 gravity,
+                                             const MixtureOptions& options = {});
 
 }  // namespace haustra::cleansing

@@ -38,14 +38,14 @@ double standardDeviation(const Counts& counts) {
 
 /// Blocks of 6 mm that hold tagging, and those beside them.
 std::vector<char> blocksNearTagging(const Volume<std::uint8_t>& segmentation, glm::ivec3 block,
-                                    glm::ivec3 blocks) {
+                                    glm::ivec3 blocks, glm::ivec3 from) {
     const Grid& grid = segmentation.grid();
     std::vector<char> near(std::size_t(blocks.x) * std::size_t(blocks.y) * std::size_t(blocks.z));
     for (int k = 0; k < grid.size.z; ++k) {
         for (int j = 0; j < grid.size.y; ++j) {
             for (int i = 0; i < grid.size.x; ++i) {
                 if (LumenLabel(segmentation.at(i, j, k)) != LumenLabel::tagged) continue;
-                const glm::ivec3 b = glm::ivec3(i, j, k) / block;
+                const glm::ivec3 b = (glm::ivec3(i, j, k) + from) / block - from / block;
                 const glm::ivec3 lo = glm::max(b - 1, glm::ivec3(0)),
                                  hi = glm::min(b + 1, blocks - 1);
                 for (int c = lo.z; c <= hi.z; ++c) {
@@ -55,7 +55,8 @@ std::vector<char> blocksNearTagging(const Volume<std::uint8_t>& segmentation, gl
                         std::fill(row + lo.x, row + hi.x + 1, 1);
                     }
                 }
-                i = (b.x + 1) * block.x - 1;  // the rest of the block adds nothing
+                // The rest of the block adds nothing.
+                i = (b.x + from.x / block.x + 1) * block.x - 1 - from.x;
             }
         }
     }
@@ -65,7 +66,7 @@ std::vector<char> blocksNearTagging(const Volume<std::uint8_t>& segmentation, gl
 }  // namespace
 
 NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
-                     const Volume<std::uint8_t>& segmentation, int threads) {
+                     const Volume<std::uint8_t>& segmentation, int threads, glm::ivec3 from) {
     const Grid& grid = scan.hu.grid();
     const std::vector<glm::ivec3> ball = blurBall(grid);
     const glm::ivec3 apart(glm::ceil(apartMm / grid.spacingMm()));
@@ -73,9 +74,10 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
         return std::max(
             {1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())), int(voxels / samples)});
     };
+    // Blocks, and the voxels looked at, are those of the whole scan.
     const glm::ivec3 block = voxelsIn(grid, apartFromTaggingMm),
-                     blocks = (grid.size + block - 1) / block;
-    const std::vector<char> near = blocksNearTagging(segmentation, block, blocks);
+                     blocks = (from + grid.size + block - 1) / block - from / block;
+    const std::vector<char> near = blocksNearTagging(segmentation, block, blocks, from);
 
     /// Differences about the voxels of which `is` holds, each deep inside.
     const auto differences = [&](const auto& wanted, const auto& is, int every) {
@@ -85,7 +87,8 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
             Counts some{};
             for (int k = int(begin); k < int(end); ++k) {
                 for (int j = 0; j < grid.size.y; ++j) {
-                    for (int i = (j + 2 * k) % every; i < grid.size.x; i += every) {
+                    for (int i = firstSample(j + from.y + 2 * (k + from.z), from.x, every);
+                         i < grid.size.x; i += every) {
                         const glm::ivec3 v(i, j, k);
                         const auto deep = [&](glm::ivec3 n) {
                             return is(grid.index(n)) && everywhere(grid, ball, n, is);
@@ -130,7 +133,7 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
                  window = std::max(70.0, 4.5 * std::max(sd.gas, sd.tagged));
     sd.soft = differences(
         [&](glm::ivec3 v) {
-            const glm::ivec3 b = v / block;
+            const glm::ivec3 b = (v + from) / block - from / block;
             return near[(std::size_t(b.z) * std::size_t(blocks.y) + std::size_t(b.y)) *
                             std::size_t(blocks.x) +
                         std::size_t(b.x)] != 0;

@@ -19,13 +19,13 @@ constexpr double sampleMm3 = 4.0;  // one voxel of so much is looked at
 constexpr double leastEdgeHu = 4.0;
 constexpr double fewest = 500.0;
 
-/// The tagging's excess over gas, in cells of one slice each.
+/// The tagging's excess over gas, in cells of one slice each of the whole scan.
 SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentation, double airHu,
-                     int threads) {
+                     const Grid& whole, glm::ivec3 from, int threads) {
     const Grid& grid = scan.hu.grid();
     glm::ivec3 perCell = voxelsIn(grid, cellMm);
     perCell.z = 1;
-    SmoothField excess(grid, perCell);
+    SmoothField excess(whole, perCell);
     std::vector<float>& values = excess.values();
     const float share = 1.0f / float(perCell.x * perCell.y);
     parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
@@ -33,7 +33,7 @@ SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
             for (int j = 0; j < grid.size.y; ++j) {
                 for (int i = 0; i < grid.size.x; ++i) {
                     if (LumenLabel(segmentation.at(i, j, k)) == LumenLabel::tagged)
-                        values[excess.cellOf(i, j, k)] +=
+                        values[excess.cellOf(i + from.x, j + from.y, k + from.z)] +=
                             share * std::max(0.0f, float(scan.hu.at(i, j, k) - airHu));
                 }
             }
@@ -100,11 +100,22 @@ struct Line {
 
 }  // namespace
 
+void PseudoEnhancement::takeOff(glm::ivec3 first, std::span<std::int16_t> row) const {
+    std::vector<float> excess(row.size());
+    excessHu.row(first, excess);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        const double added = gain * excess[i];
+        if (row[i] > -1024 && added != 0.0)
+            row[i] = std::int16_t(std::max(-1024L, std::lround(row[i] - added)));
+    }
+}
+
 PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
-                                           const Volume<std::uint8_t>& segmentation, int threads) {
+                                           const Volume<std::uint8_t>& segmentation,
+                                           const Grid& whole, glm::ivec3 from, int threads) {
     const Grid& grid = scan.hu.grid();
     const double airHu = tissue.meanHu[int(Tissue::air)];
-    const SmoothField excess = excessOf(scan, segmentation, airHu, threads);
+    const SmoothField excess = excessOf(scan, segmentation, airHu, whole, from, threads);
     std::vector<SmoothField> fields;
     for (const double width : widthsMm) {
         fields.push_back(excess);
@@ -123,13 +134,14 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
     parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             for (int j = 0; j < grid.size.y; ++j) {
-                const int first = (j + 2 * int(k)) % every;
+                const int first = firstSample(j + from.y + 2 * (int(k) + from.z), from.x, every);
                 for (int i = first; i < grid.size.x; i += every) {
                     const glm::ivec3 v(i, j, int(k));
                     const std::size_t n = grid.index(v);
                     if (!isGas(n) || !everywhere(grid, ball, v, isGas)) continue;
                     for (std::size_t w = 0; w < fields.size(); ++w)
-                        slices[k][w].add(fields[w].at(i, j, int(k)), scan.hu[n]);
+                        slices[k][w].add(fields[w].at(i + from.x, j + from.y, int(k) + from.z),
+                                         scan.hu[n]);
                 }
             }
         }
@@ -139,7 +151,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         for (std::size_t w = 0; w < lines.size(); ++w)
             lines[w].add(slice[w]);
     }
-    const double sd = measureNoise(scan, tissue, segmentation, threads).soft;
+    const double sd = measureNoise(scan, tissue, segmentation, threads, from).soft;
     const double seen = normalCdf((airHu + 1024.0) / sd);
     PseudoEnhancement best;
     double most = 0.0;
@@ -155,29 +167,6 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
     if (best.edgeHu() < leastEdgeHu) return {};
     best.excessHu = std::move(fields[at]);
     return best;
-}
-
-CtScan withoutPseudoEnhancement(const CtScan& scan, const PseudoEnhancement& enhancement,
-                                int threads) {
-    CtScan corrected{scan.hu.clone(), scan.position};
-    if (!enhancement) return corrected;
-    const Grid& grid = scan.hu.grid();
-    const auto out = corrected.hu.writable();
-    parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> excess(std::size_t(grid.size.x));
-        for (int k = int(begin); k < int(end); ++k) {
-            for (int j = 0; j < grid.size.y; ++j) {
-                enhancement.excessHu.row(j, k, excess);
-                for (int i = 0; i < grid.size.x; ++i) {
-                    std::int16_t& hu = out[grid.index(i, j, k)];
-                    const double added = enhancement.gain * excess[std::size_t(i)];
-                    if (hu > -1024 && added != 0.0)
-                        hu = std::int16_t(std::max(-1024L, std::lround(hu - added)));
-                }
-            }
-        }
-    });
-    return corrected;
 }
 
 }  // namespace haustra::cleansing

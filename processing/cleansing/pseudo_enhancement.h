@@ -5,6 +5,9 @@
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 
+#include <cstdint>
+#include <span>
+
 namespace haustra::cleansing {
 
 /// The HU that dense contents add to what is around them within the slice, in which the rays lie:
@@ -13,10 +16,12 @@ namespace haustra::cleansing {
 struct PseudoEnhancement {
     double widthMm = 0.0;  ///< of the spread, full at half maximum; 0 where there is none
     double gain = 0.0;     ///< HU for each HU of spread excess
-    SmoothField excessHu;  ///< spread; empty where there is none
+    SmoothField excessHu;  ///< spread, over the whole scan; empty where there is none
 
     explicit operator bool() const { return gain > 0.0; }
     double at(int i, int j, int k) const { return gain * excessHu.at(i, j, k); }
+    /// Takes it off the HU of the scan's voxel `first` and of those after it along i.
+    void takeOff(glm::ivec3 first, std::span<std::int16_t> row) const;
     /// What the flat edge of a large pool gains that is 1500 HU denser than gas.
     double edgeHu() const { return 750.0 * gain; }
 };
@@ -24,13 +29,18 @@ struct PseudoEnhancement {
 /// Fits scale and one of five spreads, 8 to 32 mm wide, by least squares to the colon's gas, which
 /// is the same everywhere else, deeper inside than the blur reaches: soft tissue beside a pool is
 /// wall, and farther off another tissue. Where the lowest HU cuts gas' noise off, the share of it
-/// that is left shows the scale. None where the edge of a pool would gain less than 4 HU.
-/// O(voxels); the same for any number of threads.
+/// that is left shows the scale. None where the edge of a pool would gain less than 4 HU. `scan`
+/// and `segmentation` may be the part of a larger scan, on grid `whole`, that begins at its voxel
+/// `from` and holds what is within 20 mm of the labels. O(voxels); the same for any number of
+/// threads.
 PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
-                                           const Volume<std::uint8_t>& segmentation, int threads);
-
-/// The scan less that.
-CtScan withoutPseudoEnhancement(const CtScan& scan, const PseudoEnhancement& enhancement,
-                                int threads);
+                                           const Volume<std::uint8_t>& segmentation,
+                                           const Grid& whole, glm::ivec3 from, int threads);
+inline PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
+                                                  const Volume<std::uint8_t>& segmentation,
+                                                  int threads) {
+    return measurePseudoEnhancement(scan, tissue, segmentation, scan.hu.grid(), glm::ivec3(0),
+                                    threads);
+}
 
 }  // namespace haustra::cleansing

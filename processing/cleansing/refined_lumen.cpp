@@ -93,7 +93,7 @@ Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& ti
     }
     const std::size_t most =
         std::size_t(std::max(1.0, std::floor(speckMm3 / hu.grid().voxelVolumeMm3())));
-    std::vector<bool> large(labels.grid().voxelCount(), false);
+    std::vector<bool> large(labels.grid().voxelCount(), false);  // an eighth of a byte each
     for (const CleansedVoxel& voxel : changed) {
         if (LumenLabel(out[voxel.index]) != LumenLabel::outside ||
             !touchesLumen(labels, voxel.index))

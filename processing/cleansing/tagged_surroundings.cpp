@@ -30,7 +30,8 @@ TaggedSurroundings taggedSurroundings(const Volume<std::uint8_t>& segmentation, 
     around.shells.resize(std::size_t(steps) + 1);
     around.besideShells =
         std::max(1, int(std::lround(0.75 / std::min({spacing.x, spacing.y, spacing.z}))));
-    std::vector<char> seen(label.size(), 0);
+    Volume<std::uint8_t> seenVoxels(grid, std::uint8_t(0));
+    const auto seen = seenVoxels.writable();
     for (const auto& slice : slices)
         around.shells[0].insert(around.shells[0].end(), slice.begin(), slice.end());
     for (std::uint32_t n : around.shells[0])

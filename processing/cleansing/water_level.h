@@ -6,7 +6,9 @@
 #include "cleansing/tagged_surroundings.h"
 #include "core/ct_scan.h"
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace haustra::cleansing {
 
@@ -37,13 +39,31 @@ public:
     glm::ivec3 down() const { return down_; }
 
 private:
+    /// The level crosses between the voxel at this height of its column and the one below it.
+    struct Crossing {
+        std::int32_t height;  ///< along the grid's vertical axis
+        std::int32_t part;    ///< of the way between their centres, in 254ths
+    };
+
+    /// Calls visit(voxel, crossing) for those in the columns around a voxel, as they are looked at.
+    template <class Visit>
+    void eachCrossing(glm::ivec3 voxel, double acrossMm, double heightMm, const Visit& visit) const;
+
+    std::size_t columnOf(glm::ivec3 v) const {
+        return std::size_t(v[across_[0]]) +
+               std::size_t(grid_.size[across_[0]]) * std::size_t(v[across_[1]]);
+    }
+
+    Grid grid_;
     glm::ivec3 down_{0};
+    int vertical_ = 1;
+    glm::ivec2 across_{0, 2};
     double stepMm_ = 1.0;
-    /// 0, or 1 + 254 f where the level crosses between this voxel and the one below, f of the way.
-    Volume<std::uint8_t> crossing_;
-    glm::ivec3 acrossStep_{1};     ///< columns that are looked at lie so far apart
-    double fewestColumns_ = 12.0;  ///< that make a level
-    glm::ivec3 blockVoxels_{4};    ///< 3 mm
+    std::vector<Crossing> crossings_;           ///< by column, and from low heights to high
+    std::vector<std::uint32_t> firstOfColumn_;  ///< in crossings_, and the end
+    glm::ivec3 acrossStep_{1};                  ///< columns that are looked at lie so far apart
+    double fewestColumns_ = 12.0;               ///< that make a level
+    glm::ivec3 blockVoxels_{4};                 ///< 3 mm
     Volume<std::uint8_t> blocks_;  ///< 1 where a crossing is 1 block above or below, 2 across
 };
 

@@ -30,10 +30,9 @@ inline Grid cropped(const Grid& grid, const VoxelBox& box) {
     return part;
 }
 
-/// A copy of the box's voxels; of the volume's own memory where the box is all of it.
+/// A copy of the box's voxels, which can be written to.
 template <class T>
-Volume<T> cropped(const Volume<T>& volume, const VoxelBox& box, int threads) {
-    if (box.size == volume.grid().size) return volume.share();
+Volume<T> croppedCopy(const Volume<T>& volume, const VoxelBox& box, int threads) {
     Volume<T> part(cropped(volume.grid(), box));
     const auto out = part.writable();
     parallelFor(std::size_t(box.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
@@ -46,6 +45,12 @@ Volume<T> cropped(const Volume<T>& volume, const VoxelBox& box, int threads) {
         }
     });
     return part;
+}
+
+/// The box's voxels, in the volume's own memory where the box is all of it.
+template <class T>
+Volume<T> cropped(const Volume<T>& volume, const VoxelBox& box, int threads) {
+    return box.size == volume.grid().size ? volume.share() : croppedCopy(volume, box, threads);
 }
 
 /// Writes `part` over the box's voxels of `whole`.

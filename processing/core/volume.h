@@ -24,14 +24,18 @@ public:
 
     /// Owned memory, uninitialised: every stage writes each voxel.
     explicit Volume(const Grid& grid) : grid_(grid) {
-        T* memory = static_cast<T*>(std::malloc(std::max<std::size_t>(1, grid.voxelCount()) * sizeof(T)));
-        if (!memory) throw std::bad_alloc();
-        owner_ = std::shared_ptr<void>(memory, std::free);
-        voxels_ = writableVoxels_ = memory;
+        own(std::malloc(std::max<std::size_t>(1, grid.voxelCount()) * sizeof(T)));
     }
-    /// Owned memory, every voxel set to `value`.
-    Volume(const Grid& grid, T value) : Volume(grid) {
-        std::fill_n(writableVoxels_, grid.voxelCount(), value);
+    /// Owned memory, every voxel set to `value`. Of zeros, only the pages that are written to are
+    /// ever held: what is sparse takes little memory.
+    Volume(const Grid& grid, T value) : grid_(grid) {
+        constexpr char zeros[sizeof(T)] = {};
+        if (std::memcmp(&value, zeros, sizeof(T)) == 0) {
+            own(std::calloc(std::max<std::size_t>(1, grid.voxelCount()), sizeof(T)));
+        } else {
+            own(std::malloc(std::max<std::size_t>(1, grid.voxelCount()) * sizeof(T)));
+            std::fill_n(writableVoxels_, grid.voxelCount(), value);
+        }
     }
     /// A read-only view of `voxels` (grid.voxelCount() of them), alive as long as `owner`.
     static Volume view(const Grid& grid, const T* voxels, std::shared_ptr<const void> owner) {
@@ -68,6 +72,12 @@ public:
     T at(int i, int j, int k) const { return voxels_[grid_.index(i, j, k)]; }
 
 private:
+    void own(void* memory) {
+        if (!memory) throw std::bad_alloc();
+        owner_ = std::shared_ptr<void>(memory, std::free);
+        voxels_ = writableVoxels_ = static_cast<T*>(memory);
+    }
+
     Grid grid_;
     std::shared_ptr<void> owner_;
     const T* voxels_ = nullptr;

@@ -35,8 +35,10 @@ struct Stage {
     std::vector<std::string> products;
 };
 
-/// Stages hand volumes on through the store alone: each maps what it reads, page by page as it is
-/// touched, and lets go of it at its end, so that no volume is held longer than it is needed.
+/// Stages hand products on through the store alone: each maps what it reads, page by page as it is
+/// touched, and lets go of it at its end, so that no volume is held longer than it is needed. What
+/// mixture measures for cleansing too is the one exception, and is measured again where it is not
+/// at hand.
 /// Belongs to one thread.
 class Preparation {
 public:

@@ -70,10 +70,11 @@ Result<PrepareReport> runStages(Preparation& preparation) {
                     ct.value_or(ProductKey{})};
     if (ct && preparation.organ().cleanse) {
         if (!preparation.wanted("mixture")) return preparation.takeReport();
-        const auto mixture = mixTissues(preparation, *ct, *segmentation);
+        std::optional<cleansing::TaggedLumen> tagged;
+        const auto mixture = mixTissues(preparation, *ct, *segmentation, tagged);
         if (!mixture) return tl::make_unexpected(mixture.error());
         if (!preparation.wanted("cleansing")) return preparation.takeReport();
-        const auto cleansed = cleanseScan(preparation, *ct, *segmentation, *mixture);
+        const auto cleansed = cleanseScan(preparation, *ct, *segmentation, *mixture, std::move(tagged));
         if (!cleansed) return tl::make_unexpected(cleansed.error());
         wall = {product::cleansedLumen, *cleansed, product::cleansed, *cleansed};
     }

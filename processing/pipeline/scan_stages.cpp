@@ -21,8 +21,8 @@ using store::Attributes;
 constexpr int importVersion = 1;
 constexpr int segmentationVersion = 7;
 constexpr int maskVersion = 4;
-constexpr int mixtureVersion = 12;
-constexpr int cleansingVersion = 10;
+constexpr int mixtureVersion = 13;
+constexpr int cleansingVersion = 11;
 
 // How a mask without a scan is drawn.
 const TissueModel drawnTissue{
@@ -95,7 +95,7 @@ Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const Pro
     return publishSegmentation(preparation, key, lumen->labels, attributes);
 }
 
-// What mixture and cleansing start from.
+// What mixture and cleansing start from, mapped.
 struct SegmentedScan {
     CtScan scan;
     Volume<std::uint8_t> labels;
@@ -242,19 +242,38 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
 }
 
 Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
-                              const ProductKey& segmentation) {
+                              const ProductKey& segmentation,
+                              std::optional<cleansing::TaggedLumen>& lumen) {
     const StageMeter meter;
     const ProductKey key = store::makeKey("mixture", mixtureVersion, "", {ct, segmentation});
     const auto make = [&](const Progress& progress) -> Result<void> {
-        store::Case& target = preparation.target();
+        const int threads = preparation.options().threads;
+        cleansing::PartialVolumeModel model;
+        std::optional<cleansing::LumenPart> part;
+        {
+            const auto input = readSegmentedScan(preparation);
+            if (!input) return tl::make_unexpected(input.error());
+            model = cleansing::fitPartialVolume(input->scan, input->tissue, threads);
+            auto cropped = cleansing::cropToLumen(input->scan, input->labels, threads);
+            if (!cropped) return tl::make_unexpected(cropped.error());
+            part = std::move(*cropped);
+        }
+        progress(0.1);
+        // Mapped anew: until the mixture is written none of the whole scan is in memory.
         const auto input = readSegmentedScan(preparation);
         if (!input) return tl::make_unexpected(input.error());
+        Volume<TissueFractions> byHu;
+        if (part) {
+            byHu = cleansing::fractionsByHu(part->scan.hu, model, threads);
+            lumen = cleansing::measureTaggedLumen(std::move(*part), input->tissue, threads);
+        }
+        progress(0.4);
+        const auto rest = [&](double fraction) { progress(0.4 + 0.5 * fraction); };
         const auto mixture =
-            cleansing::estimateMixture(input->scan, input->tissue, input->labels, input->gravity,
-                                       {preparation.options().threads, progress});
-        if (!mixture) return tl::make_unexpected(mixture.error());
-        return target.publishVolume(product::mixture, key, *mixture, {},
-                                    madeFrom(product::mixture));
+            cleansing::estimateMixture(input->scan, model, std::move(byHu),
+                                       lumen ? &*lumen : nullptr, input->gravity, {threads, rest});
+        return preparation.target().publishVolume(product::mixture, key, mixture, {},
+                                                  madeFrom(product::mixture), threads);
     };
     return preparation.run({"mixture", key, {product::mixture}}, meter, make).map([&] {
         return key;
@@ -262,27 +281,45 @@ Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
 }
 
 Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
-                               const ProductKey& segmentation, const ProductKey& mixture) {
+                               const ProductKey& segmentation, const ProductKey& mixture,
+                               std::optional<cleansing::TaggedLumen> lumen) {
     const StageMeter meter;
     const ProductKey key =
         store::makeKey("cleansing", cleansingVersion, "", {ct, segmentation, mixture});
-    const auto make = [&](const Progress&) -> Result<void> {
+    const auto make = [&](const Progress& progress) -> Result<void> {
         store::Case& target = preparation.target();
+        const int threads = preparation.options().threads;
+        if (!lumen) {
+            const auto input = readSegmentedScan(preparation);
+            if (!input) return tl::make_unexpected(input.error());
+            auto part = cleansing::cropToLumen(input->scan, input->labels, threads);
+            if (!part) return tl::make_unexpected(part.error());
+            if (*part)
+                lumen = cleansing::measureTaggedLumen(std::move(**part), input->tissue, threads);
+        }
+        progress(0.3);
         const auto input = readSegmentedScan(preparation);
         if (!input) return tl::make_unexpected(input.error());
-        const auto fractions = target.readVolume<TissueFractions>(product::mixture);
-        if (!fractions) return tl::make_unexpected(fractions.error());
-        const auto cleansed = cleansing::cleanse(input->scan, input->tissue, *fractions,
-                                                 input->labels, preparation.options().threads);
-        if (!cleansed) return tl::make_unexpected(cleansed.error());
         const Attributes wall{{"air-below-hu", exactText(input->tissue.airBelowHu)}};
-        return target
-            .publishVolume(product::cleansedLumen, key, cleansed->lumen, wall,
-                           madeFrom(product::cleansedLumen))
-            .and_then([&] {
-                return target.publishVolume(product::cleansed, key, cleansed->hu, wall,
-                                            madeFrom(product::cleansed));
-            });
+        const auto publish = [&](const auto& labels, const auto& hu) {
+            return target
+                .publishVolume(product::cleansedLumen, key, labels, wall,
+                               madeFrom(product::cleansedLumen))
+                .and_then([&] {
+                    return target.publishVolume(product::cleansed, key, hu, wall,
+                                                madeFrom(product::cleansed));
+                });
+        };
+        if (!lumen) return publish(input->labels, input->scan.hu);
+        const auto cleansed =
+            target.readVolume<TissueFractions>(product::mixture)
+                .map([&](const Volume<TissueFractions>& fractions) {
+                    return cleansing::cleanse(input->scan, input->tissue, fractions,
+                                              std::move(*lumen), threads);
+                });
+        if (!cleansed) return tl::make_unexpected(cleansed.error());
+        progress(0.8);
+        return publish(cleansed->lumen, cleansed->hu);
     };
     return preparation
         .run({"cleansing", key, {product::cleansedLumen, product::cleansed}}, meter, make)

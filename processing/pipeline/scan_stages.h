@@ -1,6 +1,7 @@
 // The stages that read the scan: import, segmentation, mixture, cleansing.
 #pragma once
 
+#include "cleansing/tagged_lumen.h"
 #include "pipeline/preparation.h"
 
 #include <optional>
@@ -15,10 +16,14 @@ Result<ProductKey> importScan(Preparation& preparation);
 Result<ProductKey> segmentScan(Preparation& preparation, const ProductKey& ct);
 /// `segmentation` from --lumen; without a scan the mask stands alone.
 Result<ProductKey> takeMask(Preparation& preparation, const std::optional<ProductKey>& ct);
+/// What it measures of the tagged lumen it leaves in `lumen`, so that cleansing need not measure it
+/// again.
 Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
-                              const ProductKey& segmentation);
+                              const ProductKey& segmentation,
+                              std::optional<cleansing::TaggedLumen>& lumen);
 /// `cleansed-lumen` and `cleansed`.
 Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
-                               const ProductKey& segmentation, const ProductKey& mixture);
+                               const ProductKey& segmentation, const ProductKey& mixture,
+                               std::optional<cleansing::TaggedLumen> lumen);
 
 }  // namespace haustra::pipeline

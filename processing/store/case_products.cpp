@@ -118,6 +118,28 @@ Result<void> Case::publishVolume(std::string_view product, const ProductKey& key
     });
 }
 
+template <class T>
+Result<void> Case::publishVolume(std::string_view product, const ProductKey& key,
+                                 const BoxedVolume<T>& volume, const Attributes& attributes,
+                                 const std::vector<std::string>& outdated, int threads) {
+    if (auto writable = checkWritable(); !writable) return writable;
+    const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hvol")};
+    const fs::path file = folder_ / entry.file;
+    if (auto sound = checkGrid(volume.grid, file.string()); !sound) return sound;
+    const ProductHeader header{
+        contentOf<T>(), volume.grid, digestFromHex(key.hex), {}, attributes};
+    const auto values = [&](std::size_t offset, std::span<std::byte> out) {
+        // Blocks are whole voxels, in memory that is aligned for any.
+        volume.read(offset / sizeof(T),
+                    {reinterpret_cast<T*>(out.data()), out.size() / sizeof(T)});
+    };
+    return writeProduct(folder_, entry.file, header, volume.grid.voxelCount() * sizeof(T), values,
+                        threads)
+        .and_then([&] {
+        return announce(entry, outdated);
+    });
+}
+
 Result<void> Case::publishCenterline(std::string_view product, const ProductKey& key,
                                      const Centerline& centerline, const Attributes& attributes,
                                      const std::vector<std::string>& outdated) {
@@ -191,5 +213,17 @@ template Result<void> Case::publishVolume(std::string_view, const ProductKey&, c
 template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
                                           const Volume<TissueFractions>&, const Attributes&,
                                           const std::vector<std::string>&);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const BoxedVolume<std::int16_t>&, const Attributes&,
+                                          const std::vector<std::string>&, int);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const BoxedVolume<std::uint8_t>&, const Attributes&,
+                                          const std::vector<std::string>&, int);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const BoxedVolume<float>&, const Attributes&,
+                                          const std::vector<std::string>&, int);
+template Result<void> Case::publishVolume(std::string_view, const ProductKey&,
+                                          const BoxedVolume<TissueFractions>&, const Attributes&,
+                                          const std::vector<std::string>&, int);
 
 }  // namespace haustra::store

@@ -18,6 +18,7 @@
 // custom CASE and CASE.SCAN, which their study's UID holds together.
 #pragma once
 
+#include "core/boxed_volume.h"
 #include "core/centerline.h"
 #include "core/ct_scan.h"
 #include "core/flat_map.h"
@@ -113,6 +114,11 @@ public:
     Result<void> publishVolume(std::string_view product, const ProductKey& key,
                                const Volume<T>& volume, const Attributes& attributes = {},
                                const std::vector<std::string>& outdated = {});
+    /// The same of a volume that is held in a box: the rest is made as it is written.
+    template <class T>
+    Result<void> publishVolume(std::string_view product, const ProductKey& key,
+                               const BoxedVolume<T>& volume, const Attributes& attributes = {},
+                               const std::vector<std::string>& outdated = {}, int threads = 0);
     Result<void> publishCenterline(std::string_view product, const ProductKey& key,
                                    const Centerline& centerline, const Attributes& attributes = {},
                                    const std::vector<std::string>& outdated = {});

@@ -31,16 +31,24 @@ bool writeAll(int descriptor, std::span<const std::byte> bytes) {
 Result<void> writeDurably(const std::filesystem::path& folder, const std::string& name,
                           const std::vector<std::span<const std::byte>>& parts,
                           unsigned permissions) {
+    return writeDurably(
+        folder, name,
+        [&](int descriptor) {
+            return std::all_of(parts.begin(), parts.end(),
+                               [&](auto part) { return writeAll(descriptor, part); });
+        },
+        permissions);
+}
+
+Result<void> writeDurably(const std::filesystem::path& folder, const std::string& name,
+                          const std::function<bool(int descriptor)>& write, unsigned permissions) {
     const std::filesystem::path temporary =
         folder / (temporaryPrefix + name + "-" + std::to_string(::getpid()));
     const int descriptor =
         ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, permissions);
     if (descriptor < 0) return systemError("create", temporary);
 
-    const bool written = std::all_of(parts.begin(), parts.end(),
-                                     [&](auto part) { return writeAll(descriptor, part); }) &&
-                         ::fsync(descriptor) == 0;
-    if (!written) {
+    if (!write(descriptor) || ::fsync(descriptor) != 0) {
         const auto error = systemError("write", folder / name);
         ::close(descriptor);
         ::unlink(temporary.c_str());

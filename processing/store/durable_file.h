@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,12 @@ inline constexpr char temporaryPrefix[] = ".tmp-";
 /// cut; at no moment is a part of it visible as `name`. `permissions` are subject to the umask.
 Result<void> writeDurably(const std::filesystem::path& folder, const std::string& name,
                           const std::vector<std::span<const std::byte>>& parts,
+                          unsigned permissions = 0640);
+
+/// The same for a file that `write` fills by pwrite and ftruncate, in any order; false: it failed,
+/// and errno says why.
+Result<void> writeDurably(const std::filesystem::path& folder, const std::string& name,
+                          const std::function<bool(int descriptor)>& write,
                           unsigned permissions = 0640);
 
 /// fsyncs a folder, so that the names in it survive a power cut.

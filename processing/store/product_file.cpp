@@ -1,11 +1,15 @@
 #include "store/product_file.h"
 
+#include "core/parallel.h"
 #include "core/tissue.h"
 #include "store/durable_file.h"
 
+#include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include <fcntl.h>
@@ -127,6 +131,59 @@ Result<std::shared_ptr<const Mapping>> mapWhole(const std::filesystem::path& fil
     return std::make_shared<const Mapping>(address, std::size_t(status.st_size));
 }
 
+bool writeAt(int descriptor, std::size_t offset, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t count = ::pwrite(descriptor, bytes.data(), bytes.size(), off_t(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return false;
+        bytes = bytes.subspan(std::size_t(count)), offset += std::size_t(count);
+    }
+    return true;
+}
+
+/// Writes what is not zero: the file is as long as it will be, and holds zeros.
+bool writeSparsely(int descriptor, std::size_t offset, std::span<const std::byte> bytes) {
+    constexpr std::size_t pieceBytes = std::size_t(1) << 16;
+    const auto isZero = [](std::span<const std::byte> piece) {
+        return piece[0] == std::byte(0) &&
+               std::memcmp(piece.data(), piece.data() + 1, piece.size() - 1) == 0;
+    };
+    // As few writes as the zeros let be.
+    std::size_t from = 0;
+    for (std::size_t at = 0; at < bytes.size(); at += pieceBytes) {
+        const auto piece = bytes.subspan(at, std::min(pieceBytes, bytes.size() - at));
+        if (!isZero(piece)) continue;
+        if (!writeAt(descriptor, offset + from, bytes.subspan(from, at - from))) return false;
+        from = at + piece.size();
+    }
+    return writeAt(descriptor, offset + from, bytes.subspan(from));
+}
+
+/// The values' blockwise digest; none where they cannot be written, and errno says why.
+std::optional<Digest> writeValues(int descriptor, std::size_t offset, std::size_t bytes,
+                                  const ValueSource& values, int threads) {
+    std::vector<Digest> blocks((bytes + digestBlockBytes - 1) / digestBlockBytes);
+    std::atomic<int> error{0};
+    // A buffer serves several blocks.
+    parallelFor(blocks.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::byte> buffer(std::min(digestBlockBytes, bytes));
+        for (std::size_t n = begin; n < end && error == 0; ++n) {
+            const std::size_t start = n * digestBlockBytes;
+            const auto block = std::span(buffer).first(std::min(digestBlockBytes, bytes - start));
+            values(start, block);
+            Sha256 hash;
+            hash.add(block);
+            blocks[n] = hash.finish();
+            if (!writeSparsely(descriptor, offset + start, block)) error = errno;
+        }
+    });
+    if (error != 0) {
+        errno = error;
+        return std::nullopt;
+    }
+    return blockwiseDigest(blocks);
+}
+
 Result<std::map<std::string, std::string>> parseAttributes(std::string_view text,
                                                            const std::filesystem::path& file) {
     const auto json = nlohmann::json::parse(text, nullptr, false);
@@ -205,7 +262,8 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
 }
 
 Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
-                          ProductHeader header, std::span<const std::byte> values) {
+                          ProductHeader header, std::size_t bytes, const ValueSource& values,
+                          int threads) {
     // Bytes that are not UTF-8 become U+FFFD: an attribute must not be able to stop a product.
     const std::string attributes =
         nlohmann::json(header.attributes)
@@ -221,15 +279,28 @@ Result<void> writeProduct(const std::filesystem::path& folder, const std::string
     }
     fixed.attributesBytes = std::uint32_t(attributes.size());
     fixed.valuesOffset = alignedOffset(attributes.size());
-    fixed.valuesBytes = values.size();
+    fixed.valuesBytes = bytes;
     fixed.key = header.key;
-    fixed.valuesDigest = blockwiseDigest(values);
-    fixed.headerDigest = headerDigest(fixed, attributes);
+    return writeDurably(folder, name, [&](int descriptor) {
+        const auto length = off_t(fixed.valuesOffset + fixed.valuesBytes);
+        if (::ftruncate(descriptor, length) != 0) return false;
+        const auto digest =
+            writeValues(descriptor, fixed.valuesOffset, fixed.valuesBytes, values, threads);
+        if (!digest) return false;
+        fixed.valuesDigest = *digest;
+        fixed.headerDigest = headerDigest(fixed, attributes);
+        return writeAt(descriptor, 0, std::as_bytes(std::span(&fixed, 1))) &&
+               writeAt(descriptor, sizeof fixed, std::as_bytes(std::span(attributes)));
+    });
+}
 
-    const std::vector<std::byte> padding(fixed.valuesOffset - sizeof fixed - attributes.size());
-    return writeDurably(folder, name,
-                        {std::as_bytes(std::span(&fixed, 1)), std::as_bytes(std::span(attributes)),
-                         padding, values});
+Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
+                          ProductHeader header, std::span<const std::byte> values) {
+    return writeProduct(folder, name, std::move(header), values.size(),
+                        [&](std::size_t offset, std::span<std::byte> out) {
+                            std::copy_n(values.begin() + std::ptrdiff_t(offset), out.size(),
+                                        out.begin());
+                        });
 }
 
 Result<void> checkValues(const MappedProduct& product, const std::filesystem::path& file) {

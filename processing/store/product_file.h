@@ -34,6 +34,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -80,7 +81,19 @@ struct MappedProduct {
 /// Reads the header only, not the values: a mesh's or a flat map's are still to be checked.
 Result<MappedProduct> mapProduct(const std::filesystem::path& file);
 
-/// Publishes `folder`/`name` as writeDurably does. `header.valuesDigest` is computed here.
+/// Fills `out` with the values from byte `offset` on. Called from several threads, each block of
+/// 4 MiB once.
+using ValueSource = std::function<void(std::size_t offset, std::span<std::byte> out)>;
+
+/// Publishes `folder`/`name` as writeDurably does, of values that are made block by block as they
+/// are written: they are never in memory all at once. What is zero takes no room on the disk.
+/// `header.valuesDigest` is computed here. The same file for any number of threads (≤ 0: all
+/// cores).
+Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
+                          ProductHeader header, std::size_t bytes, const ValueSource& values,
+                          int threads = 0);
+
+/// The same of values in memory.
 Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
                           ProductHeader header, std::span<const std::byte> values);
 

@@ -60,7 +60,7 @@ Digest Sha256::finish() {
 }
 
 Digest blockwiseDigest(std::span<const std::byte> bytes, int threads) {
-    constexpr std::size_t blockBytes = std::size_t(4) << 20;
+    constexpr std::size_t blockBytes = digestBlockBytes;
     std::vector<Digest> blocks((bytes.size() + blockBytes - 1) / blockBytes);
     parallelFor(blocks.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
@@ -70,8 +70,12 @@ Digest blockwiseDigest(std::span<const std::byte> bytes, int threads) {
             blocks[n] = hash.finish();
         }
     });
+    return blockwiseDigest(blocks);
+}
+
+Digest blockwiseDigest(std::span<const Digest> blocks) {
     Sha256 hash;
-    hash.add(std::as_bytes(std::span(blocks)));
+    hash.add(std::as_bytes(blocks));
     return hash.finish();
 }
 

@@ -42,9 +42,14 @@ private:
     std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
+inline constexpr std::size_t digestBlockBytes = std::size_t(4) << 20;
+
 /// SHA-256 of the SHA-256s of consecutive blocks of 4 MiB: the same value for any number of
 /// threads (≤ 0: all cores), at the speed of all of them.
 Digest blockwiseDigest(std::span<const std::byte> bytes, int threads = 0);
+
+/// The same from the blocks' own.
+Digest blockwiseDigest(std::span<const Digest> blocks);
 
 /// SHA-256 of a file's content, read once from front to back.
 Result<Digest> fileDigest(const std::filesystem::path& file);

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 namespace haustra::topology {
 namespace {
@@ -26,6 +27,25 @@ constexpr std::uint8_t firstBody(std::uint8_t inside) {
     return std::uint8_t(body);
 }
 
+/// The first voxel along i and the end of those inside in the rows of voxels that a row of blocks
+/// is made of; both 0 where there are none.
+std::pair<int, int> insideOf(const Volume<std::uint8_t>& labels, int blockY, int blockZ) {
+    const Grid& grid = labels.grid();
+    int first = grid.size.x, end = 0;
+    for (int child = 0; child < 4; ++child) {
+        const int j = 2 * blockY + (child & 1), k = 2 * blockZ + (child >> 1);
+        if (j >= grid.size.y || k >= grid.size.z) continue;
+        const auto row = labels.voxels().subspan(grid.index(0, j, k), std::size_t(grid.size.x));
+        const auto isInside = [](std::uint8_t label) { return label != 0; };
+        const auto at = std::find_if(row.begin(), row.end(), isInside);
+        if (at == row.end()) continue;
+        first = std::min(first, int(at - row.begin()));
+        end = std::max(end,
+                       int(std::find_if(row.rbegin(), row.rend(), isInside).base() - row.begin()));
+    }
+    return {std::min(first, end), end};
+}
+
 /// The nodes of one layer of blocks.
 std::vector<BlockGraph::Node> layerNodes(const Volume<std::uint8_t>& labels,
                                          const Volume<float>& distanceMm, glm::ivec3 blocks,
@@ -33,7 +53,8 @@ std::vector<BlockGraph::Node> layerNodes(const Volume<std::uint8_t>& labels,
     const Grid& grid = labels.grid();
     std::vector<BlockGraph::Node> nodes;
     for (int by = 0; by < blocks.y; ++by) {
-        for (int bx = 0; bx < blocks.x; ++bx) {
+        const auto [first, end] = insideOf(labels, by, layer);
+        for (int bx = first / 2; 2 * bx < end; ++bx) {
             const auto voxelAt = [&](int child) {
                 return glm::ivec3(2 * bx + (child & 1), 2 * by + (child >> 1 & 1),
                                   2 * layer + (child >> 2));
@@ -94,7 +115,7 @@ bool appendFullNeighbours(const BlockGraph& graph, std::int32_t node,
     std::array<std::int32_t, 27> around;
     for (int n = 0; n < 27; ++n) {
         const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-        const std::int32_t other = graph.nodeAt[graph.blockIndex(block + step)];
+        const std::int32_t other = graph.nodeAt(block + step);
         if (other < 0 || graph.nodes[std::size_t(other)].inside != full) return false;
         around[std::size_t(n)] = other;
     }
@@ -146,6 +167,10 @@ void joinNodes(BlockGraph& graph, int threads) {
             }
         }
     });
+    std::size_t all = 0;
+    for (const auto& some : found)
+        all += some.size();
+    graph.neighbourOf.reserve(all);
     for (std::size_t c = 0, before = 0; c < found.size(); ++c) {
         for (std::size_t n = c * chunk; n < std::min(count, (c + 1) * chunk); ++n)
             graph.firstNeighbour[n + 1] += before;
@@ -206,14 +231,19 @@ BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float
         for (std::size_t k = begin; k < end; ++k)
             layers[k] = layerNodes(labels, distanceMm, graph.blocks, int(k));
     });
-    graph.nodeAt.assign(
-        std::size_t(graph.blocks.x) * std::size_t(graph.blocks.y) * std::size_t(graph.blocks.z),
-        -1);
+    Grid blockGrid;
+    blockGrid.size = graph.blocks;
+    graph.firstNodeOf = Volume<std::int32_t>(blockGrid, 0);
+    const auto firstNodeOf = graph.firstNodeOf.writable();
+    std::size_t count = 0;
+    for (const auto& layer : layers)
+        count += layer.size();
+    graph.nodes.reserve(count);
     for (auto& layer : layers) {
         for (const BlockGraph::Node& node : layer) {
-            std::int32_t& first = graph.nodeAt[graph.blockIndex(node.voxel / 2)];
-            if (first < 0) first = std::int32_t(graph.nodes.size());
             graph.nodes.push_back(node);
+            std::int32_t& first = firstNodeOf[blockGrid.index(node.voxel / 2)];
+            if (first == 0) first = std::int32_t(graph.nodes.size());
         }
         layer = {};
     }

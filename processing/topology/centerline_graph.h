@@ -30,17 +30,16 @@ struct BlockGraph {
 
     Grid grid;
     glm::dvec3 spacingMm{0.0};
-    glm::ivec3 blocks{0};              ///< extent of the block grid
-    std::vector<std::int32_t> nodeAt;  ///< by block, x fastest: its first node; −1: none
-    std::vector<Node> nodes;           ///< by block, in memory order
+    glm::ivec3 blocks{0};  ///< extent of the block grid
+    /// By block: 1 + its first node; 0: none. Where there is no lumen it takes no memory.
+    Volume<std::int32_t> firstNodeOf;
+    std::vector<Node> nodes;  ///< by block, in memory order
     std::vector<Component> components;
     std::vector<std::size_t> firstNeighbour;  ///< of each node, in neighbourOf; and the end
     std::vector<std::int32_t> neighbourOf;
 
-    std::size_t blockIndex(glm::ivec3 b) const {
-        return std::size_t(b.x) + std::size_t(blocks.x) *
-                                      (std::size_t(b.y) + std::size_t(blocks.y) * std::size_t(b.z));
-    }
+    /// The first node of a block; −1: none.
+    std::int32_t nodeAt(glm::ivec3 block) const { return firstNodeOf.at(block) - 1; }
     glm::ivec3 voxelOf(std::int32_t node) const { return nodes[std::size_t(node)].voxel; }
     glm::ivec3 blockOf(std::int32_t node) const { return voxelOf(node) / 2; }
     glm::dvec3 positionMm(std::int32_t node) const {
@@ -53,7 +52,7 @@ struct BlockGraph {
     /// Calls visit(node) for each node of a block.
     template <class Visit>
     void visitNodesOf(glm::ivec3 block, const Visit& visit) const {
-        const std::int32_t first = nodeAt[blockIndex(block)];
+        const std::int32_t first = nodeAt(block);
         if (first < 0) return;
         for (std::size_t n = std::size_t(first);
              n < nodes.size() && blockOf(std::int32_t(n)) == block; ++n)

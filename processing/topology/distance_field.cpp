@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
@@ -110,7 +109,8 @@ struct Sheet {
     int size;            ///< extent along the line
 };
 
-/// Transforms each line of the sheet in place; `finish` is applied to each value written.
+/// Transforms each line of the sheet in place, where it is inside; `finish` is applied to each
+/// value written.
 template <class Finish>
 void transformLines(const Sheet& sheet, ParabolaEnvelope& envelope, std::vector<double>& lines,
                     std::vector<std::uint8_t>& inside, const Finish& finish) {
@@ -126,9 +126,9 @@ void transformLines(const Sheet& sheet, ParabolaEnvelope& envelope, std::vector<
         for (int i = first; i <= last; ++i) {
             const std::size_t at = std::size_t(i) * sheet.stride + std::size_t(x0);
             for (int x = 0; x < width; ++x) {
-                lines[std::size_t(x) * size + std::size_t(i)] =
-                    double(sheet.squared[at + std::size_t(x)]);
-                inside[std::size_t(x) * size + std::size_t(i)] = sheet.labels[at + std::size_t(x)];
+                const std::size_t to = std::size_t(x) * size + std::size_t(i);
+                inside[to] = sheet.labels[at + std::size_t(x)];
+                if (inside[to]) lines[to] = double(sheet.squared[at + std::size_t(x)]);
             }
         }
         if (last < 0) continue;
@@ -143,7 +143,7 @@ void transformLines(const Sheet& sheet, ParabolaEnvelope& envelope, std::vector<
             const std::size_t at = std::size_t(i) * sheet.stride + std::size_t(x0);
             for (int x = 0; x < width; ++x) {
                 const std::size_t from = std::size_t(x) * size + std::size_t(i);
-                sheet.squared[at + std::size_t(x)] = inside[from] ? finish(lines[from]) : 0.0f;
+                if (inside[from]) sheet.squared[at + std::size_t(x)] = finish(lines[from]);
             }
         }
     }
@@ -157,7 +157,7 @@ Volume<float> distanceToBoundaryMm(const Volume<std::uint8_t>& labels, int threa
     const glm::dvec3 stepMm = grid.spacingMm();
     const std::size_t row = std::size_t(size.x), slice = row * std::size_t(size.y);
     const std::uint8_t* label = labels.voxels().data();
-    Volume<float> result(grid);
+    Volume<float> result(grid, 0.0f);  // rows without lumen are not touched, and take no memory
     float* squared = result.writable().data();
 
     // Along x and y, slice by slice.
@@ -169,12 +169,9 @@ Volume<float> distanceToBoundaryMm(const Volume<std::uint8_t>& labels, int threa
             bool any = false;
             for (int j = 0; j < size.y; ++j) {
                 const std::size_t at = k * slice + std::size_t(j) * row;
-                if (anyInside(label + at, size.x)) {
-                    any = true;
-                    transformRow(label + at, size.x, stepMm.x, squared + at);
-                } else {
-                    std::memset(squared + at, 0, row * sizeof(float));
-                }
+                if (!anyInside(label + at, size.x)) continue;
+                any = true;
+                transformRow(label + at, size.x, stepMm.x, squared + at);
             }
             if (!any) continue;
             transformLines({label + k * slice, squared + k * slice, row, size.x, size.y}, envelope,

@@ -17,7 +17,7 @@ namespace haustra::topology {
 /// Huttenlocher, Distance Transforms of Sampled Functions, 2012; Meijster et al. 2000). Linear:
 /// one read of the labels, then work on the voxels inside alone, because a run of inside voxels
 /// on a line sees nothing past the two outside voxels that bound it. Needs 8 bytes a voxel of one
-/// slice for each thread beside the result.
+/// slice for each thread beside the result, of which only rows with lumen are held.
 Volume<float> distanceToBoundaryMm(const Volume<std::uint8_t>& labels, int threads = 0);
 
 }  // namespace haustra::topology

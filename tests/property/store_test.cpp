@@ -125,6 +125,34 @@ TYPED_TEST(StoreRoundTrip, AVolumeComesBackBitForBitWithItsGridAndAttributes) {
     }
 }
 
+TYPED_TEST(StoreRoundTrip, AVolumeHeldInABoxIsTheFileOfTheWholeOne) {
+    Case writing = this->writer();
+    const auto whole = randomVolume<TypeParam>({260, 150, 101}, 7);
+    const VoxelBox box{{31, 0, 20}, {200, 140, 60}};
+    // Beyond the box there is the volume itself; or nothing.
+    for (const bool zeros : {false, true}) {
+        BoxedVolume<TypeParam> boxed{whole.grid(), box, cropped(whole, box, 2), {}};
+        if (!zeros) {
+            boxed.beyond = [&](glm::ivec3 first, std::span<TypeParam> row) {
+                std::copy_n(&whole.voxels()[whole.grid().index(first)], row.size(), row.begin());
+            };
+        }
+        Volume<TypeParam> expected = whole.clone();
+        if (zeros) {
+            expected = Volume<TypeParam>(whole.grid(), TypeParam{});
+            paste(boxed.part, box, expected, 2);
+        }
+        for (const int threads : {1, 3}) {
+            ASSERT_TRUE(writing.publishVolume("thing", keyOf(threads), boxed, {}, {}, threads));
+            const auto back = writing.readVolume<TypeParam>("thing");
+            ASSERT_TRUE(back) << describe(back.error());
+            EXPECT_TRUE(sameBytes(expected, *back));
+            EXPECT_TRUE(writing.verify("thing"));
+        }
+        EXPECT_TRUE(sameBytes(expected, std::move(boxed).whole(2)));
+    }
+}
+
 TEST_F(Store, ACenterlineComesBackBitForBit) {
     Case writing = writer();
     for (const int samples : {0, 1, 1700}) {
