@@ -323,6 +323,112 @@ std::vector<Orifice> patchesOf(std::vector<Face> faces, const Volume<std::int16_
     return patches;
 }
 
+/// Pieces and orifices of cut.pieceAt, whose numbers are below `count`.
+void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
+             const Volume<std::uint8_t>& content, const Volume<std::uint8_t>& thinWalls) {
+    const Grid& grid = hu.grid();
+    const auto label = cut.pieceAt.voxels();
+    const glm::dvec3 spacing = grid.spacingMm();
+    const double voxelMm3 = grid.voxelVolumeMm3();
+    const glm::dvec3 faceMm2 = voxelMm3 / spacing;
+    cut.pieces.assign(count, {});
+    std::vector<double> gasSum(count, 0.0), taggedSum(count, 0.0);
+    std::vector<Face> faces;
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        const std::int32_t l = label[n];
+        if (l < 0) continue;
+        TubePiece& piece = cut.pieces[std::size_t(l)];
+        ++piece.voxels;
+        if (Content(content[n]) == Content::gas) ++piece.gasVoxels, gasSum[std::size_t(l)] += hu[n];
+        if (Content(content[n]) == Content::tagged)
+            ++piece.taggedVoxels, taggedSum[std::size_t(l)] += hu[n];
+        const double mm = cut.distanceMm[n];
+        if (mm > piece.radiusMm) piece.radiusMm = mm, piece.centre = grid.voxelAt(n);
+        visitFaces(grid, n, [&](std::size_t m, int axis) {
+            if (label[m] == l) return;
+            piece.surfaceMm2 += faceMm2[axis];
+            const Content other = Content(content[m]);
+            if (other == Content::outside || other == Content::lung)
+                piece.excludedAirMm2 += faceMm2[axis];
+            if (label[m] < 0 || m < n) return;
+            faces.push_back({std::min(l, label[m]), std::max(l, label[m]), std::uint32_t(n),
+                             std::uint8_t(axis)});
+        });
+    }
+    std::vector<std::array<double, 3>> core(count, {0, 0, 0});
+    for (std::size_t n = 0; n < label.size(); ++n) {
+        if (label[n] < 0 || Content(content[n]) != Content::tagged || !(cut.distanceMm[n] > 2.5f))
+            continue;
+        std::array<double, 3>& sums = core[std::size_t(label[n])];
+        sums[0] += 1.0, sums[1] += hu[n], sums[2] += double(hu[n]) * hu[n];
+    }
+    for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
+        if (core[p][0] > 0.0) {
+            cut.pieces[p].coreHu = core[p][1] / core[p][0];
+            cut.pieces[p].coreSdHu = std::sqrt(std::max(
+                0.0, core[p][2] / core[p][0] - cut.pieces[p].coreHu * cut.pieces[p].coreHu));
+        }
+        TubePiece& piece = cut.pieces[p];
+        piece.volumeMl = double(piece.voxels) * voxelMm3 / 1000.0;
+        piece.centreMm = grid.patientFromVoxelPoint(piece.centre);
+        piece.meanHu = piece.mostlyGas()
+                           ? gasSum[p] / double(std::max<std::size_t>(1, piece.gasVoxels))
+                           : taggedSum[p] / double(piece.taggedVoxels);
+    }
+    cut.orifices = patchesOf(std::move(faces), hu, content, thinWalls, cut.distanceMm);
+}
+
+/// For each piece the least of those that lie side by side with it in one lumen, as fluid, gas and
+/// haustra of a wide cecum do; empty where none do. In a tube pieces follow each other. Three of a
+/// hairpin may still all open to each other; a fourth that opens to two of them lies in no tube.
+/// Loops that touch show most of their wall.
+std::vector<std::int32_t> sideBySide(const TubePieces& cut) {
+    constexpr double crossSections = 1.5, mostWall = 0.15;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::array<double, 2>> contacts;
+    for (const Orifice& orifice : cut.orifices) {
+        auto& [open, wall] = contacts[{orifice.a, orifice.b}];
+        open += orifice.openMm2, wall += orifice.wallMm2;
+    }
+    std::map<std::int32_t, std::vector<std::int32_t>> wide;  // later pieces that a piece opens to
+    for (const auto& [pair, mm2] : contacts) {
+        const double radiusMm = std::min(cut.pieces[std::size_t(pair.first)].radiusMm,
+                                         cut.pieces[std::size_t(pair.second)].radiusMm);
+        if (mm2[0] > crossSections * M_PI * radiusMm * radiusMm &&
+            mm2[1] < mostWall * (mm2[0] + mm2[1]))
+            wide[pair.first].push_back(pair.second);
+    }
+    using Triangle = std::array<std::int32_t, 3>;
+    std::vector<Triangle> triangles;
+    std::map<std::pair<std::int32_t, std::int32_t>, int> trianglesAt;
+    for (const auto& [a, others] : wide) {
+        for (const std::int32_t b : others) {
+            const auto next = wide.find(b);
+            if (next == wide.end()) continue;
+            for (const std::int32_t c : next->second) {
+                if (std::find(others.begin(), others.end(), c) == others.end()) continue;
+                triangles.push_back({a, b, c});
+                ++trianglesAt[{a, b}], ++trianglesAt[{b, c}], ++trianglesAt[{a, c}];
+            }
+        }
+    }
+    std::vector<std::int32_t> parent(cut.pieces.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    bool any = false;
+    const auto unite = [&](std::int32_t a, std::int32_t b) {
+        a = rootOf(parent, a), b = rootOf(parent, b);
+        parent[std::size_t(std::max(a, b))] = std::min(a, b);
+        any = true;
+    };
+    for (const auto& [a, b, c] : triangles) {
+        if (trianglesAt[{a, b}] > 1 || trianglesAt[{b, c}] > 1 || trianglesAt[{a, c}] > 1)
+            unite(a, b), unite(b, c);
+    }
+    if (!any) return {};
+    for (std::size_t p = 0; p < parent.size(); ++p)
+        parent[p] = rootOf(parent, std::int32_t(p));
+    return parent;
+}
+
 }  // namespace
 
 TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
@@ -357,54 +463,17 @@ TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8
         spread(label, content, grid, layers(1.5), [](std::size_t, std::int32_t) { return true; });
     }
 
-    const glm::dvec3 spacing = grid.spacingMm();
-    const double voxelMm3 = grid.voxelVolumeMm3();
-    const glm::dvec3 faceMm2 = voxelMm3 / spacing;
-    cut.pieces.assign(basins.size(), {});
-    std::vector<double> gasSum(basins.size(), 0.0), taggedSum(basins.size(), 0.0);
-    std::vector<Face> faces;
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        const std::int32_t l = label[n];
-        if (l < 0) continue;
-        TubePiece& piece = cut.pieces[std::size_t(l)];
-        ++piece.voxels;
-        if (Content(content[n]) == Content::gas) ++piece.gasVoxels, gasSum[std::size_t(l)] += hu[n];
-        if (Content(content[n]) == Content::tagged)
-            ++piece.taggedVoxels, taggedSum[std::size_t(l)] += hu[n];
-        const double mm = cut.distanceMm[n];
-        if (mm > piece.radiusMm) piece.radiusMm = mm, piece.centre = grid.voxelAt(n);
-        visitFaces(grid, n, [&](std::size_t m, int axis) {
-            if (label[m] == l) return;
-            piece.surfaceMm2 += faceMm2[axis];
-            const Content other = Content(content[m]);
-            if (other == Content::outside || other == Content::lung)
-                piece.excludedAirMm2 += faceMm2[axis];
-            if (label[m] < 0 || m < n) return;
-            faces.push_back({std::min(l, label[m]), std::max(l, label[m]), std::uint32_t(n),
-                             std::uint8_t(axis)});
-        });
-    }
-    std::vector<std::array<double, 3>> core(basins.size(), {0, 0, 0});
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        if (label[n] < 0 || Content(content[n]) != Content::tagged || !(cut.distanceMm[n] > 2.5f))
-            continue;
-        std::array<double, 3>& sums = core[std::size_t(label[n])];
-        sums[0] += 1.0, sums[1] += hu[n], sums[2] += double(hu[n]) * hu[n];
-    }
-    for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
-        if (core[p][0] > 0.0) {
-            cut.pieces[p].coreHu = core[p][1] / core[p][0];
-            cut.pieces[p].coreSdHu = std::sqrt(std::max(
-                0.0, core[p][2] / core[p][0] - cut.pieces[p].coreHu * cut.pieces[p].coreHu));
+    measure(cut, basins.size(), hu, content, thinWalls);
+    if (std::vector<std::int32_t> sides = sideBySide(cut); !sides.empty()) {
+        for (std::int32_t& l : label) {
+            if (l >= 0) l = sides[std::size_t(l)];
         }
-        TubePiece& piece = cut.pieces[p];
-        piece.volumeMl = double(piece.voxels) * voxelMm3 / 1000.0;
-        piece.centreMm = grid.patientFromVoxelPoint(piece.centre);
-        piece.meanHu = piece.mostlyGas()
-                           ? gasSum[p] / double(std::max<std::size_t>(1, piece.gasVoxels))
-                           : taggedSum[p] / double(piece.taggedVoxels);
+        std::iota(basins.begin(), basins.end(), 0);
+        for (std::size_t p = 0; p < basins.size(); ++p)
+            basins[p] = sides[p];
+        numberByVolume(label, basins);
+        measure(cut, basins.size(), hu, content, thinWalls);
     }
-    cut.orifices = patchesOf(std::move(faces), hu, content, thinWalls, cut.distanceMm);
     return cut;
 }
 

@@ -52,11 +52,12 @@ struct TubePieceOptions {
 /// Watershed of the distance from the boundary in what is gas, tagged or their interface and no
 /// thin wall: the voxels by falling distance, each joins the piece that it touches; where two meet,
 /// they become one unless the ball that passes is smaller than `neck` times the lesser piece's
-/// (persistence). A tube without necks is cut into lengths, so that no piece spans several parts of
-/// the colon. Thin walls are then given to the piece beside them,
-/// but for tagged voxels under 0.45 of its fluid's height over soft tissue, which lie beyond its
-/// wall and go to another piece or, more than 1.5 mm off, to none. The same for any number of
-/// threads. O(voxels).
+/// (persistence). Four that lie side by side, each open to at least two others that are open to
+/// each other, all over more than one and a half cross-sections of the smaller, are one body with
+/// folds in it. A tube without necks is cut into lengths, so that no piece spans several parts of
+/// the colon. Thin walls are then given to the piece beside them, but for tagged voxels under 0.45
+/// of its fluid's height over soft tissue, which lie beyond its wall and go to another piece or,
+/// more than 1.5 mm off, to none. The same for any number of threads. O(voxels).
 TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
                          const Volume<std::uint8_t>& thinWalls, const TubePieceOptions& options);
 
