@@ -74,6 +74,28 @@ std::optional<glm::dvec2> farthestInside(const std::vector<Line>& lines) {
     return best;
 }
 
+}  // namespace
+
+bool centreInStar(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars, int v) {
+    std::vector<Line> sides;
+    for (const int corner : stars.of(v)) {
+        const auto t = std::size_t(corner / 3);
+        const int c = corner % 3;
+        const glm::dvec2 at = map.corner(tube, t, c);
+        const glm::dvec2 from = map.corner(tube, t, (c + 1) % 3) - at,
+                         to = map.corner(tube, t, (c + 2) % 3) - at;
+        const double length = glm::length(to - from);
+        if (!(length > 0.0)) return false;
+        const glm::dvec2 inward = glm::dvec2(from.y - to.y, to.x - from.x) / length;
+        sides.push_back({inward, glm::dot(inward, from)});
+    }
+    const auto step = farthestInside(sides);
+    if (step) map.flat[std::size_t(v)] += *step;
+    return step.has_value();
+}
+
+namespace {
+
 class Repair {
 public:
     Repair(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars,
@@ -129,23 +151,7 @@ private:
 
     /// Moves v to the point within its star that is farthest from the star's sides; false where
     /// there is none from which all of its triangles would be upright.
-    bool centre(int v) {
-        std::vector<Line> sides;
-        for (const int corner : stars_.of(v)) {
-            const auto t = std::size_t(corner / 3);
-            const int c = corner % 3;
-            const glm::dvec2 at = map_.corner(tube_, t, c);
-            const glm::dvec2 from = map_.corner(tube_, t, (c + 1) % 3) - at,
-                             to = map_.corner(tube_, t, (c + 2) % 3) - at;
-            const double length = glm::length(to - from);
-            if (!(length > 0.0)) return false;
-            const glm::dvec2 inward = glm::dvec2(from.y - to.y, to.x - from.x) / length;
-            sides.push_back({inward, glm::dot(inward, from)});
-        }
-        const auto step = farthestInside(sides);
-        if (step) map_.flat[std::size_t(v)] += *step;
-        return step.has_value();
-    }
+    bool centre(int v) { return centreInStar(map_, tube_, stars_, v); }
 
     /// The vertices that were moved for triangle t; none where nothing got better.
     std::vector<int> mend(int t) {

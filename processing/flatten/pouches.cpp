@@ -34,6 +34,12 @@ constexpr int mostDepth = 3;
 constexpr double leastRoundness = 0.4;
 /// What lies deepest in a pouch is shrunk by no more than the exponential of this.
 constexpr double mostFall = 7.0;
+/// So many triangles that are too thin, and one in fifty, are widened one by one.
+constexpr std::size_t fewThin = 30;
+/// A pouch may be set in with so many of its triangles too thin, to be mended where they lie.
+constexpr double mostThin = 0.1;
+/// A disc is worth trying where its triangles, spread evenly, would have sides of so many units.
+constexpr double roomUnits = 64.0;
 /// Radii of necks and discs in the plane, in circumferences. The least leaves a pouch of a hundred
 /// thousand triangles some hundred units of the lattice for each; beyond the largest a circle would
 /// meet itself around the strip.
@@ -199,7 +205,7 @@ std::vector<double> neckFirst(const TriMesh& tube, const PeriodicMap& map, glm::
 
 std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units);
 SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-              int depth);
+              int depth, PouchWork& work);
 
 /// Discs of the surface that a circle in the plane encloses.
 class Discs {
@@ -331,6 +337,76 @@ private:
     std::vector<char> inside_;
 };
 
+/// Moves the vertices around triangles that the lattice may turn over, ring upon ring, to the
+/// middles of their stars, so that these get room from their neighbours. Rims and what is `held`
+/// stay.
+class Spreading {
+public:
+    Spreading(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars,
+              const std::vector<char>& held, double units)
+        : map_(map), tube_(tube), stars_(stars), held_(held), units_(units) {}
+
+    /// Whether all of these, and what they moved, are upright in the end; else all is as before.
+    bool run(const std::vector<int>& triangles) {
+        constexpr int mostRings = 6, sweeps = 8;
+        vertices_.clear();
+        before_.clear();
+        for (const int t : triangles)
+            add(t);
+        for (int ring = 0; ring < mostRings; ++ring) {
+            if (ring > 0) grow();
+            for (int sweep = 0; sweep < sweeps; ++sweep) {
+                for (const int v : vertices_)
+                    centreInStar(map_, tube_, stars_, v);
+            }
+            if (sound(triangles)) return true;
+        }
+        for (std::size_t n = 0; n < vertices_.size(); ++n)
+            map_.flat[std::size_t(vertices_[n])] = before_[n];
+        return false;
+    }
+
+private:
+    void add(int t) {
+        for (int c = 0; c < 3; ++c) {
+            const int v = tube_.triangles[std::size_t(t)][c];
+            const glm::dvec2 at = map_.flat[std::size_t(v)];
+            if (at.y == 0.0 || at.y == map_.height) continue;
+            if (!held_.empty() && held_[std::size_t(v)]) continue;
+            if (std::ranges::find(vertices_, v) != vertices_.end()) continue;
+            vertices_.push_back(v);
+            before_.push_back(at);
+        }
+    }
+    void grow() {
+        const std::size_t count = vertices_.size();
+        for (std::size_t n = 0; n < count; ++n) {
+            for (const int corner : stars_.of(vertices_[n]))
+                add(corner / 3);
+        }
+    }
+    bool stands(int t) const {
+        const auto n = std::size_t(t);
+        return upright(map_.corner(tube_, n, 0), map_.corner(tube_, n, 1), map_.corner(tube_, n, 2),
+                       units_);
+    }
+    bool sound(const std::vector<int>& triangles) const {
+        return std::ranges::all_of(triangles, [&](int t) { return stands(t); }) &&
+               std::ranges::all_of(vertices_, [&](int v) {
+                   return std::ranges::all_of(stars_.of(v),
+                                              [&](int corner) { return stands(corner / 3); });
+               });
+    }
+
+    PeriodicMap& map_;
+    const TriMesh& tube_;
+    const VertexStars& stars_;
+    const std::vector<char>& held_;
+    double units_;
+    std::vector<int> vertices_;
+    std::vector<glm::dvec2> before_;
+};
+
 /// How far a place is to the left of the nearest side of a polygon; negative beyond one.
 double clearance(const std::vector<glm::dvec2>& polygon, glm::dvec2 at) {
     double least = std::numeric_limits<double>::infinity();
@@ -373,8 +449,13 @@ std::optional<glm::dvec2> centreOf(const std::vector<glm::dvec2>& polygon, glm::
 class CutPouch {
 public:
     CutPouch(const TriMesh& tube, const HalfedgeMesh& halfedges, const std::vector<char>& inside,
-             const Pouch& pouch, int depth)
-        : tube_(tube), halfedges_(halfedges), inside_(inside), pouch_(pouch), depth_(depth) {}
+             const Pouch& pouch, int depth, PouchWork* work = nullptr)
+        : tube_(tube),
+          halfedges_(halfedges),
+          inside_(inside),
+          pouch_(pouch),
+          depth_(depth),
+          work_(work) {}
 
     /// The radius of a circle within the border, from whose middle all of that is seen, as a share
     /// of the pouch's; 0 where there is none. First of all.
@@ -386,27 +467,40 @@ public:
         return centre_ ? clearance(borderFlat_, *centre_) / pouch_.radius : 0.0;
     }
 
-    /// Embeds what is within the ring as its own conformal map would have it. False where that
-    /// cannot be made, or is too thin for the lattice.
+    /// Embeds what is within the ring as its own conformal map would have it, or with radii that
+    /// leave all triangles alike room. Keeps the best that it finds; false where that cannot be
+    /// made, or has triangles too thin for the lattice (thin()).
     bool place(double units) {
-        if (!cutAlong(1)) return false;
+        if (!work_->take(pouch_.triangles.size()) || !cutAlong(1)) return false;
         shape();
-        const double clear = clearance(borderFlat_, *centre_);
-        for (const double fall : {mostFall, 0.75 * mostFall, 0.5 * mostFall}) {
-            rollUp(fall);
-            for (const double share : {0.9, 0.75, 0.5, 0.25}) {
-                if (tryCircle(*centre_, share * clear, units)) return true;
+        const auto share = collarShare(units);
+        if (!share) return false;
+        const double radius = *share * clearance(borderFlat_, *centre_);
+        std::vector<glm::dvec2> best;
+        for (const double bend : {0.0, 2.0, 1.0, 0.5}) {
+            if (!work_->take(inner_.size())) break;
+            rollUp(bend);
+            if (tryCircle(radius, units) && thinTriangles(units) < thin_) {
+                thin_ = thinTriangles(units);
+                best = places_;
             }
-            if (!strip_) break;
+            if (thin_ == 0 || !strip_) break;
         }
-        return false;
+        places_ = std::move(best);
+        return thin_ == 0;
     }
+
+    /// After place: how many of its triangles the lattice may turn over; more than all where there
+    /// is no map.
+    std::size_t thin() const { return thin_; }
+    const std::vector<int>& triangles() const { return pouch_.triangles; }
+    std::size_t innerCount() const { return inner_.size(); }
 
     /// The ring becomes a triangle with round corners, which lets a second one within it, and all
     /// that this encloses, be drawn in the triangle of these corners. False where the grid is too
     /// fine for the lattice.
     bool placeOnGrid(double units) {
-        if (!cutAlong(2)) return false;
+        if (!work_->take(pouch_.triangles.size()) || !cutAlong(2)) return false;
         // Both rings would run along one edge.
         if (std::ranges::any_of(collar_, [](const Polygon& p) { return p.corners.size() == 5; }))
             return false;
@@ -693,7 +787,7 @@ private:
         }
         repairMap(map, tube, apart);
         if (!fingers.empty()) {
-            SetIn made = setInAt(tube, map, fingers, depth_ + 1);
+            SetIn made = setInAt(tube, map, fingers, depth_ + 1, *work_);
             std::vector<Piece> pieces;
             for (std::size_t t = 0; t < made.tube.triangles.size(); ++t) {
                 const auto source = std::size_t(made.sourceTriangle[t]);
@@ -710,18 +804,71 @@ private:
     }
 
     /// The strip rolled up to a disc, as what is to be aimed at. A conformal map would have radii
-    /// of exp(−2π y); they fall more gently where that leaves the tip no room. Without a strip all
-    /// vertices count alike.
-    void rollUp(double mostlyFall) {
+    /// of exp(−2π y); they fall more gently where that leaves the tip no room: by no more than
+    /// e^mostFall (`bend` 0), or evenly (evenFall). Without a strip all vertices count alike.
+    void rollUp(double bend) {
         target_.assign(placesMm_.size(), glm::dvec2(0.0));
         if (!strip_) return;
-        const double fall = std::min(2.0 * std::numbers::pi, mostlyFall / strip_->height);
+        const double steepest = 2.0 * std::numbers::pi;
+        std::vector<glm::dvec2> fall;
+        if (bend > 0.0) {
+            fall = evenFall(bend);
+        } else {
+            const double slope = std::min(steepest, mostFall / strip_->height);
+            fall = {{0.0, 0.0}, {strip_->height, slope * strip_->height}};
+        }
         for (std::size_t v = 0; v < target_.size(); ++v) {
             if (int(v) == tip_) continue;
             const glm::dvec2 at = strip_->flat[v];
             const double angle = 2.0 * std::numbers::pi * at.x;
-            target_[v] = std::exp(-fall * at.y) * glm::dvec2(std::cos(angle), std::sin(angle));
+            target_[v] =
+                std::exp(-valueAt(fall, at.y)) * glm::dvec2(std::cos(angle), std::sin(angle));
         }
+    }
+
+    static double valueAt(const std::vector<glm::dvec2>& line, double x) {
+        auto next = std::upper_bound(line.begin() + 1, line.end() - 1, x,
+                                     [](double at, const glm::dvec2& p) { return at < p.x; });
+        const glm::dvec2 from = *(next - 1), to = *next;
+        return to.x > from.x ? from.y + (x - from.x) / (to.x - from.x) * (to.y - from.y) : to.y;
+    }
+
+    /// The logarithm of the radius, downwards, over y: discs in ratio of the triangles that they
+    /// hold, but that a ring's straight edges, of which n turn by 2π, stay outside of the next one:
+    /// its arrows are 1 − cos(π / n) ≈ π² / 2n² of the radius, `bend` times which it falls by in a
+    /// row of triangles.
+    std::vector<glm::dvec2> evenFall(double bend) const {
+        std::vector<double> ys;
+        std::size_t atTip = 0;
+        for (const Piece& piece : inner_) {
+            const glm::ivec3 t = piece.corners;
+            if (t.x == tip_ || t.y == tip_ || t.z == tip_) {
+                ++atTip;
+                continue;
+            }
+            const auto y = [&](int v) { return strip_->flat[std::size_t(v)].y; };
+            ys.push_back((y(t.x) + y(t.y) + y(t.z)) / 3.0);
+        }
+        std::sort(ys.begin(), ys.end());
+        const std::size_t step = std::max<std::size_t>(8, ys.size() / 64);
+        std::vector<glm::dvec2> fall{{0.0, 0.0}};
+        for (std::size_t n = 0; n < ys.size(); n += step) {
+            const std::size_t end = std::min(ys.size(), n + step);
+            const double to = end < ys.size() ? ys[end] : strip_->height;
+            const double high = to - fall.back().x;
+            if (!(high > 0.0)) continue;
+            // Of sides 1 / n a strip has 4 n² / √3 triangles for each unit of height.
+            const double around =
+                std::max(3.0, std::sqrt(double(end - n) / high * std::numbers::sqrt3 / 4.0));
+            const double arrows =
+                bend * std::numbers::pi * std::numbers::pi / (std::numbers::sqrt3 * around) * high;
+            const double even =
+                0.5 * std::log(double(ys.size() - n + atTip) / double(ys.size() - end + atTip));
+            const double most = 2.0 * std::numbers::pi * high;
+            fall.push_back({to, fall.back().y + std::min(std::max(arrows, even), most)});
+        }
+        if (fall.size() < 2) fall.push_back({strip_->height, 1.0});
+        return fall;
     }
 
     /// The directions from `centre` in which the ring's vertices may lie, in order.
@@ -843,17 +990,47 @@ private:
         });
     }
 
-    bool tryCircle(glm::dvec2 centre, double radius, double units) {
+    /// Puts the ring on a circle around the centre.
+    void placeRing(double radius) {
         places_.clear();
-        for (const double angle : ringAngles(centre))
-            places_.push_back(centre + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
-        if (!fillCollar(units)) return false;
+        for (const double angle : ringAngles(*centre_))
+            places_.push_back(*centre_ + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+    }
+
+    /// The largest circle for the ring, as a share of what there is, that leaves the collar room;
+    /// what is within only shrinks with it.
+    std::optional<double> collarShare(double units) {
+        for (const double share : {0.9, 0.75, 0.5, 0.25}) {
+            placeRing(share * clearance(borderFlat_, *centre_));
+            if (fillCollar(units)) return share;
+        }
+        return std::nullopt;
+    }
+
+    std::size_t thinTriangles(double units) const {
+        std::size_t count = 0;
+        for (const Piece& piece : inner_) {
+            const glm::ivec3 t = piece.corners;
+            count += !upright(places_[std::size_t(t.x)], places_[std::size_t(t.y)],
+                              places_[std::size_t(t.z)], units);
+        }
+        return count;
+    }
+
+    /// Embeds what is within the ring; false where the system has no solution.
+    bool tryCircle(double radius, double units) {
+        placeRing(radius);
         const std::vector<glm::ivec3> triangles = innerTriangles();
         auto places = embedDisc(triangles, places_, target_);
         if (!places) return false;
         places_ = std::move(*places);
-        if (allUpright(triangles, units)) return true;
-        // What is thin is widened.
+        const std::size_t thin = thinTriangles(units);
+        if (thin > 0 && thin <= fewThin + triangles.size() / 50) widen(triangles, units);
+        return true;
+    }
+
+    /// What is thin gets its shape back where it can; the border stays.
+    void widen(const std::vector<glm::ivec3>& triangles, double units) {
         const TriMesh disc{placesMm_, triangles};
         std::vector<char> held(placesMm_.size(), 0);
         std::fill(held.begin(), held.begin() + std::ptrdiff_t(ring_), char(1));
@@ -878,14 +1055,27 @@ private:
         std::erase_if(thin, [&](int v) { return held[std::size_t(v)] != 0; });
         constexpr int sweeps = 20;
         relaxShapes(map, disc, stars, thin, sweeps);
+        spread(map, disc, stars, held, units);
         places_ = std::move(map.flat);
-        return allUpright(triangles, units);
+    }
+
+    /// What is thin still takes room from its neighbours.
+    static void spread(PeriodicMap& map, const TriMesh& disc, const VertexStars& stars,
+                       const std::vector<char>& held, double units) {
+        std::vector<int> thin;
+        for (int t = 0; t < int(disc.triangles.size()); ++t) {
+            const auto at = [&](int c) { return map.corner(disc, std::size_t(t), c); };
+            if (!upright(at(0), at(1), at(2), units)) thin.push_back(t);
+        }
+        Spreading spreading(map, disc, stars, held, units);
+        for (const std::vector<int>& cluster : clustersOf(disc, stars, thin))
+            spreading.run(cluster);
     }
 
     const TriMesh& tube_;
     const HalfedgeMesh& halfedges_;
     const std::vector<char>& inside_;
-    const Pouch& pouch_;
+    const Pouch pouch_;
     std::vector<int> border_, leaving_;  ///< vertices in order, and the half-edges that leave them
     std::unordered_map<int, int> borderIndex_;
     std::vector<glm::dvec2> borderFlat_;
@@ -904,7 +1094,9 @@ private:
     std::optional<PeriodicMap> strip_;
     int tip_ = -1;  ///< the vertex that is not on it
     std::vector<glm::dvec2> target_, places_;
+    std::size_t thin_ = std::numeric_limits<std::size_t>::max();
     int depth_;  ///< of pouches that this is on
+    PouchWork* work_;
 };
 
 /// Leaves out the triangles that have two sides on the border and lie well where they are.
@@ -928,17 +1120,24 @@ void trim(const TriMesh& tube, const HalfedgeMesh& halfedges, const PeriodicMap&
 }
 
 /// The pouch, whose triangles `inside` marks, in its place: in its own shape, or else, trimmed, on
-/// a grid. Nothing where its border is not rounder than `roundness`, or neither is possible.
+/// a grid, or else with at most `most` of its triangles too thin for the lattice. Nothing where its
+/// border is not rounder than `roundness`, or none of this is possible.
 std::optional<CutPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfedges,
-                               const PeriodicMap& map, std::vector<char>& inside, Pouch& pouch,
-                               int depth, double roundness) {
+                               const PeriodicMap& map, const std::vector<char>& inside,
+                               const Pouch& pouch, int depth, double roundness, std::size_t most,
+                               PouchWork& work) {
     const double units = flatUnitsPerCircumference(map.height);
-    CutPouch shaped(tube, halfedges, inside, pouch, depth);
-    if (!(shaped.roundness(map) > roundness)) return std::nullopt;
-    if (shaped.place(units)) return shaped;
-    trim(tube, halfedges, map, inside, pouch);
-    CutPouch drawn(tube, halfedges, inside, pouch, depth);
-    if (drawn.roundness(map) > 0.0 && drawn.placeOnGrid(units)) return drawn;
+    std::optional<CutPouch> shaped(std::in_place, tube, halfedges, inside, pouch, depth, &work);
+    if (!(shaped->roundness(map) > roundness)) return std::nullopt;
+    if (shaped->place(units)) return shaped;
+    Pouch trimmed = pouch;
+    std::vector<char> within = inside;
+    trim(tube, halfedges, map, within, trimmed);
+    std::optional<CutPouch> drawn(std::in_place, tube, halfedges, within, trimmed, depth, &work);
+    if (drawn->roundness(map) > 0.0 && drawn->placeOnGrid(units)) {
+        return drawn;
+    }
+    if (shaped->thin() <= most) return shaped;
     return std::nullopt;
 }
 
@@ -989,79 +1188,135 @@ std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map) {
     return findPouches(tube, map, crowdedUnits);
 }
 
-std::vector<Pouch> discsAround(const TriMesh& tube, const PeriodicMap& map,
-                               const std::vector<int>& folded) {
-    const auto halfedges = HalfedgeMesh::of(tube);
-    if (!halfedges) return {};
-    const VertexStars stars(tube);
-    std::vector<char> taken(tube.triangles.size(), 0);
-    std::vector<Pouch> found;
-    Discs discs(tube, *halfedges, stars);
-    for (std::vector<int>& cluster : clustersOf(tube, stars, folded)) {
-        const Spot spot = spotOf(tube, map, std::move(cluster));
-        const double leastDisc = crowdedUnits / flatUnitsPerCircumference(map.height);
-        const double most = std::min(
-            {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
-        for (double radius = std::max(1.5 * spot.reach, leastDisc); radius < most; radius *= 1.5) {
-            auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
-            if (!disc || disc->triangles.size() < 3 * spot.triangles.size()) continue;
-            std::vector<char> inside(tube.triangles.size(), 0);
-            for (const int t : disc->triangles)
-                inside[std::size_t(t)] = 1;
-            Pouch tried = *disc;
-            if (!placed(tube, *halfedges, map, inside, tried, 0, 0.0)) continue;
-            for (const int t : disc->triangles)
-                taken[std::size_t(t)] = 1;
-            found.push_back(std::move(*disc));
-            break;
-        }
-    }
-    return found;
-}
-
-SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches) {
-    return setInAt(tube, map, pouches, 0);
-}
-
 namespace {
 
+/// A map into which pouches are being set.
+class Setting {
+public:
+    Setting(const TriMesh& tube, const PeriodicMap& map)
+        : tube_(tube), map_(map), made_{tube, map, {}, {}, 0}, gone_(tube.triangles.size(), 0) {}
+
+    void take(const CutPouch& cut) {
+        cut.takeInto(made_, gone_, triangles_, sources_, turns_);
+        ++made_.pouches;
+    }
+
+    void count(std::size_t mended) { made_.pouches += mended; }
+
+    SetIn finish() {
+        made_.tube.triangles.clear();
+        made_.map.turns.clear();
+        for (std::size_t t = 0; t < tube_.triangles.size(); ++t) {
+            if (gone_[t]) continue;
+            made_.tube.triangles.push_back(tube_.triangles[t]);
+            made_.map.turns.push_back(map_.turns[t]);
+            made_.sourceTriangle.push_back(int(t));
+            made_.apart.push_back(0);
+        }
+        made_.tube.triangles.insert(made_.tube.triangles.end(), triangles_.begin(),
+                                    triangles_.end());
+        made_.map.turns.insert(made_.map.turns.end(), turns_.begin(), turns_.end());
+        made_.sourceTriangle.insert(made_.sourceTriangle.end(), sources_.begin(), sources_.end());
+        made_.apart.resize(made_.tube.triangles.size(), 1);
+        rotate(made_.map, made_.tube, 0.0);
+        return std::move(made_);
+    }
+
+private:
+    const TriMesh& tube_;
+    const PeriodicMap& map_;
+    SetIn made_;
+    std::vector<char> gone_;
+    std::vector<glm::ivec3> triangles_;
+    std::vector<int> sources_;
+    std::vector<std::array<std::int8_t, 3>> turns_;
+};
+
 SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-              int depth) {
-    SetIn made{tube, map, {}, {}, 0};
+              int depth, PouchWork& work) {
+    Setting setting(tube, map);
     const auto halfedges = HalfedgeMesh::of(tube);
-    if (!halfedges) return made;
-    std::vector<char> gone(tube.triangles.size(), 0), inside(tube.triangles.size(), 0);
-    std::vector<glm::ivec3> triangles;
-    std::vector<int> sources;
-    std::vector<std::array<std::int8_t, 3>> turns;
+    std::vector<char> inside(tube.triangles.size(), 0);
     for (const Pouch& pouch : pouches) {
+        if (!halfedges) break;
         for (const int t : pouch.triangles)
             inside[std::size_t(t)] = 1;
-        Pouch held = pouch;
-        if (const auto cut = placed(tube, *halfedges, map, inside, held, depth, 0.0)) {
-            cut->takeInto(made, gone, triangles, sources, turns);
-            ++made.pouches;
-        }
+        const auto most = std::size_t(mostThin * double(pouch.triangles.size()));
+        if (const auto cut = placed(tube, *halfedges, map, inside, pouch, depth, 0.0, most, work))
+            setting.take(*cut);
         for (const int t : pouch.triangles)
             inside[std::size_t(t)] = 0;
     }
-    made.tube.triangles.clear();
-    made.map.turns.clear();
-    for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
-        if (gone[t]) continue;
-        made.tube.triangles.push_back(tube.triangles[t]);
-        made.map.turns.push_back(map.turns[t]);
-        made.sourceTriangle.push_back(int(t));
-        made.apart.push_back(0);
+    return setting.finish();
+}
+
+/// The least disc around a spot that can be mapped apart with fewer folds than the spot has.
+std::optional<CutPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfedges,
+                                  const PeriodicMap& map, const Spot& spot,
+                                  const std::vector<char>& taken, Discs& discs, PouchWork& work) {
+    const double units = flatUnitsPerCircumference(map.height);
+    const double most = std::min(
+        {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
+    std::vector<char> inside(tube.triangles.size(), 0);
+    for (double radius = std::max(1.5 * spot.reach, crowdedUnits / units); radius < most;
+         radius *= 1.5) {
+        const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
+        if (!disc) continue;
+        for (const int t : disc->triangles)
+            inside[std::size_t(t)] = 1;
+        const double clear =
+            radius * units * CutPouch(tube, halfedges, inside, *disc, 0).roundness(map);
+        if (std::numbers::pi * clear * clear >
+            roomUnits * roomUnits * double(disc->triangles.size())) {
+            auto cut = placed(tube, halfedges, map, inside, *disc, 0, 0.0,
+                              spot.triangles.size() / 2, work);
+            if (cut) return cut;
+        }
+        for (const int t : disc->triangles)
+            inside[std::size_t(t)] = 0;
     }
-    made.tube.triangles.insert(made.tube.triangles.end(), triangles.begin(), triangles.end());
-    made.map.turns.insert(made.map.turns.end(), turns.begin(), turns.end());
-    made.sourceTriangle.insert(made.sourceTriangle.end(), sources.begin(), sources.end());
-    made.apart.resize(made.tube.triangles.size(), 1);
-    rotate(made.map, made.tube, 0.0);
-    return made;
+    return std::nullopt;
 }
 
 }  // namespace
+
+SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
+                PouchWork& work) {
+    PeriodicMap spread = map;
+    const VertexStars stars(tube);
+    const double units = flatUnitsPerCircumference(map.height);
+    const std::vector<char> none;
+    Spreading spreading(spread, tube, stars, none, units);
+    std::vector<Spot> spots;
+    std::size_t mended = 0;
+    for (std::vector<int>& cluster : clustersOf(tube, stars, folded)) {
+        if (cluster.size() <= fewThin && spreading.run(cluster)) {
+            ++mended;
+        } else {
+            spots.push_back(spotOf(tube, map, std::move(cluster)));
+        }
+    }
+    Setting setting(tube, spread);
+    setting.count(mended);
+    const auto halfedges = HalfedgeMesh::of(tube);
+    if (!halfedges) return setting.finish();
+    std::vector<char> taken(tube.triangles.size(), 0);
+    Discs discs(tube, *halfedges, stars);
+    for (const Spot& spot : spots) {
+        if (std::ranges::any_of(spot.triangles, [&](int t) { return taken[std::size_t(t)] != 0; }))
+            continue;
+        const auto cut = leastDisc(tube, *halfedges, spread, spot, taken, discs, work);
+        if (!cut) continue;
+        for (const int t : cut->triangles())
+            taken[std::size_t(t)] = 1;
+        setting.take(*cut);
+    }
+    return setting.finish();
+}
+
+SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
+            PouchWork& work) {
+    return setInAt(tube, map, pouches, 0, work);
+}
 
 }  // namespace haustra::flatten
