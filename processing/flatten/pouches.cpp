@@ -5,6 +5,7 @@
 #include "flatten/disc_embedding.h"
 #include "flatten/flip_repair.h"
 #include "flatten/grid_drawing.h"
+#include "flatten/polygon_roll.h"
 #include "flatten/shape_relaxation.h"
 #include "flatten/vertex_stars.h"
 #include "mesh/halfedge_mesh.h"
@@ -12,10 +13,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -34,10 +37,19 @@ constexpr int mostDepth = 3;
 constexpr double leastRoundness = 0.4;
 /// What lies deepest in a pouch is shrunk by no more than the exponential of this.
 constexpr double mostFall = 7.0;
+/// A pouch of more triangles than this is not embedded where one in a hundred is folded in the
+/// target; one of more than the other, whose system would cost more than all else, not at all.
+constexpr std::size_t mostFolded = 2000, mostEmbedded = 8000;
+/// A grid of more triangles' vertices is finer than any hole's share of the lattice.
+constexpr std::size_t mostDrawn = 8000;
+/// A cluster of so many triangles is cut off before others, and these may lie in its pouch.
+constexpr std::size_t largeSpot = 1000;
 /// So many triangles that are too thin, and one in fifty, are widened one by one.
 constexpr std::size_t fewThin = 30;
 /// A pouch may be set in with so many of its triangles too thin, to be mended where they lie.
 constexpr double mostThin = 0.1;
+/// Beyond a disc of so many triangles, and a hundred for each folded one, none is tried.
+constexpr std::size_t mostAround = 5000;
 /// A disc is worth trying where its triangles, spread evenly, would have sides of so many units.
 constexpr double roomUnits = 64.0;
 /// Radii of necks and discs in the plane, in circumferences. The least leaves a pouch of a hundred
@@ -150,7 +162,9 @@ std::vector<double> radiiFor(const PeriodicMap& map, const std::vector<Spot>& sp
     double most =
         std::min({largestRadius, towardsRim * middle.y, towardsRim * (map.height - middle.y)});
     for (std::size_t other = 0; other < spots.size(); ++other) {
-        if (other == spot) continue;
+        if (other == spot || (spots[spot].triangles.size() >= largeSpot &&
+                              spots[other].triangles.size() < spots[spot].triangles.size()))
+            continue;
         glm::dvec2 away = spots[other].middle - middle;
         away.x -= std::round(away.x);
         most = std::min(most, 0.5 * glm::length(away));
@@ -467,26 +481,26 @@ public:
         return centre_ ? clearance(borderFlat_, *centre_) / pouch_.radius : 0.0;
     }
 
-    /// Embeds what is within the ring as its own conformal map would have it, or with radii that
-    /// leave all triangles alike room. Keeps the best that it finds; false where that cannot be
-    /// made, or has triangles too thin for the lattice (thin()).
+    /// Embeds what is within the ring as its own conformal map would have it. False where that
+    /// cannot be made, or has triangles too thin for the lattice (thin()).
     bool place(double units) {
         if (!work_->take(pouch_.triangles.size()) || !cutAlong(1)) return false;
         shape();
-        const auto share = collarShare(units);
-        if (!share) return false;
-        const double radius = *share * clearance(borderFlat_, *centre_);
-        std::vector<glm::dvec2> best;
-        for (const double bend : {0.0, 2.0, 1.0, 0.5}) {
-            if (!work_->take(inner_.size())) break;
-            rollUp(bend);
-            if (tryCircle(radius, units) && thinTriangles(units) < thin_) {
-                thin_ = thinTriangles(units);
-                best = places_;
-            }
-            if (thin_ == 0 || !strip_) break;
-        }
-        places_ = std::move(best);
+        embed(units);
+        return thin_ == 0;
+    }
+
+    /// In place of place: rolls up what is within two rings, of which no edge joins two of the
+    /// outer one's vertices, as one that does would be a line on the strip. False as place is.
+    bool placeApart(double units) {
+        if (!work_->take(pouch_.triangles.size()) || !cutAlong(2) || ringsMeet()) return false;
+        shape();
+        return placeRolled(units);
+    }
+
+    /// After place: rolls the same up as a polygon, and keeps the better.
+    bool placeRolled(double units) {
+        if (thin_ > 0 && strip_) roll(units);
         return thin_ == 0;
     }
 
@@ -501,9 +515,7 @@ public:
     /// fine for the lattice.
     bool placeOnGrid(double units) {
         if (!work_->take(pouch_.triangles.size()) || !cutAlong(2)) return false;
-        // Both rings would run along one edge.
-        if (std::ranges::any_of(collar_, [](const Polygon& p) { return p.corners.size() == 5; }))
-            return false;
+        if (ringsMeet()) return false;
         const std::vector<double> angles = ringAngles(*centre_);
         const auto corners = cornersFor(angles);
         if (!corners) return false;
@@ -625,6 +637,11 @@ private:
 
     static std::uint64_t keyOf(int from, int to) {
         return std::uint64_t(std::uint32_t(from)) << 32 | std::uint32_t(to);
+    }
+
+    /// Whether both rings run along one edge.
+    bool ringsMeet() const {
+        return std::ranges::any_of(collar_, [](const Polygon& p) { return p.corners.size() == 5; });
     }
 
     /// Numbers and cuts what is within the border, along one ring or two; false where that is
@@ -804,71 +821,26 @@ private:
     }
 
     /// The strip rolled up to a disc, as what is to be aimed at. A conformal map would have radii
-    /// of exp(−2π y); they fall more gently where that leaves the tip no room: by no more than
-    /// e^mostFall (`bend` 0), or evenly (evenFall). Without a strip all vertices count alike.
-    void rollUp(double bend) {
+    /// of exp(−2π y); they fall more gently where that leaves the tip no room. Without a strip all
+    /// vertices count alike.
+    void rollUp() {
         target_.assign(placesMm_.size(), glm::dvec2(0.0));
         if (!strip_) return;
-        const double steepest = 2.0 * std::numbers::pi;
-        std::vector<glm::dvec2> fall;
-        if (bend > 0.0) {
-            fall = evenFall(bend);
-        } else {
-            const double slope = std::min(steepest, mostFall / strip_->height);
-            fall = {{0.0, 0.0}, {strip_->height, slope * strip_->height}};
-        }
+        const double fall = std::min(2.0 * std::numbers::pi, mostFall / strip_->height);
         for (std::size_t v = 0; v < target_.size(); ++v) {
             if (int(v) == tip_) continue;
             const glm::dvec2 at = strip_->flat[v];
             const double angle = 2.0 * std::numbers::pi * at.x;
-            target_[v] =
-                std::exp(-valueAt(fall, at.y)) * glm::dvec2(std::cos(angle), std::sin(angle));
+            target_[v] = std::exp(-fall * at.y) * glm::dvec2(std::cos(angle), std::sin(angle));
         }
     }
 
-    static double valueAt(const std::vector<glm::dvec2>& line, double x) {
-        auto next = std::upper_bound(line.begin() + 1, line.end() - 1, x,
-                                     [](double at, const glm::dvec2& p) { return at < p.x; });
-        const glm::dvec2 from = *(next - 1), to = *next;
-        return to.x > from.x ? from.y + (x - from.x) / (to.x - from.x) * (to.y - from.y) : to.y;
-    }
-
-    /// The logarithm of the radius, downwards, over y: discs in ratio of the triangles that they
-    /// hold, but that a ring's straight edges, of which n turn by 2π, stay outside of the next one:
-    /// its arrows are 1 − cos(π / n) ≈ π² / 2n² of the radius, `bend` times which it falls by in a
-    /// row of triangles.
-    std::vector<glm::dvec2> evenFall(double bend) const {
-        std::vector<double> ys;
-        std::size_t atTip = 0;
-        for (const Piece& piece : inner_) {
-            const glm::ivec3 t = piece.corners;
-            if (t.x == tip_ || t.y == tip_ || t.z == tip_) {
-                ++atTip;
-                continue;
-            }
-            const auto y = [&](int v) { return strip_->flat[std::size_t(v)].y; };
-            ys.push_back((y(t.x) + y(t.y) + y(t.z)) / 3.0);
-        }
-        std::sort(ys.begin(), ys.end());
-        const std::size_t step = std::max<std::size_t>(8, ys.size() / 64);
-        std::vector<glm::dvec2> fall{{0.0, 0.0}};
-        for (std::size_t n = 0; n < ys.size(); n += step) {
-            const std::size_t end = std::min(ys.size(), n + step);
-            const double to = end < ys.size() ? ys[end] : strip_->height;
-            const double high = to - fall.back().x;
-            if (!(high > 0.0)) continue;
-            // Of sides 1 / n a strip has 4 n² / √3 triangles for each unit of height.
-            const double around =
-                std::max(3.0, std::sqrt(double(end - n) / high * std::numbers::sqrt3 / 4.0));
-            const double arrows =
-                bend * std::numbers::pi * std::numbers::pi / (std::numbers::sqrt3 * around) * high;
-            const double even =
-                0.5 * std::log(double(ys.size() - n + atTip) / double(ys.size() - end + atTip));
-            const double most = 2.0 * std::numbers::pi * high;
-            fall.push_back({to, fall.back().y + std::min(std::max(arrows, even), most)});
-        }
-        if (fall.size() < 2) fall.push_back({strip_->height, 1.0});
-        return fall;
+    std::size_t foldsOfTarget() const {
+        return std::size_t(std::ranges::count_if(inner_, [&](const Piece& piece) {
+            const glm::dvec2 a = target_[std::size_t(piece.corners.x)];
+            return !(cross(target_[std::size_t(piece.corners.y)] - a,
+                           target_[std::size_t(piece.corners.z)] - a) > 0.0);
+        }));
     }
 
     /// The directions from `centre` in which the ring's vertices may lie, in order.
@@ -990,19 +962,15 @@ private:
         });
     }
 
-    /// Puts the ring on a circle around the centre.
-    void placeRing(double radius) {
-        places_.clear();
-        for (const double angle : ringAngles(*centre_))
-            places_.push_back(*centre_ + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
-    }
-
-    /// The largest circle for the ring, as a share of what there is, that leaves the collar room;
-    /// what is within only shrinks with it.
-    std::optional<double> collarShare(double units) {
+    /// The largest circle for the ring, of these directions and distances in it, that leaves the
+    /// collar room; what is within only shrinks with it.
+    std::optional<double> collarRadius(const std::vector<glm::dvec2>& ring, double units) {
         for (const double share : {0.9, 0.75, 0.5, 0.25}) {
-            placeRing(share * clearance(borderFlat_, *centre_));
-            if (fillCollar(units)) return share;
+            const double radius = share * clearance(borderFlat_, *centre_);
+            places_.clear();
+            for (const glm::dvec2& at : ring)
+                places_.push_back(*centre_ + radius * at);
+            if (fillCollar(units)) return radius;
         }
         return std::nullopt;
     }
@@ -1017,16 +985,59 @@ private:
         return count;
     }
 
-    /// Embeds what is within the ring; false where the system has no solution.
-    bool tryCircle(double radius, double units) {
-        placeRing(radius);
+    /// Embeds what is within the ring, which becomes a circle.
+    void embed(double units) {
+        std::vector<glm::dvec2> ring;
+        for (const double angle : ringAngles(*centre_))
+            ring.push_back({std::cos(angle), std::sin(angle)});
+        if (!collarRadius(ring, units)) return;
+        rollUp();
+        // Around folds of the target all neighbours weigh the same, and rows of those shrink by a
+        // factor each.
+        if (inner_.size() > mostEmbedded ||
+            (inner_.size() > mostFolded && foldsOfTarget() > inner_.size() / 100))
+            return;
+        if (!work_->take(inner_.size())) return;
         const std::vector<glm::ivec3> triangles = innerTriangles();
         auto places = embedDisc(triangles, places_, target_);
-        if (!places) return false;
+        if (!places) return;
         places_ = std::move(*places);
-        const std::size_t thin = thinTriangles(units);
-        if (thin > 0 && thin <= fewThin + triangles.size() / 50) widen(triangles, units);
-        return true;
+        settle(units);
+    }
+
+    /// Rolls up what is within the ring, which becomes a polygon; keeps that where it is better.
+    void roll(double units) {
+        if (!work_->take(inner_.size())) return;
+        auto rolled =
+            rollAsPolygon({placesMm_, innerTriangles()}, *strip_, tip_, ringAngles(*centre_));
+        if (!rolled) return;
+        const auto before = std::tuple(places_, placesMm_, inner_, collarTriangles_, thin_);
+        const std::vector<glm::dvec2> ring(rolled->places.begin(),
+                                           rolled->places.begin() + std::ptrdiff_t(ring_));
+        thin_ = std::numeric_limits<std::size_t>::max();
+        if (const auto radius = collarRadius(ring, units)) {
+            for (glm::dvec2& at : rolled->places)
+                at = *centre_ + *radius * at;
+            places_ = std::move(rolled->places);
+            placesMm_ = std::move(rolled->disc.vertices);
+            std::vector<Piece> pieces;
+            for (std::size_t t = 0; t < rolled->disc.triangles.size(); ++t) {
+                const auto source = std::size_t(rolled->sourceTriangle[t]);
+                pieces.push_back({rolled->disc.triangles[t], inner_[source].source});
+            }
+            inner_ = std::move(pieces);
+            settle(units);
+        }
+        if (thin_ >= std::get<std::size_t>(before))
+            std::tie(places_, placesMm_, inner_, collarTriangles_, thin_) = before;
+    }
+
+    /// Widens what is thin, unless that is too much, and counts what remains of it.
+    void settle(double units) {
+        thin_ = thinTriangles(units);
+        if (thin_ == 0 || thin_ > fewThin + inner_.size() / 50) return;
+        widen(innerTriangles(), units);
+        thin_ = thinTriangles(units);
     }
 
     /// What is thin gets its shape back where it can; the border stays.
@@ -1120,8 +1131,8 @@ void trim(const TriMesh& tube, const HalfedgeMesh& halfedges, const PeriodicMap&
 }
 
 /// The pouch, whose triangles `inside` marks, in its place: in its own shape, or else, trimmed, on
-/// a grid, or else with at most `most` of its triangles too thin for the lattice. Nothing where its
-/// border is not rounder than `roundness`, or none of this is possible.
+/// a grid, or else rolled up with at most `most` of its triangles too thin for the lattice. Nothing
+/// where its border is not rounder than `roundness`, or none of this is possible.
 std::optional<CutPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfedges,
                                const PeriodicMap& map, const std::vector<char>& inside,
                                const Pouch& pouch, int depth, double roundness, std::size_t most,
@@ -1134,10 +1145,14 @@ std::optional<CutPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfedge
     std::vector<char> within = inside;
     trim(tube, halfedges, map, within, trimmed);
     std::optional<CutPouch> drawn(std::in_place, tube, halfedges, within, trimmed, depth, &work);
-    if (drawn->roundness(map) > 0.0 && drawn->placeOnGrid(units)) {
+    if (trimmed.triangles.size() <= mostDrawn && drawn->roundness(map) > 0.0 &&
+        drawn->placeOnGrid(units)) {
         return drawn;
     }
-    if (shaped->thin() <= most) return shaped;
+    if (shaped->placeRolled(units) || shaped->thin() <= most) return shaped;
+    std::optional<CutPouch> apart(std::in_place, tube, halfedges, within, trimmed, depth, &work);
+    if (apart->roundness(map) > 0.0) apart->placeApart(units);
+    if (apart->thin() <= most) return apart;
     return std::nullopt;
 }
 
@@ -1163,8 +1178,16 @@ std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, doub
     std::vector<Pouch> pouches;
     std::vector<char> taken(tube.triangles.size(), 0);
     Discs discs(tube, *halfedges, stars);
-    for (std::size_t n = 0; n < spots.size(); ++n) {
+    std::vector<std::size_t> order(spots.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t n) {
+        const std::size_t size = spots[n].triangles.size();
+        return size < largeSpot ? 0 : size;
+    });
+    for (const std::size_t n : order) {
         const Spot& spot = spots[n];
+        if (std::ranges::any_of(spot.triangles, [&](int t) { return taken[std::size_t(t)] != 0; }))
+            continue;
         for (const double radius : neckFirst(tube, map, spot.middle, radiiFor(map, spots, n))) {
             auto pouch = discs.within(map, spot.triangles, spot.middle, radius, taken);
             if (!pouch) continue;
@@ -1262,6 +1285,7 @@ std::optional<CutPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfe
          radius *= 1.5) {
         const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
         if (!disc) continue;
+        if (disc->triangles.size() > mostAround + 100 * spot.triangles.size()) break;
         for (const int t : disc->triangles)
             inside[std::size_t(t)] = 1;
         const double clear =

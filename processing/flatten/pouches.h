@@ -21,8 +21,10 @@ struct Pouch {
 /// cuts the finger off at its neck: of the circles around that place in the plane, which are loops
 /// around the finger on the surface, the one whose square is least against the area that it
 /// encloses (after Cheeger), none being so small that it leaves no room itself. In ascending order
-/// of their lowest triangles. Nothing of a tube that has room everywhere; a cluster without such a
-/// circle, as beside a rim, is left out. `map` need not be without flips. O(n) for each cluster.
+/// of their lowest triangles, but clusters of a thousand or more first, the largest of all before
+/// the others, in whose pouches smaller ones may lie. Nothing of a tube that has room everywhere; a
+/// cluster without such a circle, as beside a rim, is left out. `map` need not be without flips.
+/// O(n) for each cluster.
 std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map);
 
 /// How much may still be mapped apart, so that a surface that cannot be mapped costs no more than a
@@ -56,14 +58,15 @@ struct SetIn {
 /// upright. What is within the ring goes on the circle's disc by embedDisc, without a fold. Its
 /// target: the disc without its tip is a tube, whose own conformal map has room all along (fingers
 /// on it are set into that likewise), rolled up with radii that fall by no more than e⁷ from neck
-/// to tip, where a conformal map's fall as exp(−2π y), or else by as much as leaves all triangles
-/// alike room. Vertices of what is thin move to the middles of their stars. A pouch that still
-/// comes out with a triangle that rounding to the lattice might turn over, as a thread does whose
-/// every cross-section is a narrow neck, is cut along two rings instead; the outer one becomes a
-/// triangle with round corners, in which drawOnGrid draws the rest. Triangles with two sides on its
-/// border then stay out. One that has too many vertices for that (some hundreds to thousands, as
-/// its hole is wide) is set in with up to a tenth of its triangles thin, for mendFolds, or left as
-/// it was. O(n) while there is work left, beside the systems.
+/// to tip, where a conformal map's fall as exp(−2π y). Vertices of what is thin move to the middles
+/// of their stars. A pouch that still comes out with a triangle that rounding to the lattice might
+/// turn over, as a thread does whose every cross-section is a narrow neck, is cut along two rings
+/// instead; the outer one becomes a triangle with round corners, in which drawOnGrid draws the
+/// rest. Triangles with two sides on its border then stay out. One that has too many vertices for
+/// that (some hundreds to thousands, as its hole is wide) is rolled up by rollAsPolygon, which
+/// folds nothing however many they are. It is set in with up to a tenth of its triangles thin, for
+/// mendFolds, or left as it was. O(n) while there is work left, beside the systems of those of up
+/// to 8,000 triangles.
 SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
             PouchWork& work);
 
