@@ -1,5 +1,6 @@
 #include "flatten/polygon_roll.h"
 
+#include "flatten/flat_places.h"
 #include "flatten/vertex_stars.h"
 
 #include <algorithm>
@@ -21,10 +22,6 @@ constexpr double snapShare = 0.2;
 /// What is nearer to a line than this, in turns, is on it: its x would not survive that a turn is
 /// added.
 constexpr double hair = 1e-9;
-
-double cross(glm::dvec2 a, glm::dvec2 b) {
-    return a.x * b.y - a.y * b.x;
-}
 
 std::uint64_t keyOf(int a, int b) {
     return std::uint64_t(std::uint32_t(std::min(a, b))) << 32 | std::uint32_t(std::max(a, b));

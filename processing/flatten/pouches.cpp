@@ -3,10 +3,13 @@
 #include "core/flat_map.h"
 #include "flatten/conformal_tube.h"
 #include "flatten/disc_embedding.h"
+#include "flatten/flat_discs.h"
+#include "flatten/flat_places.h"
 #include "flatten/flip_repair.h"
 #include "flatten/grid_drawing.h"
 #include "flatten/polygon_roll.h"
 #include "flatten/shape_relaxation.h"
+#include "flatten/spreading.h"
 #include "flatten/vertex_stars.h"
 #include "mesh/halfedge_mesh.h"
 
@@ -59,53 +62,10 @@ constexpr double leastRadius = 0x1p-9, largestRadius = 0.25, radiusStep = 1.1892
 /// So near may a circle come to a rim, of the way there.
 constexpr double towardsRim = 0.8;
 
-/// The flat place of a vertex in the copy of the strip that is nearest to `middle`.
-glm::dvec2 placeNear(const PeriodicMap& map, int v, glm::dvec2 middle) {
-    const glm::dvec2 at = map.flat[std::size_t(v)];
-    return {at.x - std::round(at.x - middle.x), at.y};
-}
-
-double cross(glm::dvec2 a, glm::dvec2 b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-/// Whether three places, rounded however the strip is turned, are counter-clockwise.
-bool upright(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, double units) {
-    const glm::dvec2 p = b - a, q = c - a, r = q - p;
-    const double longest = std::sqrt(std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)}));
-    // Each corner moves by up to 2^−½ of a unit.
-    return cross(p, q) > 2.0 * longest / units;
-}
-
 double areaMm2(const TriMesh& tube, const glm::ivec3& t) {
     const glm::dvec3 a = tube.vertices[std::size_t(t.x)];
     return 0.5 * glm::length(glm::cross(tube.vertices[std::size_t(t.y)] - a,
                                         tube.vertices[std::size_t(t.z)] - a));
-}
-
-/// Triangles that hang together over vertices, in ascending order of their lowest.
-std::vector<std::vector<int>> clustersOf(const TriMesh& tube, const VertexStars& stars,
-                                         const std::vector<int>& triangles) {
-    std::vector<char> waiting(tube.triangles.size(), 0);
-    for (const int t : triangles)
-        waiting[std::size_t(t)] = 1;
-    std::vector<std::vector<int>> clusters;
-    for (const int seed : triangles) {
-        if (!waiting[std::size_t(seed)]) continue;
-        std::vector<int>& cluster = clusters.emplace_back(1, seed);
-        waiting[std::size_t(seed)] = 0;
-        for (std::size_t n = 0; n < cluster.size(); ++n) {
-            for (int c = 0; c < 3; ++c) {
-                for (const int corner : stars.of(tube.triangles[std::size_t(cluster[n])][c])) {
-                    const auto t = std::size_t(corner / 3);
-                    if (!waiting[t]) continue;
-                    waiting[t] = 0;
-                    cluster.push_back(int(t));
-                }
-            }
-        }
-    }
-    return clusters;
 }
 
 /// Where a cluster lies in the plane, and how far it reaches from there.
@@ -220,206 +180,6 @@ std::vector<double> neckFirst(const TriMesh& tube, const PeriodicMap& map, glm::
 std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units);
 SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
               int depth, PouchWork& work);
-
-/// Discs of the surface that a circle in the plane encloses.
-class Discs {
-public:
-    Discs(const TriMesh& tube, const HalfedgeMesh& halfedges, const VertexStars& stars)
-        : tube_(tube), halfedges_(halfedges), stars_(stars), inside_(tube.triangles.size(), 0) {}
-
-    /// The triangles within the circle that hang together with one of `seeds`, which must be among
-    /// them, with what they enclose; nothing where these are no disc with a border that is seen
-    /// from a point within, or are already `taken`.
-    std::optional<Pouch> within(const PeriodicMap& map, const std::vector<int>& seeds,
-                                glm::dvec2 middle, double radius, const std::vector<char>& taken) {
-        const auto isWithin = [&](int t) {
-            for (int c = 0; c < 3; ++c) {
-                const int v = tube_.triangles[std::size_t(t)][c];
-                const double y = map.flat[std::size_t(v)].y;
-                if (y == 0.0 || y == map.height ||
-                    !(glm::distance(placeNear(map, v, middle), middle) < radius))
-                    return false;
-            }
-            return true;
-        };
-        std::vector<int> found;
-        const auto add = [&](int t) {
-            if (inside_[std::size_t(t)]) return;
-            inside_[std::size_t(t)] = 1;
-            found.push_back(t);
-        };
-        for (const int seed : seeds) {
-            if (isWithin(seed)) add(seed);
-        }
-        for (std::size_t n = 0; n < found.size(); ++n) {
-            for (int c = 0; c < 3; ++c) {
-                const int other = halfedges_.opposite(3 * found[n] + c);
-                if (other >= 0 && !inside_[std::size_t(other / 3)] && isWithin(other / 3))
-                    add(other / 3);
-            }
-        }
-        const bool whole =
-            std::ranges::all_of(seeds, [&](int t) { return inside_[std::size_t(t)] != 0; });
-        std::optional<Pouch> pouch;
-        if (whole && close(found) &&
-            std::ranges::none_of(found, [&](int t) { return taken[std::size_t(t)] != 0; }))
-            pouch = Pouch{found, middle, radius};
-        for (const int t : found)
-            inside_[std::size_t(t)] = 0;
-        return pouch;
-    }
-
-private:
-    bool isBorder(int h) const {
-        const int other = halfedges_.opposite(h);
-        return other < 0 || !inside_[std::size_t(other / 3)];
-    }
-
-    /// Adds what the triangles enclose, and what they meet at a vertex alone; false where they
-    /// still are no disc.
-    bool close(std::vector<int>& found) {
-        for (int round = 0; round < 8; ++round) {
-            std::unordered_map<int, int> leaves;  // border half-edges by their origins
-            std::vector<int> pinched, starts;
-            for (const int t : found) {
-                for (int h = 3 * t; h < 3 * t + 3; ++h) {
-                    if (!isBorder(h)) continue;
-                    if (halfedges_.opposite(h) < 0) return false;
-                    starts.push_back(h);
-                    if (!leaves.emplace(halfedges_.origin(h), h).second)
-                        pinched.push_back(halfedges_.origin(h));
-                }
-            }
-            for (const int v : pinched) {
-                for (const int corner : stars_.of(v)) {
-                    const auto t = std::size_t(corner / 3);
-                    if (inside_[t]) continue;
-                    inside_[t] = 1;
-                    found.push_back(int(t));
-                }
-            }
-            if (!pinched.empty()) continue;
-            std::unordered_map<int, int> loopOf;
-            int loops = 0;
-            for (const int start : starts) {
-                if (loopOf.contains(start)) continue;
-                for (int h = start; loopOf.emplace(h, loops).second;)
-                    h = leaves.at(halfedges_.target(h));
-                ++loops;
-            }
-            if (loops == 1) return true;
-            if (loops == 0) return false;
-            if (!fillHoles(found, starts)) return false;
-        }
-        return false;
-    }
-
-    /// Of the pieces that the triangles leave, all but the largest join them.
-    bool fillHoles(std::vector<int>& found, const std::vector<int>& starts) {
-        std::vector<char> seen(inside_.begin(), inside_.end());
-        std::vector<std::vector<int>> pieces;
-        for (const int start : starts) {
-            const int seed = halfedges_.opposite(start) / 3;
-            if (seen[std::size_t(seed)]) continue;
-            seen[std::size_t(seed)] = 1;
-            std::vector<int>& piece = pieces.emplace_back(1, seed);
-            for (std::size_t n = 0; n < piece.size(); ++n) {
-                for (int c = 0; c < 3; ++c) {
-                    const int other = halfedges_.opposite(3 * piece[n] + c);
-                    if (other < 0 || seen[std::size_t(other / 3)]) continue;
-                    seen[std::size_t(other / 3)] = 1;
-                    piece.push_back(other / 3);
-                }
-            }
-        }
-        if (pieces.size() < 2) return false;
-        const auto largest = std::ranges::max_element(
-            pieces, [](const auto& a, const auto& b) { return a.size() < b.size(); });
-        for (auto piece = pieces.begin(); piece != pieces.end(); ++piece) {
-            if (piece == largest) continue;
-            for (const int t : *piece) {
-                inside_[std::size_t(t)] = 1;
-                found.push_back(t);
-            }
-        }
-        return true;
-    }
-
-    const TriMesh& tube_;
-    const HalfedgeMesh& halfedges_;
-    const VertexStars& stars_;
-    std::vector<char> inside_;
-};
-
-/// Moves the vertices around triangles that the lattice may turn over, ring upon ring, to the
-/// middles of their stars, so that these get room from their neighbours. Rims and what is `held`
-/// stay.
-class Spreading {
-public:
-    Spreading(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars,
-              const std::vector<char>& held, double units)
-        : map_(map), tube_(tube), stars_(stars), held_(held), units_(units) {}
-
-    /// Whether all of these, and what they moved, are upright in the end; else all is as before.
-    bool run(const std::vector<int>& triangles) {
-        constexpr int mostRings = 6, sweeps = 8;
-        vertices_.clear();
-        before_.clear();
-        for (const int t : triangles)
-            add(t);
-        for (int ring = 0; ring < mostRings; ++ring) {
-            if (ring > 0) grow();
-            for (int sweep = 0; sweep < sweeps; ++sweep) {
-                for (const int v : vertices_)
-                    centreInStar(map_, tube_, stars_, v);
-            }
-            if (sound(triangles)) return true;
-        }
-        for (std::size_t n = 0; n < vertices_.size(); ++n)
-            map_.flat[std::size_t(vertices_[n])] = before_[n];
-        return false;
-    }
-
-private:
-    void add(int t) {
-        for (int c = 0; c < 3; ++c) {
-            const int v = tube_.triangles[std::size_t(t)][c];
-            const glm::dvec2 at = map_.flat[std::size_t(v)];
-            if (at.y == 0.0 || at.y == map_.height) continue;
-            if (!held_.empty() && held_[std::size_t(v)]) continue;
-            if (std::ranges::find(vertices_, v) != vertices_.end()) continue;
-            vertices_.push_back(v);
-            before_.push_back(at);
-        }
-    }
-    void grow() {
-        const std::size_t count = vertices_.size();
-        for (std::size_t n = 0; n < count; ++n) {
-            for (const int corner : stars_.of(vertices_[n]))
-                add(corner / 3);
-        }
-    }
-    bool stands(int t) const {
-        const auto n = std::size_t(t);
-        return upright(map_.corner(tube_, n, 0), map_.corner(tube_, n, 1), map_.corner(tube_, n, 2),
-                       units_);
-    }
-    bool sound(const std::vector<int>& triangles) const {
-        return std::ranges::all_of(triangles, [&](int t) { return stands(t); }) &&
-               std::ranges::all_of(vertices_, [&](int v) {
-                   return std::ranges::all_of(stars_.of(v),
-                                              [&](int corner) { return stands(corner / 3); });
-               });
-    }
-
-    PeriodicMap& map_;
-    const TriMesh& tube_;
-    const VertexStars& stars_;
-    const std::vector<char>& held_;
-    double units_;
-    std::vector<int> vertices_;
-    std::vector<glm::dvec2> before_;
-};
 
 /// How far a place is to the left of the nearest side of a polygon; negative beyond one.
 double clearance(const std::vector<glm::dvec2>& polygon, glm::dvec2 at) {
