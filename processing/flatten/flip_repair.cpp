@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kLeastHeight = 1e-4;  // of a triangle, against its longest side
 constexpr int kRings[] = {0, 1, 2, 3, 5, 8, 12, 18};
+/// A map with more flips than this, and one triangle in fifty, is not mended by patches, each of
+/// which is solved for up to 24 times.
+constexpr std::size_t kMostFlips = 1000;
 /// What a neighbour's weight is multiplied with for each ring that it lies further inside.
 constexpr double kLeans[] = {1.0, 0.6, 0.3};
 
@@ -294,6 +297,7 @@ std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars
     for (int t = 0; t < int(tube.triangles.size()); ++t) {
         if (isFlipped(map, tube, t)) flipped.push_back(t);
     }
+    if (flipped.size() > kMostFlips + tube.triangles.size() / 50) return {};
     std::vector<int> moved = Repair(map, tube, stars, held).run(flipped);
     std::sort(moved.begin(), moved.end());
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
