@@ -20,6 +20,8 @@ namespace {
 
 // Of the time, where unifiedFlattening follows the conformal map.
 constexpr double conformalShare = 0.2;
+/// Of a pouch's triangles, each time that they are mapped, for each of the tube's.
+constexpr std::size_t workPerTriangle = 6, leastWork = 20000;
 constexpr double mostUncertain = 0.5;  // certificate; a real colon's is 0.01
 
 /// Progress from `from` to `to` of the whole.
@@ -42,10 +44,10 @@ struct Mapped {
     std::vector<int> source;  ///< per triangle: of the tube that was given
     std::vector<char> apart;  ///< per triangle: of a pouch
     std::size_t pouches = 0;
+    PouchWork work{};
 
-    /// Sets discs in. Those around folds (`pouch` false) are no pouches.
-    void take(const std::vector<Pouch>& discs, bool pouch) {
-        SetIn made = setIn(tube, map, discs);
+    /// What has had discs set in. Those around folds (`pouch` false) are no pouches.
+    void take(SetIn made, bool pouch) {
         std::vector<char> now(made.apart.size());
         for (std::size_t t = 0; t < now.size(); ++t) {
             const auto from = std::size_t(made.sourceTriangle[t]);
@@ -95,7 +97,7 @@ int makeRoom(Mapped& mapped) {
             apart[std::size_t(t)] = 1;
     }
     const int repaired = repairMap(mapped.map, mapped.tube, apart);
-    if (!pouches.empty()) mapped.take(pouches, true);
+    if (!pouches.empty()) mapped.take(setIn(mapped.tube, mapped.map, pouches, mapped.work), true);
     return repaired;
 }
 
@@ -138,9 +140,9 @@ Cut cutOpen(Mapped& mapped, const SeamOptions& options) {
             cut = moved;
             continue;
         }
-        const std::vector<Pouch> discs = discsAround(mapped.tube, mapped.map, stay);
-        if (discs.empty()) break;
-        mapped.take(discs, false);
+        SetIn mended = mendFolds(mapped.tube, mapped.map, stay, mapped.work);
+        if (mended.pouches == 0) break;
+        mapped.take(std::move(mended), false);
         cut = cutAt(mapped, cut.seam);
     }
     return cut;
@@ -216,8 +218,12 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
     Flattening made;
     made.modulus = flat->modulus;
     made.certificate = flat->certificate;
-    Mapped mapped{tube, std::move(flat->map), std::vector<int>(tube.triangles.size()),
-                  std::vector<char>(tube.triangles.size(), 0), 0};
+    Mapped mapped{tube,
+                  std::move(flat->map),
+                  std::vector<int>(tube.triangles.size()),
+                  std::vector<char>(tube.triangles.size(), 0),
+                  0,
+                  {workPerTriangle * tube.triangles.size() + leastWork, 0}};
     std::iota(mapped.source.begin(), mapped.source.end(), 0);
     made.repaired = makeRoom(mapped);
     Cut cut = cutOpen(mapped, options.seam);
@@ -242,6 +248,7 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
     made.outside = mapped.pouches > 0 ? mapped.measured(true) : made.distortion;
     made.pouches = mapped.pouches;
     made.pouchAreaMm2 = mapped.pouchAreaMm2();
+    made.pouchWork = mapped.work.done;
     made.seam = cut.seam;
     made.map = std::move(cut.map);
     if (made.pouches > 0) made.isPouch.resize(made.map.sourceTriangle.size());

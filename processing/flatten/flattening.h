@@ -36,6 +36,9 @@ struct Flattening {
     int repaired = 0;           ///< vertices
     std::size_t pouches = 0;    ///< blind fingers that were mapped apart (pouches.h)
     double pouchAreaMm2 = 0.0;
+    /// How many triangles were mapped apart, as often as they were: at most six for each of the
+    /// tube's, and 20,000.
+    std::size_t pouchWork = 0;
     std::vector<char> isPouch;  ///< per triangle of `map`; empty where there are none
     /// `distortion` of all but the pouches, whose angles are not kept; the same where there are
     /// none.

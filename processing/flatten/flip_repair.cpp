@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kLeastHeight = 1e-4;  // of a triangle, against its longest side
 constexpr int kRings[] = {0, 1, 2, 3, 5, 8, 12, 18};
+/// A map with more flips than this, and one triangle in fifty, is not mended by patches, each of
+/// which is solved for up to 24 times.
+constexpr std::size_t kMostFlips = 1000;
 /// What a neighbour's weight is multiplied with for each ring that it lies further inside.
 constexpr double kLeans[] = {1.0, 0.6, 0.3};
 
@@ -74,6 +77,28 @@ std::optional<glm::dvec2> farthestInside(const std::vector<Line>& lines) {
     return best;
 }
 
+}  // namespace
+
+bool centreInStar(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars, int v) {
+    std::vector<Line> sides;
+    for (const int corner : stars.of(v)) {
+        const auto t = std::size_t(corner / 3);
+        const int c = corner % 3;
+        const glm::dvec2 at = map.corner(tube, t, c);
+        const glm::dvec2 from = map.corner(tube, t, (c + 1) % 3) - at,
+                         to = map.corner(tube, t, (c + 2) % 3) - at;
+        const double length = glm::length(to - from);
+        if (!(length > 0.0)) return false;
+        const glm::dvec2 inward = glm::dvec2(from.y - to.y, to.x - from.x) / length;
+        sides.push_back({inward, glm::dot(inward, from)});
+    }
+    const auto step = farthestInside(sides);
+    if (step) map.flat[std::size_t(v)] += *step;
+    return step.has_value();
+}
+
+namespace {
+
 class Repair {
 public:
     Repair(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars,
@@ -129,23 +154,7 @@ private:
 
     /// Moves v to the point within its star that is farthest from the star's sides; false where
     /// there is none from which all of its triangles would be upright.
-    bool centre(int v) {
-        std::vector<Line> sides;
-        for (const int corner : stars_.of(v)) {
-            const auto t = std::size_t(corner / 3);
-            const int c = corner % 3;
-            const glm::dvec2 at = map_.corner(tube_, t, c);
-            const glm::dvec2 from = map_.corner(tube_, t, (c + 1) % 3) - at,
-                             to = map_.corner(tube_, t, (c + 2) % 3) - at;
-            const double length = glm::length(to - from);
-            if (!(length > 0.0)) return false;
-            const glm::dvec2 inward = glm::dvec2(from.y - to.y, to.x - from.x) / length;
-            sides.push_back({inward, glm::dot(inward, from)});
-        }
-        const auto step = farthestInside(sides);
-        if (step) map_.flat[std::size_t(v)] += *step;
-        return step.has_value();
-    }
+    bool centre(int v) { return centreInStar(map_, tube_, stars_, v); }
 
     /// The vertices that were moved for triangle t; none where nothing got better.
     std::vector<int> mend(int t) {
@@ -288,6 +297,7 @@ std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars
     for (int t = 0; t < int(tube.triangles.size()); ++t) {
         if (isFlipped(map, tube, t)) flipped.push_back(t);
     }
+    if (flipped.size() > kMostFlips + tube.triangles.size() / 50) return {};
     std::vector<int> moved = Repair(map, tube, stars, held).run(flipped);
     std::sort(moved.begin(), moved.end());
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());

@@ -3,19 +3,25 @@
 #include "core/flat_map.h"
 #include "flatten/conformal_tube.h"
 #include "flatten/disc_embedding.h"
+#include "flatten/flat_discs.h"
+#include "flatten/flat_places.h"
 #include "flatten/flip_repair.h"
 #include "flatten/grid_drawing.h"
+#include "flatten/polygon_roll.h"
 #include "flatten/shape_relaxation.h"
+#include "flatten/spreading.h"
 #include "flatten/vertex_stars.h"
 #include "mesh/halfedge_mesh.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -34,6 +40,21 @@ constexpr int mostDepth = 3;
 constexpr double leastRoundness = 0.4;
 /// What lies deepest in a pouch is shrunk by no more than the exponential of this.
 constexpr double mostFall = 7.0;
+/// A pouch of more triangles than this is not embedded where one in a hundred is folded in the
+/// target; one of more than the other, whose system would cost more than all else, not at all.
+constexpr std::size_t mostFolded = 2000, mostEmbedded = 8000;
+/// A grid of more triangles' vertices is finer than any hole's share of the lattice.
+constexpr std::size_t mostDrawn = 8000;
+/// A cluster of so many triangles is cut off before others, and these may lie in its pouch.
+constexpr std::size_t largeSpot = 1000;
+/// So many triangles that are too thin, and one in fifty, are widened one by one.
+constexpr std::size_t fewThin = 30;
+/// A pouch may be set in with so many of its triangles too thin, to be mended where they lie.
+constexpr double mostThin = 0.1;
+/// Beyond a disc of so many triangles, and a hundred for each folded one, none is tried.
+constexpr std::size_t mostAround = 5000;
+/// A disc is worth trying where its triangles, spread evenly, would have sides of so many units.
+constexpr double roomUnits = 64.0;
 /// Radii of necks and discs in the plane, in circumferences. The least leaves a pouch of a hundred
 /// thousand triangles some hundred units of the lattice for each; beyond the largest a circle would
 /// meet itself around the strip.
@@ -41,53 +62,10 @@ constexpr double leastRadius = 0x1p-9, largestRadius = 0.25, radiusStep = 1.1892
 /// So near may a circle come to a rim, of the way there.
 constexpr double towardsRim = 0.8;
 
-/// The flat place of a vertex in the copy of the strip that is nearest to `middle`.
-glm::dvec2 placeNear(const PeriodicMap& map, int v, glm::dvec2 middle) {
-    const glm::dvec2 at = map.flat[std::size_t(v)];
-    return {at.x - std::round(at.x - middle.x), at.y};
-}
-
-double cross(glm::dvec2 a, glm::dvec2 b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-/// Whether three places, rounded however the strip is turned, are counter-clockwise.
-bool upright(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, double units) {
-    const glm::dvec2 p = b - a, q = c - a, r = q - p;
-    const double longest = std::sqrt(std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)}));
-    // Each corner moves by up to 2^−½ of a unit.
-    return cross(p, q) > 2.0 * longest / units;
-}
-
 double areaMm2(const TriMesh& tube, const glm::ivec3& t) {
     const glm::dvec3 a = tube.vertices[std::size_t(t.x)];
     return 0.5 * glm::length(glm::cross(tube.vertices[std::size_t(t.y)] - a,
                                         tube.vertices[std::size_t(t.z)] - a));
-}
-
-/// Triangles that hang together over vertices, in ascending order of their lowest.
-std::vector<std::vector<int>> clustersOf(const TriMesh& tube, const VertexStars& stars,
-                                         const std::vector<int>& triangles) {
-    std::vector<char> waiting(tube.triangles.size(), 0);
-    for (const int t : triangles)
-        waiting[std::size_t(t)] = 1;
-    std::vector<std::vector<int>> clusters;
-    for (const int seed : triangles) {
-        if (!waiting[std::size_t(seed)]) continue;
-        std::vector<int>& cluster = clusters.emplace_back(1, seed);
-        waiting[std::size_t(seed)] = 0;
-        for (std::size_t n = 0; n < cluster.size(); ++n) {
-            for (int c = 0; c < 3; ++c) {
-                for (const int corner : stars.of(tube.triangles[std::size_t(cluster[n])][c])) {
-                    const auto t = std::size_t(corner / 3);
-                    if (!waiting[t]) continue;
-                    waiting[t] = 0;
-                    cluster.push_back(int(t));
-                }
-            }
-        }
-    }
-    return clusters;
 }
 
 /// Where a cluster lies in the plane, and how far it reaches from there.
@@ -144,7 +122,9 @@ std::vector<double> radiiFor(const PeriodicMap& map, const std::vector<Spot>& sp
     double most =
         std::min({largestRadius, towardsRim * middle.y, towardsRim * (map.height - middle.y)});
     for (std::size_t other = 0; other < spots.size(); ++other) {
-        if (other == spot) continue;
+        if (other == spot || (spots[spot].triangles.size() >= largeSpot &&
+                              spots[other].triangles.size() < spots[spot].triangles.size()))
+            continue;
         glm::dvec2 away = spots[other].middle - middle;
         away.x -= std::round(away.x);
         most = std::min(most, 0.5 * glm::length(away));
@@ -199,137 +179,7 @@ std::vector<double> neckFirst(const TriMesh& tube, const PeriodicMap& map, glm::
 
 std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units);
 SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-              int depth);
-
-/// Discs of the surface that a circle in the plane encloses.
-class Discs {
-public:
-    Discs(const TriMesh& tube, const HalfedgeMesh& halfedges, const VertexStars& stars)
-        : tube_(tube), halfedges_(halfedges), stars_(stars), inside_(tube.triangles.size(), 0) {}
-
-    /// The triangles within the circle that hang together with one of `seeds`, which must be among
-    /// them, with what they enclose; nothing where these are no disc with a border that is seen
-    /// from a point within, or are already `taken`.
-    std::optional<Pouch> within(const PeriodicMap& map, const std::vector<int>& seeds,
-                                glm::dvec2 middle, double radius, const std::vector<char>& taken) {
-        const auto isWithin = [&](int t) {
-            for (int c = 0; c < 3; ++c) {
-                const int v = tube_.triangles[std::size_t(t)][c];
-                const double y = map.flat[std::size_t(v)].y;
-                if (y == 0.0 || y == map.height ||
-                    !(glm::distance(placeNear(map, v, middle), middle) < radius))
-                    return false;
-            }
-            return true;
-        };
-        std::vector<int> found;
-        const auto add = [&](int t) {
-            if (inside_[std::size_t(t)]) return;
-            inside_[std::size_t(t)] = 1;
-            found.push_back(t);
-        };
-        for (const int seed : seeds) {
-            if (isWithin(seed)) add(seed);
-        }
-        for (std::size_t n = 0; n < found.size(); ++n) {
-            for (int c = 0; c < 3; ++c) {
-                const int other = halfedges_.opposite(3 * found[n] + c);
-                if (other >= 0 && !inside_[std::size_t(other / 3)] && isWithin(other / 3))
-                    add(other / 3);
-            }
-        }
-        const bool whole =
-            std::ranges::all_of(seeds, [&](int t) { return inside_[std::size_t(t)] != 0; });
-        std::optional<Pouch> pouch;
-        if (whole && close(found) &&
-            std::ranges::none_of(found, [&](int t) { return taken[std::size_t(t)] != 0; }))
-            pouch = Pouch{found, middle, radius};
-        for (const int t : found)
-            inside_[std::size_t(t)] = 0;
-        return pouch;
-    }
-
-private:
-    bool isBorder(int h) const {
-        const int other = halfedges_.opposite(h);
-        return other < 0 || !inside_[std::size_t(other / 3)];
-    }
-
-    /// Adds what the triangles enclose, and what they meet at a vertex alone; false where they
-    /// still are no disc.
-    bool close(std::vector<int>& found) {
-        for (int round = 0; round < 8; ++round) {
-            std::unordered_map<int, int> leaves;  // border half-edges by their origins
-            std::vector<int> pinched, starts;
-            for (const int t : found) {
-                for (int h = 3 * t; h < 3 * t + 3; ++h) {
-                    if (!isBorder(h)) continue;
-                    if (halfedges_.opposite(h) < 0) return false;
-                    starts.push_back(h);
-                    if (!leaves.emplace(halfedges_.origin(h), h).second)
-                        pinched.push_back(halfedges_.origin(h));
-                }
-            }
-            for (const int v : pinched) {
-                for (const int corner : stars_.of(v)) {
-                    const auto t = std::size_t(corner / 3);
-                    if (inside_[t]) continue;
-                    inside_[t] = 1;
-                    found.push_back(int(t));
-                }
-            }
-            if (!pinched.empty()) continue;
-            std::unordered_map<int, int> loopOf;
-            int loops = 0;
-            for (const int start : starts) {
-                if (loopOf.contains(start)) continue;
-                for (int h = start; loopOf.emplace(h, loops).second;)
-                    h = leaves.at(halfedges_.target(h));
-                ++loops;
-            }
-            if (loops == 1) return true;
-            if (loops == 0) return false;
-            if (!fillHoles(found, starts)) return false;
-        }
-        return false;
-    }
-
-    /// Of the pieces that the triangles leave, all but the largest join them.
-    bool fillHoles(std::vector<int>& found, const std::vector<int>& starts) {
-        std::vector<char> seen(inside_.begin(), inside_.end());
-        std::vector<std::vector<int>> pieces;
-        for (const int start : starts) {
-            const int seed = halfedges_.opposite(start) / 3;
-            if (seen[std::size_t(seed)]) continue;
-            seen[std::size_t(seed)] = 1;
-            std::vector<int>& piece = pieces.emplace_back(1, seed);
-            for (std::size_t n = 0; n < piece.size(); ++n) {
-                for (int c = 0; c < 3; ++c) {
-                    const int other = halfedges_.opposite(3 * piece[n] + c);
-                    if (other < 0 || seen[std::size_t(other / 3)]) continue;
-                    seen[std::size_t(other / 3)] = 1;
-                    piece.push_back(other / 3);
-                }
-            }
-        }
-        if (pieces.size() < 2) return false;
-        const auto largest = std::ranges::max_element(
-            pieces, [](const auto& a, const auto& b) { return a.size() < b.size(); });
-        for (auto piece = pieces.begin(); piece != pieces.end(); ++piece) {
-            if (piece == largest) continue;
-            for (const int t : *piece) {
-                inside_[std::size_t(t)] = 1;
-                found.push_back(t);
-            }
-        }
-        return true;
-    }
-
-    const TriMesh& tube_;
-    const HalfedgeMesh& halfedges_;
-    const VertexStars& stars_;
-    std::vector<char> inside_;
-};
+              int depth, PouchWork& work);
 
 /// How far a place is to the left of the nearest side of a polygon; negative beyond one.
 double clearance(const std::vector<glm::dvec2>& polygon, glm::dvec2 at) {
@@ -373,8 +223,13 @@ std::optional<glm::dvec2> centreOf(const std::vector<glm::dvec2>& polygon, glm::
 class CutPouch {
 public:
     CutPouch(const TriMesh& tube, const HalfedgeMesh& halfedges, const std::vector<char>& inside,
-             const Pouch& pouch, int depth)
-        : tube_(tube), halfedges_(halfedges), inside_(inside), pouch_(pouch), depth_(depth) {}
+             const Pouch& pouch, int depth, PouchWork* work = nullptr)
+        : tube_(tube),
+          halfedges_(halfedges),
+          inside_(inside),
+          pouch_(pouch),
+          depth_(depth),
+          work_(work) {}
 
     /// The radius of a circle within the border, from whose middle all of that is seen, as a share
     /// of the pouch's; 0 where there is none. First of all.
@@ -387,29 +242,40 @@ public:
     }
 
     /// Embeds what is within the ring as its own conformal map would have it. False where that
-    /// cannot be made, or is too thin for the lattice.
+    /// cannot be made, or has triangles too thin for the lattice (thin()).
     bool place(double units) {
-        if (!cutAlong(1)) return false;
+        if (!work_->take(pouch_.triangles.size()) || !cutAlong(1)) return false;
         shape();
-        const double clear = clearance(borderFlat_, *centre_);
-        for (const double fall : {mostFall, 0.75 * mostFall, 0.5 * mostFall}) {
-            rollUp(fall);
-            for (const double share : {0.9, 0.75, 0.5, 0.25}) {
-                if (tryCircle(*centre_, share * clear, units)) return true;
-            }
-            if (!strip_) break;
-        }
-        return false;
+        embed(units);
+        return thin_ == 0;
     }
+
+    /// In place of place: rolls up what is within two rings, of which no edge joins two of the
+    /// outer one's vertices, as one that does would be a line on the strip. False as place is.
+    bool placeApart(double units) {
+        if (!work_->take(pouch_.triangles.size()) || !cutAlong(2) || ringsMeet()) return false;
+        shape();
+        return placeRolled(units);
+    }
+
+    /// After place: rolls the same up as a polygon, and keeps the better.
+    bool placeRolled(double units) {
+        if (thin_ > 0 && strip_) roll(units);
+        return thin_ == 0;
+    }
+
+    /// After place: how many of its triangles the lattice may turn over; more than all where there
+    /// is no map.
+    std::size_t thin() const { return thin_; }
+    const std::vector<int>& triangles() const { return pouch_.triangles; }
+    std::size_t innerCount() const { return inner_.size(); }
 
     /// The ring becomes a triangle with round corners, which lets a second one within it, and all
     /// that this encloses, be drawn in the triangle of these corners. False where the grid is too
     /// fine for the lattice.
     bool placeOnGrid(double units) {
-        if (!cutAlong(2)) return false;
-        // Both rings would run along one edge.
-        if (std::ranges::any_of(collar_, [](const Polygon& p) { return p.corners.size() == 5; }))
-            return false;
+        if (!work_->take(pouch_.triangles.size()) || !cutAlong(2)) return false;
+        if (ringsMeet()) return false;
         const std::vector<double> angles = ringAngles(*centre_);
         const auto corners = cornersFor(angles);
         if (!corners) return false;
@@ -531,6 +397,11 @@ private:
 
     static std::uint64_t keyOf(int from, int to) {
         return std::uint64_t(std::uint32_t(from)) << 32 | std::uint32_t(to);
+    }
+
+    /// Whether both rings run along one edge.
+    bool ringsMeet() const {
+        return std::ranges::any_of(collar_, [](const Polygon& p) { return p.corners.size() == 5; });
     }
 
     /// Numbers and cuts what is within the border, along one ring or two; false where that is
@@ -693,7 +564,7 @@ private:
         }
         repairMap(map, tube, apart);
         if (!fingers.empty()) {
-            SetIn made = setInAt(tube, map, fingers, depth_ + 1);
+            SetIn made = setInAt(tube, map, fingers, depth_ + 1, *work_);
             std::vector<Piece> pieces;
             for (std::size_t t = 0; t < made.tube.triangles.size(); ++t) {
                 const auto source = std::size_t(made.sourceTriangle[t]);
@@ -712,16 +583,24 @@ private:
     /// The strip rolled up to a disc, as what is to be aimed at. A conformal map would have radii
     /// of exp(−2π y); they fall more gently where that leaves the tip no room. Without a strip all
     /// vertices count alike.
-    void rollUp(double mostlyFall) {
+    void rollUp() {
         target_.assign(placesMm_.size(), glm::dvec2(0.0));
         if (!strip_) return;
-        const double fall = std::min(2.0 * std::numbers::pi, mostlyFall / strip_->height);
+        const double fall = std::min(2.0 * std::numbers::pi, mostFall / strip_->height);
         for (std::size_t v = 0; v < target_.size(); ++v) {
             if (int(v) == tip_) continue;
             const glm::dvec2 at = strip_->flat[v];
             const double angle = 2.0 * std::numbers::pi * at.x;
             target_[v] = std::exp(-fall * at.y) * glm::dvec2(std::cos(angle), std::sin(angle));
         }
+    }
+
+    std::size_t foldsOfTarget() const {
+        return std::size_t(std::ranges::count_if(inner_, [&](const Piece& piece) {
+            const glm::dvec2 a = target_[std::size_t(piece.corners.x)];
+            return !(cross(target_[std::size_t(piece.corners.y)] - a,
+                           target_[std::size_t(piece.corners.z)] - a) > 0.0);
+        }));
     }
 
     /// The directions from `centre` in which the ring's vertices may lie, in order.
@@ -843,17 +722,86 @@ private:
         });
     }
 
-    bool tryCircle(glm::dvec2 centre, double radius, double units) {
-        places_.clear();
-        for (const double angle : ringAngles(centre))
-            places_.push_back(centre + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
-        if (!fillCollar(units)) return false;
+    /// The largest circle for the ring, of these directions and distances in it, that leaves the
+    /// collar room; what is within only shrinks with it.
+    std::optional<double> collarRadius(const std::vector<glm::dvec2>& ring, double units) {
+        for (const double share : {0.9, 0.75, 0.5, 0.25}) {
+            const double radius = share * clearance(borderFlat_, *centre_);
+            places_.clear();
+            for (const glm::dvec2& at : ring)
+                places_.push_back(*centre_ + radius * at);
+            if (fillCollar(units)) return radius;
+        }
+        return std::nullopt;
+    }
+
+    std::size_t thinTriangles(double units) const {
+        std::size_t count = 0;
+        for (const Piece& piece : inner_) {
+            const glm::ivec3 t = piece.corners;
+            count += !upright(places_[std::size_t(t.x)], places_[std::size_t(t.y)],
+                              places_[std::size_t(t.z)], units);
+        }
+        return count;
+    }
+
+    /// Embeds what is within the ring, which becomes a circle.
+    void embed(double units) {
+        std::vector<glm::dvec2> ring;
+        for (const double angle : ringAngles(*centre_))
+            ring.push_back({std::cos(angle), std::sin(angle)});
+        if (!collarRadius(ring, units)) return;
+        rollUp();
+        // Around folds of the target all neighbours weigh the same, and rows of those shrink by a
+        // factor each.
+        if (inner_.size() > mostEmbedded ||
+            (inner_.size() > mostFolded && foldsOfTarget() > inner_.size() / 100))
+            return;
+        if (!work_->take(inner_.size())) return;
         const std::vector<glm::ivec3> triangles = innerTriangles();
         auto places = embedDisc(triangles, places_, target_);
-        if (!places) return false;
+        if (!places) return;
         places_ = std::move(*places);
-        if (allUpright(triangles, units)) return true;
-        // What is thin is widened.
+        settle(units);
+    }
+
+    /// Rolls up what is within the ring, which becomes a polygon; keeps that where it is better.
+    void roll(double units) {
+        if (!work_->take(inner_.size())) return;
+        auto rolled =
+            rollAsPolygon({placesMm_, innerTriangles()}, *strip_, tip_, ringAngles(*centre_));
+        if (!rolled) return;
+        const auto before = std::tuple(places_, placesMm_, inner_, collarTriangles_, thin_);
+        const std::vector<glm::dvec2> ring(rolled->places.begin(),
+                                           rolled->places.begin() + std::ptrdiff_t(ring_));
+        thin_ = std::numeric_limits<std::size_t>::max();
+        if (const auto radius = collarRadius(ring, units)) {
+            for (glm::dvec2& at : rolled->places)
+                at = *centre_ + *radius * at;
+            places_ = std::move(rolled->places);
+            placesMm_ = std::move(rolled->disc.vertices);
+            std::vector<Piece> pieces;
+            for (std::size_t t = 0; t < rolled->disc.triangles.size(); ++t) {
+                const auto source = std::size_t(rolled->sourceTriangle[t]);
+                pieces.push_back({rolled->disc.triangles[t], inner_[source].source});
+            }
+            inner_ = std::move(pieces);
+            settle(units);
+        }
+        if (thin_ >= std::get<std::size_t>(before))
+            std::tie(places_, placesMm_, inner_, collarTriangles_, thin_) = before;
+    }
+
+    /// Widens what is thin, unless that is too much, and counts what remains of it.
+    void settle(double units) {
+        thin_ = thinTriangles(units);
+        if (thin_ == 0 || thin_ > fewThin + inner_.size() / 50) return;
+        widen(innerTriangles(), units);
+        thin_ = thinTriangles(units);
+    }
+
+    /// What is thin gets its shape back where it can; the border stays.
+    void widen(const std::vector<glm::ivec3>& triangles, double units) {
         const TriMesh disc{placesMm_, triangles};
         std::vector<char> held(placesMm_.size(), 0);
         std::fill(held.begin(), held.begin() + std::ptrdiff_t(ring_), char(1));
@@ -878,14 +826,27 @@ private:
         std::erase_if(thin, [&](int v) { return held[std::size_t(v)] != 0; });
         constexpr int sweeps = 20;
         relaxShapes(map, disc, stars, thin, sweeps);
+        spread(map, disc, stars, held, units);
         places_ = std::move(map.flat);
-        return allUpright(triangles, units);
+    }
+
+    /// What is thin still takes room from its neighbours.
+    static void spread(PeriodicMap& map, const TriMesh& disc, const VertexStars& stars,
+                       const std::vector<char>& held, double units) {
+        std::vector<int> thin;
+        for (int t = 0; t < int(disc.triangles.size()); ++t) {
+            const auto at = [&](int c) { return map.corner(disc, std::size_t(t), c); };
+            if (!upright(at(0), at(1), at(2), units)) thin.push_back(t);
+        }
+        Spreading spreading(map, disc, stars, held, units);
+        for (const std::vector<int>& cluster : clustersOf(disc, stars, thin))
+            spreading.run(cluster);
     }
 
     const TriMesh& tube_;
     const HalfedgeMesh& halfedges_;
     const std::vector<char>& inside_;
-    const Pouch& pouch_;
+    const Pouch pouch_;
     std::vector<int> border_, leaving_;  ///< vertices in order, and the half-edges that leave them
     std::unordered_map<int, int> borderIndex_;
     std::vector<glm::dvec2> borderFlat_;
@@ -904,7 +865,9 @@ private:
     std::optional<PeriodicMap> strip_;
     int tip_ = -1;  ///< the vertex that is not on it
     std::vector<glm::dvec2> target_, places_;
+    std::size_t thin_ = std::numeric_limits<std::size_t>::max();
     int depth_;  ///< of pouches that this is on
+    PouchWork* work_;
 };
 
 /// Leaves out the triangles that have two sides on the border and lie well where they are.
@@ -928,17 +891,28 @@ void trim(const TriMesh& tube, const HalfedgeMesh& halfedges, const PeriodicMap&
 }
 
 /// The pouch, whose triangles `inside` marks, in its place: in its own shape, or else, trimmed, on
-/// a grid. Nothing where its border is not rounder than `roundness`, or neither is possible.
+/// a grid, or else rolled up with at most `most` of its triangles too thin for the lattice. Nothing
+/// where its border is not rounder than `roundness`, or none of this is possible.
 std::optional<CutPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfedges,
-                               const PeriodicMap& map, std::vector<char>& inside, Pouch& pouch,
-                               int depth, double roundness) {
+                               const PeriodicMap& map, const std::vector<char>& inside,
+                               const Pouch& pouch, int depth, double roundness, std::size_t most,
+                               PouchWork& work) {
     const double units = flatUnitsPerCircumference(map.height);
-    CutPouch shaped(tube, halfedges, inside, pouch, depth);
-    if (!(shaped.roundness(map) > roundness)) return std::nullopt;
-    if (shaped.place(units)) return shaped;
-    trim(tube, halfedges, map, inside, pouch);
-    CutPouch drawn(tube, halfedges, inside, pouch, depth);
-    if (drawn.roundness(map) > 0.0 && drawn.placeOnGrid(units)) return drawn;
+    std::optional<CutPouch> shaped(std::in_place, tube, halfedges, inside, pouch, depth, &work);
+    if (!(shaped->roundness(map) > roundness)) return std::nullopt;
+    if (shaped->place(units)) return shaped;
+    Pouch trimmed = pouch;
+    std::vector<char> within = inside;
+    trim(tube, halfedges, map, within, trimmed);
+    std::optional<CutPouch> drawn(std::in_place, tube, halfedges, within, trimmed, depth, &work);
+    if (trimmed.triangles.size() <= mostDrawn && drawn->roundness(map) > 0.0 &&
+        drawn->placeOnGrid(units)) {
+        return drawn;
+    }
+    if (shaped->placeRolled(units) || shaped->thin() <= most) return shaped;
+    std::optional<CutPouch> apart(std::in_place, tube, halfedges, within, trimmed, depth, &work);
+    if (apart->roundness(map) > 0.0) apart->placeApart(units);
+    if (apart->thin() <= most) return apart;
     return std::nullopt;
 }
 
@@ -964,8 +938,16 @@ std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, doub
     std::vector<Pouch> pouches;
     std::vector<char> taken(tube.triangles.size(), 0);
     Discs discs(tube, *halfedges, stars);
-    for (std::size_t n = 0; n < spots.size(); ++n) {
+    std::vector<std::size_t> order(spots.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t n) {
+        const std::size_t size = spots[n].triangles.size();
+        return size < largeSpot ? 0 : size;
+    });
+    for (const std::size_t n : order) {
         const Spot& spot = spots[n];
+        if (std::ranges::any_of(spot.triangles, [&](int t) { return taken[std::size_t(t)] != 0; }))
+            continue;
         for (const double radius : neckFirst(tube, map, spot.middle, radiiFor(map, spots, n))) {
             auto pouch = discs.within(map, spot.triangles, spot.middle, radius, taken);
             if (!pouch) continue;
@@ -989,79 +971,136 @@ std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map) {
     return findPouches(tube, map, crowdedUnits);
 }
 
-std::vector<Pouch> discsAround(const TriMesh& tube, const PeriodicMap& map,
-                               const std::vector<int>& folded) {
-    const auto halfedges = HalfedgeMesh::of(tube);
-    if (!halfedges) return {};
-    const VertexStars stars(tube);
-    std::vector<char> taken(tube.triangles.size(), 0);
-    std::vector<Pouch> found;
-    Discs discs(tube, *halfedges, stars);
-    for (std::vector<int>& cluster : clustersOf(tube, stars, folded)) {
-        const Spot spot = spotOf(tube, map, std::move(cluster));
-        const double leastDisc = crowdedUnits / flatUnitsPerCircumference(map.height);
-        const double most = std::min(
-            {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
-        for (double radius = std::max(1.5 * spot.reach, leastDisc); radius < most; radius *= 1.5) {
-            auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
-            if (!disc || disc->triangles.size() < 3 * spot.triangles.size()) continue;
-            std::vector<char> inside(tube.triangles.size(), 0);
-            for (const int t : disc->triangles)
-                inside[std::size_t(t)] = 1;
-            Pouch tried = *disc;
-            if (!placed(tube, *halfedges, map, inside, tried, 0, 0.0)) continue;
-            for (const int t : disc->triangles)
-                taken[std::size_t(t)] = 1;
-            found.push_back(std::move(*disc));
-            break;
-        }
-    }
-    return found;
-}
-
-SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches) {
-    return setInAt(tube, map, pouches, 0);
-}
-
 namespace {
 
+/// A map into which pouches are being set.
+class Setting {
+public:
+    Setting(const TriMesh& tube, const PeriodicMap& map)
+        : tube_(tube), map_(map), made_{tube, map, {}, {}, 0}, gone_(tube.triangles.size(), 0) {}
+
+    void take(const CutPouch& cut) {
+        cut.takeInto(made_, gone_, triangles_, sources_, turns_);
+        ++made_.pouches;
+    }
+
+    void count(std::size_t mended) { made_.pouches += mended; }
+
+    SetIn finish() {
+        made_.tube.triangles.clear();
+        made_.map.turns.clear();
+        for (std::size_t t = 0; t < tube_.triangles.size(); ++t) {
+            if (gone_[t]) continue;
+            made_.tube.triangles.push_back(tube_.triangles[t]);
+            made_.map.turns.push_back(map_.turns[t]);
+            made_.sourceTriangle.push_back(int(t));
+            made_.apart.push_back(0);
+        }
+        made_.tube.triangles.insert(made_.tube.triangles.end(), triangles_.begin(),
+                                    triangles_.end());
+        made_.map.turns.insert(made_.map.turns.end(), turns_.begin(), turns_.end());
+        made_.sourceTriangle.insert(made_.sourceTriangle.end(), sources_.begin(), sources_.end());
+        made_.apart.resize(made_.tube.triangles.size(), 1);
+        rotate(made_.map, made_.tube, 0.0);
+        return std::move(made_);
+    }
+
+private:
+    const TriMesh& tube_;
+    const PeriodicMap& map_;
+    SetIn made_;
+    std::vector<char> gone_;
+    std::vector<glm::ivec3> triangles_;
+    std::vector<int> sources_;
+    std::vector<std::array<std::int8_t, 3>> turns_;
+};
+
 SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-              int depth) {
-    SetIn made{tube, map, {}, {}, 0};
+              int depth, PouchWork& work) {
+    Setting setting(tube, map);
     const auto halfedges = HalfedgeMesh::of(tube);
-    if (!halfedges) return made;
-    std::vector<char> gone(tube.triangles.size(), 0), inside(tube.triangles.size(), 0);
-    std::vector<glm::ivec3> triangles;
-    std::vector<int> sources;
-    std::vector<std::array<std::int8_t, 3>> turns;
+    std::vector<char> inside(tube.triangles.size(), 0);
     for (const Pouch& pouch : pouches) {
+        if (!halfedges) break;
         for (const int t : pouch.triangles)
             inside[std::size_t(t)] = 1;
-        Pouch held = pouch;
-        if (const auto cut = placed(tube, *halfedges, map, inside, held, depth, 0.0)) {
-            cut->takeInto(made, gone, triangles, sources, turns);
-            ++made.pouches;
-        }
+        const auto most = std::size_t(mostThin * double(pouch.triangles.size()));
+        if (const auto cut = placed(tube, *halfedges, map, inside, pouch, depth, 0.0, most, work))
+            setting.take(*cut);
         for (const int t : pouch.triangles)
             inside[std::size_t(t)] = 0;
     }
-    made.tube.triangles.clear();
-    made.map.turns.clear();
-    for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
-        if (gone[t]) continue;
-        made.tube.triangles.push_back(tube.triangles[t]);
-        made.map.turns.push_back(map.turns[t]);
-        made.sourceTriangle.push_back(int(t));
-        made.apart.push_back(0);
+    return setting.finish();
+}
+
+/// The least disc around a spot that can be mapped apart with fewer folds than the spot has.
+std::optional<CutPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfedges,
+                                  const PeriodicMap& map, const Spot& spot,
+                                  const std::vector<char>& taken, Discs& discs, PouchWork& work) {
+    const double units = flatUnitsPerCircumference(map.height);
+    const double most = std::min(
+        {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
+    std::vector<char> inside(tube.triangles.size(), 0);
+    for (double radius = std::max(1.5 * spot.reach, crowdedUnits / units); radius < most;
+         radius *= 1.5) {
+        const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
+        if (!disc) continue;
+        if (disc->triangles.size() > mostAround + 100 * spot.triangles.size()) break;
+        for (const int t : disc->triangles)
+            inside[std::size_t(t)] = 1;
+        const double clear =
+            radius * units * CutPouch(tube, halfedges, inside, *disc, 0).roundness(map);
+        if (std::numbers::pi * clear * clear >
+            roomUnits * roomUnits * double(disc->triangles.size())) {
+            auto cut = placed(tube, halfedges, map, inside, *disc, 0, 0.0,
+                              spot.triangles.size() / 2, work);
+            if (cut) return cut;
+        }
+        for (const int t : disc->triangles)
+            inside[std::size_t(t)] = 0;
     }
-    made.tube.triangles.insert(made.tube.triangles.end(), triangles.begin(), triangles.end());
-    made.map.turns.insert(made.map.turns.end(), turns.begin(), turns.end());
-    made.sourceTriangle.insert(made.sourceTriangle.end(), sources.begin(), sources.end());
-    made.apart.resize(made.tube.triangles.size(), 1);
-    rotate(made.map, made.tube, 0.0);
-    return made;
+    return std::nullopt;
 }
 
 }  // namespace
+
+SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
+                PouchWork& work) {
+    PeriodicMap spread = map;
+    const VertexStars stars(tube);
+    const double units = flatUnitsPerCircumference(map.height);
+    const std::vector<char> none;
+    Spreading spreading(spread, tube, stars, none, units);
+    std::vector<Spot> spots;
+    std::size_t mended = 0;
+    for (std::vector<int>& cluster : clustersOf(tube, stars, folded)) {
+        if (cluster.size() <= fewThin && spreading.run(cluster)) {
+            ++mended;
+        } else {
+            spots.push_back(spotOf(tube, map, std::move(cluster)));
+        }
+    }
+    Setting setting(tube, spread);
+    setting.count(mended);
+    const auto halfedges = HalfedgeMesh::of(tube);
+    if (!halfedges) return setting.finish();
+    std::vector<char> taken(tube.triangles.size(), 0);
+    Discs discs(tube, *halfedges, stars);
+    for (const Spot& spot : spots) {
+        if (std::ranges::any_of(spot.triangles, [&](int t) { return taken[std::size_t(t)] != 0; }))
+            continue;
+        const auto cut = leastDisc(tube, *halfedges, spread, spot, taken, discs, work);
+        if (!cut) continue;
+        for (const int t : cut->triangles())
+            taken[std::size_t(t)] = 1;
+        setting.take(*cut);
+    }
+    return setting.finish();
+}
+
+SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
+            PouchWork& work) {
+    return setInAt(tube, map, pouches, 0, work);
+}
 
 }  // namespace haustra::flatten

@@ -21,14 +21,26 @@ struct Pouch {
 /// cuts the finger off at its neck: of the circles around that place in the plane, which are loops
 /// around the finger on the surface, the one whose square is least against the area that it
 /// encloses (after Cheeger), none being so small that it leaves no room itself. In ascending order
-/// of their lowest triangles. Nothing of a tube that has room everywhere; a cluster without such a
-/// circle, as beside a rim, is left out. `map` need not be without flips. O(n) for each cluster.
+/// of their lowest triangles, but clusters of a thousand or more first, the largest of all before
+/// the others, in whose pouches smaller ones may lie. Nothing of a tube that has room everywhere; a
+/// cluster without such a circle, as beside a rim, is left out. `map` need not be without flips.
+/// O(n) for each cluster.
 std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map);
 
-/// The discs around folded triangles, which are mapped apart likewise: the least round hole in the
-/// map that holds each cluster of them and is otherwise upright. `folded` are triangles of `tube`.
-std::vector<Pouch> discsAround(const TriMesh& tube, const PeriodicMap& map,
-                               const std::vector<int>& folded);
+/// How much may still be mapped apart, so that a surface that cannot be mapped costs no more than a
+/// few times one that can.
+struct PouchWork {
+    std::size_t left = 0;  ///< triangles; each time that one is mapped counts
+    std::size_t done = 0;
+
+    /// False where there is not so much left.
+    bool take(std::size_t triangles) {
+        if (triangles > left) return false;
+        left -= triangles;
+        done += triangles;
+        return true;
+    }
+};
 
 /// A map in which pouches have been set in. Their triangles are cut along a ring in them.
 struct SetIn {
@@ -46,12 +58,24 @@ struct SetIn {
 /// upright. What is within the ring goes on the circle's disc by embedDisc, without a fold. Its
 /// target: the disc without its tip is a tube, whose own conformal map has room all along (fingers
 /// on it are set into that likewise), rolled up with radii that fall by no more than e⁷ from neck
-/// to tip, where a conformal map's fall as exp(−2π y). A pouch that still comes out with a triangle
-/// that rounding to the lattice might turn over, as a thread does whose every cross-section is a
-/// narrow neck, is cut along two rings instead; the outer one becomes a triangle with round
-/// corners, in which drawOnGrid draws the rest. Triangles with two sides on its border then stay
-/// out. One that has too many vertices for that (some hundreds to thousands, as its hole is wide)
-/// is left as it was. O(n), beside the systems.
-SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches);
+/// to tip, where a conformal map's fall as exp(−2π y). Vertices of what is thin move to the middles
+/// of their stars. A pouch that still comes out with a triangle that rounding to the lattice might
+/// turn over, as a thread does whose every cross-section is a narrow neck, is cut along two rings
+/// instead; the outer one becomes a triangle with round corners, in which drawOnGrid draws the
+/// rest. Triangles with two sides on its border then stay out. One that has too many vertices for
+/// that (some hundreds to thousands, as its hole is wide) is rolled up by rollAsPolygon, which
+/// folds nothing however many they are. It is set in with up to a tenth of its triangles thin, for
+/// mendFolds, or left as it was. O(n) while there is work left, beside the systems of those of up
+/// to 8,000 triangles.
+SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
+            PouchWork& work);
+
+/// Unfolds single places. Vertices around a cluster of at most 30 of `folded` (triangles of `tube`)
+/// move to the middles of their stars, up to six rings of them, and stay there where all of their
+/// triangles come to stand. Other clusters are mapped apart likewise, in the least round hole in
+/// the map that has room for its triangles and leaves half as many folds or fewer. `pouches` of
+/// what is returned counts both. A cluster for which there is no work left stays.
+SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
+                PouchWork& work);
 
 }  // namespace haustra::flatten

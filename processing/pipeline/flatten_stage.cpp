@@ -14,7 +14,7 @@ namespace {
 using store::Attributes;
 
 // Raise it whenever the flat map changes for the same input and options.
-constexpr int flatteningVersion = 4;
+constexpr int flatteningVersion = 5;
 // The chord at the centerline's ends that tells where it looks.
 constexpr double endWindowMm = 6.0;
 

@@ -209,13 +209,19 @@ Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseN
     }
     if (!closed) return tl::make_unexpected(closed.error());
     const CenterlinePose first = poseAtArc(*centerline, 0.0, 6.0),
-                         last = poseAtArc(*centerline, centerline->lengthMm(), 6.0);
+                         last = poseAtArc(*centerline, choice.until * centerline->lengthMm(), 6.0);
     const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm};
-    const glm::dvec3 outwards[2] = {-first.tangent, last.tangent};
+    const glm::dvec3 aside =
+        glm::cross(last.tangent, std::abs(last.tangent.z) < 0.7 ? glm::dvec3(0.0, 0.0, 1.0)
+                                                                : glm::dvec3(1.0, 0.0, 0.0));
+    const glm::dvec3 outwards[2] = {-first.tangent,
+                                    choice.until < 1.0 ? glm::normalize(aside) : last.tangent};
     const std::string which = choice.product         ? ", product"
                               : choice.errorMm > 0.0 ? fmt::format(", {} mm", choice.errorMm)
                                                      : ", finest";
-    return punched(caseName + which, *closed, ends, outwards);
+    const std::string blind =
+        choice.until < 1.0 ? fmt::format(", blind from {} of its length", choice.until) : "";
+    return punched(caseName + which + blind, *closed, ends, outwards);
 }
 
 Tube subdivided(const Tube& tube) {

@@ -26,6 +26,10 @@ Result<Tube> tubeOfFile(const std::string& file);
 struct SurfaceChoice {
     bool product = false;  ///< its product `surface`; else one contoured from its cleansed HU or CT
     double errorMm = 0.0;  ///< and simplified within this distance, where it is above 0
+    /// The second end is on the wall beside this share of the centerline: where that is less than
+    /// 1, the rest of the colon hangs on the tube as one blind pouch, as it does where a centerline
+    /// takes a shortcut.
+    double until = 1.0;
 };
 
 /// A case's surface punched at the ends of its centerline.

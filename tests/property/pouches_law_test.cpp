@@ -5,6 +5,7 @@
 #include "flatten/flattening.h"
 #include "flatten/flip_repair.h"
 #include "flatten/grid_drawing.h"
+#include "flatten/polygon_roll.h"
 #include "flatten/pouches.h"
 #include "flatten/seam.h"
 #include "mesh/halfedge_mesh.h"
@@ -145,7 +146,7 @@ TEST(Pouches, ChangeNothingWhereThereAreNone) {
 
 /// However thin and long a thread is, the strip covers each place of the plane once.
 TEST(Pouches, HoldThreadsOfThreeEdges) {
-    for (const int sections : {4, 12, 24, 48}) {
+    for (const int sections : {4, 12, 24, 48, 200}) {
         for (const double flatness : {1.0, 0.02}) {
             const TriMesh tube = threadedTube(sections, flatness);
             const auto made = flattenTube(tube, 0);
@@ -161,6 +162,44 @@ TEST(Pouches, HoldThreadsOfThreeEdges) {
     }
 }
 
+/// A blind pouch as large as the tube that it hangs on, wide and narrow in turn as a colon is: what
+/// a centerline's shortcut leaves of one. `neckMm`: the radius where it is narrow.
+FingeredTube blindColon(double neckMm) {
+    constexpr double radiusMm = 12.0, lengthMm = 800.0, turnMm = 50.0;
+    FingeredTube tube = fingeredTube(64, 60, stepMm, {{20, 26, 8, radiusMm, lengthMm}}, 0.05);
+    const double angle = 2.0 * std::numbers::pi * 24.0 / 64.0;
+    const glm::dvec3 out(std::cos(angle), std::sin(angle), 0.0);
+    const glm::dvec3 foot =
+        stepMm * 64 / (2.0 * std::numbers::pi) * out + glm::dvec3(0.0, 0.0, stepMm * 30.0);
+    for (glm::dvec3& v : tube.mesh.vertices) {
+        const double along = glm::dot(v - foot, out);
+        if (along < 5.0) continue;
+        const double wave = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (along - 5.0) / turnMm);
+        const glm::dvec3 axis = foot + along * out;
+        v = axis + (1.0 - wave * (1.0 - neckMm / radiusMm)) * (v - axis);
+    }
+    return tube;
+}
+
+/// However large a blind pouch, no triangle is turned over, and the work is in proportion.
+TEST(Pouches, MayBeAsLargeAsAColon) {
+    for (const double neckMm : {10.0, 4.0}) {
+        const FingeredTube tube = blindColon(neckMm);
+        const auto pouch = std::ranges::count(tube.inFinger, char(1));
+        ASSERT_GT(pouch, 20000);
+        const auto made = flattenTube(tube.mesh, 0);
+        ASSERT_TRUE(made) << describe(made.error());
+        EXPECT_TRUE(foldedTriangles(made->map).empty());
+        EXPECT_EQ(made->seamMismatch, 0.0);
+        EXPECT_LE(made->pouchWork, 6 * tube.mesh.triangles.size() + 20000);
+        double flat = 0.0;
+        for (std::size_t t = 0; t < made->map.surface.triangles.size(); ++t)
+            flat += flatArea(made->map, t);
+        EXPECT_NEAR(flat, made->map.height, 1e-9);
+        EXPECT_NEAR(areaMm2(made->map.surface), areaMm2(tube.mesh), 1e-9 * areaMm2(tube.mesh));
+    }
+}
+
 /// Setting a pouch in moves no vertex outside of it.
 TEST(Pouches, LeaveTheMapOutsideAsItIs) {
     const TriMesh tube = oneFinger(240.0).mesh;
@@ -170,7 +209,8 @@ TEST(Pouches, LeaveTheMapOutsideAsItIs) {
     ASSERT_TRUE(plain);
     const auto pouches = findPouches(tube, plain->map);
     ASSERT_EQ(pouches.size(), 1u);
-    const SetIn made = setIn(tube, plain->map, pouches);
+    PouchWork work{10 * tube.triangles.size(), 0};
+    const SetIn made = setIn(tube, plain->map, pouches, work);
     EXPECT_EQ(made.pouches, 1u);
     std::vector<char> inPouch(tube.triangles.size(), 0);
     for (const int t : pouches[0].triangles)
@@ -271,6 +311,105 @@ TEST(FoldedTriangles, AreNotPublished) {
     EXPECT_NE(made.error().message.find("1 of the flat map's triangles"), std::string::npos)
         << made.error().message;
     EXPECT_NE(made.error().message.find("the rim"), std::string::npos) << made.error().message;
+}
+
+/// Weighting areas keeps every triangle upright, or is given up, and told so: then the strip is the
+/// conformal one, to the bit. A weight beyond 1 is one that unifiedFlattening cannot follow.
+TEST(AreaWeight, FallsBackToTheConformalStrip) {
+    const TriMesh tube = fingeredTube(32, 24, stepMm, {{8, 8, 6, 3.0, 20.0}}, 0.1).mesh;
+    const auto plain = flattenTube(tube, 0);
+    ASSERT_TRUE(plain);
+    for (const double weight : {0.5, 1.5}) {
+        FlatteningOptions options;
+        options.areaWeight = weight;
+        const auto made = flattenTube(tube, 0, options);
+        ASSERT_TRUE(made) << describe(made.error());
+        EXPECT_TRUE(foldedTriangles(made->map).empty());
+        EXPECT_EQ(made->areaWeight, weight <= 1.0 ? weight : 0.0);
+        EXPECT_EQ(made->conformal.logAreaDeviation, plain->distortion.logAreaDeviation);
+        if (made->areaWeight > 0.0) {
+            EXPECT_LT(made->distortion.logAreaDeviation, plain->distortion.logAreaDeviation);
+            continue;
+        }
+        EXPECT_EQ(made->distortion.logAreaDeviation, plain->distortion.logAreaDeviation);
+        ASSERT_EQ(made->map.flat.size(), plain->map.flat.size());
+        EXPECT_EQ(std::memcmp(made->map.flat.data(), plain->map.flat.data(),
+                              plain->map.flat.size() * sizeof(glm::dvec2)),
+                  0);
+        EXPECT_EQ(made->map.surface.triangles, plain->map.surface.triangles);
+    }
+}
+
+/// A strip of `around` × `rows` shaken quadrilaterals with a tip beyond it.
+struct RolledStrip {
+    TriMesh disc;
+    PeriodicMap map;
+    std::vector<double> angles;
+    int tip = 0;
+};
+
+RolledStrip shakenStrip(int around, int rows, std::mt19937& random) {
+    std::uniform_real_distribution<double> shake(-0.3, 0.3);
+    RolledStrip made;
+    made.map.height = double(rows) / around;
+    for (int j = 0; j <= rows; ++j) {
+        for (int i = 0; i < around; ++i) {
+            const double x = (i + 0.5 + (j % 3 == 0 ? 0.0 : shake(random))) / around;
+            const double y = (j + (j == 0 || j == rows ? 0.0 : shake(random))) / around;
+            made.map.flat.push_back({x, j == rows ? made.map.height : y});
+            made.disc.vertices.push_back({x, y, 0.0});
+        }
+    }
+    made.tip = int(made.map.flat.size());
+    made.disc.vertices.push_back({0.5, made.map.height + 1.0, 0.0});
+    for (int j = 0; j < rows; ++j) {
+        for (int i = 0; i < around; ++i) {
+            const int next = (i + 1) % around;
+            const auto wrap = std::int8_t(next == 0);
+            const int a = j * around + i, b = j * around + next, c = a + around, d = b + around;
+            made.disc.triangles.push_back({a, b, d});
+            made.map.turns.push_back({0, wrap, wrap});
+            made.disc.triangles.push_back({a, d, c});
+            made.map.turns.push_back({0, wrap, 0});
+        }
+    }
+    for (int i = 0; i < around; ++i)
+        made.disc.triangles.push_back(
+            {rows * around + i, rows * around + (i + 1) % around, made.tip});
+    for (int i = 0; i < around; ++i)
+        made.angles.push_back(2.0 * std::numbers::pi * (i + 0.3 * shake(random)) / around);
+    return made;
+}
+
+/// However many rows and however few edges they have: nothing folds, the pieces fill the polygon
+/// that their rim is, and each triangle is all there. No figure here depends on how long the strip
+/// is.
+TEST(PolygonRoll, FoldsNothing) {
+    std::mt19937 random(3);
+    for (const auto& [around, rows] : {std::pair{3, 400}, std::pair{4, 30}, std::pair{7, 1500},
+                                       std::pair{12, 300}, std::pair{60, 400}}) {
+        const RolledStrip strip = shakenStrip(around, rows, random);
+        const auto rolled = rollAsPolygon(strip.disc, strip.map, strip.tip, strip.angles);
+        ASSERT_TRUE(rolled) << around << " around";
+        const auto at = [&](int v) { return rolled->places[std::size_t(v)]; };
+        double area = 0.0, rim = 0.0;
+        for (std::size_t t = 0; t < rolled->disc.triangles.size(); ++t) {
+            const glm::ivec3 c = rolled->disc.triangles[t];
+            const glm::dvec2 u = at(c.y) - at(c.x), v = at(c.z) - at(c.x);
+            EXPECT_GT(u.x * v.y - u.y * v.x, 0.0) << around << " around, triangle " << t;
+            area += 0.5 * (u.x * v.y - u.y * v.x);
+        }
+        for (int i = 0; i < around; ++i) {
+            const glm::dvec2 from = at(i), to = at((i + 1) % around);
+            rim += 0.5 * (from.x * to.y - from.y * to.x);
+            EXPECT_LE(glm::length(from), 1.0 + 1e-12);
+        }
+        EXPECT_NEAR(area, rim, 1e-12);
+        EXPECT_TRUE(mesh::HalfedgeMesh::of(rolled->disc));
+        const std::set<int> sources(rolled->sourceTriangle.begin(), rolled->sourceTriangle.end());
+        EXPECT_EQ(sources.size(), strip.disc.triangles.size());
+        EXPECT_LT(rolled->disc.triangles.size(), 5 * strip.disc.triangles.size() + 1000);
+    }
 }
 
 /// embedDisc gives back a target without folds, and undoes those of another.
