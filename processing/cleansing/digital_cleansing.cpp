@@ -2,6 +2,7 @@
 
 #include "cleansing/refined_lumen.h"
 #include "cleansing/rim_smoothing.h"
+#include "cleansing/untagged_fluid.h"
 #include "core/connected_labels.h"
 #include "core/parallel.h"
 
@@ -67,7 +68,11 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
     }
     auto part = cropToLumen(scan, segmentation, threads);
     if (!part) return tl::make_unexpected(part.error());
-    if (!*part) return Cleansed{scan.hu.clone(), segmentation.clone()};
+    if (!*part) {
+        Cleansed cleansed{scan.hu.clone(), segmentation.clone()};
+        takeOutUntagged(cleansed.hu, cleansed.lumen, segmentation, tissue.meanHu[int(Tissue::air)], threads);
+        return cleansed;
+    }
     CleansedLumen cleansed = cleanse(
         scan, tissue, mixture, measureTaggedLumen(std::move(**part), tissue, threads), threads);
     return Cleansed{std::move(cleansed.hu).whole(threads),
@@ -125,6 +130,8 @@ CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
     };
     joinBodies(open, [&](std::size_t n) { return LumenLabel(segmented(n)) != LumenLabel::outside; },
                segmented, {.dropOthers = false});
+
+    takeOutUntagged(hu, open, lumen.labels, tissue.meanHu[int(Tissue::air)], threads);
 
     CleansedLumen cleansed;
     cleansed.hu = {lumen.scanGrid, lumen.box, std::move(hu), {}};

@@ -20,8 +20,9 @@ struct Cleansed {
 /// Equation 3.3 of the dissertation and its counterpart for the enhanced mucosa:
 /// y_new = y − m_tag μ_tag + m_tag μ_air, with the local mean of the tagging, on the scan
 /// without pseudo-enhancement (pseudo_enhancement.h), where there is any. But for that only what
-/// `segmentation` (LumenLabel) holds, and the partial volume around it, changes; a scan with no
-/// tagged label comes back unchanged. The same bytes for any number of threads.
+/// `segmentation` (LumenLabel) holds, and the partial volume around it, changes; fluid without
+/// tagging goes by its label (untagged_fluid.h); a scan with neither comes back unchanged. The same
+/// bytes for any number of threads.
 Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
                          const Volume<TissueFractions>& mixture,
                          const Volume<std::uint8_t>& segmentation, int threads = 0);

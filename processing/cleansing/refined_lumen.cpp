@@ -73,7 +73,8 @@ Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& ti
         const bool open = cleansed[voxel.index] < tissue.airBelowHu;
         if (out[voxel.index] == std::uint8_t(LumenLabel::outside)) {
             if (open) beside.push_back(&voxel);
-        } else if (out[voxel.index] != std::uint8_t(LumenLabel::bridge)) {
+        } else if (out[voxel.index] != std::uint8_t(LumenLabel::bridge) &&
+                   out[voxel.index] != std::uint8_t(LumenLabel::untagged)) {
             out[voxel.index] = open ? labelOf(voxel) : std::uint8_t(LumenLabel::outside);
         }
     }

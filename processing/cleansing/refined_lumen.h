@@ -22,7 +22,8 @@ struct CleansedVoxel {
 /// LumenLabel by the cleansed scan: what `segmentation` holds, less what is wall now, and more by
 /// those of `changed` (in memory order) that are air now and touch it, unless they join what is
 /// parted there: a thin wall that the blur of tagging hides stays. Specks of less than 12 mm³
-/// that float in the former residue are noise: they become air in `hu`, and lumen. Bridges stay.
+/// that float in the former residue are noise: they become air in `hu`, and lumen. Bridges and
+/// untagged fluid stay.
 Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& tissue,
                                  const SmoothField& airHu, const Volume<std::uint8_t>& segmentation,
                                  std::span<const CleansedVoxel> changed);

@@ -91,7 +91,8 @@ std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& rec
         SegmentDistension& segment = all[std::size_t(segmentOf(piece.part))];
         segment.lengthMm += piece.lengthMm;
         segment.diameterMm += 2.0 * piece.radiusMm * piece.lengthMm;
-        segment.gasMl += piece.gasMl, segment.taggedMl += piece.taggedMl;
+        segment.gasMl += piece.gasMl, segment.taggedMl += piece.taggedMl,
+            segment.untaggedMl += piece.untaggedMl;
     }
     for (std::size_t n = 0; n < record.junctions.size(); ++n) {
         if (record.junctions[n].kind == JunctionKind::collapse) {
@@ -115,7 +116,8 @@ std::string qualityJson(const ColonRecord& record) {
                           {"radius_mm", rounded(piece.radiusMm)},
                           {"length_mm", rounded(piece.lengthMm)},
                           {"gas_ml", rounded(piece.gasMl)},
-                          {"tagged_ml", rounded(piece.taggedMl)}});
+                          {"tagged_ml", rounded(piece.taggedMl)},
+                          {"untagged_ml", rounded(piece.untaggedMl)}});
     }
     for (const ColonJunction& junction : record.junctions) {
         junctions.push_back({{"kind", toString(junction.kind)},
@@ -135,7 +137,9 @@ std::string qualityJson(const ColonRecord& record) {
         (body.gas ? gasMl : taggedMl) += body.volumeMl;
         leftOut.push_back({{"center_mm", place(body.centreMm)},
                            {"volume_ml", rounded(body.volumeMl)},
-                           {"content", body.gas ? "gas" : "tagged"},
+                           {"content", body.gas        ? "gas"
+                                       : body.untagged ? "untagged"
+                                                       : "tagged"},
                            {"nearest", toString(body.nearest)},
                            {"distance_mm", rounded(body.distanceMm)},
                            {"opens", body.opens}});
@@ -156,13 +160,15 @@ std::string qualityJson(const ColonRecord& record) {
     const auto distension = distensionOf(record);
     for (int n = 0; n < colonSegments; ++n) {
         const SegmentDistension& segment = distension[std::size_t(n)];
-        const double ml = segment.gasMl + segment.taggedMl;
+        const double residueMl = segment.taggedMl + segment.untaggedMl,
+                     ml = segment.gasMl + residueMl;
         segments.push_back({{"segment", toString(ColonSegment(n))},
                             {"length_mm", rounded(segment.lengthMm)},
                             {"diameter_mm", rounded(segment.diameterMm)},
                             {"gas_ml", rounded(segment.gasMl)},
                             {"tagged_ml", rounded(segment.taggedMl)},
-                            {"residue", rounded(ml > 0.0 ? segment.taggedMl / ml : 0.0)},
+                            {"untagged_ml", rounded(segment.untaggedMl)},
+                            {"residue", rounded(ml > 0.0 ? residueMl / ml : 0.0)},
                             {"collapsed_mm", rounded(segment.collapsedMm)}});
     }
     return Json{{"confidence", rounded(record.confidence)},
@@ -190,8 +196,9 @@ Result<ColonTrust> trustOfQuality(const std::string& text) {
         ColonTrust trust{json.at("confidence"), json.at("length_mm"), json.at("warnings"), {}};
         for (std::size_t n = 0; n < colonSegments; ++n) {
             const Json& read = json.at("segments").at(n);
-            trust.segments[n] = {read.at("length_mm"), read.at("diameter_mm"), read.at("gas_ml"),
-                                 read.at("tagged_ml"), read.at("collapsed_mm")};
+            trust.segments[n] = {
+                read.at("length_mm"), read.at("diameter_mm"),         read.at("gas_ml"),
+                read.at("tagged_ml"), read.value("untagged_ml", 0.0), read.at("collapsed_mm")};
         }
         return trust;
     } catch (const std::exception& error) {

@@ -42,7 +42,7 @@ struct ColonPiece {
     glm::dvec3 centreMm{0.0};  ///< patient, LPS: middle of the largest ball inside
     double radiusMm = 0.0;     ///< of that ball
     double lengthMm = 0.0;     ///< as a tube of that calibre
-    double gasMl = 0.0, taggedMl = 0.0;
+    double gasMl = 0.0, taggedMl = 0.0, untaggedMl = 0.0;
 };
 
 struct ColonJunction {
@@ -61,6 +61,7 @@ struct LeftOutBody {
     ColonPart nearest = ColonPart::rectum;
     double distanceMm = 0.0;  ///< from its centre to the nearest piece's centre, less both radii
     bool opens = false;       ///< a door between it and the colon had to be closed
+    bool untagged = false;    ///< mostly fluid without tagging
 };
 
 /// A wall too thin for the scan to show whole, set up again.
@@ -70,7 +71,8 @@ struct RebuiltWallRecord {
     bool betweenLoops = false;  ///< both sides are the colon's; else other bowel lies behind
 };
 
-/// Fluid that took no tagging stands under the colon's gas: its surface is seen, its wall is not.
+/// Fluid that took no tagging stands under the colon's gas: its surface is seen, its wall is not,
+/// so that it is not in the lumen.
 struct UntaggedPool {
     ColonPart part = ColonPart::rectum;
     glm::dvec3 placeMm{0.0};  ///< the middle of its surface
@@ -129,7 +131,7 @@ ColonSegment segmentOf(ColonPart part);
 struct SegmentDistension {
     double lengthMm = 0.0;
     double diameterMm = 0.0;  ///< of the largest balls inside, mean over the length
-    double gasMl = 0.0, taggedMl = 0.0;
+    double gasMl = 0.0, taggedMl = 0.0, untaggedMl = 0.0;
     double collapsedMm = 0.0;  ///< crossed by bridges that begin in it
 };
 std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& record);

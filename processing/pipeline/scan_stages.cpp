@@ -3,6 +3,7 @@
 #include "cleansing/digital_cleansing.h"
 #include "cleansing/mixture.h"
 #include "cleansing/tissue_mixture.h"
+#include "cleansing/untagged_fluid.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/read_inputs.h"
 #include "pipeline/scan_identity.h"
@@ -22,7 +23,7 @@ constexpr int importVersion = 1;
 constexpr int segmentationVersion = 8;
 constexpr int maskVersion = 5;
 constexpr int mixtureVersion = 13;
-constexpr int cleansingVersion = 11;
+constexpr int cleansingVersion = 12;
 
 // How a mask without a scan is drawn.
 const TissueModel drawnTissue{
@@ -310,7 +311,16 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
                                                 madeFrom(product::cleansed));
                 });
         };
-        if (!lumen) return publish(input->labels, input->scan.hu);
+        if (!lumen) {
+            Volume<std::int16_t> hu = input->scan.hu.share();
+            if (cleansing::hasUntagged(input->labels)) {
+                hu = input->scan.hu.clone();
+                Volume<std::uint8_t> labels = input->labels.clone();
+                cleansing::takeOutUntagged(hu, labels, input->labels,
+                                           input->tissue.meanHu[int(Tissue::air)], threads);
+            }
+            return publish(input->labels, hu);
+        }
         const auto cleansed =
             target.readVolume<TissueFractions>(product::mixture)
                 .map([&](const Volume<TissueFractions>& fractions) {

@@ -19,6 +19,7 @@ enum class Content : std::uint8_t {
     interface,  ///< at an air–fluid level: partial volume, and the last voxels of gas and fluid
     outside,    ///< the room's air
     lung,
+    untagged,  ///< fluid that took no tagging, under a level (untagged_pools.h)
 };
 
 struct BowelContents {

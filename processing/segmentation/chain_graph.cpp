@@ -25,6 +25,11 @@ bool isTaggedBowel(const TubePiece& piece, double softHu, double brightestHu, do
     return sd < mostUneven * contrast;
 }
 
+bool isUntaggedBowel(const TubePiece& piece) {
+    constexpr double leastMl = 0.5, leastRadiusMm = 3.5;
+    return piece.mostlyUntagged() && piece.volumeMl >= leastMl && piece.radiusMm >= leastRadiusMm;
+}
+
 /// Where a part of the colon lies in the body's frame: mean and standard deviation.
 struct Region {
     glm::dvec3 mean, sd;
@@ -105,7 +110,7 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
         named[std::size_t(p)] = 2;
     for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
         const TubePiece& piece = cut.pieces[p];
-        const bool bowel = named[p] != 0 || isGasBowel(piece) ||
+        const bool bowel = named[p] != 0 || isGasBowel(piece) || isUntaggedBowel(piece) ||
                            isTaggedBowel(piece, softHu, brightestHu, contents.gasSdHu);
         if (!bowel) continue;
         if (made.pieceOf.size() >= 400) break;

@@ -19,7 +19,8 @@ namespace {
 constexpr std::uint8_t outside = std::uint8_t(LumenLabel::outside),
                        air = std::uint8_t(LumenLabel::air),
                        tagged = std::uint8_t(LumenLabel::tagged),
-                       bridge = std::uint8_t(LumenLabel::bridge);
+                       bridge = std::uint8_t(LumenLabel::bridge),
+                       untagged = std::uint8_t(LumenLabel::untagged);
 
 class Labelling {
 public:
@@ -211,7 +212,9 @@ private:
             const bool gas = Content(contents_.content[n]) == Content::gas ||
                              (Content(contents_.content[n]) == Content::interface &&
                               hu_[n] < tissue_.airBelowHu);
-            labels_[n] = gas ? air : tagged;
+            labels_[n] = gas                                                  ? air
+                         : Content(contents_.content[n]) == Content::untagged ? untagged
+                                                                              : tagged;
         }
     }
 

@@ -71,6 +71,12 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         if (wall.betweenLoops && wall.areaMm2 > tellMm2)
             doubt(0.02, text("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
     }
+    double untaggedMl = 0.0;
+    for (const ColonPiece& piece : record.pieces)
+        untaggedMl += piece.untaggedMl;
+    if (untaggedMl > 0.0)
+        doubt(0.1 * std::min(1.0, untaggedMl / 50.0),
+              text("%.0f ml of untagged fluid may be other than lumen", untaggedMl));
     for (const UntaggedPool& pool : record.untaggedPools)
         doubt(0.1 * std::min(1.0, pool.areaMm2 / 1000.0),
               text("untagged fluid in the %s may hide lumen", toString(pool.part)));

@@ -3,18 +3,17 @@
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
-#include "segmentation/course_doubts.h"
+#include "segmentation/record_colon.h"
 #include "segmentation/thin_walls.h"
 #include "segmentation/tube_pieces.h"
 #include "segmentation/untagged_levels.h"
+#include "segmentation/untagged_pools.h"
 #include "segmentation/working_scan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
-#include <set>
 
 namespace haustra::segmentation {
 namespace {
@@ -24,10 +23,6 @@ std::string text(const char* format, Numbers... numbers) {
     char line[300];
     std::snprintf(line, sizeof line, format, numbers...);
     return line;
-}
-
-std::string placeText(glm::dvec3 p) {
-    return text("(%.0f, %.0f, %.0f) mm", p.x, p.y, p.z);
 }
 
 void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
@@ -94,223 +89,6 @@ Result<GivenPieces> givenPieces(const TubePieces& cut, const ColonEdits& edits) 
     }
     return given;
 }
-
-// The weights of chains by their scores, the best one's first; they sum to 1.
-std::vector<double> posterior(const std::vector<ColonChain>& chains) {
-    std::vector<double> weights;
-    double sum = 0.0;
-    for (const ColonChain& chain : chains)
-        weights.push_back(std::exp(chain.score - chains.front().score)), sum += weights.back();
-    for (double& weight : weights)
-        weight /= sum;
-    return weights;
-}
-
-bool joins(const ColonChain& chain, int a, int b) {
-    for (std::size_t n = 0; n + 1 < chain.nodes.size(); ++n) {
-        if ((chain.nodes[n] == a && chain.nodes[n + 1] == b) ||
-            (chain.nodes[n] == b && chain.nodes[n + 1] == a))
-            return true;
-    }
-    return false;
-}
-
-std::set<int> nodesOf(const ColonChain& chain) {
-    std::set<int> all(chain.nodes.begin(), chain.nodes.end());
-    all.insert(chain.sacs.begin(), chain.sacs.end());
-    return all;
-}
-
-// The most likely chain that differs in more than crumbs.
-std::vector<RunnerUp> runnersUp(const PieceGraph& graph, const std::vector<ColonChain>& chains,
-                                const std::vector<double>& weights) {
-    constexpr double crumbMl = 3.0;
-    const std::set<int> best = nodesOf(chains.front());
-    for (std::size_t c = 1; c < chains.size(); ++c) {
-        const std::set<int> other = nodesOf(chains[c]);
-        RunnerUp up;
-        up.probability = weights[c];
-        double largest = -1.0;
-        const auto differs = [&](int n, double& sumMl) {
-            const ChainNode& node = graph.graph.nodes[std::size_t(n)];
-            sumMl += node.volumeMl;
-            if (node.volumeMl > largest) largest = node.volumeMl, up.placeMm = node.centreMm;
-        };
-        for (const int n : other) {
-            if (!best.count(n)) differs(n, up.addsMl);
-        }
-        for (const int n : best) {
-            if (!other.count(n)) differs(n, up.dropsMl);
-        }
-        if (up.addsMl + up.dropsMl > crumbMl) return {up};
-    }
-    return {};
-}
-
-class Recorder {
-public:
-    Recorder(const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
-             const std::vector<ColonChain>& chains, const ColonLabels& labels,
-             const std::vector<UntaggedLevel>& untagged)
-        : contents_(contents),
-          cut_(cut),
-          graph_(graph),
-          chains_(chains),
-          chain_(chains.front()),
-          labels_(labels),
-          untagged_(untagged) {}
-
-    ColonRecord record() {
-        const std::vector<double> weights = posterior(chains_);
-        made_.noiseSdHu = contents_.gasSdHu;
-        for (std::size_t n = 0; n < chain_.nodes.size(); ++n) {
-            const ChainNode& node = graph_.graph.nodes[std::size_t(chain_.nodes[n])];
-            const TubePiece& piece = pieceOf(chain_.nodes[n]);
-            const double voxelMl = piece.volumeMl / double(piece.voxels);
-            const double gasMl = double(piece.gasVoxels) * voxelMl;
-            made_.pieces.push_back({ColonPart(chain_.states[n]), node.centreMm, node.radiusMm,
-                                    node.lengthMm, gasMl, piece.volumeMl - gasMl});
-        }
-        for (std::size_t n = 0; n < chain_.junctions.size(); ++n) {
-            const ChainJunction& junction =
-                graph_.graph.junctions[std::size_t(chain_.junctions[n])];
-            double confidence = 0.0;
-            for (std::size_t c = 0; c < chains_.size(); ++c) {
-                if (joins(chains_[c], junction.a, junction.b)) confidence += weights[c];
-            }
-            made_.junctions.push_back({junction.kind, junction.placeMm, labels_.bridgeMm[n],
-                                       junction.radiusMm, confidence});
-        }
-        made_.runnersUp = runnersUp(graph_, chains_, weights);
-        made_.chainConfidence = made_.runnersUp.empty()
-                                    ? 1.0
-                                    : weights[0] / (weights[0] + made_.runnersUp[0].probability);
-        if (!made_.runnersUp.empty()) made_.runnersUp[0].probability = 1.0 - made_.chainConfidence;
-        for (const RebuiltWall& wall : labels_.walls)
-            made_.walls.push_back({wall.placeMm, wall.areaMm2, wall.betweenLoops});
-        findLeftOut();
-        for (const UntaggedLevel& level : untagged_)
-            made_.untaggedPools.push_back(
-                {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
-        made_.doubts = doubtsOf(made_);
-        made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
-        warn();
-        return std::move(made_);
-    }
-
-private:
-    const TubePiece& pieceOf(int node) const {
-        return cut_.pieces[std::size_t(graph_.pieceOf[std::size_t(node)])];
-    }
-
-    // Of the piece that is nearest, as far as its ball reaches.
-    ColonPart partAt(glm::dvec3 placeMm) const {
-        ColonPart part = ColonPart::rectum;
-        double nearest = 1e9;
-        for (const ColonPiece& piece : made_.pieces) {
-            const double mm = glm::distance(piece.centreMm, placeMm) - piece.radiusMm;
-            if (mm < nearest) nearest = mm, part = piece.part;
-        }
-        return part;
-    }
-
-    void findLeftOut() {
-        constexpr double leastMl = 2.0, nearMm = 20.0;
-        const std::set<int> taken = nodesOf(chain_);
-        std::set<int> opened;
-        for (const int j : chain_.cuts) {
-            opened.insert(graph_.graph.junctions[std::size_t(j)].a);
-            opened.insert(graph_.graph.junctions[std::size_t(j)].b);
-        }
-        for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
-            const ChainNode& node = graph_.graph.nodes[n];
-            if (taken.count(int(n)) || node.volumeMl < leastMl) continue;
-            LeftOutBody body{node.centreMm,     node.volumeMl, pieceOf(int(n)).mostlyGas(),
-                             ColonPart::rectum, 1e9,           opened.count(int(n)) > 0};
-            for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
-                const ChainNode& home = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
-                const double mm =
-                    glm::distance(home.centreMm, node.centreMm) - home.radiusMm - node.radiusMm;
-                if (mm < body.distanceMm)
-                    body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
-            }
-            body.distanceMm = std::max(0.0, body.distanceMm);
-            if (body.opens || body.distanceMm < nearMm) made_.leftOut.push_back(body);
-        }
-        std::stable_sort(
-            made_.leftOut.begin(), made_.leftOut.end(),
-            [](const LeftOutBody& a, const LeftOutBody& b) { return a.volumeMl > b.volumeMl; });
-    }
-
-    void warn() {
-        constexpr double sure = 0.95, doubtful = 0.8;
-        const auto say = [&](std::string line) { made_.warnings.push_back(std::move(line)); };
-        for (std::size_t n = 0; n < made_.junctions.size(); ++n) {
-            const ColonJunction& junction = made_.junctions[n];
-            const char* const part = toString(made_.pieces[n].part);
-            if (junction.kind == JunctionKind::collapse) {
-                say(text("the %s is collapsed over %.0f mm, at %s", part, junction.lengthMm,
-                         placeText(junction.placeMm).c_str()));
-            } else if (junction.kind == JunctionKind::thinWall) {
-                say(text("what looks like a thin wall in the %s was taken for open lumen, at %s",
-                         part, placeText(junction.placeMm).c_str()));
-            }
-            if (junction.confidence < sure)
-                say(text("the way on from the %s is not sure (%.0f %%), at %s", part,
-                         100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
-        }
-        for (const LeftOutBody& body : made_.leftOut) {
-            constexpr double tellMl = 5.0;
-            if (!body.opens && body.volumeMl < tellMl) continue;
-            say(text("%.0f ml of %s near the %s %s, at %s", body.volumeMl,
-                     body.gas ? "gas" : "tagged material", toString(body.nearest),
-                     body.opens ? "lies open to the colon and was taken for small bowel"
-                                : "was taken for other than colon",
-                     placeText(body.centreMm).c_str()));
-        }
-        for (const RebuiltWallRecord& wall : made_.walls) {
-            constexpr double tellMm2 = 20.0;
-            if (wall.betweenLoops && wall.areaMm2 > tellMm2)
-                say(text("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
-                         placeText(wall.placeMm).c_str()));
-        }
-        for (const UntaggedPool& pool : made_.untaggedPools)
-            say(text(
-                "fluid without tagging stands under the gas in the %s, its surface %.0f mm2; what "
-                "lies in it and beneath is not seen, at %s",
-                toString(pool.part), pool.areaMm2, placeText(pool.placeMm).c_str()));
-        if (made_.chainConfidence < doubtful && !made_.runnersUp.empty()) {
-            const RunnerUp& up = made_.runnersUp.front();
-            say(
-                text("another course is nearly as likely (%.0f %%): it adds %.0f ml and drops %.0f "
-                     "ml, at %s",
-                     100.0 * up.probability, up.addsMl, up.dropsMl, placeText(up.placeMm).c_str()));
-        }
-        if (made_.confidence < doubtful && !made_.doubts.empty() &&
-            made_.doubts.front().probability > 1.0 - made_.chainConfidence) {
-            say(text("the course is right with no more than %.0f %%; gravest: %s",
-                     100.0 * made_.confidence, made_.doubts.front().about.c_str()));
-        }
-        // Places of neighbouring parts overlap: only what lies farther off is told.
-        if (made_.pieces.front().part > ColonPart::sigmoid)
-            say(text("the rectum was not found: the colon begins in the %s",
-                     toString(made_.pieces.front().part)));
-        if (made_.pieces.back().part < ColonPart::ascending)
-            say(text("the cecum was not found: the colon ends in the %s",
-                     toString(made_.pieces.back().part)));
-        if (labels_.strandedMl >= 0.5)
-            say(text("%.1f ml that nothing joins to the lumen were left out", labels_.strandedMl));
-    }
-
-    const BowelContents& contents_;
-    const TubePieces& cut_;
-    const PieceGraph& graph_;
-    const std::vector<ColonChain>& chains_;
-    const ColonChain& chain_;
-    const ColonLabels& labels_;
-    const std::vector<UntaggedLevel>& untagged_;
-    ColonRecord made_;
-};
 
 // What a person said of the scan, as places.
 std::vector<glm::dvec3> placesOf(const ColonEdits& edits) {
@@ -442,56 +220,97 @@ struct Surroundings {
     bool given = false;  ///< the contents are a mask's, which ends where it ends
 };
 
-/// The colon among the contents, its labels on their grid.
-Result<FoundColon> findAmong(const Surroundings& among, const TissueModel& tissue,
-                             const ColonOptions& options) {
-    const auto progress = [&](double fraction) {
-        if (options.progress) options.progress(fraction);
-    };
-    const Volume<std::int16_t>& hu = among.hu;
-    const BowelContents& contents = among.contents;
-    progress(0.2);
+/// The contents cut into pieces, and the chains among them, the best first; its labels.
+struct Course {
     TubePieces cut;
-    {
-        ThinWallOptions walls;
-        walls.softHu = tissue.meanHu[int(Tissue::soft)];
-        walls.threads = options.threads;
-        const Volume<std::uint8_t> thin = findThinWalls(hu, contents, walls);
-        progress(0.4);
-        cut =
-            cutIntoPieces(hu, contents.content, thin,
-                          {.softHu = tissue.meanHu[int(Tissue::soft)], .threads = options.threads});
-    }
-    progress(0.65);
-    const auto given = givenPieces(cut, options.edits);
+    PieceGraph graph;
+    std::vector<ColonChain> chains;
+    ColonLabels labels;
+};
+
+Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>& thinWalls,
+                          const TissueModel& tissue, const ColonOptions& options) {
+    const double softHu = tissue.meanHu[int(Tissue::soft)];
+    Course course;
+    course.cut = cutIntoPieces(among.hu, among.contents.content, thinWalls,
+                               {.softHu = softHu, .threads = options.threads});
+    const auto given = givenPieces(course.cut, options.edits);
     if (!given) return tl::make_unexpected(given.error());
-    const PieceGraph graph =
-        makePieceGraph(hu, contents, tissue, cut, among.softTissueMm, *given, options.threads);
-    progress(0.75);
-    const std::vector<ColonChain> chains = findChains(graph.graph, {.chains = 12});
+    course.graph = makePieceGraph(among.hu, among.contents, tissue, course.cut, among.softTissueMm,
+                                  *given, options.threads);
+    course.chains = findChains(course.graph.graph, {.chains = 12});
     const bool asked = !options.edits.seedsMm.empty() || !options.edits.joins.empty();
-    if (chains.empty())
+    if (course.chains.empty())
         return fail(ErrorKind::noResult, "no gas-filled bowel was found in the scan",
                     "segmentation");
-    if (const double mm = distendedMm(graph, chains.front()); mm < leastDistendedMm && !asked) {
+    if (const double mm = distendedMm(course.graph, course.chains.front());
+        mm < leastDistendedMm && !asked) {
         return fail(ErrorKind::noResult,
                     text("this is no CT colonography: no more than %.0f mm of distended colon were "
                          "found; name a point in it (--seed) if it is one",
                          mm),
                     "segmentation");
     }
-    progress(0.8);
-    ColonLabels labels = layLabels(hu, tissue, contents, cut, graph, chains.front(),
-                                   {.asGiven = among.given, .threads = options.threads});
+    course.labels =
+        layLabels(among.hu, tissue, among.contents, course.cut, course.graph, course.chains.front(),
+                  {.asGiven = among.given, .threads = options.threads});
+    return course;
+}
+
+double lengthMm(const Course& course) {
+    double sum = 0.0;
+    for (const int n : course.chains.front().nodes)
+        sum += course.graph.graph.nodes[std::size_t(n)].lengthMm;
+    return sum;
+}
+
+void forgetPools(BowelContents& contents) {
+    for (std::uint8_t& content : contents.content.writable()) {
+        if (Content(content) == Content::untagged) content = std::uint8_t(Content::tissue);
+    }
+}
+
+/// The colon among the contents, its labels on their grid. Pools of untagged fluid are looked for
+/// under the course that was found, so that neither the stomach's nor the bladder's come in, and
+/// the course again with them, as it may go on beneath.
+Result<FoundColon> findAmong(Surroundings& among, const TissueModel& tissue,
+                             const ColonOptions& options) {
+    const auto progress = [&](double fraction) {
+        if (options.progress) options.progress(fraction);
+    };
+    progress(0.2);
+    ThinWallOptions walls;
+    walls.softHu = tissue.meanHu[int(Tissue::soft)];
+    walls.threads = options.threads;
+    const Volume<std::uint8_t> thin = findThinWalls(among.hu, among.contents, walls);
+    progress(0.4);
+    auto course = findCourse(among, thin, tissue, options);
+    if (!course) return tl::make_unexpected(course.error());
+    std::vector<UntaggedLevel> untagged;
+    if (glm::length(among.contents.gravity) > 0.0) {
+        constexpr int mostRounds = 2;
+        constexpr double leastOfBefore = 0.9;  // a pool that breaks the course is none
+        for (int round = 0;; ++round) {
+            untagged = findUntaggedLevels(among.hu, tissue, course->labels.labels,
+                                          among.contents.down, options.threads);
+            if (among.given || round == mostRounds ||
+                !markUntaggedPools(among.hu, tissue, untagged, among.contents, options.threads))
+                break;
+            auto next = findCourse(among, thin, tissue, options);
+            if (!next || lengthMm(*next) < leastOfBefore * lengthMm(*course)) {
+                forgetPools(among.contents);
+                break;
+            }
+            course = std::move(next);
+        }
+    }
+    progress(0.9);
     FoundColon found;
-    const std::vector<UntaggedLevel> untagged =
-        glm::length(contents.gravity) > 0.0
-            ? findUntaggedLevels(hu, tissue, labels.labels, contents.down, options.threads)
-            : std::vector<UntaggedLevel>();
-    found.record = Recorder(contents, cut, graph, chains, labels, untagged).record();
-    found.labels = std::move(labels.labels);
-    found.gravity = contents.gravity;
-    found.notes = contents.notes;
+    found.record = recordColon(among.contents, course->cut, course->graph, course->chains,
+                               course->labels, untagged);
+    found.labels = std::move(course->labels.labels);
+    found.gravity = among.contents.gravity;
+    found.notes = among.contents.notes;
     return found;
 }
 

@@ -19,7 +19,7 @@ constexpr std::int32_t none = -1;
 
 bool isContent(std::uint8_t content) {
     return Content(content) == Content::gas || Content(content) == Content::tagged ||
-           Content(content) == Content::interface;
+           Content(content) == Content::interface || Content(content) == Content::untagged;
 }
 
 std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t n) {
@@ -342,6 +342,7 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
         if (Content(content[n]) == Content::gas) ++piece.gasVoxels, gasSum[std::size_t(l)] += hu[n];
         if (Content(content[n]) == Content::tagged)
             ++piece.taggedVoxels, taggedSum[std::size_t(l)] += hu[n];
+        piece.untaggedVoxels += Content(content[n]) == Content::untagged;
         const double mm = cut.distanceMm[n];
         if (mm > piece.radiusMm) piece.radiusMm = mm, piece.centre = grid.voxelAt(n);
         visitFaces(grid, n, [&](std::size_t m, int axis) {
@@ -373,7 +374,7 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
         piece.centreMm = grid.patientFromVoxelPoint(piece.centre);
         piece.meanHu = piece.mostlyGas()
                            ? gasSum[p] / double(std::max<std::size_t>(1, piece.gasVoxels))
-                           : taggedSum[p] / double(piece.taggedVoxels);
+                           : taggedSum[p] / double(std::max<std::size_t>(1, piece.taggedVoxels));
     }
     cut.orifices = patchesOf(std::move(faces), hu, content, thinWalls, cut.distanceMm);
 }

@@ -10,7 +10,7 @@ namespace haustra::segmentation {
 
 /// Voxels around one maximum of the distance from the boundary.
 struct TubePiece {
-    std::size_t voxels = 0, gasVoxels = 0, taggedVoxels = 0;
+    std::size_t voxels = 0, gasVoxels = 0, taggedVoxels = 0, untaggedVoxels = 0;
     double volumeMl = 0.0;
     double radiusMm = 0.0;  ///< of the largest ball inside
     glm::ivec3 centre{0};   ///< that ball's voxel
@@ -19,7 +19,8 @@ struct TubePiece {
     double coreHu = 0.0, coreSdHu = 0.0;  ///< of its tagged voxels more than 2.5 mm deep
     double surfaceMm2 = 0.0;              ///< faces towards anything else than the piece
     double excludedAirMm2 = 0.0;          ///< … towards the room's air and lung
-    bool mostlyGas() const { return gasVoxels >= taggedVoxels; }
+    bool mostlyGas() const { return gasVoxels >= taggedVoxels + untaggedVoxels; }
+    bool mostlyUntagged() const { return untaggedVoxels > gasVoxels + taggedVoxels; }
 };
 
 /// One connected patch of faces over which two pieces touch.

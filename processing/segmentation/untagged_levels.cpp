@@ -13,6 +13,7 @@ namespace {
 
 constexpr double leastMm2 = 100.0;
 constexpr double flatMm = 0.3, flatShare = 0.6;
+constexpr double discMm = 9.0, discShare = 0.85;      // as no floor of a lumen is flat
 constexpr double gentleSlope = 0.6;                   // of a floor that goes on
 constexpr double edgeMm = 4.0;                        // of blur between gas and what is beneath
 constexpr double beneathMm = 1.5, deepMm = 6.0;       // where the fluid's own HU shows
@@ -108,6 +109,90 @@ std::pair<double, std::size_t> commonHeight(const std::vector<Floor>& patch) {
     return best;
 }
 
+double median(std::vector<double> values) {
+    const auto half = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), half, values.end());
+    return *half;
+}
+
+/// Columns of one height, as a picture over both axes across gravity.
+class FlatArea {
+public:
+    FlatArea(const std::vector<Floor>& patch, double heightMm, glm::dvec2 stepMm)
+        : reach_(discMm / stepMm), stepMm_(stepMm) {
+        lo_ = glm::ivec2(patch.front().across, patch.front().z);
+        glm::ivec2 hi = lo_;
+        for (const Floor& floor : patch)
+            lo_ = glm::min(lo_, placeOf(floor)), hi = glm::max(hi, placeOf(floor));
+        size_ = hi - lo_ + 1;
+        flat_.assign(std::size_t(size_.x) * std::size_t(size_.y), 0);
+        for (const Floor& floor : patch) {
+            if (std::abs(floor.heightMm - heightMm) > flatMm) continue;
+            if (!flat_[index(placeOf(floor) - lo_)]) places_.push_back(placeOf(floor) - lo_);
+            flat_[index(places_.back())] = 1;
+        }
+    }
+
+    /// Of each column of the patch, whether a flat disc covers it.
+    std::vector<bool> covered(const std::vector<Floor>& patch) const {
+        std::vector<char> cover(flat_.size(), 0);
+        for (const glm::ivec2 place : places_) {
+            int flat = 0, all = 0;
+            visitDisc(place,
+                      [&](glm::ivec2 at) { ++all, flat += contains(at) && flat_[index(at)]; });
+            if (double(flat) < discShare * double(all)) continue;
+            visitDisc(place, [&](glm::ivec2 at) {
+                if (contains(at)) cover[index(at)] = 1;
+            });
+        }
+        std::vector<bool> is;
+        for (const Floor& floor : patch)
+            is.push_back(cover[index(placeOf(floor) - lo_)] != 0);
+        return is;
+    }
+
+private:
+    static glm::ivec2 placeOf(const Floor& floor) { return {floor.across, floor.z}; }
+    std::size_t index(glm::ivec2 at) const {
+        return std::size_t(at.x) + std::size_t(size_.x) * std::size_t(at.y);
+    }
+    bool contains(glm::ivec2 at) const {
+        return at.x >= 0 && at.y >= 0 && at.x < size_.x && at.y < size_.y;
+    }
+    template <class Visit>
+    void visitDisc(glm::ivec2 centre, const Visit& visit) const {
+        for (int z = -reach_.y; z <= reach_.y; ++z) {
+            for (int n = -reach_.x; n <= reach_.x; ++n) {
+                if (glm::length(stepMm_ * glm::dvec2(n, z)) <= discMm)
+                    visit(centre + glm::ivec2(n, z));
+            }
+        }
+    }
+
+    const glm::ivec2 reach_;
+    const glm::dvec2 stepMm_;
+    glm::ivec2 lo_{0}, size_{0};
+    std::vector<char> flat_;
+    std::vector<glm::ivec2> places_;
+};
+
+/// Takes the columns of a level out of a patch of floors; empty where there is none.
+std::vector<Floor> takeLevel(std::vector<Floor>& patch, glm::dvec2 stepMm) {
+    std::vector<Floor> level, rest;
+    if (double(patch.size()) * stepMm.x * stepMm.y < leastMm2) return level;
+    const auto [heightMm, count] = commonHeight(patch);
+    if (double(count) * stepMm.x * stepMm.y < leastMm2) return level;
+    const bool mostly = double(count) >= flatShare * double(patch.size());
+    const std::vector<bool> covered = mostly ? std::vector<bool>(patch.size(), true)
+                                             : FlatArea(patch, heightMm, stepMm).covered(patch);
+    for (std::size_t n = 0; n < patch.size(); ++n) {
+        const bool is = covered[n] && std::abs(patch[n].heightMm - heightMm) <= flatMm;
+        (is ? level : rest).push_back(patch[n]);
+    }
+    patch = mostly ? std::vector<Floor>() : std::move(rest);
+    return level;
+}
+
 }  // namespace
 
 std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
@@ -132,7 +217,7 @@ std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
             floors.push_back(floor);
         }
     }
-    const double columnMm2 = grid.spacingMm()[across] * grid.spacingMm().z;
+    const glm::dvec2 stepMm(grid.spacingMm()[across], grid.spacingMm().z);
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     // visit(floor, way to it in mm) of the floors of the eight columns around one.
     const auto visitAround = [&](const Floor& from, const auto& visit) {
@@ -147,6 +232,24 @@ std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
                           std::hypot(dn * grid.spacingMm()[across], dz * grid.spacingMm().z));
             }
         }
+    };
+    const auto describe = [&](const std::vector<Floor>& surface) -> std::optional<UntaggedLevel> {
+        UntaggedLevel level;
+        std::vector<double> beneath, heights;
+        glm::dvec3 middle(0.0);
+        for (const Floor& floor : surface) {
+            glm::ivec3 at(0);
+            at[down.axis] = floor.voxel, at[across] = floor.across, at.z = floor.z;
+            middle += glm::dvec3(at);
+            level.columns.push_back(at);
+            beneath.push_back(floor.huBeneath), heights.push_back(floor.heightMm);
+        }
+        level.fluidHu = median(std::move(beneath)), level.heightMm = median(std::move(heights));
+        if (level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp) return {};
+        if (level.fluidHu < 0.5 * (softHu + tissue.meanHu[int(Tissue::fat)])) return {};
+        level.areaMm2 = double(surface.size()) * stepMm.x * stepMm.y;
+        level.placeMm = grid.patientFromVoxelPoint(middle / double(surface.size()));
+        return level;
     };
     std::vector<bool> seen(floors.size(), false);
     std::vector<UntaggedLevel> levels;
@@ -163,29 +266,9 @@ std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
                 patch.push_back(floors[other]);
             });
         }
-        if (double(patch.size()) * columnMm2 < leastMm2) continue;
-        const auto [heightMm, count] = commonHeight(patch);
-        if (double(count) < flatShare * double(patch.size()) ||
-            double(count) * columnMm2 < leastMm2)
-            continue;
-        UntaggedLevel level;
-        std::vector<double> beneath;
-        glm::dvec3 middle(0.0);
-        for (const Floor& floor : patch) {
-            if (std::abs(floor.heightMm - heightMm) > flatMm) continue;
-            glm::dvec3 at(0.0);
-            at[down.axis] = floor.voxel, at[across] = floor.across, at.z = floor.z;
-            middle += at;
-            beneath.push_back(floor.huBeneath);
+        for (std::vector<Floor> level; !(level = takeLevel(patch, stepMm)).empty();) {
+            if (const auto told = describe(level)) levels.push_back(*told);
         }
-        const auto half = beneath.begin() + std::ptrdiff_t(beneath.size() / 2);
-        std::nth_element(beneath.begin(), half, beneath.end());
-        level.fluidHu = *half;
-        if (level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp) continue;
-        if (level.fluidHu < 0.5 * (softHu + tissue.meanHu[int(Tissue::fat)])) continue;
-        level.areaMm2 = double(beneath.size()) * columnMm2;
-        level.placeMm = grid.patientFromVoxelPoint(middle / double(beneath.size()));
-        levels.push_back(level);
     }
     std::stable_sort(
         levels.begin(), levels.end(),

@@ -1,9 +1,9 @@
 // haustra list: what a store holds.
 #include "cli/arguments.h"
 #include "cli/commands.h"
-#include "core/colon_record.h"
 #include "pipeline/scan_identity.h"
 #include "store/case_store.h"
+#include "store/case_trust.h"
 
 #include <algorithm>
 #include <map>
@@ -65,7 +65,7 @@ std::vector<Listed> byStudy(const store::CaseStore& store, const std::vector<std
 std::string trustOf(const store::CaseStore& store, const std::string& name) {
     const auto opened = store.openCase(name);
     if (!opened || !opened->find("quality")) return {};
-    const auto trust = opened->readText("quality").and_then(trustOfQuality);
+    const auto trust = store::readTrust(*opened);
     if (!trust) return "quality: " + describe(trust.error());
     const std::size_t warnings = trust->warnings.size();
     return fmt::format("colon found with confidence {:.0f} %, {} to look at",

@@ -1,6 +1,7 @@
 #include "session/open_case.h"
 
 #include "core/bridges.h"
+#include "store/case_trust.h"
 
 namespace haustra::session {
 
@@ -33,7 +34,7 @@ Result<CaseFiles> readCase(const store::Case& source) {
             if (!centerline) return tl::make_unexpected(centerline.error());
             files.facts.centerline = std::move(*centerline);
         } else if (entry.product == "quality") {
-            auto trust = source.readText("quality").and_then(trustOfQuality);
+            auto trust = store::readTrust(source);
             if (!trust) return tl::make_unexpected(trust.error());
             files.facts.trust = std::move(*trust);
         } else if (entry.product == "flatmap") {

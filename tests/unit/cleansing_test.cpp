@@ -47,6 +47,42 @@ TEST(Cleansing, VoxelsAwayFromTheTaggedLumenStayAsTheyWere) {
     EXPECT_GT(cleansed, 10000);
 }
 
+// Gas, water that took no tagging, and tagged sediment, from above.
+TEST(Cleansing, WaterBetweenGasAndSedimentLeavesNoFilm) {
+    const auto lumen = [](glm::dvec3 p) {
+        return blurredStep(p.x - 8.0) * blurredStep(36.0 - p.x) * blurredStep(30.0 - p.y);
+    };
+    Scene scene = makeScene({70, 50, 20}, 600.0, 12.0, [&](glm::dvec3 p) {
+        return Shares{lumen(p) * blurredStep(12.0 - p.y), lumen(p) * blurredStep(p.y - 20.0)};
+    });
+    const Grid& grid = scene.scan.hu.grid();
+    const auto inLumen = [](glm::dvec3 p, double mm) {
+        return p.x > 8.0 + mm && p.x < 36.0 - mm && p.y < 30.0 - mm;
+    };
+    const auto labels = scene.labels.writable();
+    const auto hu = scene.scan.hu.writable();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
+        hu[n] = std::int16_t(hu[n] - std::lround(35.0 * lumen(p) * blurredStep(p.y - 12.0) *
+                                                 blurredStep(20.0 - p.y)));
+        if (labels[n] == 0 && inLumen(p, 0.0))
+            labels[n] = std::uint8_t(LumenLabel::untagged);
+    }
+    const CleansedScene result = cleanseScene(scene);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
+        if (inLumen(p, 1.5)) {
+            ASSERT_LT(result.cleansed.hu[n], scene.tissue.airBelowHu) << p.x << " " << p.y;
+            ASSERT_NE(result.cleansed.lumen[n], 0)
+                << p.x << " " << p.y << " " << p.z << " was " << int(scene.labels[n]);
+        }
+        if (!inLumen(p, -2.5)) {
+            ASSERT_GT(result.cleansed.hu[n], scene.tissue.airBelowHu) << p.x << " " << p.y;
+            ASSERT_EQ(result.cleansed.lumen[n], 0);
+        }
+    }
+}
+
 TEST(Cleansing, SubmergedPolypKeepsItsShapeAndHu) {
     // A polyp of 6 mm on the floor of a pool, wholly under fluid.
     const glm::dvec3 polyp(21.0, 27.0, 12.0);

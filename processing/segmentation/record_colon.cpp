@@ -1,0 +1,295 @@
+#include "segmentation/record_colon.h"
+
+#include "segmentation/course_doubts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <string>
+
+namespace haustra::segmentation {
+namespace {
+
+template <class... Numbers>
+std::string text(const char* format, Numbers... numbers) {
+    char line[300];
+    std::snprintf(line, sizeof line, format, numbers...);
+    return line;
+}
+
+std::string placeText(glm::dvec3 p) {
+    return text("(%.0f, %.0f, %.0f) mm", p.x, p.y, p.z);
+}
+
+// The weights of chains by their scores, the best one's first; they sum to 1.
+std::vector<double> posterior(const std::vector<ColonChain>& chains) {
+    std::vector<double> weights;
+    double sum = 0.0;
+    for (const ColonChain& chain : chains)
+        weights.push_back(std::exp(chain.score - chains.front().score)), sum += weights.back();
+    for (double& weight : weights)
+        weight /= sum;
+    return weights;
+}
+
+bool joins(const ColonChain& chain, int a, int b) {
+    for (std::size_t n = 0; n + 1 < chain.nodes.size(); ++n) {
+        if ((chain.nodes[n] == a && chain.nodes[n + 1] == b) ||
+            (chain.nodes[n] == b && chain.nodes[n + 1] == a))
+            return true;
+    }
+    return false;
+}
+
+std::set<int> nodesOf(const ColonChain& chain) {
+    std::set<int> all(chain.nodes.begin(), chain.nodes.end());
+    all.insert(chain.sacs.begin(), chain.sacs.end());
+    return all;
+}
+
+// The most likely chain that differs in more than crumbs.
+std::vector<RunnerUp> runnersUp(const PieceGraph& graph, const std::vector<ColonChain>& chains,
+                                const std::vector<double>& weights) {
+    constexpr double crumbMl = 3.0;
+    const std::set<int> best = nodesOf(chains.front());
+    for (std::size_t c = 1; c < chains.size(); ++c) {
+        const std::set<int> other = nodesOf(chains[c]);
+        RunnerUp up;
+        up.probability = weights[c];
+        double largest = -1.0;
+        const auto differs = [&](int n, double& sumMl) {
+            const ChainNode& node = graph.graph.nodes[std::size_t(n)];
+            sumMl += node.volumeMl;
+            if (node.volumeMl > largest) largest = node.volumeMl, up.placeMm = node.centreMm;
+        };
+        for (const int n : other) {
+            if (!best.count(n)) differs(n, up.addsMl);
+        }
+        for (const int n : best) {
+            if (!other.count(n)) differs(n, up.dropsMl);
+        }
+        if (up.addsMl + up.dropsMl > crumbMl) return {up};
+    }
+    return {};
+}
+
+class Recorder {
+public:
+    Recorder(const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
+             const std::vector<ColonChain>& chains, const ColonLabels& labels,
+             const std::vector<UntaggedLevel>& untagged)
+        : contents_(contents),
+          cut_(cut),
+          graph_(graph),
+          chains_(chains),
+          chain_(chains.front()),
+          labels_(labels),
+          untagged_(untagged) {}
+
+    ColonRecord record() {
+        const std::vector<double> weights = posterior(chains_);
+        made_.noiseSdHu = contents_.gasSdHu;
+        for (std::size_t n = 0; n < chain_.nodes.size(); ++n) {
+            const ChainNode& node = graph_.graph.nodes[std::size_t(chain_.nodes[n])];
+            const TubePiece& piece = pieceOf(chain_.nodes[n]);
+            const double voxelMl = piece.volumeMl / double(piece.voxels);
+            const double gasMl = double(piece.gasVoxels) * voxelMl,
+                         untaggedMl = double(piece.untaggedVoxels) * voxelMl;
+            made_.pieces.push_back({ColonPart(chain_.states[n]), node.centreMm, node.radiusMm,
+                                    node.lengthMm, gasMl, piece.volumeMl - gasMl - untaggedMl,
+                                    untaggedMl});
+        }
+        for (std::size_t n = 0; n < chain_.junctions.size(); ++n) {
+            const ChainJunction& junction =
+                graph_.graph.junctions[std::size_t(chain_.junctions[n])];
+            double confidence = 0.0;
+            for (std::size_t c = 0; c < chains_.size(); ++c) {
+                if (joins(chains_[c], junction.a, junction.b)) confidence += weights[c];
+            }
+            made_.junctions.push_back({junction.kind, junction.placeMm, labels_.bridgeMm[n],
+                                       junction.radiusMm, confidence});
+        }
+        made_.runnersUp = runnersUp(graph_, chains_, weights);
+        made_.chainConfidence = made_.runnersUp.empty()
+                                    ? 1.0
+                                    : weights[0] / (weights[0] + made_.runnersUp[0].probability);
+        if (!made_.runnersUp.empty()) made_.runnersUp[0].probability = 1.0 - made_.chainConfidence;
+        for (const RebuiltWall& wall : labels_.walls)
+            made_.walls.push_back({wall.placeMm, wall.areaMm2, wall.betweenLoops});
+        findLeftOut();
+        for (const UntaggedLevel& level : untagged_)
+            made_.untaggedPools.push_back(
+                {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
+        made_.doubts = doubtsOf(made_);
+        made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
+        warn();
+        return std::move(made_);
+    }
+
+private:
+    const TubePiece& pieceOf(int node) const {
+        return cut_.pieces[std::size_t(graph_.pieceOf[std::size_t(node)])];
+    }
+
+    // Of the piece that is nearest, as far as its ball reaches.
+    ColonPart partAt(glm::dvec3 placeMm) const {
+        ColonPart part = ColonPart::rectum;
+        double nearest = 1e9;
+        for (const ColonPiece& piece : made_.pieces) {
+            const double mm = glm::distance(piece.centreMm, placeMm) - piece.radiusMm;
+            if (mm < nearest) nearest = mm, part = piece.part;
+        }
+        return part;
+    }
+
+    void findLeftOut() {
+        constexpr double leastMl = 2.0, nearMm = 20.0;
+        const std::set<int> taken = nodesOf(chain_);
+        std::set<int> opened;
+        for (const int j : chain_.cuts) {
+            opened.insert(graph_.graph.junctions[std::size_t(j)].a);
+            opened.insert(graph_.graph.junctions[std::size_t(j)].b);
+        }
+        for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
+            const ChainNode& node = graph_.graph.nodes[n];
+            if (taken.count(int(n)) || node.volumeMl < leastMl) continue;
+            LeftOutBody body{node.centreMm,
+                             node.volumeMl,
+                             pieceOf(int(n)).mostlyGas(),
+                             ColonPart::rectum,
+                             1e9,
+                             opened.count(int(n)) > 0,
+                             pieceOf(int(n)).mostlyUntagged()};
+            for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
+                const ChainNode& home = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
+                const double mm =
+                    glm::distance(home.centreMm, node.centreMm) - home.radiusMm - node.radiusMm;
+                if (mm < body.distanceMm)
+                    body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
+            }
+            body.distanceMm = std::max(0.0, body.distanceMm);
+            if (body.opens || body.distanceMm < nearMm) made_.leftOut.push_back(body);
+        }
+        std::stable_sort(
+            made_.leftOut.begin(), made_.leftOut.end(),
+            [](const LeftOutBody& a, const LeftOutBody& b) { return a.volumeMl > b.volumeMl; });
+    }
+
+    // Bodies of one kind near one part in one line, the largest first.
+    void sayLeftOut() {
+        constexpr double tellMl = 5.0;
+        constexpr std::size_t mostPlaces = 6;
+        std::vector<bool> said(made_.leftOut.size(), false);
+        for (std::size_t n = 0; n < said.size(); ++n) {
+            const LeftOutBody& first = made_.leftOut[n];
+            double sumMl = 0.0;
+            std::size_t bodies = 0;
+            std::string places;
+            for (std::size_t m = n; m < said.size(); ++m) {
+                const LeftOutBody& body = made_.leftOut[m];
+                if (said[m] || body.gas != first.gas || body.untagged != first.untagged ||
+                    body.nearest != first.nearest || body.opens != first.opens ||
+                    (!body.opens && body.volumeMl < tellMl))
+                    continue;
+                said[m] = true;
+                sumMl += body.volumeMl;
+                if (++bodies <= mostPlaces)
+                    places += (places.empty() ? "" : ", ") + placeText(body.centreMm);
+            }
+            if (bodies == 0) continue;
+            made_.warnings.push_back(
+                text("%.0f ml of %s near the %s%s, at ", sumMl,
+                     first.gas        ? "gas"
+                     : first.untagged ? "fluid without tagging"
+                                      : "tagged material",
+                     toString(first.nearest),
+                     first.opens ? " lie open to the colon and were taken for small bowel"
+                                 : " were taken for other than colon") +
+                places + (bodies > mostPlaces ? " and elsewhere" : ""));
+        }
+    }
+
+    void warn() {
+        constexpr double sure = 0.95, doubtful = 0.8;
+        const auto say = [&](std::string line) { made_.warnings.push_back(std::move(line)); };
+        for (std::size_t n = 0; n < made_.junctions.size(); ++n) {
+            const ColonJunction& junction = made_.junctions[n];
+            const char* const part = toString(made_.pieces[n].part);
+            if (junction.kind == JunctionKind::collapse) {
+                say(text("the %s is collapsed over %.0f mm, at %s", part, junction.lengthMm,
+                         placeText(junction.placeMm).c_str()));
+            } else if (junction.kind == JunctionKind::thinWall) {
+                say(text("what looks like a thin wall in the %s was taken for open lumen, at %s",
+                         part, placeText(junction.placeMm).c_str()));
+            }
+            if (junction.confidence < sure)
+                say(text("the way on from the %s is not sure (%.0f %%), at %s", part,
+                         100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
+        }
+        sayLeftOut();
+        for (const RebuiltWallRecord& wall : made_.walls) {
+            constexpr double tellMm2 = 20.0;
+            if (wall.betweenLoops && wall.areaMm2 > tellMm2)
+                say(text("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
+                         placeText(wall.placeMm).c_str()));
+        }
+        std::map<ColonPart, double> untaggedMl;
+        for (const ColonPiece& piece : made_.pieces)
+            untaggedMl[piece.part] += piece.untaggedMl;
+        for (const auto& [part, ml] : untaggedMl) {
+            constexpr double tellMl = 1.0;
+            if (ml > tellMl)
+                say(text(
+                    "%.0f ml of fluid without tagging were taken out of the %s; its wall shows "
+                    "little contrast and may lie elsewhere by millimetres",
+                    ml, toString(part)));
+        }
+        for (const UntaggedPool& pool : made_.untaggedPools)
+            say(text(
+                "fluid without tagging stands under the gas in the %s, its surface %.0f mm2; what "
+                "lies in it and beneath is not seen, at %s",
+                toString(pool.part), pool.areaMm2, placeText(pool.placeMm).c_str()));
+        if (made_.chainConfidence < doubtful && !made_.runnersUp.empty()) {
+            const RunnerUp& up = made_.runnersUp.front();
+            say(
+                text("another course is nearly as likely (%.0f %%): it adds %.0f ml and drops %.0f "
+                     "ml, at %s",
+                     100.0 * up.probability, up.addsMl, up.dropsMl, placeText(up.placeMm).c_str()));
+        }
+        if (made_.confidence < doubtful && !made_.doubts.empty() &&
+            made_.doubts.front().probability > 1.0 - made_.chainConfidence) {
+            say(text("the course is right with no more than %.0f %%; gravest: %s",
+                     100.0 * made_.confidence, made_.doubts.front().about.c_str()));
+        }
+        // Places of neighbouring parts overlap: only what lies farther off is told.
+        if (made_.pieces.front().part > ColonPart::sigmoid)
+            say(text("the rectum was not found: the colon begins in the %s",
+                     toString(made_.pieces.front().part)));
+        if (made_.pieces.back().part < ColonPart::ascending)
+            say(text("the cecum was not found: the colon ends in the %s",
+                     toString(made_.pieces.back().part)));
+        if (labels_.strandedMl >= 0.5)
+            say(text("%.1f ml that nothing joins to the lumen were left out", labels_.strandedMl));
+    }
+
+    const BowelContents& contents_;
+    const TubePieces& cut_;
+    const PieceGraph& graph_;
+    const std::vector<ColonChain>& chains_;
+    const ColonChain& chain_;
+    const ColonLabels& labels_;
+    const std::vector<UntaggedLevel>& untagged_;
+    ColonRecord made_;
+};
+
+}  // namespace
+
+ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
+                        const PieceGraph& graph, const std::vector<ColonChain>& chains,
+                        const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged) {
+    return Recorder(contents, cut, graph, chains, labels, untagged).record();
+}
+
+}  // namespace haustra::segmentation

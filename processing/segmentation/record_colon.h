@@ -1,0 +1,22 @@
+// What was found, as a record: the course, what joins it, what was left out, and what to look at.
+#pragma once
+
+#include "core/colon_record.h"
+#include "segmentation/bowel_contents.h"
+#include "segmentation/chain_graph.h"
+#include "segmentation/colon_chain.h"
+#include "segmentation/colon_labels.h"
+#include "segmentation/tube_pieces.h"
+#include "segmentation/untagged_levels.h"
+
+#include <vector>
+
+namespace haustra::segmentation {
+
+/// Of the first of `chains` (not empty), whose weights by their scores are the confidence among
+/// them. `untagged` are the levels whose fluid is not in the lumen.
+ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
+                        const PieceGraph& graph, const std::vector<ColonChain>& chains,
+                        const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged);
+
+}  // namespace haustra::segmentation

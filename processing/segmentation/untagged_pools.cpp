@@ -1,0 +1,288 @@
+#include "segmentation/untagged_pools.h"
+
+#include "core/connected_labels.h"
+#include "core/crop.h"
+#include "topology/distance_field.h"
+#include "topology/hu_range_lumen.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace haustra::segmentation {
+namespace {
+
+constexpr double smoothMm = 1.5, centreSmoothMm = 3.0;
+constexpr double centreShare = 0.8;  // of the way to another tissue, at a ball's centre
+constexpr double asideMm = 45.0, deepMm = 80.0, aboveMm = 8.0;  // how far a pool may reach
+constexpr double blurMm = 3.0;                                  // of partial volume at a level
+constexpr double wallMm = 1.0;                                  // taken for fluid beside fat
+constexpr std::array<double, 3> ballsMm{3.0, 4.0, 5.0};
+constexpr double leastCovered = 0.85, leastFilled = 0.5, leastMl = 1.0;
+
+/// The surroundings of one level, and what of them may be its fluid.
+class PoolSearch {
+public:
+    PoolSearch(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+               const BowelContents& contents, const UntaggedLevel& level, int threads)
+        : level_(level), down_(contents.down), threads_(threads) {
+        const Grid& whole = hu.grid();
+        glm::ivec3 lo = level.columns.front(), hi = lo;
+        for (const glm::ivec3 v : level.columns)
+            lo = glm::min(lo, v), hi = glm::max(hi, v);
+        glm::dvec3 before(asideMm), after(asideMm);
+        before[down_.axis] = down_.sign > 0 ? aboveMm : deepMm;
+        after[down_.axis] = down_.sign > 0 ? deepMm : aboveMm;
+        const glm::dvec3 spacing = whole.spacingMm();
+        lo = glm::max(lo - glm::ivec3(glm::ceil(before / spacing)), glm::ivec3(0));
+        hi = glm::min(hi + glm::ivec3(glm::ceil(after / spacing)), whole.size - 1);
+        box_ = {lo, hi - lo + 1};
+        hu_ = cropped(hu, box_, threads);
+        content_ = cropped(contents.content, box_, threads);
+        planeMm_ = level.heightMm - down_.sign * spacing[down_.axis] * double(lo[down_.axis]);
+        sort(tissue);
+        distanceMm_ = topology::distanceToBoundaryMm(inside_, threads);
+    }
+
+    /// The pool that balls of this radius find, on the box's grid; nothing where it has leaked.
+    std::optional<Volume<std::uint8_t>> open(double ballMm) const {
+        Volume<std::uint8_t> pool = reached(ballMm);
+        fillBlur(pool);
+        const Grid& grid = pool.grid();
+        std::size_t voxels = 0, belowLevel = 0, underGas = 0;
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            if (!pool[n]) continue;
+            ++voxels;
+            const glm::ivec3 v = grid.voxelAt(n);
+            if (atSide(v)) return {};
+            const double mm = depthMm(v);
+            if (mm < blurMm || mm >= blurMm + stepMm()) continue;
+            ++belowLevel;
+            underGas += isUnderGas(pool, v);
+        }
+        std::size_t filled = 0;
+        for (const glm::ivec3 column : level_.columns)
+            filled += fillsBelow(pool, column - box_.lo);
+        const bool sound = double(voxels) * grid.voxelVolumeMm3() / 1000.0 > leastMl &&
+                           double(underGas) > leastCovered * double(belowLevel) &&
+                           double(filled) > leastFilled * double(level_.columns.size());
+        if (!sound) return {};
+        trim(pool);
+        return pool;
+    }
+
+    const VoxelBox& box() const { return box_; }
+
+private:
+    double stepMm() const { return hu_.grid().spacingMm()[down_.axis]; }
+    double depthMm(glm::ivec3 v) const {
+        return down_.sign * stepMm() * double(v[down_.axis]) - planeMm_;
+    }
+    glm::ivec3 below(glm::ivec3 v, int steps = 1) const {
+        v[down_.axis] += steps * down_.sign;
+        return v;
+    }
+    bool isGas(std::size_t n) const { return Content(content_[n]) == Content::gas; }
+    bool isTissue(std::size_t n) const { return Content(content_[n]) == Content::tissue; }
+    /// Where a pool that goes on would be cut off; not at its level.
+    bool atSide(glm::ivec3 v) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            const int last = hu_.grid().size[axis] - 1;
+            const bool first = v[axis] == 0, end = v[axis] == last;
+            if (axis == down_.axis ? (down_.sign > 0 ? end : first) : first || end) return true;
+        }
+        return false;
+    }
+
+    void sort(const TissueModel& tissue) {
+        const Grid& grid = hu_.grid();
+        const double softHu = tissue.meanHu[int(Tissue::soft)],
+                     fatHu = tissue.meanHu[int(Tissue::fat)];
+        const double fromHu = 0.5 * (level_.fluidHu + fatHu),
+                     toHu = 0.5 * (level_.fluidHu + softHu);
+        fluid_ = looksLike(smoothMm, fromHu, toHu, fatHu);
+        centres_ = looksLike(centreSmoothMm, glm::mix(level_.fluidHu, fromHu, centreShare),
+                             glm::mix(level_.fluidHu, toHu, centreShare), fatHu);
+        inside_ = Volume<std::uint8_t>(grid, std::uint8_t(0));
+        blur_ = Volume<std::uint8_t>(grid, std::uint8_t(0));
+        const auto inside = inside_.writable(), blur = blur_.writable();
+        for (std::size_t n = 0; n < inside.size(); ++n) {
+            const Content what = Content(content_[n]);
+            inside[n] = fluid_[n] || (what == Content::gas && depthMm(grid.voxelAt(n)) <= 0.0);
+        }
+        for (const glm::ivec3 column : level_.columns) {
+            for (glm::ivec3 v = below(column - box_.lo);
+                 grid.contains(v) && depthMm(v) < blurMm && isTissue(grid.index(v)); v = below(v))
+                inside[grid.index(v)] = blur[grid.index(v)] = 1;
+        }
+    }
+    /// Tissue below the level whose HU, smoothed among tissue alone, lie between these.
+    Volume<std::uint8_t> looksLike(double sdMm, double fromHu, double toHu, double fatHu) const {
+        constexpr int one = 1000, leastWeight = 200;
+        const Grid& grid = hu_.grid();
+        Volume<std::int16_t> value(grid, std::int16_t(0)), weight(grid, std::int16_t(0));
+        const auto values = value.writable(), weights = weight.writable();
+        for (std::size_t n = 0; n < values.size(); ++n) {
+            if (Content(content_[n]) != Content::tissue || hu_[n] < 2.0 * fatHu) continue;
+            values[n] = hu_[n], weights[n] = one;
+        }
+        value = topology::smoothHu(value, sdMm, threads_);
+        weight = topology::smoothHu(weight, sdMm, threads_);
+        Volume<std::uint8_t> like(grid, std::uint8_t(0));
+        const auto out = like.writable();
+        for (std::size_t n = 0; n < out.size(); ++n) {
+            if (Content(content_[n]) != Content::tissue || weight[n] < leastWeight ||
+                !(depthMm(grid.voxelAt(n)) > 0.0))
+                continue;
+            const double meanHu = double(one) * value[n] / weight[n];
+            out[n] = meanHu > fromHu && meanHu < toHu;
+        }
+        return like;
+    }
+
+    /// Where centres of balls that fit come from the level, and what those balls cover less a wall.
+    Volume<std::uint8_t> reached(double ballMm) const {
+        const Grid& grid = hu_.grid();
+        Volume<std::uint8_t> beyond(grid, std::uint8_t(1));
+        const auto out = beyond.writable();
+        std::vector<std::uint32_t> front;
+        const auto take = [&](std::size_t n) {
+            if (out[n] == 0 || !fluid_[n] || !centres_[n] || !(distanceMm_[n] > ballMm)) return;
+            out[n] = 0;
+            front.push_back(std::uint32_t(n));
+        };
+        for (const glm::ivec3 column : level_.columns) {
+            for (glm::ivec3 v = below(column - box_.lo);
+                 grid.contains(v) && depthMm(v) < ballMm + blurMm; v = below(v))
+                take(grid.index(v));
+        }
+        for (std::size_t head = 0; head < front.size(); ++head)
+            visitFaces(grid, front[head], [&](std::size_t m, int) { take(m); });
+        Volume<std::uint8_t> pool(grid, std::uint8_t(0));
+        if (front.empty()) return pool;
+        const Volume<float> awayMm = topology::distanceToBoundaryMm(beyond, threads_);
+        const auto in = pool.writable();
+        for (std::size_t n = 0; n < in.size(); ++n)
+            in[n] = (fluid_[n] || blur_[n]) && awayMm[n] <= ballMm - wallMm;
+        return pool;
+    }
+
+    /// The partial volume between the pool and the gas over it, and the sediment under it.
+    void fillBlur(Volume<std::uint8_t>& pool) const {
+        const auto in = pool.writable();
+        eachColumn([&](const std::vector<std::size_t>& column) {
+            enum class Over { other, gas, fluid } over = Over::other;
+            std::vector<std::size_t> between;
+            for (const std::size_t m : column) {
+                const bool mayBlur = double(between.size()) * stepMm() < blurMm && isTissue(m);
+                const bool ends = isGas(m) || in[m] || Content(content_[m]) == Content::tagged;
+                if (ends) {
+                    const bool fills = over == Over::gas     ? in[m] != 0
+                                       : over == Over::fluid ? !isGas(m)
+                                                             : false;
+                    for (const std::size_t gap : between)
+                        in[gap] = in[gap] || fills;
+                    between.clear();
+                    over = isGas(m) ? Over::gas : in[m] ? Over::fluid : Over::other;
+                } else if (over != Over::other && mayBlur && (over == Over::fluid || blur_[m])) {
+                    between.push_back(m);
+                } else {
+                    over = Over::other, between.clear();
+                }
+            }
+        });
+    }
+
+    /// Takes off what rises to the level under no gas.
+    void trim(Volume<std::uint8_t>& pool) const {
+        const auto in = pool.writable();
+        eachColumn([&](const std::vector<std::size_t>& column) {
+            bool underGas = false, leaked = false;
+            for (const std::size_t m : column) {
+                if (in[m] && !underGas && depthMm(hu_.grid().voxelAt(m)) < blurMm + stepMm())
+                    leaked = true;
+                underGas = isGas(m) || (underGas && in[m]);
+                leaked = leaked && in[m];
+                if (leaked) in[m] = 0;
+            }
+        });
+    }
+
+    /// visit(voxels of a column, downwards).
+    template <class Visit>
+    void eachColumn(const Visit& visit) const {
+        const Grid& grid = hu_.grid();
+        const int across = 1 - down_.axis, length = grid.size[down_.axis];
+        std::vector<std::size_t> column(static_cast<std::size_t>(length));
+        for (int k = 0; k < grid.size.z; ++k) {
+            for (int n = 0; n < grid.size[across]; ++n) {
+                glm::ivec3 v(0, 0, k);
+                v[across] = n;
+                for (int at = 0; at < length; ++at) {
+                    v[down_.axis] = down_.sign > 0 ? at : length - 1 - at;
+                    column[std::size_t(at)] = grid.index(v);
+                }
+                visit(column);
+            }
+        }
+    }
+
+    bool isUnderGas(const Volume<std::uint8_t>& pool, glm::ivec3 v) const {
+        const Grid& grid = pool.grid();
+        for (v = below(v, -1); grid.contains(v); v = below(v, -1)) {
+            const std::size_t n = grid.index(v);
+            if (isGas(n)) return true;
+            if (!pool[n]) return false;
+        }
+        return false;
+    }
+    bool fillsBelow(const Volume<std::uint8_t>& pool, glm::ivec3 column) const {
+        const Grid& grid = pool.grid();
+        for (glm::ivec3 v = below(column); grid.contains(v) && depthMm(v) < blurMm + stepMm();
+             v = below(v)) {
+            if (depthMm(v) >= blurMm) return pool.at(v) != 0;
+        }
+        return false;
+    }
+
+    const UntaggedLevel& level_;
+    const GravityAxis down_;
+    const int threads_;
+    VoxelBox box_;
+    double planeMm_ = 0.0;  ///< the level's height on the box's grid
+    Volume<std::int16_t> hu_;
+    Volume<std::uint8_t> content_;
+    Volume<std::uint8_t> fluid_;    ///< looks like the level's fluid, below it
+    Volume<std::uint8_t> centres_;  ///< the same by more of its surroundings, and surer
+    Volume<std::uint8_t> blur_;     ///< partial volume between fluid and gas
+    Volume<std::uint8_t> inside_;  ///< where no wall stands in a ball's way; gas below is another's
+    Volume<float> distanceMm_;
+};
+
+}  // namespace
+
+bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                       const std::vector<UntaggedLevel>& levels, BowelContents& contents,
+                       int threads) {
+    const Grid& grid = hu.grid();
+    const auto content = contents.content.writable();
+    bool any = false;
+    for (const UntaggedLevel& level : levels) {
+        const PoolSearch search(hu, tissue, contents, level, threads);
+        for (const double ballMm : ballsMm) {
+            const auto pool = search.open(ballMm);
+            if (!pool) continue;
+            for (std::size_t n = 0; n < pool->grid().voxelCount(); ++n) {
+                if ((*pool)[n] == 0) continue;
+                const std::size_t m = grid.index(pool->grid().voxelAt(n) + search.box().lo);
+                content[m] = std::uint8_t(Content::untagged);
+            }
+            any = true;
+            break;
+        }
+    }
+    return any;
+}
+
+}  // namespace haustra::segmentation

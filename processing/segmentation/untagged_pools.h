@@ -1,0 +1,29 @@
+// The fluid beneath levels that took no tagging, as far as it can be told from the wall.
+#pragma once
+
+#include "core/tissue.h"
+#include "segmentation/bowel_contents.h"
+#include "segmentation/untagged_levels.h"
+
+#include <vector>
+
+namespace haustra::segmentation {
+
+/// Marks as Content::untagged what stands beneath these levels (findUntaggedLevels): tissue below
+/// the level whose HU, smoothed to 1.5 mm, are nearer to the fluid's than to soft tissue's or to
+/// fat's, opened by a ball and connected with the level. The outermost millimetre
+/// that balls reach is the wall's: a distended colon's wall is 1 to 2 mm thick (Wiesner et al., J
+/// Comput Assist Tomogr 2002; 26: 102), too thin to show its own HU between fluid and fat.
+///
+/// Gas below a level is another lumen's. Fluid rises to its own level: just beneath it, the pool
+/// has to lie under gas, or it has leaked into what only looks like fluid. Then larger balls are
+/// tried (3, 4 and 5 mm), and where none holds, the level stays without a pool. Returns whether any
+/// has one.
+///
+/// `contents` must own its memory and have its gravity. O(voxels around levels); the same for any
+/// number of threads.
+bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                       const std::vector<UntaggedLevel>& levels, BowelContents& contents,
+                       int threads);
+
+}  // namespace haustra::segmentation

@@ -1,0 +1,15 @@
+// What a reader must know of a case before anything of it is seen.
+#pragma once
+
+#include "core/colon_record.h"
+#include "core/result.h"
+#include "store/case_store.h"
+
+namespace haustra::store {
+
+/// What the case's `quality` says, and, as the first warnings, the pieces of the colon that its
+/// centerline passes by, where it has one. Fails where the case has no quality or a product cannot
+/// be read.
+Result<ColonTrust> readTrust(const Case& source);
+
+}  // namespace haustra::store
