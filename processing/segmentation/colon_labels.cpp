@@ -472,25 +472,15 @@ private:
                 corners.push_back(glm::ivec3(glm::round(grid_.voxelFromPatientPoint(p))));
             corners.push_back(*to);
             laid_.clear();
+            sides_ = {path.from, path.to};
             for (std::size_t n = 1; n < corners.size(); ++n)
                 result_.bridgeMm[step] += layStraight(corners[n - 1], corners[n], radiusMm);
-            wallOff(path.from, path.to);
+            wallOff();
         }
     }
     // A collapsed colon that runs along the wall of another loop does not open into it: where the
     // bridge just laid faces lumen of other pieces than the two that it joins, that becomes wall.
-    void wallOff(std::int32_t from, std::int32_t to) {
-        const auto isSide = [&](glm::ivec3 v) {
-            if (cut_.pieceAt.at(v) >= 0)
-                return cut_.pieceAt.at(v) == from || cut_.pieceAt.at(v) == to;
-            for (int n = 0; n < 27; ++n) {  // a voxel that labelling added
-                const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-                if (grid_.contains(w) && cut_.pieceAt.at(w) >= 0 &&
-                    (cut_.pieceAt.at(w) == from || cut_.pieceAt.at(w) == to))
-                    return true;
-            }
-            return false;
-        };
+    void wallOff() {
         for (const glm::ivec3 v : laid_) {
             for (int n = 0; n < 6; ++n) {
                 glm::ivec3 w = v;
@@ -501,6 +491,18 @@ private:
                 labels_[at] = outside, barred_[at] = true;
             }
         }
+    }
+    // Whether a labelled voxel is of a piece that the bridge joins.
+    bool isSide(glm::ivec3 v) const {
+        const auto joins = [&](std::int32_t piece) {
+            return piece >= 0 && (piece == sides_[0] || piece == sides_[1]);
+        };
+        if (cut_.pieceAt.at(v) >= 0) return joins(cut_.pieceAt.at(v));
+        for (int n = 0; n < 27; ++n) {  // a voxel that labelling added
+            const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            if (grid_.contains(w) && joins(cut_.pieceAt.at(w))) return true;
+        }
+        return false;
     }
     // Returns the length outside the lumen.
     double layStraight(glm::ivec3 from, glm::ivec3 to, double radiusMm) {
@@ -535,7 +537,8 @@ private:
     void setBridge(glm::ivec3 v, bool middle) {
         if (!grid_.contains(v)) return;
         const std::size_t n = grid_.index(v);
-        if (labels_[n] != outside) return;
+        // Its middle is laid through another loop's rim, too, which would become wall there.
+        if (labels_[n] != outside && (!middle || labels_[n] == bridge || isSide(v))) return;
         if (!middle && (barred_[n] || Content(contents_.content[n]) != Content::tissue)) return;
         labels_[n] = bridge;
         laid_.push_back(v);
@@ -562,6 +565,7 @@ private:
     Volume<std::int16_t> smooth_;                       ///< HU, against noise
     std::vector<char> open_;                            ///< orifices
     std::vector<int> inner_;                            ///< orifices between kept pieces
+    std::array<std::int32_t, 2> sides_{-1, -1};         ///< pieces that the last bridge joins
     std::vector<glm::ivec3> laid_;                      ///< voxels of the last bridge
     std::set<int> cuts_;                                ///< orifices that the chain closes
     std::vector<std::pair<std::uint32_t, int>> faces_;  ///< first voxel, inner orifice; sorted
