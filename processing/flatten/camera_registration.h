@@ -13,7 +13,7 @@ struct CameraRegistrationOptions {
     double cameraSpacingMm = 1.0;
     int segments = 0;  ///< N; 0: one for each 20 mm of the centerline
     /// Per triangle of the map: of a blind pouch, which has no part in the contours; or empty.
-    std::vector<char> isPouch;
+    std::vector<char> isPouch{};
     int threads = 0;
 };
 

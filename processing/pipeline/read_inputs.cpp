@@ -115,12 +115,13 @@ Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* s
     for (std::size_t n = 0; n < labels.size(); ++n) {
         const std::uint8_t value = (*read)[n];
         inside += value != 0;
-        others += value > 2;
-        labels[n] = value > 2 ? std::uint8_t(LumenLabel::air) : value;
+        const bool known = value <= 2 || value == std::uint8_t(LumenLabel::untagged);
+        others += !known;
+        labels[n] = known ? value : std::uint8_t(LumenLabel::air);
     }
     if (inside == 0) return fail(ErrorKind::noResult, "the mask is empty", file.string());
     if (others > 0) {
-        mask.notes.push_back("mask values other than 0, 1 and 2 were taken as air-filled lumen");
+        mask.notes.push_back("mask values other than 0, 1, 2 and 4 were taken as air-filled lumen");
     }
     return mask;
 }

@@ -251,6 +251,10 @@ void findGravity(const Volume<std::int16_t>& hu, PatientPosition position,
             best = toldIndex;
         }
     }
+    if (!known && areaMm2[best] == 0.0) {
+        contents.notes.push_back(
+            "patient position unknown, and no air-fluid level shows it: supine is assumed");
+    }
     if (!known && areaMm2[best] > 0.0) {
         contents.notes.push_back(
             std::string(

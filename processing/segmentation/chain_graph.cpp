@@ -27,7 +27,8 @@ bool isTaggedBowel(const TubePiece& piece, double softHu, double brightestHu, do
 
 bool isUntaggedBowel(const TubePiece& piece) {
     constexpr double leastMl = 0.5, leastRadiusMm = 3.5;
-    return piece.mostlyUntagged() && piece.volumeMl >= leastMl && piece.radiusMm >= leastRadiusMm;
+    return !piece.mostlyGas() && piece.gasVoxels + piece.untaggedVoxels > piece.taggedVoxels &&
+           piece.volumeMl >= leastMl && piece.radiusMm >= leastRadiusMm;
 }
 
 /// Where a part of the colon lies in the body's frame: mean and standard deviation.

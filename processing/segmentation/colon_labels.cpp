@@ -218,6 +218,11 @@ private:
         }
     }
 
+    std::uint8_t labelOf(std::size_t n) const {
+        if (Content(contents_.content[n]) == Content::untagged) return untagged;
+        return hu_[n] < tissue_.airBelowHu ? air : tagged;
+    }
+
     double unlikeSoft(std::size_t n) const { return std::abs(hu_[n] - softHu_); }
 
     void closeDoors() {
@@ -409,7 +414,7 @@ private:
         for (std::size_t n = 0; n < labels_.size(); ++n) {
             const std::int32_t p = cut_.pieceAt[n];
             if (p >= 0 && labels_[n] == outside && !barred_[n] && taken.count(p))
-                labels_[n] = hu_[n] < tissue_.airBelowHu ? air : tagged;
+                labels_[n] = labelOf(n);
             const bool elsewhere =
                 p >= 0 && !isKept(p) && (graph_.nodeOf[std::size_t(p)] >= 0 || others.count(p));
             if (barred_[n] || elsewhere) barredVoxels.push_back(std::uint32_t(n));
@@ -536,9 +541,12 @@ private:
     }
     void setBridge(glm::ivec3 v, bool middle) {
         if (!grid_.contains(v)) return;
+        constexpr double rimMm = 3.0;
         const std::size_t n = grid_.index(v);
         // Its middle is laid through another loop's rim, too, which would become wall there.
-        if (labels_[n] != outside && (!middle || labels_[n] == bridge || isSide(v))) return;
+        if (labels_[n] != outside &&
+            (!middle || labels_[n] == bridge || cut_.distanceMm[n] > rimMm || isSide(v)))
+            return;
         if (!middle && (barred_[n] || Content(contents_.content[n]) != Content::tissue)) return;
         labels_[n] = bridge;
         laid_.push_back(v);
@@ -548,7 +556,7 @@ private:
     void joinUp() {
         result_.strandedMl = joinBodies(
             result_.labels, [&](std::size_t n) { return isKept(cut_.pieceAt[n]) && !barred_[n]; },
-            [&](std::size_t n) { return hu_[n] < tissue_.airBelowHu ? air : tagged; });
+            [&](std::size_t n) { return labelOf(n); });
     }
 
     const Volume<std::int16_t>& hu_;

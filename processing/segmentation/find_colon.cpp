@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 namespace haustra::segmentation {
 namespace {
@@ -65,27 +66,32 @@ Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
     }
     if (piece < 0) {
         return fail(ErrorKind::badInput,
-                    "there is no air or tagged fluid within 3 mm of this point",
+                    "there is no air or fluid of a lumen within 3 mm of this point",
                     text("%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z));
     }
     return piece;
 }
 
-Result<GivenPieces> givenPieces(const TubePieces& cut, const ColonEdits& edits) {
+// Of the points that have a piece; `missing` is the first of the others' error.
+GivenPieces givenPieces(const TubePieces& cut, const ColonEdits& edits,
+                        std::optional<Error>& missing) {
     GivenPieces given;
     for (const auto& [points, pieces] :
          {std::pair(&edits.seedsMm, &given.colon), std::pair(&edits.excludesMm, &given.notColon)}) {
         for (const glm::dvec3 p : *points) {
             const auto piece = pieceAt(cut, p);
-            if (!piece) return tl::make_unexpected(piece.error());
-            pieces->push_back(*piece);
+            if (piece)
+                pieces->push_back(*piece);
+            else if (!missing)
+                missing = piece.error();
         }
     }
     for (const auto& [a, b] : edits.joins) {
         const auto from = pieceAt(cut, a), to = pieceAt(cut, b);
-        if (!from) return tl::make_unexpected(from.error());
-        if (!to) return tl::make_unexpected(to.error());
-        given.joins.push_back({*from, *to, a, b});
+        if (from && to)
+            given.joins.push_back({*from, *to, a, b});
+        else if (!missing)
+            missing = from ? to.error() : from.error();
     }
     return given;
 }
@@ -166,6 +172,10 @@ void restrictToMask(BowelContents& contents, const Volume<std::int16_t>& hu,
     const auto voxels = contents.content.writable();
     for (std::size_t n = 0; n < voxels.size(); ++n) {
         if (mask[n] != 0) {
+            if (LumenLabel(mask[n]) == LumenLabel::untagged) {
+                voxels[n] = std::uint8_t(Content::untagged);
+                continue;
+            }
             if (Content(voxels[n]) == Content::interface) continue;  // of a level
             voxels[n] = std::uint8_t(hu[n] < tissue.airBelowHu      ? Content::gas
                                      : hu[n] > tissue.taggedAboveHu ? Content::tagged
@@ -226,6 +236,7 @@ struct Course {
     PieceGraph graph;
     std::vector<ColonChain> chains;
     ColonLabels labels;
+    std::optional<Error> missing;  ///< of a person's points that has no piece
 };
 
 Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>& thinWalls,
@@ -234,10 +245,9 @@ Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>&
     Course course;
     course.cut = cutIntoPieces(among.hu, among.contents.content, thinWalls,
                                {.softHu = softHu, .threads = options.threads});
-    const auto given = givenPieces(course.cut, options.edits);
-    if (!given) return tl::make_unexpected(given.error());
+    const GivenPieces given = givenPieces(course.cut, options.edits, course.missing);
     course.graph = makePieceGraph(among.hu, among.contents, tissue, course.cut, among.softTissueMm,
-                                  *given, options.threads);
+                                  given, options.threads);
     course.chains = findChains(course.graph.graph, {.chains = 12});
     const bool asked = !options.edits.seedsMm.empty() || !options.edits.joins.empty();
     if (course.chains.empty())
@@ -296,6 +306,7 @@ Result<FoundColon> findAmong(Surroundings& among, const TissueModel& tissue,
             if (among.given || round == mostRounds ||
                 !markUntaggedPools(among.hu, tissue, untagged, among.contents, options.threads))
                 break;
+            cutBalls(among.contents, options.edits.cuts);
             auto next = findCourse(among, thin, tissue, options);
             if (!next || lengthMm(*next) < leastOfBefore * lengthMm(*course)) {
                 forgetPools(among.contents);
@@ -304,6 +315,8 @@ Result<FoundColon> findAmong(Surroundings& among, const TissueModel& tissue,
             course = std::move(next);
         }
     }
+    // A point in a pool has its piece once the pool is found.
+    if (course->missing) return tl::make_unexpected(*course->missing);
     progress(0.9);
     FoundColon found;
     found.record = recordColon(among.contents, course->cut, course->graph, course->chains,
@@ -373,7 +386,8 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
         const auto labels = found->labels.writable();
         for (std::size_t n = 0; n < labels.size(); ++n) {
             if (LumenLabel(labels[n]) == LumenLabel::air &&
-                LumenLabel(mask[n]) == LumenLabel::tagged)
+                (LumenLabel(mask[n]) == LumenLabel::tagged ||
+                 LumenLabel(mask[n]) == LumenLabel::untagged))
                 labels[n] = mask[n];
         }
     }

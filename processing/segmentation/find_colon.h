@@ -37,11 +37,11 @@ struct FoundColon {
 ///
 /// Fails where the scan has no bowel gas, or too little of a distended colon for a virtual
 /// colonoscopy, unless a seed says otherwise (noResult); where a point of the edits has neither gas
-/// nor tagged material within 3 mm (badInput). The same for any number of threads. O(voxels).
+/// nor fluid within 3 mm (badInput). The same for any number of threads. O(voxels).
 Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
                              const ColonOptions& options = {});
 
-/// The same for a mask (0 is outside, LumenLabel::tagged is tagged, all else gas) that another
+/// The same for a mask (0 is outside, LumenLabel::tagged and untagged are fluid, all else gas) that another
 /// program made of `scan`, or of a scan that is not known (null; `tissue` then says how gas, tagged
 /// material and soft tissue are drawn). What of the mask is tagged, and where down is, is the
 /// scan's to say. The mask ends where it ends: nothing but bridges is added to it; what is not on

@@ -101,6 +101,7 @@ public:
                                     node.lengthMm, gasMl, piece.volumeMl - gasMl - untaggedMl,
                                     untaggedMl});
         }
+        addSacsFluid();
         for (std::size_t n = 0; n < chain_.junctions.size(); ++n) {
             const ChainJunction& junction =
                 graph_.graph.junctions[std::size_t(chain_.junctions[n])];
@@ -131,6 +132,21 @@ public:
 private:
     const TubePiece& pieceOf(int node) const {
         return cut_.pieces[std::size_t(graph_.pieceOf[std::size_t(node)])];
+    }
+
+    // Fluid without tagging in sacs counts with the piece whose ball is nearest.
+    void addSacsFluid() {
+        for (const int sac : chain_.sacs) {
+            const TubePiece& piece = pieceOf(sac);
+            const auto home =
+                std::min_element(made_.pieces.begin(), made_.pieces.end(),
+                                 [&](const ColonPiece& a, const ColonPiece& b) {
+                                     return glm::distance(a.centreMm, piece.centreMm) - a.radiusMm <
+                                            glm::distance(b.centreMm, piece.centreMm) - b.radiusMm;
+                                 });
+            home->untaggedMl +=
+                piece.volumeMl * double(piece.untaggedVoxels) / double(piece.voxels);
+        }
     }
 
     // Of the piece that is nearest, as far as its ball reaches.

@@ -269,6 +269,8 @@ bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue
     const auto content = contents.content.writable();
     bool any = false;
     for (const UntaggedLevel& level : levels) {
+        // Fluid as bright as a wall, or brighter, is not told from it: it is only told.
+        if (level.fluidHu >= tissue.meanHu[int(Tissue::soft)]) continue;
         const PoolSearch search(hu, tissue, contents, level, threads);
         for (const double ballMm : ballsMm) {
             const auto pool = search.open(ballMm);

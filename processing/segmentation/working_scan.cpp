@@ -13,7 +13,8 @@ constexpr double coarsestMm = 0.8;
 constexpr double aroundMm = 60.0, alongMm = 80.0;
 
 constexpr auto outside = std::uint8_t(LumenLabel::outside), air = std::uint8_t(LumenLabel::air),
-               tagged = std::uint8_t(LumenLabel::tagged);
+               tagged = std::uint8_t(LumenLabel::tagged),
+               untagged = std::uint8_t(LumenLabel::untagged);
 
 Grid binnedGrid(const Grid& grid, glm::ivec3 by) {
     Grid made = grid;
@@ -183,6 +184,10 @@ Volume<std::uint8_t> atFullResolution(const Volume<std::uint8_t>& labels,
             if (was != air && was != outside) continue;
             if (was == air && touches(n, [](std::uint8_t l) { return l == tagged; })) {
                 out[n] = tagged;
+                continue;
+            }
+            if (was == air && touches(n, [](std::uint8_t l) { return l == untagged; })) {
+                out[n] = untagged;
                 continue;
             }
             if (was == outside && (isBarred(v) || touches(n, [](std::uint8_t l) {

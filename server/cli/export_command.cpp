@@ -124,7 +124,7 @@ Command addExport(CLI::App& program) {
         "export",
         "Write a product to a file that other programs read: ct and cleansed (int16, HU), "
         "segmentation, cleansed-lumen and lumen (uint8: 0 outside, 1 air, 2 tagged, 3 bridge over "
-        "a collapse), mixture (4-D uint8: air, soft tissue, tagged, in 255ths) and distance "
+        "a collapse, 4 fluid without tagging), mixture (4-D uint8: air, soft tissue, tagged, in 255ths) and distance "
         "(float, mm) as .nii.gz; centerline as .csv (x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, "
         "rectum to cecum) and branches likewise, each from an arc of 0 on; surface as .ply, .obj, "
         ".off or .stl (LPS, mm); flatmap, the cut surface, as .obj (vt: flat coordinates in "

@@ -28,7 +28,7 @@ void fill(protocol::ColonTrust& message, const ColonTrust& trust) {
         told->set_length_mm(segment.lengthMm);
         told->set_diameter_mm(segment.diameterMm);
         told->set_gas_ml(segment.gasMl);
-        told->set_tagged_ml(segment.taggedMl);
+        told->set_tagged_ml(segment.taggedMl + segment.untaggedMl);
         told->set_collapsed_mm(segment.collapsedMm);
     }
 }

@@ -46,7 +46,8 @@ double psnr(const Image& a, const Image& b) {
 }
 
 std::vector<Contestant> contestants(render::CaseRenderer& renderer,
-                                    const Volume<std::int16_t>& shown, const Arguments& given) {
+                                    [[maybe_unused]] const Volume<std::int16_t>& shown,
+                                    [[maybe_unused]] const Arguments& given) {
     using render::RaycasterKind;
     std::vector<Contestant> all;
     for (const RaycasterKind kind :

@@ -287,17 +287,41 @@ TEST(FindColon, FluidWithoutTaggingIsLumenUnderItsLevel) {
         EXPECT_GT(diceWithDrawing(*found), 0.97);
         EXPECT_TRUE(isOnePiece(*found));
         const Grid& grid = found->labels.grid();
-        double drawnMl = 0.0;
+        double drawnMl = 0.0, labelledMl = 0.0;
         for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
             const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
             drawnMl += water(p) ? grid.voxelVolumeMm3() / 1000.0 : 0.0;
             if (LumenLabel(found->labels[n]) == LumenLabel::untagged) {
+                labelledMl += grid.voxelVolumeMm3() / 1000.0;
                 ASSERT_TRUE(inColon(p) && p.y > 136.0 && p.x < 122.0);
             }
         }
         EXPECT_NEAR(untaggedMl(*found), drawnMl, 0.3 * drawnMl);  // a millimetre is the wall's
+        EXPECT_NEAR(untaggedMl(*found), labelledMl, 0.1 * labelledMl);
         EXPECT_LT(found->record.confidence, found->record.chainConfidence);
     }
+}
+
+// A person's word about a place that is known for fluid only once the pool is found.
+TEST(FindColon, AnExcludedOrCutPoolStaysOut) {
+    const auto water = [](glm::dvec3 p) { return inColon(p) && p.y >= 140.0 && p.x < 120; };
+    Drawing drawing;
+    drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
+    drawing.paint(8, water);
+    ColonOptions options;
+    options.edits.cuts = {{{58.0, 148.0, 150.0}, 9.0}};
+    const auto cut = find(drawing.scan(), options);
+    ASSERT_TRUE(cut) << describe(cut.error());
+    const Grid& grid = cut->labels.grid();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        if (LumenLabel(cut->labels[n]) != LumenLabel::untagged) continue;
+        EXPECT_GT(glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(n)),
+                                glm::dvec3(58.0, 148.0, 150.0)),
+                  8.9);
+    }
+    ColonOptions nowhere;
+    nowhere.edits.excludesMm = {{160.0, 150.0, 330.0}};
+    EXPECT_EQ(find(drawing.scan(), nowhere).has_value(), false);
 }
 
 // Fluid ends at its own level. Where what looks like it goes on beside the lumen, up to there and
