@@ -302,6 +302,26 @@ TEST(FindColon, FluidWithoutTaggingIsLumenUnderItsLevel) {
     }
 }
 
+// Down is towards the front in a prone scan.
+TEST(FindColon, FluidWithoutTaggingIsFoundInAProneScan) {
+    const auto water = [](glm::dvec3 p) {
+        return inColon(p) && p.y <= 128.0 && p.x < 78 && p.z < 270;
+    };
+    Drawing drawing;
+    drawing.paintColon([&](glm::dvec3 p) { return p.y <= 110.0 && p.x >= 120; });
+    drawing.paint(8, water);
+    const auto found = find(drawing.scan(PatientPosition::prone));
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_EQ(found->gravity, glm::dvec3(0, -1, 0));
+    EXPECT_GT(untaggedMl(*found), 10.0);
+    for (std::size_t n = 0; n < found->labels.grid().voxelCount(); ++n) {
+        if (LumenLabel(found->labels[n]) != LumenLabel::untagged) continue;
+        const glm::dvec3 p =
+            found->labels.grid().patientFromVoxelPoint(found->labels.grid().voxelAt(n));
+        ASSERT_TRUE(inColon(p) && p.y < 132.0 && p.x < 80.0);
+    }
+}
+
 // A person's word about a place that is known for fluid only once the pool is found.
 TEST(FindColon, AnExcludedOrCutPoolStaysOut) {
     const auto water = [](glm::dvec3 p) { return inColon(p) && p.y >= 140.0 && p.x < 120; };
