@@ -70,7 +70,8 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
     if (!part) return tl::make_unexpected(part.error());
     if (!*part) {
         Cleansed cleansed{scan.hu.clone(), segmentation.clone()};
-        takeOutUntagged(cleansed.hu, cleansed.lumen, segmentation, tissue.meanHu[int(Tissue::air)], threads);
+        takeOutUntagged(cleansed.hu, cleansed.lumen, segmentation, tissue.meanHu[int(Tissue::air)],
+                        threads);
         return cleansed;
     }
     CleansedLumen cleansed = cleanse(

@@ -14,9 +14,9 @@ struct CtScan {
 /// The `lumen` product's labels, one byte a voxel.
 enum class LumenLabel : std::uint8_t {
     outside = 0,
-    air = 1,     ///< air-filled lumen
-    tagged = 2,  ///< tagged fluid or stool inside the lumen, and its interface with the air
-    bridge = 3,  ///< tissue in a collapsed stretch, taken in so that the lumen is one piece
+    air = 1,       ///< air-filled lumen
+    tagged = 2,    ///< tagged fluid or stool inside the lumen, and its interface with the air
+    bridge = 3,    ///< tissue in a collapsed stretch, taken in so that the lumen is one piece
     untagged = 4,  ///< fluid that took no tagging; its wall is told by little contrast
 };
 

@@ -209,17 +209,15 @@ private:
     void label() {
         for (std::size_t n = 0; n < labels_.size(); ++n) {
             if (!isKept(cut_.pieceAt[n])) continue;
-            const bool gas = Content(contents_.content[n]) == Content::gas ||
-                             (Content(contents_.content[n]) == Content::interface &&
-                              hu_[n] < tissue_.airBelowHu);
-            labels_[n] = gas                                                  ? air
-                         : Content(contents_.content[n]) == Content::untagged ? untagged
-                                                                              : tagged;
+            labels_[n] = labelOf(n);
         }
     }
 
     std::uint8_t labelOf(std::size_t n) const {
-        if (Content(contents_.content[n]) == Content::untagged) return untagged;
+        const auto content = Content(contents_.content[n]);
+        if (content == Content::untagged) return untagged;
+        if (content == Content::gas) return air;
+        if (content == Content::tagged) return tagged;
         return hu_[n] < tissue_.airBelowHu ? air : tagged;
     }
 

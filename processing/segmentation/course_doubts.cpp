@@ -1,19 +1,13 @@
 #include "segmentation/course_doubts.h"
 
+#include "segmentation/printed_text.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace haustra::segmentation {
 namespace {
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-    char line[200];
-    std::snprintf(line, sizeof line, format, values...);
-    return line;
-}
 
 double wrongCollapse(double lengthMm, double calibreRatio) {
     constexpr double evenMm = 70.0, spreadMm = 14.0, otherCalibre = 0.5;

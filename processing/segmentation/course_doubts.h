@@ -13,11 +13,12 @@ namespace haustra::segmentation {
 /// The weights of chains tell how sure one is among those that were weighed. They cannot tell that
 /// the true one was not among them, as where a loop shows neither gas nor tagging. What gives it
 /// away: the way across a collapse is long (of 8 longer than 60 mm, 6 passed a loop by; of 24
-/// shorter ones 7 did, 4 of them between unlike calibres), or leads to quite another calibre; a part of the colon is far shorter than
-/// in anyone; gas was left out, the more and the nearer the likelier; a wall looked open or had to
-/// be set up; untagged fluid hides what lies beneath. Counted on wild phantoms, seeds 1, 2 and 7 to
-/// 14, at 1.4 to 2 mm: METHODS. The parts' least lengths are a third of the usual ones (Gray's
-/// Anatomy: sigmoid 40 cm, descending 25, transverse 50, ascending 20).
+/// shorter ones 7 did, 4 of them between unlike calibres), or leads to quite another calibre; a
+/// part of the colon is far shorter than in anyone; gas was left out, the more and the nearer the
+/// likelier; a wall looked open or had to be set up; untagged fluid hides what lies beneath.
+/// Counted on wild phantoms, seeds 1, 2 and 7 to 14, at 1.4 to 2 mm: METHODS. The parts' least
+/// lengths are a third of the usual ones (Gray's Anatomy: sigmoid 40 cm, descending 25, transverse
+/// 50, ascending 20).
 std::vector<Doubt> doubtsOf(const ColonRecord& record);
 
 /// That the course is right, given that the chain is with `chainConfidence`: doubts are

@@ -3,6 +3,7 @@
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
+#include "segmentation/printed_text.h"
 #include "segmentation/record_colon.h"
 #include "segmentation/thin_walls.h"
 #include "segmentation/tube_pieces.h"
@@ -12,19 +13,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 
 namespace haustra::segmentation {
 namespace {
-
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers) {
-    char line[300];
-    std::snprintf(line, sizeof line, format, numbers...);
-    return line;
-}
 
 void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
     const Grid& grid = contents.content.grid();

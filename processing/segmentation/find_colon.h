@@ -41,12 +41,12 @@ struct FoundColon {
 Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
                              const ColonOptions& options = {});
 
-/// The same for a mask (0 is outside, LumenLabel::tagged and untagged are fluid, all else gas) that another
-/// program made of `scan`, or of a scan that is not known (null; `tissue` then says how gas, tagged
-/// material and soft tissue are drawn). What of the mask is tagged, and where down is, is the
-/// scan's to say. The mask ends where it ends: nothing but bridges is added to it; what is not on
-/// the chain is left out, and a note says how much. Fails as findColon does, and where the mask is
-/// not on the scan's grid (badInput).
+/// The same for a mask (0 is outside, LumenLabel::tagged and untagged are fluid, all else gas) that
+/// another program made of `scan`, or of a scan that is not known (null; `tissue` then says how
+/// gas, tagged material and soft tissue are drawn). What of the mask is tagged, and where down is,
+/// is the scan's to say. The mask ends where it ends: nothing but bridges is added to it; what is
+/// not on the chain is left out, and a note says how much. Fails as findColon does, and where the
+/// mask is not on the scan's grid (badInput).
 Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtScan* scan,
                                    const TissueModel& tissue, const ColonOptions& options = {});
 

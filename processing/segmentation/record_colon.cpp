@@ -1,27 +1,16 @@
 #include "segmentation/record_colon.h"
 
 #include "segmentation/course_doubts.h"
+#include "segmentation/printed_text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <string>
 
 namespace haustra::segmentation {
 namespace {
-
-template <class... Numbers>
-std::string text(const char* format, Numbers... numbers) {
-    char line[300];
-    std::snprintf(line, sizeof line, format, numbers...);
-    return line;
-}
-
-std::string placeText(glm::dvec3 p) {
-    return text("(%.0f, %.0f, %.0f) mm", p.x, p.y, p.z);
-}
 
 // The weights of chains by their scores, the best one's first; they sum to 1.
 std::vector<double> posterior(const std::vector<ColonChain>& chains) {

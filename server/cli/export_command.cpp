@@ -124,14 +124,16 @@ Command addExport(CLI::App& program) {
         "export",
         "Write a product to a file that other programs read: ct and cleansed (int16, HU), "
         "segmentation, cleansed-lumen and lumen (uint8: 0 outside, 1 air, 2 tagged, 3 bridge over "
-        "a collapse, 4 fluid without tagging), mixture (4-D uint8: air, soft tissue, tagged, in 255ths) and distance "
+        "a collapse, 4 fluid without tagging), mixture (4-D uint8: air, soft tissue, tagged, in "
+        "255ths) and distance "
         "(float, mm) as .nii.gz; centerline as .csv (x_mm,y_mm,z_mm,arc_mm,radius_mm,gap in LPS, "
         "rectum to cecum) and branches likewise, each from an arc of 0 on; surface as .ply, .obj, "
         ".off or .stl (LPS, mm); flatmap, the cut surface, as .obj (vt: flat coordinates in "
         "circumferences) or .ply (s, t, and of each vertex the camera on the centerline that sees "
         "it, its index and arc_mm, and of each face whether it encloses a bridge); flat-image, the "
         "whole flattened wall seen from within, the rectum at the bottom, black where the surface "
-        "crosses air and hatched along bridges, as .png; quality, how sure the colon is and where to "
+        "crosses air and hatched along bridges, as .png; quality, how sure the colon is and where "
+        "to "
         "look, and edits, what a person said of it, as .json.");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();
     command->add_option("PRODUCT", arguments->product, "What to write")

@@ -23,9 +23,9 @@ struct StudyOptions {
     bool colon = true;  ///< surface and flattening as prepare makes them
     bool cleansing = true;
     bool onlySegmentation = false;  ///< the path through the segmentation's own lumen; no flat map
-    bool surface = true;          ///< the surface against the true one
-    double prepareErrorMm = 0.1;  ///< bound of the surface that is flattened
-    std::filesystem::path out;    ///< for the cleansed scan, the lumen and the meshes; empty: none
+    bool surface = true;            ///< the surface against the true one
+    double prepareErrorMm = 0.1;    ///< bound of the surface that is flattened
+    std::filesystem::path out;  ///< for the cleansed scan, the lumen and the meshes; empty: none
     std::function<void(const std::string&)> log;
     std::function<void(const PhantomStudy&)> beforeFlattening;  ///< which may take long; or empty
 };

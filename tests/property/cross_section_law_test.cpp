@@ -102,7 +102,8 @@ TEST(SmoothInsideLumen, IsAsLongAsItsPathWhereNoSplineFits) {
         for (; voxels > 0; --voxels)
             at[axis] += sign, path.push_back(at), set(at);
     };
-    for (int n = 0; at.z <= 38; ++n) {  // by edges, with a voxel that leads face by face on one side
+    for (int n = 0; at.z <= 38;
+         ++n) {  // by edges, with a voxel that leads face by face on one side
         glm::ivec3 side = at;
         side[2] += 1, set(side);
         at = side, at[n % 2] += n / 2 % 2 ? 1 : -1;

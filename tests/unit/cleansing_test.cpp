@@ -65,8 +65,7 @@ TEST(Cleansing, WaterBetweenGasAndSedimentLeavesNoFilm) {
         const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
         hu[n] = std::int16_t(hu[n] - std::lround(35.0 * lumen(p) * blurredStep(p.y - 12.0) *
                                                  blurredStep(20.0 - p.y)));
-        if (labels[n] == 0 && inLumen(p, 0.0))
-            labels[n] = std::uint8_t(LumenLabel::untagged);
+        if (labels[n] == 0 && inLumen(p, 0.0)) labels[n] = std::uint8_t(LumenLabel::untagged);
     }
     const CleansedScene result = cleanseScene(scene);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
