@@ -1,15 +1,17 @@
 #include "segmentation/tube_pieces.h"
 
+#include "core/voxel_sweep.h"
 #include "segmentation/bowel_contents.h"
 #include "topology/distance_field.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <unordered_map>
+#include <utility>
 
 namespace haustra::segmentation {
 namespace {
@@ -28,95 +30,247 @@ std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t n) {
     return n;
 }
 
-/// Voxels with a distance, the farthest from the boundary first, of equals the first.
-std::vector<std::uint32_t> byFallingDistance(const Volume<float>& distanceMm) {
-    std::vector<std::size_t> begin;
-    const auto ticks = [](float mm) {
-        return std::size_t(std::min(mm, 1000.0f) * float(ticksPerMm));
-    };
-    for (const float mm : distanceMm.voxels()) {
-        if (!(mm > 0.0f)) continue;
-        const std::size_t at = ticks(mm);
-        if (at + 2 > begin.size()) begin.resize(at + 2, 0);
-        ++begin[at];
+/// What can be known of each piece voxel by voxel: slabs of the grid are told apart, then
+/// merged in order, so `Tally` must not depend on how they are cut. tell(tally, index, voxel).
+template <class Tally, class Tell>
+std::vector<Tally> tallyPieces(std::span<const std::int32_t> label, std::size_t pieces,
+                               const Grid& grid, int threads, const Tell& tell) {
+    constexpr std::size_t slabDepth = 48;
+    const std::size_t depth = std::size_t(grid.size.z);
+    std::vector<std::vector<Tally>> slabs((depth + slabDepth - 1) / slabDepth);
+    parallelFor(slabs.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t s = first; s < last; ++s) {
+            slabs[s].resize(pieces);
+            visitSlices(grid, s * slabDepth, std::min(depth, (s + 1) * slabDepth),
+                        [&](std::size_t n, glm::ivec3 v) {
+                            if (label[n] >= 0) tell(slabs[s][std::size_t(label[n])], n, v);
+                        });
+        }
+    });
+    for (std::size_t s = 1; s < slabs.size(); ++s) {
+        for (std::size_t p = 0; p < pieces; ++p)
+            slabs[0][p].add(slabs[s][p]);
     }
-    std::size_t sum = 0;
-    for (std::size_t n = begin.size(); n-- > 0;) {
-        const std::size_t count = begin[n];
-        begin[n] = sum;
-        sum += count;
-    }
-    std::vector<std::uint32_t> order(sum);
-    for (std::size_t n = 0; n < distanceMm.voxels().size(); ++n) {
-        if (distanceMm[n] > 0.0f) order[begin[ticks(distanceMm[n])]++] = std::uint32_t(n);
-    }
-    return order;
+    return std::move(slabs[0]);
 }
 
-/// Basins of the distance, merged as they meet; `label` gets their numbers.
-std::vector<std::int32_t> floodBasins(const Volume<float>& distanceMm, double neck,
-                                      std::span<std::int32_t> label, const Grid& grid) {
-    std::vector<std::int32_t> parent;
-    std::vector<float> peakMm;
-    for (const std::uint32_t n : byFallingDistance(distanceMm)) {
-        std::array<std::int32_t, 6> around{};
-        std::size_t count = 0;
-        float deepest = 0.0f;
-        std::int32_t uphill = none;
-        visitFaces(grid, n, [&](std::size_t m, int) {
-            if (label[m] < 0) return;
-            const std::int32_t root = rootOf(parent, label[m]);
-            if (distanceMm[m] > deepest) deepest = distanceMm[m], uphill = root;
-            if (std::find(around.begin(), around.begin() + std::ptrdiff_t(count), root) ==
-                around.begin() + std::ptrdiff_t(count))
-                around[count++] = root;
-        });
-        if (count == 0) {
-            label[n] = std::int32_t(parent.size());
-            parent.push_back(label[n]);
-            peakMm.push_back(distanceMm[n]);
-            continue;
+void renumber(std::span<std::int32_t> label, const std::vector<std::int32_t>& number, int threads) {
+    constexpr std::size_t grain = std::size_t(1) << 20;
+    parallelFor(label.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            if (label[n] >= 0) label[n] = number[std::size_t(label[n])];
         }
-        // The voxel goes uphill; the highest peak takes what hardly stands apart from it here.
-        std::int32_t first = around[0];
-        for (std::size_t k = 1; k < count; ++k) {
-            const float peak = peakMm[std::size_t(around[k])], highest = peakMm[std::size_t(first)];
-            if (peak > highest || (peak == highest && around[k] < first)) first = around[k];
-        }
-        for (std::size_t k = 0; k < count; ++k) {
-            if (around[k] != first &&
-                double(distanceMm[n]) >= neck * double(peakMm[std::size_t(around[k])]))
-                parent[std::size_t(around[k])] = first;
-        }
-        label[n] = uphill;
+    });
+}
+
+/// Watershed basins of the distance: from each voxel uphill to a peak, and the basins merged where
+/// they meet, by falling distance.
+class Basins {
+public:
+    Basins(const Volume<float>& distanceMm, std::span<std::int32_t> label, int threads)
+        : distanceMm_(distanceMm),
+          grid_(distanceMm.grid()),
+          label_(label),
+          uphill_(grid_, notInside),
+          threads_(threads) {}
+
+    /// Labels each voxel with its basin; returns how many there are.
+    std::size_t flood(double neck) {
+        findUphill();
+        findPeaks();
+        goUphill();
+        merge(neck);
+        return numberRoots();
     }
-    for (std::size_t n = 0; n < parent.size(); ++n)
-        parent[n] = rootOf(parent, std::int32_t(n));
-    return parent;
+
+private:
+    // 0 … 5 and 1: the way through a face to the deepest neighbour that comes before.
+    static constexpr std::uint8_t notInside = 0, peak = 7;
+
+    static std::size_t ticks(float mm) {
+        return std::size_t(std::min(mm, 1000.0f) * float(ticksPerMm));
+    }
+    /// The farthest from the boundary come first, of equals the first in memory.
+    bool isBefore(std::size_t m, std::size_t n) const {
+        const std::size_t a = ticks(distanceMm_[m]), b = ticks(distanceMm_[n]);
+        return a > b || (a == b && m < n);
+    }
+    /// visit(index, face) of the neighbours inside that come before.
+    template <class Visit>
+    void visitBefore(std::size_t n, glm::ivec3 v, const Visit& visit) const {
+        visitFaces(grid_, n, v, [&](std::size_t m, int axis) {
+            if (distanceMm_[m] > 0.0f && isBefore(m, n)) visit(m, 2 * axis + (m > n));
+        });
+    }
+    std::size_t stepUphill(std::size_t n) const {
+        const std::ptrdiff_t strides[3] = {1, grid_.size.x,
+                                           std::ptrdiff_t(grid_.size.x) * grid_.size.y};
+        const int face = uphill_[n] - 1;
+        return n + std::size_t(face % 2 ? strides[face / 2] : -strides[face / 2]);
+    }
+
+    void findUphill() {
+        const auto uphill = uphill_.writable();
+        forVoxels(grid_, threads_, [&](std::size_t n, glm::ivec3 v) {
+            label_[n] = none;
+            if (!(distanceMm_[n] > 0.0f)) return;
+            float deepest = 0.0f;
+            uphill[n] = peak;
+            visitBefore(n, v, [&](std::size_t m, int face) {
+                if (distanceMm_[m] > deepest)
+                    deepest = distanceMm_[m], uphill[n] = std::uint8_t(face + 1);
+            });
+        });
+    }
+
+    void findPeaks() {
+        auto peaks = voxelsWhere(grid_, threads_,
+                                 [&](std::size_t n, glm::ivec3) { return uphill_[n] == peak; });
+        std::sort(peaks.begin(), peaks.end(),
+                  [&](std::uint32_t m, std::uint32_t n) { return isBefore(m, n); });
+        for (const std::uint32_t n : peaks) {
+            label_[n] = std::int32_t(peakMm_.size());
+            peakMm_.push_back(distanceMm_[n]);
+        }
+    }
+
+    // Ways end at a peak, or at a voxel of the same slab that is labelled already.
+    void goUphill() {
+        constexpr std::size_t slabDepth = 16;
+        const std::size_t depth = std::size_t(grid_.size.z), slice = grid_.index(0, 0, 1);
+        parallelFor((depth + slabDepth - 1) / slabDepth, 1, threads_,
+                    [&](std::size_t first, std::size_t last) {
+                        const std::size_t begin = first * slabDepth * slice,
+                                          end = std::min(depth, last * slabDepth) * slice;
+                        const auto isOwn = [&](std::size_t n) { return n >= begin && n < end; };
+                        const auto isEnd = [&](std::size_t n) {
+                            return uphill_[n] == peak || (isOwn(n) && label_[n] >= 0);
+                        };
+                        for (std::size_t n = begin; n < end; ++n) {
+                            if (uphill_[n] == notInside || isEnd(n)) continue;
+                            std::size_t top = n;
+                            while (!isEnd(top))
+                                top = stepUphill(top);
+                            const std::int32_t basin = label_[top];
+                            for (std::size_t at = n; at != top; at = stepUphill(at)) {
+                                if (isOwn(at)) label_[at] = basin;
+                            }
+                        }
+                    });
+    }
+
+    /// Those of the voxels that are tallest first.
+    std::vector<std::uint32_t> byFallingDistance(const std::vector<std::uint32_t>& voxels) const {
+        std::vector<std::size_t> begin;
+        for (const std::uint32_t n : voxels) {
+            const std::size_t at = ticks(distanceMm_[n]);
+            if (at + 1 > begin.size()) begin.resize(at + 1, 0);
+            ++begin[at];
+        }
+        std::size_t sum = 0;
+        for (std::size_t n = begin.size(); n-- > 0;)
+            sum += std::exchange(begin[n], sum);
+        std::vector<std::uint32_t> order(sum);
+        for (const std::uint32_t n : voxels)
+            order[begin[ticks(distanceMm_[n])]++] = n;
+        return order;
+    }
+
+    // Where basins meet, the one of the highest peak takes what hardly stands apart from it here.
+    void merge(double neck) {
+        const auto saddles = voxelsWhere(grid_, threads_, [&](std::size_t n, glm::ivec3 v) {
+            if (label_[n] < 0) return false;
+            bool meet = false;
+            visitBefore(n, v, [&](std::size_t m, int) { meet = meet || label_[m] != label_[n]; });
+            return meet;
+        });
+        parent_.resize(peakMm_.size());
+        std::iota(parent_.begin(), parent_.end(), 0);
+        for (const std::uint32_t n : byFallingDistance(saddles)) {
+            std::array<std::int32_t, 6> around{};
+            std::size_t count = 0;
+            visitBefore(n, grid_.voxelAt(n), [&](std::size_t m, int) {
+                const std::int32_t root = rootOf(parent_, label_[m]);
+                if (std::find(around.begin(), around.begin() + std::ptrdiff_t(count), root) ==
+                    around.begin() + std::ptrdiff_t(count))
+                    around[count++] = root;
+            });
+            std::int32_t first = around[0];
+            for (std::size_t k = 1; k < count; ++k) {
+                const float mm = peakMm_[std::size_t(around[k])],
+                            highest = peakMm_[std::size_t(first)];
+                if (mm > highest || (mm == highest && around[k] < first)) first = around[k];
+            }
+            for (std::size_t k = 0; k < count; ++k) {
+                if (around[k] != first &&
+                    double(distanceMm_[n]) >= neck * double(peakMm_[std::size_t(around[k])]))
+                    parent_[std::size_t(around[k])] = first;
+            }
+        }
+    }
+
+    std::size_t numberRoots() {
+        std::vector<std::int32_t> number(parent_.size(), none);
+        std::int32_t count = 0;
+        for (std::size_t n = 0; n < parent_.size(); ++n) {
+            if (parent_[n] == std::int32_t(n)) number[n] = count++;
+        }
+        for (std::size_t n = 0; n < parent_.size(); ++n)
+            number[n] = number[std::size_t(rootOf(parent_, std::int32_t(n)))];
+        renumber(label_, number, threads_);
+        return std::size_t(count);
+    }
+
+    const Volume<float>& distanceMm_;
+    const Grid grid_;
+    const std::span<std::int32_t> label_;
+    Volume<std::uint8_t> uphill_;
+    const int threads_;
+    std::vector<float> peakMm_;
+    std::vector<std::int32_t> parent_;
+};
+
+struct Extent {
+    std::size_t voxels = 0;
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+    void add(const Extent& other) { voxels += other.voxels, first = std::min(first, other.first); }
+};
+
+std::vector<Extent> extentsOf(std::span<const std::int32_t> label, std::size_t pieces,
+                              const Grid& grid, int threads) {
+    return tallyPieces<Extent>(label, pieces, grid, threads,
+                               [](Extent& extent, std::size_t n, glm::ivec3) {
+                                   extent.add({1, std::uint32_t(n)});
+                               });
 }
 
 /// Cuts pieces that reach farther than a part of the colon does, into lengths of about `bandMm` by
-/// the way, face to face, from their far end.
-void splitLong(std::span<std::int32_t> label, std::vector<std::int32_t>& rootOfBasin, double bandMm,
-               const Grid& grid) {
-    if (!(bandMm > 0.0)) return;
-    std::vector<std::size_t> voxels(rootOfBasin.size(), 0);
-    std::vector<std::uint32_t> first(rootOfBasin.size(), 0);
-    for (std::size_t n = label.size(); n-- > 0;) {
-        if (label[n] < 0) continue;
-        label[n] = rootOfBasin[std::size_t(label[n])];
-        ++voxels[std::size_t(label[n])], first[std::size_t(label[n])] = std::uint32_t(n);
-    }
+/// the way, face to face, from their far end. Returns how many pieces there are then; what was cut
+/// has no voxels left.
+std::size_t splitLong(std::span<std::int32_t> label, std::size_t pieces, double bandMm,
+                      const Grid& grid, int threads) {
+    if (!(bandMm > 0.0)) return pieces;
+    const std::vector<Extent> extents = extentsOf(label, pieces, grid, threads);
     const glm::dvec3 spacing = grid.spacingMm();
-    const std::size_t large =
+    const std::size_t least =
         std::size_t(bandMm * 30.0 / grid.voxelVolumeMm3());  // thinner is no colon
-    std::vector<float> way(
-        label.size() * std::size_t(std::any_of(voxels.begin(), voxels.end(),
-                                               [&](std::size_t v) { return v > large; })),
-        -1.0f);
-    const std::size_t basins = voxels.size();
-    for (std::size_t basin = 0; basin < basins; ++basin) {
-        if (voxels[basin] <= large) continue;
+    const auto isLarge = [&](std::int32_t p) { return extents[std::size_t(p)].voxels > least; };
+    std::vector<std::int32_t> large;
+    for (std::size_t p = 0; p < pieces; ++p) {
+        if (isLarge(std::int32_t(p))) large.push_back(std::int32_t(p));
+    }
+    if (large.empty()) return pieces;
+    Volume<float> ways(grid);  // of large pieces alone
+    const auto way = ways.writable();
+    forVoxels(grid, threads, [&](std::size_t n, glm::ivec3) {
+        if (label[n] >= 0 && isLarge(label[n])) way[n] = -1.0f;
+    });
+    // Labels stay as they are until all pieces are cut.
+    struct Parts {
+        std::vector<std::uint32_t> voxels;
+        std::vector<std::size_t> begin;  ///< of each part among the voxels
+    };
+    const auto cut = [&](std::int32_t piece) {
         // Ways by steps of equal count are long enough here: rounds of breadth-first search, in mm.
         const auto waysFrom = [&](std::uint32_t seed, std::vector<std::uint32_t>& reached) {
             for (const std::uint32_t n : reached)
@@ -125,95 +279,123 @@ void splitLong(std::span<std::int32_t> label, std::vector<std::int32_t>& rootOfB
             way[seed] = 0.0f;
             for (std::size_t head = 0; head < reached.size(); ++head) {
                 visitFaces(grid, reached[head], [&](std::size_t m, int axis) {
-                    if (label[m] != std::int32_t(basin) || way[m] >= 0.0f) return;
+                    if (label[m] != piece || way[m] >= 0.0f) return;
                     way[m] = way[reached[head]] + float(spacing[axis]);
                     reached.push_back(std::uint32_t(m));
                 });
             }
         };
         std::vector<std::uint32_t> reached;
-        waysFrom(first[basin], reached);
+        waysFrom(extents[std::size_t(piece)].first, reached);
         waysFrom(reached.back(), reached);
         const double reachMm = way[reached.back()];
-        if (reachMm < 1.6 * bandMm) continue;
+        Parts parts;
+        if (reachMm < 1.6 * bandMm) return parts;
         const int bands = int(std::lround(reachMm / bandMm));
         const auto bandOf = [&](std::uint32_t n) {
             return std::min(bands - 1, int(double(way[n]) / reachMm * bands));
         };
         // Each connected part of a band is a piece.
-        std::vector<std::uint32_t> front;
-        std::vector<std::pair<std::uint32_t, std::int32_t>> moved;
+        parts.voxels.reserve(reached.size());
         for (const std::uint32_t seed : reached) {
             if (way[seed] < 0.0f) continue;  // in a part already
-            const std::int32_t number = std::int32_t(rootOfBasin.size());
-            rootOfBasin.push_back(number);
             const int band = bandOf(seed);
-            front.assign(1, seed);
+            std::size_t head = parts.voxels.size();
+            parts.begin.push_back(head);
+            parts.voxels.push_back(seed);
             way[seed] = -1.0f;
-            for (std::size_t head = 0; head < front.size(); ++head) {
-                moved.emplace_back(front[head], number);
-                visitFaces(grid, front[head], [&](std::size_t m, int) {
-                    if (label[m] != std::int32_t(basin) || way[m] < 0.0f ||
-                        bandOf(std::uint32_t(m)) != band)
+            for (; head < parts.voxels.size(); ++head) {
+                visitFaces(grid, parts.voxels[head], [&](std::size_t m, int) {
+                    if (label[m] != piece || way[m] < 0.0f || bandOf(std::uint32_t(m)) != band)
                         return;
                     way[m] = -1.0f;
-                    front.push_back(std::uint32_t(m));
+                    parts.voxels.push_back(std::uint32_t(m));
                 });
             }
         }
-        for (const auto& [n, number] : moved)
-            label[n] = number;
+        parts.begin.push_back(parts.voxels.size());
+        return parts;
+    };
+    std::vector<std::size_t> byVolume(large.size());
+    std::iota(byVolume.begin(), byVolume.end(), 0);
+    std::stable_sort(byVolume.begin(), byVolume.end(), [&](std::size_t a, std::size_t b) {
+        return extents[std::size_t(large[a])].voxels > extents[std::size_t(large[b])].voxels;
+    });
+    std::vector<Parts> cuts(large.size());
+    parallelFor(large.size(), 1, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n)
+            cuts[byVolume[n]] = cut(large[byVolume[n]]);
+    });
+    for (const Parts& parts : cuts) {
+        for (std::size_t part = 0; part + 1 < parts.begin.size(); ++part, ++pieces) {
+            for (std::size_t n = parts.begin[part]; n < parts.begin[part + 1]; ++n)
+                label[parts.voxels[n]] = std::int32_t(pieces);
+        }
     }
+    return pieces;
 }
 
-void numberByVolume(std::span<std::int32_t> label, std::vector<std::int32_t>& rootOfBasin) {
-    std::vector<std::size_t> voxels(rootOfBasin.size(), 0);
-    for (const std::int32_t l : label) {
-        if (l >= 0) ++voxels[std::size_t(rootOfBasin[std::size_t(l)])];
+/// Numbers the pieces that stand for themselves in `pieceOf` by falling volume, each with all that
+/// is its own; returns how many there are.
+std::size_t numberByVolume(std::span<std::int32_t> label, const std::vector<std::int32_t>& pieceOf,
+                           const Grid& grid, int threads) {
+    const std::vector<Extent> extents = extentsOf(label, pieceOf.size(), grid, threads);
+    std::vector<std::size_t> voxels(pieceOf.size(), 0);
+    std::vector<std::int32_t> kept;
+    for (std::size_t n = 0; n < pieceOf.size(); ++n) {
+        voxels[std::size_t(pieceOf[n])] += extents[n].voxels;
+        if (pieceOf[n] == std::int32_t(n)) kept.push_back(std::int32_t(n));
     }
-    std::vector<std::int32_t> roots;
-    for (std::size_t n = 0; n < rootOfBasin.size(); ++n) {
-        if (rootOfBasin[n] == std::int32_t(n)) roots.push_back(std::int32_t(n));
-    }
-    std::stable_sort(roots.begin(), roots.end(), [&](std::int32_t a, std::int32_t b) {
+    std::stable_sort(kept.begin(), kept.end(), [&](std::int32_t a, std::int32_t b) {
         return voxels[std::size_t(a)] > voxels[std::size_t(b)];
     });
-    std::vector<std::int32_t> number(rootOfBasin.size(), none);
-    for (std::size_t n = 0; n < roots.size(); ++n)
-        number[std::size_t(roots[n])] = std::int32_t(n);
-    for (std::int32_t& l : label) {
-        if (l >= 0) l = number[std::size_t(rootOfBasin[std::size_t(l)])];
-    }
-    rootOfBasin = std::move(roots);
+    std::vector<std::int32_t> place(pieceOf.size(), none), number;
+    for (std::size_t n = 0; n < kept.size(); ++n)
+        place[std::size_t(kept[n])] = std::int32_t(n);
+    for (const std::int32_t p : pieceOf)
+        number.push_back(place[std::size_t(p)]);
+    renumber(label, number, threads);
+    return kept.size();
 }
 
-/// Mean HU of each piece's tagged voxels more than 2.5 mm deep; −∞ where it has none.
+/// Tagged voxels more than 2.5 mm deep in a piece.
+struct Core {
+    std::int64_t voxels = 0, sumHu = 0, sumHu2 = 0;
+    void add(const Core& other) {
+        voxels += other.voxels, sumHu += other.sumHu, sumHu2 += other.sumHu2;
+    }
+    void add(std::int64_t hu) { add({1, hu, hu * hu}); }
+};
+bool isCore(std::uint8_t content, float distanceMm) {
+    return Content(content) == Content::tagged && distanceMm > 2.5f;
+}
+
+/// Mean HU of each piece's core; −∞ where it has none.
 std::vector<double> coreHuOf(std::span<const std::int32_t> label, std::size_t pieces,
                              const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
-                             const Volume<float>& distanceMm) {
-    std::vector<double> sum(pieces, 0.0), count(pieces, 0.0);
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        if (label[n] < 0 || Content(content[n]) != Content::tagged || !(distanceMm[n] > 2.5f))
-            continue;
-        sum[std::size_t(label[n])] += hu[n], count[std::size_t(label[n])] += 1.0;
-    }
-    for (std::size_t p = 0; p < pieces; ++p)
-        sum[p] = count[p] > 0.0 ? sum[p] / count[p] : -std::numeric_limits<double>::infinity();
-    return sum;
+                             const Volume<float>& distanceMm, int threads) {
+    std::vector<double> mean;
+    for (const Core& core : tallyPieces<Core>(label, pieces, hu.grid(), threads,
+                                              [&](Core&tally, std::size_t n, glm::ivec3) {
+                                                  if (isCore(content[n], distanceMm[n]))
+                                                      tally.add(hu[n]);
+                                              }))
+        mean.push_back(core.voxels > 0 ? double(core.sumHu) / double(core.voxels)
+                                       : -std::numeric_limits<double>::infinity());
+    return mean;
 }
 
 /// Gives what no basin has, layer by layer and `layers` far, to the piece beside it for which
 /// `takes(voxel, piece)` holds; the rest stays without one.
 template <class Takes>
 void spread(std::span<std::int32_t> label, const Volume<std::uint8_t>& content, const Grid& grid,
-            int layers, const Takes& takes) {
-    std::vector<std::uint32_t> front;
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        if (label[n] >= 0 || !isContent(content[n])) continue;
+            int layers, int threads, const Takes& takes) {
+    auto front = voxelsWhere(grid, threads, [&](std::size_t n, glm::ivec3 v) {
+        if (label[n] >= 0 || !isContent(content[n])) return false;
         bool near = false;
-        visitFaces(grid, n, [&](std::size_t m, int) { near = near || label[m] >= 0; });
-        if (near) front.push_back(std::uint32_t(n));
-    }
+        visitFaces(grid, n, v, [&](std::size_t m, int) { near = near || label[m] >= 0; });
+        return near;
+    });
     for (int layer = 0; layer < layers && !front.empty(); ++layer) {
         std::vector<std::pair<std::uint32_t, std::int32_t>> given;
         for (const std::uint32_t n : front) {
@@ -245,138 +427,220 @@ struct Face {
     std::uint8_t axis;
 };
 
-/// The connected patches of the faces between each two pieces: faces are neighbours where their
-/// first voxels are the same or touch.
-std::vector<Orifice> patchesOf(std::vector<Face> faces, const Volume<std::int16_t>& hu,
-                               const Volume<std::uint8_t>& content,
-                               const Volume<std::uint8_t>& thinWalls,
-                               const Volume<float>& distanceMm) {
+/// The faces of one pair of pieces, by their first voxels.
+using FacesOfPair = std::span<const Face>;
+
+/// Unites the faces whose first voxels are the same or touch; the first of a patch stands for it.
+std::vector<std::int32_t> unitePatches(FacesOfPair faces, const Grid& grid) {
+    std::vector<std::int32_t> parent(faces.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto unite = [&](std::size_t x, std::size_t y) {
+        const std::int32_t a = rootOf(parent, std::int32_t(x)), b = rootOf(parent, std::int32_t(y));
+        parent[std::size_t(std::max(a, b))] = std::min(a, b);
+    };
+    // Three voxels in each of the four rows before a voxel's own, which the faces pass in order.
+    constexpr std::array<glm::ivec2, 4> rows{{{-1, -1}, {0, -1}, {1, -1}, {-1, 0}}};
+    std::array<std::size_t, 4> from{};
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        const glm::ivec3 v = grid.voxelAt(faces[f].n);
+        if (f > 0 &&
+            (faces[f - 1].n == faces[f].n || (v.x > 0 && faces[f - 1].n + 1 == faces[f].n)))
+            unite(f, f - 1);
+        if (f > 0 && faces[f - 1].n == faces[f].n) continue;
+        for (std::size_t row = 0; row < rows.size(); ++row) {
+            const int j = v.y + rows[row].x, k = v.z + rows[row].y;
+            if (j < 0 || j >= grid.size.y || k < 0) continue;
+            const std::size_t lo = grid.index(std::max(0, v.x - 1), j, k),
+                              hi = grid.index(std::min(grid.size.x - 1, v.x + 1), j, k);
+            std::size_t& at = from[row];
+            while (faces[at].n < lo)
+                ++at;
+            for (std::size_t g = at; faces[g].n <= hi; ++g)
+                unite(f, g);
+        }
+    }
+    for (std::size_t f = 0; f < parent.size(); ++f)
+        parent[f] = rootOf(parent, std::int32_t(f));
+    return parent;
+}
+
+/// What the orifices are measured by.
+struct Around {
+    const Volume<std::int16_t>& hu;
+    const Volume<std::uint8_t>& content;
+    const Volume<std::uint8_t>& thinWalls;
+    const Volume<float>& distanceMm;
+};
+
+Orifice measureOrifice(const std::vector<Face>& patch, const Around& around) {
+    const auto& [hu, content, thinWalls, distanceMm] = around;
     const Grid& grid = hu.grid();
     const glm::dvec3 faceMm2 = grid.voxelVolumeMm3() / grid.spacingMm();
     const std::size_t strides[3] = {1, std::size_t(grid.size.x),
                                     std::size_t(grid.size.x) * std::size_t(grid.size.y)};
-    std::stable_sort(faces.begin(), faces.end(), [](const Face& x, const Face& y) {
-        return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-    });
-    std::vector<Orifice> patches;
-    std::unordered_map<std::uint32_t, std::int32_t> at;  // first face of a voxel
-    for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
-        while (last < faces.size() && faces[last].a == faces[first].a &&
-               faces[last].b == faces[first].b)
-            ++last;
-        std::vector<std::int32_t> parent(last - first);
-        std::iota(parent.begin(), parent.end(), 0);
-        const auto unite = [&](std::int32_t x, std::int32_t y) {
-            x = rootOf(parent, x), y = rootOf(parent, y);
-            parent[std::size_t(std::max(x, y))] = std::min(x, y);
-        };
-        at.clear();
-        for (std::size_t f = first; f < last; ++f) {
-            const auto [known, isNew] = at.try_emplace(faces[f].n, std::int32_t(f - first));
-            if (!isNew) unite(std::int32_t(f - first), known->second);
+    Orifice orifice;
+    orifice.a = patch.front().a, orifice.b = patch.front().b;
+    glm::dvec3 middle(0.0);
+    double area = 0.0, huSum = 0.0;
+    for (const Face& face : patch) {
+        const std::size_t n = face.n, m = n + strides[face.axis];
+        const double mm2 = faceMm2[face.axis];
+        const glm::ivec3 v = grid.voxelAt(n);
+        glm::ivec3 next = v;
+        ++next[face.axis];
+        middle += mm2 * 0.5 * (glm::dvec3(v) + glm::dvec3(next));
+        area += mm2;
+        if (orifice.voxels.empty() || orifice.voxels.back() != face.n)
+            orifice.voxels.push_back(face.n);
+        if (thinWalls[n] || thinWalls[m]) {
+            orifice.wallMm2 += mm2;
+            huSum += mm2 * double(std::max(hu[n], hu[m]));
+            continue;
         }
-        for (std::size_t f = first; f < last; ++f) {
-            const glm::ivec3 v = grid.voxelAt(faces[f].n);
-            for (int s = 0; s < 27; ++s) {
-                const glm::ivec3 w = v + glm::ivec3(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
-                if (!grid.contains(w)) continue;
-                const auto near = at.find(std::uint32_t(grid.index(w)));
-                if (near != at.end()) unite(std::int32_t(f - first), near->second);
-            }
-        }
-        std::map<std::int32_t, std::vector<std::size_t>> byRoot;
-        for (std::size_t f = first; f < last; ++f)
-            byRoot[rootOf(parent, std::int32_t(f - first))].push_back(f);
-        for (const auto& [root, members] : byRoot) {
-            Orifice orifice;
-            orifice.a = faces[first].a, orifice.b = faces[first].b;
-            glm::dvec3 middle(0.0);
-            double area = 0.0, huSum = 0.0;
-            for (const std::size_t f : members) {
-                const std::size_t n = faces[f].n, m = n + strides[faces[f].axis];
-                const double mm2 = faceMm2[faces[f].axis];
-                middle += mm2 * 0.5 * (glm::dvec3(grid.voxelAt(n)) + glm::dvec3(grid.voxelAt(m)));
-                area += mm2;
-                orifice.voxels.push_back(std::uint32_t(n));
-                if (thinWalls[n] || thinWalls[m]) {
-                    orifice.wallMm2 += mm2;
-                    huSum += mm2 * double(std::max(hu[n], hu[m]));
-                    continue;
-                }
-                orifice.openMm2 += mm2;
-                if (Content(content[n]) == Content::tagged &&
-                    Content(content[m]) == Content::tagged)
-                    orifice.openTaggedMm2 += mm2;
-                const double through = std::min(distanceMm[n], distanceMm[m]);
-                if (through > orifice.radiusMm)
-                    orifice.radiusMm = through, orifice.place = grid.voxelAt(n);
-            }
-            if (orifice.openMm2 == 0.0) orifice.place = glm::ivec3(glm::round(middle / area));
-            orifice.placeMm = grid.patientFromVoxelPoint(orifice.place);
-            if (orifice.wallMm2 > 0.0) orifice.barrierHu = huSum / orifice.wallMm2;
-            std::sort(orifice.voxels.begin(), orifice.voxels.end());
-            orifice.voxels.erase(std::unique(orifice.voxels.begin(), orifice.voxels.end()),
-                                 orifice.voxels.end());
-            patches.push_back(std::move(orifice));
-        }
+        orifice.openMm2 += mm2;
+        if (Content(content[n]) == Content::tagged && Content(content[m]) == Content::tagged)
+            orifice.openTaggedMm2 += mm2;
+        const double through = std::min(distanceMm[n], distanceMm[m]);
+        if (through > orifice.radiusMm) orifice.radiusMm = through, orifice.place = v;
     }
-    return patches;
+    if (orifice.openMm2 == 0.0) orifice.place = glm::ivec3(glm::round(middle / area));
+    orifice.placeMm = grid.patientFromVoxelPoint(orifice.place);
+    if (orifice.wallMm2 > 0.0) orifice.barrierHu = huSum / orifice.wallMm2;
+    return orifice;
 }
+
+/// The connected patches of the faces of each two pieces, by the pair and then by first face.
+std::vector<Orifice> patchesOf(const std::vector<std::vector<Face>>& slices, std::size_t pieces,
+                               const Around& around, int threads) {
+    // In order of their first piece, and then of their voxels.
+    std::vector<std::size_t> begin(pieces + 1, 0);
+    for (const auto& slice : slices) {
+        for (const Face& face : slice)
+            ++begin[std::size_t(face.a) + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Face> faces(begin.back());
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for (const auto& slice : slices) {
+        for (const Face& face : slice)
+            faces[next[std::size_t(face.a)]++] = face;
+    }
+    std::vector<std::vector<Orifice>> ofPiece(pieces);
+    parallelFor(pieces, 4, threads, [&](std::size_t first, std::size_t last) {
+        std::vector<std::vector<Face>> patches;
+        for (std::size_t a = first; a < last; ++a) {
+            const auto end = faces.begin() + std::ptrdiff_t(begin[a + 1]);
+            auto at = faces.begin() + std::ptrdiff_t(begin[a]);
+            std::stable_sort(at, end, [](const Face& x, const Face& y) { return x.b < y.b; });
+            while (at != end) {
+                const auto pairEnd =
+                    std::find_if(at, end, [&](const Face& face) { return face.b != at->b; });
+                std::vector<std::int32_t> root =
+                    unitePatches(FacesOfPair(at, pairEnd), around.hu.grid());
+                patches.clear();
+                for (std::size_t f = 0; f < root.size(); ++f) {
+                    // A patch's first face comes first: from then on it holds the patch's place.
+                    const std::int32_t of = root[f];
+                    if (of == std::int32_t(f)) {
+                        root[f] = std::int32_t(patches.size());
+                        patches.emplace_back();
+                    } else {
+                        root[f] = root[std::size_t(of)];
+                    }
+                    patches[std::size_t(root[f])].push_back(at[std::ptrdiff_t(f)]);
+                }
+                for (const auto& patch : patches)
+                    ofPiece[a].push_back(measureOrifice(patch, around));
+                at = pairEnd;
+            }
+        }
+    });
+    std::vector<Orifice> orifices;
+    for (auto& own : ofPiece)
+        std::move(own.begin(), own.end(), std::back_inserter(orifices));
+    return orifices;
+}
+
+/// What is measured of a piece voxel by voxel; whole numbers, whose sums have no order.
+struct PieceTally {
+    std::size_t voxels = 0, gasVoxels = 0, taggedVoxels = 0, untaggedVoxels = 0;
+    std::int64_t gasHu = 0, taggedHu = 0;
+    Core core;
+    std::array<std::size_t, 3> faces{}, excludedAirFaces{};  ///< across each axis
+    float radiusMm = 0.0f;
+    glm::ivec3 centre{0};
+
+    void add(const PieceTally& other) {
+        voxels += other.voxels, gasVoxels += other.gasVoxels;
+        taggedVoxels += other.taggedVoxels, untaggedVoxels += other.untaggedVoxels;
+        gasHu += other.gasHu, taggedHu += other.taggedHu;
+        core.add(other.core);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            faces[axis] += other.faces[axis];
+            excludedAirFaces[axis] += other.excludedAirFaces[axis];
+        }
+        if (other.radiusMm > radiusMm) radiusMm = other.radiusMm, centre = other.centre;
+    }
+};
 
 /// Pieces and orifices of cut.pieceAt, whose numbers are below `count`.
 void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
-             const Volume<std::uint8_t>& content, const Volume<std::uint8_t>& thinWalls) {
+             const Volume<std::uint8_t>& content, const Volume<std::uint8_t>& thinWalls,
+             int threads) {
     const Grid& grid = hu.grid();
     const auto label = cut.pieceAt.voxels();
-    const glm::dvec3 spacing = grid.spacingMm();
     const double voxelMm3 = grid.voxelVolumeMm3();
-    const glm::dvec3 faceMm2 = voxelMm3 / spacing;
-    cut.pieces.assign(count, {});
-    std::vector<double> gasSum(count, 0.0), taggedSum(count, 0.0);
-    std::vector<Face> faces;
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        const std::int32_t l = label[n];
-        if (l < 0) continue;
-        TubePiece& piece = cut.pieces[std::size_t(l)];
-        ++piece.voxels;
-        if (Content(content[n]) == Content::gas) ++piece.gasVoxels, gasSum[std::size_t(l)] += hu[n];
-        if (Content(content[n]) == Content::tagged)
-            ++piece.taggedVoxels, taggedSum[std::size_t(l)] += hu[n];
-        piece.untaggedVoxels += Content(content[n]) == Content::untagged;
-        const double mm = cut.distanceMm[n];
-        if (mm > piece.radiusMm) piece.radiusMm = mm, piece.centre = grid.voxelAt(n);
-        visitFaces(grid, n, [&](std::size_t m, int axis) {
-            if (label[m] == l) return;
-            piece.surfaceMm2 += faceMm2[axis];
-            const Content other = Content(content[m]);
-            if (other == Content::outside || other == Content::lung)
-                piece.excludedAirMm2 += faceMm2[axis];
-            if (label[m] < 0 || m < n) return;
-            faces.push_back({std::min(l, label[m]), std::max(l, label[m]), std::uint32_t(n),
-                             std::uint8_t(axis)});
+    const glm::dvec3 faceMm2 = voxelMm3 / grid.spacingMm();
+    std::vector<std::vector<Face>> faces(std::size_t(grid.size.z));
+    const auto tallies = tallyPieces<PieceTally>(
+        label, count, grid, threads, [&](PieceTally& tally, std::size_t n, glm::ivec3 v) {
+            const std::int32_t l = label[n];
+            const Content own = Content(content[n]);
+            ++tally.voxels;
+            if (own == Content::gas) ++tally.gasVoxels, tally.gasHu += hu[n];
+            if (own == Content::tagged) ++tally.taggedVoxels, tally.taggedHu += hu[n];
+            tally.untaggedVoxels += own == Content::untagged;
+            const float mm = cut.distanceMm[n];
+            if (isCore(content[n], mm)) tally.core.add(hu[n]);
+            if (mm > tally.radiusMm) tally.radiusMm = mm, tally.centre = v;
+            visitFaces(grid, n, v, [&](std::size_t m, int axis) {
+                if (label[m] == l) return;
+                ++tally.faces[std::size_t(axis)];
+                const Content other = Content(content[m]);
+                tally.excludedAirFaces[std::size_t(axis)] +=
+                    other == Content::outside || other == Content::lung;
+                if (label[m] < 0 || m < n) return;
+                faces[std::size_t(v.z)].push_back({std::min(l, label[m]), std::max(l, label[m]),
+                                                   std::uint32_t(n), std::uint8_t(axis)});
+            });
         });
-    }
-    std::vector<std::array<double, 3>> core(count, {0, 0, 0});
-    for (std::size_t n = 0; n < label.size(); ++n) {
-        if (label[n] < 0 || Content(content[n]) != Content::tagged || !(cut.distanceMm[n] > 2.5f))
-            continue;
-        std::array<double, 3>& sums = core[std::size_t(label[n])];
-        sums[0] += 1.0, sums[1] += hu[n], sums[2] += double(hu[n]) * hu[n];
-    }
-    for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
-        if (core[p][0] > 0.0) {
-            cut.pieces[p].coreHu = core[p][1] / core[p][0];
-            cut.pieces[p].coreSdHu = std::sqrt(std::max(
-                0.0, core[p][2] / core[p][0] - cut.pieces[p].coreHu * cut.pieces[p].coreHu));
-        }
+    const auto areaMm2 = [&](const std::array<std::size_t, 3>& faceCount) {
+        return double(faceCount[0]) * faceMm2[0] + double(faceCount[1]) * faceMm2[1] +
+               double(faceCount[2]) * faceMm2[2];
+    };
+    cut.pieces.assign(count, {});
+    for (std::size_t p = 0; p < count; ++p) {
+        const PieceTally& tally = tallies[p];
         TubePiece& piece = cut.pieces[p];
+        piece.voxels = tally.voxels, piece.gasVoxels = tally.gasVoxels;
+        piece.taggedVoxels = tally.taggedVoxels, piece.untaggedVoxels = tally.untaggedVoxels;
+        piece.radiusMm = tally.radiusMm, piece.centre = tally.centre;
+        piece.surfaceMm2 = areaMm2(tally.faces);
+        piece.excludedAirMm2 = areaMm2(tally.excludedAirFaces);
+        if (tally.core.voxels > 0) {
+            const double voxels = double(tally.core.voxels);
+            piece.coreHu = double(tally.core.sumHu) / voxels;
+            piece.coreSdHu = std::sqrt(
+                std::max(0.0, double(tally.core.sumHu2) / voxels - piece.coreHu * piece.coreHu));
+        }
         piece.volumeMl = double(piece.voxels) * voxelMm3 / 1000.0;
         piece.centreMm = grid.patientFromVoxelPoint(piece.centre);
-        piece.meanHu = piece.mostlyGas()
-                           ? gasSum[p] / double(std::max<std::size_t>(1, piece.gasVoxels))
-                           : taggedSum[p] / double(std::max<std::size_t>(1, piece.taggedVoxels));
+        piece.meanHu =
+            piece.mostlyGas()
+                ? double(tally.gasHu) / double(std::max<std::size_t>(1, piece.gasVoxels))
+                : double(tally.taggedHu) / double(std::max<std::size_t>(1, piece.taggedVoxels));
     }
-    cut.orifices = patchesOf(std::move(faces), hu, content, thinWalls, cut.distanceMm);
+    cut.orifices = patchesOf(faces, count, {hu, content, thinWalls, cut.distanceMm}, threads);
 }
 
 /// For each piece the least of those that lie side by side with it in one lumen, as fluid, gas and
@@ -435,45 +699,44 @@ std::vector<std::int32_t> sideBySide(const TubePieces& cut) {
 TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
                          const Volume<std::uint8_t>& thinWalls, const TubePieceOptions& options) {
     const Grid& grid = hu.grid();
+    const int threads = options.threads;
     TubePieces cut;
     {
-        Volume<std::uint8_t> plain(grid);
+        Volume<std::uint8_t> plain(grid, std::uint8_t(0));
         const auto out = plain.writable();
-        for (std::size_t n = 0; n < out.size(); ++n)
-            out[n] = isContent(content[n]) && !thinWalls[n];
-        cut.distanceMm = topology::distanceToBoundaryMm(plain, options.threads);
+        forVoxels(grid, threads, [&](std::size_t n, glm::ivec3) {
+            if (isContent(content[n]) && !thinWalls[n]) out[n] = 1;
+        });
+        cut.distanceMm = topology::distanceToBoundaryMm(plain, threads);
     }
-    cut.pieceAt = Volume<std::int32_t>(grid, none);
+    cut.pieceAt = Volume<std::int32_t>(grid);
     const auto label = cut.pieceAt.writable();
-    std::vector<std::int32_t> basins = floodBasins(cut.distanceMm, options.neck, label, grid);
-    splitLong(label, basins, options.lengthMm, grid);
-    numberByVolume(label, basins);
+    std::size_t pieces = Basins(cut.distanceMm, label, threads).flood(options.neck);
+    pieces = splitLong(label, pieces, options.lengthMm, grid, threads);
+    std::vector<std::int32_t> own(pieces);
+    std::iota(own.begin(), own.end(), 0);
+    numberByVolume(label, own, grid, threads);
     {
         // Thin walls go to the piece beside them, but what is dimmer than half a fluid's height
         // over soft tissue lies beyond that fluid's wall: it is another's, or nobody's.
         const std::vector<double> coreHu =
-            coreHuOf(label, basins.size(), hu, content, cut.distanceMm);
+            coreHuOf(label, pieces, hu, content, cut.distanceMm, threads);
         const auto layers = [&](double mm) {
             const glm::dvec3 step = grid.spacingMm();
             return std::max(1, int(std::lround(mm / std::min({step.x, step.y, step.z}))));
         };
-        spread(label, content, grid, layers(6.0), [&](std::size_t n, std::int32_t piece) {
+        spread(label, content, grid, layers(6.0), threads, [&](std::size_t n, std::int32_t piece) {
             return Content(content[n]) != Content::tagged ||
                    hu[n] - options.softHu > 0.45 * (coreHu[std::size_t(piece)] - options.softHu);
         });
-        spread(label, content, grid, layers(1.5), [](std::size_t, std::int32_t) { return true; });
+        spread(label, content, grid, layers(1.5), threads,
+               [](std::size_t, std::int32_t) { return true; });
     }
 
-    measure(cut, basins.size(), hu, content, thinWalls);
-    if (std::vector<std::int32_t> sides = sideBySide(cut); !sides.empty()) {
-        for (std::int32_t& l : label) {
-            if (l >= 0) l = sides[std::size_t(l)];
-        }
-        std::iota(basins.begin(), basins.end(), 0);
-        for (std::size_t p = 0; p < basins.size(); ++p)
-            basins[p] = sides[p];
-        numberByVolume(label, basins);
-        measure(cut, basins.size(), hu, content, thinWalls);
+    measure(cut, pieces, hu, content, thinWalls, threads);
+    if (const std::vector<std::int32_t> sides = sideBySide(cut); !sides.empty()) {
+        pieces = numberByVolume(label, sides, grid, threads);
+        measure(cut, pieces, hu, content, thinWalls, threads);
     }
     return cut;
 }
