@@ -190,10 +190,9 @@ std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
         if (cells.node[n] >= 0) cellsOf[std::size_t(cells.node[n])].push_back(std::uint32_t(n));
     }
     // Blind ends: farthest from the doors, or the two ends of what has none.
-    std::vector<Cap> caps;
-    std::vector<std::int32_t> capAt(cells.node.size(), -1);
-    for (std::size_t n = 0; n < candidates.size(); ++n) {
-        if (cellsOf[n].empty()) continue;
+    std::vector<std::vector<Cap>> capsOf(candidates.size());
+    const auto findCaps = [&](std::size_t n) {
+        if (cellsOf[n].empty()) return;
         const double radiusMm = cut.pieces[std::size_t(candidates[n])].radiusMm;
         const auto nearestCell = [&](glm::ivec3 voxel) {
             const glm::dvec3 c = glm::dvec3(voxel) / glm::dvec3(cells.block);
@@ -219,14 +218,14 @@ std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
             std::vector<std::uint32_t> before;
             for (const auto& [at, d] : distance) {
                 if (d >= most - deepMm)
-                    cap.cells.push_back(at), capAt[at] = std::int32_t(caps.size());
+                    cap.cells.push_back(at);
                 else if (d >= most - 2.5f * deepMm)
                     before.push_back(at);
             }
             const glm::dvec3 axis =
                 before.empty() ? glm::dvec3(0.0) : meanMm(cells, cap.cells) - meanMm(cells, before);
             if (glm::length(axis) > 0.0) cap.outwards = glm::normalize(axis);
-            caps.push_back(std::move(cap));
+            capsOf[n].push_back(std::move(cap));
         };
         std::vector<std::uint32_t> from;
         for (const glm::ivec3 door : doors[n])
@@ -239,10 +238,23 @@ std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
             const auto second = distancesWithin(cells, std::int32_t(n), {one});
             addCap(second);
             addCap(distancesWithin(cells, std::int32_t(n), {farthest(second).first}));
-            continue;
+            return;
         }
         const auto distance = distancesWithin(cells, std::int32_t(n), from);
         if (farthest(distance).second > (from.size() > 1 ? 1.6 : 1.0) * radiusMm) addCap(distance);
+    };
+    parallelFor(candidates.size(), 1, options.threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n)
+            findCaps(n);
+    });
+    std::vector<Cap> caps;
+    std::vector<std::int32_t> capAt(cells.node.size(), -1);
+    for (auto& own : capsOf) {
+        for (Cap& cap : own) {
+            for (const std::uint32_t at : cap.cells)
+                capAt[at] = std::int32_t(caps.size());
+            caps.push_back(std::move(cap));
+        }
     }
 
     const auto steps = stepsOf(cells.grid);

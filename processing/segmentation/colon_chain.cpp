@@ -307,25 +307,34 @@ private:
         return closing_[std::size_t(j)];
     }
 
-    /// What it costs that lumen seems to lead from new nodes to places of the chain far back.
-    double contradictions(int head, const std::vector<int>& nodes, int before) const {
-        double cost = 0.0;
-        std::map<int, double> wayBack;  // from the chain's end to each node, and its own length
+    /// From the end of a label's chain to each of its nodes, and that node's own length; −1 for
+    /// others. Kept for the label that was last asked for, which is extended many times.
+    const std::vector<double>& waysBack(int head) {
+        if (head == waysBackOf_) return waysBack_;
+        waysBackOf_ = head;
+        waysBack_.assign(graph_.nodes.size(), -1.0);
         double way = 0.0;
         for (int at = head; at >= 0; at = labels_[std::size_t(at)].parent) {
-            std::vector<int> passed =
+            const std::vector<int> passed =
                 nodesTowards(labels_[std::size_t(at)].tube, labels_[std::size_t(at)].exit);
             for (auto n = passed.rbegin(); n != passed.rend(); ++n)
-                wayBack[*n] = way, way += node(*n).lengthMm;
+                waysBack_[std::size_t(*n)] = way, way += node(*n).lengthMm;
         }
+        return waysBack_;
+    }
+
+    /// What it costs that lumen seems to lead from new nodes to places of the chain far back.
+    double contradictions(int head, const std::vector<int>& nodes, int before) {
+        double cost = 0.0;
+        const std::vector<double>& wayBack = waysBack(head);
         double ahead = 0.0;
         for (const int n : nodes) {
             for (const int j : around_[std::size_t(n)]) {
                 const int other = otherEnd(j, n);
-                const auto back = wayBack.find(other);
-                if (back == wayBack.end() || junction(j).kind == JunctionKind::collapse) continue;
+                const double back = wayBack[std::size_t(other)];
+                if (back < 0.0 || junction(j).kind == JunctionKind::collapse) continue;
                 if (n == nodes.front() && other == before) continue;
-                if (ahead + back->second > 2.0 * (node(n).radiusMm + node(other).radiusMm))
+                if (ahead + back > 2.0 * (node(n).radiusMm + node(other).radiusMm))
                     cost += closing_[std::size_t(j)];
             }
             ahead += node(n).lengthMm;
@@ -542,6 +551,8 @@ private:
     std::vector<Label> labels_;
     std::vector<bool> dropped_;
     std::map<std::pair<int, int>, std::vector<int>> places_;
+    int waysBackOf_ = -1;  // label
+    std::vector<double> waysBack_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "core/connected_labels.h"
 #include "core/ct_scan.h"
+#include "core/voxel_sweep.h"
 #include "segmentation/tagged_stool.h"
 #include "topology/hu_range_lumen.h"
 
@@ -93,7 +94,7 @@ private:
                 faces_.emplace_back(n, int(o));
         }
         std::sort(faces_.begin(), faces_.end());
-        const std::vector<float> way = waysFromRectum();
+        const Volume<float> way = waysFromRectum();
         for (const int o : inner_) {
             if (open_[std::size_t(o)] || cuts_.count(o)) continue;
             open_[std::size_t(o)] = leadsAroundANeck(o, way);
@@ -115,11 +116,15 @@ private:
     }
 
     // Shortest ways (face to face, mm) from the chain's beginning within its pieces and through
-    // open doors; what no such way reaches goes on from a collapse. One value for each voxel of a
-    // kept piece; unreached ones have −1.
-    std::vector<float> waysFromRectum() const {
+    // open doors; what no such way reaches goes on from a collapse. Only voxels of kept pieces have
+    // a value; unreached ones have −1.
+    Volume<float> waysFromRectum() const {
         constexpr float tickMm = 0.25f;
-        std::vector<float> way(hu_.voxels().size(), -1.0f);
+        Volume<float> ways(grid_);
+        const auto way = ways.writable();
+        forVoxels(grid_, options_.threads, [&](std::size_t n, glm::ivec3) {
+            if (isKept(cut_.pieceAt[n])) way[n] = -1.0f;
+        });
         const glm::dvec3 spacing = grid_.spacingMm();
         const std::size_t buckets =
             std::size_t(std::max({spacing.x, spacing.y, spacing.z}) / tickMm) + 2;
@@ -160,7 +165,7 @@ private:
                 grid_.index(step == 0 ? lowestVoxel(pieceOf(chain_.nodes[0])) : piece.centre));
             if (way[seed] < 0.0f) spreadFrom(seed);
         }
-        return way;
+        return ways;
     }
     glm::ivec3 lowestVoxel(std::int32_t piece) const {
         glm::ivec3 lowest = cut_.pieces[std::size_t(piece)].centre;
@@ -192,7 +197,7 @@ private:
 
     // Around a neck, ways along faces differ by no more than the lumen's width and some; between
     // two loops that touch, by the loop.
-    bool leadsAroundANeck(int o, const std::vector<float>& way) const {
+    bool leadsAroundANeck(int o, const Volume<float>& way) const {
         const Orifice& orifice = cut_.orifices[std::size_t(o)];
         double sum = 0.0;
         std::size_t count = 0;
@@ -207,10 +212,9 @@ private:
     }
 
     void label() {
-        for (std::size_t n = 0; n < labels_.size(); ++n) {
-            if (!isKept(cut_.pieceAt[n])) continue;
-            labels_[n] = labelOf(n);
-        }
+        forVoxels(grid_, options_.threads, [&](std::size_t n, glm::ivec3) {
+            if (isKept(cut_.pieceAt[n])) labels_[n] = labelOf(n);
+        });
     }
 
     std::uint8_t labelOf(std::size_t n) const {
@@ -296,14 +300,14 @@ private:
     void fitToHalfHeight() {
         constexpr double layersMm = 1.6, smoothMm = 0.8;
         smooth_ = topology::smoothHu(hu_, smoothMm, options_.threads);
-        std::vector<std::uint32_t> front;
-        for (std::size_t n = 0; n < labels_.size(); ++n) {
+        auto front = voxelsWhere(grid_, options_.threads, [&](std::size_t n, glm::ivec3 v) {
             if (labels_[n] != tagged || Content(contents_.content[n]) == Content::interface)
-                continue;
+                return false;
             bool edge = false;
-            visitFaces(grid_, n, [&](std::size_t m, int) { edge = edge || labels_[m] == outside; });
-            if (edge) front.push_back(std::uint32_t(n));
-        }
+            visitFaces(grid_, n, v,
+                       [&](std::size_t m, int) { edge = edge || labels_[m] == outside; });
+            return edge;
+        });
         const int layers = std::max(1, int(std::lround(layersMm / grid_.spacingMm().x)));
         const std::vector<std::uint32_t> rim = front;
         for (int layer = 0; layer < layers && !front.empty(); ++layer) {
@@ -395,29 +399,32 @@ private:
                     contact.openToBowel += orifice.openMm2;
             }
         }
-        std::set<std::int32_t> taken;
-        std::set<std::int32_t> others;  // tagged, and more beside other bowel than the lumen
+        std::vector<char> taken(cut_.pieces.size(), 0);
+        std::vector<char> elsewhere(cut_.pieces.size(), 0);  // other bowel, or tagged and beside it
+        for (std::size_t p = 0; p < elsewhere.size(); ++p)
+            elsewhere[p] = !kept_[p] && graph_.nodeOf[p] >= 0;
         for (const auto& [crumb, contact] : contacts) {
             constexpr double largestMl = 1.0;
             const TubePiece& piece = cut_.pieces[std::size_t(crumb)];
             if (!piece.mostlyGas()) {
-                if (contact.others > contact.lumen) others.insert(crumb);
+                if (contact.others > contact.lumen) elsewhere[std::size_t(crumb)] = 1;
             } else if (contact.openToLumen > 3.0 * contact.openToBowel &&
                        contact.openToLumen > 0.05 * piece.surfaceMm2 &&
                        piece.volumeMl < largestMl && piece.excludedAirMm2 == 0.0) {
-                taken.insert(crumb);
+                taken[std::size_t(crumb)] = 1;
             }
         }
-        std::vector<std::uint32_t> barredVoxels;
-        for (std::size_t n = 0; n < labels_.size(); ++n) {
+        forVoxels(grid_, options_.threads, [&](std::size_t n, glm::ivec3) {
             const std::int32_t p = cut_.pieceAt[n];
-            if (p >= 0 && labels_[n] == outside && !barred_[n] && taken.count(p))
+            if (p >= 0 && taken[std::size_t(p)] && labels_[n] == outside && !barred_[n])
                 labels_[n] = labelOf(n);
-            const bool elsewhere =
-                p >= 0 && !isKept(p) && (graph_.nodeOf[std::size_t(p)] >= 0 || others.count(p));
-            if (barred_[n] || elsewhere) barredVoxels.push_back(std::uint32_t(n));
-        }
+        });
         if (options_.asGiven) return;
+        const auto barredVoxels =
+            voxelsWhere(grid_, options_.threads, [&](std::size_t n, glm::ivec3) {
+                const std::int32_t p = cut_.pieceAt[n];
+                return barred_[n] || (p >= 0 && elsewhere[std::size_t(p)]);
+            });
         addTaggedStool(result_.labels, hu_, tissue_, barredVoxels);
         labels_ = result_.labels.writable();
     }

@@ -1,11 +1,12 @@
 #include "segmentation/thin_walls.h"
 
-#include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <mutex>
+#include <numeric>
 
 namespace haustra::segmentation {
 namespace {
@@ -33,12 +34,14 @@ std::array<Ray, 13> raysOf(const Grid& grid, double reachMm) {
 
 /// HU smoothed by about `sdMm`, but by no more than (1 2 1)/4 along an axis: noise falls, while a
 /// sheet, which is as wide as the point spread anyway, keeps most of its height.
-Volume<std::int16_t> smoothed(const Volume<std::int16_t>& hu, double sdMm, int threads) {
+/// Only in rows that hold gas or tagged material; 0 in others.
+Volume<std::int16_t> smoothed(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
+                              double sdMm, int threads) {
     const Grid& grid = hu.grid();
     const glm::dvec3 share =
         glm::min(0.5 * sdMm * sdMm / (grid.spacingMm() * grid.spacingMm()), glm::dvec3(0.25));
     const glm::vec3 side(share), middle(1.0 - 2.0 * share);
-    Volume<std::int16_t> out(grid);
+    Volume<std::int16_t> out(grid, std::int16_t(0));
     const auto written = out.writable();
     const std::size_t row = std::size_t(grid.size.x), slice = row * std::size_t(grid.size.y);
     parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t first, std::size_t last) {
@@ -52,6 +55,11 @@ Volume<std::int16_t> smoothed(const Volume<std::int16_t>& hu, double sdMm, int t
             for (std::size_t n = 0; n < slice; ++n)
                 across[n] = side.z * float(a[n] + c[n]) + middle.z * float(b[n]);
             for (std::size_t j = 0; j < std::size_t(grid.size.y); ++j) {
+                const std::uint8_t* const contents = &content.voxels()[k * slice + j * row];
+                if (std::none_of(contents, contents + row, [](std::uint8_t kind) {
+                        return Content(kind) == Content::gas || Content(kind) == Content::tagged;
+                    }))
+                    continue;
                 const float* up = &across[(j > 0 ? j - 1 : j) * row];
                 const float* here = &across[j * row];
                 const float* down = &across[std::min(j + 1, std::size_t(grid.size.y) - 1) * row];
@@ -72,26 +80,33 @@ Volume<std::int16_t> smoothed(const Volume<std::int16_t>& hu, double sdMm, int t
 /// Noise of a content: the median of |v − (v₋ + v₊)/2| with neighbours four voxels off, all deep in
 /// it. 0 where there is none.
 double noiseSd(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& contents,
-               Content content) {
+               Content content, int threads) {
     constexpr int away = 4;
     const Grid& grid = hu.grid();
     std::vector<std::size_t> histogram(2048, 0);
-    std::size_t count = 0;
-    for (int k = 0; k < grid.size.z; ++k) {
-        for (int j = 0; j < grid.size.y; ++j) {
-            const std::size_t row = grid.index(0, j, k);
-            for (int i = 2 * away; i + 2 * away < grid.size.x; ++i) {
-                const std::size_t n = row + std::size_t(i);
-                bool deep = true;
-                for (int d = -2 * away; d <= 2 * away && deep; d += 2)
-                    deep = Content(contents[std::size_t(std::ptrdiff_t(n) + d)]) == content;
-                if (!deep) continue;
-                const int off = std::abs(int(hu[n]) - (int(hu[n - away]) + int(hu[n + away])) / 2);
-                ++histogram[std::size_t(std::min(off, 2047))];
-                ++count;
+    std::mutex mutex;
+    parallelFor(std::size_t(grid.size.z), 16, threads, [&](std::size_t first, std::size_t last) {
+        std::vector<std::size_t> own(histogram.size(), 0);
+        for (std::size_t k = first; k < last; ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                const std::size_t row = grid.index(0, j, int(k));
+                for (int i = 2 * away; i + 2 * away < grid.size.x; ++i) {
+                    const std::size_t n = row + std::size_t(i);
+                    bool deep = Content(contents[n]) == content;
+                    for (int d = -2 * away; d <= 2 * away && deep; d += 2)
+                        deep = Content(contents[std::size_t(std::ptrdiff_t(n) + d)]) == content;
+                    if (!deep) continue;
+                    const int off =
+                        std::abs(int(hu[n]) - (int(hu[n - away]) + int(hu[n + away])) / 2);
+                    ++own[std::size_t(std::min(off, 2047))];
+                }
             }
         }
-    }
+        const std::lock_guard lock(mutex);
+        for (std::size_t n = 0; n < own.size(); ++n)
+            histogram[n] += own[n];
+    });
+    const std::size_t count = std::accumulate(histogram.begin(), histogram.end(), std::size_t(0));
     if (count < 200) return 0.0;
     std::size_t below = 0, median = 0;
     while (2 * (below += histogram[median]) < count)
@@ -173,9 +188,10 @@ public:
           rays_(raysOf(grid_, options.reachMm)),
           reach_(reachOf(rays_)),
           brightest_(hu, contents.content, reach_, options.threads) {
-        const double gasSd = noiseSd(hu, contents.content, Content::gas);
-        taggedSdsHu_ = options.leastSds * std::clamp(noiseSd(hu, contents.content, Content::tagged),
-                                                     gasSd, 1.5 * gasSd);
+        const double gasSd = noiseSd(hu, contents.content, Content::gas, options.threads);
+        taggedSdsHu_ = options.leastSds *
+                       std::clamp(noiseSd(hu, contents.content, Content::tagged, options.threads),
+                                  gasSd, 1.5 * gasSd);
         gasRiseHu_ = std::max(options.leastShare * (options.softHu - contents.gasHu),
                               options.leastSds * gasSd);
         softHu_ = options.softHu, share_ = options.leastShare;
@@ -287,14 +303,16 @@ private:
 };
 
 // Noise makes specks, walls are sheets.
-void dropSpecks(Volume<std::uint8_t>& walls, std::size_t smallest) {
+void dropSpecks(Volume<std::uint8_t>& walls, std::size_t smallest, int threads) {
     constexpr std::uint8_t kept = 2;
     const Grid& grid = walls.grid();
     const auto out = walls.writable();
+    const auto marked =
+        voxelsWhere(grid, threads, [&](std::size_t n, glm::ivec3) { return out[n] != 0; });
     std::vector<std::uint32_t> patch;
-    for (std::size_t n = 0; n < out.size(); ++n) {
+    for (const std::uint32_t n : marked) {
         if (out[n] != 1) continue;
-        patch.assign(1, std::uint32_t(n));
+        patch.assign(1, n);
         out[n] = kept;
         for (std::size_t head = 0; head < patch.size(); ++head) {
             const glm::ivec3 v = grid.voxelAt(patch[head]);
@@ -309,8 +327,8 @@ void dropSpecks(Volume<std::uint8_t>& walls, std::size_t smallest) {
         for (const std::uint32_t m : patch)
             out[m] = 0;
     }
-    for (std::uint8_t& wall : out)
-        wall = wall != 0;
+    for (const std::uint32_t n : marked)
+        out[n] = out[n] != 0;
 }
 
 }  // namespace
@@ -318,21 +336,17 @@ void dropSpecks(Volume<std::uint8_t>& walls, std::size_t smallest) {
 Volume<std::uint8_t> findThinWalls(const Volume<std::int16_t>& hu, const BowelContents& contents,
                                    const ThinWallOptions& options) {
     const Grid& grid = hu.grid();
-    const Volume<std::int16_t> smooth = smoothed(hu, options.smoothingMm, options.threads);
+    const Volume<std::int16_t> smooth =
+        smoothed(hu, contents.content, options.smoothingMm, options.threads);
     const Search search(smooth, contents, options);
-    Volume<std::uint8_t> walls(grid);
+    Volume<std::uint8_t> walls(grid, std::uint8_t(0));
     const auto out = walls.writable();
-    parallelFor(std::size_t(grid.size.z), 1, options.threads,
-                [&](std::size_t first, std::size_t last) {
-                    for (std::size_t k = first; k < last; ++k) {
-                        for (int j = 0; j < grid.size.y; ++j) {
-                            for (int i = 0; i < grid.size.x; ++i)
-                                out[grid.index(i, j, int(k))] = search.isWall({i, j, int(k)});
-                        }
-                    }
-                });
+    forVoxels(grid, options.threads, [&](std::size_t n, glm::ivec3 v) {
+        const Content content = Content(contents.content[n]);
+        if ((content == Content::gas || content == Content::tagged) && search.isWall(v)) out[n] = 1;
+    });
     const double speckMm3 = options.speckMm2 * std::cbrt(grid.voxelVolumeMm3());
-    dropSpecks(walls, std::size_t(std::ceil(speckMm3 / grid.voxelVolumeMm3())));
+    dropSpecks(walls, std::size_t(std::ceil(speckMm3 / grid.voxelVolumeMm3())), options.threads);
     return walls;
 }
 

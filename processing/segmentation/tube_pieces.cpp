@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <unordered_map>
 #include <utility>
 
 namespace haustra::segmentation {
@@ -176,17 +177,49 @@ private:
         return order;
     }
 
+    /// Voxels where basins meet, ascending. Of those between the same two only the ones that are
+    /// higher than any before them in their slab: what two basins do not merge at they do not
+    /// merge at further down either, as peaks only become higher.
+    std::vector<std::uint32_t> saddles() const {
+        constexpr std::size_t slabDepth = 16;
+        const std::size_t depth = std::size_t(grid_.size.z);
+        std::vector<std::vector<std::uint32_t>> slabs((depth + slabDepth - 1) / slabDepth);
+        parallelFor(slabs.size(), 1, threads_, [&](std::size_t first, std::size_t last) {
+            for (std::size_t s = first; s < last; ++s) {
+                std::unordered_map<std::uint64_t, float> highestMm;  // by both basins
+                visitSlices(grid_, s * slabDepth, std::min(depth, (s + 1) * slabDepth),
+                            [&](std::size_t n, glm::ivec3 v) {
+                                if (label_[n] < 0 || uphill_[n] == peak) return;
+                                std::int32_t other = label_[n];
+                                bool ofTwo = true;
+                                visitBefore(n, v, [&](std::size_t m, int) {
+                                    if (label_[m] == label_[n] || label_[m] == other) return;
+                                    ofTwo = ofTwo && other == label_[n];
+                                    other = label_[m];
+                                });
+                                if (other == label_[n]) return;
+                                if (ofTwo) {
+                                    const auto [low, high] = std::minmax(label_[n], other);
+                                    float& most =
+                                        highestMm[(std::uint64_t(low) << 32) | std::uint64_t(high)];
+                                    if (distanceMm_[n] <= most) return;
+                                    most = distanceMm_[n];
+                                }
+                                slabs[s].push_back(std::uint32_t(n));
+                            });
+            }
+        });
+        std::vector<std::uint32_t> all;
+        for (const auto& slab : slabs)
+            all.insert(all.end(), slab.begin(), slab.end());
+        return all;
+    }
+
     // Where basins meet, the one of the highest peak takes what hardly stands apart from it here.
     void merge(double neck) {
-        const auto saddles = voxelsWhere(grid_, threads_, [&](std::size_t n, glm::ivec3 v) {
-            if (label_[n] < 0) return false;
-            bool meet = false;
-            visitBefore(n, v, [&](std::size_t m, int) { meet = meet || label_[m] != label_[n]; });
-            return meet;
-        });
         parent_.resize(peakMm_.size());
         std::iota(parent_.begin(), parent_.end(), 0);
-        for (const std::uint32_t n : byFallingDistance(saddles)) {
+        for (const std::uint32_t n : byFallingDistance(saddles())) {
             std::array<std::int32_t, 6> around{};
             std::size_t count = 0;
             visitBefore(n, grid_.voxelAt(n), [&](std::size_t m, int) {
