@@ -1,8 +1,8 @@
 #include "topology/centerline_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -48,20 +48,27 @@ public:
         });
         return number;
     }
-    /// The voxel `step` (−1, 0 or 1 along each axis) away, where voxels lead there face by face;
-    /// −1: none do.
-    std::int32_t straightTo(glm::ivec3 voxel, glm::ivec3 step) const {
-        if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) == 1)
-            return numberOf(voxel + step);
+    /// Numbers of the 27 voxels around one; −1 as of numberOf.
+    std::array<std::int32_t, 27> around(glm::ivec3 voxel) const {
+        std::array<std::int32_t, 27> numbers;
+        for (int n = 0; n < 27; ++n)
+            numbers[std::size_t(n)] = numberOf(voxel + stepOf(n));
+        return numbers;
+    }
+    static glm::ivec3 stepOf(int n) { return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}; }
+    /// Whether voxels lead face by face from the middle of `numbers`, once at `at`, by `step`.
+    static bool leads(const std::array<std::int32_t, 27>& numbers, glm::ivec3 at, glm::ivec3 step) {
+        if (step == glm::ivec3(0)) return true;
         for (int axis = 0; axis < 3; ++axis) {
             if (step[axis] == 0) continue;
             glm::ivec3 first(0);
             first[axis] = step[axis];
-            if (numberOf(voxel + first) < 0) continue;
-            if (const std::int32_t found = straightTo(voxel + first, step - first); found >= 0)
-                return found;
+            const glm::ivec3 next = at + first;
+            if (numbers[std::size_t(next.x + 1 + 3 * (next.y + 1) + 9 * (next.z + 1))] >= 0 &&
+                leads(numbers, next, step - first))
+                return true;
         }
-        return -1;
+        return false;
     }
     glm::ivec3 voxelOf(std::int32_t number) const {
         const glm::ivec3 block = graph_.blockOf(nodes_[std::size_t(number / 8)]);
@@ -78,10 +85,6 @@ private:
     std::vector<std::int32_t> numberOf_;
     std::vector<std::int32_t> nodes_;
 };
-
-}  // namespace
-
-namespace {
 
 double costPerMm(float radiusMm) {
     return 1.0 / std::max(double(radiusMm), 1e-3);
@@ -226,15 +229,16 @@ std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<flo
         done[std::size_t(at)] = true;
         const glm::ivec3 here = corridor.voxelOf(at);
         const double costHere = costPerMm(distanceMm.at(here));
+        const auto around = corridor.around(here);
         for (int n = 0; n < 27; ++n) {
-            const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-            if (n == 13) continue;
-            const std::int32_t next = corridor.straightTo(here, step);
-            if (next < 0 || done[std::size_t(next)]) continue;
+            const glm::ivec3 step = Corridor::stepOf(n);
+            const std::int32_t next = around[std::size_t(n)];
+            if (n == 13 || next < 0 || done[std::size_t(next)]) continue;
             const double through =
                 cost[std::size_t(at)] + 0.5 * glm::length(spacing * glm::dvec3(step)) *
                                             (costHere + costPerMm(distanceMm.at(here + step)));
-            if (through >= cost[std::size_t(next)]) continue;
+            if (through >= cost[std::size_t(next)] || !Corridor::leads(around, glm::ivec3(0), step))
+                continue;
             cost[std::size_t(next)] = through;
             parent[std::size_t(next)] = at;
             frontier.emplace(through, next);
