@@ -45,7 +45,11 @@ public:
 
     ColonLabels run() {
         keepPieces();
-        openDoors();
+        // Opening doors takes one thread.
+        parallelFor(2, 1, options_.threads, [&](std::size_t first, std::size_t last) {
+            for (std::size_t task = first; task < last; ++task)
+                task == 0 ? openDoors() : smooth();
+        });
         label();
         closeDoors();
         if (!options_.asGiven) {
@@ -68,6 +72,11 @@ private:
             kept_[std::size_t(pieceOf(n))] = 1;
     }
     bool isKept(std::int32_t piece) const { return piece >= 0 && kept_[std::size_t(piece)]; }
+
+    void smooth() {
+        constexpr double smoothMm = 0.8;
+        if (!options_.asGiven) smooth_ = topology::smoothHu(hu_, smoothMm, 1);
+    }
 
     // Doors between kept pieces: those of the chain and of its sacs are open; of the others the
     // ways that lead to their two sides tell.
@@ -298,8 +307,7 @@ private:
     // Tagged material ends where the HU are half-way between it and soft tissue: its own, as it is
     // not equally bright everywhere. One layer of voxels at a time, off or on.
     void fitToHalfHeight() {
-        constexpr double layersMm = 1.6, smoothMm = 0.8;
-        smooth_ = topology::smoothHu(hu_, smoothMm, options_.threads);
+        constexpr double layersMm = 1.6;
         auto front = voxelsWhere(grid_, options_.threads, [&](std::size_t n, glm::ivec3 v) {
             if (labels_[n] != tagged || Content(contents_.content[n]) == Content::interface)
                 return false;
