@@ -1,7 +1,10 @@
 // The stages that shape the lumen: denoising, distance, centerline, surface, flattening.
 #pragma once
 
+#include "core/tri_mesh.h"
 #include "pipeline/preparation.h"
+
+#include <future>
 
 namespace haustra::pipeline {
 
@@ -21,9 +24,19 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
 Result<ProductKey> measureDistance(Preparation& preparation, const ProductKey& lumen);
 Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& lumen,
                                    const ProductKey& distance);
-/// `surface`: the lumen contoured at the wall's HU and simplified within the error bound.
+/// `surface`: the lumen contoured at the wall's HU and simplified within the error bound; `begun`,
+/// where it is valid, is what beginSurface returned of the same.
+struct WallSurface {
+    TriMesh mesh;
+    store::Attributes attributes;
+};
 Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
-                               const ProductKey& lumen);
+                               const ProductKey& lumen,
+                               std::future<Result<WallSurface>> begun = {});
+/// Makes the surface beside the stages before its own, which leave cores idle; it only reads the
+/// case. Not valid where there is one thread, or the case holds the surface.
+std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const WallSource& source,
+                                              const ProductKey& lumen);
 /// `flatmap`: the surface's conformal map, cut open, each vertex with the place of the centerline
 /// that it is seen from.
 Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& surface,

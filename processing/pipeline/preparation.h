@@ -39,7 +39,7 @@ struct Stage {
 /// touched, and lets go of it at its end, so that no volume is held longer than it is needed. What
 /// mixture measures for cleansing too is the one exception, and is measured again where it is not
 /// at hand.
-/// Belongs to one thread.
+/// Belongs to one thread; beside it others may read the options, the organ and the case.
 class Preparation {
 public:
     /// `studyUid`: of the case's other scans; empty where there are none, or it is not known.

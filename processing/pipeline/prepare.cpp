@@ -82,6 +82,8 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     const auto lumen = denoiseLumen(preparation, wall);
     if (!lumen) return tl::make_unexpected(lumen.error());
     if (!preparation.wanted("distance")) return preparation.takeReport();
+    std::future<Result<WallSurface>> begun;
+    if (preparation.wanted("surface")) begun = beginSurface(preparation, wall, *lumen);
     const auto distance = measureDistance(preparation, *lumen);
     if (!distance) return tl::make_unexpected(distance.error());
     if (!preparation.wanted("centerline")) return preparation.takeReport();
@@ -90,7 +92,7 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     if (const auto noted = preparation.noteBridges(); !noted)
         return tl::make_unexpected(noted.error());
     if (!preparation.wanted("surface")) return preparation.takeReport();
-    const auto surface = makeSurface(preparation, wall, *lumen);
+    const auto surface = makeSurface(preparation, wall, *lumen, std::move(begun));
     if (!surface) return tl::make_unexpected(surface.error());
     if (const auto noted = preparation.noteBridgedWall(); !noted)
         return tl::make_unexpected(noted.error());

@@ -68,53 +68,74 @@ Result<void> checkSurface(const MeshTopology& topology, ExpectedTopology expecte
     return {};
 }
 
+ProductKey surfaceKey(const Preparation& preparation, const WallSource& source,
+                      const ProductKey& lumen) {
+    std::vector<ProductKey> inputs{lumen};
+    if (!source.hu.empty()) inputs.push_back(source.huKey);
+    return store::makeKey("surface", surfaceVersion,
+                          "error-mm=" + exactText(preparation.options().surfaceErrorMm) +
+                              ";wall=" + toString(wallRule(preparation, source)),
+                          inputs);
+}
+
+Result<WallSurface> surfaceOf(Preparation& preparation, const WallSource& source,
+                              const Progress& progress) {
+    const PrepareOptions& options = preparation.options();
+    Attributes attributes;
+    TriMesh fine;
+    {
+        const auto lumen = preparation.target().readVolume<std::uint8_t>(product::lumen);
+        if (!lumen) return tl::make_unexpected(lumen.error());
+        const auto wall = readWall(preparation, source, *lumen);
+        if (!wall) return tl::make_unexpected(wall.error());
+        auto contoured = surface::contourLumen(wall->hu, *lumen, wall->isoHu, {options.threads});
+        if (!contoured) return tl::make_unexpected(contoured.error());
+        fine = std::move(*contoured);
+        if (!source.hu.empty())
+            attributes["iso-hu"] = exactText(wall->negated ? -wall->isoHu : wall->isoHu);
+    }
+    progress(0.3);
+    surface::SimplificationOptions simplification;
+    simplification.errorMm = options.surfaceErrorMm;
+    simplification.threads = options.threads;
+    simplification.progress = [&](double fraction) { progress(0.3 + 0.7 * fraction); };
+    auto simple = surface::simplify(fine, simplification);
+    if (!simple) return tl::make_unexpected(simple.error());
+    const MeshTopology topology = meshTopology(*simple);
+    if (auto sound = checkSurface(topology, preparation.organ().topology); !sound)
+        return tl::make_unexpected(sound.error());
+    attributes["euler-characteristic"] = std::to_string(topology.eulerCharacteristic);
+    attributes["vertices"] = std::to_string(simple->vertices.size());
+    attributes["triangles"] = std::to_string(simple->triangles.size());
+    attributes["contoured-triangles"] = std::to_string(fine.triangles.size());
+    attributes["error-mm"] = exactText(options.surfaceErrorMm);
+    setNotes(attributes,
+             {attributes["triangles"] + " triangles of " + attributes["contoured-triangles"] +
+              " contoured, Euler characteristic " + attributes["euler-characteristic"]});
+    return WallSurface{std::move(*simple), std::move(attributes)};
+}
+
 }  // namespace
 
+std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const WallSource& source,
+                                              const ProductKey& lumen) {
+    if (threadCount(preparation.options().threads) == 1 ||
+        preparation.target().has(product::surface, surfaceKey(preparation, source, lumen)))
+        return {};
+    return std::async(std::launch::async, [&preparation, source] {
+        return surfaceOf(preparation, source, [](double) {});
+    });
+}
+
 Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
-                               const ProductKey& lumenKey) {
+                               const ProductKey& lumen, std::future<Result<WallSurface>> begun) {
     const StageMeter meter;
-    const PrepareOptions& options = preparation.options();
-    std::vector<ProductKey> inputs{lumenKey};
-    if (!source.hu.empty()) inputs.push_back(source.huKey);
-    const ProductKey key = store::makeKey("surface", surfaceVersion,
-                                          "error-mm=" + exactText(options.surfaceErrorMm) +
-                                              ";wall=" + toString(wallRule(preparation, source)),
-                                          inputs);
+    const ProductKey key = surfaceKey(preparation, source, lumen);
     const auto make = [&](const Progress& progress) -> Result<void> {
-        store::Case& target = preparation.target();
-        Attributes attributes;
-        TriMesh fine;
-        {
-            const auto lumen = target.readVolume<std::uint8_t>(product::lumen);
-            if (!lumen) return tl::make_unexpected(lumen.error());
-            const auto wall = readWall(preparation, source, *lumen);
-            if (!wall) return tl::make_unexpected(wall.error());
-            auto contoured =
-                surface::contourLumen(wall->hu, *lumen, wall->isoHu, {options.threads});
-            if (!contoured) return tl::make_unexpected(contoured.error());
-            fine = std::move(*contoured);
-            if (!source.hu.empty())
-                attributes["iso-hu"] = exactText(wall->negated ? -wall->isoHu : wall->isoHu);
-        }
-        progress(0.3);
-        surface::SimplificationOptions simplification;
-        simplification.errorMm = options.surfaceErrorMm;
-        simplification.threads = options.threads;
-        simplification.progress = [&](double fraction) { progress(0.3 + 0.7 * fraction); };
-        const auto simple = surface::simplify(fine, simplification);
-        if (!simple) return tl::make_unexpected(simple.error());
-        const MeshTopology topology = meshTopology(*simple);
-        if (auto sound = checkSurface(topology, preparation.organ().topology); !sound) return sound;
-        attributes["euler-characteristic"] = std::to_string(topology.eulerCharacteristic);
-        attributes["vertices"] = std::to_string(simple->vertices.size());
-        attributes["triangles"] = std::to_string(simple->triangles.size());
-        attributes["contoured-triangles"] = std::to_string(fine.triangles.size());
-        attributes["error-mm"] = exactText(options.surfaceErrorMm);
-        setNotes(attributes,
-                 {attributes["triangles"] + " triangles of " + attributes["contoured-triangles"] +
-                  " contoured, Euler characteristic " + attributes["euler-characteristic"]});
-        return target.publishMesh(product::surface, key, *simple, attributes,
-                                  madeFrom(product::surface));
+        const auto made = begun.valid() ? begun.get() : surfaceOf(preparation, source, progress);
+        if (!made) return tl::make_unexpected(made.error());
+        return preparation.target().publishMesh(product::surface, key, made->mesh, made->attributes,
+                                                madeFrom(product::surface));
     };
     return preparation.run({"surface", key, {product::surface}}, meter, make).map([&] {
         return key;
