@@ -36,8 +36,9 @@ std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t n) {
 template <class Tally, class Tell>
 std::vector<Tally> tallyPieces(std::span<const std::int32_t> label, std::size_t pieces,
                                const Grid& grid, int threads, const Tell& tell) {
-    constexpr std::size_t slabDepth = 48;
-    const std::size_t depth = std::size_t(grid.size.z);
+    const std::size_t depth = std::size_t(grid.size.z),
+                      count = 2 * std::size_t(threadCount(threads)),
+                      slabDepth = (depth + count - 1) / count;
     std::vector<std::vector<Tally>> slabs((depth + slabDepth - 1) / slabDepth);
     parallelFor(slabs.size(), 1, threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
