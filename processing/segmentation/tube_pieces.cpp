@@ -31,8 +31,8 @@ std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t n) {
     return n;
 }
 
-/// What can be known of each piece voxel by voxel: slabs of the grid are told apart, then
-/// merged in order, so `Tally` must not depend on how they are cut. tell(tally, index, voxel).
+/// A tally of each piece: tell(tally, index, voxel) of all its voxels. Each slab of the grid has
+/// tallies of its own, which are added in order: sums must not depend on how slabs are cut.
 template <class Tally, class Tell>
 std::vector<Tally> tallyPieces(std::span<const std::int32_t> label, std::size_t pieces,
                                const Grid& grid, int threads, const Tell& tell) {
@@ -86,7 +86,7 @@ public:
     }
 
 private:
-    // 0 … 5 and 1: the way through a face to the deepest neighbour that comes before.
+    // Of `uphill_`; else 1 + the face (2 · axis, + 1 upwards) towards the deepest neighbour before.
     static constexpr std::uint8_t notInside = 0, peak = 7;
 
     static std::size_t ticks(float mm) {
@@ -161,7 +161,7 @@ private:
                     });
     }
 
-    /// Those of the voxels that are tallest first.
+    /// Ascending voxels, the farthest from the boundary first.
     std::vector<std::uint32_t> byFallingDistance(const std::vector<std::uint32_t>& voxels) const {
         std::vector<std::size_t> begin;
         for (const std::uint32_t n : voxels) {
