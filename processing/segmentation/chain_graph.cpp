@@ -57,6 +57,38 @@ double logDensity(const Region& region, glm::dvec3 place) {
            std::log(std::pow(2.0 * M_PI, 1.5) * region.sd.x * region.sd.y * region.sd.z);
 }
 
+double exponential(double x, double mean) {
+    return std::exp(-x / mean) / mean;
+}
+
+/// ln P(folds | that part of the colon) / P(folds | small bowel), of folds' volume over wall, mm.
+/// The share of each part that is smooth: haustra are deepest in the cecum, the ascending and the
+/// transverse colon, shallow in the descending and rectosigmoid (Standring, Gray's Anatomy, 41st
+/// ed., ch. 66). What else is gas-filled and folded is a stomach with its rugae, or jejunum.
+double foldLogOddsOf(double foldMm, int part) {
+    constexpr std::array<double, colonParts> smooth{0.7, 0.4, 0.4, 0.3, 0.2, 0.2, 0.2, 0.3};
+    constexpr double smoothMm = 0.010, foldedMm = 0.08, ileumMm = 0.012;
+    constexpr double otherShare = 0.1, otherMostMm = 0.5;
+    const double share = smooth[std::size_t(part)];
+    const double colon =
+        share * exponential(foldMm, smoothMm) + (1.0 - share) * exponential(foldMm, foldedMm);
+    const double other =
+        (1.0 - otherShare) * exponential(foldMm, ileumMm) + otherShare / otherMostMm;
+    return std::clamp(std::log(colon / other), -2.0, 2.5);
+}
+
+/// How far folds are seen in this scan, 0 to 1, by the pieces that are wider than small bowel gets:
+/// thick slices and soft kernels blur them.
+double foldsSeen(const std::vector<ChainNode>& nodes, std::span<const double> nodeFoldMm) {
+    constexpr double widestIleumMm = 30.0, wellSeenMm = 0.03;
+    double sum = 0.0, lengthMm = 0.0;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (nodeFoldMm[n] < 0.0 || 2.0 * nodes[n].radiusMm < widestIleumMm) continue;
+        sum += nodes[n].lengthMm * nodeFoldMm[n], lengthMm += nodes[n].lengthMm;
+    }
+    return lengthMm > 0.0 ? std::min(1.0, sum / lengthMm / wellSeenMm) : 1.0;
+}
+
 // One lumen holds one fluid: where tagged material of quite another HU begins, there is a wall too
 // thin to show beside the brighter side's blur. |ln| of the ratio of both heights over soft tissue,
 // where mostly fluid meets fluid; else 0.
@@ -80,8 +112,8 @@ double orificeLogOdds(const Orifice& orifice, const TubePieces& cut, double soft
 
 PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& contents,
                           const TissueModel& tissue, const TubePieces& cut,
-                          std::span<const glm::vec3> softTissueMm, const GivenPieces& given,
-                          int threads) {
+                          std::span<const double> foldMm, std::span<const glm::vec3> softTissueMm,
+                          const GivenPieces& given, int threads) {
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     double brightestHu = 3000.0;
     {
@@ -167,6 +199,15 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
         constexpr double certain = 60.0;
         if (named[std::size_t(made.pieceOf[n])] == 2) node.given = -certain;
         made.graph.nodes.push_back(node);
+    }
+    std::vector<double> nodeFoldMm;
+    for (const std::int32_t p : made.pieceOf)
+        nodeFoldMm.push_back(foldMm[std::size_t(p)]);
+    const double seen = foldsSeen(made.graph.nodes, nodeFoldMm);
+    for (std::size_t n = 0; n < nodeFoldMm.size(); ++n) {
+        for (int part = 0; part < colonParts && nodeFoldMm[n] >= 0.0; ++part)
+            made.graph.nodes[n].foldLogOdds[std::size_t(part)] =
+                seen * foldLogOddsOf(nodeFoldMm[n], part);
     }
     for (const std::int32_t p : given.colon)
         made.graph.nodes[std::size_t(made.nodeOf[std::size_t(p)])].given = 60.0;

@@ -29,10 +29,11 @@ struct GivenPieces {
 };
 
 /// Pieces that can be bowel, or are given, and their orifices as junctions. `softTissueMm` are
-/// places of the body's soft tissue (softTissueSamples), by which the pieces' own are told.
+/// places of the body's soft tissue (softTissueSamples), by which the pieces' own are told;
+/// `foldMm` are foldDensityMm of the pieces.
 PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& contents,
                           const TissueModel& tissue, const TubePieces& cut,
-                          std::span<const glm::vec3> softTissueMm, const GivenPieces& given,
-                          int threads);
+                          std::span<const double> foldMm, std::span<const glm::vec3> softTissueMm,
+                          const GivenPieces& given, int threads);
 
 }  // namespace haustra::segmentation

@@ -17,7 +17,7 @@ using Visited = std::bitset<mostNodes>;
 
 // Of bowel that counts as one observation: neighbours lie near each other, and a part of the colon
 // is distended or not as a whole.
-constexpr double placeUnitMm = 100.0, calibreUnitMm = 300.0;
+constexpr double placeUnitMm = 100.0, calibreUnitMm = 300.0, foldUnitMm = 100.0;
 
 double gaussian(double x, double mean, double sd) {
     const double z = (x - mean) / sd;
@@ -42,7 +42,8 @@ double calibreLogOdds(double diameterMm, int part) {
 double nodeScore(const ChainNode& node, int part) {
     const double lengthMm = std::clamp(node.lengthMm, 2.0, 600.0);
     return lengthMm / calibreUnitMm * calibreLogOdds(2.0 * node.radiusMm, part) +
-           lengthMm / placeUnitMm * node.placeLogOdds[std::size_t(part)] + node.given;
+           lengthMm / placeUnitMm * node.placeLogOdds[std::size_t(part)] +
+           lengthMm / foldUnitMm * node.foldLogOdds[std::size_t(part)] + node.given;
 }
 
 double lnOnePlusExp(double x) {

@@ -3,6 +3,7 @@
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
+#include "segmentation/haustral_folds.h"
 #include "segmentation/printed_text.h"
 #include "segmentation/record_colon.h"
 #include "segmentation/thin_walls.h"
@@ -239,8 +240,9 @@ Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>&
     course.cut = cutIntoPieces(among.hu, among.contents.content, thinWalls,
                                {.softHu = softHu, .threads = options.threads});
     const GivenPieces given = givenPieces(course.cut, options.edits, course.missing);
-    course.graph = makePieceGraph(among.hu, among.contents, tissue, course.cut, among.softTissueMm,
-                                  given, options.threads);
+    course.graph = makePieceGraph(among.hu, among.contents, tissue, course.cut,
+                                  foldDensityMm(course.cut, thinWalls, options.threads),
+                                  among.softTissueMm, given, options.threads);
     course.chains = findChains(course.graph.graph, {.chains = 12});
     const bool asked = !options.edits.seedsMm.empty() || !options.edits.joins.empty();
     if (course.chains.empty())

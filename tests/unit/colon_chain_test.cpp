@@ -1,6 +1,8 @@
 // Which chain is the best one, in graphs of a few pieces.
 #include "segmentation/colon_chain.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 using namespace haustra;
@@ -54,6 +56,23 @@ TEST(ColonChain, HolesOfOneWallCountOnce) {
     };
     EXPECT_LT(scoreWith(1), scoreWith(0) - 2.0);
     EXPECT_DOUBLE_EQ(scoreWith(8), scoreWith(1));
+}
+
+// Two ways from the third piece to the fifth, alike but for their folds.
+TEST(ColonChain, GoesThroughFoldedBowelRatherThanSmooth) {
+    for (const bool firstIsFolded : {true, false}) {
+        ChainGraph graph = row(20.0);
+        graph.nodes.push_back(graph.nodes[3]);
+        const int other = int(graph.nodes.size()) - 1;
+        graph.junctions.push_back(junction(2, other, JunctionKind::collapse, 20.0));
+        graph.junctions.push_back(junction(other, 4, JunctionKind::openLumen, 7.0));
+        graph.junctions[3].logOdds = 7.0;  // 3 to 4, as unsure as the other way
+        graph.nodes[3].foldLogOdds.fill(firstIsFolded ? 2.0 : -1.0);
+        graph.nodes[std::size_t(other)].foldLogOdds.fill(firstIsFolded ? -1.0 : 2.0);
+        const ColonChain best = findChains(graph).front();
+        const int folded = firstIsFolded ? 3 : other;
+        EXPECT_NE(std::find(best.nodes.begin(), best.nodes.end(), folded), best.nodes.end());
+    }
 }
 
 }  // namespace
