@@ -19,6 +19,7 @@ namespace {
 constexpr double cellMm = 2.5;
 constexpr double fatCost = 6.0, softFromHu = -30.0, fatHu = -70.0;
 constexpr double deepMm = 10.0, deeperMm = 5.0;
+constexpr float besideLumenCost = 1.0f;
 constexpr float blocked = std::numeric_limits<float>::infinity();
 
 /// The scan in cells of about 2.5 mm.
@@ -96,9 +97,21 @@ CellGrid makeCellGrid(const Volume<std::int16_t>& hu, const BowelContents& conte
             }
         });
     const Volume<float> depthMm = topology::distanceToBoundaryMm(soft, threads);
-    for (std::size_t n = 0; n < count; ++n) {
-        if (depthMm[n] > deepMm) cells.costPerMm[n] += float((depthMm[n] - deepMm) / deeperMm);
-    }
+    // Between the axis of a closed colon and another lumen lie its own wall and the other's.
+    const auto isBesideLumen = [&](glm::ivec3 c) {
+        for (int s = 0; s < 27; ++s) {
+            const glm::ivec3 by = c + glm::ivec3(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
+            if (cells.grid.contains(by) && cells.node[cells.index(by)] >= 0) return true;
+        }
+        return false;
+    };
+    parallelFor(count, 4096, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t n = first; n < last; ++n) {
+            if (cells.costPerMm[n] == blocked) continue;
+            if (depthMm[n] > deepMm) cells.costPerMm[n] += float((depthMm[n] - deepMm) / deeperMm);
+            if (isBesideLumen(cells.grid.voxelAt(n))) cells.costPerMm[n] += besideLumenCost;
+        }
+    });
     return cells;
 }
 

@@ -31,9 +31,10 @@ struct CollapseOptions {
 
 /// The cheapest way from each piece's blind ends to each other piece within reach. A collapsed
 /// colon is a cord of soft tissue of 8 to 18 mm: a millimetre of it costs 1, of fat 6, of soft
-/// tissue more than 10 mm deep in an organ more with its depth; gas, bone, tagged material, the
-/// room's air and lung are no way at all. `candidates` are the pieces that count, `doors` the
-/// places where each is open to others. Dijkstra on cells of 2.5 mm.
+/// tissue more than 10 mm deep in an organ more with its depth, and 1 more within a cell (2.5 mm)
+/// of other lumen, since the cord's own wall and the other's lie between; gas, bone, tagged
+/// material, the room's air and lung are no way at all. `candidates` are the pieces that count,
+/// `doors` the places where each is open to others. Dijkstra on cells of 2.5 mm.
 std::vector<CollapsePath> findCollapsePaths(const Volume<std::int16_t>& hu,
                                             const BowelContents& contents, const TubePieces& cut,
                                             const std::vector<std::int32_t>& candidates,
