@@ -108,6 +108,10 @@ private:
             if (open_[std::size_t(o)] || cuts_.count(o)) continue;
             open_[std::size_t(o)] = leadsAroundANeck(o, way);
         }
+        for (const int o : inner_) {
+            const Orifice& orifice = cut_.orifices[std::size_t(o)];
+            if (open_[std::size_t(o)]) joined_.insert(std::pair(orifice.a, orifice.b));
+        }
     }
 
     // The orifice of the face between voxels n and m of pieces a and b; −1: none that is known.
@@ -255,8 +259,13 @@ private:
         }
     }
 
-    // Between gas and the tagged material straight beneath: partial volume, and the menisci at a
-    // level's rim. Elsewhere a thin wall looks the same.
+    // Whether two pieces are one or open into each other.
+    bool areJoined(std::int32_t a, std::int32_t b) const {
+        return a >= 0 && b >= 0 && (a == b || joined_.count(std::minmax(a, b)) > 0);
+    }
+
+    // Between gas and the tagged material of one lumen straight beneath: partial volume, and the
+    // menisci at a level's rim. Elsewhere, and between two loops, a thin wall looks the same.
     void fillInterfaces() {
         constexpr double rimMm = 1.5, nearMm = 3.0;
         const glm::dvec3 spacing = grid_.spacingMm();
@@ -279,13 +288,16 @@ private:
                         v[side] += dn, v.z += dz, v[down.axis] -= near * down.sign;
                         between.clear();
                         bool underAir = false;
+                        std::int32_t gas = -1;
                         for (int step = 0; step < 2 * near; ++step, v[down.axis] += down.sign) {
                             if (!grid_.contains(v)) break;
                             const std::size_t n = grid_.index(v);
                             if (labels_[n] == air) {
                                 underAir = true, between.clear();
+                                gas = cut_.pieceAt[n];
                             } else if (labels_[n] == tagged) {
-                                if (underAir && int(between.size()) < near) {
+                                if (underAir && int(between.size()) < near &&
+                                    areJoined(gas, cut_.pieceAt[n])) {
                                     for (const std::size_t gap : between)
                                         labels_[gap] = tagged;
                                 }
@@ -581,14 +593,15 @@ private:
     const ColonChain& chain_;
     const double softHu_;
     const LabelOptions options_;
-    std::vector<char> kept_;                            ///< pieces
-    std::vector<bool> barred_;                          ///< voxels of rebuilt walls
-    Volume<std::int16_t> smooth_;                       ///< HU, against noise
-    std::vector<char> open_;                            ///< orifices
-    std::vector<int> inner_;                            ///< orifices between kept pieces
-    std::array<std::int32_t, 2> sides_{-1, -1};         ///< pieces that the last bridge joins
-    std::vector<glm::ivec3> laid_;                      ///< voxels of the last bridge
-    std::set<int> cuts_;                                ///< orifices that the chain closes
+    std::vector<char> kept_;                                  ///< pieces
+    std::vector<bool> barred_;                                ///< voxels of rebuilt walls
+    Volume<std::int16_t> smooth_;                             ///< HU, against noise
+    std::vector<char> open_;                                  ///< orifices
+    std::vector<int> inner_;                                  ///< orifices between kept pieces
+    std::set<std::pair<std::int32_t, std::int32_t>> joined_;  ///< pieces a < b, by open orifices
+    std::array<std::int32_t, 2> sides_{-1, -1};               ///< pieces that the last bridge joins
+    std::vector<glm::ivec3> laid_;                            ///< voxels of the last bridge
+    std::set<int> cuts_;                                      ///< orifices that the chain closes
     std::vector<std::pair<std::uint32_t, int>> faces_;  ///< first voxel, inner orifice; sorted
     ColonLabels result_;
     std::span<std::uint8_t> labels_;
