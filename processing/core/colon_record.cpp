@@ -111,16 +111,13 @@ std::string qualityJson(const ColonRecord& record) {
          walls = Json::array(), segments = Json::array(), runnersUp = Json::array(),
          untagged = Json::array(), doubts = Json::array();
     for (const ColonPiece& piece : record.pieces) {
-        pieces.push_back(
-            {{"part", toString(piece.part)},
-             {"center_mm", place(piece.centreMm)},
-             {"radius_mm", rounded(piece.radiusMm)},
-             {"length_mm", rounded(piece.lengthMm)},
-             {"gas_ml", rounded(piece.gasMl)},
-             {"tagged_ml", rounded(piece.taggedMl)},
-             {"untagged_ml", rounded(piece.untaggedMl)},
-             {"fold_mm", piece.foldMm < 0.0 ? Json(nullptr)
-                                            : Json(std::round(1000.0 * piece.foldMm) / 1000.0)}});
+        pieces.push_back({{"part", toString(piece.part)},
+                          {"center_mm", place(piece.centreMm)},
+                          {"radius_mm", rounded(piece.radiusMm)},
+                          {"length_mm", rounded(piece.lengthMm)},
+                          {"gas_ml", rounded(piece.gasMl)},
+                          {"tagged_ml", rounded(piece.taggedMl)},
+                          {"untagged_ml", rounded(piece.untaggedMl)}});
     }
     for (const ColonJunction& junction : record.junctions) {
         junctions.push_back({{"kind", toString(junction.kind)},

@@ -43,7 +43,6 @@ struct ColonPiece {
     double radiusMm = 0.0;     ///< of that ball
     double lengthMm = 0.0;     ///< as a tube of that calibre
     double gasMl = 0.0, taggedMl = 0.0, untaggedMl = 0.0;
-    double foldMm = -1.0;  ///< volume of its wall's folds over the wall's area; −1: not measured
 };
 
 struct ColonJunction {

@@ -79,12 +79,12 @@ double foldLogOddsOf(double foldMm, int part) {
 
 /// How far folds are seen in this scan, 0 to 1, by the pieces that are wider than small bowel gets:
 /// thick slices and soft kernels blur them.
-double foldsSeen(const std::vector<ChainNode>& nodes) {
+double foldsSeen(const std::vector<ChainNode>& nodes, std::span<const double> nodeFoldMm) {
     constexpr double widestIleumMm = 30.0, wellSeenMm = 0.03;
     double sum = 0.0, lengthMm = 0.0;
-    for (const ChainNode& node : nodes) {
-        if (node.foldMm < 0.0 || 2.0 * node.radiusMm < widestIleumMm) continue;
-        sum += node.lengthMm * node.foldMm, lengthMm += node.lengthMm;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (nodeFoldMm[n] < 0.0 || 2.0 * nodes[n].radiusMm < widestIleumMm) continue;
+        sum += nodes[n].lengthMm * nodeFoldMm[n], lengthMm += nodes[n].lengthMm;
     }
     return lengthMm > 0.0 ? std::min(1.0, sum / lengthMm / wellSeenMm) : 1.0;
 }
@@ -200,12 +200,14 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
         if (named[std::size_t(made.pieceOf[n])] == 2) node.given = -certain;
         made.graph.nodes.push_back(node);
     }
-    for (std::size_t n = 0; n < made.pieceOf.size(); ++n)
-        made.graph.nodes[n].foldMm = foldMm[std::size_t(made.pieceOf[n])];
-    const double seen = foldsSeen(made.graph.nodes);
-    for (ChainNode& node : made.graph.nodes) {
-        for (int part = 0; part < colonParts && node.foldMm >= 0.0; ++part)
-            node.foldLogOdds[std::size_t(part)] = seen * foldLogOddsOf(node.foldMm, part);
+    std::vector<double> nodeFoldMm;
+    for (const std::int32_t p : made.pieceOf)
+        nodeFoldMm.push_back(foldMm[std::size_t(p)]);
+    const double seen = foldsSeen(made.graph.nodes, nodeFoldMm);
+    for (std::size_t n = 0; n < nodeFoldMm.size(); ++n) {
+        for (int part = 0; part < colonParts && nodeFoldMm[n] >= 0.0; ++part)
+            made.graph.nodes[n].foldLogOdds[std::size_t(part)] =
+                seen * foldLogOddsOf(nodeFoldMm[n], part);
     }
     for (const std::int32_t p : given.colon)
         made.graph.nodes[std::size_t(made.nodeOf[std::size_t(p)])].given = 60.0;

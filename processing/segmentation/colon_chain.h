@@ -15,8 +15,7 @@ struct ChainNode {
     double volumeMl = 0.0;
     glm::dvec3 centreMm{0.0};
     std::array<double, colonParts>
-        placeLogOdds{};    ///< of lying where that part does, mean over the piece
-    double foldMm = -1.0;  ///< foldDensityMm of the piece
+        placeLogOdds{};  ///< of lying where that part does, mean over the piece
     std::array<double, colonParts> foldLogOdds{};  ///< of that part's folds, not the small bowel's
     double rectumLogOdds = 0.0;  ///< of beginning at the anus: its lowest end's place
     double given = 0.0;  ///< what a person said, as log-odds: far above 0 for colon, below for none

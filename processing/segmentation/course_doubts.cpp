@@ -18,34 +18,6 @@ double wrongCollapse(double lengthMm, double calibreRatio) {
 
 }  // namespace
 
-std::vector<SmoothStretch> smoothStretches(const ColonRecord& record) {
-    constexpr double wideMm = 15.0, smoothMm = 0.012, seenMm = 0.03, tellMm = 100.0;
-    double sum = 0.0, measuredMm = 0.0;
-    for (const ColonPiece& piece : record.pieces) {
-        if (piece.foldMm < 0.0) continue;
-        sum += piece.lengthMm * piece.foldMm, measuredMm += piece.lengthMm;
-    }
-    std::vector<SmoothStretch> stretches;
-    if (!(sum > seenMm * measuredMm)) return stretches;
-    SmoothStretch now;
-    const auto end = [&] {
-        if (now.lengthMm >= tellMm) stretches.push_back(now);
-        now.lengthMm = 0.0;
-    };
-    for (const ColonPiece& piece : record.pieces) {
-        const bool smooth = piece.part > ColonPart::sigmoid && piece.radiusMm > wideMm &&
-                            piece.foldMm >= 0.0 && piece.foldMm < smoothMm;
-        if (!smooth) {
-            end();
-            continue;
-        }
-        if (now.lengthMm == 0.0) now.part = piece.part, now.placeMm = piece.centreMm;
-        now.lengthMm += piece.lengthMm;
-    }
-    end();
-    return stretches;
-}
-
 std::vector<Doubt> doubtsOf(const ColonRecord& record) {
     std::vector<Doubt> doubts;
     const auto doubt = [&](double probability, std::string about) {
@@ -93,9 +65,6 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         if (wall.betweenLoops && wall.areaMm2 > tellMm2)
             doubt(0.02, text("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
     }
-    for (const SmoothStretch& stretch : smoothStretches(record))
-        doubt(0.4, text("%.0f mm without folds in the %s may be no colon", stretch.lengthMm,
-                        toString(stretch.part)));
     double untaggedMl = 0.0;
     for (const ColonPiece& piece : record.pieces)
         untaggedMl += piece.untaggedMl;

@@ -8,17 +8,6 @@
 
 namespace haustra::segmentation {
 
-/// A stretch of wide bowel in which no folds are seen.
-struct SmoothStretch {
-    ColonPart part = ColonPart::rectum;
-    double lengthMm = 0.0;
-    glm::dvec3 placeMm{0.0};  ///< in its first piece
-};
-
-/// Stretches beyond the sigmoid of 100 mm and more, wider than small bowel gets (30 mm), without
-/// folds, where the rest of the course has them: a stomach may be such, but no distended colon.
-std::vector<SmoothStretch> smoothStretches(const ColonRecord& record);
-
 /// One doubt for each thing by which a course is known to go wrong: that it is, as a probability.
 ///
 /// The weights of chains tell how sure one is among those that were weighed. They cannot tell that
@@ -26,10 +15,10 @@ std::vector<SmoothStretch> smoothStretches(const ColonRecord& record);
 /// away: the way across a collapse is long (of 8 longer than 60 mm, 6 passed a loop by; of 24
 /// shorter ones 7 did, 4 of them between unlike calibres), or leads to quite another calibre; a
 /// part of the colon is far shorter than in anyone; gas was left out, the more and the nearer the
-/// likelier; a wall looked open or had to be set up; wide bowel shows no folds; untagged fluid
-/// hides what lies beneath. Counted on wild phantoms, seeds 1, 2 and 7 to 14, at 1.4 to 2 mm:
-/// METHODS. The parts' least lengths are a third of the usual ones (Gray's Anatomy: sigmoid 40 cm,
-/// descending 25, transverse 50, ascending 20).
+/// likelier; a wall looked open or had to be set up; untagged fluid hides what lies beneath.
+/// Counted on wild phantoms, seeds 1, 2 and 7 to 14, at 1.4 to 2 mm: METHODS. The parts' least
+/// lengths are a third of the usual ones (Gray's Anatomy: sigmoid 40 cm, descending 25, transverse
+/// 50, ascending 20).
 std::vector<Doubt> doubtsOf(const ColonRecord& record);
 
 /// That the course is right, given that the chain is with `chainConfidence`: doubts are

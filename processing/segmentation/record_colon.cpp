@@ -88,7 +88,7 @@ public:
                          untaggedMl = double(piece.untaggedVoxels) * voxelMl;
             made_.pieces.push_back({ColonPart(chain_.states[n]), node.centreMm, node.radiusMm,
                                     node.lengthMm, gasMl, piece.volumeMl - gasMl - untaggedMl,
-                                    untaggedMl, node.foldMm});
+                                    untaggedMl});
         }
         addSacsFluid();
         for (std::size_t n = 0; n < chain_.junctions.size(); ++n) {
@@ -240,10 +240,6 @@ private:
                 say(text("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
                          placeText(wall.placeMm).c_str()));
         }
-        for (const SmoothStretch& stretch : smoothStretches(made_))
-            say(text(
-                "the bowel shows no folds over %.0f mm in the %s, as a stomach may, from %s on",
-                stretch.lengthMm, toString(stretch.part), placeText(stretch.placeMm).c_str()));
         std::map<ColonPart, double> untaggedMl;
         for (const ColonPiece& piece : made_.pieces)
             untaggedMl[piece.part] += piece.untaggedMl;
