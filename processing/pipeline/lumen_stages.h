@@ -24,17 +24,19 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
 Result<ProductKey> measureDistance(Preparation& preparation, const ProductKey& lumen);
 Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& lumen,
                                    const ProductKey& distance);
-/// `surface`: the lumen contoured at the wall's HU and simplified within the error bound; `begun`,
-/// where it is valid, is what beginSurface returned of the same.
+/// The wall's mesh, not published yet.
 struct WallSurface {
     TriMesh mesh;
     store::Attributes attributes;
 };
+/// `surface`: the lumen contoured at the wall's HU and simplified within the error bound; `begun`,
+/// where it is valid, is what beginSurface returned of the same.
 Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
                                const ProductKey& lumen,
                                std::future<Result<WallSurface>> begun = {});
 /// Makes the surface beside the stages before its own, which leave cores idle; it only reads the
-/// case. Not valid where there is one thread, or the case holds the surface.
+/// case. Its own stage then tells only the time that is left. Not valid where there is one thread,
+/// or the case holds the surface.
 std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const WallSource& source,
                                               const ProductKey& lumen);
 /// `flatmap`: the surface's conformal map, cut open, each vertex with the place of the centerline
