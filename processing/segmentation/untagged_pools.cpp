@@ -8,32 +8,40 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 namespace haustra::segmentation {
 namespace {
 
 constexpr double smoothMm = 1.5, centreSmoothMm = 3.0;
 constexpr double centreShare = 0.8;  // of the way to another tissue, at a ball's centre
-constexpr double asideMm = 45.0, deepMm = 80.0, aboveMm = 8.0;  // how far a pool may reach
-constexpr double blurMm = 3.0;                                  // of partial volume at a level
-constexpr double wallMm = 1.0;                                  // taken for fluid beside fat
-constexpr std::array<double, 3> ballsMm{3.0, 4.0, 5.0};
-constexpr double leastCovered = 0.85, leastFilled = 0.5, leastMl = 1.0;
+constexpr double aboveMm = 20.0;     // the level, where leaks are looked for
+constexpr double blurMm = 3.0;       // of partial volume at a level
+constexpr double wallMm = 1.0;       // taken for fluid beside fat
+constexpr std::array<double, 5> ballsMm{3.0, 4.0, 5.0, 6.5, 8.0};
+constexpr double mostRisen = 0.15, leastFilled = 0.5, leastMl = 1.0;
+
+/// How far from its level a pool is sought: a haustrum's first, then a part of the colon's.
+struct Reach {
+    double asideMm, deepMm;
+};
+constexpr std::array<Reach, 2> reaches{{{45.0, 80.0}, {160.0, 160.0}}};
+
+/// Why balls found no pool: where they came to the end of the reach, or into what is no fluid.
+enum class NoPool { cutOff, leaked };
 
 /// The surroundings of one level, and what of them may be its fluid.
 class PoolSearch {
 public:
     PoolSearch(const Volume<std::int16_t>& hu, const TissueModel& tissue,
-               const BowelContents& contents, const UntaggedLevel& level, int threads)
+               const BowelContents& contents, const UntaggedLevel& level, Reach reach, int threads)
         : level_(level), down_(contents.down), threads_(threads) {
         const Grid& whole = hu.grid();
         glm::ivec3 lo = level.columns.front(), hi = lo;
         for (const glm::ivec3 v : level.columns)
             lo = glm::min(lo, v), hi = glm::max(hi, v);
-        glm::dvec3 before(asideMm), after(asideMm);
-        before[down_.axis] = down_.sign > 0 ? aboveMm : deepMm;
-        after[down_.axis] = down_.sign > 0 ? deepMm : aboveMm;
+        glm::dvec3 before(reach.asideMm), after(reach.asideMm);
+        before[down_.axis] = down_.sign > 0 ? aboveMm : reach.deepMm;
+        after[down_.axis] = down_.sign > 0 ? reach.deepMm : aboveMm;
         const glm::dvec3 spacing = whole.spacingMm();
         lo = glm::max(lo - glm::ivec3(glm::ceil(before / spacing)), glm::ivec3(0));
         hi = glm::min(hi + glm::ivec3(glm::ceil(after / spacing)), whole.size - 1);
@@ -45,29 +53,28 @@ public:
         distanceMm_ = topology::distanceToBoundaryMm(inside_, threads);
     }
 
-    /// The pool that balls of this radius find, on the box's grid; nothing where it has leaked.
-    std::optional<Volume<std::uint8_t>> open(double ballMm) const {
+    /// The pool that balls of this radius find, on the box's grid.
+    tl::expected<Volume<std::uint8_t>, NoPool> open(double ballMm) const {
         Volume<std::uint8_t> pool = reached(ballMm);
         fillBlur(pool);
         const Grid& grid = pool.grid();
-        std::size_t voxels = 0, belowLevel = 0, underGas = 0;
+        std::size_t voxels = 0, risen = 0, underGas = 0;
         for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
             if (!pool[n]) continue;
             ++voxels;
             const glm::ivec3 v = grid.voxelAt(n);
-            if (atSide(v)) return {};
+            if (atSide(v)) return tl::make_unexpected(NoPool::cutOff);
             const double mm = depthMm(v);
-            if (mm < blurMm || mm >= blurMm + stepMm()) continue;
-            ++belowLevel;
-            underGas += isUnderGas(pool, v);
+            risen += mm < -blurMm && mm >= -blurMm - stepMm();
+            underGas += mm >= blurMm && mm < blurMm + stepMm() && isUnderGas(pool, v);
         }
         std::size_t filled = 0;
         for (const glm::ivec3 column : level_.columns)
             filled += fillsBelow(pool, column - box_.lo);
         const bool sound = double(voxels) * grid.voxelVolumeMm3() / 1000.0 > leastMl &&
-                           double(underGas) > leastCovered * double(belowLevel) &&
+                           double(risen) < mostRisen * double(underGas) &&
                            double(filled) > leastFilled * double(level_.columns.size());
-        if (!sound) return {};
+        if (!sound) return tl::make_unexpected(NoPool::leaked);
         trim(pool);
         return pool;
     }
@@ -85,14 +92,10 @@ private:
     }
     bool isGas(std::size_t n) const { return Content(content_[n]) == Content::gas; }
     bool isTissue(std::size_t n) const { return Content(content_[n]) == Content::tissue; }
-    /// Where a pool that goes on would be cut off; not at its level.
+    /// Where a pool that goes on would be cut off.
     bool atSide(glm::ivec3 v) const {
-        for (int axis = 0; axis < 3; ++axis) {
-            const int last = hu_.grid().size[axis] - 1;
-            const bool first = v[axis] == 0, end = v[axis] == last;
-            if (axis == down_.axis ? (down_.sign > 0 ? end : first) : first || end) return true;
-        }
-        return false;
+        return glm::any(glm::equal(v, glm::ivec3(0))) ||
+               glm::any(glm::equal(v, hu_.grid().size - 1));
     }
 
     void sort(const TissueModel& tissue) {
@@ -108,8 +111,8 @@ private:
         blur_ = Volume<std::uint8_t>(grid, std::uint8_t(0));
         const auto inside = inside_.writable(), blur = blur_.writable();
         for (std::size_t n = 0; n < inside.size(); ++n) {
-            const Content what = Content(content_[n]);
-            inside[n] = fluid_[n] || (what == Content::gas && depthMm(grid.voxelAt(n)) <= 0.0);
+            const double mm = depthMm(grid.voxelAt(n));
+            inside[n] = fluid_[n] || (isGas(n) && mm <= 0.0 && mm > -ballsMm.front());
         }
         for (const glm::ivec3 column : level_.columns) {
             for (glm::ivec3 v = below(column - box_.lo);
@@ -117,14 +120,14 @@ private:
                 inside[grid.index(v)] = blur[grid.index(v)] = 1;
         }
     }
-    /// Tissue below the level whose HU, smoothed among tissue alone, lie between these.
+    /// Tissue whose HU, smoothed among tissue alone, lie between these.
     Volume<std::uint8_t> looksLike(double sdMm, double fromHu, double toHu, double fatHu) const {
         constexpr int one = 1000, leastWeight = 200;
         const Grid& grid = hu_.grid();
         Volume<std::int16_t> value(grid, std::int16_t(0)), weight(grid, std::int16_t(0));
         const auto values = value.writable(), weights = weight.writable();
         for (std::size_t n = 0; n < values.size(); ++n) {
-            if (Content(content_[n]) != Content::tissue || hu_[n] < 2.0 * fatHu) continue;
+            if (!isTissue(n) || hu_[n] < 2.0 * fatHu) continue;
             values[n] = hu_[n], weights[n] = one;
         }
         value = topology::smoothHu(value, sdMm, threads_);
@@ -132,9 +135,7 @@ private:
         Volume<std::uint8_t> like(grid, std::uint8_t(0));
         const auto out = like.writable();
         for (std::size_t n = 0; n < out.size(); ++n) {
-            if (Content(content_[n]) != Content::tissue || weight[n] < leastWeight ||
-                !(depthMm(grid.voxelAt(n)) > 0.0))
-                continue;
+            if (!isTissue(n) || weight[n] < leastWeight) continue;
             const double meanHu = double(one) * value[n] / weight[n];
             out[n] = meanHu > fromHu && meanHu < toHu;
         }
@@ -194,17 +195,15 @@ private:
         });
     }
 
-    /// Takes off what rises to the level under no gas.
+    /// Takes off columns that rise over the level, and what blur adds at the level.
     void trim(Volume<std::uint8_t>& pool) const {
         const auto in = pool.writable();
         eachColumn([&](const std::vector<std::size_t>& column) {
-            bool underGas = false, leaked = false;
+            bool leaked = false;
             for (const std::size_t m : column) {
-                if (in[m] && !underGas && depthMm(hu_.grid().voxelAt(m)) < blurMm + stepMm())
-                    leaked = true;
-                underGas = isGas(m) || (underGas && in[m]);
-                leaked = leaked && in[m];
-                if (leaked) in[m] = 0;
+                const double mm = depthMm(hu_.grid().voxelAt(m));
+                leaked = in[m] && (leaked || mm < -blurMm);
+                if (leaked || (mm <= 0.0 && !blur_[m])) in[m] = 0;
             }
         });
     }
@@ -253,7 +252,7 @@ private:
     double planeMm_ = 0.0;  ///< the level's height on the box's grid
     Volume<std::int16_t> hu_;
     Volume<std::uint8_t> content_;
-    Volume<std::uint8_t> fluid_;    ///< looks like the level's fluid, below it
+    Volume<std::uint8_t> fluid_;    ///< looks like the level's fluid
     Volume<std::uint8_t> centres_;  ///< the same by more of its surroundings, and surer
     Volume<std::uint8_t> blur_;     ///< partial volume between fluid and gas
     Volume<std::uint8_t> inside_;  ///< where no wall stands in a ball's way; gas below is another's
@@ -267,22 +266,31 @@ bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue
                        int threads) {
     const Grid& grid = hu.grid();
     const auto content = contents.content.writable();
+    const auto mark = [&](const UntaggedLevel& level) {
+        for (const Reach reach : reaches) {
+            const PoolSearch search(hu, tissue, contents, level, reach, threads);
+            bool cutOff = false;
+            for (const double ballMm : ballsMm) {
+                const auto pool = search.open(ballMm);
+                if (!pool) {
+                    cutOff = cutOff || pool.error() == NoPool::cutOff;
+                    continue;
+                }
+                for (std::size_t n = 0; n < pool->grid().voxelCount(); ++n) {
+                    if ((*pool)[n] == 0) continue;
+                    const std::size_t m = grid.index(pool->grid().voxelAt(n) + search.box().lo);
+                    content[m] = std::uint8_t(Content::untagged);
+                }
+                return true;
+            }
+            if (!cutOff) return false;
+        }
+        return false;
+    };
     bool any = false;
     for (const UntaggedLevel& level : levels) {
         // Fluid as bright as a wall, or brighter, is not told from it: it is only told.
-        if (level.fluidHu >= tissue.meanHu[int(Tissue::soft)]) continue;
-        const PoolSearch search(hu, tissue, contents, level, threads);
-        for (const double ballMm : ballsMm) {
-            const auto pool = search.open(ballMm);
-            if (!pool) continue;
-            for (std::size_t n = 0; n < pool->grid().voxelCount(); ++n) {
-                if ((*pool)[n] == 0) continue;
-                const std::size_t m = grid.index(pool->grid().voxelAt(n) + search.box().lo);
-                content[m] = std::uint8_t(Content::untagged);
-            }
-            any = true;
-            break;
-        }
+        if (level.fluidHu < tissue.meanHu[int(Tissue::soft)]) any = mark(level) || any;
     }
     return any;
 }

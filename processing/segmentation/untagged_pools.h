@@ -15,10 +15,10 @@ namespace haustra::segmentation {
 /// that balls reach is the wall's: a distended colon's wall is 1 to 2 mm thick (Wiesner et al., J
 /// Comput Assist Tomogr 2002; 26: 102), too thin to show its own HU between fluid and fat.
 ///
-/// Gas below a level is another lumen's. Fluid rises to its own level: just beneath it, the pool
-/// has to lie under gas, or it has leaked into what only looks like fluid. Then larger balls are
-/// tried (3, 4 and 5 mm), and where none holds, the level stays without a pool. Returns whether any
-/// has one.
+/// Gas below a level is another lumen's. Fluid stands no higher than its level: what rises over it
+/// has leaked into what only looks like fluid, or through a thin wall into a bladder. Then larger
+/// balls are tried (3 to 8 mm), and where none holds, the level stays without a pool. A lumen whose
+/// roof lies below the level is full, and a part of the pool. Returns whether any level has one.
 ///
 /// `contents` must own its memory and have its gravity. O(voxels around levels); the same for any
 /// number of threads.

@@ -302,6 +302,28 @@ TEST(FindColon, FluidWithoutTaggingIsLumenUnderItsLevel) {
     }
 }
 
+// From the ascending colon's middle down the roof lies below the fluid's surface, as far as the
+// cecum: full, and as much of the pool as what stands under the gas.
+TEST(FindColon, ASectionFullOfFluidToItsRoofBelongsToThePool) {
+    const auto water = [](glm::dvec3 p) { return inColon(p) && p.y >= 105.0 && p.x < 100; };
+    Drawing drawing;
+    drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
+    drawing.paint(8, water);
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    double drawnMl = 0.0;
+    const Grid& grid = found->labels.grid();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+        drawnMl += water(grid.patientFromVoxelPoint(grid.voxelAt(n)))
+                       ? grid.voxelVolumeMm3() / 1000.0
+                       : 0.0;
+    EXPECT_NEAR(untaggedMl(*found), drawnMl, 0.3 * drawnMl);  // a millimetre is the wall's
+    EXPECT_GT(diceWithDrawing(*found), 0.96);
+    EXPECT_TRUE(isOnePiece(*found));
+    EXPECT_NEAR(found->record.pieces.back().centreMm.z, 120.0, 40.0)
+        << "the course ends at the cecum";
+}
+
 // Down is towards the front in a prone scan.
 TEST(FindColon, FluidWithoutTaggingIsFoundInAProneScan) {
     const auto water = [](glm::dvec3 p) {
