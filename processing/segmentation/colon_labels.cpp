@@ -13,6 +13,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <unordered_map>
 
 namespace haustra::segmentation {
 namespace {
@@ -265,7 +266,8 @@ private:
     }
 
     // Between gas and the tagged material of one lumen straight beneath: partial volume, and the
-    // menisci at a level's rim. Elsewhere, and between two loops, a thin wall looks the same.
+    // menisci at a level's rim. Elsewhere, and between two loops, a thin wall looks the same. What
+    // is filled faces no lumen that these two do not open into.
     void fillInterfaces() {
         constexpr double rimMm = 1.5, nearMm = 3.0;
         const glm::dvec3 spacing = grid_.spacingMm();
@@ -277,6 +279,17 @@ private:
         const int rimAside = voxels(rimMm, side), rimAlong = voxels(rimMm, 2),
                   near = voxels(nearMm, down.axis) + 1;
         std::vector<std::size_t> between;
+        std::unordered_map<std::size_t, std::int32_t> filled;  // the gas over each
+        const auto facesOther = [&](std::size_t n, std::int32_t gas, std::int32_t fluid) {
+            bool other = false;
+            visitFaces(grid_, n, [&](std::size_t m, int) {
+                if (labels_[m] == outside) return;
+                const auto over = filled.find(m);
+                const std::int32_t piece = over != filled.end() ? over->second : cut_.pieceAt[m];
+                other = other || !(areJoined(gas, piece) || areJoined(fluid, piece));
+            });
+            return other;
+        };
         for (const Level& level : contents_.levels) {
             for (const LevelColumn& column : level.columns) {
                 if (labels_[grid_.index(column.below)] == outside &&
@@ -296,10 +309,13 @@ private:
                                 underAir = true, between.clear();
                                 gas = cut_.pieceAt[n];
                             } else if (labels_[n] == tagged) {
+                                const std::int32_t fluid = cut_.pieceAt[n];
                                 if (underAir && int(between.size()) < near &&
-                                    areJoined(gas, cut_.pieceAt[n])) {
-                                    for (const std::size_t gap : between)
-                                        labels_[gap] = tagged;
+                                    areJoined(gas, fluid)) {
+                                    for (const std::size_t gap : between) {
+                                        if (facesOther(gap, gas, fluid)) continue;
+                                        labels_[gap] = tagged, filled.emplace(gap, gas);
+                                    }
                                 }
                                 break;
                             } else if (barred_[n] ||
