@@ -1,0 +1,24 @@
+// What a sharp reconstruction kernel adds to the wall beside gas.
+#pragma once
+
+#include "core/tissue.h"
+#include "segmentation/bowel_contents.h"
+
+namespace haustra::segmentation {
+
+/// The HU that the wall's overshoot beside gas stays below: the median of the wall's peaks and two
+/// and a half standard deviations; 0 where no more than a twentieth of the wall is brighter than
+/// what counts as tagged.
+///
+/// A kernel that lifts high frequencies (lung, bone) makes a bright rim of one or two millimetres
+/// all around gas. Fluid does not hang from ceilings, and films coat a hundredth of them: of four
+/// sides of the gas, left, right, front and back, the one with the least bright wall tells, as
+/// which of them is up is not known yet. O(voxels).
+double overshootBesideGasHu(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
+                            const TissueModel& tissue, int threads);
+
+/// Takes for tissue what looks tagged, is darker than `overshootHu` and lies within 2.5 mm of gas.
+void takeOffOvershoot(const Volume<std::int16_t>& hu, double overshootHu,
+                      Volume<std::uint8_t>& content, int threads);
+
+}  // namespace haustra::segmentation
