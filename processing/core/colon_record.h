@@ -100,7 +100,10 @@ struct ColonRecord {
     double chainConfidence = 0.0;      ///< that it is right among those that were weighed
     std::vector<Doubt> doubts;         ///< the gravest first
     std::vector<RunnerUp> runnersUp;   ///< none or one
-    std::vector<LeftOutBody> leftOut;  ///< near the chain, the largest first
+    std::vector<LeftOutBody> leftOut;  ///< near the chain or like colon, the largest first
+    /// Where the last piece lies: from −1, the patient's right side, to 1; from −1, front, to 1;
+    /// from 0, the lowest bowel, to 1. A cecum's, where nothing else is known.
+    glm::dvec3 endsAt{-0.5, -0.15, 0.3};
     std::vector<RebuiltWallRecord> walls;
     std::vector<UntaggedPool> untaggedPools;  ///< not in the lumen; the largest surface first
     double noiseSdHu = 0.0;                   ///< in gas

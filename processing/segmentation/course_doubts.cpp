@@ -9,11 +9,14 @@
 namespace haustra::segmentation {
 namespace {
 
+constexpr double twoWallsMm = 4.0;  // what lies between any two loops that touch
+
 double wrongCollapse(double lengthMm, double calibreRatio) {
     constexpr double evenMm = 70.0, spreadMm = 14.0, otherCalibre = 0.5;
     const double longWay = 1.0 / (1.0 + std::exp((evenMm - lengthMm) / spreadMm));
     const double mismatch = std::abs(std::log(calibreRatio)) > otherCalibre ? 0.4 : 0.0;
-    return 1.0 - (1.0 - 0.02) * (1.0 - longWay) * (1.0 - mismatch);
+    const double touching = lengthMm < twoWallsMm ? 0.15 : 0.02;
+    return 1.0 - (1.0 - touching) * (1.0 - longWay) * (1.0 - mismatch);
 }
 
 }  // namespace
@@ -32,8 +35,11 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         if (junction.kind == JunctionKind::collapse) {
             lengthMm[std::size_t(a.part)] += junction.lengthMm;
             doubt(wrongCollapse(junction.lengthMm, a.radiusMm / b.radiusMm),
-                  text("a loop may lie in the %.0f mm that were crossed from the %s on",
-                       junction.lengthMm, toString(a.part)));
+                  junction.lengthMm < twoWallsMm
+                      ? text("two loops may only touch where %.0f mm were crossed from the %s on",
+                             junction.lengthMm, toString(a.part))
+                      : text("a loop may lie in the %.0f mm that were crossed from the %s on",
+                             junction.lengthMm, toString(a.part)));
         } else if (junction.kind == JunctionKind::thinWall) {
             doubt(0.12, text("what was taken for open in the %s may be a wall", toString(a.part)));
         }
@@ -49,10 +55,13 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
                   text("no more than %.0f mm of %s%s were found", mm, toString(part),
                        part == ColonPart::sigmoid ? "" : " in all"));
     }
+    constexpr double mostMedial = 0.0, mostHigh = 0.65;  // of a cecum, in the body's frame
     if (!record.pieces.empty() && record.pieces.front().part > ColonPart::sigmoid)
         doubt(0.7, "the rectum was not found");
     if (!record.pieces.empty() && record.pieces.back().part < ColonPart::ascending)
         doubt(0.7, "the cecum was not found");
+    else if (record.endsAt.x > mostMedial || record.endsAt.z > mostHigh)
+        doubt(0.4, "the course may end before the cecum");
     for (const LeftOutBody& body : record.leftOut) {
         constexpr double tellMl = 5.0, muchMl = 25.0;
         if (!body.gas || body.volumeMl < tellMl) continue;

@@ -112,6 +112,7 @@ public:
         for (const UntaggedLevel& level : untagged_)
             made_.untaggedPools.push_back(
                 {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
+        made_.endsAt = graph_.frame.place(pieceOf(chain_.nodes.back()).centreMm);
         made_.doubts = doubtsOf(made_);
         made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
         warn();
@@ -149,6 +150,17 @@ private:
         return part;
     }
 
+    /// By calibre, place and folds, as the chain weighs them, of 10 ml and more: told wherever it
+    /// lies, as a part of the colon that was passed by may lie far from the course.
+    static bool looksLikeColon(const ChainNode& node) {
+        constexpr double leastRadiusMm = 8.0, leastMl = 10.0, likely = 1.0;
+        if (node.radiusMm < leastRadiusMm || node.volumeMl < leastMl) return false;
+        double most = -1e9;
+        for (std::size_t part = 0; part < colonParts; ++part)
+            most = std::max(most, node.placeLogOdds[part] + node.foldLogOdds[part]);
+        return most > likely;
+    }
+
     void findLeftOut() {
         constexpr double leastMl = 2.0, nearMm = 20.0;
         const std::set<int> taken = nodesOf(chain_);
@@ -175,7 +187,8 @@ private:
                     body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
             }
             body.distanceMm = std::max(0.0, body.distanceMm);
-            if (body.opens || body.distanceMm < nearMm) made_.leftOut.push_back(body);
+            if (body.opens || body.distanceMm < nearMm || looksLikeColon(node))
+                made_.leftOut.push_back(body);
         }
         std::stable_sort(
             made_.leftOut.begin(), made_.leftOut.end(),
