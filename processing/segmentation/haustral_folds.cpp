@@ -1,10 +1,12 @@
 #include "segmentation/haustral_folds.h"
 
 #include "core/crop.h"
-#include "topology/distance_field.h"
+#include "core/voxel_sweep.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+#include <vector>
 
 namespace haustra::segmentation {
 namespace {
@@ -53,20 +55,51 @@ std::vector<VoxelBox> boxesOf(const TubePieces& cut, int threads) {
 void fillBetween(const Volume<std::uint8_t>& lumen, glm::ivec3 step, int most,
                  std::span<std::uint8_t> filled) {
     const Grid& grid = lumen.grid();
-    for (std::size_t n = 0; n < lumen.voxels().size(); ++n) {
-        if (lumen[n] == 0) continue;
-        const glm::ivec3 v = grid.voxelAt(n);
+    const std::ptrdiff_t away =
+        step.x + std::ptrdiff_t(grid.size.x) * (step.y + std::ptrdiff_t(grid.size.y) * step.z);
+    const auto fillFrom = [&](glm::ivec3 v) {
         glm::ivec3 w = v + step;
-        if (!grid.contains(w) || lumen.at(w) != 0) continue;
         for (int gap = 1; gap <= most; ++gap) {
             w += step;
-            if (!grid.contains(w)) break;
+            if (!grid.contains(w)) return;
             if (lumen.at(w) == 0) continue;
             for (glm::ivec3 between = v + step; between != w; between += step)
                 filled[grid.index(between)] = 1;
-            break;
+            return;
+        }
+    };
+    // Of each row, what has a neighbour that is no lumen: few voxels of it.
+    const int first = std::max(0, -step.x), last = grid.size.x - std::max(0, step.x);
+    std::vector<std::uint8_t> atWall(std::size_t(grid.size.x), 0);
+    for (int k = 0; k < grid.size.z - step.z; ++k) {
+        for (int j = std::max(0, -step.y); j < grid.size.y - std::max(0, step.y); ++j) {
+            const std::uint8_t* row = &lumen.voxels()[grid.index(0, j, k)];
+            for (int i = first; i < last; ++i)
+                atWall[std::size_t(i)] = row[i] & (row[i + away] ^ 1);
+            for (auto at = atWall.begin();
+                 (at = std::find(at, atWall.end(), std::uint8_t(1))) != atWall.end(); ++at)
+                fillFrom({int(at - atWall.begin()), j, k});
         }
     }
+}
+
+/// Steps to what is nearer than `leastMm`, the nearest first; without the step of 0.
+std::vector<glm::ivec3> stepsWithin(double leastMm, glm::dvec3 spacingMm) {
+    const auto mm = [&](glm::ivec3 step) {  // single precision: what is `leastMm` off is no nearer
+        return float(glm::length(spacingMm * glm::dvec3(step)));
+    };
+    const glm::ivec3 reach(glm::floor(leastMm / spacingMm));
+    std::vector<glm::ivec3> steps;
+    for (int k = -reach.z; k <= reach.z; ++k) {
+        for (int j = -reach.y; j <= reach.y; ++j) {
+            for (int i = -reach.x; i <= reach.x; ++i) {
+                if ((i || j || k) && mm({i, j, k}) < float(leastMm)) steps.emplace_back(i, j, k);
+            }
+        }
+    }
+    std::stable_sort(steps.begin(), steps.end(),
+                     [&](glm::ivec3 a, glm::ivec3 b) { return mm(a) < mm(b); });
+    return steps;
 }
 
 double foldDensityOf(const TubePieces& cut, std::int32_t piece, const VoxelBox& box,
@@ -74,34 +107,38 @@ double foldDensityOf(const TubePieces& cut, std::int32_t piece, const VoxelBox& 
     const Volume<std::int32_t> pieceAt = croppedCopy(cut.pieceAt, box, 1);
     const Volume<std::uint8_t> walls = croppedCopy(thinWalls, box, 1);
     const Grid& grid = pieceAt.grid();
-    Volume<std::uint8_t> lumen(grid, std::uint8_t(0)), filled(grid, std::uint8_t(0));
-    const auto own = lumen.writable(), with = filled.writable();
+    Volume<std::uint8_t> lumen(grid), filled(grid), folds(grid, std::uint8_t(0));
+    const auto own = lumen.writable(), with = filled.writable(), fold = folds.writable();
     double wallMm2 = 0.0;
     const glm::dvec3 spacing = grid.spacingMm(), faceMm2 = grid.voxelVolumeMm3() / spacing;
-    for (std::size_t n = 0; n < own.size(); ++n) {
+    visitSlices(grid, 0, std::size_t(grid.size.z), [&](std::size_t n, glm::ivec3 v) {
         own[n] = pieceAt[n] == piece && !walls[n];
         with[n] = pieceAt[n] >= 0 && !walls[n];
-        if (pieceAt[n] != piece) continue;
-        visitFaces(grid, n, [&](std::size_t m, int axis) {
+        if (pieceAt[n] != piece) return;
+        visitFaces(grid, n, v, [&](std::size_t m, int axis) {
             if (pieceAt[m] < 0) wallMm2 += faceMm2[axis];
         });
-    }
+    });
     if (wallMm2 == 0.0) return -1.0;
-    Volume<std::uint8_t> folds(grid, std::uint8_t(0));
-    const auto fold = folds.writable();
     for (int d = 14; d < 27; ++d) {  // one of each two opposite neighbours
         const glm::ivec3 step(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
         const int most = int(std::floor(thickestMm / glm::length(spacing * glm::dvec3(step))));
         fillBetween(lumen, step, most, fold);
     }
+    std::vector<std::size_t> between;
     for (std::size_t n = 0; n < with.size(); ++n) {
-        fold[n] = fold[n] && !with[n];  // not another piece's lumen
-        with[n] = with[n] || fold[n];
+        if (!fold[n] || with[n]) continue;  // not another piece's lumen
+        with[n] = 1;
+        between.push_back(n);
     }
-    const Volume<float> depthMm = topology::distanceToBoundaryMm(filled, 1);
-    std::size_t voxels = 0;
-    for (std::size_t n = 0; n < fold.size(); ++n)
-        voxels += fold[n] && !(depthMm[n] < float(leastDepthMm));
+    const std::vector<glm::ivec3> nearer = stepsWithin(leastDepthMm, spacing);
+    const auto isDeep = [&](std::size_t n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        return std::none_of(nearer.begin(), nearer.end(), [&](glm::ivec3 step) {
+            return grid.contains(v + step) && filled.at(v + step) == 0;
+        });
+    };
+    const auto voxels = std::count_if(between.begin(), between.end(), isDeep);
     return double(voxels) * grid.voxelVolumeMm3() / wallMm2;
 }
 

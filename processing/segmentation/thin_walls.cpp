@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numeric>
+#include <vector>
 
 namespace haustra::segmentation {
 namespace {
@@ -196,31 +198,40 @@ public:
                               options.leastSds * gasSd);
         softHu_ = options.softHu, share_ = options.leastShare;
         gasHu_ = contents.gasHu;
+        for (int dip = lowestHu, least = lowestHu; dip <= highestHu; ++dip) {
+            while (least <= highestHu &&
+                   least - dip <= std::max(share_ * (least - softHu_), taggedSdsHu_))
+                ++least;
+            leastAroundDip_.push_back(least);
+        }
     }
 
     bool isWall(glm::ivec3 v) const {
         const std::size_t n = grid_.index(v);
         const Content content = Content(content_[n]);
         if (content == Content::tagged && touchesGas(v)) return true;
-        if (content == Content::gas)
+        if (content == Content::gas) {
+            const int most = hu_[n] - int(std::floor(gasRiseHu_)) - 1;
             return hu_[n] > gasHu_ + gasRiseHu_ &&
-                   isSheet(v, n, content, 1, [&](int) { return gasRiseHu_; });
+                   isSheet(v, n, content, [&](int side) { return side <= most; });
+        }
         if (content == Content::tagged) {
             // Most of a fluid lies far under nothing: what is brightest around says so at once.
             const double most = brightest_.near(v), above = hu_[n] - softHu_;
             const bool step = above < half * (most - softHu_);
             const bool sheet =
                 most - hu_[n] > taggedSdsHu_ && above < (1.0 - share_) * (most - softHu_);
+            const int least = leastAroundDip_[std::size_t(hu_[n] - lowestHu)];
             return (step && isStep(v, n)) ||
-                   (sheet && isSheet(v, n, content, -1, [&](int sides) {
-                        return std::max(share_ * (sides - softHu_), taggedSdsHu_);
-                    }));
+                   (sheet && isSheet(v, n, content, [&](int side) { return side >= least; }));
         }
         return false;
     }
 
 private:
     static constexpr double half = 0.45;
+    static constexpr int lowestHu = std::numeric_limits<std::int16_t>::min(),
+                         highestHu = std::numeric_limits<std::int16_t>::max();
 
     /// Fluid lies under gas at a level; where they touch elsewhere there is a wall between, or
     /// stool sticks to one.
@@ -264,33 +275,26 @@ private:
         }
         return false;
     }
-    /// Whether HU (times `sign`) falls on both sides of the voxel, before the content ends, by what
-    /// `leastHu` asks of the lesser side's HU.
-    template <class Least>
-    bool isSheet(glm::ivec3 v, std::size_t n, Content content, int sign,
-                 const Least& leastHu) const {
-        constexpr int nothing = 1 << 20;
+    /// Whether on both sides of the voxel, before the content ends, there is some of it whose HU the
+    /// voxel stands out from.
+    template <class StandsOut>
+    bool isSheet(glm::ivec3 v, std::size_t n, Content content,
+                 const StandsOut& standsOutFrom) const {
         const bool interior = glm::all(glm::greaterThanEqual(v, reach_)) &&
                               glm::all(glm::lessThan(v, grid_.size - reach_));
         const std::int16_t* const hu = &hu_.voxels()[n];
         const std::uint8_t* const contents = &content_.voxels()[n];
-        const auto lowestOn = [&](const Ray& ray, int direction) {
-            int low = nothing;
+        const auto standsOutOn = [&](const Ray& ray, int side) {
             for (int step = 1; step <= ray.steps; ++step) {
-                if (!interior && !grid_.contains(v + direction * step * ray.step)) break;
-                const std::ptrdiff_t m = direction * step * ray.offset;
-                if (Content(contents[m]) == content) low = std::min(low, sign * hu[m]);
+                if (!interior && !grid_.contains(v + side * step * ray.step)) return false;
+                const std::ptrdiff_t m = side * step * ray.offset;
+                if (standsOutFrom(hu[m]) && Content(contents[m]) == content) return true;
             }
-            return low;
+            return false;
         };
-        // The higher the lesser side, the less the voxel stands out: one side alone may refuse it.
-        const auto standsOut = [&](int sides) {
-            return sides < nothing && sign * *hu - sides > leastHu(sign * sides);
-        };
-        for (const Ray& ray : rays_) {
-            if (standsOut(lowestOn(ray, 1)) && standsOut(lowestOn(ray, -1))) return true;
-        }
-        return false;
+        return std::any_of(rays_.begin(), rays_.end(), [&](const Ray& ray) {
+            return standsOutOn(ray, 1) && standsOutOn(ray, -1);
+        });
     }
 
     const Volume<std::int16_t>& hu_;
@@ -300,6 +304,8 @@ private:
     const glm::ivec3 reach_;
     const BrightestTagged brightest_;
     double gasRiseHu_, taggedSdsHu_, softHu_, share_, gasHu_;
+    /// By a tagged voxel's HU from `lowestHu` on: what it dips from on both sides is as bright.
+    std::vector<int> leastAroundDip_;
 };
 
 // Noise makes specks, walls are sheets.
