@@ -3,6 +3,7 @@
 
 #include "core/grid.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace haustra::cleansing {
@@ -23,25 +24,41 @@ inline glm::ivec3 lookStep(const Grid& grid) {
 /// Voxels along each axis that the blur reaches from within a border's own voxel.
 glm::ivec3 blurReachVoxels(const Grid& grid);
 
-/// Offsets by look steps within an ellipsoid of these radii but the centre, always with the six
-/// along the axes; the farthest first, as they are the likeliest to differ from it.
-std::vector<glm::ivec3> ballOffsets(const Grid& grid, glm::dvec3 radiusMm);
+/// What lies around a voxel of a grid, by look steps.
+class Ball {
+public:
+    /// An ellipsoid of these radii but the centre, always with the six along the axes.
+    Ball(const Grid& grid, glm::dvec3 radiusMm);
 
-/// Where all of these hold one material no other's blur reaches, wherever the border lies within
-/// its voxel.
-inline std::vector<glm::ivec3> blurBall(const Grid& grid) {
-    return ballOffsets(grid, blurReachMm + 0.5 * grid.spacingMm());
-}
-
-/// Whether `holds(index)` at every voxel of the ball that is within the grid.
-template <class Predicate>
-bool everywhere(const Grid& grid, const std::vector<glm::ivec3>& offsets, glm::ivec3 v,
-                const Predicate& holds) {
-    for (const glm::ivec3 d : offsets) {
-        const glm::ivec3 n = v + d;
-        if (grid.contains(n) && !holds(grid.index(n))) return false;
+    /// Whether `holds(index)` at every voxel around `v` that is within the grid.
+    template <class Predicate>
+    bool everywhere(glm::ivec3 v, const Predicate& holds) const {
+        const std::size_t here = grid_.index(v);
+        const bool inside = glm::all(glm::greaterThanEqual(v, reach_)) &&
+                            glm::all(glm::lessThan(v, grid_.size - reach_));
+        for (const Step& step : steps_) {
+            if ((inside || grid_.contains(v + step.voxels)) &&
+                !holds(std::size_t(std::ptrdiff_t(here) + step.indices)))
+                return false;
+        }
+        return true;
     }
-    return true;
+
+private:
+    struct Step {
+        glm::ivec3 voxels;
+        std::ptrdiff_t indices;
+    };
+
+    Grid grid_;
+    glm::ivec3 reach_{0};
+    std::vector<Step> steps_;  ///< the farthest first: they are the likeliest to fail
+};
+
+/// Where all of it holds one material no other's blur reaches, wherever the border lies within its
+/// voxel.
+inline Ball blurBall(const Grid& grid) {
+    return {grid, blurReachMm + 0.5 * grid.spacingMm()};
 }
 
 /// Of every `every`th voxel of a scan's row from `first` on, the first that is not before voxel

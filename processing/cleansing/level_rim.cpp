@@ -38,6 +38,7 @@ public:
             }
         }
         const glm::ivec3 reach = glm::ivec3(windowMm / spacingMm_) / look_;
+        windowReach_ = reach * look_;
         for (int k = -reach.z; k <= reach.z; ++k) {
             for (int j = -reach.y; j <= reach.y; ++j) {
                 for (int i = -reach.x; i <= reach.x; ++i) {
@@ -45,7 +46,8 @@ public:
                     const glm::dvec3 d = glm::dvec3(voxels) * spacingMm_;
                     const double distance2 = glm::dot(d, d);
                     if (distance2 > windowMm * windowMm) continue;
-                    window_.push_back({voxels, d[vertical_] * level.down()[vertical_],
+                    window_.push_back({voxels, stepOf(voxels),
+                                       d[vertical_] * level.down()[vertical_],
                                        std::exp(-0.5 * distance2 / 4.0)});
                 }
             }
@@ -87,20 +89,29 @@ private:
     std::optional<glm::dvec2> direction(glm::ivec3 v, double depthMm) const {
         const Grid& grid = hu_.grid();
         const double clear = halfHeightMm_ + spacingMm_[vertical_];
+        const glm::ivec3 reach = windowReach_ + look_;
+        const bool inside = glm::all(glm::greaterThanEqual(v, reach)) &&
+                            glm::all(glm::lessThan(v, grid.size - reach));
+        const std::int16_t* const here = &hu_.voxels()[grid.index(v)];
+        // Across, and along the vertical: to the voxels a look off, and mm between them.
+        const std::array<int, 3> axes{across_[0], across_[1], vertical_};
+        std::array<std::ptrdiff_t, 3> step{};
+        std::array<double, 3> apartMm{};
+        for (std::size_t n = 0; n < 3; ++n) {
+            glm::ivec3 look(0);
+            look[axes[n]] = look_[axes[n]];
+            step[n] = stepOf(look), apartMm[n] = 2.0 * look_[axes[n]] * spacingMm_[axes[n]];
+        }
         double aa = 0.0, ab = 0.0, bb = 0.0, av = 0.0, bv = 0.0, vv = 0.0;
         for (const Place& place : window_) {
+            if (std::abs(depthMm + place.downMm) < clear) continue;
             const glm::ivec3 n = v + place.voxels;
-            if (std::abs(depthMm + place.downMm) < clear || !grid.contains(n - look_) ||
-                !grid.contains(n + look_))
-                continue;
-            const auto along = [&](int axis) {
-                glm::ivec3 step(0);
-                step[axis] = look_[axis];
-                return (hu_.at(n + step) - hu_.at(n - step)) /
-                       (2.0 * look_[axis] * spacingMm_[axis]);
+            if (!inside && (!grid.contains(n - look_) || !grid.contains(n + look_))) continue;
+            const std::int16_t* const there = here + place.step;
+            const auto along = [&](std::size_t axis) {
+                return (there[step[axis]] - there[-step[axis]]) / apartMm[axis];
             };
-            const double a = along(across_[0]), b = along(across_[1]),
-                         down = along(vertical_) * level_.down()[vertical_];
+            const double a = along(0), b = along(1), down = along(2) * level_.down()[vertical_];
             const double w = place.weight;
             aa += w * a * a, ab += w * a * b, bb += w * b * b;
             av += w * a * down, bv += w * b * down, vv += w * down * down;
@@ -122,8 +133,13 @@ private:
     /// Of the window in which the wall's direction is sought.
     struct Place {
         glm::ivec3 voxels;
+        std::ptrdiff_t step;  ///< the same, between indices
         double downMm, weight;
     };
+    std::ptrdiff_t stepOf(glm::ivec3 voxels) const {
+        const glm::ivec3 size = hu_.grid().size;
+        return voxels.x + std::ptrdiff_t(size.x) * (voxels.y + std::ptrdiff_t(size.y) * voxels.z);
+    }
 
     const Volume<std::int16_t>& hu_;
     const LocalMeans& means_;
@@ -132,7 +148,7 @@ private:
     std::vector<Place> window_;
     double halfHeightMm_;
     glm::dvec3 spacingMm_;
-    glm::ivec3 look_;
+    glm::ivec3 look_, windowReach_{0};
     int vertical_ = 1;
     glm::ivec2 across_{0, 2};
 };

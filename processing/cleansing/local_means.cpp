@@ -132,7 +132,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
     const glm::ivec3 cells = taggedHu.cells();
     const auto hu = scan.hu.voxels();
     const auto label = segmentation.voxels();
-    const std::vector<glm::ivec3> ball = blurBall(grid);
+    const Ball ball = blurBall(grid);
     const glm::ivec3 look = lookStep(grid);
     const auto isTagged = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::tagged; };
     const auto isAir = [&](std::size_t n) { return LumenLabel(label[n]) == LumenLabel::air; };
@@ -159,7 +159,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                         if (hu[n] <= tissue.meanHu[int(Tissue::soft)]) continue;
                         // Where the pool is too thin to have an inside, its crest is the best.
                         float weight = 0.0f;
-                        if (everywhere(grid, ball, {i, j, k}, isTagged)) {
+                        if (ball.everywhere({i, j, k}, isTagged)) {
                             weight = 1.0f;
                         } else {
                             bool crest = hu[n] > tissue.taggedAboveHu;
@@ -175,7 +175,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                         weight *= unit;
                         tagged.weight[cell] += weight, tagged.value[cell] += weight * hu[n];
                     } else if (isAir(n) && (i + j + k + sampled) % every == 0) {
-                        if (!everywhere(grid, ball, {i, j, k}, isAir)) continue;
+                        if (!ball.everywhere({i, j, k}, isAir)) continue;
                         const std::size_t slab = std::size_t(k / perCell.z);
                         airSum[slab] += hu[n], airCount[slab] += 1.0;
                         const std::size_t cell = taggedHu.cellOf(i, j, k);
@@ -223,7 +223,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                     const std::size_t cell = means.softHu.cellOf(i, j, k);
                     if (!wanted[cell]) continue;
                     const std::size_t n = grid.index(i, j, k);
-                    if (!isSoft(n) || !everywhere(grid, ball, {i, j, k}, isSoft)) continue;
+                    if (!isSoft(n) || !ball.everywhere({i, j, k}, isSoft)) continue;
                     soft.weight[cell] += unit, soft.value[cell] += unit * hu[n];
                 }
             }

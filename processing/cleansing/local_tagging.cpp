@@ -37,7 +37,7 @@ Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t
     const Grid& grid = scan.hu.grid();
     const auto hu = scan.hu.voxels();
     const auto label = segmentation.voxels();
-    const std::vector<glm::ivec3> ball = blurBall(grid);
+    const Ball ball = blurBall(grid);
 
     const double noiseSd = means.noise.tagged;
     const glm::ivec3 look = lookStep(grid);
@@ -64,7 +64,7 @@ Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t
                 const double tolerance =
                     std::max(4.0 * noiseSd, 0.12 * (coarse.at(v.x, v.y, v.z) - soft));
                 even[shell[m]] =
-                    mean > soft + 2.0 * noiseSd && everywhere(grid, ball, v, [&](std::size_t n) {
+                    mean > soft + 2.0 * noiseSd && ball.everywhere(v, [&](std::size_t n) {
                         return isDense(n) && std::abs(hu[n] - mean) < tolerance;
                     });
             }

@@ -68,7 +68,7 @@ std::vector<char> blocksNearTagging(const Volume<std::uint8_t>& segmentation, gl
 NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
                      const Volume<std::uint8_t>& segmentation, int threads, glm::ivec3 from) {
     const Grid& grid = scan.hu.grid();
-    const std::vector<glm::ivec3> ball = blurBall(grid);
+    const Ball ball = blurBall(grid);
     const glm::ivec3 apart(glm::ceil(apartMm / grid.spacingMm()));
     const auto everyOf = [&](std::size_t voxels) {
         return std::max(
@@ -91,7 +91,7 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
                          i < grid.size.x; i += every) {
                         const glm::ivec3 v(i, j, k);
                         const auto deep = [&](glm::ivec3 n) {
-                            return is(grid.index(n)) && everywhere(grid, ball, n, is);
+                            return is(grid.index(n)) && ball.everywhere(n, is);
                         };
                         if (!wanted(v) || !is(grid.index(v)) || !deep(v)) continue;
                         for (int axis = 0; axis < 2; ++axis) {

@@ -124,7 +124,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
             spreadAlong(fields.back(), axis, width / 2.3548 / cell, threads);
         }
     }
-    const auto ball = blurBall(grid);
+    const Ball ball = blurBall(grid);
     const int every = std::max(1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())));
     const auto isGas = [&](std::size_t n) {
         return LumenLabel(segmentation[n]) == LumenLabel::air;
@@ -138,7 +138,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
                 for (int i = first; i < grid.size.x; i += every) {
                     const glm::ivec3 v(i, j, int(k));
                     const std::size_t n = grid.index(v);
-                    if (!isGas(n) || !everywhere(grid, ball, v, isGas)) continue;
+                    if (!isGas(n) || !ball.everywhere(v, isGas)) continue;
                     for (std::size_t w = 0; w < fields.size(); ++w)
                         slices[k][w].add(fields[w].at(i + from.x, j + from.y, int(k) + from.z),
                                          scan.hu[n]);

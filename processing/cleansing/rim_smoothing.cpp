@@ -91,7 +91,7 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
                                      int threads) {
     const Grid& grid = hu.grid();
     const glm::ivec3 look = lookStep(grid);
-    const std::vector<glm::ivec3> reach = ballOffsets(grid, glm::dvec3(airReachMm));
+    const Ball reach(grid, glm::dvec3(airReachMm));
     const auto isAir = [&](std::size_t n) { return LumenLabel(labels[n]) == LumenLabel::air; };
     std::vector<std::uint32_t> band;
     for (const auto& shell : around.shells) {
@@ -101,7 +101,7 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
                 const glm::ivec3 v = grid.voxelAt(shell[m]);
                 in[m] = isInterior(grid, v) && besideWall(hu, v, look, tissue.airBelowHu) &&
                         (isAir(shell[m]) ||
-                         !everywhere(grid, reach, v, [&](std::size_t n) { return !isAir(n); }));
+                         !reach.everywhere(v, [&](std::size_t n) { return !isAir(n); }));
             }
         });
         for (std::size_t m = 0; m < shell.size(); ++m) {

@@ -54,7 +54,7 @@ void settleSubmerged(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
                      const TaggedSurroundings& around, Volume<TissueFractions>& mixture,
                      int threads) {
     const Grid& grid = scan.hu.grid();
-    const auto reach = ballOffsets(grid, gasReach * spread.sdMm);
+    const Ball reach(grid, gasReach * spread.sdMm);
     const glm::dvec3 apart = grid.spacingMm() / spread.sdMm;
     const glm::dvec3 near = glm::exp(-0.5 * apart * apart);
     const double sd = std::max(means.noise.soft, means.noise.tagged);
@@ -74,7 +74,7 @@ void settleSubmerged(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
                              contrast = std::max(60.0, means.taggedHu.at(v) - soft);
                 found[m].voxel = n;
                 if (mixture[n].tagged == 255 || mixture[n].air > 0 || !isNoGas(n) ||
-                    !everywhere(grid, reach, v, isNoGas))
+                    !reach.everywhere(v, isNoGas))
                     continue;
                 const Filtered filtered = filteredAt(scan.hu, v, look);
                 if (mixture[n].tagged == 0 &&
