@@ -63,12 +63,15 @@ Cells makeCells(const Volume<std::int16_t>& hu, double airBelowHu, int threads) 
                 const glm::ivec3 hi = glm::min(lo + cells.block, grid.size);
                 for (int k = lo.z; k < hi.z; ++k) {
                     for (int j = lo.y; j < hi.y; ++j) {
-                        const std::int16_t* row = &hu.voxels()[grid.index(0, j, k)];
-                        for (int i = 0; i < grid.size.x; ++i) {
-                            const std::size_t x = std::size_t(i / cells.block.x);
-                            sum[x] += row[i];
-                            ++voxels[x];
-                            high[x] = std::max(high[x], int(row[i]));
+                        const std::int16_t* at = &hu.voxels()[grid.index(0, j, k)];
+                        const std::int16_t* const end = at + grid.size.x;
+                        for (std::size_t x = 0; x < sum.size(); ++x) {
+                            const std::int16_t* const next = std::min(at + cells.block.x, end);
+                            voxels[x] += int(next - at);
+                            int huSum = 0;
+                            for (; at != next; ++at)
+                                huSum += *at, high[x] = std::max(high[x], int(*at));
+                            sum[x] += huSum;
                         }
                     }
                 }
@@ -168,15 +171,23 @@ void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
         for (std::size_t k = first; k < last; ++k) {
             for (int j = 0; j < grid.size.y; ++j) {
                 const std::size_t row = grid.index(0, j, int(k));
+                const auto cellsAt = [&](int y, int z) {
+                    return &outside[cells.index(glm::ivec3(0, y, z) / cells.block)];
+                };
+                const std::uint8_t* const own = cellsAt(j, int(k));
+                const std::array<const std::uint8_t*, 4> beside{
+                    cellsAt(std::max(j - 1, 0), int(k)),
+                    cellsAt(std::min(j + 1, grid.size.y - 1), int(k)),
+                    cellsAt(j, std::max(int(k) - 1, 0)),
+                    cellsAt(j, std::min(int(k) + 1, grid.size.z - 1))};
+                const bool atSide = j == 0 || j == grid.size.y - 1;
                 for (int i = 0; i < grid.size.x; ++i) {
                     if (Content(voxels[row + std::size_t(i)]) != Content::gas) continue;
-                    const glm::ivec3 v(i, j, int(k));
-                    bool near = i == 0 || j == 0 || i == grid.size.x - 1 || j == grid.size.y - 1;
-                    for (const glm::ivec3 step : faces) {
-                        if (near) break;
-                        near = grid.contains(v + step) &&
-                               outside[cells.index((v + step) / cells.block)];
-                    }
+                    const int x = i / cells.block.x;
+                    const bool near = atSide || i == 0 || i == grid.size.x - 1 ||
+                                      own[(i - 1) / cells.block.x] ||
+                                      own[(i + 1) / cells.block.x] || beside[0][x] ||
+                                      beside[1][x] || beside[2][x] || beside[3][x];
                     if (near) slices[k].push_back(std::uint32_t(row + std::size_t(i)));
                 }
             }

@@ -97,13 +97,6 @@ private:
         const std::size_t a = ticks(distanceMm_[m]), b = ticks(distanceMm_[n]);
         return a > b || (a == b && m < n);
     }
-    /// visit(index, face) of the neighbours inside that come before.
-    template <class Visit>
-    void visitBefore(std::size_t n, glm::ivec3 v, const Visit& visit) const {
-        visitFaces(grid_, n, v, [&](std::size_t m, int axis) {
-            if (distanceMm_[m] > 0.0f && isBefore(m, n)) visit(m, 2 * axis + (m > n));
-        });
-    }
     std::size_t stepUphill(std::size_t n) const {
         const std::ptrdiff_t strides[3] = {1, grid_.size.x,
                                            std::ptrdiff_t(grid_.size.x) * grid_.size.y};
@@ -118,9 +111,9 @@ private:
             if (!(distanceMm_[n] > 0.0f)) return;
             float deepest = 0.0f;
             uphill[n] = peak;
-            visitBefore(n, v, [&](std::size_t m, int face) {
-                if (distanceMm_[m] > deepest)
-                    deepest = distanceMm_[m], uphill[n] = std::uint8_t(face + 1);
+            visitFaces(grid_, n, v, [&](std::size_t m, int axis) {
+                if (distanceMm_[m] > deepest && isBefore(m, n))
+                    deepest = distanceMm_[m], uphill[n] = std::uint8_t(2 * axis + (m > n) + 1);
             });
         });
     }
@@ -193,8 +186,10 @@ private:
                                 if (label_[n] < 0 || uphill_[n] == peak) return;
                                 std::int32_t other = label_[n];
                                 bool ofTwo = true;
-                                visitBefore(n, v, [&](std::size_t m, int) {
-                                    if (label_[m] == label_[n] || label_[m] == other) return;
+                                visitFaces(grid_, n, v, [&](std::size_t m, int) {
+                                    if (label_[m] < 0 || label_[m] == label_[n] ||
+                                        label_[m] == other || !isBefore(m, n))
+                                        return;
                                     ofTwo = ofTwo && other == label_[n];
                                     other = label_[m];
                                 });
@@ -223,7 +218,8 @@ private:
         for (const std::uint32_t n : byFallingDistance(saddles())) {
             std::array<std::int32_t, 6> around{};
             std::size_t count = 0;
-            visitBefore(n, grid_.voxelAt(n), [&](std::size_t m, int) {
+            visitFaces(grid_, n, [&](std::size_t m, int) {
+                if (label_[m] < 0 || !isBefore(m, n)) return;
                 const std::int32_t root = rootOf(parent_, label_[m]);
                 if (std::find(around.begin(), around.begin() + std::ptrdiff_t(count), root) ==
                     around.begin() + std::ptrdiff_t(count))
