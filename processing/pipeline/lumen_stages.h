@@ -28,6 +28,7 @@ Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& l
 struct WallSurface {
     TriMesh mesh;
     store::Attributes attributes;
+    double seconds = 0.0;  ///< that it took to make
 };
 /// `surface`: the lumen contoured at the wall's HU and simplified within the error bound; `begun`,
 /// where it is valid, is what beginSurface returned of the same.
@@ -35,8 +36,7 @@ Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& sourc
                                const ProductKey& lumen,
                                std::future<Result<WallSurface>> begun = {});
 /// Makes the surface beside the stages before its own, which leave cores idle; it only reads the
-/// case. Its own stage then tells only the time that is left. Not valid where there is one thread,
-/// or the case holds the surface.
+/// case. Not valid where there is one thread, or the case holds the surface.
 std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const WallSource& source,
                                               const ProductKey& lumen);
 /// `flatmap`: the surface's conformal map, cut open, each vertex with the place of the centerline

@@ -115,7 +115,8 @@ Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
         for (const std::string& note : notesOf(*attributes))
             report_.notes.push_back(stage.name + ": " + note);
     }
-    report_.stages.push_back({stage.name, reused, meter.wallSeconds(), meter.peakMemoryMib()});
+    report_.stages.push_back(
+        {stage.name, reused, meter.wallSeconds(), meter.besideSeconds(), meter.peakMemoryMib()});
     if (options_.log) {
         options_.log(
             stage.name +

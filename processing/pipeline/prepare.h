@@ -50,6 +50,7 @@ struct StageReport {
     std::string stage;
     bool reused = false;  ///< its product was in the store already
     double wallSeconds = 0.0;
+    double besideSeconds = 0.0;  ///< of them, those that passed beside the stages before it
     /// The most memory that the process held resident during the stage, MiB (mapped files count).
     double peakMemoryMib = 0.0;
 };

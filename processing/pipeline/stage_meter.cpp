@@ -10,7 +10,8 @@ StageMeter::StageMeter() : start_(std::chrono::steady_clock::now()) {
 }
 
 double StageMeter::wallSeconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    return besideSeconds_ +
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
 double StageMeter::peakMemoryMib() const {

@@ -10,6 +10,10 @@ class StageMeter {
 public:
     /// Sets the kernel's mark of the process's peak memory back to what it holds now.
     StageMeter();
+    /// What was done of the stage beside others, before its turn came.
+    void addBeside(double seconds) { besideSeconds_ += seconds; }
+    double besideSeconds() const { return besideSeconds_; }
+    /// Since construction, and beside others before.
     double wallSeconds() const;
     /// Largest resident set since construction, MiB; since the process's start where the kernel
     /// does not let the mark be set back; 0 where it does not tell.
@@ -17,6 +21,7 @@ public:
 
 private:
     std::chrono::steady_clock::time_point start_;
+    double besideSeconds_ = 0.0;
 };
 
 }  // namespace haustra::pipeline

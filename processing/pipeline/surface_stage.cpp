@@ -4,6 +4,9 @@
 #include "surface/simplification.h"
 #include "surface/wall_field.h"
 
+#include <algorithm>
+#include <chrono>
+
 namespace haustra::pipeline {
 namespace {
 
@@ -80,6 +83,7 @@ ProductKey surfaceKey(const Preparation& preparation, const WallSource& source,
 
 Result<WallSurface> surfaceOf(Preparation& preparation, const WallSource& source,
                               const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
     const PrepareOptions& options = preparation.options();
     Attributes attributes;
     TriMesh fine;
@@ -112,7 +116,8 @@ Result<WallSurface> surfaceOf(Preparation& preparation, const WallSource& source
     setNotes(attributes,
              {attributes["triangles"] + " triangles of " + attributes["contoured-triangles"] +
               " contoured, Euler characteristic " + attributes["euler-characteristic"]});
-    return WallSurface{std::move(*simple), std::move(attributes)};
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    return WallSurface{std::move(*simple), std::move(attributes), took.count()};
 }
 
 }  // namespace
@@ -129,11 +134,13 @@ std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const Wa
 
 Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
                                const ProductKey& lumen, std::future<Result<WallSurface>> begun) {
-    const StageMeter meter;
+    StageMeter meter;
     const ProductKey key = surfaceKey(preparation, source, lumen);
     const auto make = [&](const Progress& progress) -> Result<void> {
-        const auto made = begun.valid() ? begun.get() : surfaceOf(preparation, source, progress);
+        const bool beside = begun.valid();
+        const auto made = beside ? begun.get() : surfaceOf(preparation, source, progress);
         if (!made) return tl::make_unexpected(made.error());
+        if (beside) meter.addBeside(std::max(0.0, made->seconds - meter.wallSeconds()));
         return preparation.target().publishMesh(product::surface, key, made->mesh, made->attributes,
                                                 madeFrom(product::surface));
     };

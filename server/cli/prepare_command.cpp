@@ -58,8 +58,9 @@ std::string reportJson(const pipeline::PrepareReport& report, const std::string&
         stages.push_back({{"stage", stage.stage},
                           {"reused", stage.reused},
                           {"wall_seconds", stage.wallSeconds},
+                          {"beside_seconds", stage.besideSeconds},
                           {"peak_memory_mib", stage.peakMemoryMib}});
-        wallSeconds += stage.wallSeconds;
+        wallSeconds += stage.wallSeconds - stage.besideSeconds;
         peakMemoryMib = std::max(peakMemoryMib, stage.peakMemoryMib);
     }
     auto bridges = nlohmann::ordered_json::array();
@@ -204,7 +205,8 @@ Command addPrepare(CLI::App& program) {
     addAreaWeightOption(*command, options.areaWeight);
     command
         ->add_option("--report", arguments->report,
-                     "Write wall seconds and peak memory of each stage, the bridges over collapsed "
+                     "Write wall seconds of each stage (beside_seconds of them passed beside "
+                     "the stages before it) and its peak memory, the bridges over collapsed "
                      "segments with their lengths, notes, and how sure the colon is, as "
                      "JSON")
         ->type_name("FILE.json");

@@ -9,6 +9,7 @@
 #include "prepared_tube.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 
 namespace haustra::pipeline {
@@ -236,6 +237,25 @@ TEST_F(Prepare, ProductsDoNotDependOnTheNumberOfThreads) {
         const auto bytes = bytesOf(store().openCase("threads-" + std::to_string(threads)).value());
         if (first.empty()) first = bytes;
         EXPECT_EQ(bytes, first);
+    }
+}
+
+TEST_F(Prepare, TheReportTellsWhatTheSurfaceTookBesideOtherStages) {
+    for (const int threads : {1, 2}) {
+        PrepareOptions some = options();
+        some.threads = threads;
+        const auto start = std::chrono::steady_clock::now();
+        const auto report = prepare(store(), "beside-" + std::to_string(threads), some);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        ASSERT_TRUE(report);
+        double sum = 0.0;
+        for (const StageReport& stage : report->stages) {
+            const bool beside = stage.stage == "surface" && threads > 1;
+            EXPECT_EQ(stage.besideSeconds > 0.0, beside) << stage.stage;
+            EXPECT_LE(stage.besideSeconds, stage.wallSeconds) << stage.stage;
+            sum += stage.wallSeconds - stage.besideSeconds;
+        }
+        EXPECT_LE(sum, took.count());
     }
 }
 
