@@ -20,8 +20,8 @@ using store::Attributes;
 
 // Raise a stage's version whenever its products change for the same input and options.
 constexpr int importVersion = 1;
-constexpr int segmentationVersion = 10;
-constexpr int maskVersion = 7;
+constexpr int segmentationVersion = 11;
+constexpr int maskVersion = 8;
 constexpr int mixtureVersion = 13;
 constexpr int cleansingVersion = 12;
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double twoWallsMm = 4.0;  // what lies between any two loops that touch
 
 double wrongCollapse(double lengthMm, double calibreRatio) {
-    constexpr double evenMm = 70.0, spreadMm = 14.0, otherCalibre = 0.5;
+    constexpr double evenMm = 75.0, spreadMm = 10.0, otherCalibre = 0.5;
     const double longWay = 1.0 / (1.0 + std::exp((evenMm - lengthMm) / spreadMm));
     const double mismatch = std::abs(std::log(calibreRatio)) > otherCalibre ? 0.4 : 0.0;
     const double touching = lengthMm < twoWallsMm ? 0.15 : 0.02;

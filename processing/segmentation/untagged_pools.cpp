@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace haustra::segmentation {
 namespace {
@@ -266,24 +267,26 @@ bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue
                        int threads) {
     const Grid& grid = hu.grid();
     const auto content = contents.content.writable();
+    const auto poolOf = [&](const PoolSearch& search, double ballMm) -> tl::expected<void, NoPool> {
+        const auto pool = search.open(ballMm);
+        if (!pool) return tl::make_unexpected(pool.error());
+        for (std::size_t n = 0; n < pool->grid().voxelCount(); ++n) {
+            if ((*pool)[n] == 0) continue;
+            const std::size_t m = grid.index(pool->grid().voxelAt(n) + search.box().lo);
+            content[m] = std::uint8_t(Content::untagged);
+        }
+        return {};
+    };
+    // The smallest balls that do not leak show most of a pool.
     const auto mark = [&](const UntaggedLevel& level) {
-        for (const Reach reach : reaches) {
-            const PoolSearch search(hu, tissue, contents, level, reach, threads);
-            bool cutOff = false;
-            for (const double ballMm : ballsMm) {
-                const auto pool = search.open(ballMm);
-                if (!pool) {
-                    cutOff = cutOff || pool.error() == NoPool::cutOff;
-                    continue;
-                }
-                for (std::size_t n = 0; n < pool->grid().voxelCount(); ++n) {
-                    if ((*pool)[n] == 0) continue;
-                    const std::size_t m = grid.index(pool->grid().voxelAt(n) + search.box().lo);
-                    content[m] = std::uint8_t(Content::untagged);
-                }
-                return true;
-            }
-            if (!cutOff) return false;
+        const PoolSearch near(hu, tissue, contents, level, reaches[0], threads);
+        std::optional<PoolSearch> far;
+        for (const double ballMm : ballsMm) {
+            const auto marked = poolOf(near, ballMm);
+            if (marked) return true;
+            if (marked.error() != NoPool::cutOff) continue;
+            if (!far) far.emplace(hu, tissue, contents, level, reaches[1], threads);
+            if (poolOf(*far, ballMm)) return true;
         }
         return false;
     };

@@ -10,10 +10,11 @@
 namespace haustra::segmentation {
 
 /// Marks as Content::untagged what stands beneath these levels (findUntaggedLevels): tissue below
-/// the level whose HU, smoothed to 1.5 mm, are nearer to the fluid's than to soft tissue's or to
-/// fat's, opened by a ball and connected with the level. The outermost millimetre
-/// that balls reach is the wall's: a distended colon's wall is 1 to 2 mm thick (Wiesner et al., J
-/// Comput Assist Tomogr 2002; 26: 102), too thin to show its own HU between fluid and fat.
+/// the level whose HU, smoothed to 1.5 mm, are nearer to the fluid's
+/// than to soft tissue's or to fat's, opened by a ball and connected with the level. The outermost
+/// millimetre that balls reach is the wall's: a distended colon's wall is 1 to 2 mm thick (Wiesner
+/// et al., J Comput Assist Tomogr 2002; 26: 102), too thin to show its own HU between fluid and
+/// fat.
 ///
 /// Gas below a level is another lumen's. Fluid stands no higher than its level: what rises over it
 /// has leaked into what only looks like fluid, or through a thin wall into a bladder. Then larger
