@@ -183,6 +183,9 @@ std::string qualityJson(const ColonRecord& record) {
                 {"left_out_gas_ml", rounded(gasMl)},
                 {"left_out_tagged_ml", rounded(taggedMl)},
                 {"left_out", leftOut},
+                {"ends_at", record.endsAt
+                                ? Json{record.endsAt->x, record.endsAt->y, record.endsAt->z}
+                                : Json()},
                 {"rebuilt_walls", walls},
                 {"untagged_fluid", untagged},
                 {"noise_sd_hu", rounded(record.noiseSdHu)}}

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -101,9 +102,9 @@ struct ColonRecord {
     std::vector<Doubt> doubts;         ///< the gravest first
     std::vector<RunnerUp> runnersUp;   ///< none or one
     std::vector<LeftOutBody> leftOut;  ///< near the chain or like colon, the largest first
-    /// Where the last piece lies: from −1, the patient's right side, to 1; from −1, front, to 1;
-    /// from 0, the lowest bowel, to 1. A cecum's, where nothing else is known.
-    glm::dvec3 endsAt{-0.5, -0.15, 0.3};
+    /// The lowest place of the last piece, in the trunk: x from −1 (the patient's right side) to 1,
+    /// y from −1 (front) to 1, z from 0 (the lowest bowel) to 1 (the highest).
+    std::optional<glm::dvec3> endsAt;
     std::vector<RebuiltWallRecord> walls;
     std::vector<UntaggedPool> untaggedPools;  ///< not in the lumen; the largest surface first
     double noiseSdHu = 0.0;                   ///< in gas

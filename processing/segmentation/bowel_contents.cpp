@@ -1,8 +1,6 @@
 #include "segmentation/bowel_contents.h"
 
 #include "core/parallel.h"
-#include "segmentation/edge_overshoot.h"
-#include "segmentation/printed_text.h"
 
 #include <algorithm>
 #include <array>
@@ -362,14 +360,6 @@ BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition posit
     });
     reachIn(contents.content, cells, outside, threads);
     measureGas(hu, contents, threads);
-    if (const double overshootHu = overshootBesideGasHu(hu, contents.content, tissue, threads);
-        overshootHu > tissue.taggedAboveHu) {
-        takeOffOvershoot(hu, overshootHu, contents.content, threads);
-        contents.notes.push_back(
-            text("the kernel is sharp: the wall beside gas is up to %.0f HU bright, as tagged "
-                 "material is; thin residue on it is not seen",
-                 overshootHu));
-    }
     findGravity(hu, position, tissue, threads, contents);
     markInterfaces(contents);
     return contents;

@@ -34,8 +34,7 @@ struct BowelContents {
 /// Sorts the voxels of a scan, taken in this position, by HU and place. The room's air is what can
 /// be reached from the scan's sides through places where a cube of 4 mm fits, and 6 mm more: so a
 /// tube in the rectum, open to the room, does not make the colon a part of it. Lung is air of a
-/// mean HU more than 60 above gas in cubes of 4 mm, where such cubes lie three deep. A sharp
-/// kernel's rim beside gas is not tagged (edge_overshoot.h), and a note says so. Levels as of
+/// mean HU more than 60 above gas in cubes of 4 mm, where such cubes lie three deep. Levels as of
 /// findLevels, for the direction of gravity that shows most of them; a note says where that is not
 /// the told one.
 BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition position,

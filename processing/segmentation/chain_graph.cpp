@@ -174,6 +174,7 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
         if (piece.radiusMm > 8.0 && piece.volumeMl > 10.0) low = std::min(low, lowest[n].z);
     }
     made.frame = findBodyFrame(softTissueMm, low, high);
+    made.lowestMm = lowest;
     for (std::size_t n = 0; n < made.pieceOf.size(); ++n) {
         const TubePiece& piece = cut.pieces[std::size_t(made.pieceOf[n])];
         ChainNode node;

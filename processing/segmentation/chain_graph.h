@@ -13,6 +13,7 @@ struct PieceGraph {
     ChainGraph graph;
     std::vector<std::int32_t> pieceOf;  ///< of each node
     std::vector<std::int32_t> nodeOf;   ///< of each piece, or −1
+    std::vector<glm::dvec3> lowestMm;   ///< place of each node
     BodyFrame frame;
     std::vector<CollapsePath>
         collapses;  ///< of each junction of that kind: its index is the junction's `path`

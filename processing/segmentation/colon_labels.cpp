@@ -235,14 +235,8 @@ private:
         const auto content = Content(contents_.content[n]);
         if (content == Content::untagged) return untagged;
         if (content == Content::gas) return air;
-        if (content == Content::tagged) return isBone(n) ? outside : tagged;
+        if (content == Content::tagged) return tagged;
         return hu_[n] < tissue_.airBelowHu ? air : tagged;
-    }
-
-    // Where no level shows tagged fluid, what is bright beside a pool of untagged fluid is bone.
-    bool isBone(std::size_t n) const {
-        return !options_.asGiven && contents_.levels.empty() &&
-               cut_.pieces[std::size_t(cut_.pieceAt[n])].untaggedVoxels > 0;
     }
 
     double unlikeSoft(std::size_t n) const { return std::abs(hu_[n] - softHu_); }

@@ -15,7 +15,7 @@ double wrongCollapse(double lengthMm, double calibreRatio) {
     constexpr double evenMm = 75.0, spreadMm = 10.0, otherCalibre = 0.5;
     const double longWay = 1.0 / (1.0 + std::exp((evenMm - lengthMm) / spreadMm));
     const double mismatch = std::abs(std::log(calibreRatio)) > otherCalibre ? 0.4 : 0.0;
-    const double touching = lengthMm < twoWallsMm ? 0.15 : 0.02;
+    const double touching = lengthMm > 0.0 && lengthMm < twoWallsMm ? 0.15 : 0.02;
     return 1.0 - (1.0 - touching) * (1.0 - longWay) * (1.0 - mismatch);
 }
 
@@ -35,7 +35,7 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         if (junction.kind == JunctionKind::collapse) {
             lengthMm[std::size_t(a.part)] += junction.lengthMm;
             doubt(wrongCollapse(junction.lengthMm, a.radiusMm / b.radiusMm),
-                  junction.lengthMm < twoWallsMm
+                  junction.lengthMm > 0.0 && junction.lengthMm < twoWallsMm
                       ? text("two loops may only touch where %.0f mm were crossed from the %s on",
                              junction.lengthMm, toString(a.part))
                       : text("a loop may lie in the %.0f mm that were crossed from the %s on",
@@ -55,12 +55,12 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
                   text("no more than %.0f mm of %s%s were found", mm, toString(part),
                        part == ColonPart::sigmoid ? "" : " in all"));
     }
-    constexpr double mostMedial = 0.0, mostHigh = 0.65;  // of a cecum, in the body's frame
+    constexpr double farLeft = 0.2, high = 0.6;  // of a cecum's lowest place
     if (!record.pieces.empty() && record.pieces.front().part > ColonPart::sigmoid)
         doubt(0.7, "the rectum was not found");
     if (!record.pieces.empty() && record.pieces.back().part < ColonPart::ascending)
         doubt(0.7, "the cecum was not found");
-    else if (record.endsAt.x > mostMedial || record.endsAt.z > mostHigh)
+    else if (record.endsAt && (record.endsAt->x > farLeft || record.endsAt->z > high))
         doubt(0.4, "the course may end before the cecum");
     for (const LeftOutBody& body : record.leftOut) {
         constexpr double tellMl = 5.0, muchMl = 25.0;

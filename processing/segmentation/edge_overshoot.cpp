@@ -1,11 +1,13 @@
 #include "segmentation/edge_overshoot.h"
 
 #include "core/voxel_sweep.h"
+#include "segmentation/printed_text.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <unordered_set>
+#include <utility>
 
 namespace haustra::segmentation {
 namespace {
@@ -71,27 +73,42 @@ double overshootBesideGasHu(const Volume<std::int16_t>& hu, const Volume<std::ui
     return least;
 }
 
-void takeOffOvershoot(const Volume<std::int16_t>& hu, double overshootHu,
-                      Volume<std::uint8_t>& content, int threads) {
+void takeOffOvershoot(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                      BowelContents& contents, int threads) {
+    const double overshootHu = overshootBesideGasHu(hu, contents.content, tissue, threads);
+    if (overshootHu <= tissue.taggedAboveHu) return;
     const Grid& grid = hu.grid();
-    const auto voxels = content.writable();
+    const auto voxels = contents.content.writable();
     const glm::dvec3 spacing = grid.spacingMm();
     const glm::ivec3 reach(rimMm / spacing);
-    for (const std::uint32_t n : borderOfGas(content, threads)) {
-        const glm::ivec3 v = grid.voxelAt(n);
+    const auto visitRim = [&](glm::ivec3 v, const auto& visit) {
         const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
                          hi = glm::min(v + reach, grid.size - 1);
         for (int k = lo.z; k <= hi.z; ++k) {
             for (int j = lo.y; j <= hi.y; ++j) {
                 for (int i = lo.x; i <= hi.x; ++i) {
-                    const std::size_t m = grid.index(i, j, k);
-                    if (Content(voxels[m]) == Content::tagged && hu[m] < overshootHu &&
-                        glm::length(spacing * glm::dvec3(glm::ivec3(i, j, k) - v)) <= rimMm)
-                        voxels[m] = std::uint8_t(Content::tissue);
+                    if (glm::length(spacing * glm::dvec3(glm::ivec3(i, j, k) - v)) <= rimMm)
+                        visit(grid.index(i, j, k));
                 }
             }
         }
+    };
+    std::unordered_set<std::size_t> underLevels;
+    for (const Level& level : contents.levels) {
+        for (const LevelColumn& column : level.columns)
+            visitRim(column.below, [&](std::size_t n) { underLevels.insert(n); });
     }
+    for (const std::uint32_t n : borderOfGas(contents.content, threads)) {
+        visitRim(grid.voxelAt(n), [&](std::size_t m) {
+            if (Content(voxels[m]) == Content::tagged && hu[m] <= overshootHu &&
+                underLevels.count(m) == 0)
+                voxels[m] = std::uint8_t(Content::tissue);
+        });
+    }
+    contents.notes.push_back(
+        text("the kernel is sharp: the wall beside gas is up to %.0f HU bright, as tagged material "
+             "is; thin residue on it is not seen",
+             overshootHu));
 }
 
 }  // namespace haustra::segmentation

@@ -3,6 +3,7 @@
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
+#include "segmentation/edge_overshoot.h"
 #include "segmentation/haustral_folds.h"
 #include "segmentation/printed_text.h"
 #include "segmentation/record_colon.h"
@@ -335,6 +336,7 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     Surroundings among;
     among.hu = binned(scan.hu, by, options.threads);
     among.contents = findContents(among.hu, scan.position, tissue, options.threads);
+    takeOffOvershoot(among.hu, tissue, among.contents, options.threads);
     among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
     const VoxelBox box = bowelBox(among.contents.content, placesOf(options.edits), options.threads);
     among.hu = cropped(among.hu, box, options.threads);

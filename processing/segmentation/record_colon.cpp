@@ -112,7 +112,7 @@ public:
         for (const UntaggedLevel& level : untagged_)
             made_.untaggedPools.push_back(
                 {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
-        made_.endsAt = graph_.frame.place(pieceOf(chain_.nodes.back()).centreMm);
+        made_.endsAt = graph_.frame.place(graph_.lowestMm[std::size_t(chain_.nodes.back())]);
         made_.doubts = doubtsOf(made_);
         made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
         warn();
@@ -150,11 +150,13 @@ private:
         return part;
     }
 
-    /// By calibre, place and folds, as the chain weighs them, of 10 ml and more: told wherever it
-    /// lies, as a part of the colon that was passed by may lie far from the course.
+    /// Of 16 mm and 10 ml and more, and likely by place and folds, as the chain weighs them: told
+    /// wherever it lies, as a part of the colon that was passed by may lie far from the course.
+    /// Place alone does not tell it.
     static bool looksLikeColon(const ChainNode& node) {
-        constexpr double leastRadiusMm = 8.0, leastMl = 10.0, likely = 1.0;
-        if (node.radiusMm < leastRadiusMm || node.volumeMl < leastMl) return false;
+        constexpr double leastRadiusMm = 8.0, leastMl = 10.0, likely = 1.3;
+        if (node.radiusMm < leastRadiusMm || node.volumeMl < leastMl || node.given < 0.0)
+            return false;
         double most = -1e9;
         for (std::size_t part = 0; part < colonParts; ++part)
             most = std::max(most, node.placeLogOdds[part] + node.foldLogOdds[part]);
@@ -218,7 +220,7 @@ private:
             }
             if (bodies == 0) continue;
             made_.warnings.push_back(
-                text("%.0f ml of %s near the %s%s, at ", sumMl,
+                text("%.0f ml of %s nearest to the %s%s, at ", sumMl,
                      first.gas        ? "gas"
                      : first.untagged ? "fluid without tagging"
                                       : "tagged material",
@@ -226,6 +228,19 @@ private:
                      first.opens ? " lie open to the colon and were taken for small bowel"
                                  : " were taken for other than colon") +
                 places + (bodies > mostPlaces ? " and elsewhere" : ""));
+        }
+    }
+
+    // Tagged fluid that stands nowhere under gas in the whole scan may be bone beside a pool.
+    void sayUnseenTagging() {
+        constexpr double tellMl = 2.0;
+        if (!contents_.levels.empty()) return;
+        for (const ColonPiece& piece : made_.pieces) {
+            if (piece.taggedMl < tellMl) continue;
+            made_.warnings.push_back(
+                text("%.0f ml in the %s are as bright as tagged material, which shows no level in "
+                     "this scan; they may be bone, at %s",
+                     piece.taggedMl, toString(piece.part), placeText(piece.centreMm).c_str()));
         }
     }
 
@@ -247,6 +262,7 @@ private:
                          100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
         }
         sayLeftOut();
+        sayUnseenTagging();
         for (const RebuiltWallRecord& wall : made_.walls) {
             constexpr double tellMm2 = 20.0;
             if (wall.betweenLoops && wall.areaMm2 > tellMm2)

@@ -275,8 +275,8 @@ private:
         }
         return false;
     }
-    /// Whether on both sides of the voxel, before the content ends, there is some of it whose HU
-    /// the voxel stands out from.
+    /// Whether on both sides of the voxel there is some of the content whose HU the voxel stands
+    /// out from.
     template <class StandsOut>
     bool isSheet(glm::ivec3 v, std::size_t n, Content content,
                  const StandsOut& standsOutFrom) const {

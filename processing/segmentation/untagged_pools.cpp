@@ -64,8 +64,8 @@ public:
             if (!pool[n]) continue;
             ++voxels;
             const glm::ivec3 v = grid.voxelAt(n);
-            if (atSide(v)) return tl::make_unexpected(NoPool::cutOff);
             const double mm = depthMm(v);
+            if (atSide(v)) return tl::make_unexpected(mm < 0.0 ? NoPool::leaked : NoPool::cutOff);
             risen += mm < -blurMm && mm >= -blurMm - stepMm();
             underGas += mm >= blurMm && mm < blurMm + stepMm() && isUnderGas(pool, v);
         }
@@ -77,6 +77,7 @@ public:
                            double(filled) > leastFilled * double(level_.columns.size());
         if (!sound) return tl::make_unexpected(NoPool::leaked);
         trim(pool);
+        keepOffBone(pool);
         return pool;
     }
 
@@ -92,6 +93,7 @@ private:
         return v;
     }
     bool isGas(std::size_t n) const { return Content(content_[n]) == Content::gas; }
+    bool isUntagged(std::size_t n) const { return Content(content_[n]) == Content::untagged; }
     bool isTissue(std::size_t n) const { return Content(content_[n]) == Content::tissue; }
     /// Where a pool that goes on would be cut off.
     bool atSide(glm::ivec3 v) const {
@@ -113,6 +115,7 @@ private:
         const auto inside = inside_.writable(), blur = blur_.writable();
         for (std::size_t n = 0; n < inside.size(); ++n) {
             const double mm = depthMm(grid.voxelAt(n));
+            // Balls may reach into the gas over the level, but not climb along the wall beside it.
             inside[n] = fluid_[n] || (isGas(n) && mm <= 0.0 && mm > -ballsMm.front());
         }
         for (const glm::ivec3 column : level_.columns) {
@@ -136,6 +139,7 @@ private:
         Volume<std::uint8_t> like(grid, std::uint8_t(0));
         const auto out = like.writable();
         for (std::size_t n = 0; n < out.size(); ++n) {
+            if (isUntagged(n)) out[n] = 1;  // another level's pool, open to this one
             if (!isTissue(n) || weight[n] < leastWeight) continue;
             const double meanHu = double(one) * value[n] / weight[n];
             out[n] = meanHu > fromHu && meanHu < toHu;
@@ -206,6 +210,52 @@ private:
                 leaked = in[m] && (leaked || mm < -blurMm);
                 if (leaked || (mm <= 0.0 && !blur_[m])) in[m] = 0;
             }
+        });
+    }
+
+    /// Sediment lies flat under its fluid; what is bright under a pool and not flat is bone, and
+    /// the pool ends a wall's width over it.
+    void keepOffBone(Volume<std::uint8_t>& pool) const {
+        constexpr double flatMm = 0.8, asideNearMm = 4.0, gapMm = 2.5;
+        constexpr int none = -1;
+        const Grid& grid = hu_.grid();
+        const int across = 1 - down_.axis, width = grid.size[across];
+        const auto in = pool.writable();
+        // Of each column, where the pool meets what is bright, as a place along the column.
+        std::vector<int> floors(std::size_t(width) * std::size_t(grid.size.z), none);
+        const auto floorAt = [&](int n, int z) -> int& {
+            return floors[std::size_t(n) + std::size_t(width) * std::size_t(z)];
+        };
+        eachColumn([&](const std::vector<std::size_t>& column) {
+            for (std::size_t at = 1; at < column.size(); ++at) {
+                if (!in[column[at - 1]] || Content(content_[column[at]]) != Content::tagged)
+                    continue;
+                const glm::ivec3 v = grid.voxelAt(column[at]);
+                floorAt(v[across], v.z) = int(at);
+            }
+        });
+        const int aside = std::max(1, int(std::lround(asideNearMm / grid.spacingMm()[across]))),
+                  along = std::max(1, int(std::lround(asideNearMm / grid.spacingMm().z)));
+        const auto isFlat = [&](int n, int z) {
+            const std::array<glm::ivec2, 4> around{
+                {{n - aside, z}, {n + aside, z}, {n, z - along}, {n, z + along}}};
+            int met = 0, level = 0;
+            for (const glm::ivec2 w : around) {
+                if (w.x < 0 || w.x >= width || w.y < 0 || w.y >= grid.size.z) continue;
+                const int floor = floorAt(w.x, w.y);
+                if (floor == none) continue;
+                ++met;
+                level += std::abs(floor - floorAt(n, z)) * stepMm() <= std::max(flatMm, stepMm());
+            }
+            return met == 0 || 2 * level > met;
+        };
+        const int gap = std::max(1, int(std::lround(gapMm / stepMm())));
+        eachColumn([&](const std::vector<std::size_t>& column) {
+            const glm::ivec3 first = grid.voxelAt(column.front());
+            const int floor = floorAt(first[across], first.z);
+            if (floor == none || isFlat(first[across], first.z)) return;
+            for (int at = std::max(0, floor - gap); at < floor; ++at)
+                in[column[std::size_t(at)]] = 0;
         });
     }
 

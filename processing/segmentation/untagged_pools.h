@@ -16,10 +16,12 @@ namespace haustra::segmentation {
 /// et al., J Comput Assist Tomogr 2002; 26: 102), too thin to show its own HU between fluid and
 /// fat.
 ///
-/// Gas below a level is another lumen's. Fluid stands no higher than its level: what rises over it
-/// has leaked into what only looks like fluid, or through a thin wall into a bladder. Then larger
-/// balls are tried (3 to 8 mm), and where none holds, the level stays without a pool. A lumen whose
-/// roof lies below the level is full, and a part of the pool. Returns whether any level has one.
+/// Gas below a level is another lumen's, or a bubble with its own level. Fluid stands no higher
+/// than its level: what rises over it has leaked into what only looks like fluid, or through a thin
+/// wall into a bladder. Then larger balls are tried (3 to 8 mm), and where none holds, the level
+/// stays without a pool. A lumen whose roof lies below the level is full, and a part of the pool.
+/// What is bright beneath is sediment where it lies flat, else bone, and the pool ends 2.5 mm over
+/// it. Returns whether any level has one.
 ///
 /// `contents` must own its memory and have its gravity. O(voxels around levels); the same for any
 /// number of threads.

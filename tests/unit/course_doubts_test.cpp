@@ -46,6 +46,24 @@ TEST(CourseDoubts, GrowWithTheCollapseAndTheStepInCalibre) {
     EXPECT_LT(last, 0.3);
 }
 
+// Two walls lie between any two loops that touch; a bridge of no length is none.
+TEST(CourseDoubts, AWayNoLongerThanTwoWallsIsDoubtedMoreThanALittleLongerOne) {
+    EXPECT_LT(confidence(collapsed(2.0)), confidence(collapsed(8.0)) - 0.05);
+    EXPECT_GT(confidence(collapsed(0.0)), confidence(collapsed(8.0)));
+}
+
+TEST(CourseDoubts, ACourseThatEndsWhereNoCecumLiesIsDoubted) {
+    const auto endingAt = [](glm::dvec3 place) {
+        ColonRecord record = wholeColon();
+        record.endsAt = place;
+        return confidence(record);
+    };
+    EXPECT_EQ(endingAt({-0.5, 0.0, 0.2}), 1.0);
+    EXPECT_EQ(endingAt({0.1, 0.0, 0.2}), 1.0) << "a mobile cecum";
+    EXPECT_LT(endingAt({-0.5, 0.0, 0.8}), 0.7) << "at the hepatic flexure";
+    EXPECT_LT(endingAt({0.6, 0.0, 0.2}), 0.7) << "on the left";
+}
+
 TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
     const auto lowers = [](const auto& change) {
         ColonRecord record = collapsed(30.0);

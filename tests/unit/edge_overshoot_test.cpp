@@ -11,39 +11,44 @@ using namespace haustra::segmentation;
 namespace {
 
 constexpr double gasRadiusMm = 22.0, rimMm = 2.0;
-constexpr int rimHu = 320, fluidHu = 500;
+constexpr int rimHu = 320, fluidTop = 40;  // y of the fluid's first voxel; supine, so y is down
 
 struct Scene {
     Volume<std::int16_t> hu;
-    Volume<std::uint8_t> content;
+    BowelContents contents;
     TissueModel tissue;
 };
 
 /// Gas over fluid in a ball; `bright`: a rim all around the gas.
-Scene ball(bool bright, bool fluid) {
+Scene ball(bool bright, bool fluid, int fluidHu = 500) {
     const Grid grid = axisAlignedGrid({64, 64, 64}, glm::dvec3(1.0));
-    Scene scene{Volume<std::int16_t>(grid, std::int16_t(40)),
-                Volume<std::uint8_t>(grid, std::uint8_t(Content::tissue)),
-                {}};
+    Scene scene;
+    scene.hu = Volume<std::int16_t>(grid, std::int16_t(40));
+    scene.contents.content = Volume<std::uint8_t>(grid, std::uint8_t(Content::tissue));
+    scene.contents.down = {1, 1};
     scene.tissue.meanHu = {-1000, -100, 40, 500};
     scene.tissue.airBelowHu = -480, scene.tissue.taggedAboveHu = 200;
+    Level level;
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
-        const glm::dvec3 p = glm::dvec3(grid.voxelAt(n)) - glm::dvec3(31.5);
-        const double mm = glm::length(p) - gasRadiusMm;
+        const glm::ivec3 v = grid.voxelAt(n);
+        const double mm = glm::length(glm::dvec3(v) - glm::dvec3(31.5)) - gasRadiusMm;
         if (mm < 0.0) {
-            const bool below = fluid && p.y > 8.0;
-            scene.hu.writable()[n] = below ? fluidHu : -1000;
-            scene.content.writable()[n] = std::uint8_t(below ? Content::tagged : Content::gas);
+            const bool below = fluid && v.y >= fluidTop;
+            if (fluid && v.y == fluidTop) level.columns.push_back({v - glm::ivec3(0, 1, 0), v});
+            scene.hu.writable()[n] = std::int16_t(below ? fluidHu : -1000);
+            scene.contents.content.writable()[n] =
+                std::uint8_t(below ? Content::tagged : Content::gas);
         } else if (bright && mm < rimMm) {
             scene.hu.writable()[n] = rimHu;
-            scene.content.writable()[n] = std::uint8_t(Content::tagged);
+            scene.contents.content.writable()[n] = std::uint8_t(Content::tagged);
         }
     }
+    if (fluid) scene.contents.levels.push_back(level);
     return scene;
 }
 
 double overshoot(const Scene& scene) {
-    return overshootBesideGasHu(scene.hu, scene.content, scene.tissue, 2);
+    return overshootBesideGasHu(scene.hu, scene.contents.content, scene.tissue, 2);
 }
 
 TEST(EdgeOvershoot, IsWhatLiesAllAroundGas) {
@@ -52,20 +57,31 @@ TEST(EdgeOvershoot, IsWhatLiesAllAroundGas) {
 }
 
 TEST(EdgeOvershoot, FluidUnderGasIsNone) {
-    EXPECT_EQ(overshoot(ball(false, true)), 0.0);
-    EXPECT_EQ(overshoot(ball(false, false)), 0.0);
+    for (const bool fluid : {true, false}) {
+        Scene scene = ball(false, fluid);
+        EXPECT_EQ(overshoot(scene), 0.0);
+        takeOffOvershoot(scene.hu, scene.tissue, scene.contents, 2);
+        EXPECT_TRUE(scene.contents.notes.empty());
+        const Scene before = ball(false, fluid);
+        for (std::size_t n = 0; n < scene.contents.content.voxels().size(); ++n)
+            ASSERT_EQ(scene.contents.content[n], before.contents.content[n]);
+    }
 }
 
-TEST(EdgeOvershoot, TheRimIsTakenOffAndTheFluidStays) {
-    Scene scene = ball(true, true);
-    takeOffOvershoot(scene.hu, rimHu + 1.0, scene.content, 2);
-    const Grid& grid = scene.hu.grid();
-    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
-        const glm::dvec3 p = glm::dvec3(grid.voxelAt(n)) - glm::dvec3(31.5);
-        const bool fluid = scene.hu[n] == fluidHu;
-        const bool farFromGas = p.y > 8.0;  // the fluid's own rim stays
-        if (fluid || !farFromGas) {
-            ASSERT_EQ(Content(scene.content[n]) == Content::tagged, fluid) << p.x << ' ' << p.y;
+TEST(EdgeOvershoot, TheRimIsTakenOffAndTheFluidStaysEvenWhereItIsDarker) {
+    for (const int fluidHu : {500, 260}) {
+        Scene scene = ball(true, true, fluidHu);
+        takeOffOvershoot(scene.hu, scene.tissue, scene.contents, 2);
+        EXPECT_EQ(scene.contents.notes.size(), 1u);
+        const Grid& grid = scene.hu.grid();
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            const glm::ivec3 v = grid.voxelAt(n);
+            const bool isTagged = Content(scene.contents.content[n]) == Content::tagged;
+            if (scene.hu[n] == fluidHu) {
+                ASSERT_TRUE(isTagged) << v.x << ' ' << v.y << ' ' << v.z;
+            } else if (v.y < fluidTop - 3) {
+                ASSERT_FALSE(isTagged) << v.x << ' ' << v.y << ' ' << v.z;
+            }
         }
     }
 }

@@ -324,6 +324,31 @@ TEST(FindColon, ASectionFullOfFluidToItsRoofBelongsToThePool) {
         << "the course ends at the cecum";
 }
 
+// Sediment lies flat under the water; a bone that the water comes near to does not.
+TEST(FindColon, FlatSedimentUnderAPoolIsLumenAndBoneUnderItIsNot) {
+    const auto pool = [](glm::dvec3 p) { return inColon(p) && p.y >= 120.0 && p.x < 100; };
+    const auto sediment = [&](glm::dvec3 p) { return pool(p) && p.y >= 145.0 && p.z < 160.0; };
+    const auto bone = [](glm::dvec3 p) {
+        return !inColon(p) && std::abs(p.z - 195.0) < 25.0 &&
+               glm::distance(glm::dvec2(p), glm::dvec2(60.0, 170.0)) < 16.0;
+    };
+    Drawing drawing;
+    drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
+    drawing.paint(8, pool);
+    drawing.paint(620, sediment);
+    drawing.paint(450, bone);
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    double sedimentMl = 0.0;
+    const Grid& grid = found->labels.grid();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+        sedimentMl += sediment(grid.patientFromVoxelPoint(grid.voxelAt(n)))
+                          ? grid.voxelVolumeMm3() / 1000.0
+                          : 0.0;
+    EXPECT_GT(labelledMl(*found, sediment), 0.85 * sedimentMl);
+    EXPECT_LT(labelledMl(*found, bone), 1.0);
+}
+
 // Down is towards the front in a prone scan.
 TEST(FindColon, FluidWithoutTaggingIsFoundInAProneScan) {
     const auto water = [](glm::dvec3 p) {
@@ -366,8 +391,8 @@ TEST(FindColon, AnExcludedOrCutPoolStaysOut) {
     EXPECT_EQ(find(drawing.scan(), nowhere).has_value(), false);
 }
 
-// Fluid ends at its own level. Where what looks like it goes on beside the lumen, up to there and
-// under no gas, it is not known where the pool ends: it is told, and left out.
+// Fluid ends at its own level. Where what looks like it goes on beside the lumen and rises over the
+// level, it is not known where the pool ends: it is told, and left out.
 TEST(FindColon, FluidThatLeaksIsToldAndLeftOut) {
     const auto water = [](glm::dvec3 p) { return inColon(p) && p.y >= 140.0 && p.x < 120; };
     Drawing drawing;
