@@ -5,6 +5,7 @@
 #include "flatten/unified_flattening.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -115,7 +116,7 @@ Cut cutAt(const Mapped& mapped, double seam) {
 
 /// The strip cut open; where that leaves folds, with a seam a hair aside, and discs around the
 /// folds set in.
-Cut cutOpen(Mapped& mapped, const SeamOptions& options) {
+Cut cutOpen(Mapped& mapped, double radiusFactor, const SeamOptions& options) {
     constexpr int rounds = 40;
     constexpr double aside = 1.0 / 5760.0;  // an eighth of a column of bestSeam's
     Cut cut = cutAt(mapped, bestSeam(mapped.tube, mapped.map, options));
@@ -140,10 +141,25 @@ Cut cutOpen(Mapped& mapped, const SeamOptions& options) {
             cut = moved;
             continue;
         }
-        SetIn mended = mendFolds(mapped.tube, mapped.map, stay, mapped.work);
+        SetIn mended = mendFolds(mapped.tube, mapped.map, stay, radiusFactor, mapped.work);
         if (mended.pouches == 0) break;
         mapped.take(std::move(mended), false);
         cut = cutAt(mapped, cut.seam);
+    }
+    return cut;
+}
+
+/// The strip cut open; where folds stay, all over again with holes of other radii, as one in
+/// between may be round enough to be filled; each try has as much more work.
+Cut cutOpen(Mapped& mapped, const SeamOptions& options) {
+    constexpr std::array<double, 3> radiusFactors{1.5, 1.25, 1.12};
+    Mapped before = mapped;
+    Cut cut;
+    for (const double factor : radiusFactors) {
+        mapped = before;
+        cut = cutOpen(mapped, factor, options);
+        if (cut.folded.empty()) break;
+        before.work.left += workPerTriangle * before.tube.triangles.size();
     }
     return cut;
 }

@@ -1036,13 +1036,14 @@ SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pou
 /// The least disc around a spot that can be mapped apart with fewer folds than the spot has.
 std::optional<CutPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfedges,
                                   const PeriodicMap& map, const Spot& spot,
-                                  const std::vector<char>& taken, Discs& discs, PouchWork& work) {
+                                  const std::vector<char>& taken, Discs& discs, double radiusFactor,
+                                  PouchWork& work) {
     const double units = flatUnitsPerCircumference(map.height);
     const double most = std::min(
         {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
     std::vector<char> inside(tube.triangles.size(), 0);
     for (double radius = std::max(1.5 * spot.reach, crowdedUnits / units); radius < most;
-         radius *= 1.5) {
+         radius *= radiusFactor) {
         const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
         if (!disc) continue;
         if (disc->triangles.size() > mostAround + 100 * spot.triangles.size()) break;
@@ -1065,7 +1066,7 @@ std::optional<CutPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfe
 }  // namespace
 
 SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
-                PouchWork& work) {
+                double radiusFactor, PouchWork& work) {
     PeriodicMap spread = map;
     const VertexStars stars(tube);
     const double units = flatUnitsPerCircumference(map.height);
@@ -1089,7 +1090,8 @@ SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<i
     for (const Spot& spot : spots) {
         if (std::ranges::any_of(spot.triangles, [&](int t) { return taken[std::size_t(t)] != 0; }))
             continue;
-        const auto cut = leastDisc(tube, *halfedges, spread, spot, taken, discs, work);
+        const auto cut =
+            leastDisc(tube, *halfedges, spread, spot, taken, discs, radiusFactor, work);
         if (!cut) continue;
         for (const int t : cut->triangles())
             taken[std::size_t(t)] = 1;

@@ -74,8 +74,9 @@ SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch
 /// move to the middles of their stars, up to six rings of them, and stay there where all of their
 /// triangles come to stand. Other clusters are mapped apart likewise, in the least round hole in
 /// the map that has room for its triangles and leaves half as many folds or fewer. `pouches` of
-/// what is returned counts both. A cluster for which there is no work left stays.
+/// what is returned counts both. A cluster for which there is no work left stays. Holes are tried
+/// with radii that grow by `radiusFactor`, over 1.
 SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
-                PouchWork& work);
+                double radiusFactor, PouchWork& work);
 
 }  // namespace haustra::flatten
