@@ -17,7 +17,8 @@ enum class LumenLabel : std::uint8_t {
     air = 1,       ///< air-filled lumen
     tagged = 2,    ///< tagged fluid or stool inside the lumen, and its interface with the air
     bridge = 3,    ///< tissue in a collapsed stretch, taken in so that the lumen is one piece
-    untagged = 4,  ///< fluid that took no tagging; its wall is told by little contrast
+    untagged = 4,  ///< fluid that took no tagging, whose wall shows little contrast; and the wall
+                   ///< of what stands in the lumen, as a catheter's balloon
 };
 
 }  // namespace haustra

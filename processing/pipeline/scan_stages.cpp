@@ -20,7 +20,7 @@ using store::Attributes;
 
 // Raise a stage's version whenever its products change for the same input and options.
 constexpr int importVersion = 1;
-constexpr int segmentationVersion = 11;
+constexpr int segmentationVersion = 12;
 constexpr int maskVersion = 8;
 constexpr int mixtureVersion = 13;
 constexpr int cleansingVersion = 12;

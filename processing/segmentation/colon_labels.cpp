@@ -58,6 +58,11 @@ public:
             fitToHalfHeight();
         }
         takeCrumbs();
+        if (!options_.asGiven) {
+            result_.enclosed =
+                takeInEnclosedGas(contents_.content, cut_, result_.labels, options_.threads);
+            labels_ = result_.labels.writable();
+        }
         layBridges(options_.bridgeRadiusMm);
         joinUp();
         return std::move(result_);

@@ -3,6 +3,7 @@
 
 #include "core/tissue.h"
 #include "segmentation/chain_graph.h"
+#include "segmentation/enclosed_gas.h"
 
 #include <cstdint>
 #include <vector>
@@ -28,7 +29,8 @@ struct ColonLabels {
     Volume<std::uint8_t> labels;  ///< LumenLabel; one 6-connected piece
     std::vector<RebuiltWall> walls;
     std::vector<double> bridgeMm;  ///< of each junction of the chain: the length labelled as bridge
-    double strandedMl = 0.0;       ///< left out since nothing joins it to the rest
+    std::vector<EnclosedGas> enclosed;  ///< taken in; not where the contents are given
+    double strandedMl = 0.0;            ///< left out since nothing joins it to the rest
 };
 
 /// Labels the chain's pieces and sacs, and the small bodies of content that lie open to them.
@@ -39,7 +41,8 @@ struct ColonLabels {
 /// for what leads around a neck; elsewhere it leads through a wall between two loops, and that wall
 /// is rebuilt, one voxel thick: of each pair of voxels that touch, the one with the HU nearer to
 /// soft tissue's is outside. So is the wall to other bowel. Where the chain crosses a collapse, a
-/// bridge of `bridgeRadiusMm` follows its path. The same for any number of threads. O(voxels).
+/// bridge of `bridgeRadiusMm` follows its path. Gas within the lumen, behind a wall of its own, is
+/// taken in (enclosed_gas.h). The same for any number of threads. O(voxels).
 ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                       const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
                       const ColonChain& chain, const LabelOptions& options = {});

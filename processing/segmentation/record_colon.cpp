@@ -165,7 +165,11 @@ private:
 
     void findLeftOut() {
         constexpr double leastMl = 2.0, nearMm = 20.0;
-        const std::set<int> taken = nodesOf(chain_);
+        std::set<int> taken = nodesOf(chain_);
+        for (const EnclosedGas& gas : labels_.enclosed) {
+            for (const std::int32_t piece : gas.pieces)
+                taken.insert(graph_.nodeOf[std::size_t(piece)]);
+        }
         std::set<int> opened;
         for (const int j : chain_.cuts) {
             opened.insert(graph_.graph.junctions[std::size_t(j)].a);
@@ -280,6 +284,11 @@ private:
                     "little contrast and may lie elsewhere by millimetres",
                     ml, toString(part)));
         }
+        for (const EnclosedGas& gas : labels_.enclosed)
+            say(text(
+                "%.0f ml of gas stand in the lumen of the %s behind a wall of their own, as in "
+                "a catheter's balloon; both were taken out, at %s",
+                gas.volumeMl, toString(partAt(gas.placeMm)), placeText(gas.placeMm).c_str()));
         for (const UntaggedPool& pool : made_.untaggedPools)
             say(text(
                 "fluid without tagging stands under the gas in the %s, its surface %.0f mm2; what "

@@ -18,6 +18,7 @@ constexpr double centreShare = 0.8;  // of the way to another tissue, at a ball'
 constexpr double aboveMm = 20.0;     // the level, where leaks are looked for
 constexpr double blurMm = 3.0;       // of partial volume at a level
 constexpr double wallMm = 1.0;       // taken for fluid beside fat
+constexpr double overBoneMm = 2.5, besideBoneMm = 1.0;  // where a pool ends
 constexpr std::array<double, 5> ballsMm{3.0, 4.0, 5.0, 6.5, 8.0};
 constexpr double mostRisen = 0.15, leastFilled = 0.5, leastMl = 1.0;
 
@@ -77,7 +78,8 @@ public:
                            double(filled) > leastFilled * double(level_.columns.size());
         if (!sound) return tl::make_unexpected(NoPool::leaked);
         trim(pool);
-        keepOffBone(pool);
+        keepOverBone(pool);
+        keepAsideOfBone(pool);
         return pool;
     }
 
@@ -95,6 +97,12 @@ private:
     bool isGas(std::size_t n) const { return Content(content_[n]) == Content::gas; }
     bool isUntagged(std::size_t n) const { return Content(content_[n]) == Content::untagged; }
     bool isTissue(std::size_t n) const { return Content(content_[n]) == Content::tissue; }
+    bool isTagged(glm::ivec3 v) const {
+        return hu_.grid().contains(v) && Content(content_.at(v)) == Content::tagged;
+    }
+    int voxelsOf(double mm, int axis) const {
+        return std::max(1, int(std::lround(mm / hu_.grid().spacingMm()[axis])));
+    }
     /// Where a pool that goes on would be cut off.
     bool atSide(glm::ivec3 v) const {
         return glm::any(glm::equal(v, glm::ivec3(0))) ||
@@ -213,10 +221,11 @@ private:
         });
     }
 
-    /// Sediment lies flat under its fluid; what is bright under a pool and not flat is bone, and
-    /// the pool ends a wall's width over it.
-    void keepOffBone(Volume<std::uint8_t>& pool) const {
-        constexpr double flatMm = 0.8, asideNearMm = 4.0, gapMm = 2.5;
+    /// Sediment lies level under its fluid, along both axes, as far as it reaches; what is bright
+    /// under a pool and not level is bone, and the pool ends a wall's width over it.
+    void keepOverBone(Volume<std::uint8_t>& pool) const {
+        constexpr double flatMm = 0.8;
+        constexpr std::array<double, 4> asideMm{4.0, 8.0, 12.0, 16.0};
         constexpr int none = -1;
         const Grid& grid = hu_.grid();
         const int across = 1 - down_.axis, width = grid.size[across];
@@ -234,22 +243,27 @@ private:
                 floorAt(v[across], v.z) = int(at);
             }
         });
-        const int aside = std::max(1, int(std::lround(asideNearMm / grid.spacingMm()[across]))),
-                  along = std::max(1, int(std::lround(asideNearMm / grid.spacingMm().z)));
-        const auto isFlat = [&](int n, int z) {
-            const std::array<glm::ivec2, 4> around{
-                {{n - aside, z}, {n + aside, z}, {n, z - along}, {n, z + along}}};
+        // Whether most of the floors along one axis are as high as the floor here.
+        const auto isLevel = [&](int n, int z, int axis) {
             int met = 0, level = 0;
-            for (const glm::ivec2 w : around) {
-                if (w.x < 0 || w.x >= width || w.y < 0 || w.y >= grid.size.z) continue;
-                const int floor = floorAt(w.x, w.y);
-                if (floor == none) continue;
-                ++met;
-                level += std::abs(floor - floorAt(n, z)) * stepMm() <= std::max(flatMm, stepMm());
+            for (const double mm : asideMm) {
+                const int step = voxelsOf(mm, axis);
+                for (const int sign : {-1, 1}) {
+                    const glm::ivec2 w =
+                        glm::ivec2(n, z) +
+                        (axis == 2 ? glm::ivec2(0, sign * step) : glm::ivec2(sign * step, 0));
+                    if (w.x < 0 || w.x >= width || w.y < 0 || w.y >= grid.size.z) continue;
+                    const int floor = floorAt(w.x, w.y);
+                    if (floor == none) continue;
+                    ++met;
+                    level += std::abs(floor - floorAt(n, z)) * stepMm() <=
+                             std::max(flatMm, 0.6 * stepMm());
+                }
             }
             return met == 0 || 2 * level > met;
         };
-        const int gap = std::max(1, int(std::lround(gapMm / stepMm())));
+        const auto isFlat = [&](int n, int z) { return isLevel(n, z, across) && isLevel(n, z, 2); };
+        const int gap = voxelsOf(overBoneMm, down_.axis);
         eachColumn([&](const std::vector<std::size_t>& column) {
             const glm::ivec3 first = grid.voxelAt(column.front());
             const int floor = floorAt(first[across], first.z);
@@ -257,6 +271,24 @@ private:
             for (int at = std::max(0, floor - gap); at < floor; ++at)
                 in[column[std::size_t(at)]] = 0;
         });
+    }
+
+    /// What is bright and stands up beside a pool is no sediment of it.
+    void keepAsideOfBone(Volume<std::uint8_t>& pool) const {
+        const Grid& grid = hu_.grid();
+        const int up = -voxelsOf(overBoneMm, down_.axis);
+        const auto standsAt = [&](glm::ivec3 v) { return isTagged(v) && isTagged(below(v, up)); };
+        const auto in = pool.writable();
+        for (std::size_t n = 0; n < in.size(); ++n) {
+            if (!in[n]) continue;
+            for (const int axis : {1 - down_.axis, 2}) {
+                const int reach = voxelsOf(besideBoneMm, axis);
+                glm::ivec3 v = grid.voxelAt(n);
+                v[axis] -= reach;
+                for (int step = -reach; step <= reach; ++step, ++v[axis])
+                    if (standsAt(v)) in[n] = 0;
+            }
+        }
     }
 
     /// visit(voxels of a column, downwards).

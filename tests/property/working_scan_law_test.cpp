@@ -106,6 +106,40 @@ TEST(FullResolution, MovesTheBorderToTheScansOwnAndKeepsTheTopology) {
     }
 }
 
+// Fluid that the HU do not tell from its wall ends where its blocks do; the gas over it does not
+// grow into it.
+TEST(FullResolution, LeavesUntaggedFluidItsBlocks) {
+    const Grid fineGrid = axisAlignedGrid(glm::ivec3(48), glm::dvec3(0.35));
+    Volume<std::int16_t> hu(fineGrid, std::int16_t(softHu));
+    const auto isGas = [](glm::ivec3 v) { return v.x > 8 && v.x < 39 && v.y > 8 && v.y < 23; };
+    for (std::size_t n = 0; n < fineGrid.voxelCount(); ++n) {
+        const glm::ivec3 v = fineGrid.voxelAt(n);
+        if (v.z > 7 && v.z < 40 && isGas(v)) hu.writable()[n] = std::int16_t(gasHu);
+    }
+    const glm::ivec3 by(2);
+    const Volume<std::int16_t> half = binned(hu, by, 1);
+    Volume<std::uint8_t> labels(half.grid(), std::uint8_t(0)), barred(half.grid(), std::uint8_t(0));
+    for (std::size_t n = 0; n < labels.voxels().size(); ++n) {
+        const glm::ivec3 v = half.grid().voxelAt(n);
+        const bool beneath = v.z >= 5 && v.z < 19 && v.x >= 6 && v.x < 18 && v.y >= 12 && v.y < 20;
+        labels.writable()[n] = half[n] < wallHu ? std::uint8_t(LumenLabel::air)
+                               : beneath        ? std::uint8_t(LumenLabel::untagged)
+                                                : std::uint8_t(LumenLabel::outside);
+    }
+    const Volume<std::uint8_t> fine = atFullResolution(labels, barred, hu, by, wallHu, 2);
+    std::size_t fluid = 0;
+    for (std::size_t n = 0; n < fineGrid.voxelCount(); ++n) {
+        const LumenLabel block{labels.at(fineGrid.voxelAt(n) / by)}, is{fine[n]};
+        if (block == LumenLabel::untagged)
+            EXPECT_EQ(is, hu[n] < wallHu ? LumenLabel::air : LumenLabel::untagged);
+        else
+            EXPECT_NE(is, LumenLabel::untagged);
+        fluid += is == LumenLabel::untagged;
+    }
+    EXPECT_GT(fluid, std::size_t(8 * 12 * 12 * 7));
+    EXPECT_EQ(topology::digitalTopology(fine), topology::digitalTopology(labels));
+}
+
 TEST(BowelBox, HoldsTheGasAndItsSurroundingsButNoSpeck) {
     Volume<std::uint8_t> content(axisAlignedGrid({200, 200, 200}, glm::dvec3(1.0)),
                                  std::uint8_t(Content::tissue));

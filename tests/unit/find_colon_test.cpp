@@ -329,8 +329,11 @@ TEST(FindColon, FlatSedimentUnderAPoolIsLumenAndBoneUnderItIsNot) {
     const auto pool = [](glm::dvec3 p) { return inColon(p) && p.y >= 120.0 && p.x < 100; };
     const auto sediment = [&](glm::dvec3 p) { return pool(p) && p.y >= 145.0 && p.z < 160.0; };
     const auto bone = [](glm::dvec3 p) {
-        return !inColon(p) && std::abs(p.z - 195.0) < 25.0 &&
-               glm::distance(glm::dvec2(p), glm::dvec2(60.0, 170.0)) < 16.0;
+        const bool behindAWall = std::all_of(colon().begin(), colon().end(), [&](const Capsule& c) {
+            return outsideMm(c, p) > 2.0;
+        });
+        return behindAWall && std::abs(p.z - 205.0) < 40.0 &&
+               glm::distance(glm::dvec2(p), glm::dvec2(66.0, 162.0)) < 17.0;
     };
     Drawing drawing;
     drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
@@ -367,6 +370,96 @@ TEST(FindColon, FluidWithoutTaggingIsFoundInAProneScan) {
             found->labels.grid().patientFromVoxelPoint(found->labels.grid().voxelAt(n));
         ASSERT_TRUE(inColon(p) && p.y < 132.0 && p.x < 80.0);
     }
+}
+
+// A rectal catheter's balloon holds gas within the lumen, behind a wall of its own.
+TEST(FindColon, ABalloonInTheRectumIsLumen) {
+    const Capsule balloon{{160, 170, 48}, {160, 166, 54}, 10};
+    Drawing drawing = Drawing::supine();
+    drawing.paint(45, [&](glm::dvec3 p) { return outsideMm(balloon, p) < 2.5; });
+    drawing.paint(-988, [&](glm::dvec3 p) { return outsideMm(balloon, p) < 0.0; });
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    const auto inBalloon = [&](glm::dvec3 p) { return outsideMm(balloon, p) < 2.5; };
+    double balloonMl = 0.0;
+    drawing.eachVoxel([&](std::size_t, glm::dvec3 p) {
+        balloonMl += inBalloon(p) ? drawing.hu.grid().voxelVolumeMm3() / 1000.0 : 0.0;
+    });
+    EXPECT_GT(labelledMl(*found, inBalloon), 0.85 * balloonMl);  // of voxels as wide as its wall
+    EXPECT_GT(diceWithDrawing(*found), 0.97);
+    EXPECT_TRUE(isOnePiece(*found));
+    EXPECT_TRUE(tells(*found, "a catheter's balloon"));
+    for (const auto& body : found->record.leftOut)
+        EXPECT_GT(glm::distance(body.centreMm, balloon.a), 20.0);
+}
+
+// Lying on the left side, down is towards the patient's left.
+TEST(FindColon, FluidWithoutTaggingIsFoundInALateralScan) {
+    const auto water = [](glm::dvec3 p) {
+        return inColon(p) && p.x >= 262.0 && p.z > 140.0 && p.z < 280.0;
+    };
+    Drawing drawing;
+    drawing.paintColon([&](glm::dvec3 p) { return p.x >= 165.0 && p.z < 100.0; });
+    drawing.paint(8, water);
+    const auto found = find(drawing.scan(PatientPosition::leftDecubitus));
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_EQ(found->gravity, glm::dvec3(1, 0, 0));
+    EXPECT_GT(untaggedMl(*found), 10.0);
+    for (std::size_t n = 0; n < found->labels.grid().voxelCount(); ++n) {
+        if (LumenLabel(found->labels[n]) != LumenLabel::untagged) continue;
+        const glm::dvec3 p =
+            found->labels.grid().patientFromVoxelPoint(found->labels.grid().voxelAt(n));
+        ASSERT_TRUE(inColon(p) && p.x > 258.0);
+    }
+}
+
+// Gas that a fold or foam holds under water.
+TEST(FindColon, ABubbleInAPoolBelongsToTheLumen) {
+    const auto water = [](glm::dvec3 p) { return inColon(p) && p.y >= 135.0 && p.x < 120; };
+    const auto bubble = [](glm::dvec3 p) {
+        return glm::distance(p, glm::dvec3(59.0, 146.0, 170.0)) < 7.0;
+    };
+    Drawing drawing;
+    drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
+    drawing.paint(8, water);
+    drawing.paint(-988, bubble);
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_GT(diceWithDrawing(*found), 0.97);
+    EXPECT_GT(labelledMl(*found, bubble), 0.9 * 4.0 / 3.0 * M_PI * std::pow(0.7, 3));
+    EXPECT_TRUE(isOnePiece(*found));
+}
+
+// As bright as soft tissue, fluid is not told from the wall beneath it.
+TEST(FindColon, FluidAsBrightAsAWallIsToldAndLeftOut) {
+    const auto fluid = [](glm::dvec3 p) { return inColon(p) && p.y >= 140.0 && p.x < 120; };
+    Drawing drawing;
+    drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
+    drawing.paint(70, fluid);
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_EQ(untaggedMl(*found), 0.0);
+    EXPECT_LT(labelledMl(*found, [&](glm::dvec3 p) { return fluid(p) && p.y > 143.0; }), 0.5);
+}
+
+// Where the ascending colon holds nothing and lies in fat, the course cannot go on; what lies
+// beyond is told however far off it is.
+TEST(FindColon, ColonThatTheCourseDoesNotReachIsTold) {
+    Drawing drawing = Drawing::supine();
+    drawing.paint(-100, [](glm::dvec3 p) {
+        return p.z > 195 && p.z < 275 && p.x < 120 &&
+               glm::length(glm::dvec2((p.x - 162) / 152, (p.y - 125) / 112)) < 0.9;
+    });
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    ASSERT_LT(labelledMl(*found, [](glm::dvec3 p) { return inColon(p) && p.x < 90 && p.z < 195; }),
+              1.0);
+    EXPECT_TRUE(tells(*found, "were taken for other than colon"));
+    double toldMl = 0.0;
+    for (const auto& body : found->record.leftOut)
+        toldMl += body.centreMm.x < 90 && body.centreMm.z < 195 ? body.volumeMl : 0.0;
+    EXPECT_GT(toldMl, 50.0);
+    EXPECT_LT(found->record.confidence, 0.7);
 }
 
 // A person's word about a place that is known for fluid only once the pool is found.

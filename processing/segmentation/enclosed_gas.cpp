@@ -1,0 +1,188 @@
+#include "segmentation/enclosed_gas.h"
+
+#include "core/ct_scan.h"
+#include "core/voxel_sweep.h"
+#include "segmentation/bowel_contents.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace haustra::segmentation {
+namespace {
+
+constexpr double wallMm = 3.0, leastFacing = 0.75, leastMl = 1.0, leastRadiusMm = 3.0;
+
+/// What a way along one axis from a voxel of gas comes to first.
+enum class Side { gas, lumen, other };
+
+class Enclosed {
+public:
+    Enclosed(const Volume<std::uint8_t>& content, const TubePieces& cut,
+             Volume<std::uint8_t>& labels)
+        : grid_(labels.grid()),
+          content_(content),
+          cut_(cut),
+          labels_(labels.writable()),
+          reach_(glm::max(glm::ivec3(glm::round(wallMm / grid_.spacingMm())), glm::ivec3(1))),
+          strides_{1, std::size_t(grid_.size.x),
+                   std::size_t(grid_.size.x) * std::size_t(grid_.size.y)} {
+        const glm::ivec3 most = reach_ + 1;
+        for (int k = -most.z; k <= most.z; ++k) {
+            for (int j = -most.y; j <= most.y; ++j) {
+                for (int i = -most.x; i <= most.x; ++i) {
+                    const glm::ivec3 step(i, j, k);
+                    const glm::dvec3 gap(glm::max(glm::abs(step) - 1, glm::ivec3(0)));
+                    if (glm::length(gap * grid_.spacingMm()) <= wallMm) ball_.push_back(step);
+                }
+            }
+        }
+    }
+
+    std::vector<EnclosedGas> run(int threads) {
+        const auto gas =
+            voxelsWhere(grid_, threads, [&](std::size_t n, glm::ivec3) { return isGas(n); });
+        const std::size_t least = std::size_t(leastMl * 1000.0 / grid_.voxelVolumeMm3());
+        std::vector<bool> seen(labels_.size(), false);
+        std::vector<std::vector<std::uint32_t>> taken;
+        std::vector<EnclosedGas> found;
+        for (const std::uint32_t first : gas) {
+            if (seen[first]) continue;
+            std::vector<std::uint32_t> body = bodyOf(first, seen);
+            if (body.size() < least) continue;
+            const double facing = facingShare(body);
+            if (facing < leastFacing || radiusMm(body) < leastRadiusMm) continue;
+            found.push_back(described(body));
+            found.back().facing = facing;
+            taken.push_back(std::move(body));
+        }
+        for (const auto& body : taken)
+            takeIn(body);
+        std::stable_sort(
+            found.begin(), found.end(),
+            [](const EnclosedGas& a, const EnclosedGas& b) { return a.volumeMl > b.volumeMl; });
+        return found;
+    }
+
+private:
+    bool isGas(std::size_t n) const {
+        return Content(content_[n]) == Content::gas &&
+               LumenLabel(labels_[n]) == LumenLabel::outside;
+    }
+
+    // The voxels joined to the first by faces.
+    std::vector<std::uint32_t> bodyOf(std::uint32_t first, std::vector<bool>& seen) const {
+        std::vector<std::uint32_t> body{first};
+        seen[first] = true;
+        for (std::size_t head = 0; head < body.size(); ++head) {
+            visitFaces(grid_, body[head], [&](std::size_t m, int) {
+                if (seen[m] || !isGas(m)) return;
+                seen[m] = true;
+                body.push_back(std::uint32_t(m));
+            });
+        }
+        return body;
+    }
+
+    // From a voxel of gas along an axis, and the number of voxels in between.
+    std::pair<Side, int> sideOf(std::uint32_t n, int axis, int sign) const {
+        const int from = grid_.voxelAt(n)[axis];
+        std::size_t m = n;
+        for (int step = 1; step <= reach_[axis] + 1; ++step) {
+            if (from + sign * step < 0 || from + sign * step >= grid_.size[axis]) break;
+            m = sign > 0 ? m + strides_[axis] : m - strides_[axis];
+            if (LumenLabel(labels_[m]) != LumenLabel::outside) return {Side::lumen, step - 1};
+            if (Content(content_[m]) == Content::gas) return {Side::gas, step - 1};
+        }
+        return {Side::other, 0};
+    }
+
+    double radiusMm(const std::vector<std::uint32_t>& body) const {
+        double most = 0.0;
+        for (const std::uint32_t n : body)
+            most = std::max<double>(most, cut_.distanceMm[n]);
+        return most;
+    }
+
+    // Of the voxels with a side that is neither the body's nor other gas's, those that have lumen
+    // within a wall's width.
+    double facingShare(const std::vector<std::uint32_t>& body) const {
+        std::size_t facing = 0, sides = 0;
+        for (const std::uint32_t n : body) {
+            bool side = false;
+            visitFaces(grid_, n, [&](std::size_t m, int) { side = side || !isGas(m); });
+            if (!side) continue;
+            const Side is = nearest(n);
+            facing += is == Side::lumen, sides += is != Side::gas;
+        }
+        return double(facing) / double(std::max<std::size_t>(sides, 1));
+    }
+    // What lies beyond a wall at a voxel: lumen wherever it is, else gas that the ways along the
+    // axes meet.
+    Side nearest(std::uint32_t n) const {
+        const glm::ivec3 v = grid_.voxelAt(n);
+        for (const glm::ivec3 step : ball_) {
+            if (grid_.contains(v + step) &&
+                LumenLabel(labels_[grid_.index(v + step)]) != LumenLabel::outside)
+                return Side::lumen;
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const int sign : {-1, 1}) {
+                const auto [side, between] = sideOf(n, axis, sign);
+                if (side == Side::gas && between > 0) return Side::gas;
+            }
+        }
+        return Side::other;
+    }
+
+    EnclosedGas described(const std::vector<std::uint32_t>& voxels) const {
+        EnclosedGas gas;
+        gas.volumeMl = double(voxels.size()) * grid_.voxelVolumeMm3() / 1000.0;
+        std::set<std::int32_t> pieces;
+        for (const std::uint32_t n : voxels) {
+            gas.placeMm += grid_.patientFromVoxelPoint(grid_.voxelAt(n)) / double(voxels.size());
+            if (cut_.pieceAt[n] >= 0) pieces.insert(cut_.pieceAt[n]);
+        }
+        gas.pieces.assign(pieces.begin(), pieces.end());
+        return gas;
+    }
+
+    void takeIn(const std::vector<std::uint32_t>& body) {
+        std::vector<std::size_t> wall;
+        for (const std::uint32_t n : body) {
+            for (int axis = 0; axis < 3; ++axis) {
+                for (const int sign : {-1, 1}) {
+                    const auto [side, between] = sideOf(n, axis, sign);
+                    if (side != Side::lumen) continue;
+                    std::size_t m = n;
+                    for (int step = 0; step < between; ++step) {
+                        m = sign > 0 ? m + strides_[axis] : m - strides_[axis];
+                        wall.push_back(m);
+                    }
+                }
+            }
+        }
+        for (const std::uint32_t n : body)
+            labels_[n] = std::uint8_t(LumenLabel::air);
+        for (const std::size_t n : wall)
+            labels_[n] = std::uint8_t(LumenLabel::untagged);
+    }
+
+    const Grid grid_;
+    const Volume<std::uint8_t>& content_;
+    const TubePieces& cut_;
+    const std::span<std::uint8_t> labels_;
+    const glm::ivec3 reach_;
+    const std::size_t strides_[3];
+    std::vector<glm::ivec3> ball_;  ///< steps with no more than a wall between
+};
+
+}  // namespace
+
+std::vector<EnclosedGas> takeInEnclosedGas(const Volume<std::uint8_t>& content,
+                                           const TubePieces& cut, Volume<std::uint8_t>& labels,
+                                           int threads) {
+    return Enclosed(content, cut, labels).run(threads);
+}
+
+}  // namespace haustra::segmentation
