@@ -11,7 +11,7 @@
 namespace haustra::segmentation {
 namespace {
 
-constexpr double wallMm = 3.0, leastFacing = 0.75, leastMl = 1.0, leastRadiusMm = 3.0;
+constexpr double wallMm = 3.0, leastFacing = 0.75, leastMl = 5.0, leastRadiusMm = 3.0;
 
 /// What a way along one axis from a voxel of gas comes to first.
 enum class Side { gas, lumen, other };
@@ -70,6 +70,8 @@ private:
                LumenLabel(labels_[n]) == LumenLabel::outside;
     }
 
+    bool isLumen(std::size_t n) const { return LumenLabel(labels_[n]) != LumenLabel::outside; }
+
     // The voxels joined to the first by faces.
     std::vector<std::uint32_t> bodyOf(std::uint32_t first, std::vector<bool>& seen) const {
         std::vector<std::uint32_t> body{first};
@@ -91,7 +93,7 @@ private:
         for (int step = 1; step <= reach_[axis] + 1; ++step) {
             if (from + sign * step < 0 || from + sign * step >= grid_.size[axis]) break;
             m = sign > 0 ? m + strides_[axis] : m - strides_[axis];
-            if (LumenLabel(labels_[m]) != LumenLabel::outside) return {Side::lumen, step - 1};
+            if (isLumen(m)) return {Side::lumen, step - 1};
             if (Content(content_[m]) == Content::gas) return {Side::gas, step - 1};
         }
         return {Side::other, 0};
@@ -122,9 +124,7 @@ private:
     Side nearest(std::uint32_t n) const {
         const glm::ivec3 v = grid_.voxelAt(n);
         for (const glm::ivec3 step : ball_) {
-            if (grid_.contains(v + step) &&
-                LumenLabel(labels_[grid_.index(v + step)]) != LumenLabel::outside)
-                return Side::lumen;
+            if (grid_.contains(v + step) && isLumen(grid_.index(v + step))) return Side::lumen;
         }
         for (int axis = 0; axis < 3; ++axis) {
             for (const int sign : {-1, 1}) {
@@ -147,18 +147,21 @@ private:
         return gas;
     }
 
+    // The wall is what lies on the straight ways of at most its width from the gas to the lumen.
     void takeIn(const std::vector<std::uint32_t>& body) {
         std::vector<std::size_t> wall;
         for (const std::uint32_t n : body) {
-            for (int axis = 0; axis < 3; ++axis) {
-                for (const int sign : {-1, 1}) {
-                    const auto [side, between] = sideOf(n, axis, sign);
-                    if (side != Side::lumen) continue;
-                    std::size_t m = n;
-                    for (int step = 0; step < between; ++step) {
-                        m = sign > 0 ? m + strides_[axis] : m - strides_[axis];
-                        wall.push_back(m);
-                    }
+            bool side = false;
+            visitFaces(grid_, n, [&](std::size_t m, int) { side = side || !isGas(m); });
+            if (!side) continue;
+            const glm::ivec3 v = grid_.voxelAt(n);
+            for (const glm::ivec3 step : ball_) {
+                if (!grid_.contains(v + step) || !isLumen(grid_.index(v + step))) continue;
+                const int length = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
+                for (int k = 1; k < length; ++k) {
+                    const std::size_t m = grid_.index(
+                        v + glm::ivec3(glm::round(glm::dvec3(step * k) / double(length))));
+                    if (!isLumen(m) && !isGas(m)) wall.push_back(m);
                 }
             }
         }
@@ -166,6 +169,20 @@ private:
             labels_[n] = std::uint8_t(LumenLabel::air);
         for (const std::size_t n : wall)
             labels_[n] = std::uint8_t(LumenLabel::untagged);
+        takeInRim(wall);
+    }
+
+    // Gas beside the wall that was taken in is brighter than gas by its share of the wall, and is
+    // cleansed with it, but for what is beside a wall that stays.
+    void takeInRim(const std::vector<std::size_t>& wall) {
+        for (const std::size_t n : wall) {
+            visitFaces(grid_, n, [&](std::size_t m, int) {
+                if (LumenLabel(labels_[m]) != LumenLabel::air) return;
+                bool beside = false;
+                visitFaces(grid_, m, [&](std::size_t o, int) { beside = beside || !isLumen(o); });
+                if (!beside) labels_[m] = std::uint8_t(LumenLabel::untagged);
+            });
+        }
     }
 
     const Grid grid_;

