@@ -143,6 +143,7 @@ void Session::refused(const protocol::ErrorReport& report) {
                                   report.code() == protocol::ErrorReport::INTERNAL ||
                                   report.code() == protocol::ErrorReport::BUSY);
     if (phase_ == Phase::connecting && (ofTheCase || report.fatal())) giveUp(error);
+    if (phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST) giveUp(error);
 }
 
 void Session::handle(const link::TilePayload& payload, Clock::time_point at) {

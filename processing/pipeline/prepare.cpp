@@ -74,7 +74,8 @@ Result<PrepareReport> runStages(Preparation& preparation) {
         const auto mixture = mixTissues(preparation, *ct, *segmentation, tagged);
         if (!mixture) return tl::make_unexpected(mixture.error());
         if (!preparation.wanted("cleansing")) return preparation.takeReport();
-        const auto cleansed = cleanseScan(preparation, *ct, *segmentation, *mixture, std::move(tagged));
+        const auto cleansed =
+            cleanseScan(preparation, *ct, *segmentation, *mixture, std::move(tagged));
         if (!cleansed) return tl::make_unexpected(cleansed.error());
         wall = {product::cleansedLumen, *cleansed, product::cleansed, *cleansed};
     }
@@ -124,9 +125,11 @@ Result<std::string> studyOfOtherScans(const store::CaseStore& store, const std::
 // A case that was refused before its first product leaves no folder behind.
 void removeIfEmpty(const std::filesystem::path& folder) {
     std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-        if (entry.path().filename() != ".lock") return;
+    std::filesystem::directory_iterator at(folder, ignored), end;
+    for (; !ignored && at != end; at.increment(ignored)) {
+        if (at->path().filename() != ".lock") return;
     }
+    if (ignored) return;
     std::filesystem::remove(folder / ".lock", ignored);
     std::filesystem::remove(folder, ignored);
 }

@@ -63,6 +63,7 @@ Result<Centerline> Case::readCenterline(std::string_view product) const {
         std::memcpy(&s, mapped->values.data() + at, sizeof s);
         centerline.points.push_back({{s.x, s.y, s.z}, s.arc, s.radius, s.gap != 0.0});
     }
+    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
     return centerline;
 }
 
@@ -84,6 +85,7 @@ Result<TriMesh> Case::readMesh(std::string_view product) const {
     };
     copy(mesh.vertices, 0);
     copy(mesh.triangles, vertexBytes);
+    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
     const auto damaged = [&](const char* what) {
         return fail(ErrorKind::badInput,
                     "the product is damaged: " + std::string(product) + " has " + what,
@@ -126,18 +128,14 @@ Result<void> Case::publishVolume(std::string_view product, const ProductKey& key
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hvol")};
     const fs::path file = folder_ / entry.file;
     if (auto sound = checkGrid(volume.grid, file.string()); !sound) return sound;
-    const ProductHeader header{
-        contentOf<T>(), volume.grid, digestFromHex(key.hex), {}, attributes};
+    const ProductHeader header{contentOf<T>(), volume.grid, digestFromHex(key.hex), {}, attributes};
     const auto values = [&](std::size_t offset, std::span<std::byte> out) {
         // Blocks are whole voxels, in memory that is aligned for any.
-        volume.read(offset / sizeof(T),
-                    {reinterpret_cast<T*>(out.data()), out.size() / sizeof(T)});
+        volume.read(offset / sizeof(T), {reinterpret_cast<T*>(out.data()), out.size() / sizeof(T)});
     };
     return writeProduct(folder_, entry.file, header, volume.grid.voxelCount() * sizeof(T), values,
                         threads)
-        .and_then([&] {
-        return announce(entry, outdated);
-    });
+        .and_then([&] { return announce(entry, outdated); });
 }
 
 Result<void> Case::publishCenterline(std::string_view product, const ProductKey& key,
@@ -162,8 +160,9 @@ Result<std::string> Case::readText(std::string_view product) const {
     if (!mapped) return tl::make_unexpected(mapped.error());
     if (auto right = checkContent(*mapped, Content::text, product, folder_); !right)
         return tl::make_unexpected(right.error());
-    return std::string(reinterpret_cast<const char*>(mapped->values.data()),
-                       mapped->values.size());
+    std::string text(reinterpret_cast<const char*>(mapped->values.data()), mapped->values.size());
+    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
+    return text;
 }
 
 Result<void> Case::publishText(std::string_view product, const ProductKey& key,
@@ -173,8 +172,9 @@ Result<void> Case::publishText(std::string_view product, const ProductKey& key,
     ProductHeader header{Content::text, {}, digestFromHex(key.hex), {}, attributes};
     header.grid.size = {int(text.size()), 1, 1};
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".htext")};
-    return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(text)))
-        .and_then([&] { return announce(entry, outdated); });
+    return writeProduct(folder_, entry.file, header, std::as_bytes(std::span(text))).and_then([&] {
+        return announce(entry, outdated);
+    });
 }
 
 Result<void> Case::publishMesh(std::string_view product, const ProductKey& key, const TriMesh& mesh,

@@ -2,6 +2,7 @@
 
 #include "store/case_index.h"
 #include "store/durable_file.h"
+#include "store/lost_pages.h"
 #include "store/product_file.h"
 
 #include <algorithm>
@@ -144,8 +145,7 @@ Result<Attributes> Case::attributes(std::string_view product) const {
 Result<void> Case::verify(std::string_view product) const {
     const auto mapped = map(product);
     if (!mapped) return tl::make_unexpected(mapped.error());
-    const auto entry = find(product);
-    return checkValues(*mapped, folder_ / (entry ? entry->file : std::string(product)));
+    return checkValues(*mapped);
 }
 
 Result<void> Case::checkWritable() const {
@@ -154,6 +154,12 @@ Result<void> Case::checkWritable() const {
 }
 
 Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::string>& outdated) {
+    if (const auto lost = firstLostFile())
+        return fail(ErrorKind::io,
+                    entry.product +
+                        " is not kept: what it was made from was cut short, or its "
+                        "disk fails",
+                    lost->string());
     auto index = readCaseIndex(folder_);
     if (!index) return tl::make_unexpected(index.error());
     if (bound_) {
@@ -186,14 +192,15 @@ void Case::sweep(const std::vector<ProductEntry>& kept) const {
         names.insert(entry.file);
     std::error_code ignored;
     std::vector<fs::path> rubbish;
-    for (const fs::directory_entry& file : fs::directory_iterator(folder_, ignored)) {
-        const std::string name = file.path().filename().string();
-        const std::string extension = file.path().extension().string();
+    for (fs::directory_iterator at(folder_, ignored), end; !ignored && at != end;
+         at.increment(ignored)) {
+        const std::string name = at->path().filename().string();
+        const std::string extension = at->path().extension().string();
         const bool temporary = name.rfind(temporaryPrefix, 0) == 0;
         const bool product = extension == ".hvol" || extension == ".hline" ||
                              extension == ".hmesh" || extension == ".hflat" ||
                              extension == ".htext";
-        if (temporary || (product && !names.count(name))) rubbish.push_back(file.path());
+        if (temporary || (product && !names.count(name))) rubbish.push_back(at->path());
     }
     for (const fs::path& file : rubbish)
         fs::remove(file, ignored);
@@ -225,10 +232,11 @@ Result<CaseStore> CaseStore::open(const fs::path& folder, bool create) {
 Result<std::vector<std::string>> CaseStore::cases() const {
     std::error_code error;
     std::vector<std::string> names;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "cases", error)) {
-        const std::string name = entry.path().filename().string();
+    for (fs::directory_iterator at(folder_ / "cases", error), end; !error && at != end;
+         at.increment(error)) {
+        const std::string name = at->path().filename().string();
         std::error_code ignored;
-        if (isCaseName(name) && fs::is_regular_file(entry.path() / caseIndexName, ignored)) {
+        if (isCaseName(name) && fs::is_regular_file(at->path() / caseIndexName, ignored)) {
             names.push_back(name);
         }
     }

@@ -89,6 +89,7 @@ Result<FlatMap> Case::readFlatMap(std::string_view product) const {
     take(flatMap.surface.triangles, triangles);
     take(flatMap.sourceTriangle, triangles);
     take(flatMap.camera, vertices);
+    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
     flatMap.cameras.reserve(cameras.size());
     for (const Camera& camera : cameras)
         flatMap.cameras.push_back({{camera.x, camera.y, camera.z}, camera.arc});

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "core/tissue.h"
 #include "store/durable_file.h"
+#include "store/lost_pages.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,10 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include <fcntl.h>
 #include <nlohmann/json.hpp>
-#include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace haustra::store {
@@ -99,38 +97,6 @@ tl::unexpected<Error> damaged(const std::string& what, const std::filesystem::pa
     return fail(ErrorKind::badInput, "the product is damaged: " + what, file.string());
 }
 
-struct Mapping {
-    Mapping(void* where, std::size_t length) : address(where), bytes(length) {}
-    ~Mapping() { ::munmap(address, bytes); }
-    Mapping(const Mapping&) = delete;
-    Mapping& operator=(const Mapping&) = delete;
-
-    void* address;
-    std::size_t bytes;
-};
-
-Result<std::shared_ptr<const Mapping>> mapWhole(const std::filesystem::path& file) {
-    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        const ErrorKind kind = errno == ENOENT ? ErrorKind::notFound : ErrorKind::io;
-        return fail(kind, std::string("cannot open: ") + std::strerror(errno), file.string());
-    }
-    struct stat status {};
-    if (::fstat(descriptor, &status) != 0 || std::size_t(status.st_size) < sizeof(FixedHeader)) {
-        ::close(descriptor);
-        return damaged("it is shorter than a header", file);
-    }
-    void* address =
-        ::mmap(nullptr, std::size_t(status.st_size), PROT_READ, MAP_SHARED, descriptor, 0);
-    const int error = errno;
-    ::close(descriptor);
-    if (address == MAP_FAILED) {
-        return fail(ErrorKind::io, std::string("cannot map: ") + std::strerror(error),
-                    file.string());
-    }
-    return std::make_shared<const Mapping>(address, std::size_t(status.st_size));
-}
-
 bool writeAt(int descriptor, std::size_t offset, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t count = ::pwrite(descriptor, bytes.data(), bytes.size(), off_t(offset));
@@ -199,10 +165,10 @@ Result<std::map<std::string, std::string>> parseAttributes(std::string_view text
 }  // namespace
 
 Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
-    const auto mapping = mapWhole(file);
+    const auto mapping = MappedFile::open(file, sizeof(FixedHeader));
     if (!mapping) return tl::make_unexpected(mapping.error());
-    const auto* bytes = static_cast<const std::byte*>((*mapping)->address);
-    const std::size_t length = (*mapping)->bytes;
+    const std::byte* const bytes = (*mapping)->bytes().data();
+    const std::size_t length = (*mapping)->bytes().size();
 
     FixedHeader fixed;
     std::memcpy(&fixed, bytes, sizeof fixed);
@@ -258,6 +224,7 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
     product.header.valuesDigest = fixed.valuesDigest;
     product.values = {bytes + fixed.valuesOffset, std::size_t(fixed.valuesBytes)};
     product.mapping = *mapping;
+    product.file = file;
     return product;
 }
 
@@ -303,9 +270,16 @@ Result<void> writeProduct(const std::filesystem::path& folder, const std::string
                         });
 }
 
-Result<void> checkValues(const MappedProduct& product, const std::filesystem::path& file) {
+Result<void> checkWhole(const MappedProduct& product) {
+    if (isWhole(product.values.data())) return {};
+    return fail(ErrorKind::io, "the product was cut short, or its disk fails, while it was read",
+                product.file.string());
+}
+
+Result<void> checkValues(const MappedProduct& product) {
     if (blockwiseDigest(product.values) != product.header.valuesDigest) {
-        return damaged("its values do not match their checksum", file);
+        if (auto whole = checkWhole(product); !whole) return whole;
+        return damaged("its values do not match their checksum", product.file);
     }
     return {};
 }

@@ -75,6 +75,7 @@ struct MappedProduct {
     ProductHeader header;
     std::span<const std::byte> values;
     std::shared_ptr<const void> mapping;
+    std::filesystem::path file;
 };
 
 /// Maps a product file. Fails, naming the file, where it is cut short, too long or inconsistent.
@@ -97,7 +98,10 @@ Result<void> writeProduct(const std::filesystem::path& folder, const std::string
 Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
                           ProductHeader header, std::span<const std::byte> values);
 
+/// Fails (io) where a page of the values that has been read was not there (isWhole()).
+Result<void> checkWhole(const MappedProduct& product);
+
 /// Fails where the values are not those that were written. Reads all of them.
-Result<void> checkValues(const MappedProduct& product, const std::filesystem::path& file);
+Result<void> checkValues(const MappedProduct& product);
 
 }  // namespace haustra::store

@@ -1,5 +1,6 @@
 // haustra: everything offline, from a phantom to pictures.
 #include "cli/commands.h"
+#include "store/lost_pages.h"
 
 #include <cstdio>
 #include <exception>
@@ -43,7 +44,12 @@ int runProgram(int argc, char** argv) {
         for (const auto& command : commands) {
             if (!command.app->parsed()) continue;
             const auto done = command.run();
-            return done ? exitDone : failed(haustra::describe(done.error()));
+            if (!done) return failed(haustra::describe(done.error()));
+            if (const auto lost = haustra::store::firstLostFile())
+                return failed(lost->string() +
+                              ": the product was cut short, or its disk fails, while it was read; "
+                              "what was made of it is worth nothing");
+            return exitDone;
         }
     } catch (const CLI::ParseError& error) {
         // Some options are known to be wrong only once a file has been read.
@@ -55,6 +61,7 @@ int runProgram(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    haustra::store::surviveLostPages();
     try {
         return runProgram(argc, argv);
     } catch (const std::bad_alloc&) {

@@ -1,6 +1,7 @@
 // haustra-server: streams the store's cases to clients.
 #include "net/server.h"
 #include "store/durable_file.h"
+#include "store/lost_pages.h"
 
 #include <cmath>
 #include <cstdio>
@@ -157,6 +158,7 @@ int runProgram(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    haustra::store::surviveLostPages();
     try {
         return runProgram(argc, argv);
     } catch (const std::exception& error) {

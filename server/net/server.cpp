@@ -8,6 +8,7 @@
 
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
+#include <asio/post.hpp>
 #include <asio/signal_set.hpp>
 #include <openssl/evp.h>
 #include <openssl/ssl.h>
@@ -82,7 +83,8 @@ struct Server::Impl {
     std::unique_ptr<session::EncoderThreads> encoders;
     std::unique_ptr<session::WallThread> walls;
     std::unique_ptr<session::PaintThread> painting;
-    session::BookmarkNews news;
+    session::News<records::Bookmark> bookmarks;
+    session::News<std::shared_ptr<const session::OpenCase>> lostCases;
     render::PresetLibrary presets;
     std::optional<session::Services> services;
 
@@ -117,23 +119,25 @@ Result<void> Server::Impl::start() {
     if (!identity) return tl::make_unexpected(identity.error());
     if (auto configured = configureTls(tls, *identity); !configured) return configured;
     fingerprint = certificateFingerprint(tls);
-    auto bookmarks = records::BookmarkStore::open(options.store / "records.sqlite3");
-    if (!bookmarks) return tl::make_unexpected(bookmarks.error());
+    auto kept = records::BookmarkStore::open(options.store / "records.sqlite3");
+    if (!kept) return tl::make_unexpected(kept.error());
     if (auto read = readPresets(); !read) return read;
-    auto rendering = session::RenderThread::start(options.drawing);
+    auto rendering = session::RenderThread::start(options.drawing, [this](auto of) {
+        asio::post(io, [this, of = std::move(of)] { lostCases.tell(of); });
+    });
     if (!rendering) return tl::make_unexpected(rendering.error());
     auto encoding = session::EncoderThreads::start(options.encoders);
     if (!encoding) return tl::make_unexpected(encoding.error());
     if (auto listening = listen(acceptor, options.listen); !listening) return listening;
 
     loader = session::CaseLoader::start(*cases, **rendering);
-    records = session::RecordsThread::start(std::move(*bookmarks), std::move(*cases));
+    records = session::RecordsThread::start(std::move(*kept), std::move(*cases));
     renderer = std::move(*rendering);
     encoders = std::move(*encoding);
     walls = session::WallThread::start();
     painting = session::PaintThread::start();
     services.emplace(session::Services{*renderer, *loader, *encoders, *records, *walls, *painting,
-                                       news, presets, options.software});
+                                       bookmarks, lostCases, presets, options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);
     signals.async_wait([this](const asio::error_code& error, int) {
@@ -147,7 +151,11 @@ void Server::Impl::accept() {
     acceptor.async_accept([this](const asio::error_code& error, tcp::socket socket) {
         if (stopping) return;
         if (!error) {
-            serve(std::move(socket));
+            try {
+                serve(std::move(socket));
+            } catch (const std::exception& fault) {
+                spdlog::error("a connection cannot be served: {}", fault.what());
+            }
             return accept();
         }
         spdlog::warn("cannot accept a connection: {}", error.message());
@@ -214,7 +222,14 @@ const std::string& Server::renderer() const {
     return impl_->renderer->renderer();
 }
 void Server::run() {
-    impl_->io.run();
+    for (;;) {
+        try {
+            impl_->io.run();
+            return;
+        } catch (const std::exception& error) {
+            spdlog::error("the io thread goes on after a fault: {}", error.what());
+        }
+    }
 }
 
 }  // namespace haustra::net

@@ -51,12 +51,11 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
 std::unique_ptr<CaseLoader> CaseLoader::start(store::CaseStore store, RenderThread& renderer) {
     std::unique_ptr<CaseLoader> self(new CaseLoader);
     self->thread_ = std::thread([&my = *self, &renderer, store = std::move(store)] {
-        for (auto taken = my.requests_.take(1); !taken.empty() && !my.stopping_;
-             taken = my.requests_.take(1)) {
+        serveQueue(my.requests_, 1, "loader", [&](auto& taken) {
             const Request& request = taken.front();
-            if (request.session.expired()) continue;
+            if (request.session.expired() || my.stopping_) return;
             request.opened(guarded([&] { return load(store, renderer, request.name); }));
-        }
+        });
     });
     return self;
 }

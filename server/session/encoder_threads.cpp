@@ -1,21 +1,15 @@
 #include "session/encoder_threads.h"
 
-#include <new>
+#include "session/guarded.h"
 
 namespace haustra::session {
 namespace {
 
-Result<std::vector<std::uint8_t>> encodeGuarded(encode::TileEncoder& encoder, EncodeJob& job) {
-    try {
-        return encoder.encode(job.image, job.header);
-    } catch (const std::bad_alloc&) {
-        return fail(ErrorKind::device, "there is not enough memory", "encoder");
-    }
-}
-
 void work(encode::TileEncoder encoder, WorkQueue<EncodeJob>& jobs) {
-    for (auto taken = jobs.take(1); !taken.empty(); taken = jobs.take(1))
-        taken.front().done(encodeGuarded(encoder, taken.front()));
+    serveQueue(jobs, 1, "encoder", [&](auto& taken) {
+        EncodeJob& job = taken.front();
+        job.done(guarded([&] { return encoder.encode(job.image, job.header); }));
+    });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "session/gpu_cases.h"
 
 #include "session/guarded.h"
+#include "store/lost_pages.h"
 
 #include <algorithm>
 #include <limits>
@@ -106,7 +107,9 @@ std::shared_ptr<const OpenCase> GpuCases::lend(const OpenCase& facts) const {
 
 std::shared_ptr<const OpenCase> GpuCases::find(const OpenCase& facts) {
     for (Entry& entry : cases_) {
-        if (entry.facts.name != facts.name || entry.facts.content != facts.content) continue;
+        if (entry.facts.name != facts.name || entry.facts.content != facts.content ||
+            !entry.whole())
+            continue;
         if (auto of = entry.of.lock()) return of;
         auto of = lend(entry.facts);
         entry.of = of;
@@ -116,11 +119,37 @@ std::shared_ptr<const OpenCase> GpuCases::find(const OpenCase& facts) {
     return nullptr;
 }
 
-render::CaseRenderer* GpuCases::rendererOf(const std::shared_ptr<const OpenCase>& of) {
+const GpuCases::Entry* GpuCases::entryOf(const std::shared_ptr<const OpenCase>& of) const {
     const auto entry = std::find_if(cases_.begin(), cases_.end(), [&](const Entry& candidate) {
         return candidate.of.lock() == of;
     });
-    return entry == cases_.end() ? nullptr : entry->renderer.get();
+    return entry == cases_.end() ? nullptr : &*entry;
+}
+
+render::CaseRenderer* GpuCases::rendererOf(const std::shared_ptr<const OpenCase>& of) {
+    const Entry* const entry = entryOf(of);
+    return entry ? entry->renderer.get() : nullptr;
+}
+
+// ---- files that are cut short while they are read -----------------------------------------------
+
+bool GpuCases::Entry::whole() const {
+    return std::all_of(volumes.begin(), volumes.end(), store::isWhole);
+}
+
+Result<void> GpuCases::checkWhole(const std::shared_ptr<const OpenCase>& of) const {
+    const Entry* const entry = entryOf(of);
+    if (!entry || entry->whole()) return {};
+    return fail(ErrorKind::io, "the case's files were cut short, or their disk fails", "render");
+}
+
+std::shared_ptr<const OpenCase> GpuCases::takeLost(const std::shared_ptr<const OpenCase>& of) {
+    for (Entry& entry : cases_) {
+        if (entry.of.lock() != of || entry.whole() || std::exchange(entry.toldLost, true)) continue;
+        spdlog::error("a case is lost: its files were cut short, or their disk fails");
+        return of;
+    }
+    return nullptr;
 }
 
 // ---- memory -------------------------------------------------------------------------------------
@@ -206,9 +235,12 @@ std::string GpuCases::whyDrawnBy(const Opening& opening) const {
 
 Result<void> GpuCases::upload(OpenCase facts, render::PreparedCase prepared) {
     opening_.reset();
+    const std::array<const void*, 2> volumes{prepared.ct.voxels().data(),
+                                             prepared.cleansed.voxels().data()};
     auto made = makeRenderer(std::move(prepared));
     if (!made) return tl::make_unexpected(made.error());
-    opening_.emplace(Opening{{std::move(facts), {}, {}, std::move(made->renderer)}, {}, {}});
+    opening_.emplace(
+        Opening{{std::move(facts), {}, {}, std::move(made->renderer), volumes}, {}, {}});
     if (options_.raycaster) return {};
     const render::ChoiceLimits limits;
     opening_->choice.emplace(candidates(made->fits), limits);
@@ -239,6 +271,9 @@ Result<std::shared_ptr<const OpenCase>> GpuCases::opened() {
     if (!opening_) return fail(ErrorKind::device, "no case is being opened", "render");
     Opening my = std::move(*opening_);
     opening_.reset();
+    if (!my.entry.whole())
+        return fail(ErrorKind::io, "the case's files were cut short, or their disk fails",
+                    "render");
     render::CaseRenderer& renderer = *my.entry.renderer;
     OpenCase& facts = my.entry.facts;
     if (my.choice) {

@@ -7,6 +7,7 @@
 #include "session/open_case.h"
 #include "session/picture_job.h"
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -60,6 +61,12 @@ public:
     /// The case that was being opened: from now on it can be drawn, and find finds it.
     Result<std::shared_ptr<const OpenCase>> opened();
 
+    /// Fails (io) where a page of the case's volumes that was read was not there: its pictures are
+    /// worth nothing, and find() does not find it any more.
+    Result<void> checkWhole(const std::shared_ptr<const OpenCase>& of) const;
+    /// The case where that is so and this has not told it yet, else null.
+    std::shared_ptr<const OpenCase> takeLost(const std::shared_ptr<const OpenCase>& of);
+
     /// Null where the case is not here.
     render::CaseRenderer* rendererOf(const std::shared_ptr<const OpenCase>& of);
 
@@ -73,6 +80,10 @@ private:
         std::weak_ptr<const OpenCase> of;
         std::optional<Clock::time_point> leftAt;  // since when nobody has it open
         std::unique_ptr<render::CaseRenderer> renderer;
+        std::array<const void*, 2> volumes{};  // in mapped memory, which the renderer holds
+        bool toldLost = false;
+
+        bool whole() const;
     };
     struct Opening {
         Entry entry;
@@ -86,6 +97,7 @@ private:
     };
     Result<Made> makeRenderer(render::PreparedCase prepared);
     std::vector<render::RaycasterKind> candidates(bool fits) const;
+    const Entry* entryOf(const std::shared_ptr<const OpenCase>& of) const;
     std::shared_ptr<const OpenCase> lend(const OpenCase& facts) const;
     /// For the log: what was tried, and what was not, and why.
     std::string whyDrawnBy(const Opening& opening) const;

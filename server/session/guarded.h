@@ -1,10 +1,16 @@
-// Keeping a request's exceptions from ending its thread.
+// Keeping one request's exceptions from ending its thread, and with it the server.
 #pragma once
 
 #include "core/result.h"
+#include "session/work_queue.h"
 
+#include <cstddef>
+#include <exception>
 #include <new>
-#include <stdexcept>
+
+#include <asio/any_io_executor.hpp>
+#include <asio/post.hpp>
+#include <spdlog/spdlog.h>
 
 namespace haustra::session {
 
@@ -14,10 +20,39 @@ auto guarded(const Work& work) -> decltype(work()) {
     try {
         return work();
     } catch (const std::bad_alloc&) {
-        return fail(ErrorKind::device, "there is not enough memory", "render");
+        return fail(ErrorKind::device, "there is not enough memory", "server");
     } catch (const std::exception& error) {
-        return fail(ErrorKind::device, error.what(), "render");
+        return fail(ErrorKind::device, error.what(), "server");
     }
+}
+
+/// A worker thread's loop: gives `serve` a queue's work, at most `most` pieces at a time, until the
+/// queue is closed and drained. What `serve` throws is logged and costs those pieces alone; to
+/// answer for them is its own affair (guarded).
+template <class T, class Serve>
+void serveQueue(WorkQueue<T>& queue, std::size_t most, const char* thread, const Serve& serve) {
+    for (auto taken = queue.take(most); !taken.empty(); taken = queue.take(most)) {
+        try {
+            serve(taken);
+        } catch (const std::exception& error) {
+            spdlog::error("the {} thread goes on after a fault: {}", thread, error.what());
+        }
+    }
+}
+
+/// Runs `work`(*owner) on the io thread, where the owner still lives. What it throws is the
+/// owner's, for whom broken(what) ends its session.
+template <class Owner, class Work>
+void postTo(const asio::any_io_executor& io, std::weak_ptr<Owner> owner, Work work) {
+    asio::post(io, [owner = std::move(owner), work = std::move(work)]() mutable {
+        const auto self = owner.lock();
+        if (!self) return;
+        try {
+            work(*self);
+        } catch (const std::exception& error) {
+            self->broken(error.what());
+        }
+    });
 }
 
 }  // namespace haustra::session

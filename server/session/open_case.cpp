@@ -2,6 +2,7 @@
 
 #include "core/bridges.h"
 #include "store/case_trust.h"
+#include "store/lost_pages.h"
 
 namespace haustra::session {
 
@@ -63,6 +64,9 @@ Result<std::shared_ptr<const Wall>> readWall(const store::Case& source) {
         const auto lumen = source.readVolume<std::uint8_t>("lumen");
         if (!lumen) return tl::make_unexpected(lumen.error());
         bridged = bridgedTriangles(map->surface, *lumen);
+        if (!store::isWhole(lumen->voxels().data()))
+            return fail(ErrorKind::io, "product lumen was cut short, or its disk fails",
+                        source.name());
     }
     return makeWall(std::make_shared<const FlatMap>(std::move(*map)), std::move(bridged));
 }

@@ -1,12 +1,13 @@
 #include "session/paint_thread.h"
 
+#include "session/guarded.h"
+
 namespace haustra::session {
 
 std::unique_ptr<PaintThread> PaintThread::start() {
     std::unique_ptr<PaintThread> self(new PaintThread);
     self->thread_ = std::thread([&tasks = self->tasks_] {
-        for (auto taken = tasks.take(1); !taken.empty(); taken = tasks.take(1))
-            taken.front()();
+        serveQueue(tasks, 1, "paint", [](auto& taken) { taken.front()(); });
     });
     return self;
 }

@@ -1,10 +1,9 @@
 #include "session/picture_stream.h"
 
+#include "session/guarded.h"
 #include "session/inputs.h"
 
 #include <algorithm>
-
-#include <asio/post.hpp>
 
 namespace haustra::session {
 
@@ -210,10 +209,10 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.header.viewportHeight = std::uint16_t(job.height);
     job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_, camera](
                    const protocol::TileHeader& header, Result<render::Image> image) {
-        asio::post(io, [weak, ofCase, header, camera, image = std::move(image)]() mutable {
-            if (const auto self = weak.lock())
-                self->rendered(ofCase, header, camera, std::move(image));
-        });
+        postTo(io, weak,
+               [ofCase, header, camera, image = std::move(image)](PictureStream& self) mutable {
+                   self.rendered(ofCase, header, camera, std::move(image));
+               });
     };
     return job;
 }
@@ -224,7 +223,7 @@ void PictureStream::rendered(std::uint64_t ofCase, const protocol::TileHeader& h
     if (ofCase != caseNumber_ || stopped_) return;  // rendering_ speaks of a newer picture
     rendering_.reset();
     if (!image) {
-        lost(image.error());
+        lost(slots_[header.viewport], image.error());
     } else {
         if (reading_ && camera)
             reading_->shown(*camera, {image->width, image->height}, !header.exact);
@@ -242,8 +241,8 @@ void PictureStream::encode(EncodeJob job, std::uint64_t ofCase) {
     job.header.picture = ++pictures_;
     job.done = [weak = weak_from_this(), io = io_, ofCase,
                 header = job.header](Result<std::vector<std::uint8_t>> frames) {
-        asio::post(io, [weak, ofCase, header, frames = std::move(frames)]() mutable {
-            if (const auto self = weak.lock()) self->encoded(ofCase, header, std::move(frames));
+        postTo(io, weak, [ofCase, header, frames = std::move(frames)](PictureStream& self) mutable {
+            self.encoded(ofCase, header, std::move(frames));
         });
     };
     encoders_.submit(std::move(job));
@@ -255,10 +254,11 @@ void PictureStream::encoded(std::uint64_t ofCase, const protocol::TileHeader& he
     if (stopped_) return;
     if (ofCase == caseNumber_) {
         if (frames) {
+            slots_[header.viewport].failed = false;
             unsent_.push_back(header);
             outlet_.send(std::move(*frames));
         } else {
-            lost(frames.error());
+            lost(slots_[header.viewport], frames.error());
         }
     }
     if (stopped_) return;  // the outlet may have ended everything
@@ -276,8 +276,19 @@ void PictureStream::pictureSent() {
     schedule();
 }
 
-void PictureStream::lost(const Error& error) {
-    outlet_.failed(error);
+// A fault of the device may pass: the picture, or a newer one in its place, is drawn once more.
+void PictureStream::lost(Slot& slot, const Error& error) {
+    slot.failed = error.kind == ErrorKind::device && !slot.failed;
+    if (slot.failed) {
+        spdlog::warn("session {}: a picture is drawn once more: {}", session_, error.message);
+        slot.due = true;
+    } else {
+        outlet_.failed(error);
+    }
+}
+
+void PictureStream::broken(const std::string& what) {
+    if (!stopped_) outlet_.broken(what);
 }
 
 }  // namespace haustra::session

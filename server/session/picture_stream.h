@@ -31,6 +31,7 @@ public:
     struct Outlet {
         std::function<void(std::vector<std::uint8_t> frames)> send;  ///< then call pictureSent()
         std::function<void(const Error& error)> failed;              ///< a picture was lost
+        std::function<void(const std::string& what)> broken;         ///< nothing else will come
     };
     PictureStream(SessionId session, asio::any_io_executor io, RenderThread& renderer,
                   EncoderThreads& encoders, const render::PresetLibrary& presets, Outlet outlet);
@@ -58,6 +59,8 @@ public:
     Result<void> input(const protocol::SetWallPaint& message);
 
     void pictureSent();
+    /// After a fault in what was posted here (postTo).
+    void broken(const std::string& what);
     /// Ends everything; the outlet is not used again.
     void stop();
 
@@ -66,6 +69,7 @@ private:
         Viewport viewport;
         std::uint64_t sequence = 0;
         bool due = false;                                // has to be drawn
+        bool failed = false;                             // the last one; it is drawn once more
         std::shared_ptr<const render::WallPaint> paint;  // of the picture that was asked for last
         Clock::time_point inputAt;
         std::optional<asio::steady_timer> rest;
@@ -84,7 +88,7 @@ private:
     void encode(EncodeJob job, std::uint64_t ofCase);
     void encoded(std::uint64_t ofCase, const protocol::TileHeader& header,
                  Result<std::vector<std::uint8_t>> frames);
-    void lost(const Error& error);
+    void lost(Slot& slot, const Error& error);
 
     struct Held {
         EncodeJob job;

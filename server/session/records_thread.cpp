@@ -1,5 +1,9 @@
 #include "session/records_thread.h"
 
+#include "session/guarded.h"
+
+#include <utility>
+
 namespace haustra::session {
 namespace {
 
@@ -16,29 +20,33 @@ struct RecordsThread::Keeping {
 
     void commit() {
         if (additions.empty()) return;
-        std::vector<records::NewBookmark> batch;
-        for (Add& add : additions)
-            batch.push_back(std::move(add.bookmark));
-        auto added = bookmarks.add(batch);
-        for (std::size_t n = 0; n < additions.size(); ++n) {
+        auto waiting = std::exchange(additions, {});
+        auto added = guarded([&] {
+            std::vector<records::NewBookmark> batch;
+            for (Add& add : waiting)
+                batch.push_back(std::move(add.bookmark));
+            return bookmarks.add(batch);
+        });
+        for (std::size_t n = 0; n < waiting.size(); ++n) {
             if (added)
-                additions[n].done(std::move((*added)[n]));
+                waiting[n].done(std::move((*added)[n]));
             else
-                additions[n].done(tl::make_unexpected(added.error()));
+                waiting[n].done(tl::make_unexpected(added.error()));
         }
-        additions.clear();
     }
 
     void serve(Add& add) { additions.push_back(std::move(add)); }
     void serve(List& list) {
         commit();
-        list.done(bookmarks.adopt(list.caseName, list.scan).and_then([&] {
-            return bookmarks.list(list.scan);
+        list.done(guarded([&] {
+            return bookmarks.adopt(list.caseName, list.scan).and_then([&] {
+                return bookmarks.list(list.scan);
+            });
         }));
     }
     void serve(ListCases& list) {
         commit();
-        list.done(cases.cases());
+        list.done(guarded([&] { return cases.cases(); }));
     }
 };
 
@@ -47,12 +55,11 @@ std::unique_ptr<RecordsThread> RecordsThread::start(records::BookmarkStore bookm
     std::unique_ptr<RecordsThread> self(new RecordsThread);
     auto keeping = std::make_shared<Keeping>(Keeping{std::move(bookmarks), std::move(cases), {}});
     self->thread_ = std::thread([&requests = self->requests_, keeping = std::move(keeping)] {
-        for (auto taken = requests.take(maxSharedCommit); !taken.empty();
-             taken = requests.take(maxSharedCommit)) {
+        serveQueue(requests, maxSharedCommit, "records", [&](auto& taken) {
             for (Request& request : taken)
                 std::visit([&](auto& body) { keeping->serve(body); }, request);
             keeping->commit();
-        }
+        });
     });
     return self;
 }

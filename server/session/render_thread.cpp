@@ -11,6 +11,8 @@
 #include <optional>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 namespace haustra::session {
 namespace {
 
@@ -50,6 +52,7 @@ struct RenderThread::Drawing {
     std::shared_ptr<Shared> shared;
     std::unique_ptr<gpu::Context> context;
     GpuCases cases;
+    Lost lost;
 
     void run() {
         // An errand is followed by as many milliseconds of pictures, where there are any.
@@ -71,14 +74,18 @@ struct RenderThread::Drawing {
             auto errand = turn ? nullptr : std::exchange(shared->errand, nullptr);
             lock.unlock();
             const auto start = Clock::now();
-            cases.releaseLeft(start);
-            if (errand) {
-                errand(*this);
-                owedMs = msBetween(start, Clock::now());
-            }
-            if (turn) {
-                drawTurn(*turn);
-                owedMs -= msBetween(start, Clock::now());
+            try {
+                cases.releaseLeft(start);
+                if (errand) {
+                    errand(*this);
+                    owedMs = msBetween(start, Clock::now());
+                }
+                if (turn) {
+                    drawTurn(*turn);
+                    owedMs -= msBetween(start, Clock::now());
+                }
+            } catch (const std::exception& error) {
+                spdlog::error("the render thread goes on after a fault: {}", error.what());
             }
             turn.reset();  // may be a case's last user, so not under the lock
             lock.lock();
@@ -91,8 +98,10 @@ struct RenderThread::Drawing {
         render::CaseRenderer* const renderer = cases.rendererOf(frame.job.of);
         auto drawn = guarded([&]() -> Result<void> {
             if (!renderer) return fail(ErrorKind::device, "the case is not on the GPU", "render");
-            return draw(*renderer, frame, turn.band);
+            if (auto done = draw(*renderer, frame, turn.band); !done) return done;
+            return cases.checkWhole(frame.job.of);
         });
+        if (auto of = cases.takeLost(frame.job.of)) lost(std::move(of));
         const auto end = Clock::now();
         using Outcome = FrameScheduler::Outcome;
         Outcome outcome = Outcome::unwanted;
@@ -116,26 +125,28 @@ struct RenderThread::Drawing {
     }
 };
 
-Result<std::unique_ptr<RenderThread>> RenderThread::start(DrawingOptions options) {
+Result<std::unique_ptr<RenderThread>> RenderThread::start(DrawingOptions options, Lost lost) {
     std::unique_ptr<RenderThread> self(new RenderThread);
     self->shared_ = std::make_shared<Shared>();
     std::promise<Result<std::string>> started;
     auto rendererName = started.get_future();
-    self->thread_ = std::thread([&started, options, shared = self->shared_] {
-        auto context = gpu::Context::create();
-        if (!context) return started.set_value(tl::make_unexpected(context.error()));
-        gpu::Context& made = **context;
-        const auto caseLeft = [weak = std::weak_ptr<Shared>(shared)] {
-            if (const auto alive = weak.lock()) {
-                const std::lock_guard lock(alive->mutex);
-                alive->caseLeft = true;
-                alive->wake.notify_one();
-            }
-        };
-        Drawing drawing{shared, std::move(*context), GpuCases(made, options, caseLeft)};
-        started.set_value(made.renderer());
-        drawing.run();
-    });
+    self->thread_ =
+        std::thread([&started, options, shared = self->shared_, lost = std::move(lost)]() mutable {
+            auto context = gpu::Context::create();
+            if (!context) return started.set_value(tl::make_unexpected(context.error()));
+            gpu::Context& made = **context;
+            const auto caseLeft = [weak = std::weak_ptr<Shared>(shared)] {
+                if (const auto alive = weak.lock()) {
+                    const std::lock_guard lock(alive->mutex);
+                    alive->caseLeft = true;
+                    alive->wake.notify_one();
+                }
+            };
+            Drawing drawing{shared, std::move(*context), GpuCases(made, options, caseLeft),
+                            std::move(lost)};
+            started.set_value(made.renderer());
+            drawing.run();
+        });
     auto name = rendererName.get();
     if (!name) return tl::make_unexpected(name.error());
     self->renderer_ = std::move(*name);

@@ -16,8 +16,11 @@ namespace haustra::session {
 /// the render thread and must not throw, nor take long.
 class RenderThread {
 public:
+    /// Called on the render thread, once for a case whose files turn out not to be whole while it
+    /// is drawn; it can be opened anew.
+    using Lost = std::function<void(std::shared_ptr<const OpenCase>)>;
     /// Makes the context; fails where there is none to be had.
-    static Result<std::unique_ptr<RenderThread>> start(DrawingOptions options);
+    static Result<std::unique_ptr<RenderThread>> start(DrawingOptions options, Lost lost);
     /// Drops what waits, and joins. CaseLoader has ended.
     ~RenderThread();
     RenderThread(const RenderThread&) = delete;

@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include "session/guarded.h"
 #include "session/inputs.h"
 #include "session/messages.h"
 #include "session/wall_questions.h"
@@ -48,12 +49,18 @@ std::shared_ptr<Session> Session::create(SessionId id, asio::any_io_executor io,
     outlet.failed = [weak](const Error& error) {
         if (const auto session = weak.lock()) session->report(error);
     };
+    outlet.broken = [weak](const std::string& what) {
+        if (const auto session = weak.lock()) session->broken(what);
+    };
     self->pictures_ = std::make_shared<PictureStream>(id, io, services.renderer, services.encoders,
                                                       services.presets, std::move(outlet));
-    services.news.listen(weak, [weak](const records::Bookmark& bookmark) {
+    services.bookmarks.listen(weak, [weak](const records::Bookmark& bookmark) {
         const auto session = weak.lock();
         if (session && session->reading_ && bookmark.scan == session->case_->scan)
             session->reading_->addBookmark(bookmark);
+    });
+    services.lostCases.listen(weak, [weak](const std::shared_ptr<const OpenCase>& of) {
+        if (const auto session = weak.lock()) session->lost(of);
     });
     return self;
 }
@@ -139,6 +146,11 @@ void Session::disconnected() {
     questions_.clear();
 }
 
+void Session::broken(const std::string& what) {
+    spdlog::error("session {} fails: {}", id_, what);
+    end(ErrorReport::INTERNAL, "the server failed");
+}
+
 // ---- requests ---------------------------------------------------------------------------------
 
 void Session::handle(const protocol::Hello& hello) {
@@ -170,14 +182,13 @@ auto Session::answer(void (Session::*then)(std::uint64_t, Result<T>), std::uint6
                      int weight) {
     unanswered_ += weight;
     return [weak = weak_from_this(), io = io_, then, request, weight](Result<T> result) {
-        asio::post(io, [weak, then, request, weight, result = std::move(result)]() mutable {
-            const auto self = weak.lock();
-            if (!self) return;
-            self->unanswered_ -= weight;
-            if (self->state_ == State::ended) return;
-            ((*self).*then)(request, std::move(result));
-            self->peer_.answered();
-        });
+        postTo(io, weak,
+               [then, request, weight, result = std::move(result)](Session& self) mutable {
+                   self.unanswered_ -= weight;
+                   if (self.state_ == State::ended) return;
+                   (self.*then)(request, std::move(result));
+                   self.peer_.answered();
+               });
     };
 }
 
@@ -199,17 +210,28 @@ void Session::handle(const protocol::OpenCase& message) {
         return refuse(ErrorReport::BAD_STATE, "another case is being opened");
     if (!store::isCaseName(message.name()))
         return refuse(ErrorReport::NO_SUCH_CASE, "this is no case's name");
+    leaveCase();
     state_ = State::opening;
+    services_.loader.openCase(
+        message.name(), weak_from_this(), [weak = weak_from_this(), io = io_](auto result) {
+            postTo(io, weak, [result = std::move(result)](Session& self) mutable {
+                self.opened(std::move(result));
+            });
+        });
+}
+
+void Session::leaveCase() {
+    state_ = State::ready;
     case_.reset();
     reading_.reset();
     pictures_->setCase(nullptr);
-    services_.loader.openCase(message.name(), weak_from_this(),
-                              [weak = weak_from_this(), io = io_](auto result) {
-                                  asio::post(io, [weak, result = std::move(result)]() mutable {
-                                      if (const auto self = weak.lock())
-                                          self->opened(std::move(result));
-                                  });
-                              });
+}
+
+void Session::lost(const std::shared_ptr<const OpenCase>& of) {
+    if (state_ != State::open || case_ != of) return;
+    leaveCase();
+    refuse(ErrorReport::CASE_LOST,
+           "the case is closed: its files were cut short, or their disk fails");
 }
 
 void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
@@ -275,6 +297,9 @@ void Session::makeReading() {
     outlet.seen = [weak](double share) {
         if (const auto session = weak.lock()) session->tellSeen(0, share);
     };
+    outlet.broken = [weak](const std::string& what) {
+        if (const auto session = weak.lock()) session->broken(what);
+    };
     ++readings_;
     reading_ = std::make_shared<WallReading>(io_, services_.painting, case_, std::move(outlet));
     reading_->choose({});
@@ -331,7 +356,7 @@ void Session::handle(const protocol::AddBookmark& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
     auto bookmark = bookmarkFrom(message, case_->name, case_->scan);
     if (!bookmark) return report(bookmark.error(), request);
-    services_.records.add(std::move(*bookmark), [io = io_, &news = services_.news,
+    services_.records.add(std::move(*bookmark), [io = io_, &news = services_.bookmarks,
                                                  told = answer(&Session::addedBookmark, request)](
                                                     Result<records::Bookmark> added) {
         // Others show it, whether or not this session is still there.

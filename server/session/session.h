@@ -2,8 +2,8 @@
 #pragma once
 
 #include "protocol/haustra.pb.h"
-#include "session/bookmark_news.h"
 #include "session/case_loader.h"
+#include "session/news.h"
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
 #include "session/render_thread.h"
@@ -29,9 +29,10 @@ struct Services {
     RecordsThread& records;
     WallThread& walls;
     PaintThread& painting;
-    BookmarkNews& news;
-    const render::PresetLibrary& presets;  ///< not empty
-    std::string software;                  ///< name and version, for the welcome
+    News<records::Bookmark>& bookmarks;                ///< that are in the store now
+    News<std::shared_ptr<const OpenCase>>& lostCases;  ///< whose files cannot be read any more
+    const render::PresetLibrary& presets;              ///< not empty
+    std::string software;                              ///< name and version, for the welcome
 };
 
 /// The session's side of a connection. Called on the io thread.
@@ -55,6 +56,8 @@ public:
     void end(protocol::ErrorReport::Code code, const std::string& message);
     /// The connection is gone; the peer is not used again.
     void disconnected();
+    /// Ends the session after a fault of the server's own.
+    void broken(const std::string& what);
 
     bool greeted() const { return state_ != State::hello; }
     /// So many requests wait for their answer that no more should be read.
@@ -82,6 +85,8 @@ private:
     void askNext();
     void answeredAboutWall(std::uint64_t request, Result<WallAnswer> answer);
     void opened(Result<std::shared_ptr<const OpenCase>> result);
+    void leaveCase();
+    void lost(const std::shared_ptr<const OpenCase>& of);
 
     void dispatch(const protocol::ClientMessage& message);
     void send(const protocol::ServerMessage& message);

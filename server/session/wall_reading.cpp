@@ -151,8 +151,8 @@ void WallReading::startPainting() {
             if (gazes) work->mark(*gazes);
             return work->paint(choice);
         });
-        asio::post(io, [weak, number, paint = std::move(paint)]() mutable {
-            if (const auto self = weak.lock()) self->painted(number, std::move(paint));
+        postTo(io, weak, [number, paint = std::move(paint)](WallReading& self) mutable {
+            self.painted(number, std::move(paint));
         });
     });
 }
@@ -196,15 +196,13 @@ void WallReading::look(const render::Camera& camera, glm::ivec2 size) {
             const bool more = seen.show(camera, size) > 0;
             return Saw{seen.share(), more};
         });
-        asio::post(io, [weak, saw] {
-            const auto self = weak.lock();
-            if (!self) return;
-            --self->looks_;
+        postTo(io, weak, [saw](WallReading& self) {
+            --self.looks_;
             if (saw)
-                self->sawMore(saw->share, saw->more);
+                self.sawMore(saw->share, saw->more);
             else
                 spdlog::error("a wall cannot be looked at: {}", saw.error().message);
-            self->lookAtStill();
+            self.lookAtStill();
         });
     });
 }

@@ -43,8 +43,9 @@ inline constexpr double sameCameraMm = 1.0, sameCameraDegrees = 2.0;
 class WallReading : public std::enable_shared_from_this<WallReading> {
 public:
     struct Outlet {
-        std::function<void()> painted;           ///< paint() is another
-        std::function<void(double share)> seen;  ///< of the wall's area, 0…1
+        std::function<void()> painted;                        ///< paint() is another
+        std::function<void(double share)> seen;               ///< of the wall's area, 0…1
+        std::function<void(const std::string& what)> broken;  ///< nothing else will come
     };
     /// The case has a wall.
     WallReading(asio::any_io_executor io, PaintThread& painting, std::shared_ptr<const OpenCase> of,
@@ -70,6 +71,9 @@ public:
     /// `told` is called on the io thread with the share that pictures drawn before this have shown;
     /// with `forget`, nothing has been. Fails (device) where there is not enough memory.
     void ask(bool forget, std::function<void(Result<double> share)> told);
+
+    /// After a fault in what was posted here (postTo).
+    void broken(const std::string& what) { outlet_.broken(what); }
 
 private:
     struct Work;

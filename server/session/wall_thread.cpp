@@ -7,10 +7,10 @@ namespace haustra::session {
 std::unique_ptr<WallThread> WallThread::start() {
     std::unique_ptr<WallThread> self(new WallThread);
     self->thread_ = std::thread([&requests = self->requests_] {
-        for (auto taken = requests.take(1); !taken.empty(); taken = requests.take(1)) {
+        serveQueue(requests, 1, "wall", [](auto& taken) {
             const Request& request = taken.front();
             request.done(guarded([&] { return answer(*request.of->wall, request.question); }));
-        }
+        });
     });
     return self;
 }

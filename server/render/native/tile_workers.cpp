@@ -2,6 +2,8 @@
 
 #include "core/parallel.h"
 
+#include <utility>
+
 namespace haustra::render {
 
 namespace {
@@ -49,6 +51,7 @@ void TileWorkers::run(int tiles, const std::function<void(int)>& body) {
     std::unique_lock lock(mutex_);
     done_.wait(lock, [this] { return working_ == 0; });
     body_ = nullptr;
+    if (const auto failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
 }
 
 void TileWorkers::serve(std::size_t self) {
@@ -73,7 +76,12 @@ void TileWorkers::work(std::size_t self) {
             // A thief may change the end meanwhile; then the exchange fails and tells the new one.
             if (!mine.compare_exchange_weak(range, packed(firstOf(range) + 1, endOf(range))))
                 continue;
-            (*body_)(int(firstOf(range)));
+            try {
+                (*body_)(int(firstOf(range)));
+            } catch (...) {
+                const std::lock_guard lock(mutex_);
+                if (!failure_) failure_ = std::current_exception();
+            }
             range = mine.load();
         }
     } while (steal(self));

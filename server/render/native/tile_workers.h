@@ -4,6 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -23,8 +24,9 @@ public:
     TileWorkers& operator=(const TileWorkers&) = delete;
 
     int threads() const { return int(rests_.size()); }
-    /// Calls body(tile) once for each of 0 … tiles − 1, and returns when all have returned. The
-    /// body must not throw, and must not depend on order or thread. One thread calls run at a time.
+    /// Calls body(tile) once for each of 0 … tiles − 1, and returns when all have returned; then
+    /// the first exception of a body is thrown here. The body must not depend on order or thread.
+    /// One thread calls run at a time.
     void run(int tiles, const std::function<void(int tile)>& body);
 
 private:
@@ -42,6 +44,7 @@ private:
     const std::function<void(int)>* body_ = nullptr;
     std::uint64_t round_ = 0;
     std::size_t working_ = 0;
+    std::exception_ptr failure_;
     bool ending_ = false;
     std::vector<std::thread> threads_;  // last: they use the rest
 };

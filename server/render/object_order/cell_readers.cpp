@@ -65,8 +65,14 @@ void CellReaders::serve() {
         queue_.pop_front();
         const VoxelBox box{buffers_[index].corner, side_};
         lock.unlock();
-        source_->read(box, memory_.data() + index * bufferBytes_);
+        std::exception_ptr failure;
+        try {
+            source_->read(box, memory_.data() + index * bufferBytes_);
+        } catch (...) {
+            failure = std::current_exception();
+        }
         lock.lock();
+        buffers_[index].failure = failure;
         buffers_[index].state = State::ready;
         done_.notify_all();
     }
@@ -137,6 +143,10 @@ void CellReaders::upload(int cell, glm::ivec3 corner, gpu::Texture& atlas, glm::
         buffer = mine();
     }
     done_.wait(lock, [&] { return buffer->state == State::ready; });
+    if (const auto failure = std::exchange(buffer->failure, nullptr)) {
+        buffer->state = State::free;
+        std::rethrow_exception(failure);
+    }
     buffer->state = State::uploading;
     lock.unlock();
     const std::size_t index = std::size_t(buffer - buffers_.begin());

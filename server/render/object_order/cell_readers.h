@@ -33,7 +33,8 @@ public:
     /// Begins to read a cell, where a buffer is free; else does nothing and says so.
     bool readAhead(int cell, glm::ivec3 corner);
     /// The cell's texels on their way into `atlas` at `slot`; reads it first, or waits for whoever
-    /// does. What is read ahead and not needed after all is given up for it.
+    /// does, whose exception is thrown here. What is read ahead and not needed after all is given
+    /// up for it.
     void upload(int cell, glm::ivec3 corner, gpu::Texture& atlas, glm::ivec3 slot);
     /// Forgets what has been read ahead.
     void giveUp();
@@ -47,6 +48,7 @@ private:
         int cell = -1;
         glm::ivec3 corner{0};
         gpu::Fence uploaded;
+        std::exception_ptr failure;  // of its reading
     };
     CellReaders(std::shared_ptr<const CellSource> source, int side, gpu::MappedBuffer memory,
                 int buffers, int threads);

@@ -1,9 +1,6 @@
-// Between sessions: what one adds, the others show.
+// What one thread or session tells all sessions.
 #pragma once
 
-#include "records/bookmarks.h"
-
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -12,18 +9,18 @@
 namespace haustra::session {
 
 /// Belongs to the io thread.
-class BookmarkNews {
+template <class T>
+class News {
 public:
-    using Heard = std::function<void(const records::Bookmark&)>;
-    /// `heard` is called for each bookmark of whichever case while `listener` lives.
+    using Heard = std::function<void(const T&)>;
+    /// `heard` is called for all that is told while `listener` lives.
     void listen(std::weak_ptr<const void> listener, Heard heard) {
         std::erase_if(listeners_, [](const auto& known) { return known.first.expired(); });
         listeners_.emplace_back(std::move(listener), std::move(heard));
     }
-    /// The bookmark is in the store.
-    void tell(const records::Bookmark& bookmark) const {
+    void tell(const T& news) const {
         for (const auto& [listener, heard] : listeners_)
-            if (const auto alive = listener.lock()) heard(bookmark);
+            if (const auto alive = listener.lock()) heard(news);
     }
 
 private:
