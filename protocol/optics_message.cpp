@@ -78,9 +78,8 @@ void fill(OpticsPreset& message, const haustra::OpticsPreset& preset) {
 
 Result<haustra::Optics> opticsFrom(const Optics& message) {
     haustra::Optics optics;
-    const auto composition = compositionFrom(message.composition());
-    if (!composition) return tl::make_unexpected(composition.error());
-    optics.composition = *composition;
+    const auto composition = TRY(compositionFrom(message.composition()));
+    optics.composition = composition;
     optics.preIntegrated = message.pre_integrated();
     optics.shading = !message.unlit();
     if (message.has_light()) {
@@ -92,16 +91,15 @@ Result<haustra::Optics> opticsFrom(const Optics& message) {
     for (const GradientRow& row : message.rows())
         optics.transferFunction.rows.push_back(
             {row.gradient_hu_per_mm(), pointsFrom(row.points())});
-    if (const auto sound = checkOptics(optics); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkOptics(optics));
     return optics;
 }
 
 Result<haustra::OpticsPreset> presetFrom(const OpticsPreset& message) {
     if (!isPresetName(message.name()))
         return fail(ErrorKind::badInput, "its name is none", "preset");
-    auto optics = opticsFrom(message.optics());
-    if (!optics) return tl::make_unexpected(optics.error());
-    return haustra::OpticsPreset{message.name(), message.description(), std::move(*optics)};
+    auto optics = TRY(opticsFrom(message.optics()));
+    return haustra::OpticsPreset{message.name(), message.description(), std::move(optics)};
 }
 
 }  // namespace haustra::protocol

@@ -94,18 +94,16 @@ Result<std::filesystem::path> KnownServers::defaultFile() {
 }
 
 Result<std::optional<std::string>> KnownServers::find(const std::string& server) const {
-    const auto entries = readEntries(file_);
-    if (!entries) return tl::make_unexpected(entries.error());
-    for (const Entry& entry : *entries)
+    const auto entries = TRY(readEntries(file_));
+    for (const Entry& entry : entries)
         if (entry.server == server) return entry.fingerprint;
     return std::nullopt;
 }
 
 Result<void> KnownServers::pin(const std::string& server, const std::string& fingerprint) const {
-    const auto entries = readEntries(file_);
-    if (!entries) return tl::make_unexpected(entries.error());
+    const auto entries = TRY(readEntries(file_));
     std::string text;
-    for (const Entry& entry : *entries)
+    for (const Entry& entry : entries)
         if (entry.server != server) text += entry.line + "\n";
     text += server + " " + fingerprint + "\n";
     if (const auto folder = file_.parent_path(); !folder.empty()) {
@@ -128,20 +126,17 @@ Result<Trust> checkPin(const Pinning& pinning, const std::string& server,
                         "the server's certificate has the fingerprint " + fingerprint + ", not " +
                             *pinning.expectedFingerprint + " as given: refused",
                         server);
-        if (auto pinned = known.pin(server, fingerprint); !pinned)
-            return tl::make_unexpected(pinned.error());
+        TRY(known.pin(server, fingerprint));
         return Trust::known;
     }
-    const auto pinned = known.find(server);
-    if (!pinned) return tl::make_unexpected(pinned.error());
-    if (!*pinned) {
-        if (auto written = known.pin(server, fingerprint); !written)
-            return tl::make_unexpected(written.error());
+    const auto pinned = TRY(known.find(server));
+    if (!pinned) {
+        TRY(known.pin(server, fingerprint));
         return Trust::firstUse;
     }
-    if (**pinned == fingerprint) return Trust::known;
+    if (*pinned == fingerprint) return Trust::known;
     return fail(ErrorKind::badInput,
-                "the server's certificate CHANGED since it was first met (pinned " + **pinned +
+                "the server's certificate CHANGED since it was first met (pinned " + *pinned +
                     ", shown now " + fingerprint +
                     "): refused. Somebody may be in between. If the certificate was replaced on "
                     "purpose, check "

@@ -112,11 +112,9 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column)
             info.grid.patientFromVoxel[column][row] = message.patient_from_voxel(4 * row + column);
-    if (auto sound = checkGrid(info.grid, "case opened"); !sound)
-        return tl::make_unexpected(sound.error());
-    auto centerline = centerlineFrom(message);
-    if (!centerline) return tl::make_unexpected(centerline.error());
-    info.centerline = std::move(*centerline);
+    TRY(checkGrid(info.grid, "case opened"));
+    auto centerline = TRY(centerlineFrom(message));
+    info.centerline = std::move(centerline);
     info.position = patientPositionFromString(message.patient_position());
     for (const protocol::OpticsPreset& preset : message.presets()) {
         auto sound = protocol::presetFrom(preset);
@@ -135,14 +133,12 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
         return fail(ErrorKind::badInput, "its bins are none", "case opened: histogram");
     info.cleansed = message.cleansed();
     if (message.has_trust()) {
-        auto trust = trustFrom(message.trust());
-        if (!trust) return tl::make_unexpected(trust.error());
-        info.trust = std::move(*trust);
+        auto trust = TRY(trustFrom(message.trust()));
+        info.trust = std::move(trust);
     }
     if (message.has_flat()) {
-        auto strip = stripFrom(message.flat());
-        if (!strip) return tl::make_unexpected(strip.error());
-        info.flat = std::move(*strip);
+        auto strip = TRY(stripFrom(message.flat()));
+        info.flat = std::move(strip);
     }
     return info;
 }

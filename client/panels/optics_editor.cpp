@@ -163,15 +163,14 @@ Result<void> OpticsEditor::save(const std::filesystem::path& file) {
         return fail(ErrorKind::badInput,
                     "a preset's file is named by letters, digits, '-' and '_', and ends in .json",
                     file.string());
-    if (auto written = writePresetFile(file, preset); !written) return written;
+    TRY(writePresetFile(file, preset));
     take(std::move(preset));
     return {};
 }
 
 Result<void> OpticsEditor::open(const std::filesystem::path& file) {
-    auto preset = readPresetFile(file);
-    if (!preset) return tl::make_unexpected(preset.error());
-    take(std::move(*preset));
+    auto preset = TRY(readPresetFile(file));
+    take(std::move(preset));
     chooseRow(0);
     return {};
 }

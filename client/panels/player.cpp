@@ -98,21 +98,19 @@ Result<Arrival> Player::awaitPicture(int viewport, std::uint64_t sequence, bool 
         return bool(found);
     };
     const std::string what = exact ? "the exact picture" : "the picture";
-    if (auto came = awaitThat(look, what + " of viewport " + std::to_string(viewport)); !came)
-        return tl::make_unexpected(came.error());
+    TRY(awaitThat(look, what + " of viewport " + std::to_string(viewport)));
     return found;
 }
 
 Status Player::awaitStill(int viewport, std::uint64_t sequence, Clock::time_point askedAt,
                           const std::string& png, ActionReport& report) {
-    auto arrival = awaitPicture(viewport, sequence, true);
-    if (!arrival) return tl::make_unexpected(arrival.error());
-    count(report, *arrival, askedAt);
-    report.seconds = msBetween(askedAt, arrival->decodedAt) / 1000.0;
+    auto arrival = TRY(awaitPicture(viewport, sequence, true));
+    count(report, arrival, askedAt);
+    report.seconds = msBetween(askedAt, arrival.decodedAt) / 1000.0;
     if (png.empty()) return {};
     report.file = png;
-    return tiles::writePng(options_.outFolder / png, arrival->picture.rgb, arrival->picture.width,
-                           arrival->picture.height);
+    return tiles::writePng(options_.outFolder / png, arrival.picture.rgb, arrival.picture.width,
+                           arrival.picture.height);
 }
 
 // ---- actions --------------------------------------------------------------------------------
@@ -165,7 +163,7 @@ Status Player::mustBeOpen(int viewport) {
 
 Status Player::run(const ViewAction& action, ActionReport&) {
     if (isFlat(action.view)) {
-        if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+        TRY(mustBeFlattened());
     }
     open(action.viewport, action.view, action.width, action.height);
     return {};
@@ -185,7 +183,7 @@ Status Player::run(const GoAction& action, ActionReport&) {
 }
 
 Status Player::run(const StillAction& action, ActionReport& report) {
-    if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
+    TRY(mustBeOpen(action.viewport));
     const auto askedAt = Clock::now();
     return awaitStill(action.viewport, ask(action.viewport, false), askedAt, action.png, report);
 }
@@ -199,13 +197,13 @@ Status Player::run(const SliceAction& action, ActionReport& report) {
 }
 
 Status Player::run(const WindowAction& action, ActionReport&) {
-    if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
+    TRY(mustBeOpen(action.viewport));
     session_.setWindowLevel(action.viewport, action.window);
     return awaitBookmarkList();
 }
 
 Status Player::run(const TransferAction& action, ActionReport&) {
-    if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
+    TRY(mustBeOpen(action.viewport));
     session_.setTransferFunction(action.viewport, action.optics);
     return awaitBookmarkList();
 }
@@ -229,7 +227,7 @@ Status Player::run(const BookmarkAction& action, ActionReport& report) {
 }
 
 Status Player::run(const BookmarksAction& action, ActionReport& report) {
-    if (auto came = awaitBookmarkList(); !came) return came;
+    TRY(awaitBookmarkList());
     const auto bookmarks = session_.bookmarks();
     report.bookmarks = bookmarks.size();
     if (action.json.empty()) return {};

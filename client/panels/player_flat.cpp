@@ -17,7 +17,7 @@ FlatWindow Player::windowAround(double y, std::optional<double> pixelsPerCircumf
 }
 
 Status Player::run(const FlatAction& action, ActionReport& report) {
-    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    TRY(mustBeFlattened());
     OpenViewport& zoom = open(action.viewport, View::flattenedZoom, action.size);
     const FlatStrip& strip = *session_.caseInfo()->flat;
     zoom.window = windowAround(strip.yAtArc(action.arcMm.value_or(flight_.arcMm())),
@@ -28,7 +28,7 @@ Status Player::run(const FlatAction& action, ActionReport& report) {
 }
 
 Status Player::run(const StripAction& action, ActionReport& report) {
-    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    TRY(mustBeFlattened());
     open(action.viewport, View::flattened, action.size);
     const auto askedAt = Clock::now();
     return awaitStill(action.viewport, ask(action.viewport, false), askedAt, action.png, report);
@@ -51,37 +51,32 @@ Result<Session::WallAnswer> Player::awaitWallAnswer(std::uint64_t request, Actio
 }
 
 Status Player::run(const LocateAction& action, ActionReport& report) {
-    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    TRY(mustBeFlattened());
     const auto request =
         action.flat ? session_.locate(*action.flat) : session_.locate(*action.positionMm);
-    auto answer = awaitWallAnswer(request, report);
-    if (!answer) return tl::make_unexpected(answer.error());
-    if (!answer->body) return tl::make_unexpected(answer->body.error());
-    report.place = std::get<WallPlace>(*answer->body);
+    auto answer = TRY(awaitWallAnswer(request, report));
+    report.place = std::get<WallPlace>(TRY(std::move(answer.body)));
     return action.json.empty() ? Status{} : writeJson(action.json, toJson(*report.place), report);
 }
 
 Status Player::run(const MeasureAction& action, ActionReport& report) {
-    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
-    auto answer = awaitWallAnswer(session_.measure(action.points, action.closed), report);
-    if (!answer) return tl::make_unexpected(answer.error());
-    if (!answer->body) return tl::make_unexpected(answer->body.error());
-    report.measure = std::get<FlatMeasure>(*answer->body);
+    TRY(mustBeFlattened());
+    auto answer = TRY(awaitWallAnswer(session_.measure(action.points, action.closed), report));
+    report.measure = std::get<FlatMeasure>(TRY(std::move(answer.body)));
     return action.json.empty() ? Status{} : writeJson(action.json, toJson(*report.measure), report);
 }
 
 Status Player::run(const PaintAction& action, ActionReport&) {
-    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    TRY(mustBeFlattened());
     session_.setWallPaint(action.paint);
     return awaitBookmarkList();
 }
 
 Status Player::run(const SeenAction& action, ActionReport& report) {
-    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    TRY(mustBeFlattened());
     const auto request = session_.askSeen(action.forget);
-    auto came = awaitThat([&] { return session_.answeredSeenRequest() >= request; },
-                          "the share of the wall that has been seen");
-    if (!came) return came;
+    TRY(awaitThat([&] { return session_.answeredSeenRequest() >= request; },
+                  "the share of the wall that has been seen"));
     report.seenShare = session_.seenShare();
     return action.json.empty() ? Status{}
                                : writeJson(action.json, seenShareJson(*report.seenShare), report);

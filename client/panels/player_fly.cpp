@@ -10,7 +10,7 @@ using Status = Player::Status;
 Status Player::run(const FlyAction& action, ActionReport& report) {
     if (flight_.centerline().points.empty())
         return fail(ErrorKind::notFound, "the case has no centerline");
-    if (auto opened = mustBeOpen(action.viewport); !opened) return opened;
+    TRY(mustBeOpen(action.viewport));
     if (viewports_[action.viewport].view != View::endoscopic)
         return fail(ErrorKind::badInput, "only an endoscopic viewport can fly");
     const double length = flight_.centerline().lengthMm();
@@ -26,9 +26,9 @@ Status Player::run(const FlyAction& action, ActionReport& report) {
 }
 
 Status Player::run(const FlyOverAction& action, ActionReport& report) {
-    if (auto flattened = mustBeFlattened(); !flattened) return flattened;
+    TRY(mustBeFlattened());
     if (action.endoscopic) {
-        if (auto opened = mustBeOpen(0); !opened) return opened;
+        TRY(mustBeOpen(0));
         if (viewports_[0].view != View::endoscopic)
             return fail(ErrorKind::badInput, "viewport 0 does not show the endoscopic view");
     }
@@ -65,9 +65,8 @@ Status Player::travelStepwise(const Course& course, ActionReport& report) {
     for (int n = 0; n < course.positions; ++n) {
         const auto askedAt = Clock::now();
         const auto sequence = course.goTo(double(n) / (course.positions - 1));
-        auto arrival = awaitPicture(course.viewport, sequence, false);
-        if (!arrival) return tl::make_unexpected(arrival.error());
-        count(report, *arrival, askedAt);
+        auto arrival = TRY(awaitPicture(course.viewport, sequence, false));
+        count(report, arrival, askedAt);
     }
     return {};
 }
@@ -81,11 +80,10 @@ Status Player::travelPipelined(const Course& course, ActionReport& report) {
             const auto now = Clock::now();
             askedAt.emplace(course.goTo(double(sent++) / (course.positions - 1)), now);
         }
-        auto arrival = awaitPicture(course.viewport, askedAt.begin()->first, false);
-        if (!arrival) return tl::make_unexpected(arrival.error());
+        auto arrival = TRY(awaitPicture(course.viewport, askedAt.begin()->first, false));
         // A picture answers its input and all before it that it overtook.
-        const auto past = askedAt.upper_bound(arrival->picture.sequence);
-        count(report, *arrival, std::prev(past)->second);
+        const auto past = askedAt.upper_bound(arrival.picture.sequence);
+        count(report, arrival, std::prev(past)->second);
         askedAt.erase(askedAt.begin(), past);
     }
     return {};

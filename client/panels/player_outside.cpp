@@ -39,7 +39,7 @@ Status Player::run(const OverviewAction& action, ActionReport& report) {
     if (!action.reader) overview.reader.reset();
     overview.body = action.body;
     if (action.bookmarks) {
-        if (auto came = awaitBookmarkList(); !came) return came;
+        TRY(awaitBookmarkList());
         for (const Bookmark& bookmark : session_.bookmarks())
             if (overview.bookmarksMm.size() < maxMarkedBookmarks)
                 overview.bookmarksMm.push_back(bookmark.camera.positionMm);

@@ -94,9 +94,8 @@ void finishBookmarks(panels::Session& session) {
 }  // namespace
 
 Result<void> run(WindowOptions options) {
-    auto made = GlWindow::create("Haustra", options.width, options.height, options.scale);
-    if (!made) return tl::make_unexpected(made.error());
-    GlWindow& window = **made;
+    auto made = TRY(GlWindow::create("Haustra", options.width, options.height, options.scale));
+    GlWindow& window = *made;
     options.connection.reconnect = true;
     options.connection.onEvent = [&window] { window.wake(); };
     panels::Reader reader(options.connection, options.caseName);
@@ -125,8 +124,7 @@ Result<void> run(WindowOptions options) {
                          ? 3
                          : std::max(0, busyFrames - 1);
         if (options.screenshot && readyForScreenshot(reader, options, now - start)) {
-            if (auto written = window.writeScreenshot(*options.screenshot); !written)
-                return written;
+            TRY(window.writeScreenshot(*options.screenshot));
             if (reader.session().phase() == panels::Phase::failed)
                 return tl::make_unexpected(reader.session().failure());
             break;

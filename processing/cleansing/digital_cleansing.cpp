@@ -66,16 +66,15 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
         return fail(ErrorKind::badInput, "the mixture or segmentation is not on the scan's grid",
                     "cleansing");
     }
-    auto part = cropToLumen(scan, segmentation, threads);
-    if (!part) return tl::make_unexpected(part.error());
-    if (!*part) {
+    auto part = TRY(cropToLumen(scan, segmentation, threads));
+    if (!part) {
         Cleansed cleansed{scan.hu.clone(), segmentation.clone()};
         takeOutUntagged(cleansed.hu, cleansed.lumen, segmentation, tissue.meanHu[int(Tissue::air)],
                         threads);
         return cleansed;
     }
     CleansedLumen cleansed = cleanse(
-        scan, tissue, mixture, measureTaggedLumen(std::move(**part), tissue, threads), threads);
+        scan, tissue, mixture, measureTaggedLumen(std::move(*part), tissue, threads), threads);
     return Cleansed{std::move(cleansed.hu).whole(threads),
                     std::move(cleansed.lumen).whole(threads)};
 }

@@ -190,13 +190,12 @@ private:
 Result<Volume<TissueFractions>> estimateMixture(const CtScan& scan, const TissueModel& tissue,
                                                 const Volume<std::uint8_t>& segmentation,
                                                 glm::dvec3 gravity, const MixtureOptions& options) {
-    auto part = cropToLumen(scan, segmentation, options.threads);
-    if (!part) return tl::make_unexpected(part.error());
+    auto part = TRY(cropToLumen(scan, segmentation, options.threads));
     const PartialVolumeModel model = fitPartialVolume(scan, tissue, options.threads);
-    if (!*part)
+    if (!part)
         return estimateMixture(scan, model, {}, nullptr, gravity, options).whole(options.threads);
-    auto byHu = fractionsByHu((*part)->scan.hu, model, options.threads);
-    const TaggedLumen lumen = measureTaggedLumen(std::move(**part), tissue, options.threads);
+    auto byHu = fractionsByHu(part->scan.hu, model, options.threads);
+    const TaggedLumen lumen = measureTaggedLumen(std::move(*part), tissue, options.threads);
     return estimateMixture(scan, model, std::move(byHu), &lumen, gravity, options)
         .whole(options.threads);
 }

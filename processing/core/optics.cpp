@@ -58,7 +58,7 @@ Result<void> checkLight(const Headlight& light) {
 }  // namespace
 
 Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
-    if (auto sound = checkPoints(transferFunction.points, ""); !sound) return sound;
+    TRY(checkPoints(transferFunction.points, ""));
     if (transferFunction.rows.size() > mostGradientRows)
         return refuse(std::to_string(transferFunction.rows.size()) +
                       " rows, where at most 64 are allowed");
@@ -73,7 +73,7 @@ Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
                           " has a gradient magnitude not 0.001 over the row before's, or over "
                           "65536");
         before = row.gradientHuPerMm;
-        if (auto sound = checkPoints(row.points, at + ": "); !sound) return sound;
+        TRY(checkPoints(row.points, at + ": "));
         points += row.points.size();
     }
     if (points > mostTransferPointsInAll)
@@ -83,7 +83,7 @@ Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
 }
 
 Result<void> checkOptics(const Optics& optics) {
-    if (auto sound = checkTransferFunction(optics.transferFunction); !sound) return sound;
+    TRY(checkTransferFunction(optics.transferFunction));
     if (optics.preIntegrated && !optics.transferFunction.rows.empty())
         return refuse("a transfer function with gradient rows cannot be pre-integrated");
     return checkLight(optics.light);

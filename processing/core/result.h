@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+
 #include <tl/expected.hpp>
 
 namespace haustra {
@@ -12,6 +14,7 @@ enum class ErrorKind {
     unsupported,  ///< well formed, but of a kind that Haustra does not read
     io,           ///< the operating system refused to read, write or publish
     device,       ///< EGL, OpenGL or the network failed
+    wrongState,   ///< sound, but not now: what it speaks of is not open, or already there
     noResult,     ///< the input is sound, but holds nothing to find (no colon, no air …)
 };
 
@@ -30,6 +33,31 @@ using Result = tl::expected<T, Error>;
 inline tl::unexpected<Error> fail(ErrorKind kind, std::string message, std::string place = {}) {
     return tl::make_unexpected(Error{kind, std::move(message), std::move(place)});
 }
+
+namespace detail {
+template <class T>
+T valueOf(Result<T>&& result) {
+    return *std::move(result);
+}
+inline void valueOf(Result<void>&&) {}
+inline void valueOf(const Result<void>&) {}
+}  // namespace detail
+
+/// The value of a Result; where it has none, the function is left with its error:
+///     const Volume<float> hu = TRY(readVolume(file));
+/// Of a Result<void> a statement: TRY(writeIndex(folder)). A variable is given up:
+/// TRY(std::move(x)). For functions and lambdas that return a Result of whatever type; not for
+/// coroutines.
+#define TRY(...) HAUSTRA_TRY_AS(__COUNTER__, __VA_ARGS__)
+#define HAUSTRA_TRY_AS(number, ...) HAUSTRA_TRY_IN(number, __VA_ARGS__)
+#define HAUSTRA_TRY_IN(number, ...)                                                       \
+    __extension__({                                                                       \
+        auto&& tried##number = (__VA_ARGS__);                                             \
+        if (!tried##number)                                                               \
+            return tl::make_unexpected(                                                   \
+                std::forward<decltype(tried##number)>(tried##number).error());            \
+        ::haustra::detail::valueOf(std::forward<decltype(tried##number)>(tried##number)); \
+    })
 
 /// "place: message", or the message alone where there is no place.
 std::string describe(const Error& error);

@@ -84,8 +84,7 @@ public:
         hu_.resize(pixels());
         const FrameHeader& header = image_.frames[std::size_t(frame)];
         if (fragments_ && isJpeg2000(syntax_)) {
-            if (auto done = readJpeg2000(frame, header.rescale); !done)
-                return tl::make_unexpected(done.error());
+            TRY(readJpeg2000(frame, header.rescale));
             return std::span<const std::int16_t>(hu_);
         }
         Uint32 size = 0;
@@ -98,9 +97,8 @@ public:
             const auto range = fragmentsOf(frame);
             if (!range || range->last - range->first != 1)
                 return damaged("its compressed frames cannot be told apart");
-            const auto bytes = frameBytes(frame);
-            if (!bytes) return tl::make_unexpected(bytes.error());
-            if (!rleHeaderIsSound(*bytes, cellBytes()))
+            const auto bytes = TRY(frameBytes(frame));
+            if (!rleHeaderIsSound(bytes, cellBytes()))
                 return damaged("its run-length segments lie outside the frame");
             nextFragment_ = Uint32(range->first);
         }
@@ -190,19 +188,17 @@ private:
     }
 
     Result<void> readJpeg2000(int frame, const Rescale& rescale) {
-        const auto bytes = frameBytes(frame);
-        if (!bytes) return tl::make_unexpected(bytes.error());
-        const auto decoded = decodeJpeg2000(*bytes, image_.matrix, place_);
-        if (!decoded) return tl::make_unexpected(decoded.error());
+        const auto bytes = TRY(frameBytes(frame));
+        const auto decoded = TRY(decodeJpeg2000(bytes, image_.matrix, place_));
         // The codestream's own precision rules: some writers' Bits Stored disagrees with it. Where
         // the signs disagree, the values are the data set's, written as if of the other kind.
         StoredFormat format = image_.format;
         format.bitsAllocated = 16;
-        format.bitsStored = decoded->precision;
-        format.highBit = decoded->precision - 1;
+        format.bitsStored = decoded.precision;
+        format.highBit = decoded.precision - 1;
         const HuTable& hu = table(format, rescale);
         for (std::size_t n = 0; n < hu_.size(); ++n)
-            hu_[n] = hu[decoded->cells[n]];
+            hu_[n] = hu[decoded.cells[n]];
         return {};
     }
 
@@ -226,11 +222,10 @@ Result<void> decodeFrames(const ImageHeader& image, int first, int last,
                           const FrameSink& sink) try {
     prepareDicomLibrary();
     PixelReader reader(image);
-    if (auto opened = reader.open(); !opened) return opened;
+    TRY(reader.open());
     for (int frame = first; frame < last; ++frame) {
-        const auto hu = reader.read(frame);
-        if (!hu) return tl::make_unexpected(hu.error());
-        sink(frame, *hu);
+        const auto hu = TRY(reader.read(frame));
+        sink(frame, hu);
     }
     return {};
 } catch (const std::exception& error) {

@@ -202,9 +202,8 @@ Result<std::vector<FrameHeader>> readFrames(DcmItem& dataset, bool enhanced,
             return fail(ErrorKind::unsupported,
                         "the CT image has several frames, but does not say where each lies", place);
         }
-        auto frame = readFrame(FrameAttributes(dataset), place);
-        if (!frame) return tl::make_unexpected(frame.error());
-        frames.push_back(*frame);
+        auto frame = TRY(readFrame(FrameAttributes(dataset), place));
+        frames.push_back(frame);
         return frames;
     }
     DcmItem* shared = nullptr;
@@ -253,12 +252,10 @@ Result<void> readImage(DcmItem& dataset, bool enhanced, const std::string& place
     }
     image.matrix = {columns, rows};
     if (image.localizer) return {};  // never decoded: its geometry does not matter
-    auto format = readFormat(dataset, place);
-    if (!format) return tl::make_unexpected(format.error());
-    image.format = *format;
-    auto frames = readFrames(dataset, enhanced, place);
-    if (!frames) return tl::make_unexpected(frames.error());
-    image.frames = std::move(*frames);
+    auto format = TRY(readFormat(dataset, place));
+    image.format = format;
+    auto frames = TRY(readFrames(dataset, enhanced, place));
+    image.frames = std::move(frames);
     return {};
 }
 

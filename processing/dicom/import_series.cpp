@@ -121,10 +121,9 @@ Result<void> decodeSlices(const Series& series, const SliceStack& stack,
 }  // namespace
 
 Result<std::vector<SeriesSummary>> listSeries(const std::filesystem::path& path) {
-    auto found = findSeries(path, 0, {});
-    if (!found) return tl::make_unexpected(found.error());
+    auto found = TRY(findSeries(path, 0, {}));
     std::vector<SeriesSummary> summaries;
-    for (const Series& series : found->series) {
+    for (const Series& series : found.series) {
         if (!series.images.empty()) summaries.push_back(series.summary);
     }
     return summaries;
@@ -140,36 +139,29 @@ Result<SeriesSummary> findSeries(const std::filesystem::path& path, const Import
 
 Result<ImportedSeries> importSeries(const std::filesystem::path& path,
                                     const ImportOptions& options) try {
-    auto found = findSeries(path, options.threads, [&](double fraction) {
+    auto found = TRY(findSeries(path, options.threads, [&](double fraction) {
         if (options.progress) options.progress(headersShare * fraction);
-    });
-    if (!found) return tl::make_unexpected(found.error());
-    auto series = chooseSeries(std::move(*found), options.seriesUid, path);
-    if (!series) return tl::make_unexpected(series.error());
+    }));
+    auto series = TRY(chooseSeries(std::move(found), options.seriesUid, path));
 
     std::vector<PlacedFrame> frames;
-    const std::vector<Slice> slices = slicesOf(*series, frames);
-    auto stack = stackSlices(slices);
-    if (!stack) return tl::make_unexpected(stack.error());
+    const std::vector<Slice> slices = slicesOf(series, frames);
+    auto stack = TRY(stackSlices(slices));
 
-    Grid grid = stack->grid;
-    grid.size.z = int(stack->order.size());
+    Grid grid = stack.grid;
+    grid.size.z = int(stack.order.size());
     Volume<std::int16_t> volume(grid);
-    if (auto decoded = decodeSlices(*series, *stack, std::move(frames), volume, options.threads,
-                                    options.progress);
-        !decoded) {
-        return tl::make_unexpected(decoded.error());
-    }
-    if (!stack->depthSlices.empty())
-        volume = resampleDepth(volume, stack->depthSlices, stack->grid, options.threads);
+    TRY(decodeSlices(series, stack, std::move(frames), volume, options.threads, options.progress));
+    if (!stack.depthSlices.empty())
+        volume = resampleDepth(volume, stack.depthSlices, stack.grid, options.threads);
 
     ImportedSeries result;
     result.scan.hu = std::move(volume);
-    result.scan.position = series->summary.position;
-    result.summary = series->summary;
-    result.notes = std::move(stack->notes);
-    if (series->localizers > 0) {
-        result.notes.push_back("left out " + std::to_string(series->localizers) +
+    result.scan.position = series.summary.position;
+    result.summary = series.summary;
+    result.notes = std::move(stack.notes);
+    if (series.localizers > 0) {
+        result.notes.push_back("left out " + std::to_string(series.localizers) +
                                " scout views of the series");
     }
     return result;

@@ -234,16 +234,15 @@ void setSpacing(const std::vector<Slice>& slices, const Column& column, SliceSta
 
 Result<SliceStack> stackSlices(const std::vector<Slice>& slices) {
     if (slices.empty()) return fail(ErrorKind::noResult, "the series holds no slice");
-    if (auto alike = checkAlike(slices); !alike) return tl::make_unexpected(alike.error());
-    auto column = sortAlongNormal(slices);
-    if (!column) return tl::make_unexpected(column.error());
-    if (auto whole = checkHoles(slices, *column); !whole) return tl::make_unexpected(whole.error());
+    TRY(checkAlike(slices));
+    auto column = TRY(sortAlongNormal(slices));
+    TRY(checkHoles(slices, column));
 
-    const Slice& first = slices[column->order[0]];
+    const Slice& first = slices[column.order[0]];
     SliceStack stack;
-    stack.order = column->order;
-    if (column->copies > 0) {
-        stack.notes.push_back("left out " + std::to_string(column->copies) +
+    stack.order = column.order;
+    if (column.copies > 0) {
+        stack.notes.push_back("left out " + std::to_string(column.copies) +
                               " copies of slices that are there already");
     }
     stack.grid.size = glm::ivec3(first.matrix, 1);
@@ -251,13 +250,11 @@ Result<SliceStack> stackSlices(const std::vector<Slice>& slices) {
     affine[0] = glm::dvec4(first.rowDirection * first.pixelSpacingMm.x, 0.0);
     affine[1] = glm::dvec4(first.columnDirection * first.pixelSpacingMm.y, 0.0);
     affine[3] = glm::dvec4(first.positionMm, 1.0);
-    setSpacing(slices, *column, stack);
-    if (column->gaps() > 0) {
-        if (auto square = squareUp(slices, *column, stack); !square)
-            return tl::make_unexpected(square.error());
+    setSpacing(slices, column, stack);
+    if (column.gaps() > 0) {
+        TRY(squareUp(slices, column, stack));
     }
-    if (auto grid = checkGrid(stack.grid, first.name); !grid)
-        return tl::make_unexpected(grid.error());
+    TRY(checkGrid(stack.grid, first.name));
     return stack;
 }
 

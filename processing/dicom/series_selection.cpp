@@ -69,15 +69,14 @@ void summarise(Series& series) {
 }  // namespace
 
 Result<FoundSeries> findSeries(const fs::path& path, int threads, const Progress& progress) {
-    const auto files = filesBelow(path);
-    if (!files) return tl::make_unexpected(files.error());
-    std::vector<DicomFile> read(files->size());
+    const auto files = TRY(filesBelow(path));
+    std::vector<DicomFile> read(files.size());
     const std::thread::id caller = std::this_thread::get_id();
-    parallelFor(files->size(), 4, threads, [&](std::size_t begin, std::size_t end) {
+    parallelFor(files.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)
-            read[n] = readHeader((*files)[n]);
+            read[n] = readHeader(files[n]);
         if (progress && std::this_thread::get_id() == caller)
-            progress(double(end) / double(files->size()));
+            progress(double(end) / double(files.size()));
     });
 
     FoundSeries found;
@@ -96,7 +95,7 @@ Result<FoundSeries> findSeries(const fs::path& path, int threads, const Progress
                 found.others.push_back(std::move(file.reason));
                 break;
             case DicomFile::Kind::notDicom:
-                if (files->size() == 1) found.others.push_back(std::move(file.reason));
+                if (files.size() == 1) found.others.push_back(std::move(file.reason));
                 break;
         }
     }

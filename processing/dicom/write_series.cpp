@@ -180,7 +180,7 @@ Result<void> writeSlice(const std::filesystem::path& file, const CtScan& scan, i
 }
 
 Result<void> checkOrthogonal(const Grid& grid, const std::string& place) {
-    if (auto sound = checkGrid(grid, place); !sound) return sound;
+    TRY(checkGrid(grid, place));
     const glm::dvec3 spacing = grid.spacingMm();
     for (int a = 0; a < 3; ++a) {
         const int b = (a + 1) % 3;
@@ -200,7 +200,7 @@ Result<void> writeSeries(const std::filesystem::path& directory, const CtScan& s
                          const WriteOptions& options) try {
     prepareDicomLibrary();
     const Grid& grid = scan.hu.grid();
-    if (auto sound = checkOrthogonal(grid, directory.string()); !sound) return sound;
+    TRY(checkOrthogonal(grid, directory.string()));
     std::error_code error;
     std::filesystem::create_directories(directory, error);
     if (error) {

@@ -59,12 +59,10 @@ Result<ConformalTube> conformalTube(const TriMesh& tube, int firstLoop,
     TubeTopology topology;
     IntrinsicMesh mesh;
     {
-        const auto halfedges = mesh::HalfedgeMesh::of(tube);
-        if (!halfedges) return tl::make_unexpected(halfedges.error());
-        auto found = tubeTopology(*halfedges, firstLoop);
-        if (!found) return tl::make_unexpected(found.error());
-        topology = std::move(*found);
-        mesh = intrinsicMesh(*halfedges, topology.cornerTurns);
+        const auto halfedges = TRY(mesh::HalfedgeMesh::of(tube));
+        auto found = TRY(tubeTopology(halfedges, firstLoop));
+        topology = std::move(found);
+        mesh = intrinsicMesh(halfedges, topology.cornerTurns);
     }
     report(0.1);
     made.negativeWeights = countNegative(mesh);
@@ -73,10 +71,9 @@ Result<ConformalTube> conformalTube(const TriMesh& tube, int firstLoop,
 
     TubeSolution solution;
     if (options.solver == Solver::cholesky) {
-        auto found =
-            solveTube(mesh, topology, tube.vertices.size(), options.threads, [&] { report(0.8); });
-        if (!found) return tl::make_unexpected(found.error());
-        solution = std::move(*found);
+        auto found = TRY(
+            solveTube(mesh, topology, tube.vertices.size(), options.threads, [&] { report(0.8); }));
+        solution = std::move(found);
     } else {
         auto found = iterateTube(mesh, topology, tube.vertices.size(),
                                  {options.solver == Solver::jacobiConjugateGradient,

@@ -10,13 +10,12 @@ int mirrored(int h, int count) {
 }
 
 Result<DoubleCover> doubleCover(const TriMesh& open) {
-    const Result<mesh::HalfedgeMesh> surface = mesh::HalfedgeMesh::of(open);
-    if (!surface) return tl::make_unexpected(surface.error());
-    if (surface->closed()) {
+    const auto surface = TRY(mesh::HalfedgeMesh::of(open));
+    if (surface.closed()) {
         return fail(ErrorKind::badInput,
                     "the surface is closed: a double cover is made of one with a boundary");
     }
-    const int count = surface->halfedgeCount();
+    const int count = surface.halfedgeCount();
     DoubleCover made;
     made.mesh = open;
     std::vector<int> copyOf(open.vertices.size());
@@ -25,10 +24,10 @@ Result<DoubleCover> doubleCover(const TriMesh& open) {
     made.vertexOfCopy = copyOf;
     std::vector<char> onBoundary(open.vertices.size(), 0);
     for (int h = 0; h < count; ++h) {
-        if (surface->opposite(h) < 0) onBoundary[std::size_t(surface->origin(h))] = 1;
+        if (surface.opposite(h) < 0) onBoundary[std::size_t(surface.origin(h))] = 1;
     }
     for (int v = 0; v < int(copyOf.size()); ++v) {
-        if (onBoundary[std::size_t(v)] || surface->outgoing(v) < 0) continue;
+        if (onBoundary[std::size_t(v)] || surface.outgoing(v) < 0) continue;
         copyOf[std::size_t(v)] = int(made.mesh.vertices.size());
         made.mesh.vertices.push_back(open.vertices[std::size_t(v)]);
         made.vertexOfCopy.push_back(v);
@@ -40,16 +39,14 @@ Result<DoubleCover> doubleCover(const TriMesh& open) {
     std::vector<int> opposite(std::size_t(2 * count));
     std::vector<double> lengthMm(std::size_t(2 * count));
     for (int h = 0; h < count; ++h) {
-        const int other = surface->opposite(h), twin = mirrored(h, count);
+        const int other = surface.opposite(h), twin = mirrored(h, count);
         opposite[std::size_t(h)] = other < 0 ? twin : other;
         opposite[std::size_t(twin)] = other < 0 ? h : mirrored(other, count);
-        lengthMm[std::size_t(h)] = lengthMm[std::size_t(twin)] = surface->lengthMm(h);
+        lengthMm[std::size_t(h)] = lengthMm[std::size_t(twin)] = surface.lengthMm(h);
     }
-    Result<mesh::HalfedgeMesh> glued =
-        mesh::HalfedgeMesh::glued(int(made.mesh.vertices.size()), made.mesh.triangles,
-                                  std::move(opposite), std::move(lengthMm));
-    if (!glued) return tl::make_unexpected(glued.error());
-    made.halfedges = std::move(*glued);
+    auto glued = TRY(mesh::HalfedgeMesh::glued(int(made.mesh.vertices.size()), made.mesh.triangles,
+                                               std::move(opposite), std::move(lengthMm)));
+    made.halfedges = std::move(glued);
     return made;
 }
 

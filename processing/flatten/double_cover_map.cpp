@@ -51,39 +51,34 @@ std::vector<std::complex<double>> integrate(const HalfedgeMesh& tube, int first,
 
 Result<DoubleCoverMap> tubeMapFromDoubleCover(const TriMesh& tube, int firstLoop,
                                               HolomorphicOptions options) {
-    const Result<HalfedgeMesh> surface = HalfedgeMesh::of(tube);
-    if (!surface) return tl::make_unexpected(surface.error());
-    const Result<TubeTopology> topology = tubeTopology(*surface, firstLoop);
-    if (!topology) return tl::make_unexpected(topology.error());
-    const Result<DoubleCover> cover = doubleCover(tube);
-    if (!cover) return tl::make_unexpected(cover.error());
+    const auto surface = TRY(HalfedgeMesh::of(tube));
+    const auto topology = TRY(tubeTopology(surface, firstLoop));
+    const auto cover = TRY(doubleCover(tube));
 
-    const int count = surface->halfedgeCount();
+    const int count = surface.halfedgeCount();
     options.kept.assign(std::size_t(2 * count), 0);
     for (int h = 0; h < count; ++h) {
-        if (surface->opposite(h) >= 0) continue;
+        if (surface.opposite(h) >= 0) continue;
         options.kept[std::size_t(h)] = options.kept[std::size_t(mirrored(h, count))] = 1;
     }
-    const Result<HolomorphicBasis> basis = holomorphicBasis(cover->halfedges, options);
-    if (!basis) return tl::make_unexpected(basis.error());
+    const auto basis = TRY(holomorphicBasis(cover.halfedges, options));
 
     std::vector<char> onRim[2];
     for (int rim = 0; rim < 2; ++rim) {
         onRim[rim].assign(tube.vertices.size(), 0);
-        for (const int v : topology->rims[rim])
+        for (const int v : topology.rims[rim])
             onRim[rim][std::size_t(v)] = 1;
     }
-    ComplexForm form = basis->holomorphic(std::size_t(0));
+    ComplexForm form = basis.holomorphic(std::size_t(0));
     // The tube lies to the left of the first rim's half-edges, as the strip above y = 0.
-    const std::complex<double> turn = aroundRim(*surface, onRim[0], form);
+    const std::complex<double> turn = aroundRim(surface, onRim[0], form);
     for (std::complex<double>& value : form)
         value /= turn;
-    const std::vector<std::complex<double>> z =
-        integrate(*surface, topology->rims[0].front(), form);
+    const std::vector<std::complex<double>> z = integrate(surface, topology.rims[0].front(), form);
 
     DoubleCoverMap made;
-    made.certificate = basis->certificate;
-    made.modulus = z[std::size_t(topology->rims[1].front())].imag();
+    made.certificate = basis.certificate;
+    made.modulus = z[std::size_t(topology.rims[1].front())].imag();
     made.map.height = made.modulus;
     for (std::size_t v = 0; v < z.size(); ++v) {
         const double x = z[v].real() - std::floor(z[v].real());

@@ -165,15 +165,14 @@ PunchedTube assemble(const TriMesh& closed, const RimCut cuts[2]) {
 Result<PunchedTube> punchEnds(const TriMesh& closed, const glm::dvec3 endsMm[2],
                               const glm::dvec3 outwardsMm[2], const EndHoleOptions& options) {
     if (!(options.rimMm > 0.0)) return fail(ErrorKind::badInput, "a hole's rim must have a length");
-    const auto halfedges = mesh::HalfedgeMesh::ofClosed(closed);
-    if (!halfedges) return tl::make_unexpected(halfedges.error());
-    if (auto sound = checkClosed(closed); !sound) return tl::make_unexpected(sound.error());
+    const auto halfedges = TRY(mesh::HalfedgeMesh::ofClosed(closed));
+    TRY(checkClosed(closed));
     RimCut cuts[2];
     std::vector<char> touched(closed.vertices.size(), 0);
     for (int end = 0; end < 2; ++end) {
         const double radiusMm = neighbourhoodRadii * options.rimMm / (2.0 * std::numbers::pi);
         const int tip = tipOf(closed, endsMm[end], outwardsMm[end]);
-        const auto function = tipFunction(closed, *halfedges, tip, radiusMm);
+        const auto function = tipFunction(closed, halfedges, tip, radiusMm);
         auto cut = function
                        ? bestRim(closed, *function, levelOfLength(closed, *function, options.rimMm))
                        : std::nullopt;

@@ -222,20 +222,19 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
     conformal.repairFlips = false;
     conformal.progress =
         part(options.progress, 0.0, options.areaWeight > 0.0 ? conformalShare : 0.9);
-    auto flat = conformalTube(tube, firstLoop, conformal);
-    if (!flat) return tl::make_unexpected(flat.error());
+    auto flat = TRY(conformalTube(tube, firstLoop, conformal));
     // Energies that miss each other's inverse by half are of no map.
-    if (!(flat->certificate < mostUncertain)) {
+    if (!(flat.certificate < mostUncertain)) {
         return fail(
             ErrorKind::noResult,
             "the surface is pinched or too coarse somewhere: its conformal map cannot be told",
             "flattening");
     }
     Flattening made;
-    made.modulus = flat->modulus;
-    made.certificate = flat->certificate;
+    made.modulus = flat.modulus;
+    made.certificate = flat.certificate;
     Mapped mapped{tube,
-                  std::move(flat->map),
+                  std::move(flat.map),
                   std::vector<int>(tube.triangles.size()),
                   std::vector<char>(tube.triangles.size(), 0),
                   0,

@@ -118,9 +118,8 @@ Result<FundamentalDomain> fundamentalDomainMap(const TriMesh& mesh, const Halfed
 }
 
 Result<FundamentalDomain> fundamentalDomainMap(const TriMesh& mesh, const ComplexForm& form) {
-    const Result<HalfedgeMesh> halfedges = HalfedgeMesh::ofClosed(mesh);
-    if (!halfedges) return tl::make_unexpected(halfedges.error());
-    return fundamentalDomainMap(mesh, *halfedges, form);
+    const auto halfedges = TRY(HalfedgeMesh::ofClosed(mesh));
+    return fundamentalDomainMap(mesh, halfedges, form);
 }
 
 std::vector<FormZero> formZeros(const HalfedgeMesh& mesh, const ComplexForm& form) {

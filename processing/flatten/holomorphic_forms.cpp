@@ -39,10 +39,8 @@ public:
     static Result<HarmonicSolver> of(const HalfedgeMesh& surface, const IntrinsicMesh& mesh) {
         int size = 0;
         std::vector<int> unknownOf = numberUnknowns(surface, size);
-        Result<SparseCholesky> factor =
-            SparseCholesky::of(cotangentLaplacian(mesh, unknownOf, size));
-        if (!factor) return tl::make_unexpected(factor.error());
-        return HarmonicSolver(mesh, std::move(unknownOf), size, std::move(*factor));
+        auto factor = TRY(SparseCholesky::of(cotangentLaplacian(mesh, unknownOf, size)));
+        return HarmonicSolver(mesh, std::move(unknownOf), size, std::move(factor));
     }
 
     const std::vector<double>& weight() const { return weight_; }
@@ -134,9 +132,8 @@ ComplexForm HolomorphicBasis::holomorphic(std::size_t k) const {
 
 Result<HolomorphicBasis> holomorphicBasis(const HalfedgeMesh& mesh,
                                           const HolomorphicOptions& options) {
-    Result<HomologyBasis> homology = homologyBasis(mesh);
-    if (!homology) return tl::make_unexpected(homology.error());
-    const std::size_t count = homology->loops.size();
+    auto homology = TRY(homologyBasis(mesh));
+    const std::size_t count = homology.loops.size();
     if (count == 0) {
         return fail(ErrorKind::badInput,
                     "the surface is of genus 0 and closed: it has no holomorphic forms");
@@ -147,17 +144,16 @@ Result<HolomorphicBasis> holomorphicBasis(const HalfedgeMesh& mesh,
     std::vector<EdgeFlip> flips;
     if (options.intrinsicDelaunay) makeDelaunay(intrinsic, &flips);
 
-    Result<HarmonicSolver> solver = HarmonicSolver::of(mesh, intrinsic);
-    if (!solver) return tl::make_unexpected(solver.error());
+    auto solver = TRY(HarmonicSolver::of(mesh, intrinsic));
     HolomorphicBasis basis;
     basis.flippedEdges = int(flips.size());
     std::vector<std::vector<double>> potential;
     std::vector<IntegerForm> carried;
     for (std::size_t k = 0; k < count; ++k) {
-        const IntegerForm& dual = homology->dual[k];
+        const IntegerForm& dual = homology.dual[k];
         carried.push_back(dual);
         carryThroughFlips(flips, carried.back());
-        potential.push_back(solver->potential(carried.back()));
+        potential.push_back(solver.potential(carried.back()));
         OneForm& form = basis.harmonic.emplace_back(dual.size());
         for (int h = 0; h < mesh.halfedgeCount(); ++h) {
             form[std::size_t(h)] = dual[std::size_t(h)] +
@@ -168,20 +164,19 @@ Result<HolomorphicBasis> holomorphicBasis(const HalfedgeMesh& mesh,
     }
     Matrix wedge(count);
     for (std::size_t i = 0; i < count; ++i)
-        wedge[i].assign(homology->wedge[i].begin(), homology->wedge[i].end());
+        wedge[i].assign(homology.wedge[i].begin(), homology.wedge[i].end());
     HodgeStar star =
-        hodgeStar(scalarProducts(intrinsic, solver->weight(), carried, potential), wedge);
+        hodgeStar(scalarProducts(intrinsic, solver.weight(), carried, potential), wedge);
     basis.star = std::move(star.star);
     basis.certificate = star.certificate;
-    basis.homology = std::move(homology->loops);
-    basis.wedge = std::move(homology->wedge);
+    basis.homology = std::move(homology.loops);
+    basis.wedge = std::move(homology.wedge);
     return basis;
 }
 
 Result<HolomorphicBasis> holomorphicBasis(const TriMesh& mesh, const HolomorphicOptions& options) {
-    Result<HalfedgeMesh> halfedges = HalfedgeMesh::ofClosed(mesh);
-    if (!halfedges) return tl::make_unexpected(halfedges.error());
-    return holomorphicBasis(*halfedges, options);
+    auto halfedges = TRY(HalfedgeMesh::ofClosed(mesh));
+    return holomorphicBasis(halfedges, options);
 }
 
 }  // namespace haustra::flatten

@@ -77,12 +77,11 @@ Result<void> flattenStrip(SurfaceFlattening& made, const TriMesh& tube, int firs
     flattening.areaWeight = options.areaWeight;
     flattening.threads = options.threads;
     flattening.progress = options.progress;
-    auto flat = flattenTube(tube, firstLoop, flattening);
-    if (!flat) return tl::make_unexpected(flat.error());
-    made.map = std::move(flat->map);
-    made.certificate = flat->certificate;
-    made.distortion = flat->distortion;
-    made.strip = std::move(*flat);
+    auto flat = TRY(flattenTube(tube, firstLoop, flattening));
+    made.map = std::move(flat.map);
+    made.certificate = flat.certificate;
+    made.distortion = flat.distortion;
+    made.strip = std::move(flat);
     return {};
 }
 
@@ -100,14 +99,12 @@ Result<void> flattenSphere(SurfaceFlattening& made, const TriMesh& closed,
     const double rimMm = options.rimMm > 0.0
                              ? options.rimMm
                              : std::min(usualRimMm, rimOfRootArea * rootAreaMm(closed));
-    auto punched = punchEnds(closed, ends, anywhere, {rimMm});
-    if (!punched) return tl::make_unexpected(punched.error());
-    if (auto flat = flattenStrip(made, punched->tube, punched->firstLoop, options); !flat)
-        return flat;
+    auto punched = TRY(punchEnds(closed, ends, anywhere, {rimMm}));
+    TRY(flattenStrip(made, punched.tube, punched.firstLoop, options));
     for (std::int32_t& source : made.map.sourceTriangle)
-        source = punched->sourceTriangle[std::size_t(source)];
-    punched->tube = {};
-    made.punched = std::move(*punched);
+        source = punched.sourceTriangle[std::size_t(source)];
+    punched.tube = {};
+    made.punched = std::move(punched);
     return {};
 }
 
@@ -127,12 +124,11 @@ Result<void> flattenTorus(SurfaceFlattening& made, const TriMesh& torus,
                           const SurfaceFlatteningOptions& options) {
     HolomorphicOptions holomorphic;
     holomorphic.progress = options.progress;
-    auto flat = torusMap(torus, -1, holomorphic);
-    if (!flat) return tl::make_unexpected(flat.error());
-    made.tau = flat->tau;
-    made.certificate = flat->certificate;
-    takeDomain(made, std::move(flat->domain));
-    made.map.height = flat->tau.imag();
+    auto flat = TRY(torusMap(torus, -1, holomorphic));
+    made.tau = flat.tau;
+    made.certificate = flat.certificate;
+    takeDomain(made, std::move(flat.domain));
+    made.map.height = flat.tau.imag();
     return {};
 }
 
@@ -167,16 +163,14 @@ Result<void> flattenDomain(SurfaceFlattening& made, const TriMesh& closed,
                            const SurfaceFlatteningOptions& options) {
     HolomorphicOptions holomorphic;
     holomorphic.progress = options.progress;
-    const auto basis = holomorphicBasis(halfedges, holomorphic);
-    if (!basis) return tl::make_unexpected(basis.error());
-    const ComplexForm form = basis->holomorphic(std::size_t(0));
-    auto domain = fundamentalDomainMap(closed, halfedges, form);
-    if (!domain) return tl::make_unexpected(domain.error());
+    const auto basis = TRY(holomorphicBasis(halfedges, holomorphic));
+    const ComplexForm form = basis.holomorphic(std::size_t(0));
+    auto domain = TRY(fundamentalDomainMap(closed, halfedges, form));
     for (const FormZero& zero : formZeros(halfedges, form))
         made.formZeros += std::size_t(std::abs(zero.order));
-    keepFirst(*domain, triangles);
-    made.certificate = basis->certificate;
-    takeDomain(made, std::move(*domain));
+    keepFirst(domain, triangles);
+    made.certificate = basis.certificate;
+    takeDomain(made, std::move(domain));
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const glm::dvec2& at : made.map.flat)
         low = std::min(low, at.y), high = std::max(high, at.y);
@@ -193,10 +187,9 @@ Result<SurfaceShape> shapeOf(const TriMesh& mesh) {
 
 Result<SurfaceFlattening> flattenSurface(const TriMesh& mesh,
                                          const SurfaceFlatteningOptions& options) {
-    const auto halfedges = HalfedgeMesh::of(mesh);
-    if (!halfedges) return tl::make_unexpected(halfedges.error());
+    const auto halfedges = TRY(HalfedgeMesh::of(mesh));
     SurfaceFlattening made;
-    made.shape = shapeOf(mesh, *halfedges);
+    made.shape = shapeOf(mesh, halfedges);
     const auto [parts, genus, loops] = made.shape;
     if (parts != 1) {
         return fail(ErrorKind::badInput,
@@ -208,17 +201,14 @@ Result<SurfaceFlattening> flattenSurface(const TriMesh& mesh,
             "the mesh is a disc, of genus 0 with one boundary loop: only what one can go around "
             "is flattened, a tube, a closed surface or one with handles");
     }
-    const auto flattened = [&]() -> Result<void> {
+    TRY([&]() -> Result<void> {
         if (genus == 0 && loops == 2) return flattenStrip(made, mesh, -1, options);
-        if (genus == 0 && loops == 0) return flattenSphere(made, mesh, *halfedges, options);
+        if (genus == 0 && loops == 0) return flattenSphere(made, mesh, halfedges, options);
         if (genus == 1 && loops == 0) return flattenTorus(made, mesh, options);
-        if (loops == 0)
-            return flattenDomain(made, mesh, *halfedges, mesh.triangles.size(), options);
-        const auto cover = doubleCover(mesh);
-        if (!cover) return tl::make_unexpected(cover.error());
-        return flattenDomain(made, cover->mesh, cover->halfedges, mesh.triangles.size(), options);
-    }();
-    if (!flattened) return tl::make_unexpected(flattened.error());
+        if (loops == 0) return flattenDomain(made, mesh, halfedges, mesh.triangles.size(), options);
+        const auto cover = TRY(doubleCover(mesh));
+        return flattenDomain(made, cover.mesh, cover.halfedges, mesh.triangles.size(), options);
+    }());
     return made;
 }
 

@@ -33,8 +33,7 @@ std::vector<int> goodBases(const CarvedSurface& surface) {
 
 Result<CarvedSurface> carveTrajectories(CarvedSurface surface, int base, std::complex<double> tau) {
     for (const std::complex<double> direction : {std::complex<double>(1.0), tau}) {
-        const Result<std::vector<int>> line = traceTrajectory(surface, base, direction);
-        if (!line) return tl::make_unexpected(line.error());
+        TRY(traceTrajectory(surface, base, direction));
     }
     return surface;
 }
@@ -60,18 +59,15 @@ PeriodRatio periodRatio(const HolomorphicBasis& basis) {
 }
 
 Result<TorusMap> torusMap(const TriMesh& torus, int base, const HolomorphicOptions& options) {
-    Result<mesh::HalfedgeMesh> halfedges = mesh::HalfedgeMesh::ofClosed(torus);
-    if (!halfedges) return tl::make_unexpected(halfedges.error());
-    if (base < -1 || base >= halfedges->vertexCount() ||
-        (base >= 0 && halfedges->outgoing(base) < 0))
+    auto halfedges = TRY(mesh::HalfedgeMesh::ofClosed(torus));
+    if (base < -1 || base >= halfedges.vertexCount() || (base >= 0 && halfedges.outgoing(base) < 0))
         return fail(ErrorKind::badInput, "no triangle uses the vertex to cut the torus at");
-    Result<HolomorphicBasis> basis = holomorphicBasis(*halfedges, options);
-    if (!basis) return tl::make_unexpected(basis.error());
-    if (basis->genus() != 1)
+    auto basis = TRY(holomorphicBasis(halfedges, options));
+    if (basis.genus() != 1)
         return fail(ErrorKind::badInput, "the surface is not of genus one, but of genus " +
-                                             std::to_string(basis->genus()));
-    PeriodRatio ratio = periodRatio(*basis);
-    const CarvedSurface whole(torus, *halfedges, std::move(ratio.form));
+                                             std::to_string(basis.genus()));
+    PeriodRatio ratio = periodRatio(basis);
+    const CarvedSurface whole(torus, halfedges, std::move(ratio.form));
     const std::vector<int> bases = base >= 0 ? std::vector<int>{base} : goodBases(whole);
     Result<FundamentalDomain> domain =
         fail(ErrorKind::noResult, "no triangle of the torus keeps its orientation in the plane");
@@ -97,7 +93,7 @@ Result<TorusMap> torusMap(const TriMesh& torus, int base, const HolomorphicOptio
     }
     for (std::complex<double>& z : domain->flat)
         z -= corner;
-    return TorusMap{ratio.tau, std::move(*domain), basis->certificate};
+    return TorusMap{ratio.tau, std::move(*domain), basis.certificate};
 }
 
 }  // namespace haustra::flatten

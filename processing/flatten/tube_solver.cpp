@@ -132,9 +132,8 @@ public:
                     own_(matrix.row[std::size_t(n)] - last, c - last) =
                         matrix.value[std::size_t(n)];
             }
-            auto made = SparseCholesky::of(matrix, {inside_, last});
-            if (!made) return tl::make_unexpected(made.error());
-            factor_ = std::move(*made);
+            auto made = TRY(SparseCholesky::of(matrix, {inside_, last}));
+            factor_ = std::move(made);
         }
         factor_->forward(u_);
         factor_->forward(v_);

@@ -32,19 +32,18 @@ Result<int> descend(StripEnergy& energy, StripNewton& newton, double tolerance, 
                     std::vector<glm::dvec2>& flat, const std::function<void()>& stepped) {
     double value = energy.value(flat);
     for (int n = 0; n < most; ++n) {
-        const auto step = newton.step(energy.derivatives(flat), energy.scaleCurvature());
-        if (!step) return tl::make_unexpected(step.error());
+        const auto step = TRY(newton.step(energy.derivatives(flat), energy.scaleCurvature()));
         // Half the slope is what a full step takes off a quadratic; rounding leaves 1e-12 or so.
-        if (-0.5 * step->slope <= tolerance * value + 1e-12) return n;
+        if (-0.5 * step.slope <= tolerance * value + 1e-12) return n;
 
-        const double flip = energy.firstFlip(flat, step->move);
+        const double flip = energy.firstFlip(flat, step.move);
         double share = std::min(1.0, 0.9 * flip);
         double reached = value;
         std::vector<glm::dvec2> next;
         for (int halved = 0; halved < 30; ++halved, share *= 0.5) {
-            next = moved(flat, step->move, share);
+            next = moved(flat, step.move, share);
             reached = energy.value(next);
-            if (reached <= value + 1e-4 * share * step->slope) break;
+            if (reached <= value + 1e-4 * share * step.slope) break;
         }
         if (!(reached < value)) {
             energy.value(flat);
@@ -52,7 +51,7 @@ Result<int> descend(StripEnergy& energy, StripNewton& newton, double tolerance, 
         }
         // Newton's step only doubles what is far too small: it may go on while that pays.
         for (share *= 2.0; share < 0.9 * flip; share *= 2.0) {
-            auto further = moved(flat, step->move, share);
+            auto further = moved(flat, step.move, share);
             const double there = energy.value(further);
             if (!(there < reached)) break;
             reached = there;
@@ -80,15 +79,13 @@ Result<PeriodicMap> unifiedFlattening(const TriMesh& tube, const PeriodicMap& co
         return fail(ErrorKind::badInput, "the flat map is not one of this surface");
     std::vector<int> rims[2];
     {
-        const auto halfedges = mesh::HalfedgeMesh::of(tube);
-        if (!halfedges) return tl::make_unexpected(halfedges.error());
-        auto topology = tubeTopology(*halfedges, -1);
-        if (!topology) return tl::make_unexpected(topology.error());
+        const auto halfedges = TRY(mesh::HalfedgeMesh::of(tube));
+        auto topology = TRY(tubeTopology(halfedges, -1));
         const auto heightAt = [&](int v) { return conformal.flat[std::size_t(v)].y; };
         const bool upsideDown =
-            heightAt(topology->rims[0].front()) > heightAt(topology->rims[1].front());
-        rims[0] = std::move(topology->rims[upsideDown ? 1 : 0]);
-        rims[1] = std::move(topology->rims[upsideDown ? 0 : 1]);
+            heightAt(topology.rims[0].front()) > heightAt(topology.rims[1].front());
+        rims[0] = std::move(topology.rims[upsideDown ? 1 : 0]);
+        rims[1] = std::move(topology.rims[upsideDown ? 0 : 1]);
     }
     StripEnergy energy(tube, conformal, weightsOf(options.areaWeight), options.threads);
     std::vector<glm::dvec2> flat = conformal.flat;
@@ -106,10 +103,9 @@ Result<PeriodicMap> unifiedFlattening(const TriMesh& tube, const PeriodicMap& co
          weight = std::min(3.0 * weight, options.areaWeight)) {
         const bool last = weight == options.areaWeight;
         energy.weigh(weightsOf(weight));
-        const auto made = descend(energy, newton, last ? options.tolerance : 0.03,
-                                  options.maxIterations - steps, flat, stepped);
-        if (!made) return tl::make_unexpected(made.error());
-        steps += *made;
+        const auto made = TRY(descend(energy, newton, last ? options.tolerance : 0.03,
+                                      options.maxIterations - steps, flat, stepped));
+        steps += made;
         if (last) break;
     }
 

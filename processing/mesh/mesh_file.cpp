@@ -47,10 +47,9 @@ Result<TriMesh> meshOf(const std::string& bytes, Format format, const std::strin
                       : format == Format::obj ? readObj
                       : format == Format::off ? readOff
                                               : readStl;
-    auto soup = read(bytes, place);
-    if (!soup) return tl::make_unexpected(soup.error());
-    if (format == Format::stl) weldPoints(*soup);
-    return triangulated(*soup, place);
+    auto soup = TRY(read(bytes, place));
+    if (format == Format::stl) weldPoints(soup);
+    return triangulated(soup, place);
 }
 
 // --------------------------------------------------------------------------------------- writing
@@ -117,9 +116,8 @@ std::string stlBytes(const TriMesh& mesh) {
 Result<TriMesh> readMesh(const std::filesystem::path& file) try {
     const auto format = formatOf(file);
     if (!format) return unknownFormat(file);
-    const auto bytes = readBytes(file);
-    if (!bytes) return tl::make_unexpected(bytes.error());
-    return meshOf(*bytes, *format, file.string());
+    const auto bytes = TRY(readBytes(file));
+    return meshOf(bytes, *format, file.string());
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "the mesh does not fit into memory", file.string());
 }

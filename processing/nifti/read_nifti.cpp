@@ -74,7 +74,7 @@ Result<Grid> gridOf(const nifti_1_header& header, const std::string& place) {
             return fail(ErrorKind::unsupported, "the NIfTI image has more than three axes", place);
     }
     grid.patientFromVoxel = flipped(rasFromVoxel(header));
-    if (auto sound = checkGrid(grid, place); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkGrid(grid, place));
     return grid;
 }
 
@@ -146,12 +146,10 @@ Result<void> readValues(MaybeGzipFile& stream, bool swapped, const Scaling& scal
         const bool direct =
             std::is_same_v<Stored, T> && scaling.none() && (!swapped || sizeof(Stored) == 1);
         if (direct) {
-            const auto read = stream.read(std::as_writable_bytes(values.subspan(at, count)));
-            if (!read) return read;
+            TRY(stream.read(std::as_writable_bytes(values.subspan(at, count))));
             continue;
         }
-        const auto read = stream.read(std::as_writable_bytes(std::span(stored).first(count)));
-        if (!read) return read;
+        TRY(stream.read(std::as_writable_bytes(std::span(stored).first(count))));
         if (swapped && sizeof(Stored) > 1) nifti_swap_Nbytes(count, sizeof(Stored), stored.data());
         for (std::size_t n = 0; n < count; ++n)
             values[at + n] = converted<T>(scaling.slope * double(stored[n]) + scaling.intercept);
@@ -205,63 +203,54 @@ struct OpenImage {
 
 Result<OpenImage> openImage(const std::filesystem::path& file) {
     const std::string place = file.string();
-    auto stream = MaybeGzipFile::open(file);
-    if (!stream) return tl::make_unexpected(stream.error());
+    auto stream = TRY(MaybeGzipFile::open(file));
     bool swapped = false;
-    const auto header = readHeader(*stream, swapped, place);
-    if (!header) return tl::make_unexpected(header.error());
-    const auto grid = gridOf(*header, place);
-    if (!grid) return tl::make_unexpected(grid.error());
-    if (auto skipped = skipToData(*stream, *header, place); !skipped)
-        return tl::make_unexpected(skipped.error());
+    const auto header = TRY(readHeader(stream, swapped, place));
+    const auto grid = TRY(gridOf(header, place));
+    TRY(skipToData(stream, header, place));
     int bytesPerVoxel = 0, swapSize = 0;
-    nifti_datatype_sizes(header->datatype, &bytesPerVoxel, &swapSize);
-    if (grid->voxelCount() * std::size_t(bytesPerVoxel) > stream->mostBytes())
+    nifti_datatype_sizes(header.datatype, &bytesPerVoxel, &swapSize);
+    if (grid.voxelCount() * std::size_t(bytesPerVoxel) > stream.mostBytes())
         return fail(ErrorKind::badInput, "the file is truncated", place);
-    return OpenImage{std::move(*stream), *header, swapped, *grid};
+    return OpenImage{std::move(stream), header, swapped, grid};
 }
 
 }  // namespace
 
 template <class T>
 Result<Volume<T>> readNifti(const std::filesystem::path& file) try {
-    auto image = openImage(file);
-    if (!image) return tl::make_unexpected(image.error());
-    Volume<T> volume(image->grid);
-    if (auto read = readValuesOf<T>(image->header.datatype, image->stream, image->swapped,
-                                    scalingOf(image->header), volume.writable(), file.string());
-        !read) {
-        return tl::make_unexpected(read.error());
-    }
-    if (auto whole = image->stream.finish(); !whole) return tl::make_unexpected(whole.error());
+    auto image = TRY(openImage(file));
+    Volume<T> volume(image.grid);
+    TRY(readValuesOf<T>(image.header.datatype, image.stream, image.swapped, scalingOf(image.header),
+                        volume.writable(), file.string()));
+    TRY(image.stream.finish());
     return volume;
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "there is not enough memory for the volume", file.string());
 }
 
 Result<ColorImage> readColorNifti(const std::filesystem::path& file) try {
-    auto image = openImage(file);
-    if (!image) return tl::make_unexpected(image.error());
-    const short datatype = image->header.datatype;
+    auto image = TRY(openImage(file));
+    const short datatype = image.header.datatype;
     if (datatype != NIFTI_TYPE_RGB24 && datatype != NIFTI_TYPE_RGBA32)
         return fail(ErrorKind::unsupported,
                     std::string("a colour image is RGB24 or RGBA32, not ") +
                         nifti_datatype_string(datatype),
                     file.string());
-    ColorImage color{Volume<Rgba>(image->grid), datatype == NIFTI_TYPE_RGBA32};
+    ColorImage color{Volume<Rgba>(image.grid), datatype == NIFTI_TYPE_RGBA32};
     const std::span<Rgba> voxels = color.voxels.writable();
     const std::size_t channels = color.hasOpacity ? 4 : 3;
     std::vector<std::uint8_t> stored(channels * std::min(voxelsAtOnce, voxels.size()));
     for (std::size_t at = 0; at < voxels.size(); at += voxelsAtOnce) {
         const std::size_t count = std::min(voxelsAtOnce, voxels.size() - at);
         const auto room = std::as_writable_bytes(std::span(stored).first(channels * count));
-        if (auto read = image->stream.read(room); !read) return tl::make_unexpected(read.error());
+        TRY(image.stream.read(room));
         for (std::size_t n = 0; n < count; ++n) {
             const std::uint8_t* of = &stored[channels * n];
             voxels[at + n] = {of[0], of[1], of[2], color.hasOpacity ? of[3] : std::uint8_t(255)};
         }
     }
-    if (auto whole = image->stream.finish(); !whole) return tl::make_unexpected(whole.error());
+    TRY(image.stream.finish());
     return color;
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "there is not enough memory for the volume", file.string());

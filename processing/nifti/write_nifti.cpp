@@ -81,7 +81,7 @@ nifti_1_header headerOf(const Grid& grid, short datatype, std::size_t valueBytes
 
 Result<void> writeImage(const std::filesystem::path& file, const nifti_1_header& header,
                         const Grid& grid, const ByteSource& body) try {
-    if (auto sound = checkGrid(grid, file.string()); !sound) return sound;
+    TRY(checkGrid(grid, file.string()));
     std::array<std::byte, dataOffset> head{};
     std::memcpy(head.data(), &header, sizeof header);
     std::filesystem::path temporary = file;

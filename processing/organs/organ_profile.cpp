@@ -222,23 +222,16 @@ Result<OrganProfile> parseProfile(std::string_view text, const std::string& plac
         }
         return read(*object);
     };
-    if (auto lumen = readObject(
-            "lumen", [&](const json& object) { return readLumen(object, place, profile); });
-        !lumen) {
-        return tl::make_unexpected(lumen.error());
-    }
+    TRY(readObject("lumen", [&](const json& object) { return readLumen(object, place, profile); }));
     if (profile.finder == LumenFinder::gasAndTagged) {
-        if (auto tissues = readObject(
-                "tissues",
-                [&](const json& object) { return readTissues(object, place, profile.tissues); });
-            !tissues) {
-            return tl::make_unexpected(tissues.error());
-        }
+        TRY(readObject("tissues", [&](const json& object) {
+            return readTissues(object, place, profile.tissues);
+        }));
     } else {
         if (fields.has("tissues")) fields.wrong("tissues", "is of no use to the finder hu-range");
         if (profile.cleanse) fields.wrong("cleanse", "needs the finder gas-and-tagged");
     }
-    if (auto sound = fields.finish(); !sound) return tl::make_unexpected(sound.error());
+    TRY(fields.finish());
     return profile;
 }
 

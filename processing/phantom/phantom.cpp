@@ -326,7 +326,7 @@ constexpr int kSlabSlices = 64;
 }  // namespace
 
 Result<Phantom> makePhantom(const PhantomOptions& options) {
-    if (auto sound = check(options); !sound) return tl::make_unexpected(sound.error());
+    TRY(check(options));
     auto report = [&](double fraction) {
         if (options.progress) options.progress(fraction);
     };

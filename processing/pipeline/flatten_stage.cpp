@@ -113,32 +113,27 @@ Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& su
                        "area-weight=" + exactText(options.areaWeight), {surfaceKey, centerlineKey});
     const auto make = [&](const Progress& progress) -> Result<void> {
         store::Case& target = preparation.target();
-        const auto surface = target.readMesh(product::surface);
-        if (!surface) return tl::make_unexpected(surface.error());
-        const auto centerline = target.readCenterline(product::centerline);
-        if (!centerline) return tl::make_unexpected(centerline.error());
-        const auto punched = punch(*surface, *centerline);
-        if (!punched) return tl::make_unexpected(punched.error());
+        const auto surface = TRY(target.readMesh(product::surface));
+        const auto centerline = TRY(target.readCenterline(product::centerline));
+        const auto punched = TRY(punch(surface, centerline));
         progress(0.1);
         flatten::FlatteningOptions flattening;
         flattening.areaWeight = options.areaWeight;
         flattening.threads = options.threads;
         flattening.progress = [&](double fraction) { progress(0.1 + 0.8 * fraction); };
         flattening.placeName = [&](const glm::dvec3& placeMm) {
-            return std::to_string(std::lround(nearestArcMm(*centerline, placeMm))) +
+            return std::to_string(std::lround(nearestArcMm(centerline, placeMm))) +
                    " mm of the centerline";
         };
-        auto flat = flatten::flattenTube(punched->tube, punched->firstLoop, flattening);
-        if (!flat) return tl::make_unexpected(flat.error());
-        for (std::int32_t& source : flat->map.sourceTriangle)
-            source = punched->sourceTriangle[std::size_t(source)];
+        auto flat = TRY(flatten::flattenTube(punched.tube, punched.firstLoop, flattening));
+        for (std::int32_t& source : flat.map.sourceTriangle)
+            source = punched.sourceTriangle[std::size_t(source)];
         flatten::CameraRegistrationOptions registration;
         registration.threads = options.threads;
-        registration.isPouch = flat->isPouch;
-        if (auto seen = flatten::registerCameras(flat->map, *centerline, registration); !seen)
-            return seen;
-        return target.publishFlatMap(product::flatMap, key, flat->map,
-                                     attributesOf(*flat, *punched, options.areaWeight),
+        registration.isPouch = flat.isPouch;
+        TRY(flatten::registerCameras(flat.map, centerline, registration));
+        return target.publishFlatMap(product::flatMap, key, flat.map,
+                                     attributesOf(flat, punched, options.areaWeight),
                                      madeFrom(product::flatMap));
     };
     return preparation.run({"flattening", key, {product::flatMap}}, meter, make).map([&] {

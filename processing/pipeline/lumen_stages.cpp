@@ -61,8 +61,7 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
     const auto make = [&](const Progress& progress) -> Result<void> {
         store::Case& target = preparation.target();
         const int threads = preparation.options().threads;
-        const auto labels = target.readVolume<std::uint8_t>(source.labels);
-        if (!labels) return tl::make_unexpected(labels.error());
+        const auto labels = TRY(target.readVolume<std::uint8_t>(source.labels));
         Attributes attributes;
         if (const auto from = target.attributes(source.labels)) {
             if (const auto iso = from->find("air-below-hu");
@@ -71,27 +70,26 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
             }
         }
         if (topology == ExpectedTopology::any) {
-            const auto kept = topology::digitalTopology(*labels, threads);
+            const auto kept = topology::digitalTopology(labels, threads);
             attributes["handles-kept"] = std::to_string(kept.handles());
             setNotes(attributes, {attributes["handles-kept"] + " handles kept"});
-            return target.publishVolume(product::lumen, key, *labels, attributes, outdated);
+            return target.publishVolume(product::lumen, key, labels, attributes, outdated);
         }
         topology::HandleCuttingOptions cutting;
         cutting.threads = threads;
         cutting.progress = progress;
-        const auto cut = topology::cutHandles(*labels, cutting);
-        if (!cut) return tl::make_unexpected(cut.error());
-        attributes["handles-cut"] = std::to_string(cut->handlesCut);
-        attributes["cavities-filled"] = std::to_string(cut->cavitiesFilled);
-        attributes["voxels-removed"] = std::to_string(cut->voxelsRemoved);
-        attributes["voxels-added"] = std::to_string(cut->voxelsAdded);
+        const auto cut = TRY(topology::cutHandles(labels, cutting));
+        attributes["handles-cut"] = std::to_string(cut.handlesCut);
+        attributes["cavities-filled"] = std::to_string(cut.cavitiesFilled);
+        attributes["voxels-removed"] = std::to_string(cut.voxelsRemoved);
+        attributes["voxels-added"] = std::to_string(cut.voxelsAdded);
         std::vector<std::string> notes{attributes["handles-cut"] + " handles cut, " +
                                        attributes["cavities-filled"] + " cavities filled, " +
                                        attributes["voxels-removed"] + " voxels removed, " +
                                        attributes["voxels-added"] + " added"};
-        notes.insert(notes.end(), cut->notes.begin(), cut->notes.end());
+        notes.insert(notes.end(), cut.notes.begin(), cut.notes.end());
         setNotes(attributes, notes);
-        return target.publishVolume(product::lumen, key, cut->labels, attributes, outdated);
+        return target.publishVolume(product::lumen, key, cut.labels, attributes, outdated);
     };
     return preparation.run({"denoising", key, {product::lumen}}, meter, make).map([&] {
         return key;
@@ -103,11 +101,10 @@ Result<ProductKey> measureDistance(Preparation& preparation, const ProductKey& l
     const ProductKey key = store::makeKey("distance", distanceVersion, "", {lumen});
     const auto make = [&](const Progress&) -> Result<void> {
         store::Case& target = preparation.target();
-        const auto labels = target.readVolume<std::uint8_t>(product::lumen);
-        if (!labels) return tl::make_unexpected(labels.error());
-        if (auto sound = checkOrthogonal(labels->grid()); !sound) return sound;
+        const auto labels = TRY(target.readVolume<std::uint8_t>(product::lumen));
+        TRY(checkOrthogonal(labels.grid()));
         const auto distanceMm =
-            topology::distanceToBoundaryMm(*labels, preparation.options().threads);
+            topology::distanceToBoundaryMm(labels, preparation.options().threads);
         return target.publishVolume(product::distance, key, distanceMm, {},
                                     madeFrom(product::distance));
     };
@@ -129,10 +126,8 @@ Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& l
     if (organ.branches) stage.products.push_back(product::branches);
     const auto make = [&](const Progress& progress) -> Result<void> {
         store::Case& target = preparation.target();
-        const auto labels = target.readVolume<std::uint8_t>(product::lumen);
-        if (!labels) return tl::make_unexpected(labels.error());
-        const auto distanceMm = target.readVolume<float>(product::distance);
-        if (!distanceMm) return tl::make_unexpected(distanceMm.error());
+        const auto labels = TRY(target.readVolume<std::uint8_t>(product::lumen));
+        const auto distanceMm = TRY(target.readVolume<float>(product::distance));
         topology::CenterlineOptions tracing;
         tracing.threads = preparation.options().threads;
         tracing.progress = progress;
@@ -140,22 +135,20 @@ Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& l
                            ? topology::EndRule::farthest
                            : topology::EndRule::rectumToCecum;
         tracing.branches = organ.branches;
-        const auto traced = topology::traceCenterline(*labels, *distanceMm, tracing);
-        if (!traced) return tl::make_unexpected(traced.error());
-        Attributes attributes{{"length-mm", exactText(traced->centerline.lengthMm())}};
-        std::vector<std::string> notes = traced->notes;
+        const auto traced = TRY(topology::traceCenterline(labels, distanceMm, tracing));
+        Attributes attributes{{"length-mm", exactText(traced.centerline.lengthMm())}};
+        std::vector<std::string> notes = traced.notes;
         if (target.find(product::quality)) {
-            const auto pieces = target.readText(product::quality).and_then(piecesOfQuality);
-            if (!pieces) return tl::make_unexpected(pieces.error());
-            const auto missed = piecesPassedBy(traced->centerline, *pieces);
+            const auto pieces = TRY(target.readText(product::quality).and_then(piecesOfQuality));
+            const auto missed = piecesPassedBy(traced.centerline, pieces);
             notes.insert(notes.end(), missed.begin(), missed.end());
         }
         setNotes(attributes, notes);
-        auto published = target.publishCenterline(product::centerline, key, traced->centerline,
+        auto published = target.publishCenterline(product::centerline, key, traced.centerline,
                                                   attributes, madeFrom(product::centerline));
         if (!published || !organ.branches) return published;
-        return target.publishCenterline(product::branches, key, joined(traced->branches),
-                                        {{"branches", std::to_string(traced->branches.size())}},
+        return target.publishCenterline(product::branches, key, joined(traced.branches),
+                                        {{"branches", std::to_string(traced.branches.size())}},
                                         madeFrom(product::branches));
     };
     return preparation.run(stage, meter, make).map([&] { return key; });

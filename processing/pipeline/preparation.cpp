@@ -16,8 +16,8 @@ const std::vector<std::string>& madeFrom(const std::string& product) {
     using namespace product;
     static const std::map<std::string, std::vector<std::string>> dependents{
         {ct,
-         {segmentation, quality, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches,
-          surface, flatMap}},
+         {segmentation, quality, mixture, cleansedLumen, cleansed, lumen, distance, centerline,
+          branches, surface, flatMap}},
         {segmentation,
          {quality, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches, surface,
           flatMap}},
@@ -52,18 +52,16 @@ Result<void> Preparation::bind(store::ScanIdentity scan,
     };
     if (!studyUid_.empty() && !scan.studyUid.empty() && studyUid_ != scan.studyUid)
         return refuse("this series is of another study than the case's other scans");
-    const auto held = target_.scan();
-    if (!held) return tl::make_unexpected(held.error());
+    const auto held = TRY(target_.scan());
     // A case of before cases were bound, and the series that it was made from.
-    const bool adopted = *held && importKey && (*held)->key == *importKey;
-    if (*held && (adopted || sameScan(**held, scan))) {
-        scan.key = (*held)->key;
+    const bool adopted = held && importKey && held->key == *importKey;
+    if (held && (adopted || sameScan(*held, scan))) {
+        scan.key = held->key;
         return target_.bind(scan);
     }
-    const auto products = target_.products();
-    if (!products) return tl::make_unexpected(products.error());
-    if (!products->empty() && !options_.replace) {
-        const bool ofStudy = *held && !scan.studyUid.empty() && (*held)->studyUid == scan.studyUid;
+    const auto products = TRY(target_.products());
+    if (!products.empty() && !options_.replace) {
+        const bool ofStudy = held && !scan.studyUid.empty() && held->studyUid == scan.studyUid;
         return refuse(
             std::string(ofStudy ? "the case holds another series of the same study: prepare this "
                                   "one as a scan of its own (--scan prone)"
@@ -110,9 +108,8 @@ Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
     }
     progress(1.0);
     for (const std::string& product : stage.products) {
-        const auto attributes = target_.attributes(product);
-        if (!attributes) return tl::make_unexpected(attributes.error());
-        for (const std::string& note : notesOf(*attributes))
+        const auto attributes = TRY(target_.attributes(product));
+        for (const std::string& note : notesOf(attributes))
             report_.notes.push_back(stage.name + ": " + note);
     }
     report_.stages.push_back(
@@ -127,9 +124,8 @@ Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
 }
 
 Result<void> Preparation::noteBridges() {
-    const auto centerline = target_.readCenterline(product::centerline);
-    if (!centerline) return tl::make_unexpected(centerline.error());
-    report_.bridges = bridgesOf(*centerline);
+    const auto centerline = TRY(target_.readCenterline(product::centerline));
+    report_.bridges = bridgesOf(centerline);
     for (const Bridge& bridge : report_.bridges) {
         std::ostringstream line;
         line << std::fixed << std::setprecision(0) << "centerline: a bridge of "
@@ -141,18 +137,15 @@ Result<void> Preparation::noteBridges() {
 }
 
 Result<void> Preparation::noteBridgedWall() {
-    const auto surface = target_.readMesh(product::surface);
-    if (!surface) return tl::make_unexpected(surface.error());
-    const auto labels = target_.readVolume<std::uint8_t>(product::lumen);
-    if (!labels) return tl::make_unexpected(labels.error());
-    const auto bridged = bridgedTriangles(*surface, *labels);
+    const auto surface = TRY(target_.readMesh(product::surface));
+    const auto labels = TRY(target_.readVolume<std::uint8_t>(product::lumen));
+    const auto bridged = bridgedTriangles(surface, labels);
     for (std::size_t n = 0; n < bridged.size(); ++n) {
         if (!bridged[n]) continue;
-        const glm::ivec3 t = surface->triangles[n];
-        const glm::dvec3 a = surface->vertices[std::size_t(t.x)];
-        report_.bridgedMm2 +=
-            0.5 * glm::length(glm::cross(surface->vertices[std::size_t(t.y)] - a,
-                                         surface->vertices[std::size_t(t.z)] - a));
+        const glm::ivec3 t = surface.triangles[n];
+        const glm::dvec3 a = surface.vertices[std::size_t(t.x)];
+        report_.bridgedMm2 += 0.5 * glm::length(glm::cross(surface.vertices[std::size_t(t.y)] - a,
+                                                           surface.vertices[std::size_t(t.z)] - a));
     }
     if (report_.bridgedMm2 > 0.0) {
         note("surface: " + exactText(std::round(report_.bridgedMm2)) +
@@ -162,14 +155,12 @@ Result<void> Preparation::noteBridgedWall() {
 }
 
 Result<CtScan> Preparation::readScan() const {
-    auto hu = target_.readVolume<std::int16_t>(product::ct);
-    if (!hu) return tl::make_unexpected(hu.error());
-    const auto attributes = target_.attributes(product::ct);
-    if (!attributes) return tl::make_unexpected(attributes.error());
-    const auto position = attributes->find("position");
-    return CtScan{std::move(*hu), position == attributes->end()
-                                      ? PatientPosition::unknown
-                                      : patientPositionFromString(position->second)};
+    auto hu = TRY(target_.readVolume<std::int16_t>(product::ct));
+    const auto attributes = TRY(target_.attributes(product::ct));
+    const auto position = attributes.find("position");
+    return CtScan{std::move(hu), position == attributes.end()
+                                     ? PatientPosition::unknown
+                                     : patientPositionFromString(position->second)};
 }
 
 }  // namespace haustra::pipeline

@@ -55,69 +55,55 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     const PrepareOptions& options = preparation.options();
     std::optional<ProductKey> ct;
     if (!options.series.empty()) {
-        const auto imported = importScan(preparation);
-        if (!imported) return tl::make_unexpected(imported.error());
-        ct = *imported;
+        ct = TRY(importScan(preparation));
     } else if (const auto published = preparation.target().find(product::ct)) {
         ct = published->key;
     }
     if (!preparation.wanted("segmentation")) return preparation.takeReport();
     const auto segmentation =
-        options.lumenMask.empty() ? segmentScan(preparation, *ct) : takeMask(preparation, ct);
-    if (!segmentation) return tl::make_unexpected(segmentation.error());
+        TRY(options.lumenMask.empty() ? segmentScan(preparation, *ct) : takeMask(preparation, ct));
 
-    WallSource wall{product::segmentation, *segmentation, ct ? product::ct : "",
+    WallSource wall{product::segmentation, segmentation, ct ? product::ct : "",
                     ct.value_or(ProductKey{})};
     if (ct && preparation.organ().cleanse) {
         if (!preparation.wanted("mixture")) return preparation.takeReport();
         std::optional<cleansing::TaggedLumen> tagged;
-        const auto mixture = mixTissues(preparation, *ct, *segmentation, tagged);
-        if (!mixture) return tl::make_unexpected(mixture.error());
+        const auto mixture = TRY(mixTissues(preparation, *ct, segmentation, tagged));
         if (!preparation.wanted("cleansing")) return preparation.takeReport();
         const auto cleansed =
-            cleanseScan(preparation, *ct, *segmentation, *mixture, std::move(tagged));
-        if (!cleansed) return tl::make_unexpected(cleansed.error());
-        wall = {product::cleansedLumen, *cleansed, product::cleansed, *cleansed};
+            TRY(cleanseScan(preparation, *ct, segmentation, mixture, std::move(tagged)));
+        wall = {product::cleansedLumen, cleansed, product::cleansed, cleansed};
     }
     if (!preparation.wanted("denoising")) return preparation.takeReport();
-    const auto lumen = denoiseLumen(preparation, wall);
-    if (!lumen) return tl::make_unexpected(lumen.error());
+    const auto lumen = TRY(denoiseLumen(preparation, wall));
     if (!preparation.wanted("distance")) return preparation.takeReport();
     std::future<Result<WallSurface>> begun;
-    if (preparation.wanted("surface")) begun = beginSurface(preparation, wall, *lumen);
-    const auto distance = measureDistance(preparation, *lumen);
-    if (!distance) return tl::make_unexpected(distance.error());
+    if (preparation.wanted("surface")) begun = beginSurface(preparation, wall, lumen);
+    const auto distance = TRY(measureDistance(preparation, lumen));
     if (!preparation.wanted("centerline")) return preparation.takeReport();
-    const auto centerline = traceCenterline(preparation, *lumen, *distance);
-    if (!centerline) return tl::make_unexpected(centerline.error());
-    if (const auto noted = preparation.noteBridges(); !noted)
-        return tl::make_unexpected(noted.error());
+    const auto centerline = TRY(traceCenterline(preparation, lumen, distance));
+    TRY(preparation.noteBridges());
     if (!preparation.wanted("surface")) return preparation.takeReport();
-    const auto surface = makeSurface(preparation, wall, *lumen, std::move(begun));
-    if (!surface) return tl::make_unexpected(surface.error());
-    if (const auto noted = preparation.noteBridgedWall(); !noted)
-        return tl::make_unexpected(noted.error());
+    const auto surface = TRY(makeSurface(preparation, wall, lumen, std::move(begun)));
+    TRY(preparation.noteBridgedWall());
     if (!preparation.wanted("flattening")) return preparation.takeReport();
     if (!preparation.organ().flatten) {
         preparation.note("flattening: left out, as the organ's profile does not ask for it");
         return preparation.takeReport();
     }
-    const auto flatMap = flattenSurface(preparation, *surface, *centerline);
-    if (!flatMap) return tl::make_unexpected(flatMap.error());
+    TRY(flattenSurface(preparation, surface, centerline));
     return preparation.takeReport();
 }
 
 // The study of the scans that a case has beside `scan`; empty where no UID tells it.
 Result<std::string> studyOfOtherScans(const store::CaseStore& store, const std::string& caseName,
                                       const std::string& scan) {
-    const auto names = store.cases();
-    if (!names) return tl::make_unexpected(names.error());
-    for (const std::string& name : *names) {
+    const auto names = TRY(store.cases());
+    for (const std::string& name : names) {
         if (name == scan || (name != caseName && !name.starts_with(caseName + "."))) continue;
-        const auto other =
-            store.openCase(name).and_then([](const store::Case& opened) { return opened.scan(); });
-        if (!other) return tl::make_unexpected(other.error());
-        if (*other && !(*other)->studyUid.empty()) return (*other)->studyUid;
+        const auto other = TRY(
+            store.openCase(name).and_then([](const store::Case& opened) { return opened.scan(); }));
+        if (other && !other->studyUid.empty()) return other->studyUid;
     }
     return std::string();
 }
@@ -145,18 +131,15 @@ const std::vector<std::string>& stageNames() {
 
 Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& caseName,
                               const PrepareOptions& options) {
-    if (auto sound = checkOptions(options); !sound) return tl::make_unexpected(sound.error());
-    auto organ = organs::readProfile(options.organ);
-    if (!organ) return tl::make_unexpected(organ.error());
+    TRY(checkOptions(options));
+    auto organ = TRY(organs::readProfile(options.organ));
     const std::string name = options.scan.empty() ? caseName : caseName + "." + options.scan;
-    Result<std::string> study;
-    if (!options.scan.empty()) study = studyOfOtherScans(store, caseName, name);
-    if (!study) return tl::make_unexpected(study.error());
-    auto target = store.createCase(name);
-    if (!target) return tl::make_unexpected(target.error());
-    const store::Case held = *target;  // keeps the lock until the folder is tidied
+    std::string study;
+    if (!options.scan.empty()) study = TRY(studyOfOtherScans(store, caseName, name));
+    auto target = TRY(store.createCase(name));
+    const store::Case held = target;  // keeps the lock until the folder is tidied
     try {
-        Preparation preparation(std::move(*target), options, std::move(*organ), std::move(*study));
+        Preparation preparation(std::move(target), options, std::move(organ), std::move(study));
         auto report = runStages(preparation);
         if (!report) removeIfEmpty(held.folder());
         return report;

@@ -78,29 +78,26 @@ bool isNiftiFile(const std::filesystem::path& file) {
 Result<ScanInput> readScan(const std::filesystem::path& series, const std::string& seriesUid,
                            int threads, const Progress& progress) {
     if (!isNiftiFile(series)) {
-        auto imported = dicom::importSeries(series, {seriesUid, threads, progress});
-        if (!imported) return tl::make_unexpected(imported.error());
+        auto imported = TRY(dicom::importSeries(series, {seriesUid, threads, progress}));
         return inAxialOrder(
-            {std::move(imported->scan), imported->summary.images, std::move(imported->notes)},
+            {std::move(imported.scan), imported.summary.images, std::move(imported.notes)},
             threads);
     }
     if (!seriesUid.empty()) {
         return fail(ErrorKind::badInput, "a NIfTI file has no series to choose from",
                     series.string());
     }
-    auto volume = nifti::readNifti<std::int16_t>(series);
-    if (!volume) return tl::make_unexpected(volume.error());
-    return inAxialOrder({{std::move(*volume), PatientPosition::unknown}, 1, {}}, threads);
+    auto volume = TRY(nifti::readNifti<std::int16_t>(series));
+    return inAxialOrder({{std::move(volume), PatientPosition::unknown}, 1, {}}, threads);
 }
 
 Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid,
                                 int threads) {
-    auto read = nifti::readNifti<std::uint8_t>(file);
-    if (!read) return tl::make_unexpected(read.error());
-    const AxisOrder axial = axialOrder(read->grid());
-    const auto order = scanGrid ? orderOnGrid(read->grid(), *scanGrid) : axial;
+    auto read = TRY(nifti::readNifti<std::uint8_t>(file));
+    const AxisOrder axial = axialOrder(read.grid());
+    const auto order = scanGrid ? orderOnGrid(read.grid(), *scanGrid) : axial;
     if (!order) {
-        const glm::ivec3 size = reordered(read->grid(), axial).size;
+        const glm::ivec3 size = reordered(read.grid(), axial).size;
         return fail(ErrorKind::badInput,
                     size == scanGrid->size
                         ? "the mask's voxels lie at other places in the patient than the scan's"
@@ -108,12 +105,12 @@ Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* s
                               describeSize(scanGrid->size),
                     file.string());
     }
-    *read = reordered(std::move(*read), *order, threads);
-    MaskInput mask{Volume<std::uint8_t>(scanGrid ? *scanGrid : read->grid()), {}};
+    read = reordered(std::move(read), *order, threads);
+    MaskInput mask{Volume<std::uint8_t>(scanGrid ? *scanGrid : read.grid()), {}};
     const auto labels = mask.labels.writable();
     std::size_t inside = 0, others = 0;
     for (std::size_t n = 0; n < labels.size(); ++n) {
-        const std::uint8_t value = (*read)[n];
+        const std::uint8_t value = read[n];
         inside += value != 0;
         const bool known = value <= 2 || value == std::uint8_t(LumenLabel::untagged);
         others += !known;

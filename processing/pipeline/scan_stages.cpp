@@ -42,9 +42,8 @@ Result<ColonEdits> takeEdits(Preparation& preparation) {
     ColonEdits edits{options.seedsMm, options.excludesMm, options.cuts, options.joins};
     if (edits.empty() && !options.forgetEdits) {
         if (!target.find(product::edits)) return edits;
-        const auto text = target.readText(product::edits);
-        if (!text) return tl::make_unexpected(text.error());
-        auto kept = editsFromJson(*text);
+        const auto text = TRY(target.readText(product::edits));
+        auto kept = editsFromJson(text);
         if (kept && !kept->empty())
             preparation.note("segmentation: what an earlier call said of the colon stands (edits)");
         return kept;
@@ -59,19 +58,17 @@ Result<void> findGasAndTagged(Preparation& preparation, const CtScan& scan, cons
                               const ColonEdits& edits, const Progress& progress) {
     const PrepareOptions& options = preparation.options();
     const auto tissue =
-        cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues);
-    if (!tissue) return tl::make_unexpected(tissue.error());
+        TRY(cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues));
     segmentation::ColonOptions finding;
     finding.edits = edits, finding.threads = options.threads, finding.progress = progress;
-    const auto colon = segmentation::findColon(scan, *tissue, finding);
-    if (!colon) return tl::make_unexpected(colon.error());
-    Attributes attributes{{"source", "scan"}, {"gravity", exactText(colon->gravity)}};
-    setTissueModel(attributes, *tissue);
-    std::vector<std::string> notes = colon->notes;
-    notes.insert(notes.end(), colon->record.warnings.begin(), colon->record.warnings.end());
+    const auto colon = TRY(segmentation::findColon(scan, tissue, finding));
+    Attributes attributes{{"source", "scan"}, {"gravity", exactText(colon.gravity)}};
+    setTissueModel(attributes, tissue);
+    std::vector<std::string> notes = colon.notes;
+    notes.insert(notes.end(), colon.record.warnings.begin(), colon.record.warnings.end());
     setNotes(attributes, notes);
-    return publishSegmentation(preparation, key, colon->labels, attributes).and_then([&] {
-        return preparation.target().publishText(product::quality, key, qualityJson(colon->record),
+    return publishSegmentation(preparation, key, colon.labels, attributes).and_then([&] {
+        return preparation.target().publishText(product::quality, key, qualityJson(colon.record),
                                                 {}, madeFrom(product::quality));
     });
 }
@@ -83,17 +80,16 @@ Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const Pro
     const Volume<std::int16_t> hu =
         organ.smoothingMm > 0.0 ? topology::smoothHu(scan.hu, organ.smoothingMm, options.threads)
                                 : scan.hu.share();
-    auto lumen = topology::findHuRangeLumen(hu, {organ.contentHu, organ.openingMm, options.seedsMm,
-                                                 options.excludesMm, options.threads, progress});
-    if (!lumen) return tl::make_unexpected(lumen.error());
+    auto lumen =
+        TRY(topology::findHuRangeLumen(hu, {organ.contentHu, organ.openingMm, options.seedsMm,
+                                            options.excludesMm, options.threads, progress}));
     // Where the wall is sharp, the HU on its two sides are themselves close to it.
-    const auto wall = surface::contentField(scan.hu, lumen->labels, options.threads);
-    if (!wall) return tl::make_unexpected(wall.error());
-    topology::growToWall(lumen->labels, hu, wall->negated ? -wall->isoHu : wall->isoHu,
-                         wall->negated, options.threads);
-    Attributes attributes{{"source", "scan"}, {"segments", std::to_string(lumen->bodies)}};
-    setNotes(attributes, lumen->notes);
-    return publishSegmentation(preparation, key, lumen->labels, attributes);
+    const auto wall = TRY(surface::contentField(scan.hu, lumen.labels, options.threads));
+    topology::growToWall(lumen.labels, hu, wall.negated ? -wall.isoHu : wall.isoHu, wall.negated,
+                         options.threads);
+    Attributes attributes{{"source", "scan"}, {"segments", std::to_string(lumen.bodies)}};
+    setNotes(attributes, lumen.notes);
+    return publishSegmentation(preparation, key, lumen.labels, attributes);
 }
 
 // What mixture and cleansing start from, mapped.
@@ -105,15 +101,11 @@ struct SegmentedScan {
 };
 
 Result<SegmentedScan> readSegmentedScan(Preparation& preparation) {
-    auto scan = preparation.readScan();
-    if (!scan) return tl::make_unexpected(scan.error());
-    auto labels = preparation.target().readVolume<std::uint8_t>(product::segmentation);
-    if (!labels) return tl::make_unexpected(labels.error());
-    const auto attributes = preparation.target().attributes(product::segmentation);
-    if (!attributes) return tl::make_unexpected(attributes.error());
-    const auto tissue = tissueModelOf(*attributes);
-    if (!tissue) return tl::make_unexpected(tissue.error());
-    return SegmentedScan{std::move(*scan), std::move(*labels), *tissue, gravityOf(*attributes)};
+    auto scan = TRY(preparation.readScan());
+    auto labels = TRY(preparation.target().readVolume<std::uint8_t>(product::segmentation));
+    const auto attributes = TRY(preparation.target().attributes(product::segmentation));
+    const auto tissue = TRY(tissueModelOf(attributes));
+    return SegmentedScan{std::move(scan), std::move(labels), tissue, gravityOf(attributes)};
 }
 
 }  // namespace
@@ -121,22 +113,18 @@ Result<SegmentedScan> readSegmentedScan(Preparation& preparation) {
 Result<ProductKey> importScan(Preparation& preparation) {
     const StageMeter meter;
     const PrepareOptions& options = preparation.options();
-    const auto source = sourceKey(options.series, options.threads);
-    if (!source) return tl::make_unexpected(source.error());
-    const ProductKey key = store::makeKey("import", importVersion, options.seriesUid, {*source});
-    if (const auto bound = identifyScan(options.series, options.seriesUid, *source, options.threads)
-                               .and_then([&](const store::ScanIdentity& scan) {
-                                   return preparation.bind(scan, key);
-                               });
-        !bound)
-        return tl::make_unexpected(bound.error());
+    const auto source = TRY(sourceKey(options.series, options.threads));
+    const ProductKey key = store::makeKey("import", importVersion, options.seriesUid, {source});
+    TRY(identifyScan(options.series, options.seriesUid, source, options.threads)
+            .and_then(
+                [&](const store::ScanIdentity& scan) { return preparation.bind(scan, key); }));
     const auto make = [&](const Progress& progress) -> Result<void> {
-        const auto input = readScan(options.series, options.seriesUid, options.threads, progress);
-        if (!input) return tl::make_unexpected(input.error());
-        Attributes attributes{{"position", toString(input->scan.position)},
-                              {"images", std::to_string(input->images)}};
-        setNotes(attributes, input->notes);
-        return preparation.target().publishVolume(product::ct, key, input->scan.hu, attributes,
+        const auto input =
+            TRY(readScan(options.series, options.seriesUid, options.threads, progress));
+        Attributes attributes{{"position", toString(input.scan.position)},
+                              {"images", std::to_string(input.images)}};
+        setNotes(attributes, input.notes);
+        return preparation.target().publishVolume(product::ct, key, input.scan.hu, attributes,
                                                   madeFrom(product::ct));
     };
     return preparation.run({"import", key, {product::ct}}, meter, make).map([&] { return key; });
@@ -152,18 +140,16 @@ Result<ProductKey> segmentScan(Preparation& preparation, const ProductKey& ct) {
     }
     ColonEdits edits{options.seedsMm, options.excludesMm, {}, {}};
     if (colon) {
-        auto taken = takeEdits(preparation);
-        if (!taken) return tl::make_unexpected(taken.error());
-        edits = std::move(*taken);
+        auto taken = TRY(takeEdits(preparation));
+        edits = std::move(taken);
     }
     const ProductKey key =
         store::makeKey("segmentation", segmentationVersion,
                        organs::segmentationOptions(preparation.organ()) + editsJson(edits), {ct});
     const auto make = [&](const Progress& progress) -> Result<void> {
-        const auto scan = preparation.readScan();
-        if (!scan) return tl::make_unexpected(scan.error());
-        return colon ? findGasAndTagged(preparation, *scan, key, edits, progress)
-                     : findHuRange(preparation, *scan, key, progress);
+        const auto scan = TRY(preparation.readScan());
+        return colon ? findGasAndTagged(preparation, scan, key, edits, progress)
+                     : findHuRange(preparation, scan, key, progress);
     };
     std::vector<std::string> products{product::segmentation};
     if (colon) products.push_back(product::quality);
@@ -173,14 +159,12 @@ Result<ProductKey> segmentScan(Preparation& preparation, const ProductKey& ct) {
 Result<ProductKey> takeMask(Preparation& preparation, const std::optional<ProductKey>& ct) {
     const StageMeter meter;
     const PrepareOptions& options = preparation.options();
-    const auto mask = sourceKey(options.lumenMask, options.threads);
-    if (!mask) return tl::make_unexpected(mask.error());
-    std::vector<ProductKey> inputs{*mask};
+    const auto mask = TRY(sourceKey(options.lumenMask, options.threads));
+    std::vector<ProductKey> inputs{mask};
     if (ct) {
         inputs.push_back(*ct);
-    } else if (const auto bound = preparation.bind({*mask, {}, {}}); !bound) {
-        return tl::make_unexpected(bound.error());
-    }
+    } else
+        TRY(preparation.bind({mask, {}, {}}));
     // Of the organ, only how its tissues are told apart matters here.
     const bool colon = preparation.organ().finder == LumenFinder::gasAndTagged,
                fitted = ct && colon;
@@ -190,32 +174,30 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
     const auto make = [&](const Progress& progress) -> Result<void> {
         CtScan scan;
         if (ct) {
-            auto read = preparation.readScan();
-            if (!read) return tl::make_unexpected(read.error());
-            scan = std::move(*read);
+            auto read = TRY(preparation.readScan());
+            scan = std::move(read);
         }
         const Grid grid = scan.hu.grid();
-        const auto input = readLumenMask(options.lumenMask, ct ? &grid : nullptr, options.threads);
-        if (!input) return tl::make_unexpected(input.error());
+        const auto input =
+            TRY(readLumenMask(options.lumenMask, ct ? &grid : nullptr, options.threads));
         Attributes attributes{{"source", "mask"}};
         TissueModel tissue = drawnTissue;
         if (fitted) {
             const auto fit =
-                cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues);
-            if (!fit) return tl::make_unexpected(fit.error());
-            tissue = *fit;
+                TRY(cleansing::fitTissueModel(scan, options.threads, preparation.organ().tissues));
+            tissue = fit;
             attributes["gravity"] = exactText(gravityDirection(scan.position));
             setTissueModel(attributes, tissue);
         }
-        std::vector<std::string> notes = input->notes;
+        std::vector<std::string> notes = input.notes;
         if (!colon) {
             setNotes(attributes, notes);
-            return publishSegmentation(preparation, key, input->labels, attributes);
+            return publishSegmentation(preparation, key, input.labels, attributes);
         }
         segmentation::ColonOptions finding;
         finding.threads = options.threads, finding.progress = progress;
         const auto found =
-            segmentation::findColonInMask(input->labels, ct ? &scan : nullptr, tissue, finding);
+            segmentation::findColonInMask(input.labels, ct ? &scan : nullptr, tissue, finding);
         ColonRecord record;
         if (found) {
             record = found->record;
@@ -230,7 +212,7 @@ Result<ProductKey> takeMask(Preparation& preparation, const std::optional<Produc
         }
         notes.insert(notes.end(), record.warnings.begin(), record.warnings.end());
         setNotes(attributes, notes);
-        return publishSegmentation(preparation, key, found ? found->labels : input->labels,
+        return publishSegmentation(preparation, key, found ? found->labels : input.labels,
                                    attributes)
             .and_then([&] {
                 return preparation.target().publishText(product::quality, key, qualityJson(record),
@@ -252,27 +234,24 @@ Result<ProductKey> mixTissues(Preparation& preparation, const ProductKey& ct,
         cleansing::PartialVolumeModel model;
         std::optional<cleansing::LumenPart> part;
         {
-            const auto input = readSegmentedScan(preparation);
-            if (!input) return tl::make_unexpected(input.error());
-            model = cleansing::fitPartialVolume(input->scan, input->tissue, threads);
-            auto cropped = cleansing::cropToLumen(input->scan, input->labels, threads);
-            if (!cropped) return tl::make_unexpected(cropped.error());
-            part = std::move(*cropped);
+            const auto input = TRY(readSegmentedScan(preparation));
+            model = cleansing::fitPartialVolume(input.scan, input.tissue, threads);
+            auto cropped = TRY(cleansing::cropToLumen(input.scan, input.labels, threads));
+            part = std::move(cropped);
         }
         progress(0.1);
         // Mapped anew: until the mixture is written none of the whole scan is in memory.
-        const auto input = readSegmentedScan(preparation);
-        if (!input) return tl::make_unexpected(input.error());
+        const auto input = TRY(readSegmentedScan(preparation));
         Volume<TissueFractions> byHu;
         if (part) {
             byHu = cleansing::fractionsByHu(part->scan.hu, model, threads);
-            lumen = cleansing::measureTaggedLumen(std::move(*part), input->tissue, threads);
+            lumen = cleansing::measureTaggedLumen(std::move(*part), input.tissue, threads);
         }
         progress(0.4);
         const auto rest = [&](double fraction) { progress(0.4 + 0.5 * fraction); };
         const auto mixture =
-            cleansing::estimateMixture(input->scan, model, std::move(byHu),
-                                       lumen ? &*lumen : nullptr, input->gravity, {threads, rest});
+            cleansing::estimateMixture(input.scan, model, std::move(byHu),
+                                       lumen ? &*lumen : nullptr, input.gravity, {threads, rest});
         return preparation.target().publishVolume(product::mixture, key, mixture, {},
                                                   madeFrom(product::mixture), threads);
     };
@@ -291,17 +270,14 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
         store::Case& target = preparation.target();
         const int threads = preparation.options().threads;
         if (!lumen) {
-            const auto input = readSegmentedScan(preparation);
-            if (!input) return tl::make_unexpected(input.error());
-            auto part = cleansing::cropToLumen(input->scan, input->labels, threads);
-            if (!part) return tl::make_unexpected(part.error());
-            if (*part)
-                lumen = cleansing::measureTaggedLumen(std::move(**part), input->tissue, threads);
+            const auto input = TRY(readSegmentedScan(preparation));
+            auto part = TRY(cleansing::cropToLumen(input.scan, input.labels, threads));
+            if (part)
+                lumen = cleansing::measureTaggedLumen(std::move(*part), input.tissue, threads);
         }
         progress(0.3);
-        const auto input = readSegmentedScan(preparation);
-        if (!input) return tl::make_unexpected(input.error());
-        const Attributes wall{{"air-below-hu", exactText(input->tissue.airBelowHu)}};
+        const auto input = TRY(readSegmentedScan(preparation));
+        const Attributes wall{{"air-below-hu", exactText(input.tissue.airBelowHu)}};
         const auto publish = [&](const auto& labels, const auto& hu) {
             return target
                 .publishVolume(product::cleansedLumen, key, labels, wall,
@@ -312,24 +288,23 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
                 });
         };
         if (!lumen) {
-            Volume<std::int16_t> hu = input->scan.hu.share();
-            if (cleansing::hasUntagged(input->labels)) {
-                hu = input->scan.hu.clone();
-                Volume<std::uint8_t> labels = input->labels.clone();
-                cleansing::takeOutUntagged(hu, labels, input->labels,
-                                           input->tissue.meanHu[int(Tissue::air)], threads);
+            Volume<std::int16_t> hu = input.scan.hu.share();
+            if (cleansing::hasUntagged(input.labels)) {
+                hu = input.scan.hu.clone();
+                Volume<std::uint8_t> labels = input.labels.clone();
+                cleansing::takeOutUntagged(hu, labels, input.labels,
+                                           input.tissue.meanHu[int(Tissue::air)], threads);
             }
-            return publish(input->labels, hu);
+            return publish(input.labels, hu);
         }
         const auto cleansed =
-            target.readVolume<TissueFractions>(product::mixture)
-                .map([&](const Volume<TissueFractions>& fractions) {
-                    return cleansing::cleanse(input->scan, input->tissue, fractions,
-                                              std::move(*lumen), threads);
-                });
-        if (!cleansed) return tl::make_unexpected(cleansed.error());
+            TRY(target.readVolume<TissueFractions>(product::mixture)
+                    .map([&](const Volume<TissueFractions>& fractions) {
+                        return cleansing::cleanse(input.scan, input.tissue, fractions,
+                                                  std::move(*lumen), threads);
+                    }));
         progress(0.8);
-        return publish(cleansed->lumen, cleansed->hu);
+        return publish(cleansed.lumen, cleansed.hu);
     };
     return preparation
         .run({"cleansing", key, {product::cleansedLumen, product::cleansed}}, meter, make)

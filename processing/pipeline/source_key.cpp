@@ -32,12 +32,11 @@ Result<std::vector<fs::path>> filesOf(const fs::path& source) {
 }  // namespace
 
 Result<store::ProductKey> sourceKey(const fs::path& source, int threads) {
-    const auto files = filesOf(source);
-    if (!files) return tl::make_unexpected(files.error());
-    std::vector<Result<store::Digest>> digests(files->size());
-    parallelFor(files->size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+    const auto files = TRY(filesOf(source));
+    std::vector<Result<store::Digest>> digests(files.size());
+    parallelFor(files.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)
-            digests[n] = store::fileDigest((*files)[n]);
+            digests[n] = store::fileDigest(files[n]);
     });
     std::vector<store::ProductKey> keys;
     for (const auto& digest : digests) {

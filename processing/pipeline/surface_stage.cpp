@@ -42,14 +42,11 @@ Result<surface::WallField> readWall(Preparation& preparation, const WallSource& 
     const int threads = preparation.options().threads;
     const WallRule rule = wallRule(preparation, source);
     if (rule == WallRule::mask) return surface::smoothedMask(lumen, threads);
-    auto hu = preparation.target().readVolume<std::int16_t>(source.hu);
-    if (!hu) return tl::make_unexpected(hu.error());
-    if (rule == WallRule::content) return surface::contentField(*hu, lumen, threads);
-    const auto attributes = preparation.target().attributes(product::segmentation);
-    if (!attributes) return tl::make_unexpected(attributes.error());
-    const auto tissue = tissueModelOf(*attributes);
-    if (!tissue) return tl::make_unexpected(tissue.error());
-    return surface::WallField{std::move(*hu), tissue->airBelowHu, false};
+    auto hu = TRY(preparation.target().readVolume<std::int16_t>(source.hu));
+    if (rule == WallRule::content) return surface::contentField(hu, lumen, threads);
+    const auto attributes = TRY(preparation.target().attributes(product::segmentation));
+    const auto tissue = TRY(tissueModelOf(attributes));
+    return surface::WallField{std::move(hu), tissue.airBelowHu, false};
 }
 
 // What every later stage relies on; that it holds is the contouring's and the simplification's
@@ -88,36 +85,31 @@ Result<WallSurface> surfaceOf(Preparation& preparation, const WallSource& source
     Attributes attributes;
     TriMesh fine;
     {
-        const auto lumen = preparation.target().readVolume<std::uint8_t>(product::lumen);
-        if (!lumen) return tl::make_unexpected(lumen.error());
-        const auto wall = readWall(preparation, source, *lumen);
-        if (!wall) return tl::make_unexpected(wall.error());
-        auto contoured = surface::contourLumen(wall->hu, *lumen, wall->isoHu, {options.threads});
-        if (!contoured) return tl::make_unexpected(contoured.error());
-        fine = std::move(*contoured);
+        const auto lumen = TRY(preparation.target().readVolume<std::uint8_t>(product::lumen));
+        const auto wall = TRY(readWall(preparation, source, lumen));
+        auto contoured = TRY(surface::contourLumen(wall.hu, lumen, wall.isoHu, {options.threads}));
+        fine = std::move(contoured);
         if (!source.hu.empty())
-            attributes["iso-hu"] = exactText(wall->negated ? -wall->isoHu : wall->isoHu);
+            attributes["iso-hu"] = exactText(wall.negated ? -wall.isoHu : wall.isoHu);
     }
     progress(0.3);
     surface::SimplificationOptions simplification;
     simplification.errorMm = options.surfaceErrorMm;
     simplification.threads = options.threads;
     simplification.progress = [&](double fraction) { progress(0.3 + 0.7 * fraction); };
-    auto simple = surface::simplify(fine, simplification);
-    if (!simple) return tl::make_unexpected(simple.error());
-    const MeshTopology topology = meshTopology(*simple);
-    if (auto sound = checkSurface(topology, preparation.organ().topology); !sound)
-        return tl::make_unexpected(sound.error());
+    auto simple = TRY(surface::simplify(fine, simplification));
+    const MeshTopology topology = meshTopology(simple);
+    TRY(checkSurface(topology, preparation.organ().topology));
     attributes["euler-characteristic"] = std::to_string(topology.eulerCharacteristic);
-    attributes["vertices"] = std::to_string(simple->vertices.size());
-    attributes["triangles"] = std::to_string(simple->triangles.size());
+    attributes["vertices"] = std::to_string(simple.vertices.size());
+    attributes["triangles"] = std::to_string(simple.triangles.size());
     attributes["contoured-triangles"] = std::to_string(fine.triangles.size());
     attributes["error-mm"] = exactText(options.surfaceErrorMm);
     setNotes(attributes,
              {attributes["triangles"] + " triangles of " + attributes["contoured-triangles"] +
               " contoured, Euler characteristic " + attributes["euler-characteristic"]});
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    return WallSurface{std::move(*simple), std::move(attributes), took.count()};
+    return WallSurface{std::move(simple), std::move(attributes), took.count()};
 }
 
 }  // namespace
@@ -138,10 +130,9 @@ Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& sourc
     const ProductKey key = surfaceKey(preparation, source, lumen);
     const auto make = [&](const Progress& progress) -> Result<void> {
         const bool beside = begun.valid();
-        const auto made = beside ? begun.get() : surfaceOf(preparation, source, progress);
-        if (!made) return tl::make_unexpected(made.error());
-        if (beside) meter.addBeside(std::max(0.0, made->seconds - meter.wallSeconds()));
-        return preparation.target().publishMesh(product::surface, key, made->mesh, made->attributes,
+        const auto made = TRY(beside ? begun.get() : surfaceOf(preparation, source, progress));
+        if (beside) meter.addBeside(std::max(0.0, made.seconds - meter.wallSeconds()));
+        return preparation.target().publishMesh(product::surface, key, made.mesh, made.attributes,
                                                 madeFrom(product::surface));
     };
     return preparation.run({"surface", key, {product::surface}}, meter, make).map([&] {

@@ -290,34 +290,33 @@ Result<FoundColon> findAmong(Surroundings& among, const TissueModel& tissue,
     walls.threads = options.threads;
     const Volume<std::uint8_t> thin = findThinWalls(among.hu, among.contents, walls);
     progress(0.4);
-    auto course = findCourse(among, thin, tissue, options);
-    if (!course) return tl::make_unexpected(course.error());
+    auto course = TRY(findCourse(among, thin, tissue, options));
     std::vector<UntaggedLevel> untagged;
     if (glm::length(among.contents.gravity) > 0.0) {
         constexpr int mostRounds = 2;
         constexpr double leastOfBefore = 0.9;  // a pool that breaks the course is none
         for (int round = 0;; ++round) {
-            untagged = findUntaggedLevels(among.hu, tissue, course->labels.labels,
+            untagged = findUntaggedLevels(among.hu, tissue, course.labels.labels,
                                           among.contents.down, options.threads);
             if (among.given || round == mostRounds ||
                 !markUntaggedPools(among.hu, tissue, untagged, among.contents, options.threads))
                 break;
             cutBalls(among.contents, options.edits.cuts);
             auto next = findCourse(among, thin, tissue, options);
-            if (!next || lengthMm(*next) < leastOfBefore * lengthMm(*course)) {
+            if (!next || lengthMm(*next) < leastOfBefore * lengthMm(course)) {
                 forgetPools(among.contents);
                 break;
             }
-            course = std::move(next);
+            course = std::move(*next);
         }
     }
     // A point in a pool has its piece once the pool is found.
-    if (course->missing) return tl::make_unexpected(*course->missing);
+    if (course.missing) return tl::make_unexpected(*course.missing);
     progress(0.9);
     FoundColon found;
-    found.record = recordColon(among.contents, course->cut, course->graph, course->chains,
-                               course->labels, untagged);
-    found.labels = std::move(course->labels.labels);
+    found.record = recordColon(among.contents, course.cut, course.graph, course.chains,
+                               course.labels, untagged);
+    found.labels = std::move(course.labels.labels);
     found.gravity = among.contents.gravity;
     found.notes = among.contents.notes;
     return found;
@@ -342,10 +341,9 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     among.hu = cropped(among.hu, box, options.threads);
     among.contents = cropped(among.contents, box, options.threads);
     cutBalls(among.contents, options.edits.cuts);
-    auto found = findAmong(among, tissue, options);
-    if (!found) return found;
-    found->labels = onTheScan(scan.hu, std::move(found->labels), among.contents.content, by, box,
-                              tissue.airBelowHu, options.threads);
+    auto found = TRY(findAmong(among, tissue, options));
+    found.labels = onTheScan(scan.hu, std::move(found.labels), among.contents.content, by, box,
+                             tissue.airBelowHu, options.threads);
     if (options.progress) options.progress(1.0);
     return found;
 }
@@ -373,14 +371,13 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
     const VoxelBox box = bowelBox(among.contents.content, {}, options.threads);
     among.hu = cropped(among.hu, box, options.threads);
     among.contents = cropped(among.contents, box, options.threads);
-    auto found = findAmong(among, tissue, options);
-    if (!found) return found;
+    auto found = TRY(findAmong(among, tissue, options));
     Volume<std::uint8_t> whole(grid, std::uint8_t(LumenLabel::outside));
-    paste(found->labels, box, whole, options.threads);
-    found->labels = std::move(whole);
+    paste(found.labels, box, whole, options.threads);
+    found.labels = std::move(whole);
     if (!scan) {
-        found->gravity = glm::dvec3(0.0);
-        const auto labels = found->labels.writable();
+        found.gravity = glm::dvec3(0.0);
+        const auto labels = found.labels.writable();
         for (std::size_t n = 0; n < labels.size(); ++n) {
             if (LumenLabel(labels[n]) == LumenLabel::air &&
                 (LumenLabel(mask[n]) == LumenLabel::tagged ||
@@ -391,11 +388,11 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
     double maskMl = 0.0, keptMl = 0.0;
     for (std::size_t n = 0; n < mask.voxels().size(); ++n) {
         maskMl += mask[n] != 0;
-        keptMl += mask[n] != 0 && found->labels[n] != 0;
+        keptMl += mask[n] != 0 && found.labels[n] != 0;
     }
     const double leftMl = (maskMl - keptMl) * grid.voxelVolumeMm3() / 1000.0;
     if (leftMl >= 0.5)
-        found->notes.push_back(
+        found.notes.push_back(
             text("%.1f ml of the mask are no part of the colon that was found in it", leftMl));
     return found;
 }

@@ -42,50 +42,44 @@ static_assert(sizeof(glm::dvec3) == meshVertexBytes && sizeof(glm::ivec3) == mes
 
 template <class T>
 Result<Volume<T>> Case::readVolume(std::string_view product) const {
-    auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    if (auto right = checkContent(*mapped, contentOf<T>(), product, folder_); !right)
-        return tl::make_unexpected(right.error());
+    auto mapped = TRY(map(product));
+    TRY(checkContent(mapped, contentOf<T>(), product, folder_));
     // The values start on a page, so they are aligned for any T.
-    const T* voxels = reinterpret_cast<const T*>(mapped->values.data());
-    return Volume<T>::view(mapped->header.grid, voxels, mapped->mapping);
+    const T* voxels = reinterpret_cast<const T*>(mapped.values.data());
+    return Volume<T>::view(mapped.header.grid, voxels, mapped.mapping);
 }
 
 Result<Centerline> Case::readCenterline(std::string_view product) const {
-    const auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    if (auto right = checkContent(*mapped, Content::centerline, product, folder_); !right)
-        return tl::make_unexpected(right.error());
+    const auto mapped = TRY(map(product));
+    TRY(checkContent(mapped, Content::centerline, product, folder_));
     Centerline centerline;
-    centerline.points.reserve(mapped->values.size() / sizeof(CenterlineSample));
-    for (std::size_t at = 0; at < mapped->values.size(); at += sizeof(CenterlineSample)) {
+    centerline.points.reserve(mapped.values.size() / sizeof(CenterlineSample));
+    for (std::size_t at = 0; at < mapped.values.size(); at += sizeof(CenterlineSample)) {
         CenterlineSample s;
-        std::memcpy(&s, mapped->values.data() + at, sizeof s);
+        std::memcpy(&s, mapped.values.data() + at, sizeof s);
         centerline.points.push_back({{s.x, s.y, s.z}, s.arc, s.radius, s.gap != 0.0});
     }
-    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
+    TRY(checkWhole(mapped));
     return centerline;
 }
 
 Result<TriMesh> Case::readMesh(std::string_view product) const {
-    const auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    if (auto right = checkContent(*mapped, Content::mesh, product, folder_); !right)
-        return tl::make_unexpected(right.error());
+    const auto mapped = TRY(map(product));
+    TRY(checkContent(mapped, Content::mesh, product, folder_));
     // mapProduct has held both counts against the number of bytes.
     TriMesh mesh;
-    mesh.vertices.resize(std::size_t(mapped->header.grid.size.x));
-    mesh.triangles.resize(std::size_t(mapped->header.grid.size.y));
+    mesh.vertices.resize(std::size_t(mapped.header.grid.size.x));
+    mesh.triangles.resize(std::size_t(mapped.header.grid.size.y));
     const std::size_t vertexBytes = mesh.vertices.size() * meshVertexBytes;
     const auto copy = [&](auto& values, std::size_t from) {
         if (!values.empty()) {
-            std::memcpy(values.data(), mapped->values.data() + from,
+            std::memcpy(values.data(), mapped.values.data() + from,
                         values.size() * sizeof values[0]);
         }
     };
     copy(mesh.vertices, 0);
     copy(mesh.triangles, vertexBytes);
-    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
+    TRY(checkWhole(mapped));
     const auto damaged = [&](const char* what) {
         return fail(ErrorKind::badInput,
                     "the product is damaged: " + std::string(product) + " has " + what,
@@ -109,10 +103,10 @@ template <class T>
 Result<void> Case::publishVolume(std::string_view product, const ProductKey& key,
                                  const Volume<T>& volume, const Attributes& attributes,
                                  const std::vector<std::string>& outdated) {
-    if (auto writable = checkWritable(); !writable) return writable;
+    TRY(checkWritable());
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hvol")};
     const fs::path file = folder_ / entry.file;
-    if (auto sound = checkGrid(volume.grid(), file.string()); !sound) return sound;
+    TRY(checkGrid(volume.grid(), file.string()));
     const ProductHeader header{
         contentOf<T>(), volume.grid(), digestFromHex(key.hex), {}, attributes};
     return writeProduct(folder_, entry.file, header, std::as_bytes(volume.voxels())).and_then([&] {
@@ -124,10 +118,10 @@ template <class T>
 Result<void> Case::publishVolume(std::string_view product, const ProductKey& key,
                                  const BoxedVolume<T>& volume, const Attributes& attributes,
                                  const std::vector<std::string>& outdated, int threads) {
-    if (auto writable = checkWritable(); !writable) return writable;
+    TRY(checkWritable());
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hvol")};
     const fs::path file = folder_ / entry.file;
-    if (auto sound = checkGrid(volume.grid, file.string()); !sound) return sound;
+    TRY(checkGrid(volume.grid, file.string()));
     const ProductHeader header{contentOf<T>(), volume.grid, digestFromHex(key.hex), {}, attributes};
     const auto values = [&](std::size_t offset, std::span<std::byte> out) {
         // Blocks are whole voxels, in memory that is aligned for any.
@@ -141,7 +135,7 @@ Result<void> Case::publishVolume(std::string_view product, const ProductKey& key
 Result<void> Case::publishCenterline(std::string_view product, const ProductKey& key,
                                      const Centerline& centerline, const Attributes& attributes,
                                      const std::vector<std::string>& outdated) {
-    if (auto writable = checkWritable(); !writable) return writable;
+    TRY(checkWritable());
     std::vector<CenterlineSample> samples;
     samples.reserve(centerline.points.size());
     for (const CenterlinePoint& p : centerline.points) {
@@ -156,19 +150,17 @@ Result<void> Case::publishCenterline(std::string_view product, const ProductKey&
 }
 
 Result<std::string> Case::readText(std::string_view product) const {
-    const auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    if (auto right = checkContent(*mapped, Content::text, product, folder_); !right)
-        return tl::make_unexpected(right.error());
-    std::string text(reinterpret_cast<const char*>(mapped->values.data()), mapped->values.size());
-    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
+    const auto mapped = TRY(map(product));
+    TRY(checkContent(mapped, Content::text, product, folder_));
+    std::string text(reinterpret_cast<const char*>(mapped.values.data()), mapped.values.size());
+    TRY(checkWhole(mapped));
     return text;
 }
 
 Result<void> Case::publishText(std::string_view product, const ProductKey& key,
                                std::string_view text, const Attributes& attributes,
                                const std::vector<std::string>& outdated) {
-    if (auto writable = checkWritable(); !writable) return writable;
+    TRY(checkWritable());
     ProductHeader header{Content::text, {}, digestFromHex(key.hex), {}, attributes};
     header.grid.size = {int(text.size()), 1, 1};
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".htext")};
@@ -180,7 +172,7 @@ Result<void> Case::publishText(std::string_view product, const ProductKey& key,
 Result<void> Case::publishMesh(std::string_view product, const ProductKey& key, const TriMesh& mesh,
                                const Attributes& attributes,
                                const std::vector<std::string>& outdated) {
-    if (auto writable = checkWritable(); !writable) return writable;
+    TRY(checkWritable());
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hmesh")};
     if (mesh.vertices.size() > mostMeshElements || mesh.triangles.size() > mostMeshElements) {
         return fail(ErrorKind::unsupported, "the mesh has too many vertices or triangles to store",

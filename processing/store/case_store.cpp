@@ -44,7 +44,7 @@ Result<std::shared_ptr<const void>> lockCase(const fs::path& folder, const std::
     auto lock = std::make_shared<const FileLock>(descriptor);
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EWOULDBLOCK) {
-            return fail(ErrorKind::io, "case " + name + " is being written by another process",
+            return fail(ErrorKind::wrongState, "case " + name + " is being written by another process",
                         folder.string());
         }
         return fail(ErrorKind::io, std::string("cannot lock: ") + std::strerror(errno),
@@ -82,14 +82,13 @@ Result<std::optional<ScanIdentity>> Case::scan() const {
 }
 
 Result<void> Case::bind(const ScanIdentity& scan) {
-    if (auto writable = checkWritable(); !writable) return writable;
-    auto index = readCaseIndex(folder_);
-    if (!index) return tl::make_unexpected(index.error());
+    TRY(checkWritable());
+    auto index = TRY(readCaseIndex(folder_));
     bound_ = scan;
-    const auto held = scanOf(*index);
-    if (!held || held->key != scan.key || index->scan == scan) return {};
-    index->scan = scan;
-    return writeCaseIndex(folder_, *index);
+    const auto held = scanOf(index);
+    if (!held || held->key != scan.key || index.scan == scan) return {};
+    index.scan = scan;
+    return writeCaseIndex(folder_, index);
 }
 
 std::optional<ProductEntry> Case::find(std::string_view product) const {
@@ -112,12 +111,11 @@ Result<MappedProduct> Case::map(std::string_view product) const {
     // remove this one; the newer case.json then names another file.
     std::string triedFile;
     while (true) {
-        const auto entries = products();
-        if (!entries) return tl::make_unexpected(entries.error());
+        const auto entries = TRY(products());
         const auto entry = std::find_if(
-            entries->begin(), entries->end(),
+            entries.begin(), entries.end(),
             [&](const ProductEntry& candidate) { return candidate.product == product; });
-        if (entry == entries->end()) {
+        if (entry == entries.end()) {
             return fail(ErrorKind::notFound,
                         "case " + name_ + " has no product " + std::string(product),
                         folder_.string());
@@ -137,20 +135,18 @@ Result<MappedProduct> Case::map(std::string_view product) const {
 }
 
 Result<Attributes> Case::attributes(std::string_view product) const {
-    auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    return std::move(mapped->header.attributes);
+    auto mapped = TRY(map(product));
+    return std::move(mapped.header.attributes);
 }
 
 Result<void> Case::verify(std::string_view product) const {
-    const auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    return checkValues(*mapped);
+    const auto mapped = TRY(map(product));
+    return checkValues(mapped);
 }
 
 Result<void> Case::checkWritable() const {
     if (lock_) return {};
-    return fail(ErrorKind::io, "case " + name_ + " is open for reading only", folder_.string());
+    return fail(ErrorKind::wrongState, "case " + name_ + " is open for reading only", folder_.string());
 }
 
 Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::string>& outdated) {
@@ -160,14 +156,13 @@ Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::st
                         " is not kept: what it was made from was cut short, or its "
                         "disk fails",
                     lost->string());
-    auto index = readCaseIndex(folder_);
-    if (!index) return tl::make_unexpected(index.error());
+    auto index = TRY(readCaseIndex(folder_));
     if (bound_) {
-        const auto held = scanOf(*index);
-        if (!held || held->key != bound_->key) index->products.clear();
-        index->scan = bound_;
+        const auto held = scanOf(index);
+        if (!held || held->key != bound_->key) index.products.clear();
+        index.scan = bound_;
     }
-    std::vector<ProductEntry>& entries = index->products;
+    std::vector<ProductEntry>& entries = index.products;
     // Made again under its key, after damage, it leaves what came from it as good as it was.
     const bool unchanged =
         std::any_of(entries.begin(), entries.end(), [&](const ProductEntry& old) {
@@ -179,7 +174,7 @@ Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::st
                std::find(outdated.begin(), outdated.end(), old.product) != outdated.end();
     });
     entries.push_back(entry);
-    if (auto written = writeCaseIndex(folder_, *index); !written) return written;
+    TRY(writeCaseIndex(folder_, index));
     sweep(entries);
     return {};
 }
@@ -274,15 +269,12 @@ Result<Case> CaseStore::createCase(const std::string& name) const {
                     created.folder_.string());
     }
     if (made) {
-        if (auto synced = syncFolder(folder_ / "cases"); !synced)
-            return tl::make_unexpected(synced.error());
+        TRY(syncFolder(folder_ / "cases"));
     }
-    auto lock = lockCase(created.folder_, name);
-    if (!lock) return tl::make_unexpected(lock.error());
-    created.lock_ = std::move(*lock);
-    auto entries = created.products();
-    if (!entries) return tl::make_unexpected(entries.error());
-    created.sweep(*entries);
+    auto lock = TRY(lockCase(created.folder_, name));
+    created.lock_ = std::move(lock);
+    auto entries = TRY(created.products());
+    created.sweep(entries);
     return created;
 }
 

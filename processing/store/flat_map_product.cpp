@@ -65,15 +65,13 @@ const char* flawOf(const FlatMap& map) {
 }  // namespace
 
 Result<FlatMap> Case::readFlatMap(std::string_view product) const {
-    const auto mapped = map(product);
-    if (!mapped) return tl::make_unexpected(mapped.error());
-    if (auto right = checkContent(*mapped, Content::flatMap, product, folder_); !right)
-        return tl::make_unexpected(right.error());
+    const auto mapped = TRY(map(product));
+    TRY(checkContent(mapped, Content::flatMap, product, folder_));
     // mapProduct has held the three counts against the number of bytes.
-    const glm::ivec3 size = mapped->header.grid.size;
+    const glm::ivec3 size = mapped.header.grid.size;
     const std::size_t vertices = std::size_t(size.x), triangles = std::size_t(size.y);
     FlatMap flatMap;
-    const std::byte* at = mapped->values.data();
+    const std::byte* at = mapped.values.data();
     const auto take = [&](auto& values, std::size_t count) {
         values.resize(count);
         if (count == 0) return;
@@ -89,7 +87,7 @@ Result<FlatMap> Case::readFlatMap(std::string_view product) const {
     take(flatMap.surface.triangles, triangles);
     take(flatMap.sourceTriangle, triangles);
     take(flatMap.camera, vertices);
-    if (auto whole = checkWhole(*mapped); !whole) return tl::make_unexpected(whole.error());
+    TRY(checkWhole(mapped));
     flatMap.cameras.reserve(cameras.size());
     for (const Camera& camera : cameras)
         flatMap.cameras.push_back({{camera.x, camera.y, camera.z}, camera.arc});
@@ -104,7 +102,7 @@ Result<FlatMap> Case::readFlatMap(std::string_view product) const {
 Result<void> Case::publishFlatMap(std::string_view product, const ProductKey& key,
                                   const FlatMap& map, const Attributes& attributes,
                                   const std::vector<std::string>& outdated) {
-    if (auto writable = checkWritable(); !writable) return writable;
+    TRY(checkWritable());
     const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hflat")};
     const std::string place = (folder_ / entry.file).string();
     const std::size_t most =

@@ -165,10 +165,9 @@ Result<std::map<std::string, std::string>> parseAttributes(std::string_view text
 }  // namespace
 
 Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
-    const auto mapping = MappedFile::open(file, sizeof(FixedHeader));
-    if (!mapping) return tl::make_unexpected(mapping.error());
-    const std::byte* const bytes = (*mapping)->bytes().data();
-    const std::size_t length = (*mapping)->bytes().size();
+    const auto mapping = TRY(MappedFile::open(file, sizeof(FixedHeader)));
+    const std::byte* const bytes = mapping->bytes().data();
+    const std::size_t length = mapping->bytes().size();
 
     FixedHeader fixed;
     std::memcpy(&fixed, bytes, sizeof fixed);
@@ -205,8 +204,7 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
         return damaged("its size is absurd", file);
     }
     if (isVolume(content)) {
-        if (auto sound = checkGrid(product.header.grid, file.string()); !sound)
-            return tl::make_unexpected(sound.error());
+        TRY(checkGrid(product.header.grid, file.string()));
     }
     if (fixed.valuesOffset != alignedOffset(fixed.attributesBytes) ||
         fixed.valuesBytes != valuesBytes(content, product.header.grid)) {
@@ -217,13 +215,12 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
                            std::to_string(fixed.valuesOffset + fixed.valuesBytes),
                        file);
     }
-    auto parsed = parseAttributes(attributes, file);
-    if (!parsed) return tl::make_unexpected(parsed.error());
-    product.header.attributes = std::move(*parsed);
+    auto parsed = TRY(parseAttributes(attributes, file));
+    product.header.attributes = std::move(parsed);
     product.header.key = fixed.key;
     product.header.valuesDigest = fixed.valuesDigest;
     product.values = {bytes + fixed.valuesOffset, std::size_t(fixed.valuesBytes)};
-    product.mapping = *mapping;
+    product.mapping = mapping;
     product.file = file;
     return product;
 }
@@ -278,7 +275,7 @@ Result<void> checkWhole(const MappedProduct& product) {
 
 Result<void> checkValues(const MappedProduct& product) {
     if (blockwiseDigest(product.values) != product.header.valuesDigest) {
-        if (auto whole = checkWhole(product); !whole) return whole;
+        TRY(checkWhole(product));
         return damaged("its values do not match their checksum", product.file);
     }
     return {};

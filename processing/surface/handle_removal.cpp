@@ -32,12 +32,11 @@ double areaOf(const TriMesh& mesh) {
 /// Places on the fine mesh where short loops of the coarse mesh pass, best first.
 Result<std::vector<int>> coarsePlaces(const TriMesh& mesh) {
     const CoarseMesh coarse = coarsen(mesh, coarseVertices);
-    const auto halves = mesh::HalfedgeMesh::ofClosed(coarse.mesh);
-    if (!halves) return tl::make_unexpected(halves.error());
+    const auto halves = TRY(mesh::HalfedgeMesh::ofClosed(coarse.mesh));
     std::vector<int> places;
     std::vector<char> listed(mesh.vertices.size(), 0);
-    for (const mesh::Loop& loop : coveringLoops(*halves, homologyMarks(*halves), coarseSlack)) {
-        const int place = coarse.fineVertex[std::size_t(halves->origin(loop.halfedges.front()))];
+    for (const mesh::Loop& loop : coveringLoops(halves, homologyMarks(halves), coarseSlack)) {
+        const int place = coarse.fineVertex[std::size_t(halves.origin(loop.halfedges.front()))];
         if (!listed[place]) places.push_back(place);
         listed[place] = 1;
     }
@@ -106,20 +105,18 @@ TriMesh othersThan(const Piece& piece, const TriMesh& whole) {
 
 /// One handle less; `mesh` must have one. `others` are what its fillings should not cut through.
 Result<RemovedHandle> removeShortest(TriMesh& mesh, const TriMesh& others, int threads) {
-    const auto halves = mesh::HalfedgeMesh::ofClosed(mesh);
-    if (!halves) return tl::make_unexpected(halves.error());
-    const auto places = coarsePlaces(mesh);
-    if (!places) return tl::make_unexpected(places.error());
-    const auto marks = homologyMarks(*halves);
+    const auto halves = TRY(mesh::HalfedgeMesh::ofClosed(mesh));
+    const auto places = TRY(coarsePlaces(mesh));
+    const auto marks = homologyMarks(halves);
     LoopSearchOptions search;
     search.threads = threads;
     mesh::Loop best;
     LoopCut bestCut;
     std::size_t crossings = std::numeric_limits<std::size_t>::max();
     for (std::size_t tries = 0; crossings > 0 && tries < mostClasses; ++tries) {
-        const mesh::Loop loop = shortestLoop(*halves, marks, *places, search);
+        const mesh::Loop loop = shortestLoop(halves, marks, places, search);
         if (loop.halfedges.empty()) break;
-        LoopCut cut = cutAlong(mesh, *halves, loop);
+        LoopCut cut = cutAlong(mesh, halves, loop);
         if (const std::size_t found = crossingsAt(cut, mesh, others); found < crossings) {
             crossings = found;
             best = loop;
@@ -134,7 +131,7 @@ Result<RemovedHandle> removeShortest(TriMesh& mesh, const TriMesh& others, int t
         return fail(ErrorKind::noResult, "a handle has no loop along the mesh's edges");
     RemovedHandle handle{{}, best.lengthMm, bestCut.filledAreaMm2, crossings};
     for (const int h : best.halfedges)
-        handle.loopMm.push_back(mesh.vertices[std::size_t(halves->origin(h))]);
+        handle.loopMm.push_back(mesh.vertices[std::size_t(halves.origin(h))]);
     mesh = std::move(bestCut.mesh);
     return handle;
 }
@@ -143,22 +140,20 @@ Result<RemovedHandle> removeShortest(TriMesh& mesh, const TriMesh& others, int t
 
 Result<HandleRemoval> removeHandles(const TriMesh& mesh, const HandleRemovalOptions& options) {
     if (mesh.triangles.empty()) return fail(ErrorKind::badInput, "the mesh has no triangles");
-    const auto halves = mesh::HalfedgeMesh::ofClosed(mesh);
-    if (!halves) return tl::make_unexpected(halves.error());
+    const auto halves = TRY(mesh::HalfedgeMesh::ofClosed(mesh));
     const long handles = meshTopology(mesh).genus();
     const auto report = [&](std::size_t removed) {
         if (options.progress) options.progress(handles ? double(removed) / double(handles) : 1.0);
     };
 
     HandleRemoval removal{mesh, {}, 0.0};
-    for (Piece& piece : piecesOf(*halves, mesh)) {
+    for (Piece& piece : piecesOf(halves, mesh)) {
         const long genus = meshTopology(piece.mesh).genus();
         const TriMesh others = genus > 0 ? othersThan(piece, removal.mesh) : TriMesh{};
         for (long removed = 0; removed < genus; ++removed) {
             report(removal.handles.size());
-            auto handle = removeShortest(piece.mesh, others, options.threads);
-            if (!handle) return tl::make_unexpected(handle.error());
-            removal.handles.push_back(std::move(*handle));
+            auto handle = TRY(removeShortest(piece.mesh, others, options.threads));
+            removal.handles.push_back(std::move(handle));
         }
         const MeshTopology after = meshTopology(piece.mesh);
         if (!after.closed() || after.components != 1 || after.genus() != 0)

@@ -128,23 +128,22 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& optio
         return fail(ErrorKind::badInput, "the mesh has no finite extent", "simplification");
     }
     const glm::dvec3 centre = glm::round(0.5 * (low + high));
-    auto corners = cornerMesh(orderedInSpace(mesh, low, centre));
-    if (!corners) return tl::make_unexpected(corners.error());
+    auto corners = TRY(cornerMesh(orderedInSpace(mesh, low, centre)));
 
     std::optional<ErrorBound> bound;
     std::vector<Quadric> quadric;
     parallelFor(2, 1, options.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (i == 0) {
-                bound.emplace(*corners, options.errorMm);
+                bound.emplace(corners, options.errorMm);
             } else {
-                quadric = inputQuadrics(*corners);
+                quadric = inputQuadrics(corners);
             }
         }
     });
     const std::size_t vertices = mesh.vertices.size();
-    const auto triangles = std::size_t(corners->triangleCount());
-    Simplification shared{std::move(*corners),        std::move(*bound),
+    const auto triangles = std::size_t(corners.triangleCount());
+    Simplification shared{std::move(corners),         std::move(*bound),
                           std::move(quadric),         std::vector<char>(vertices, 0),
                           std::vector<int>(vertices), std::vector<int>(triangles),
                           options.minAngleDegrees};

@@ -97,14 +97,12 @@ Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
     const BlockGraph graph = makeBlockGraph(labels, distanceMm, options.threads);
     if (graph.nodes.empty()) return fail(ErrorKind::noResult, "the lumen is empty", "centerline");
     progress(0.1);
-    const auto rectum = nodeNear(graph, options.rectumMm, "rectum");
-    if (!rectum) return tl::make_unexpected(rectum.error());
-    const auto cecum = nodeNear(graph, options.cecumMm, "cecum");
-    if (!cecum) return tl::make_unexpected(cecum.error());
+    const auto rectum = TRY(nodeNear(graph, options.rectumMm, "rectum"));
+    const auto cecum = TRY(nodeNear(graph, options.cecumMm, "cecum"));
 
     TracedCenterline traced;
     const std::vector<Segment> segments =
-        segmentsToVisit(graph, {*rectum, *cecum}, options.ends, traced.notes);
+        segmentsToVisit(graph, {rectum, cecum}, options.ends, traced.notes);
     progress(0.6);
     const auto curveAlong = [&](const std::vector<std::int32_t>& route, bool keepFirst,
                                 bool keepLast) {

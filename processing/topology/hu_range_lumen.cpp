@@ -143,10 +143,8 @@ Result<std::vector<char>> chooseBodies(const RunComponents& components, const Gr
         }
         return {};
     };
-    if (auto found = lookUp(options.excludesMm, excluded); !found)
-        return tl::make_unexpected(found.error());
-    if (auto found = lookUp(options.seedsMm, chosen); !found)
-        return tl::make_unexpected(found.error());
+    TRY(lookUp(options.excludesMm, excluded));
+    TRY(lookUp(options.seedsMm, chosen));
     for (std::size_t n = 0; n < bodies.size(); ++n)
         chosen[n] = chosen[n] && !excluded[n];
     if (options.seedsMm.empty()) {
@@ -193,10 +191,9 @@ Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
                                std::to_string(options.contentHu.fromHu) + " to " +
                                std::to_string(options.contentHu.toHu));
         }
-        const auto chosen = chooseBodies(content, grid, options);
-        if (!chosen) return tl::make_unexpected(chosen.error());
-        label(lumen.labels, content, *chosen);
-        lumen.bodies = int(std::count(chosen->begin(), chosen->end(), 1));
+        const auto chosen = TRY(chooseBodies(content, grid, options));
+        label(lumen.labels, content, chosen);
+        lumen.bodies = int(std::count(chosen.begin(), chosen.end(), 1));
     }
     progress(0.8);
     const std::size_t filled = fillEnclosed(lumen.labels, options.threads);

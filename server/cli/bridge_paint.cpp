@@ -19,18 +19,14 @@ Result<bool> hasBridges(const store::Case& source) {
 Result<std::shared_ptr<const render::WallPaint>> paintBridges(
     const store::Case& source, std::shared_ptr<const FlatMap> map,
     std::shared_ptr<const render::WallPaint> below) {
-    const auto has = hasBridges(source);
-    if (!has) return tl::make_unexpected(has.error());
-    if (!*has) return below;
-    const auto lumen = source.readVolume<std::uint8_t>("lumen");
-    if (!lumen) return tl::make_unexpected(lumen.error());
-    auto bridged = bridgedTriangles(map->surface, *lumen);
-    auto sight = render::WallSight::of(std::move(map), std::move(bridged));
-    if (!sight) return tl::make_unexpected(sight.error());
-    if (!(*sight)->hasBridges()) return below;
-    const auto painter = render::StripPainter::of(std::move(*sight));
-    if (!painter) return tl::make_unexpected(painter.error());
-    return below ? (*painter)->bridgesOver(*below) : (*painter)->paint({}, {});
+    const auto has = TRY(hasBridges(source));
+    if (!has) return below;
+    const auto lumen = TRY(source.readVolume<std::uint8_t>("lumen"));
+    auto bridged = bridgedTriangles(map->surface, lumen);
+    auto sight = TRY(render::WallSight::of(std::move(map), std::move(bridged)));
+    if (!sight->hasBridges()) return below;
+    const auto painter = TRY(render::StripPainter::of(std::move(sight)));
+    return below ? painter->bridgesOver(*below) : painter->paint({}, {});
 }
 
 }  // namespace haustra::cli

@@ -5,9 +5,8 @@
 namespace haustra::cli {
 
 Result<CaseScans> readCaseScans(const store::Case& source, bool cleansedIsAsked) {
-    auto ct = source.readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    CaseScans scans{std::move(*ct), {}};
+    auto ct = TRY(source.readVolume<std::int16_t>("ct"));
+    CaseScans scans{std::move(ct), {}};
     if (!cleansedIsAsked && !source.find("cleansed")) {
         fmt::print(stderr,
                    "haustra: note: case {} has no cleansed scan; the picture shows the scan as it "
@@ -15,9 +14,8 @@ Result<CaseScans> readCaseScans(const store::Case& source, bool cleansedIsAsked)
                    source.name());
         return scans;
     }
-    auto cleansed = source.readVolume<std::int16_t>("cleansed");
-    if (!cleansed) return tl::make_unexpected(cleansed.error());
-    scans.cleansed = std::move(*cleansed);
+    auto cleansed = TRY(source.readVolume<std::int16_t>("cleansed"));
+    scans.cleansed = std::move(cleansed);
     return scans;
 }
 

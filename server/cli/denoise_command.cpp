@@ -71,24 +71,23 @@ nlohmann::ordered_json reportOf(const TriMesh& before, const surface::HandleRemo
 Result<void> runDenoise(const Arguments& arguments) {
     for (const fs::path& file : {arguments.out, arguments.report}) {
         if (file.empty()) continue;
-        if (auto fit = checkOutputFile(file); !fit) return fit;
+        TRY(checkOutputFile(file));
     }
-    const auto mesh = mesh::readMesh(arguments.mesh);
-    if (!mesh) return tl::make_unexpected(mesh.error());
+    const auto mesh = TRY(mesh::readMesh(arguments.mesh));
     surface::HandleRemovalOptions options;
     options.threads = arguments.threads;
     auto removal = [&] {
         ProgressBar bar;
         options.progress = [&](double fraction) { bar.show("handles", fraction); };
-        return surface::removeHandles(*mesh, options);
+        return surface::removeHandles(mesh, options);
     }();
     if (!removal) {
         const Error& error = removal.error();
         return fail(error.kind, error.message, arguments.mesh.string());
     }
-    if (auto written = mesh::writeMesh(arguments.out, removal->mesh); !written) return written;
+    TRY(mesh::writeMesh(arguments.out, removal->mesh));
 
-    const auto report = reportOf(*mesh, *removal);
+    const auto report = reportOf(mesh, *removal);
     for (std::size_t i = 0; i < removal->handles.size(); ++i) {
         const surface::RemovedHandle& handle = removal->handles[i];
         const glm::dvec3 at = middleOf(handle.loopMm);

@@ -44,24 +44,19 @@ std::vector<Row> rowsOf(const phantom::LumenScore& score) {
 }
 
 Result<void> runEvaluate(const Arguments& arguments) {
-    const auto found = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
-        return s.openCase(arguments.caseName);
-    });
-    if (!found) return tl::make_unexpected(found.error());
-    const auto labels = found->readVolume<std::uint8_t>("lumen");
-    if (!labels) return tl::make_unexpected(labels.error());
-    const auto centerline = found->readCenterline();
-    if (!centerline) return tl::make_unexpected(centerline.error());
-    const Grid grid = labels->grid();
-    const auto truth = pipeline::readLumenMask(arguments.truth / "lumen.nii.gz", &grid);
-    if (!truth) return tl::make_unexpected(truth.error());
-    const auto trueCenterline = readCenterlineCsv(arguments.truth / "centerline.csv");
-    if (!trueCenterline) return tl::make_unexpected(trueCenterline.error());
-    const auto score = phantom::scoreLumen(truth->labels, *trueCenterline, *labels, *centerline);
-    if (!score) return tl::make_unexpected(score.error());
+    const auto found =
+        TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
+            return s.openCase(arguments.caseName);
+        }));
+    const auto labels = TRY(found.readVolume<std::uint8_t>("lumen"));
+    const auto centerline = TRY(found.readCenterline());
+    const Grid grid = labels.grid();
+    const auto truth = TRY(pipeline::readLumenMask(arguments.truth / "lumen.nii.gz", &grid));
+    const auto trueCenterline = TRY(readCenterlineCsv(arguments.truth / "centerline.csv"));
+    const auto score = TRY(phantom::scoreLumen(truth.labels, trueCenterline, labels, centerline));
 
     nlohmann::ordered_json report{{"case", arguments.caseName}};
-    for (const Row& row : rowsOf(*score)) {
+    for (const Row& row : rowsOf(score)) {
         fmt::print("{:<28} {:10.3f} {}\n", row.text, row.value, row.unit);
         report[row.field] = row.value;
     }

@@ -63,57 +63,50 @@ bool endsIn(const std::string& text, const std::string& ending) {
 
 template <class T>
 Result<void> exportVolume(const store::Case& source, const Arguments& arguments) {
-    const auto volume = source.readVolume<T>(arguments.product);
-    if (!volume) return tl::make_unexpected(volume.error());
-    return nifti::writeNifti(arguments.file, *volume);
+    const auto volume = TRY(source.readVolume<T>(arguments.product));
+    return nifti::writeNifti(arguments.file, volume);
 }
 
 Result<void> runExport(const Arguments& arguments) {
-    if (auto fit = checkOutputFile(arguments.file); !fit) return fit;
-    const auto source = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
-        return s.openCase(arguments.caseName);
-    });
-    if (!source) return tl::make_unexpected(source.error());
+    TRY(checkOutputFile(arguments.file));
+    const auto source =
+        TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
+            return s.openCase(arguments.caseName);
+        }));
     if (arguments.product == "flat-image")
-        return exportFlatImage(*source, arguments.file, arguments.flatImage);
+        return exportFlatImage(source, arguments.file, arguments.flatImage);
     // What leaves the store for other programs has been read whole and found sound.
-    if (auto sound = source->verify(arguments.product); !sound) return sound;
+    TRY(source.verify(arguments.product));
     const std::string& product = arguments.product;
     if (product == "centerline" || product == "branches") {
-        const auto centerline = source->readCenterline(product);
-        if (!centerline) return tl::make_unexpected(centerline.error());
-        return writeTextFile(arguments.file, centerlineCsv(*centerline));
+        const auto centerline = TRY(source.readCenterline(product));
+        return writeTextFile(arguments.file, centerlineCsv(centerline));
     }
     if (product == "quality" || product == "edits") {
-        const auto text = source->readText(product);
-        if (!text) return tl::make_unexpected(text.error());
-        return writeTextFile(arguments.file, *text);
+        const auto text = TRY(source.readText(product));
+        return writeTextFile(arguments.file, text);
     }
     if (product == "surface") {
-        const auto mesh = source->readMesh();
-        if (!mesh) return tl::make_unexpected(mesh.error());
-        return mesh::writeMesh(arguments.file, *mesh);
+        const auto mesh = TRY(source.readMesh());
+        return mesh::writeMesh(arguments.file, mesh);
     }
     if (product == "flatmap") {
-        const auto map = source->readFlatMap();
-        if (!map) return tl::make_unexpected(map.error());
+        const auto map = TRY(source.readFlatMap());
         std::vector<std::uint8_t> bridged;
-        if (source->find("lumen")) {
-            const auto lumen = source->readVolume<std::uint8_t>("lumen");
-            if (!lumen) return tl::make_unexpected(lumen.error());
-            bridged = bridgedTriangles(map->surface, *lumen);
+        if (source.find("lumen")) {
+            const auto lumen = TRY(source.readVolume<std::uint8_t>("lumen"));
+            bridged = bridgedTriangles(map.surface, lumen);
         }
-        return mesh::writeFlatMap(arguments.file, *map, bridged);
+        return mesh::writeFlatMap(arguments.file, map, bridged);
     }
     if (product == "mixture") {
-        const auto mixture = source->readVolume<TissueFractions>(product);
-        if (!mixture) return tl::make_unexpected(mixture.error());
-        return nifti::writeFractions(arguments.file, *mixture);
+        const auto mixture = TRY(source.readVolume<TissueFractions>(product));
+        return nifti::writeFractions(arguments.file, mixture);
     }
-    if (product == "distance") return exportVolume<float>(*source, arguments);
+    if (product == "distance") return exportVolume<float>(source, arguments);
     if (product == "ct" || product == "cleansed")
-        return exportVolume<std::int16_t>(*source, arguments);
-    return exportVolume<std::uint8_t>(*source, arguments);  // labels
+        return exportVolume<std::int16_t>(source, arguments);
+    return exportVolume<std::uint8_t>(source, arguments);  // labels
 }
 
 }  // namespace

@@ -38,12 +38,10 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
 
 Result<void> exportFlatImage(const store::Case& source, const std::filesystem::path& file,
                              const FlatImageOptions& options) {
-    auto map = source.readFlatMap();
-    if (!map) return tl::make_unexpected(map.error());
-    const double height = map->height;
-    auto function = render::opticsPreset(options.transferFunction);
-    if (!function) return tl::make_unexpected(function.error());
-    render::StripPicture picture{options.width, options.seamMargin, std::move(*function), {}};
+    auto map = TRY(source.readFlatMap());
+    const double height = map.height;
+    auto function = TRY(render::opticsPreset(options.transferFunction));
+    render::StripPicture picture{options.width, options.seamMargin, std::move(function), {}};
     const double widest = std::min(double(render::maxPixelsPerUnit),
                                    std::floor(double(render::maxStripRows) / height));
     if (options.width > widest) {
@@ -53,37 +51,30 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
                                 height, widest),
                     "flat image");
     }
-    const auto size = render::stripPictureSize(picture, height);
-    if (!size) return tl::make_unexpected(size.error());
+    const auto size = TRY(render::stripPictureSize(picture, height));
 
-    const auto scans = readCaseScans(source, false);
-    if (!scans) return tl::make_unexpected(scans.error());
-    auto prepared = render::prepareCase(scans->ct, scans->cleansed, options.threads);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    prepared->flatMap = std::make_shared<const FlatMap>(std::move(*map));
-    auto paint = paintBridges(source, prepared->flatMap, nullptr);
-    if (!paint) return tl::make_unexpected(paint.error());
-    picture.paint = std::move(*paint);
-    auto context = gpu::Context::create();
-    if (!context) return tl::make_unexpected(context.error());
-    auto renderer =
-        render::CaseRenderer::upload(**context, std::move(*prepared), {.threads = options.threads});
-    if (!renderer) return tl::make_unexpected(renderer.error());
+    const auto scans = TRY(readCaseScans(source, false));
+    auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, options.threads));
+    prepared.flatMap = std::make_shared<const FlatMap>(std::move(map));
+    auto paint = TRY(paintBridges(source, prepared.flatMap, nullptr));
+    picture.paint = std::move(paint);
+    auto context = TRY(gpu::Context::create());
+    auto renderer = TRY(
+        render::CaseRenderer::upload(*context, std::move(prepared), {.threads = options.threads}));
 
     const Interruption interruption;  // outlives the picture, which then takes back what it wrote
-    auto png = render::PngFile::create(file, size->x, size->y);
-    if (!png) return tl::make_unexpected(png.error());
+    auto png = TRY(render::PngFile::create(file, size.x, size.y));
     ProgressBar bar;
     int rows = 0;
-    return render::drawStrip(**renderer, picture, height,
+    return render::drawStrip(*renderer, picture, height,
                              [&](const render::Image& band) -> Result<void> {
                                  rows += band.height;
-                                 bar.show("flat image", double(rows) / size->y);
+                                 bar.show("flat image", double(rows) / size.y);
                                  if (interruption.came())
                                      return fail(ErrorKind::io, "interrupted", file.string());
-                                 return png->append(band);
+                                 return png.append(band);
                              })
-        .and_then([&] { return png->finish(); });
+        .and_then([&] { return png.finish(); });
 }
 
 }  // namespace haustra::cli

@@ -157,26 +157,25 @@ Result<void> checkApplies(const TriMesh& mesh, const Arguments& arguments) {
 Result<void> runFlatten(const Arguments& arguments) {
     for (const fs::path& file : {arguments.out, arguments.report}) {
         if (file.empty()) continue;
-        if (auto fit = checkOutputFile(file); !fit) return fit;
+        TRY(checkOutputFile(file));
     }
-    const auto mesh = mesh::readMesh(arguments.mesh);
-    if (!mesh) return tl::make_unexpected(mesh.error());
-    if (auto applies = checkApplies(*mesh, arguments); !applies) return applies;
+    const auto mesh = TRY(mesh::readMesh(arguments.mesh));
+    TRY(checkApplies(mesh, arguments));
     flatten::SurfaceFlatteningOptions options = arguments.options;
     if (!arguments.endsMm.empty()) options.endsMm = {arguments.endsMm[0], arguments.endsMm[1]};
     const auto flat = [&] {
         ProgressBar bar;
         options.progress = [&](double fraction) { bar.show("flattening", fraction); };
-        return flatten::flattenSurface(*mesh, options);
+        return flatten::flattenSurface(mesh, options);
     }();
     if (!flat) {
         const Error& error = flat.error();
         return fail(error.kind, error.message, arguments.mesh.string());
     }
-    if (auto written = mesh::writeFlatMap(arguments.out, flat->map); !written) return written;
-    tell(*mesh, *flat, options.areaWeight);
+    TRY(mesh::writeFlatMap(arguments.out, flat->map));
+    tell(mesh, *flat, options.areaWeight);
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report, reportOf(*mesh, *flat).dump(2) + "\n");
+    return writeTextFile(arguments.report, reportOf(mesh, *flat).dump(2) + "\n");
 }
 
 void checkNames(const Arguments& arguments) {

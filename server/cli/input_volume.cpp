@@ -126,20 +126,18 @@ Result<std::vector<fs::path>> slicesIn(const fs::path& folder) {
 Result<Volume<std::int16_t>> stacked(const std::vector<fs::path>& slices, glm::dvec3 spacingMm) {
     Volume<std::int16_t> volume;
     for (std::size_t z = 0; z < slices.size(); ++z) {
-        const auto slice = readGreyPng(slices[z]);
-        if (!slice) return tl::make_unexpected(slice.error());
+        const auto slice = TRY(readGreyPng(slices[z]));
         if (z == 0) {
             const Grid grid =
-                axisAlignedGrid({slice->size, int(slices.size())}, spacingMm, glm::dvec3(0.0));
-            if (auto sound = checkGrid(grid, slices[0].parent_path().string()); !sound)
-                return tl::make_unexpected(sound.error());
+                axisAlignedGrid({slice.size, int(slices.size())}, spacingMm, glm::dvec3(0.0));
+            TRY(checkGrid(grid, slices[0].parent_path().string()));
             volume = Volume<std::int16_t>(grid);
-        } else if (slice->size != glm::ivec2(volume.grid().size)) {
+        } else if (slice.size != glm::ivec2(volume.grid().size)) {
             return fail(ErrorKind::badInput, "the slice is not as large as the first",
                         slices[z].string());
         }
-        std::copy(slice->values.begin(), slice->values.end(),
-                  volume.writable().begin() + std::ptrdiff_t(z * slice->values.size()));
+        std::copy(slice.values.begin(), slice.values.end(),
+                  volume.writable().begin() + std::ptrdiff_t(z * slice.values.size()));
     }
     return volume;
 }
@@ -150,14 +148,12 @@ Result<Volume<std::int16_t>> readInputVolume(const fs::path& path, glm::dvec3 sp
                                              int threads) try {
     std::error_code error;
     if (!fs::is_directory(path, error)) return nifti::readNifti<std::int16_t>(path);
-    const auto slices = slicesIn(path);
-    if (!slices) return tl::make_unexpected(slices.error());
-    if (!slices->empty()) return stacked(*slices, spacingMm);
+    const auto slices = TRY(slicesIn(path));
+    if (!slices.empty()) return stacked(slices, spacingMm);
     dicom::ImportOptions options;
     options.threads = threads;
-    auto series = dicom::importSeries(path, options);
-    if (!series) return tl::make_unexpected(series.error());
-    return std::move(series->scan.hu);
+    auto series = TRY(dicom::importSeries(path, options));
+    return std::move(series.scan.hu);
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "there is not enough memory for the volume", path.string());
 }

@@ -74,25 +74,22 @@ std::string trustOf(const store::CaseStore& store, const std::string& name) {
 }
 
 Result<void> runList(const fs::path& folder) {
-    const auto store = store::CaseStore::open(folder, false);
-    if (!store) return tl::make_unexpected(store.error());
-    const auto names = store->cases();
-    if (!names) return tl::make_unexpected(names.error());
-    for (const auto& [name, study, position] : byStudy(*store, *names)) {
+    const auto store = TRY(store::CaseStore::open(folder, false));
+    const auto names = TRY(store.cases());
+    for (const auto& [name, study, position] : byStudy(store, names)) {
         fmt::print("{}{}{}\n", name, study.empty() ? "" : "  study " + study,
                    position.empty() ? "" : "  " + position);
-        if (const std::string line = trustOf(*store, name); !line.empty())
+        if (const std::string line = trustOf(store, name); !line.empty())
             fmt::print("    {}\n", line);
         const auto products =
-            store->openCase(name).and_then([](const auto& opened) { return opened.products(); });
+            store.openCase(name).and_then([](const auto& opened) { return opened.products(); });
         if (!products) {
             fmt::print("    {}\n", describe(products.error()));
             continue;
         }
         for (const store::ProductEntry& entry : *products) {
             std::error_code missing;
-            const auto bytes =
-                fs::file_size(store->folder() / "cases" / name / entry.file, missing);
+            const auto bytes = fs::file_size(store.folder() / "cases" / name / entry.file, missing);
             fmt::print("    {:<14} {:>10}  {}\n", entry.product,
                        missing ? "missing" : fmt::format("{:.1f} MB", double(bytes) / 1e6),
                        entry.file);

@@ -251,21 +251,20 @@ Result<void> runPhantom(const Arguments& arguments) {
     ProgressBar bar;
     phantom::PhantomOptions options = optionsOf(arguments);
     options.progress = [&](double fraction) { bar.show("phantom", fraction); };
-    const auto made = phantom::makePhantom(options);
-    if (!made) return tl::make_unexpected(made.error());
+    const auto made = TRY(phantom::makePhantom(options));
 
     bar.show("write", 0.0);
     const fs::path unfinished =
         out.parent_path() / fmt::format(".tmp-{}-{}", out.filename().string(), ::getpid());
-    const auto written = writeAll(unfinished, *made, arguments, options).and_then([&] {
+    const auto written = writeAll(unfinished, made, arguments, options).and_then([&] {
         return moveInto(out, unfinished);
     });
     if (!written) {
         fs::remove_all(unfinished, error);
         return written;
     }
-    bar.say(fmt::format("colon of {:.0f} mm with {} polyps: {}", made->centerline.lengthMm(),
-                        made->polyps.findings.size(), arguments.out.string()));
+    bar.say(fmt::format("colon of {:.0f} mm with {} polyps: {}", made.centerline.lengthMm(),
+                        made.polyps.findings.size(), arguments.out.string()));
     return {};
 }
 

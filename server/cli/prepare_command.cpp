@@ -29,10 +29,9 @@ struct Arguments {
 Result<std::string> defaultCaseName(const pipeline::PrepareOptions& options) {
     const bool scanned = !options.series.empty();
     const auto content =
-        pipeline::sourceKey(scanned ? options.series : options.lumenMask, options.threads);
-    if (!content) return tl::make_unexpected(content.error());
-    const store::ScanIdentity mask{*content, {}, {}};
-    return (scanned ? pipeline::identifyScan(options.series, options.seriesUid, *content,
+        TRY(pipeline::sourceKey(scanned ? options.series : options.lumenMask, options.threads));
+    const store::ScanIdentity mask{content, {}, {}};
+    return (scanned ? pipeline::identifyScan(options.series, options.seriesUid, content,
                                              options.threads)
                     : mask)
         .map(pipeline::defaultCaseName);
@@ -85,38 +84,34 @@ Result<void> runPrepare(Arguments arguments) {
     if (!source.empty() && !fs::exists(source, ignored))
         return fail(ErrorKind::notFound, "there is no such file or folder", source.string());
     if (!arguments.report.empty()) {
-        if (auto fit = checkOutputFile(arguments.report); !fit) return fit;
+        TRY(checkOutputFile(arguments.report));
     }
     if (arguments.caseName.empty()) {
-        auto name = defaultCaseName(arguments.options);
-        if (!name) return tl::make_unexpected(name.error());
-        arguments.caseName = std::move(*name);
+        auto name = TRY(defaultCaseName(arguments.options));
+        arguments.caseName = std::move(name);
     }
-    const auto store = store::CaseStore::open(arguments.store, true);
-    if (!store) return tl::make_unexpected(store.error());
+    const auto store = TRY(store::CaseStore::open(arguments.store, true));
 
     ProgressBar bar;
     arguments.options.progress = [&](const std::string& stage, double fraction) {
         bar.show(stage, fraction);
     };
     arguments.options.log = [&](const std::string& line) { bar.say(line); };
-    const auto report = pipeline::prepare(*store, arguments.caseName, arguments.options);
-    if (!report) return tl::make_unexpected(report.error());
-    for (const std::string& note : report->notes)
+    const auto report = TRY(pipeline::prepare(store, arguments.caseName, arguments.options));
+    for (const std::string& note : report.notes)
         bar.say(note);
-    for (const pipeline::StageReport& stage : report->stages) {
+    for (const pipeline::StageReport& stage : report.stages) {
         fmt::print("{:<12} {:8.2f} s {:8.0f} MiB{}\n", stage.stage, stage.wallSeconds,
                    stage.peakMemoryMib, stage.reused ? "  reused" : "");
     }
-    fmt::print("case {} is prepared\n", report->caseName);
+    fmt::print("case {} is prepared\n", report.caseName);
     if (arguments.report.empty()) return {};
     std::string quality;
-    if (const auto made = store->openCase(report->caseName); made && made->find("quality")) {
-        auto text = made->readText("quality");
-        if (!text) return tl::make_unexpected(text.error());
-        quality = std::move(*text);
+    if (const auto made = store.openCase(report.caseName); made && made->find("quality")) {
+        auto text = TRY(made->readText("quality"));
+        quality = std::move(text);
     }
-    return writeTextFile(arguments.report, reportJson(*report, quality));
+    return writeTextFile(arguments.report, reportJson(report, quality));
 }
 
 }  // namespace
@@ -187,8 +182,9 @@ Command addPrepare(CLI::App& program) {
                    "There is no lumen in the ball at this point (LPS, mm; 3 mm where no radius is "
                    "given): a wall that the scan does not show; may be repeated")
         ->excludes(lumen);
-    addPairsOption(*command, "--join", options.joins,
-                   "The colon goes on from the first point to the second (LPS, mm); may be repeated")
+    addPairsOption(
+        *command, "--join", options.joins,
+        "The colon goes on from the first point to the second (LPS, mm); may be repeated")
         ->excludes(lumen);
     command->add_flag("--forget-edits", options.forgetEdits,
                       "Forget the points that earlier calls gave; without it they stand where this "
@@ -218,8 +214,7 @@ Command addPrepare(CLI::App& program) {
         if (arguments->options.series.empty() && arguments->options.until == "import")
             throw CLI::ValidationError("--until import", "a mask has no import without SERIES");
     });
-    return {command, [arguments] {
-        return runPrepare(*arguments); }};
+    return {command, [arguments] { return runPrepare(*arguments); }};
 }
 
 }  // namespace haustra::cli

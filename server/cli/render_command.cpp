@@ -78,18 +78,16 @@ Result<CenterlineCamera> camera(const RenderArguments& arguments, const Centerli
 Result<render::Image> drawCamera(const RenderArguments& arguments, const render::Camera& camera,
                                  std::shared_ptr<const render::WallPaint> paint,
                                  render::CaseRenderer& renderer) {
-    auto optics = opticsOf(arguments, "mucosa");
-    if (!optics) return tl::make_unexpected(optics.error());
-    render::CameraView view{camera, std::move(*optics), marchOf(arguments)};
+    auto optics = TRY(opticsOf(arguments, "mucosa"));
+    render::CameraView view{camera, std::move(optics), marchOf(arguments)};
     view.paint = std::move(paint);
     return renderer.render(view, arguments.size.x, arguments.size.y);
 }
 
 Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Products& products,
                                      render::CaseRenderer& renderer) {
-    const auto from = camera(arguments, products.centerline, products.flatMap);
-    if (!from) return tl::make_unexpected(from.error());
-    render::Camera camera{from->positionMm, from->forward, from->up,
+    const auto from = TRY(camera(arguments, products.centerline, products.flatMap));
+    render::Camera camera{from.positionMm, from.forward, from.up,
                           fovOf(arguments, render::Camera{}.fovDegrees), arguments.lens};
     if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
     return drawCamera(arguments, camera, products.paint, renderer);
@@ -97,25 +95,23 @@ Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Pro
 
 Result<render::Image> drawFlattened(const RenderArguments& arguments, const Products& products,
                                     render::CaseRenderer& renderer) {
-    auto optics = opticsOf(arguments, "mucosa");
-    if (!optics) return tl::make_unexpected(optics.error());
+    auto optics = TRY(opticsOf(arguments, "mucosa"));
     const auto [width, height] = std::pair(arguments.size.x, arguments.size.y);
     if (arguments.shown() == View::flattened)
         return renderer.render(
-            render::FlatOverview{std::move(*optics), marchOf(arguments), products.paint}, width,
+            render::FlatOverview{std::move(optics), marchOf(arguments), products.paint}, width,
             height);
-    const auto center = wallPlace(arguments, products.centerline, FlatLookup(products.flatMap));
-    if (!center) return tl::make_unexpected(center.error());
-    const FlatWindow window{center->flat, arguments.pixelsPerCircumference};
+    const auto center =
+        TRY(wallPlace(arguments, products.centerline, FlatLookup(products.flatMap)));
+    const FlatWindow window{center.flat, arguments.pixelsPerCircumference};
     return renderer.render(
-        render::FlatView{window, std::move(*optics), marchOf(arguments), products.paint}, width,
+        render::FlatView{window, std::move(optics), marchOf(arguments), products.paint}, width,
         height);
 }
 
 Result<render::Image> drawOverview(const RenderArguments& arguments, const Products& products,
                                    render::CaseRenderer& renderer) {
-    auto optics = opticsOf(arguments, "body");
-    if (!optics) return tl::make_unexpected(optics.error());
+    auto optics = TRY(opticsOf(arguments, "body"));
     glm::dvec3 low(INFINITY), high(-INFINITY);
     for (const glm::dvec3 vertex : products.wall->vertices) {
         low = glm::min(low, vertex);
@@ -133,12 +129,11 @@ Result<render::Image> drawOverview(const RenderArguments& arguments, const Produ
     view.bookmarksMm = arguments.marksMm;
     view.paint = products.paint;
     view.body = arguments.body;
-    view.optics = std::move(*optics);
+    view.optics = std::move(optics);
     view.march = marchOf(arguments, view.march);
     if (arguments.arcMm) {
-        const auto reader = camera(arguments, products.centerline, {});
-        if (!reader) return tl::make_unexpected(reader.error());
-        view.reader = render::Camera{reader->positionMm, reader->forward, reader->up};
+        const auto reader = TRY(camera(arguments, products.centerline, {}));
+        view.reader = render::Camera{reader.positionMm, reader.forward, reader.up};
     }
     return renderer.render(view, arguments.size.x, arguments.size.y);
 }
@@ -151,11 +146,10 @@ Result<render::Image> drawOblique(const RenderArguments& arguments, const Center
     view.scan = scan;
     view.heightMm = arguments.heightMm.value_or(view.heightMm);
     if (arguments.arcMm) {
-        const auto from = camera(arguments, centerline, {});
-        if (!from) return tl::make_unexpected(from.error());
-        view.positionMm = from->positionMm;
-        view.forward = from->forward;
-        view.up = from->up;
+        const auto from = TRY(camera(arguments, centerline, {}));
+        view.positionMm = from.positionMm;
+        view.forward = from.forward;
+        view.up = from.up;
     } else {
         view.positionMm = arguments.positionMm.front();
         view.forward = arguments.lookMm.front() - view.positionMm;
@@ -169,14 +163,11 @@ Result<render::Image> drawOblique(const RenderArguments& arguments, const Center
 Result<render::Image> compare(render::CaseRenderer& renderer,
                               const Volume<TissueFractions>& mixture, render::SliceView slice,
                               glm::ivec2 size) {
-    auto before = renderer.render(slice, size.x, size.y);
-    if (!before) return before;
-    auto tissues = render::tissuePicture(mixture, slice, size.x, size.y);
-    if (!tissues) return tissues;
+    auto before = TRY(renderer.render(slice, size.x, size.y));
+    auto tissues = TRY(render::tissuePicture(mixture, slice, size.x, size.y));
     slice.scan = render::Scan::cleansed;
-    auto after = renderer.render(slice, size.x, size.y);
-    if (!after) return after;
-    return render::sideBySide({std::move(*before), std::move(*tissues), std::move(*after)});
+    auto after = TRY(renderer.render(slice, size.x, size.y));
+    return render::sideBySide({std::move(before), std::move(tissues), std::move(after)});
 }
 
 Result<render::Image> drawSlice(const RenderArguments& arguments, const Products& products,
@@ -194,21 +185,18 @@ Result<CaseScans> readScans(const RenderArguments& arguments, const store::Case&
     const bool cleansedIsAsked = arguments.compare || arguments.product == "cleansed";
     if (cleansedIsAsked || (arguments.castsRays() && arguments.product.empty()))
         return readCaseScans(source, cleansedIsAsked);
-    auto ct = source.readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    return CaseScans{std::move(*ct), {}};
+    auto ct = TRY(source.readVolume<std::int16_t>("ct"));
+    return CaseScans{std::move(ct), {}};
 }
 
 template <class T>
 Result<void> keep(Result<T> read, T& in) {
-    if (!read) return tl::make_unexpected(read.error());
-    in = std::move(*read);
+    in = TRY(std::move(read));
     return {};
 }
 template <class T>
 Result<void> keep(Result<T> read, std::shared_ptr<const T>& in) {
-    if (!read) return tl::make_unexpected(read.error());
-    in = std::make_shared<const T>(std::move(*read));
+    in = std::make_shared<const T>(TRY(std::move(read)));
     return {};
 }
 
@@ -218,8 +206,7 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
     const bool isFree = arguments.view == "camera";
     Products products;
     if (arguments.arcMm || view == View::overview) {
-        if (auto read = keep(source.readCenterline(), products.centerline); !read)
-            return tl::make_unexpected(read.error());
+        TRY(keep(source.readCenterline(), products.centerline));
         if (products.centerline.points.empty())
             return fail(ErrorKind::noResult, "the centerline is empty", source.name());
     }
@@ -231,34 +218,21 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
                         fmt::format("--arc-mm {}", *arguments.arcMm));
         }
     }
-    if (auto read = keep(readScans(arguments, source), products.scans); !read)
-        return tl::make_unexpected(read.error());
+    TRY(keep(readScans(arguments, source), products.scans));
     if (arguments.compare)
-        if (auto read = keep(source.readVolume<TissueFractions>("mixture"), products.mixture);
-            !read)
-            return tl::make_unexpected(read.error());
+        TRY(keep(source.readVolume<TissueFractions>("mixture"), products.mixture));
     const bool onWall = view == View::endoscopic && !isFree && !arguments.arcMm;
     const bool showsWall = arguments.castsRays() || arguments.isFlattened();
-    const auto bridged = showsWall && source.find("flatmap") ? hasBridges(source) : false;
-    if (!bridged) return tl::make_unexpected(bridged.error());
-    if (arguments.isFlattened() || onWall || !arguments.paint.empty() || *bridged) {
-        if (auto read = keep(source.readFlatMap(), products.flatMap); !read)
-            return tl::make_unexpected(read.error());
+    const auto bridged = TRY(showsWall && source.find("flatmap") ? hasBridges(source) : false);
+    if (arguments.isFlattened() || onWall || !arguments.paint.empty() || bridged) {
+        TRY(keep(source.readFlatMap(), products.flatMap));
     }
     if (!arguments.paint.empty())
-        if (auto read = keep(render::readWallPaint(arguments.paint, products.flatMap->height),
-                             products.paint);
-            !read)
-            return tl::make_unexpected(read.error());
-    if (*bridged)
-        if (auto read =
-                keep(paintBridges(source, products.flatMap, products.paint), products.paint);
-            !read)
-            return tl::make_unexpected(read.error());
+        TRY(keep(render::readWallPaint(arguments.paint, products.flatMap->height), products.paint));
+    if (bridged) TRY(keep(paintBridges(source, products.flatMap, products.paint), products.paint));
     if (view == View::overview ||
         (arguments.castsRays() && arguments.raycaster == render::RaycasterKind::polygonAssisted))
-        if (auto read = keep(source.readMesh(), products.wall); !read)
-            return tl::make_unexpected(read.error());
+        TRY(keep(source.readMesh(), products.wall));
     return products;
 }
 
@@ -266,62 +240,55 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
 Result<render::Image> drawWith(
     const RenderArguments& arguments, render::PreparedCase prepared,
     const std::function<Result<render::Image>(render::CaseRenderer&)>& draw) {
-    auto context = gpu::Context::create();
-    if (!context) return tl::make_unexpected(context.error());
+    auto context = TRY(gpu::Context::create());
     render::RendererOptions options;
     if (arguments.castsRays()) options.raycaster = arguments.raycaster;
     options.gpuBudgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMb * 1048576.0));
     options.threads = arguments.threads;
-    auto renderer = render::CaseRenderer::upload(**context, std::move(prepared), options);
-    if (!renderer) return tl::make_unexpected(renderer.error());
-    return draw(**renderer);
+    auto renderer = TRY(render::CaseRenderer::upload(*context, std::move(prepared), options));
+    return draw(*renderer);
 }
 
 Result<render::Image> drawCase(const RenderArguments& arguments) {
-    const auto source = store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
-        return s.openCase(arguments.input);
-    });
-    if (!source) return tl::make_unexpected(source.error());
-    const auto products = readProducts(arguments, *source);
-    if (!products) return tl::make_unexpected(products.error());
-    const CaseScans& scans = products->scans;
-    auto prepared = render::prepareCase(scans.ct, scans.cleansed, arguments.threads);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    prepared->flatMap = products->flatMap;
-    prepared->wall = products->wall;
-    if (!products->centerline.points.empty())
-        prepared->path = std::make_shared<const Centerline>(products->centerline);
+    const auto source =
+        TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
+            return s.openCase(arguments.input);
+        }));
+    const auto products = TRY(readProducts(arguments, source));
+    const CaseScans& scans = products.scans;
+    auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, arguments.threads));
+    prepared.flatMap = products.flatMap;
+    prepared.wall = products.wall;
+    if (!products.centerline.points.empty())
+        prepared.path = std::make_shared<const Centerline>(products.centerline);
     const Grid grid = scans.ct.grid();
-    return drawWith(arguments, std::move(*prepared), [&](render::CaseRenderer& renderer) {
+    return drawWith(arguments, std::move(prepared), [&](render::CaseRenderer& renderer) {
         const auto window = arguments.window.value_or(render::WindowLevel{});
         const auto scan =
             arguments.product == "cleansed" ? render::Scan::cleansed : render::Scan::original;
-        if (arguments.isFlattened()) return drawFlattened(arguments, *products, renderer);
-        if (arguments.shown() == View::overview)
-            return drawOverview(arguments, *products, renderer);
+        if (arguments.isFlattened()) return drawFlattened(arguments, products, renderer);
+        if (arguments.shown() == View::overview) return drawOverview(arguments, products, renderer);
         if (arguments.shown() == View::oblique)
-            return drawOblique(arguments, products->centerline, window, scan, renderer);
-        if (arguments.isSlice()) return drawSlice(arguments, *products, window, renderer);
+            return drawOblique(arguments, products.centerline, window, scan, renderer);
+        if (arguments.isSlice()) return drawSlice(arguments, products, window, renderer);
         if (arguments.view == "camera")
-            return drawCamera(arguments, freeCamera(arguments, grid), products->paint, renderer);
-        return drawEndoscopic(arguments, *products, renderer);
+            return drawCamera(arguments, freeCamera(arguments, grid), products.paint, renderer);
+        return drawEndoscopic(arguments, products, renderer);
     });
 }
 
 Result<render::Image> drawScan(const RenderArguments& arguments) {
-    auto volume = readInputVolume(arguments.input, arguments.spacingMm, arguments.threads);
-    if (!volume) return tl::make_unexpected(volume.error());
-    const Grid grid = volume->grid();
+    auto volume = TRY(readInputVolume(arguments.input, arguments.spacingMm, arguments.threads));
+    const Grid grid = volume.grid();
     render::WindowLevel window;
     if (arguments.window) {
         window = *arguments.window;
     } else {
-        const auto [low, high] = std::ranges::minmax(volume->voxels());
+        const auto [low, high] = std::ranges::minmax(volume.voxels());
         window = {0.5 * (low + high), std::max(1.0, double(high) - low)};
     }
-    auto prepared = render::prepareCase(*volume, {}, arguments.threads);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    return drawWith(arguments, std::move(*prepared), [&](render::CaseRenderer& renderer) {
+    auto prepared = TRY(render::prepareCase(volume, {}, arguments.threads));
+    return drawWith(arguments, std::move(prepared), [&](render::CaseRenderer& renderer) {
         if (arguments.isSlice()) return drawSlice(arguments, {}, window, renderer);
         if (arguments.shown() == View::oblique)
             return drawOblique(arguments, {}, window, render::Scan::original, renderer);
@@ -330,36 +297,28 @@ Result<render::Image> drawScan(const RenderArguments& arguments) {
 }
 
 Result<render::Image> drawLabelled(const RenderArguments& arguments) {
-    auto volume = readLabelledColor(arguments.input, arguments.labels, arguments.threads);
-    if (!volume) return tl::make_unexpected(volume.error());
-    auto context = gpu::Context::create();
-    if (!context) return tl::make_unexpected(context.error());
-    auto raycaster = render::LabelledRaycaster::create(
-        **context, *volume,
+    auto volume = TRY(readLabelledColor(arguments.input, arguments.labels, arguments.threads));
+    auto context = TRY(gpu::Context::create());
+    auto raycaster = TRY(render::LabelledRaycaster::create(
+        *context, volume,
         {.budgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMb * 1048576.0)),
-         .threads = arguments.threads});
-    if (!raycaster) return tl::make_unexpected(raycaster.error());
-    if (auto chosen =
-            (*raycaster)->choose({arguments.shownLabels.begin(), arguments.shownLabels.end()});
-        !chosen)
-        return tl::make_unexpected(chosen.error());
-    render::CameraView view{freeCamera(arguments, (*volume)->grid()), {}, marchOf(arguments)};
+         .threads = arguments.threads}));
+    TRY(raycaster->choose({arguments.shownLabels.begin(), arguments.shownLabels.end()}));
+    render::CameraView view{freeCamera(arguments, volume->grid()), {}, marchOf(arguments)};
     view.optics.light.halfDepthMm = 1e6;  // the camera's distance darkens nothing
     const glm::ivec2 size = arguments.size;
     render::Image image{size.x, size.y,
                         std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
-    if (auto drawn = (*raycaster)->render(view, render::Band::whole(size.x, size.y), image); !drawn)
-        return tl::make_unexpected(drawn.error());
+    TRY(raycaster->render(view, render::Band::whole(size.x, size.y), image));
     return image;
 }
 
 Result<void> runRender(const RenderArguments& arguments) {
-    if (auto fit = checkOutputFile(arguments.out); !fit) return fit;
-    const auto image = !arguments.labels.empty() ? drawLabelled(arguments)
-                       : arguments.isScan()      ? drawScan(arguments)
-                                                 : drawCase(arguments);
-    if (!image) return tl::make_unexpected(image.error());
-    return render::writePng(arguments.out, *image);
+    TRY(checkOutputFile(arguments.out));
+    const auto image = TRY(!arguments.labels.empty() ? drawLabelled(arguments)
+                           : arguments.isScan()      ? drawScan(arguments)
+                                                     : drawCase(arguments));
+    return render::writePng(arguments.out, image);
 }
 
 }  // namespace

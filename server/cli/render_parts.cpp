@@ -12,9 +12,8 @@ using render::Lens;
 Result<Optics> opticsOf(const RenderArguments& arguments, const char* otherwise) {
     const std::string name = arguments.optics.empty() ? otherwise : arguments.optics;
     if (std::filesystem::path(name).extension() != ".json") return render::opticsPreset(name);
-    auto preset = readPresetFile(name);
-    if (!preset) return tl::make_unexpected(preset.error());
-    return std::move(preset->optics);
+    auto preset = TRY(readPresetFile(name));
+    return std::move(preset.optics);
 }
 
 render::MarchOptions marchOf(const RenderArguments& arguments, render::MarchOptions march) {

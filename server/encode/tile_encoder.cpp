@@ -73,12 +73,11 @@ Result<Bytes> TileEncoder::encode(const render::Image& image, protocol::TileHead
     std::vector<Bytes> coded;
     std::size_t codedBytes = 0;
     for (const TileRectangle& tile : tiles) {
-        auto bytes = header.codec == protocol::TileCodec::jpeg
-                         ? encodeJpeg(jpeg_->handle, image, tile)
-                         : encodeExact(image, tile);
-        if (!bytes) return tl::make_unexpected(bytes.error());
-        codedBytes += bytes->size();
-        coded.push_back(std::move(*bytes));
+        auto bytes =
+            TRY(header.codec == protocol::TileCodec::jpeg ? encodeJpeg(jpeg_->handle, image, tile)
+                                                          : encodeExact(image, tile));
+        codedBytes += bytes.size();
+        coded.push_back(std::move(bytes));
     }
     header.encodeMicroseconds = std::uint32_t(std::chrono::duration_cast<std::chrono::microseconds>(
                                                   std::chrono::steady_clock::now() - start)

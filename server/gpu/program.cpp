@@ -59,9 +59,8 @@ Result<ComputeProgram> ComputeProgram::create(const char* what,
                                               std::initializer_list<std::string_view> pieces) {
     ComputeProgram program;
     program.id_ = glCreateProgram();
-    if (auto made = attach(program.id_, GL_COMPUTE_SHADER, sourceOf(pieces), what); !made)
-        return tl::make_unexpected(made.error());
-    if (auto made = link(program.id_, what); !made) return tl::make_unexpected(made.error());
+    TRY(attach(program.id_, GL_COMPUTE_SHADER, sourceOf(pieces), what));
+    TRY(link(program.id_, what));
     GLint group[3] = {1, 1, 1};
     glGetProgramiv(program.id_, GL_COMPUTE_WORK_GROUP_SIZE, group);
     program.groupSize_ = {group[0], group[1]};
@@ -105,10 +104,9 @@ Result<RasterProgram> RasterProgram::create(
     glCreateFramebuffers(1, &raster.framebuffer_);
     for (const auto& [kind, pieces] :
          {std::pair(GL_VERTEX_SHADER, vertexPieces), {GL_FRAGMENT_SHADER, fragmentPieces}}) {
-        if (auto made = attach(raster.program_, GLenum(kind), sourceOf(pieces), what); !made)
-            return tl::make_unexpected(made.error());
+        TRY(attach(raster.program_, GLenum(kind), sourceOf(pieces), what));
     }
-    if (auto made = link(raster.program_, what); !made) return tl::make_unexpected(made.error());
+    TRY(link(raster.program_, what));
     return raster;
 }
 

@@ -8,9 +8,8 @@
 namespace haustra::gpu {
 
 Result<RasterTarget> RasterTarget::create(glm::ivec2 size, TexelFormat format, const char* what) {
-    auto texture = Texture::create(2, {size, 1}, format, Filter::nearest, what);
-    if (!texture) return tl::make_unexpected(texture.error());
-    RasterTarget target(std::move(*texture));
+    auto texture = TRY(Texture::create(2, {size, 1}, format, Filter::nearest, what));
+    RasterTarget target(std::move(texture));
     glCreateRenderbuffers(1, &target.depth_);
     glNamedRenderbufferStorage(target.depth_, GL_DEPTH_COMPONENT32F, size.x, size.y);
     glCreateFramebuffers(1, &target.framebuffer_);

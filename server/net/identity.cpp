@@ -79,13 +79,8 @@ Result<Identity> identityIn(const fs::path& folder) {
         return fail(ErrorKind::device, "OpenSSL cannot make a certificate", folder);
 
     // The key first: a certificate that is there has its key.
-    if (auto written = store::writeDurably(folder, "key.pem", {content(keyText.get())}, 0600);
-        !written)
-        return tl::make_unexpected(written.error());
-    if (auto written =
-            store::writeDurably(folder, "certificate.pem", {content(certificateText.get())}, 0644);
-        !written)
-        return tl::make_unexpected(written.error());
+    TRY(store::writeDurably(folder, "key.pem", {content(keyText.get())}, 0600));
+    TRY(store::writeDurably(folder, "certificate.pem", {content(certificateText.get())}, 0644));
     return identity;
 }
 

@@ -1,6 +1,7 @@
 #include "net/server.h"
 
 #include "net/connection.h"
+#include "session/guarded.h"
 
 #include <csignal>
 #include <set>
@@ -103,37 +104,31 @@ struct Server::Impl {
 Result<void> Server::Impl::readPresets() {
     presets.presets = render::builtInPresets();
     if (!options.presets) return {};
-    auto read = render::readPresets(*options.presets);
-    if (!read) return tl::make_unexpected(read.error());
-    presets = std::move(*read);
+    auto read = TRY(render::readPresets(*options.presets));
+    presets = std::move(read);
     for (const Error& refused : presets.refused)
         spdlog::warn("a preset is not used: {}", describe(refused));
     return {};
 }
 
 Result<void> Server::Impl::start() {
-    auto cases = store::CaseStore::open(options.store, false);
-    if (!cases) return tl::make_unexpected(cases.error());
-    const auto identity =
-        options.identity ? Result<Identity>(*options.identity) : identityIn(options.store / "tls");
-    if (!identity) return tl::make_unexpected(identity.error());
-    if (auto configured = configureTls(tls, *identity); !configured) return configured;
+    auto cases = TRY(store::CaseStore::open(options.store, false));
+    const auto identity = TRY(options.identity ? Result<Identity>(*options.identity)
+                                               : identityIn(options.store / "tls"));
+    TRY(configureTls(tls, identity));
     fingerprint = certificateFingerprint(tls);
-    auto kept = records::BookmarkStore::open(options.store / "records.sqlite3");
-    if (!kept) return tl::make_unexpected(kept.error());
-    if (auto read = readPresets(); !read) return read;
-    auto rendering = session::RenderThread::start(options.drawing, [this](auto of) {
+    auto kept = TRY(records::BookmarkStore::open(options.store / "records.sqlite3"));
+    TRY(readPresets());
+    auto rendering = TRY(session::RenderThread::start(options.drawing, [this](auto of) {
         asio::post(io, [this, of = std::move(of)] { lostCases.tell(of); });
-    });
-    if (!rendering) return tl::make_unexpected(rendering.error());
-    auto encoding = session::EncoderThreads::start(options.encoders);
-    if (!encoding) return tl::make_unexpected(encoding.error());
-    if (auto listening = listen(acceptor, options.listen); !listening) return listening;
+    }));
+    auto encoding = TRY(session::EncoderThreads::start(options.encoders));
+    TRY(listen(acceptor, options.listen));
 
-    loader = session::CaseLoader::start(*cases, **rendering);
-    records = session::RecordsThread::start(std::move(*kept), std::move(*cases));
-    renderer = std::move(*rendering);
-    encoders = std::move(*encoding);
+    loader = session::CaseLoader::start(cases, *rendering);
+    records = session::RecordsThread::start(std::move(kept), std::move(cases));
+    renderer = std::move(rendering);
+    encoders = std::move(encoding);
     walls = session::WallThread::start();
     painting = session::PaintThread::start();
     services.emplace(session::Services{*renderer, *loader, *encoders, *records, *walls, *painting,
@@ -205,7 +200,7 @@ Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options) {
     auto impl = std::make_unique<Impl>();
     impl->options = options;
     try {
-        if (auto started = impl->start(); !started) return tl::make_unexpected(started.error());
+        TRY(impl->start());
     } catch (const std::exception& error) {
         return fail(ErrorKind::device, error.what(), "server");
     }
@@ -227,7 +222,7 @@ void Server::run() {
             impl_->io.run();
             return;
         } catch (const std::exception& error) {
-            spdlog::error("the io thread goes on after a fault: {}", error.what());
+            session::logFault("io", error);
         }
     }
 }

@@ -93,53 +93,44 @@ Result<BookmarkStore> BookmarkStore::open(const std::filesystem::path& file) {
     std::unique_ptr<sqlite3, Close> database(opened);
     if (code != SQLITE_OK) return failedSql(opened, "open " + file.string());
     sqlite3_busy_timeout(opened, busyMs);
-    if (const auto made = run(opened, schema, "prepare the records"); !made)
-        return tl::make_unexpected(made.error());
+    TRY(run(opened, schema, "prepare the records"));
     auto former =
-        Statement::prepare(opened, "SELECT 1 FROM sqlite_schema WHERE name = 'bookmarks'");
-    if (!former) return tl::make_unexpected(former.error());
-    const auto isFormer = former->step();
-    if (!isFormer) return tl::make_unexpected(isFormer.error());
-    former->reset();
-    if (*isFormer) {
-        if (const auto upgraded = run(opened, upgrade, "upgrade the records"); !upgraded)
-            return tl::make_unexpected(upgraded.error());
+        TRY(Statement::prepare(opened, "SELECT 1 FROM sqlite_schema WHERE name = 'bookmarks'"));
+    const auto isFormer = TRY(former.step());
+    former.reset();
+    if (isFormer) {
+        TRY(run(opened, upgrade, "upgrade the records"));
     }
 
-    auto insert = Statement::prepare(
+    auto insert = TRY(Statement::prepare(
         opened,
         "INSERT INTO scan_bookmarks(case_name, scan, client_key, position_x, position_y, "
         "position_z, forward_x, forward_y, forward_z, up_x, up_y, up_z, arc_mm, note) "
-        "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?) RETURNING id, created_utc");
-    if (!insert) return tl::make_unexpected(insert.error());
+        "VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?) RETURNING id, created_utc"));
     const std::string select = columns;
-    auto find = Statement::prepare(opened, (select + "WHERE scan = ? AND client_key = ?").c_str());
-    if (!find) return tl::make_unexpected(find.error());
-    auto list = Statement::prepare(opened, (select + "WHERE scan = ? ORDER BY id").c_str());
-    if (!list) return tl::make_unexpected(list.error());
-    auto adopt =
-        Statement::prepare(opened, "UPDATE OR IGNORE scan_bookmarks SET scan = ? WHERE scan = ?");
-    if (!adopt) return tl::make_unexpected(adopt.error());
+    auto find =
+        TRY(Statement::prepare(opened, (select + "WHERE scan = ? AND client_key = ?").c_str()));
+    auto list = TRY(Statement::prepare(opened, (select + "WHERE scan = ? ORDER BY id").c_str()));
+    auto adopt = TRY(
+        Statement::prepare(opened, "UPDATE OR IGNORE scan_bookmarks SET scan = ? WHERE scan = ?"));
 
-    BookmarkStore store(std::move(database), std::move(*insert), std::move(*find), std::move(*list),
-                        std::move(*adopt));
-    if (const auto measured = store.measure(); !measured)
-        return tl::make_unexpected(measured.error());
+    BookmarkStore store(std::move(database), std::move(insert), std::move(find), std::move(list),
+                        std::move(adopt));
+    TRY(store.measure());
     return store;
 }
 
 Result<void> BookmarkStore::measure() {
-    auto sizes = Statement::prepare(
+    auto sizes = TRY(Statement::prepare(
         database_.get(),
         "SELECT scan, sum(length(CAST(note AS BLOB)) + length(CAST(client_key AS BLOB)) + "
-        "256) FROM scan_bookmarks GROUP BY scan");
-    if (!sizes) return tl::make_unexpected(sizes.error());
+        "256) FROM scan_bookmarks GROUP BY scan"));
     scanBytes_.clear();
     unadopted_.clear();
-    auto row = sizes->step();
-    for (; row && *row; row = sizes->step()) {
-        const std::string scan = sizes->text(0);
-        scanBytes_[scan] = std::size_t(sizes->integer(1));
+    auto row = sizes.step();
+    for (; row && *row; row = sizes.step()) {
+        const std::string scan = sizes.text(0);
+        scanBytes_[scan] = std::size_t(sizes.integer(1));
         if (scan.starts_with(caseForScan)) unadopted_.insert(scan);
     }
     if (!row) return tl::make_unexpected(row.error());
@@ -194,8 +185,7 @@ Result<std::vector<Result<Bookmark>>> BookmarkStore::add(
     const std::vector<NewBookmark>& bookmarks) {
     sqlite3* const database = database_.get();
     // IMMEDIATE: whoever else writes is waited for here, not found out half way.
-    if (const auto begun = run(database, "BEGIN IMMEDIATE", "write the records"); !begun)
-        return tl::make_unexpected(begun.error());
+    TRY(run(database, "BEGIN IMMEDIATE", "write the records"));
     const auto bytesBefore = scanBytes_;
     const auto giveUp = [&](const Error& error) {
         sqlite3_exec(database, "ROLLBACK", nullptr, nullptr, nullptr);

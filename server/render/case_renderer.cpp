@@ -37,8 +37,7 @@ Result<void> put(const Result<Image>& drawn, glm::ivec2 corner, Image& picture) 
 
 template <class T>
 Result<std::unique_ptr<Raycaster>> asRaycaster(Result<std::unique_ptr<T>> made) {
-    if (!made) return tl::make_unexpected(made.error());
-    return std::unique_ptr<Raycaster>(std::move(*made));
+    return std::unique_ptr<Raycaster>(TRY(std::move(made)));
 }
 
 /// Whether slices and flattened views are drawn on the CPU too: so that nothing asks for a copy of
@@ -79,9 +78,8 @@ struct CaseRenderer::Impl {
 
     Result<void> makeFlatSurface() {
         if (flatSurface) return {};
-        auto made = FlatSurface::upload(flatGeometry);
-        if (!made) return tl::make_unexpected(made.error());
-        flatSurface = std::make_shared<const FlatSurface>(std::move(*made));
+        auto made = TRY(FlatSurface::upload(flatGeometry));
+        flatSurface = std::make_shared<const FlatSurface>(std::move(made));
         return {};
     }
 
@@ -89,22 +87,18 @@ struct CaseRenderer::Impl {
         std::unique_ptr<CasePictures>& kept = picturesOnCpu(kind) ? nativePictures : glPictures;
         if (kept) return {};
         const auto keep = [&](auto made) -> Result<void> {
-            if (!made) return tl::make_unexpected(made.error());
-            kept = std::move(*made);
+            kept = TRY(std::move(made));
             return {};
         };
         if (picturesOnCpu(kind)) {
             nativeScene = std::make_shared<NativeScene>(scene, options.threads);
             return keep(NativePictures::create(nativeScene, ct.share(), flatGeometry));
         }
-        if (auto fits = checkScanSide(grid(), std::min(maxScanSide, gpu::maxTextureSide3d()));
-            !fits)
-            return fits;
-        auto made = GlScene::upload(context, scene, options.threads, options.gradientBudgetBytes);
-        if (!made) return tl::make_unexpected(made.error());
-        glScene = std::move(*made);
-        if (flatGeometry)
-            if (auto surface = makeFlatSurface(); !surface) return surface;
+        TRY(checkScanSide(grid(), std::min(maxScanSide, gpu::maxTextureSide3d())));
+        auto made =
+            TRY(GlScene::upload(context, scene, options.threads, options.gradientBudgetBytes));
+        glScene = std::move(made);
+        if (flatGeometry) TRY(makeFlatSurface());
         return keep(GlPictures::create(glScene, ct, flatSurface, options.threads));
     }
 
@@ -137,7 +131,7 @@ struct CaseRenderer::Impl {
 
     Result<void> checkPaint(const WallPaint* paint) const {
         if (!paint) return {};
-        if (auto sound = checkWallPaint(*paint); !sound) return sound;
+        TRY(checkWallPaint(*paint));
         if (!flatGeometry)
             return fail(ErrorKind::badInput, "the case has no flat map", "wall paint");
         return {};
@@ -145,11 +139,10 @@ struct CaseRenderer::Impl {
 
     Result<std::vector<WallPixel>> findWall(const Camera& camera, const Band& band) {
         if (!wallIndex) {
-            auto made = WallIndex::create();
-            if (!made) return tl::make_unexpected(made.error());
-            wallIndex = std::move(*made);
+            auto made = TRY(WallIndex::create());
+            wallIndex = std::move(made);
         }
-        if (auto made = makeFlatSurface(); !made) return tl::make_unexpected(made.error());
+        TRY(makeFlatSurface());
         return wallIndex->find(context, *flatSurface, camera, band);
     }
 
@@ -160,9 +153,8 @@ struct CaseRenderer::Impl {
         const SeenWall* seen = seenWalls.find(
             [&](const SeenWall& kept) { return kept.camera == camera && kept.size == size; });
         if (!seen) {
-            auto found = findWall(camera, Band::whole(size.x, size.y));
-            if (!found) return tl::make_unexpected(found.error());
-            seen = seenWalls.keep({camera, size, std::move(*found)});
+            auto found = TRY(findWall(camera, Band::whole(size.x, size.y)));
+            seen = seenWalls.keep({camera, size, std::move(found)});
         }
         const std::size_t row = std::size_t(size.x);
         const std::span pixels(seen->pixels);
@@ -190,9 +182,8 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::create(gpu::Context& context
                                                            const Volume<std::int16_t>& ct,
                                                            const Volume<std::int16_t>& cleansed,
                                                            RendererOptions options) {
-    Result<PreparedCase> prepared = prepareCase(ct, cleansed, options.threads);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    return upload(context, std::move(*prepared), options);
+    auto prepared = TRY(prepareCase(ct, cleansed, options.threads));
+    return upload(context, std::move(prepared), options);
 }
 
 Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context,
@@ -205,15 +196,13 @@ Result<std::unique_ptr<CaseRenderer>> CaseRenderer::upload(gpu::Context& context
                                                      prepared.flatMap, prepared.path});
     std::shared_ptr<const FlatGeometry> flatGeometry;
     if (scene->flatMap) {
-        auto geometry = FlatGeometry::of(*scene->flatMap, grid);
-        if (!geometry) return tl::make_unexpected(geometry.error());
-        flatGeometry = std::move(*geometry);
+        auto geometry = TRY(FlatGeometry::of(*scene->flatMap, grid));
+        flatGeometry = std::move(geometry);
     }
     std::unique_ptr<CaseRenderer> renderer(new CaseRenderer(std::unique_ptr<Impl>(
         new Impl{context, options, std::move(prepared.ct), std::move(scene),
                  !prepared.cleansed.empty(), std::move(flatGeometry), options.raycaster})));
-    if (auto made = renderer->use(options.raycaster); !made)
-        return tl::make_unexpected(made.error());
+    TRY(renderer->use(options.raycaster));
     if (context.errorCount() != errorsBefore)
         return fail(ErrorKind::device, "the graphics driver reported an error", "render");
     return renderer;
@@ -232,10 +221,9 @@ Result<void> CaseRenderer::use(RaycasterKind kind) {
         if (my.scene->ranges.lowHu.empty() && kind != RaycasterKind::objectOrder)
             return fail(ErrorKind::device, "only the object-order raycaster draws so large a scan",
                         "render");
-        if (auto made = my.makePictures(kind); !made) return made;
-        auto made = my.makeRaycaster(kind);
-        if (!made) return tl::make_unexpected(made.error());
-        my.raycasters[kind] = std::move(*made);
+        TRY(my.makePictures(kind));
+        auto made = TRY(my.makeRaycaster(kind));
+        my.raycasters[kind] = std::move(made);
     }
     my.used = kind;
     return {};
@@ -260,70 +248,65 @@ std::vector<PassTime> CaseRenderer::passTimes() const {
 
 Result<void> CaseRenderer::render(const CameraView& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
-    if (auto sound = my.checkPaint(view.paint.get()); !sound) return sound;
-    if (auto drawn = my.raycasters.at(my.used)->render(view, band, picture); !drawn) return drawn;
+    TRY(my.checkPaint(view.paint.get()));
+    TRY(my.raycasters.at(my.used)->render(view, band, picture));
     return view.paint ? my.paintWall(view.camera, *view.paint, band, picture) : Result<void>{};
 }
 
 Result<std::vector<WallPixel>> CaseRenderer::wallSeen(const Camera& camera, const Band& band) {
     Impl& my = *impl_;
-    if (auto sound = checkCamera(camera); !sound) return tl::make_unexpected(sound.error());
-    if (auto sound = checkBand(band); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkCamera(camera));
+    TRY(checkBand(band));
     if (!my.flatGeometry)
         return fail(ErrorKind::badInput, "the case has no flat map", "wall index");
     return my.findWall(camera, band);
 }
 
 Result<void> CaseRenderer::render(const SliceView& view, const Band& band, Image& picture) {
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    const auto placement = placeSlice(view, impl_->grid(), band.pictureSize.x, band.pictureSize.y);
-    if (!placement) return tl::make_unexpected(placement.error());
-    return impl_->drawSlice(*placement, view.window, view.scan, band, picture);
+    TRY(checkBand(band, picture));
+    const auto placement =
+        TRY(placeSlice(view, impl_->grid(), band.pictureSize.x, band.pictureSize.y));
+    return impl_->drawSlice(placement, view.window, view.scan, band, picture);
 }
 
 Result<void> CaseRenderer::render(const ObliqueView& view, const Band& band, Image& picture) {
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    const auto placement = placeSlice(view, band.pictureSize.x, band.pictureSize.y);
-    if (!placement) return tl::make_unexpected(placement.error());
-    return impl_->drawSlice(*placement, view.window, view.scan, band, picture);
+    TRY(checkBand(band, picture));
+    const auto placement = TRY(placeSlice(view, band.pictureSize.x, band.pictureSize.y));
+    return impl_->drawSlice(placement, view.window, view.scan, band, picture);
 }
 
 Result<void> CaseRenderer::render(const FlatView& view, const Band& band, Image& picture) {
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkFlatWindow(view.window, band.pictureSize.x); !sound) return sound;
-    if (auto has = impl_->checkFlat(); !has) return has;
-    if (auto sound = impl_->checkPaint(view.paint.get()); !sound) return sound;
+    TRY(checkBand(band, picture));
+    TRY(checkFlatWindow(view.window, band.pictureSize.x));
+    TRY(impl_->checkFlat());
+    TRY(impl_->checkPaint(view.paint.get()));
     return put(impl_->drawFlat(view, band), {0, band.firstRow}, picture);
 }
 
 Result<void> CaseRenderer::render(const FlatOverview& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto has = my.checkFlat(); !has) return has;
-    if (auto sound = my.checkPaint(view.paint.get()); !sound) return sound;
+    TRY(checkBand(band, picture));
+    TRY(my.checkFlat());
+    TRY(my.checkPaint(view.paint.get()));
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     (void)put(blankImage(size), {0, band.firstRow}, picture);  // the gutters
     for (const StripColumn& column :
          layOutStrip(my.flatGeometry->height(), band.pictureSize).columns) {
         const FlatView part{column.window, view.optics, view.march, view.paint};
         const Band rows{column.size, band.firstRow, band.rows};
-        if (auto drawn = put(my.drawFlat(part, rows), {column.left, band.firstRow}, picture);
-            !drawn)
-            return drawn;
+        TRY(put(my.drawFlat(part, rows), {column.left, band.firstRow}, picture));
     }
     return {};
 }
 
 Result<void> CaseRenderer::render(const OverviewView& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
-    if (auto sound = my.checkPaint(view.paint.get()); !sound) return sound;
+    TRY(my.checkPaint(view.paint.get()));
     if (!my.overview) {
-        auto made = OverviewPainter::create(my.context, my.scene);
-        if (!made) return tl::make_unexpected(made.error());
-        my.overview = std::move(*made);
+        auto made = TRY(OverviewPainter::create(my.context, my.scene));
+        my.overview = std::move(made);
     }
-    if (auto drawn = my.overview->draw(view, band, *my.raycasters.at(my.used), picture); !drawn)
-        return drawn;
+    TRY(my.overview->draw(view, band, *my.raycasters.at(my.used), picture));
     return view.paint ? my.paintWall(view.camera, *view.paint, band, picture) : Result<void>{};
 }
 

@@ -67,11 +67,9 @@ public:
     /// The whole picture of any of these views.
     template <class View>
     Result<Image> render(const View& view, int width, int height) {
-        if (auto sound = checkPictureSize({width, height}); !sound)
-            return tl::make_unexpected(sound.error());
+        TRY(checkPictureSize({width, height}));
         Image picture = blankImage({width, height});
-        if (auto drawn = render(view, Band::whole(width, height), picture); !drawn)
-            return tl::make_unexpected(drawn.error());
+        TRY(render(view, Band::whole(width, height), picture));
         return picture;
     }
 

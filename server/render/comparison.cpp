@@ -30,12 +30,11 @@ glm::u8vec3 tissueColor(TissueFractions fractions) {
 Result<Image> tissuePicture(const Volume<TissueFractions>& mixture, const SliceView& view,
                             int width, int height) {
     const Grid& grid = mixture.grid();
-    const Result<SlicePlacement> placement = placeSlice(view, grid, width, height);
-    if (!placement) return tl::make_unexpected(placement.error());
+    const auto placement = TRY(placeSlice(view, grid, width, height));
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
-    const glm::dvec3 origin(voxelFromPatient * glm::dvec4(placement->topLeftMm, 1.0)),
-        right(voxelFromPatient * glm::dvec4(placement->rightMm, 0.0)),
-        down(voxelFromPatient * glm::dvec4(placement->downMm, 0.0));
+    const glm::dvec3 origin(voxelFromPatient * glm::dvec4(placement.topLeftMm, 1.0)),
+        right(voxelFromPatient * glm::dvec4(placement.rightMm, 0.0)),
+        down(voxelFromPatient * glm::dvec4(placement.downMm, 0.0));
     Image image{width, height, {}};
     image.rgb.reserve(3 * std::size_t(width) * std::size_t(height));
     for (int y = 0; y < height; ++y) {

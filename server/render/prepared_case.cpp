@@ -18,8 +18,7 @@ Result<void> checkScanSide(const Grid& grid, int most) {
 Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct,
                                  const Volume<std::int16_t>& cleansed, int threads) {
     const Grid& grid = ct.grid();
-    if (Result<void> sound = checkGrid(grid, "ct"); !sound)
-        return tl::make_unexpected(sound.error());
+    TRY(checkGrid(grid, "ct"));
     if (!cleansed.empty() && !sameGrid(grid, cleansed.grid()))
         return fail(ErrorKind::badInput, "the cleansed scan is not on the scan's grid", "render");
     PreparedCase prepared;

@@ -38,14 +38,14 @@ Result<void> checkPictureSize(glm::ivec2 size) {
 }
 
 Result<void> checkBand(const Band& band) {
-    if (auto sound = checkPictureSize(band.pictureSize); !sound) return sound;
+    TRY(checkPictureSize(band.pictureSize));
     if (band.rows < 1 || band.firstRow < 0 || band.rows > band.pictureSize.y - band.firstRow)
         return fail(ErrorKind::badInput, "the band leaves the picture");
     return {};
 }
 
 Result<void> checkBand(const Band& band, const Image& picture) {
-    if (auto sound = checkBand(band); !sound) return sound;
+    TRY(checkBand(band));
     const glm::ivec2 size = band.pictureSize;
     if (picture.width != size.x || picture.height != size.y ||
         picture.rgb.size() != 3 * std::size_t(size.x) * std::size_t(size.y))

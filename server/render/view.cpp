@@ -86,9 +86,9 @@ Result<void> checkMarch(const MarchOptions& march, const Optics& optics) {
 }
 
 Result<void> checkCameraView(const CameraView& view, glm::ivec2 pictureSize) {
-    if (auto sound = checkCamera(view.camera); !sound) return sound;
-    if (auto sound = checkOptics(view.optics); !sound) return sound;
-    if (auto sound = checkMarch(view.march, view.optics); !sound) return sound;
+    TRY(checkCamera(view.camera));
+    TRY(checkOptics(view.optics));
+    TRY(checkMarch(view.march, view.optics));
     if (view.backdrop &&
         (view.backdrop->size != pictureSize ||
          view.backdrop->pixels.size() != std::size_t(pictureSize.x) * std::size_t(pictureSize.y)))
@@ -149,7 +149,7 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
         return fail(ErrorKind::badInput, "the position is not finite", "slice");
     if (!(view.zoom >= 1.0 && view.zoom <= 64.0))
         return fail(ErrorKind::badInput, "the zoom is not within 1 to 64", "slice");
-    if (auto sound = checkWindow(view.window); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkWindow(view.window));
     if (width <= 0 || height <= 0)
         return fail(ErrorKind::badInput, "the picture has no pixels", "slice");
 
@@ -171,10 +171,10 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
 Result<SlicePlacement> placeSlice(const ObliqueView& view, int width, int height) {
     Camera plane{view.positionMm, view.forward, view.up};
     plane.lens = Lens::orthographic;
-    if (auto sound = checkCamera(plane); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkCamera(plane));
     if (!(view.heightMm >= minObliqueMm && view.heightMm <= maxObliqueMm))
         return fail(ErrorKind::badInput, "the slice's height is not within 1 to 2000 mm", "slice");
-    if (auto sound = checkWindow(view.window); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkWindow(view.window));
     if (width <= 0 || height <= 0)
         return fail(ErrorKind::badInput, "the picture has no pixels", "slice");
 
@@ -187,12 +187,11 @@ Result<SlicePlacement> placeSlice(const ObliqueView& view, int width, int height
 }
 
 Result<void> checkOverview(const OverviewView& view) {
-    if (auto sound = checkCamera(view.camera); !sound) return sound;
+    TRY(checkCamera(view.camera));
     if (view.camera.lens == Lens::fisheye)
         return fail(ErrorKind::badInput, "an overview is not seen through a fisheye lens",
                     "overview");
-    if (view.reader)
-        if (auto sound = checkCamera(*view.reader); !sound) return sound;
+    if (view.reader) TRY(checkCamera(*view.reader));
     if (view.bookmarksMm.size() > maxOverviewBookmarks)
         return fail(ErrorKind::badInput,
                     "more than " + std::to_string(maxOverviewBookmarks) + " bookmarks", "overview");

@@ -11,39 +11,35 @@ namespace {
 
 Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, RenderThread& renderer,
                                              const std::string& name) {
-    const auto source = store.openCase(name);
-    if (!source) return tl::make_unexpected(source.error());
-    auto files = readCase(*source);
-    if (!files) return tl::make_unexpected(files.error());
-    if (auto there = renderer.find(files->facts)) return there;
-    if (!files->facts.cleansed)
+    const auto source = TRY(store.openCase(name));
+    auto files = TRY(readCase(source));
+    if (auto there = renderer.find(files.facts)) return there;
+    if (!files.facts.cleansed)
         spdlog::info("a case has no cleansed scan: its endoscopic views show the scan as it is");
-    auto prepared = render::prepareCase(files->ct, files->cleansed);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    files->facts.histogram = histogramOf(prepared->endoscopic());
-    if (files->flattened) {
+    auto prepared = TRY(render::prepareCase(files.ct, files.cleansed));
+    files.facts.histogram = histogramOf(prepared.endoscopic());
+    if (files.flattened) {
         // Without it the case can still be read.
-        if (auto wall = readWall(*source)) {
-            files->facts.wall = std::move(*wall);
-            prepared->flatMap = files->facts.wall->map;
+        if (auto wall = readWall(source)) {
+            files.facts.wall = std::move(*wall);
+            prepared.flatMap = files.facts.wall->map;
         } else {
             spdlog::warn("a case opens without its flattened views: {}", wall.error().message);
         }
     }
-    if (files->surface) {
-        if (auto surface = readSurface(*source))
-            prepared->wall = std::move(*surface);
+    if (files.surface) {
+        if (auto surface = readSurface(source))
+            prepared.wall = std::move(*surface);
         else
             spdlog::warn("a case's overview has no colon: {}", surface.error().message);
     }
-    if (!files->facts.centerline.points.empty())
-        prepared->path = std::make_shared<const Centerline>(files->facts.centerline);
+    if (!files.facts.centerline.points.empty())
+        prepared.path = std::make_shared<const Centerline>(files.facts.centerline);
     // Its products were read one after the other, and all must be of one scan.
-    const auto scan = source->scan();
-    if (!scan) return tl::make_unexpected(scan.error());
-    if (!*scan || (*scan)->key.hex != files->facts.scan)
+    const auto scan = TRY(source.scan());
+    if (!scan || scan->key.hex != files.facts.scan)
         return fail(ErrorKind::io, "the case became one of another scan while it was opened", name);
-    return renderer.upload(std::move(files->facts), std::move(*prepared));
+    return renderer.upload(std::move(files.facts), std::move(prepared));
 }
 
 }  // namespace

@@ -17,9 +17,8 @@ void work(encode::TileEncoder encoder, WorkQueue<EncodeJob>& jobs) {
 Result<std::unique_ptr<EncoderThreads>> EncoderThreads::start(int threads) {
     std::unique_ptr<EncoderThreads> self(new EncoderThreads);
     for (int n = 0; n < threads; ++n) {
-        auto encoder = encode::TileEncoder::create();
-        if (!encoder) return tl::make_unexpected(encoder.error());
-        self->threads_.emplace_back(work, std::move(*encoder), std::ref(self->jobs_));
+        auto encoder = TRY(encode::TileEncoder::create());
+        self->threads_.emplace_back(work, std::move(encoder), std::ref(self->jobs_));
     }
     return self;
 }

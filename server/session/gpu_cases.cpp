@@ -201,9 +201,8 @@ Result<GpuCases::Made> GpuCases::makeRenderer(render::PreparedCase prepared) {
                         " MiB, and " + std::to_string(mib(room.freeBytes)) + " of " +
                         std::to_string(mib(options_.gpuBudgetBytes)) + " MiB are free",
                     "render");
-    auto renderer = render::CaseRenderer::upload(context_, std::move(prepared), how);
-    if (!renderer) return tl::make_unexpected(renderer.error());
-    return Made{std::move(*renderer), fits};
+    auto renderer = TRY(render::CaseRenderer::upload(context_, std::move(prepared), how));
+    return Made{std::move(renderer), fits};
 }
 
 std::vector<RaycasterKind> GpuCases::candidates(bool fits) const {
@@ -237,13 +236,12 @@ Result<void> GpuCases::upload(OpenCase facts, render::PreparedCase prepared) {
     opening_.reset();
     const std::array<const void*, 2> volumes{prepared.ct.voxels().data(),
                                              prepared.cleansed.voxels().data()};
-    auto made = makeRenderer(std::move(prepared));
-    if (!made) return tl::make_unexpected(made.error());
+    auto made = TRY(makeRenderer(std::move(prepared)));
     opening_.emplace(
-        Opening{{std::move(facts), {}, {}, std::move(made->renderer), volumes}, {}, {}});
+        Opening{{std::move(facts), {}, {}, std::move(made.renderer), volumes}, {}, {}});
     if (options_.raycaster) return {};
     const render::ChoiceLimits limits;
-    opening_->choice.emplace(candidates(made->fits), limits);
+    opening_->choice.emplace(candidates(made.fits), limits);
     opening_->views = trialViews(opening_->entry.facts, limits.rounds);
     return {};
 }
@@ -255,8 +253,7 @@ bool GpuCases::tryRaycaster() {
     if (!next) return false;
     const auto start = Clock::now();
     auto drawn = guarded([&]() -> Result<render::Image> {
-        if (auto used = my.entry.renderer->use(next->kind); !used)
-            return tl::make_unexpected(used.error());
+        TRY(my.entry.renderer->use(next->kind));
         const auto& view = my.views[std::size_t(next->round) % my.views.size()];
         return my.entry.renderer->render(view, trialSide, trialSide);
     });
@@ -268,7 +265,7 @@ bool GpuCases::tryRaycaster() {
 }
 
 Result<std::shared_ptr<const OpenCase>> GpuCases::opened() {
-    if (!opening_) return fail(ErrorKind::device, "no case is being opened", "render");
+    if (!opening_) return fail(ErrorKind::wrongState, "no case is being opened", "render");
     Opening my = std::move(*opening_);
     opening_.reset();
     if (!my.entry.whole())
@@ -282,7 +279,7 @@ Result<std::shared_ptr<const OpenCase>> GpuCases::opened() {
         if (!fastest)
             return fail(ErrorKind::device,
                         "no raycaster can draw the case: " + describe(facts.trials), "render");
-        if (auto used = renderer.use(*fastest); !used) return tl::make_unexpected(used.error());
+        TRY(renderer.use(*fastest));
         renderer.keepOnlyUsed();
     }
     facts.raycaster = renderer.raycaster();

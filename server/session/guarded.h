@@ -6,11 +6,14 @@
 
 #include <cstddef>
 #include <exception>
+#include <functional>
+#include <memory>
 #include <new>
+#include <utility>
 
-#include <asio/any_io_executor.hpp>
-#include <asio/post.hpp>
-#include <spdlog/spdlog.h>
+namespace asio {
+class any_io_executor;
+}
 
 namespace haustra::session {
 
@@ -26,6 +29,9 @@ auto guarded(const Work& work) -> decltype(work()) {
     }
 }
 
+/// Logs that a thread goes on after a fault.
+void logFault(const char* thread, const std::exception& fault);
+
 /// A worker thread's loop: gives `serve` a queue's work, at most `most` pieces at a time, until the
 /// queue is closed and drained. What `serve` throws is logged and costs those pieces alone; to
 /// answer for them is its own affair (guarded).
@@ -34,23 +40,25 @@ void serveQueue(WorkQueue<T>& queue, std::size_t most, const char* thread, const
     for (auto taken = queue.take(most); !taken.empty(); taken = queue.take(most)) {
         try {
             serve(taken);
-        } catch (const std::exception& error) {
-            spdlog::error("the {} thread goes on after a fault: {}", thread, error.what());
+        } catch (const std::exception& fault) {
+            logFault(thread, fault);
         }
     }
 }
+
+void post(const asio::any_io_executor& io, std::function<void()> work);
 
 /// Runs `work`(*owner) on the io thread, where the owner still lives. What it throws is the
 /// owner's, for whom broken(what) ends its session.
 template <class Owner, class Work>
 void postTo(const asio::any_io_executor& io, std::weak_ptr<Owner> owner, Work work) {
-    asio::post(io, [owner = std::move(owner), work = std::move(work)]() mutable {
+    post(io, [owner = std::move(owner), work = std::move(work)]() mutable {
         const auto self = owner.lock();
         if (!self) return;
         try {
             work(*self);
-        } catch (const std::exception& error) {
-            self->broken(error.what());
+        } catch (const std::exception& fault) {
+            self->broken(fault.what());
         }
     });
 }

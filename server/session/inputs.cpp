@@ -20,9 +20,8 @@ glm::dvec3 vectorFrom(const protocol::Vec3& v) {
 // Of a SetCamera or a Camera.
 template <class Message>
 Result<render::Camera> soundCamera(const Message& message) {
-    const auto position = positionFrom(message.position_mm());
-    if (!position) return tl::make_unexpected(position.error());
-    render::Camera camera{*position, vectorFrom(message.forward()), vectorFrom(message.up())};
+    const auto position = TRY(positionFrom(message.position_mm()));
+    render::Camera camera{position, vectorFrom(message.forward()), vectorFrom(message.up())};
     switch (message.lens()) {
         case protocol::PERSPECTIVE:
             break;
@@ -38,8 +37,7 @@ Result<render::Camera> soundCamera(const Message& message) {
     }
     // The field of view of an orthographic camera has no meaning, and keeps its default.
     if (camera.lens != render::Lens::orthographic) camera.fovDegrees = message.fov_degrees();
-    if (const auto checked = render::checkCamera(camera); !checked)
-        return tl::make_unexpected(checked.error());
+    TRY(render::checkCamera(camera));
     return camera;
 }
 
@@ -71,40 +69,34 @@ Result<render::Camera> cameraFrom(const protocol::Camera& message) {
 }
 
 Result<render::ObliqueView> obliqueFrom(const protocol::SetOblique& message) {
-    const auto position = positionFrom(message.position_mm());
-    if (!position) return tl::make_unexpected(position.error());
+    const auto position = TRY(positionFrom(message.position_mm()));
     render::ObliqueView view;
-    view.positionMm = *position;
+    view.positionMm = position;
     view.forward = vectorFrom(message.forward());
     view.up = vectorFrom(message.up());
     view.heightMm = message.height_mm();
     view.scan = message.cleansed() ? render::Scan::cleansed : render::Scan::original;
-    if (const auto placed = render::placeSlice(view, minViewportPixels, minViewportPixels); !placed)
-        return tl::make_unexpected(placed.error());
+    TRY(render::placeSlice(view, minViewportPixels, minViewportPixels));
     return view;
 }
 
 Result<render::OverviewView> overviewFrom(const protocol::SetOverview& message) {
     render::OverviewView view;
-    const auto camera = cameraFrom(message.camera());
-    if (!camera) return tl::make_unexpected(camera.error());
-    view.camera = *camera;
+    const auto camera = TRY(cameraFrom(message.camera()));
+    view.camera = camera;
     if (message.has_reader()) {
-        const auto reader = cameraFrom(message.reader());
-        if (!reader) return tl::make_unexpected(reader.error());
-        view.reader = *reader;
+        const auto reader = TRY(cameraFrom(message.reader()));
+        view.reader = reader;
     }
     if (std::size_t(message.bookmarks_mm_size()) > render::maxOverviewBookmarks)
         return refuse("there are too many bookmarks", "overview");
     for (const protocol::Vec3& bookmark : message.bookmarks_mm()) {
-        const auto position = positionFrom(bookmark);
-        if (!position) return tl::make_unexpected(position.error());
-        view.bookmarksMm.push_back(*position);
+        const auto position = TRY(positionFrom(bookmark));
+        view.bookmarksMm.push_back(position);
     }
     view.path = !message.hide_path();
     view.body = !message.hide_body();
-    if (const auto checked = render::checkOverview(view); !checked)
-        return tl::make_unexpected(checked.error());
+    TRY(render::checkOverview(view));
     return view;
 }
 
@@ -116,12 +108,11 @@ Result<glm::dvec2> flatPointFrom(const protocol::FlatPoint& message) {
 }
 
 Result<FlatWindow> flatWindowFrom(const protocol::SetFlat& message) {
-    const auto center = flatPointFrom(message.center());
-    if (!center) return tl::make_unexpected(center.error());
+    const auto center = TRY(flatPointFrom(message.center()));
     const double scale = message.pixels_per_circumference();
     if (!(scale >= minPixelsPerCircumference && scale <= maxPixelsPerCircumference))
         return refuse("a circumference does not have 16 to 65536 pixels", "flat");
-    return FlatWindow{{center->x - std::floor(center->x), center->y}, scale};
+    return FlatWindow{{center.x - std::floor(center.x), center.y}, scale};
 }
 
 Result<void> checkView(protocol::View view) {
@@ -152,11 +143,9 @@ Result<WallPaintChoice> paintChoiceFrom(const protocol::SetWallPaint& message) {
 
 Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
                                           const std::string& caseName, const std::string& scan) {
-    const auto position = positionFrom(message.position_mm());
-    if (!position) return tl::make_unexpected(position.error());
-    const render::Camera camera{*position, vectorFrom(message.forward()), vectorFrom(message.up())};
-    if (const auto checked = render::checkCamera(camera); !checked)
-        return tl::make_unexpected(checked.error());
+    const auto position = TRY(positionFrom(message.position_mm()));
+    const render::Camera camera{position, vectorFrom(message.forward()), vectorFrom(message.up())};
+    TRY(render::checkCamera(camera));
     if (!(std::abs(message.arc_mm()) <= maxCoordinateMm))
         return refuse("the arc is not a number within a kilometre", "bookmark");
     const std::string& note = message.note();

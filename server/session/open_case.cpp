@@ -7,37 +7,31 @@
 namespace haustra::session {
 
 Result<CaseFiles> readCase(const store::Case& source) {
-    const auto products = source.products();
-    if (!products) return tl::make_unexpected(products.error());
+    const auto products = TRY(source.products());
 
     CaseFiles files;
     files.facts.name = source.name();
-    const auto scan = source.scan();
-    if (!scan) return tl::make_unexpected(scan.error());
-    if (*scan) files.facts.scan = (*scan)->key.hex;
-    auto ct = source.readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    files.ct = std::move(*ct);
+    const auto scan = TRY(source.scan());
+    if (scan) files.facts.scan = scan->key.hex;
+    auto ct = TRY(source.readVolume<std::int16_t>("ct"));
+    files.ct = std::move(ct);
     files.facts.grid = files.ct.grid();
     if (const auto attributes = source.attributes("ct")) {
         const auto position = attributes->find("position");
         if (position != attributes->end())
             files.facts.position = patientPositionFromString(position->second);
     }
-    for (const store::ProductEntry& entry : *products) {
+    for (const store::ProductEntry& entry : products) {
         if (entry.product == "cleansed") {
-            auto cleansed = source.readVolume<std::int16_t>("cleansed");
-            if (!cleansed) return tl::make_unexpected(cleansed.error());
-            files.cleansed = std::move(*cleansed);
+            auto cleansed = TRY(source.readVolume<std::int16_t>("cleansed"));
+            files.cleansed = std::move(cleansed);
             files.facts.cleansed = true;
         } else if (entry.product == "centerline") {
-            auto centerline = source.readCenterline();
-            if (!centerline) return tl::make_unexpected(centerline.error());
-            files.facts.centerline = std::move(*centerline);
+            auto centerline = TRY(source.readCenterline());
+            files.facts.centerline = std::move(centerline);
         } else if (entry.product == "quality") {
-            auto trust = store::readTrust(source);
-            if (!trust) return tl::make_unexpected(trust.error());
-            files.facts.trust = std::move(*trust);
+            auto trust = TRY(store::readTrust(source));
+            files.facts.trust = std::move(trust);
         } else if (entry.product == "flatmap") {
             files.flattened = true;
         } else if (entry.product == "surface") {
@@ -51,24 +45,21 @@ Result<CaseFiles> readCase(const store::Case& source) {
 }
 
 Result<std::shared_ptr<const TriMesh>> readSurface(const store::Case& source) {
-    auto mesh = source.readMesh("surface");
-    if (!mesh) return tl::make_unexpected(mesh.error());
-    return std::make_shared<const TriMesh>(std::move(*mesh));
+    auto mesh = TRY(source.readMesh("surface"));
+    return std::make_shared<const TriMesh>(std::move(mesh));
 }
 
 Result<std::shared_ptr<const Wall>> readWall(const store::Case& source) {
-    auto map = source.readFlatMap();
-    if (!map) return tl::make_unexpected(map.error());
+    auto map = TRY(source.readFlatMap());
     std::vector<std::uint8_t> bridged;
     if (source.find("lumen")) {
-        const auto lumen = source.readVolume<std::uint8_t>("lumen");
-        if (!lumen) return tl::make_unexpected(lumen.error());
-        bridged = bridgedTriangles(map->surface, *lumen);
-        if (!store::isWhole(lumen->voxels().data()))
+        const auto lumen = TRY(source.readVolume<std::uint8_t>("lumen"));
+        bridged = bridgedTriangles(map.surface, lumen);
+        if (!store::isWhole(lumen.voxels().data()))
             return fail(ErrorKind::io, "product lumen was cut short, or its disk fails",
                         source.name());
     }
-    return makeWall(std::make_shared<const FlatMap>(std::move(*map)), std::move(bridged));
+    return makeWall(std::make_shared<const FlatMap>(std::move(map)), std::move(bridged));
 }
 
 }  // namespace haustra::session

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <spdlog/spdlog.h>
+
 namespace haustra::session {
 
 PictureStream::PictureStream(SessionId session, asio::any_io_executor io, RenderThread& renderer,
@@ -44,12 +46,12 @@ Result<void> PictureStream::takeSequence(std::uint64_t sequence) {
 
 template <class Input>
 Result<void> PictureStream::input(const Input& message) {
-    if (auto taken = takeSequence(message.sequence()); !taken) return taken;
+    TRY(takeSequence(message.sequence()));
     if (message.viewport() >= slots_.size())
         return fail(ErrorKind::badInput, "viewports have numbers below 8", "viewport");
     Slot& slot = slots_[message.viewport()];
     if (!std::is_same_v<Input, protocol::SetViewport> && !slot.viewport.isOpen())
-        return fail(ErrorKind::unsupported, "the viewport is not open", "viewport");
+        return fail(ErrorKind::wrongState, "the viewport is not open", "viewport");
     if constexpr (std::is_same_v<Input, protocol::SetSlice> ||
                   std::is_same_v<Input, protocol::SetOblique>) {
         if (message.cleansed() && !(case_ && case_->cleansed))
@@ -81,13 +83,12 @@ template Result<void> PictureStream::input(const protocol::SetWindowLevel&);
 template Result<void> PictureStream::input(const protocol::SetTransferFunction&);
 
 Result<void> PictureStream::input(const protocol::SetWallPaint& message) {
-    if (auto taken = takeSequence(message.sequence()); !taken) return taken;
+    TRY(takeSequence(message.sequence()));
     if (!reading_)
         return fail(ErrorKind::badInput, "the case has not been flattened: its wall has no paint",
                     "wall paint");
-    const auto choice = paintChoiceFrom(message);
-    if (!choice) return tl::make_unexpected(choice.error());
-    reading_->choose(*choice);
+    const auto choice = TRY(paintChoiceFrom(message));
+    reading_->choose(choice);
     for (std::size_t id = 0; id < slots_.size(); ++id) {
         Slot& slot = slots_[id];
         if (!slot.viewport.isOpen() || !slot.viewport.showsWall()) continue;

@@ -52,7 +52,7 @@ public:
     /// SetViewport, SetCamera, SetSlice, SetOblique, SetOverview, SetFlat, SetWindowLevel,
     /// SetTransferFunction. Fails
     /// (badInput) and changes nothing but the sequence where the message is out of bounds,
-    /// (unsupported) where the viewport is not open.
+    /// (wrongState) where the viewport is not open.
     template <class Input>
     Result<void> input(const Input& message);
     /// Likewise, for all views of the wall.

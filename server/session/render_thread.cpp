@@ -11,8 +11,6 @@
 #include <optional>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 namespace haustra::session {
 namespace {
 
@@ -85,7 +83,7 @@ struct RenderThread::Drawing {
                     owedMs -= msBetween(start, Clock::now());
                 }
             } catch (const std::exception& error) {
-                spdlog::error("the render thread goes on after a fault: {}", error.what());
+                logFault("render", error);
             }
             turn.reset();  // may be a case's last user, so not under the lock
             lock.lock();
@@ -98,7 +96,7 @@ struct RenderThread::Drawing {
         render::CaseRenderer* const renderer = cases.rendererOf(frame.job.of);
         auto drawn = guarded([&]() -> Result<void> {
             if (!renderer) return fail(ErrorKind::device, "the case is not on the GPU", "render");
-            if (auto done = draw(*renderer, frame, turn.band); !done) return done;
+            TRY(draw(*renderer, frame, turn.band));
             return cases.checkWhole(frame.job.of);
         });
         if (auto of = cases.takeLost(frame.job.of)) lost(std::move(of));
@@ -147,9 +145,8 @@ Result<std::unique_ptr<RenderThread>> RenderThread::start(DrawingOptions options
             started.set_value(made.renderer());
             drawing.run();
         });
-    auto name = rendererName.get();
-    if (!name) return tl::make_unexpected(name.error());
-    self->renderer_ = std::move(*name);
+    auto name = TRY(rendererName.get());
+    self->renderer_ = std::move(name);
     return self;
 }
 

@@ -24,7 +24,7 @@ ErrorReport::Code codeOf(ErrorKind kind) {
             return ErrorReport::BAD_VALUE;
         case ErrorKind::notFound:
             return ErrorReport::NO_SUCH_CASE;
-        case ErrorKind::unsupported:
+        case ErrorKind::wrongState:
             return ErrorReport::BAD_STATE;
         default:
             return ErrorReport::INTERNAL;

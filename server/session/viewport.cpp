@@ -34,7 +34,7 @@ Result<void> Viewport::apply(const protocol::SetViewport& message) {
         *this = Viewport{};
         return {};
     }
-    if (auto known = checkView(message.view()); !known) return known;
+    TRY(checkView(message.view()));
     constexpr std::uint32_t low = minViewportPixels, high = protocol::maxViewportPixels;
     if (message.width() < low || message.height() < low || message.width() > high ||
         message.height() > high)
@@ -49,20 +49,18 @@ Result<void> Viewport::apply(const protocol::SetViewport& message) {
 
 Result<void> Viewport::apply(const protocol::SetCamera& message) {
     if (view_ != protocol::ENDOSCOPIC) return refuse("only an endoscopic view takes a camera");
-    const auto camera = cameraFrom(message);
-    if (!camera) return tl::make_unexpected(camera.error());
-    camera_ = *camera;
+    const auto camera = TRY(cameraFrom(message));
+    camera_ = camera;
     moving_ = message.moving();
     return {};
 }
 
 Result<void> Viewport::apply(const protocol::SetSlice& message) {
     if (!isSlice(view_)) return refuse("this view takes no slice");
-    const auto position = positionFrom(message.position_mm());
-    if (!position) return tl::make_unexpected(position.error());
+    const auto position = TRY(positionFrom(message.position_mm()));
     if (!(message.zoom() >= 1.0 && message.zoom() <= 64.0))
         return refuse("the zoom is not within 1 to 64");
-    slicePositionMm_ = *position;
+    slicePositionMm_ = position;
     zoom_ = message.zoom();
     scan_ = message.cleansed() ? render::Scan::cleansed : render::Scan::original;
     moving_ = message.moving();
@@ -71,18 +69,16 @@ Result<void> Viewport::apply(const protocol::SetSlice& message) {
 
 Result<void> Viewport::apply(const protocol::SetOblique& message) {
     if (view_ != protocol::OBLIQUE) return refuse("only an oblique view takes an oblique slice");
-    auto oblique = obliqueFrom(message);
-    if (!oblique) return tl::make_unexpected(oblique.error());
-    oblique_ = *oblique;
+    auto oblique = TRY(obliqueFrom(message));
+    oblique_ = oblique;
     moving_ = message.moving();
     return {};
 }
 
 Result<void> Viewport::apply(const protocol::SetOverview& message) {
     if (view_ != protocol::OVERVIEW) return refuse("only an overview shows the colon from outside");
-    auto overview = overviewFrom(message);
-    if (!overview) return tl::make_unexpected(overview.error());
-    overview_ = std::move(*overview);
+    auto overview = TRY(overviewFrom(message));
+    overview_ = std::move(overview);
     moving_ = message.moving();
     return {};
 }
@@ -90,9 +86,8 @@ Result<void> Viewport::apply(const protocol::SetOverview& message) {
 Result<void> Viewport::apply(const protocol::SetFlat& message) {
     if (!isFlat(view_)) return refuse("this view shows no strip");
     if (view_ == protocol::FLATTENED_ZOOM) {
-        const auto window = flatWindowFrom(message);
-        if (!window) return tl::make_unexpected(window.error());
-        flat_ = *window;
+        const auto window = TRY(flatWindowFrom(message));
+        flat_ = window;
     } else {
         flat_ = FlatWindow{};
     }
@@ -114,9 +109,8 @@ Result<void> Viewport::apply(const protocol::SetTransferFunction& message,
                              const render::PresetLibrary& presets) {
     if (isSlice(view_) || view_ == protocol::OBLIQUE)
         return refuse("a slice takes no transfer function");
-    auto optics = opticsFrom(message, presets);
-    if (!optics) return tl::make_unexpected(optics.error());
-    optics_ = std::move(*optics);
+    auto optics = TRY(opticsFrom(message, presets));
+    optics_ = std::move(optics);
     return {};
 }
 

@@ -84,12 +84,10 @@ Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map,
     const double circumferenceMm = std::sqrt(area / map->height);
     std::vector<WallRow> rows = rowsOf(*map);
     FlatLookup lookup(map);
-    auto sight = render::WallSight::of(map, std::move(bridged));
-    if (!sight) return tl::make_unexpected(sight.error());
-    auto painter = render::StripPainter::of(std::move(*sight));
-    if (!painter) return tl::make_unexpected(painter.error());
+    auto sight = TRY(render::WallSight::of(map, std::move(bridged)));
+    auto painter = TRY(render::StripPainter::of(std::move(sight)));
     return std::make_shared<const Wall>(Wall{std::move(map), std::move(lookup), circumferenceMm,
-                                             std::move(rows), std::move(*painter)});
+                                             std::move(rows), std::move(painter)});
 }
 
 Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question) {

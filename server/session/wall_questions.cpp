@@ -21,17 +21,15 @@ void fill(protocol::Vec3& message, glm::dvec3 v) {
 }  // namespace
 
 Result<WallQuestion> questionFrom(const protocol::LocateFlat& message, const Wall& wall) {
-    const auto flat = flatPointFrom(message.flat());
-    if (!flat) return tl::make_unexpected(flat.error());
-    if (!(flat->y >= 0.0 && flat->y <= wall.map->height))
+    const auto flat = TRY(flatPointFrom(message.flat()));
+    if (!(flat.y >= 0.0 && flat.y <= wall.map->height))
         return fail(ErrorKind::badInput, "the place lies beyond the strip", "flat");
-    return LocateInStrip{*flat};
+    return LocateInStrip{flat};
 }
 
 Result<WallQuestion> questionFrom(const protocol::LocatePoint& message, const Wall&) {
-    const auto position = positionFrom(message.position_mm());
-    if (!position) return tl::make_unexpected(position.error());
-    return LocateInSpace{*position};
+    const auto position = TRY(positionFrom(message.position_mm()));
+    return LocateInSpace{position};
 }
 
 Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wall& wall) {
@@ -42,11 +40,10 @@ Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wa
         return refuse("a line has 2, an outline 3, and both at most " +
                       std::to_string(maxMeasuredPoints) + " points");
     for (const protocol::FlatPoint& corner : message.points()) {
-        const auto point = flatPointFrom(corner);
-        if (!point) return tl::make_unexpected(point.error());
-        if (std::abs(point->x) > maxMeasuredTurns)
+        const auto point = TRY(flatPointFrom(corner));
+        if (std::abs(point.x) > maxMeasuredTurns)
             return refuse("a point lies more than 32 turns away");
-        question.points.push_back({point->x, std::clamp(point->y, 0.0, wall.map->height)});
+        question.points.push_back({point.x, std::clamp(point.y, 0.0, wall.map->height)});
     }
     const auto& points = question.points;
     double legs = question.closed ? glm::distance(points.front(), points.back()) : 0.0;

@@ -10,6 +10,7 @@
 #include <asio/io_context.hpp>
 #include <gtest/gtest.h>
 #include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 namespace haustra::session {
 namespace {

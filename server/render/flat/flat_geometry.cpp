@@ -74,7 +74,7 @@ std::vector<shaders::FlatEye> eyes(const std::vector<FlatCamera>& cameras, glm::
 
 Result<std::shared_ptr<const FlatGeometry>> FlatGeometry::of(const FlatMap& map,
                                                              glm::dvec3 originMm) {
-    if (Result<void> sound = checkFlatMap(map); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkFlatMap(map));
     auto made = std::make_shared<FlatGeometry>();
     made->originMm_ = originMm;
     made->height_ = map.height;

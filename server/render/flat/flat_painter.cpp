@@ -9,25 +9,21 @@
 namespace haustra::render {
 
 Result<FlatPainter> FlatPainter::create(const FlatMap& map, const Grid& grid) {
-    const auto geometry = FlatGeometry::of(map, grid);
-    if (!geometry) return tl::make_unexpected(geometry.error());
-    auto surface = FlatSurface::upload(*geometry);
-    if (!surface) return tl::make_unexpected(surface.error());
-    return create(std::make_shared<const FlatSurface>(std::move(*surface)));
+    const auto geometry = TRY(FlatGeometry::of(map, grid));
+    auto surface = TRY(FlatSurface::upload(geometry));
+    return create(std::make_shared<const FlatSurface>(std::move(surface)));
 }
 
 Result<FlatPainter> FlatPainter::create(std::shared_ptr<const FlatSurface> surface) {
     using shaders::shaderSource;
     const auto structs = shaderSource("uniforms.h"), flatMap = shaderSource("flat_map.glsl");
-    auto triangles = gpu::RasterProgram::create(
+    auto triangles = TRY(gpu::RasterProgram::create(
         "flat_triangles", {structs, flatMap, shaderSource("flat_triangles.vert")},
-        {structs, flatMap, shaderSource("flat_triangles.frag")});
-    if (!triangles) return tl::make_unexpected(triangles.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::FlatUniforms));
-    if (!block) return tl::make_unexpected(block.error());
-    FlatPainter made(std::move(surface), std::move(*triangles), std::move(*block));
+        {structs, flatMap, shaderSource("flat_triangles.frag")}));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::FlatUniforms)));
+    FlatPainter made(std::move(surface), std::move(triangles), std::move(block));
     // A driver that refuses the text is found here, not in a reader's session.
-    if (auto rays = made.rays_.program({}); !rays) return tl::make_unexpected(rays.error());
+    TRY(made.rays_.program({}));
     return made;
 }
 
@@ -38,10 +34,9 @@ FlatPainter::FlatPainter(std::shared_ptr<const FlatSurface> surface, gpu::Raster
 Result<void> FlatPainter::findTriangles(const FlatWindow& window, const Band& band) {
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     if (!triangleOfPixel_ || glm::ivec2(triangleOfPixel_->size()) != size) {
-        auto made = gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rg32i,
-                                         gpu::Filter::nearest, "triangles of the picture");
-        if (!made) return tl::make_unexpected(made.error());
-        triangleOfPixel_ = std::move(*made);
+        auto made = TRY(gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rg32i,
+                                             gpu::Filter::nearest, "triangles of the picture"));
+        triangleOfPixel_ = std::move(made);
     }
     const FlatLattice lattice = surface_->geometry().lattice(window, band);
     uniforms_ = lattice.uniforms;
@@ -67,8 +62,7 @@ std::vector<int> FlatPainter::triangleOfPixel() const {
 
 Result<void> FlatPainter::castRays(const MarchVariant& variant, double stepMm,
                                    const gpu::Texture& picture) {
-    const auto rays = rays_.program(variant);
-    if (!rays) return tl::make_unexpected(rays.error());
+    const auto rays = TRY(rays_.program(variant));
     uniforms_.ray = glm::vec4(std::ceil(flatRay.backMm / stepMm), flatRay.riseHu / storedRange,
                               std::ceil(flatRay.depthMm / stepMm), 0.0);
     block_.write(uniforms_);
@@ -76,7 +70,7 @@ Result<void> FlatPainter::castRays(const MarchVariant& variant, double stepMm,
     surface_->bind();
     triangleOfPixel_->bind(shaders::triangleUnit);
     picture.bindImage(shaders::pictureImage);
-    (*rays)->dispatch(glm::ivec2(picture.size()));
+    rays->dispatch(glm::ivec2(picture.size()));
     return {};
 }
 

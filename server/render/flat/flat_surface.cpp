@@ -9,17 +9,14 @@ namespace haustra::render {
 
 Result<FlatSurface> FlatSurface::upload(std::shared_ptr<const FlatGeometry> geometry) {
     using gpu::StorageBuffer;
-    auto vertices = StorageBuffer::create(
-        std::span<const shaders::FlatVertex>(geometry->vertices()), "flat map");
-    if (!vertices) return tl::make_unexpected(vertices.error());
+    auto vertices = TRY(StorageBuffer::create(
+        std::span<const shaders::FlatVertex>(geometry->vertices()), "flat map"));
     auto triangles =
-        StorageBuffer::create(std::span<const glm::ivec3>(geometry->triangles()), "flat map");
-    if (!triangles) return tl::make_unexpected(triangles.error());
-    auto cameras =
-        StorageBuffer::create(std::span<const shaders::FlatEye>(geometry->cameras()), "flat map");
-    if (!cameras) return tl::make_unexpected(cameras.error());
-    return FlatSurface(std::move(geometry), std::move(*vertices), std::move(*triangles),
-                       std::move(*cameras));
+        TRY(StorageBuffer::create(std::span<const glm::ivec3>(geometry->triangles()), "flat map"));
+    auto cameras = TRY(
+        StorageBuffer::create(std::span<const shaders::FlatEye>(geometry->cameras()), "flat map"));
+    return FlatSurface(std::move(geometry), std::move(vertices), std::move(triangles),
+                       std::move(cameras));
 }
 
 FlatSurface::FlatSurface(std::shared_ptr<const FlatGeometry> geometry, gpu::StorageBuffer vertices,

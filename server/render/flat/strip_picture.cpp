@@ -32,29 +32,27 @@ Result<glm::ivec2> stripPictureSize(const StripPicture& picture, double height) 
 
 Result<void> drawStrip(CaseRenderer& renderer, const StripPicture& picture, double height,
                        const std::function<Result<void>(const Image&)>& take) {
-    const Result<glm::ivec2> size = stripPictureSize(picture, height);
-    if (!size) return tl::make_unexpected(size.error());
+    const auto size = TRY(stripPictureSize(picture, height));
     const double pixels = picture.pixelsPerCircumference;
     // The flat coordinates of the picture's top left corner, in pixels.
-    const glm::dvec2 edge(picture.pixelsPerCircumference + marginPixels(picture), size->y);
+    const glm::dvec2 edge(picture.pixelsPerCircumference + marginPixels(picture), size.y);
     FlatView view{{}, picture.optics, picture.march, picture.paint};
     view.window.pixelsPerUnit = pixels;
-    const int bandRows = std::clamp(bandPixels / size->x, 1, mostBandRows);
-    for (int top = 0; top < size->y; top += bandRows) {
-        Image band{size->x, std::min(bandRows, size->y - top), {}};
+    const int bandRows = std::clamp(bandPixels / size.x, 1, mostBandRows);
+    for (int top = 0; top < size.y; top += bandRows) {
+        Image band{size.x, std::min(bandRows, size.y - top), {}};
         band.rgb.resize(3 * std::size_t(band.width) * std::size_t(band.height));
-        for (int left = 0; left < size->x; left += maxPictureSide) {
-            const int width = std::min(maxPictureSide, size->x - left);
+        for (int left = 0; left < size.x; left += maxPictureSide) {
+            const int width = std::min(maxPictureSide, size.x - left);
             view.window.center =
                 (edge - glm::dvec2(left + 0.5 * width, top + 0.5 * band.height)) / pixels;
-            const Result<Image> tile = renderer.render(view, width, band.height);
-            if (!tile) return tl::make_unexpected(tile.error());
+            const auto tile = TRY(renderer.render(view, width, band.height));
             for (int y = 0; y < band.height; ++y)
                 std::copy_n(
-                    &tile->rgb[3 * std::size_t(width) * std::size_t(y)], 3 * width,
+                    &tile.rgb[3 * std::size_t(width) * std::size_t(y)], 3 * width,
                     &band.rgb[3 * (std::size_t(band.width) * std::size_t(y) + std::size_t(left))]);
         }
-        if (Result<void> taken = take(band); !taken) return taken;
+        TRY(take(band));
     }
     return {};
 }

@@ -18,24 +18,20 @@ Result<std::unique_ptr<GlPictures>> GlPictures::create(std::shared_ptr<GlScene> 
     using shaders::shaderSource;
     std::optional<gpu::Texture> ctTexture;
     if (ct.voxels().data() != scene->scene().volume.voxels().data()) {
-        auto texture = uploadVolume(ct, threads, "scan on the GPU");
-        if (!texture) return tl::make_unexpected(texture.error());
-        ctTexture = std::move(*texture);
+        auto texture = TRY(uploadVolume(ct, threads, "scan on the GPU"));
+        ctTexture = std::move(texture);
     }
-    auto slice = gpu::ComputeProgram::create(
-        "slice.comp", {shaderSource("uniforms.h"), shaderSource("slice.comp")});
-    if (!slice) return tl::make_unexpected(slice.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::SliceUniforms));
-    if (!block) return tl::make_unexpected(block.error());
+    auto slice = TRY(gpu::ComputeProgram::create(
+        "slice.comp", {shaderSource("uniforms.h"), shaderSource("slice.comp")}));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::SliceUniforms)));
     std::optional<FlatPainter> flat;
     if (surface) {
-        auto painter = FlatPainter::create(std::move(surface));
-        if (!painter) return tl::make_unexpected(painter.error());
-        flat = std::move(*painter);
+        auto painter = TRY(FlatPainter::create(std::move(surface)));
+        flat = std::move(painter);
     }
     return std::unique_ptr<GlPictures>(new GlPictures(std::move(scene), std::move(ctTexture),
-                                                      std::move(flat), std::move(*slice),
-                                                      std::move(*block)));
+                                                      std::move(flat), std::move(slice),
+                                                      std::move(block)));
 }
 
 GlPictures::GlPictures(std::shared_ptr<GlScene> scene, std::optional<gpu::Texture> ct,
@@ -49,17 +45,15 @@ GlPictures::GlPictures(std::shared_ptr<GlScene> scene, std::optional<gpu::Textur
 
 Result<void> GlPictures::makePicture(glm::ivec2 size) {
     if (picture_ && glm::ivec2(picture_->size()) == size) return {};
-    auto made = gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rgba8, gpu::Filter::nearest,
-                                     "picture");
-    if (!made) return tl::make_unexpected(made.error());
-    picture_ = std::move(*made);
+    auto made = TRY(gpu::Texture::create(2, {size, 1}, gpu::TexelFormat::rgba8,
+                                         gpu::Filter::nearest, "picture"));
+    picture_ = std::move(made);
     return {};
 }
 
 Result<Image> GlPictures::readPicture(int errorsBefore) {
     Image image = blankImage(picture_->size());
-    if (auto read = readBack(scene_->context(), *picture_, errorsBefore, 0, image); !read)
-        return tl::make_unexpected(read.error());
+    TRY(readBack(scene_->context(), *picture_, errorsBefore, 0, image));
     return image;
 }
 
@@ -67,7 +61,7 @@ Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLev
                                 Scan scan, const Band& band) {
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     const int errorsBefore = scene_->context().errorCount();
-    if (auto made = makePicture(size); !made) return tl::make_unexpected(made.error());
+    TRY(makePicture(size));
     const Grid& grid = scene_->scene().grid();
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     const glm::dvec3 voxels(grid.size);
@@ -94,19 +88,16 @@ Result<Image> GlPictures::flat(const FlatView& view, const Band& band) {
     if (!flat_) return fail(ErrorKind::badInput, "the case has no flat map", "flattened view");
     const int errorsBefore = scene_->context().errorCount();
     const glm::ivec2 size(band.pictureSize.x, band.rows);
-    const auto classified = scene_->classification(view.optics, view.march);
-    if (!classified) return tl::make_unexpected(classified.error());
-    if (auto made = makePicture(size); !made) return tl::make_unexpected(made.error());
+    const auto classified = TRY(scene_->classification(view.optics, view.march));
+    TRY(makePicture(size));
     const Scene& scene = scene_->scene();
-    scene_->bind(marchUniforms(view.optics, view.march, scene.grid(), (*classified)->table(),
+    scene_->bind(marchUniforms(view.optics, view.march, scene.grid(), classified->table(),
                                scene.ranges.size, size),
-                 **classified);
-    if (auto found = flat_->findTriangles(view.window, band); !found)
-        return tl::make_unexpected(found.error());
+                 *classified);
+    TRY(flat_->findTriangles(view.window, band));
     const MarchVariant variant =
         MarchVariant::of(view.optics, scene_->hasGradients(view.optics), false);
-    if (auto cast = flat_->castRays(variant, stepMm(view.march, scene.grid()), *picture_); !cast)
-        return tl::make_unexpected(cast.error());
+    TRY(flat_->castRays(variant, stepMm(view.march, scene.grid()), *picture_));
     return readPicture(errorsBefore);
 }
 

@@ -15,9 +15,8 @@ namespace haustra::render {
 Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
                                   const char* what) {
     const glm::ivec3 size = volume.grid().size;
-    Result<gpu::Texture> texture =
-        gpu::Texture::create(3, size, gpu::TexelFormat::r16, gpu::Filter::linear, what);
-    if (!texture) return texture;
+    auto texture =
+        TRY(gpu::Texture::create(3, size, gpu::TexelFormat::r16, gpu::Filter::linear, what));
     // By slabs, so that the copy in the texture's encoding stays small.
     const std::size_t slice = std::size_t(size.x) * std::size_t(size.y);
     const int slab = std::max(1, int((std::size_t(16) << 20) / slice));
@@ -30,7 +29,7 @@ Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int thread
             for (std::size_t i = begin; i < end; ++i)
                 encoded[i] = encodeHu(from[i]);
         });
-        texture->uploadSlices(z, count, encoded.data());
+        texture.uploadSlices(z, count, encoded.data());
     }
     return texture;
 }
@@ -38,13 +37,11 @@ Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int thread
 Result<std::unique_ptr<GlScene>> GlScene::upload(gpu::Context& context,
                                                  std::shared_ptr<const Scene> scene, int threads,
                                                  std::size_t gradientBudgetBytes) {
-    auto volume = uploadVolume(scene->volume, threads, "scan on the GPU");
-    if (!volume) return tl::make_unexpected(volume.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
-    if (!block) return tl::make_unexpected(block.error());
+    auto volume = TRY(uploadVolume(scene->volume, threads, "scan on the GPU"));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms)));
     return std::unique_ptr<GlScene>(new GlScene(context, std::move(scene), threads,
-                                                gradientBudgetBytes, std::move(*volume),
-                                                std::move(*block)));
+                                                gradientBudgetBytes, std::move(volume),
+                                                std::move(block)));
 }
 
 GlScene::GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int threads,
@@ -59,17 +56,16 @@ GlScene::GlScene(gpu::Context& context, std::shared_ptr<const Scene> scene, int 
 
 Result<const Classification*> GlScene::classification(const Optics& optics,
                                                       const MarchOptions& march) {
-    if (auto sound = checkOptics(optics); !sound) return tl::make_unexpected(sound.error());
-    if (auto sound = checkMarch(march, optics); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkOptics(optics));
+    TRY(checkMarch(march, optics));
     const double step = stepMm(march, scene_->grid());
     const bool leaping = march.emptySpaceLeaping;
     if (const Classification* known = recent_.find(
             [&](const Classification& one) { return one.isFor(optics, step, leaping); }))
         return known;
     recent_.makeRoom();
-    auto made = Classification::create(optics, step, leaping, scene_->ranges, threads_);
-    if (!made) return tl::make_unexpected(made.error());
-    return recent_.keep(std::move(*made));
+    auto made = TRY(Classification::create(optics, step, leaping, scene_->ranges, threads_));
+    return recent_.keep(std::move(made));
 }
 
 void GlScene::bind(const shaders::MarchUniforms& uniforms, const Classification& classified) {
@@ -96,25 +92,22 @@ bool GlScene::hasGradients(const Optics& optics) {
 
 Result<gpu::Texture> GlScene::makeGradients() {
     const glm::ivec3 size = scene_->grid().size;
-    auto program =
-        gpu::ComputeProgram::create("gradients.comp", {shaders::shaderSource("gradients.comp")});
-    if (!program) return tl::make_unexpected(program.error());
-    auto made =
-        gpu::Texture::create(3, size, gpu::TexelFormat::rgba16f, gpu::Filter::linear, "gradients");
-    if (!made) return made;
+    auto program = TRY(
+        gpu::ComputeProgram::create("gradients.comp", {shaders::shaderSource("gradients.comp")}));
+    auto made = TRY(
+        gpu::Texture::create(3, size, gpu::TexelFormat::rgba16f, gpu::Filter::linear, "gradients"));
     volume_.bind(shaders::volumeUnit);
-    made->bindImage(shaders::gradientImage);
-    program->dispatch({size.x, size.y});
+    made.bindImage(shaders::gradientImage);
+    program.dispatch({size.x, size.y});
     return made;
 }
 
 Result<void> GlScene::bindBackdrop(const std::shared_ptr<const Backdrop>& backdrop) {
     if (backdrop != backdrop_) {
         if (!backdropTexture_ || glm::ivec2(backdropTexture_->size()) != backdrop->size) {
-            auto made = gpu::Texture::create(2, {backdrop->size, 1}, gpu::TexelFormat::rgba32f,
-                                             gpu::Filter::nearest, "backdrop");
-            if (!made) return tl::make_unexpected(made.error());
-            backdropTexture_ = std::move(*made);
+            auto made = TRY(gpu::Texture::create(2, {backdrop->size, 1}, gpu::TexelFormat::rgba32f,
+                                                 gpu::Filter::nearest, "backdrop"));
+            backdropTexture_ = std::move(made);
         }
         backdropTexture_->upload(backdrop->pixels.data());
         backdrop_ = backdrop;

@@ -36,12 +36,11 @@ Result<const gpu::ComputeProgram*> MarchPrograms::program(const MarchVariant& va
         if (known == variant) return program.get();
     using shaders::shaderSource;
     const std::string defines = variant.defines();
-    auto program = gpu::ComputeProgram::create(
-        entry_.c_str(),
-        {defines, shaderSource("uniforms.h"), shaderSource("optics.glsl"),
-         shaderSource("march.glsl"), shaderSource("picture.glsl"), between_, shaderSource(entry_)});
-    if (!program) return tl::make_unexpected(program.error());
-    made_.emplace_back(variant, std::make_unique<gpu::ComputeProgram>(std::move(*program)));
+    auto program = TRY(gpu::ComputeProgram::create(
+        entry_.c_str(), {defines, shaderSource("uniforms.h"), shaderSource("optics.glsl"),
+                         shaderSource("march.glsl"), shaderSource("picture.glsl"), between_,
+                         shaderSource(entry_)}));
+    made_.emplace_back(variant, std::make_unique<gpu::ComputeProgram>(std::move(program)));
     return made_.back().second.get();
 }
 

@@ -11,15 +11,14 @@ namespace haustra::render {
 Result<std::unique_ptr<SinglePassRaycaster>> SinglePassRaycaster::create(
     std::shared_ptr<GlScene> scene) {
     using shaders::shaderSource;
-    auto cone = gpu::ComputeProgram::create(
+    auto cone = TRY(gpu::ComputeProgram::create(
         "cone_start.comp",
         {shaderSource("uniforms.h"), shaderSource("optics.glsl"), shaderSource("march.glsl"),
-         shaderSource("picture.glsl"), shaderSource("cone_start.comp")});
-    if (!cone) return tl::make_unexpected(cone.error());
+         shaderSource("picture.glsl"), shaderSource("cone_start.comp")}));
     std::unique_ptr<SinglePassRaycaster> made(
-        new SinglePassRaycaster(std::move(scene), std::move(*cone)));
+        new SinglePassRaycaster(std::move(scene), std::move(cone)));
     // A driver that refuses the text is found here, not in a reader's session.
-    if (auto cast = made->cast_.program({}); !cast) return tl::make_unexpected(cast.error());
+    TRY(made->cast_.program({}));
     return made;
 }
 
@@ -30,13 +29,12 @@ SinglePassRaycaster::SinglePassRaycaster(std::shared_ptr<GlScene> scene,
 Result<void> SinglePassRaycaster::makeTargets(glm::ivec2 size) {
     if (target_ && glm::ivec2(target_->size()) == size) return {};
     using gpu::Filter, gpu::Texture, gpu::TexelFormat;
-    auto target = Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
-    if (!target) return tl::make_unexpected(target.error());
-    auto starts = Texture::create(2, {(size + coneTile - 1) / coneTile, 1}, TexelFormat::r32f,
-                                  Filter::nearest, "cone pass");
-    if (!starts) return tl::make_unexpected(starts.error());
-    target_ = std::move(*target);
-    firstStep_ = std::move(*starts);
+    auto target =
+        TRY(Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture"));
+    auto starts = TRY(Texture::create(2, {(size + coneTile - 1) / coneTile, 1}, TexelFormat::r32f,
+                                      Filter::nearest, "cone pass"));
+    target_ = std::move(target);
+    firstStep_ = std::move(starts);
     return {};
 }
 
@@ -51,24 +49,22 @@ Result<void> SinglePassRaycaster::renderFrom(const gpu::Texture& firstSteps, con
 
 Result<void> SinglePassRaycaster::cast(const gpu::Texture* firstSteps, const CameraView& view,
                                        const Band& band, Image& picture) {
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    TRY(checkBand(band, picture));
+    TRY(checkCameraView(view, band.pictureSize));
     const int errorsBefore = scene_->context().errorCount();
     const glm::ivec2 size(band.pictureSize.x, band.rows);
-    if (auto made = makeTargets(size); !made) return made;
-    const auto classified = scene_->classification(view.optics, view.march);
-    if (!classified) return tl::make_unexpected(classified.error());
+    TRY(makeTargets(size));
+    const auto classified = TRY(scene_->classification(view.optics, view.march));
     const Scene& scene = scene_->scene();
-    shaders::MarchUniforms uniforms = marchUniforms(view, scene.grid(), (*classified)->table(),
-                                                    scene.ranges.size, band.pictureSize);
+    shaders::MarchUniforms uniforms =
+        marchUniforms(view, scene.grid(), classified->table(), scene.ranges.size, band.pictureSize);
     uniforms.pictureSize.w = band.firstRow;
     if (firstSteps) uniforms.lastBlock.w = 1;
-    const auto rays = cast_.program(
-        MarchVariant::of(view.optics, scene_->hasGradients(view.optics), view.backdrop != nullptr));
-    if (!rays) return tl::make_unexpected(rays.error());
-    scene_->bind(uniforms, **classified);
+    const auto rays = TRY(cast_.program(MarchVariant::of(
+        view.optics, scene_->hasGradients(view.optics), view.backdrop != nullptr)));
+    scene_->bind(uniforms, *classified);
     if (view.backdrop) {
-        if (auto bound = scene_->bindBackdrop(view.backdrop); !bound) return bound;
+        TRY(scene_->bindBackdrop(view.backdrop));
     }
     timestamps_.restart();
     timestamps_.mark();
@@ -79,7 +75,7 @@ Result<void> SinglePassRaycaster::cast(const gpu::Texture* firstSteps, const Cam
     timestamps_.mark();
     (firstSteps ? *firstSteps : *firstStep_).bind(shaders::startUnit);
     target_->bindImage(shaders::pictureImage);
-    (*rays)->dispatch(size);
+    rays->dispatch(size);
     timestamps_.mark();
     return readBack(scene_->context(), *target_, errorsBefore, band.firstRow, picture);
 }

@@ -116,20 +116,16 @@ struct HybridRaycaster::Impl {
 Result<void> HybridRaycaster::Impl::makeTargets(glm::ivec2 size) {
     if (target && glm::ivec2(target->size()) == size) return {};
     using gpu::Filter, gpu::Texture, gpu::TexelFormat;
-    auto sums = Texture::create(2, {size, 1}, TexelFormat::rgba32f, Filter::nearest, "rays");
-    if (!sums) return tl::make_unexpected(sums.error());
-    auto made = Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
-    if (!made) return tl::make_unexpected(made.error());
-    auto memory = gpu::MappedBuffer::create(
-        sizeof(RaySpan) * std::size_t(size.x) * std::size_t(size.y), "ends of rays");
-    if (!memory) return tl::make_unexpected(memory.error());
+    auto sums = TRY(Texture::create(2, {size, 1}, TexelFormat::rgba32f, Filter::nearest, "rays"));
+    auto made = TRY(Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture"));
+    auto memory = TRY(gpu::MappedBuffer::create(
+        sizeof(RaySpan) * std::size_t(size.x) * std::size_t(size.y), "ends of rays"));
     const glm::ivec2 tiles = (size + RayTiles::tileSide - 1) / RayTiles::tileSide;
-    auto quads = QuadLists::create(tiles.x * tiles.y * RayTiles::quadsPerTile);
-    if (!quads) return tl::make_unexpected(quads.error());
-    rays = std::move(*sums);
-    target = std::move(*made);
-    spans = std::move(*memory);
-    lists = std::move(*quads);
+    auto quads = TRY(QuadLists::create(tiles.x * tiles.y * RayTiles::quadsPerTile));
+    rays = std::move(sums);
+    target = std::move(made);
+    spans = std::move(memory);
+    lists = std::move(quads);
     return {};
 }
 
@@ -204,7 +200,7 @@ Result<std::unique_ptr<HybridRaycaster>> HybridRaycaster::create(std::shared_ptr
         new HybridRaycaster(std::make_unique<Impl>(std::move(scene), options)));
     // A driver that refuses the text is found here, not in a reader's session.
     for (MarchPrograms* programs : {&made->impl_->slabs, &made->impl_->finish})
-        if (auto one = programs->program({}); !one) return tl::make_unexpected(one.error());
+        TRY(programs->program({}));
     return made;
 }
 
@@ -212,31 +208,28 @@ HybridRaycaster::HybridRaycaster(std::unique_ptr<Impl> impl) : impl_(std::move(i
 HybridRaycaster::~HybridRaycaster() = default;
 
 Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, Image& picture) {
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    TRY(checkBand(band, picture));
+    TRY(checkCameraView(view, band.pictureSize));
     Impl& my = *impl_;
     const int errorsBefore = my.scene->context().errorCount();
     const glm::ivec2 size(band.pictureSize.x, band.rows);
-    if (auto made = my.makeTargets(size); !made) return made;
-    const auto onGpu = my.scene->classification(view.optics, view.march);
-    if (!onGpu) return tl::make_unexpected(onGpu.error());
+    TRY(my.makeTargets(size));
+    const auto onGpu = TRY(my.scene->classification(view.optics, view.march));
     const Scene& scene = my.scene->scene();
-    const TransferTable& table = (*onGpu)->table();
+    const TransferTable& table = onGpu->table();
     const double step = stepMm(view.march, scene.grid());
     const Classified& classified = my.classify(view.optics, step, table);
     const MarchVariant variant = MarchVariant::of(view.optics, my.scene->hasGradients(view.optics),
                                                   view.backdrop != nullptr);
-    const auto slab = my.slabs.program(variant);
-    if (!slab) return tl::make_unexpected(slab.error());
-    const auto finish = my.finish.program(variant);
-    if (!finish) return tl::make_unexpected(finish.error());
+    const auto slab = TRY(my.slabs.program(variant));
+    const auto finish = TRY(my.finish.program(variant));
 
     shaders::MarchUniforms uniforms =
         marchUniforms(view, scene.grid(), table, scene.ranges.size, band.pictureSize);
     uniforms.pictureSize.w = band.firstRow;
-    my.scene->bind(uniforms, **onGpu);
+    my.scene->bind(uniforms, *onGpu);
     if (view.backdrop) {
-        if (auto bound = my.scene->bindBackdrop(view.backdrop); !bound) return bound;
+        TRY(my.scene->bindBackdrop(view.backdrop));
     }
     // Where the GPU is the CPU's own cores, a picture costs what it takes of them all: that others
     // who use them meanwhile do not blur, nor does a way of sharing that only takes more from them.
@@ -256,13 +249,11 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
                                    std::size_t(size.x) * std::size_t(size.y));
     RayTiles tiles(rays, medium, band, view.backdrop.get(), step, my.stats.controls, spans);
     my.stats.quads = ((size.x + 1) / 2) * ((size.y + 1) / 2);
-    my.castAll(**slab, tiles, (size.x + RayTiles::tileSide - 1) / RayTiles::tileSide);
+    my.castAll(*slab, tiles, (size.x + RayTiles::tileSide - 1) / RayTiles::tileSide);
 
     my.target->bindImage(shaders::pictureImage);
-    (*finish)->dispatch(size);
-    if (auto read = readBack(my.scene->context(), *my.target, errorsBefore, band.firstRow, picture);
-        !read)
-        return read;
+    finish->dispatch(size);
+    TRY(readBack(my.scene->context(), *my.target, errorsBefore, band.firstRow, picture));
     const std::vector<double> between = my.timestamps.betweenMs();
     for (std::size_t i = 0; i < between.size(); i += 2)
         my.stats.gpuMs += between[i];

@@ -8,9 +8,8 @@ Result<QuadLists> QuadLists::create(int quads) {
     const std::size_t alignment = gpu::storageAlignment();
     const std::size_t list = headerBytes + sizeof(glm::uvec2) * std::size_t(quads);
     const std::size_t stride = (list + alignment - 1) / alignment * alignment;
-    auto memory = gpu::MappedBuffer::create(stride * lists, "lists of quads");
-    if (!memory) return tl::make_unexpected(memory.error());
-    return QuadLists(std::move(*memory), stride, quads);
+    auto memory = TRY(gpu::MappedBuffer::create(stride * lists, "lists of quads"));
+    return QuadLists(std::move(memory), stride, quads);
 }
 
 std::span<glm::uvec2> QuadLists::begin() {

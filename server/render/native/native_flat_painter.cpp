@@ -30,13 +30,12 @@ NativeFlatPainter::NativeFlatPainter(std::shared_ptr<NativeScene> scene,
 
 Result<Image> NativeFlatPainter::draw(const FlatView& view, const Band& band) {
     const glm::ivec2 size(band.pictureSize.x, band.rows);
-    const auto classified = scene_->classification(view.optics, view.march);
-    if (!classified) return tl::make_unexpected(classified.error());
+    const auto classified = TRY(scene_->classification(view.optics, view.march));
     const Scene& scene = scene_->scene();
     const PacketScene packets =
-        scene_->packetScene(marchUniforms(view.optics, view.march, scene.grid(),
-                                          (*classified)->table, scene.ranges.size, size),
-                            **classified);
+        scene_->packetScene(marchUniforms(view.optics, view.march, scene.grid(), classified->table,
+                                          scene.ranges.size, size),
+                            *classified);
     const FlatLattice lattice = geometry_->lattice(view.window, band);
     const double step = stepMm(view.march, scene.grid());
     PacketWall wall{geometry_->vertices().data(), geometry_->triangles().data(),

@@ -16,9 +16,8 @@ Result<std::unique_ptr<NativePictures>> NativePictures::create(
     std::shared_ptr<const FlatGeometry> geometry) {
     std::unique_ptr<NativePictures> made(new NativePictures(scene, std::move(ct)));
     if (!geometry) return made;
-    auto flat = NativeFlatPainter::create(std::move(scene), std::move(geometry));
-    if (!flat) return tl::make_unexpected(flat.error());
-    made->flat_ = std::move(*flat);
+    auto flat = TRY(NativeFlatPainter::create(std::move(scene), std::move(geometry)));
+    made->flat_ = std::move(flat);
     return made;
 }
 

@@ -18,15 +18,13 @@ std::unique_ptr<NativeRaycaster> NativeRaycaster::create(std::shared_ptr<const S
 
 Result<void> NativeRaycaster::render(const CameraView& view, const Band& band, Image& picture) {
     const auto start = std::chrono::steady_clock::now();
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
-    const auto classified = scene_->classification(view.optics, view.march);
-    if (!classified) return tl::make_unexpected(classified.error());
+    TRY(checkBand(band, picture));
+    TRY(checkCameraView(view, band.pictureSize));
+    const auto classified = TRY(scene_->classification(view.optics, view.march));
     const Scene& scene = scene_->scene();
-    const PacketScene packets =
-        scene_->packetScene(marchUniforms(view, scene.grid(), (*classified)->table,
-                                          scene.ranges.size, band.pictureSize),
-                            **classified);
+    const PacketScene packets = scene_->packetScene(
+        marchUniforms(view, scene.grid(), classified->table, scene.ranges.size, band.pictureSize),
+        *classified);
     const PacketPicture target{band.firstRow, band.firstRow + band.rows, picture.rgb.data(),
                                view.backdrop ? view.backdrop->pixels.data() : nullptr};
     // Tiles lie on the whole picture's lattice: packets are the same in any band.

@@ -43,8 +43,8 @@ NativeScene::NativeScene(std::shared_ptr<const Scene> scene, int threads)
 
 Result<const NativeScene::Classified*> NativeScene::classification(const Optics& optics,
                                                                    const MarchOptions& march) {
-    if (auto sound = checkOptics(optics); !sound) return tl::make_unexpected(sound.error());
-    if (auto sound = checkMarch(march, optics); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkOptics(optics));
+    TRY(checkMarch(march, optics));
     const double step = stepMm(march, scene_->grid());
     const bool leaping = march.emptySpaceLeaping;
     if (const Classified* known = recent_.find([&](const Classified& one) {

@@ -66,10 +66,9 @@ Result<std::unique_ptr<CellPool>> CellPool::create(std::shared_ptr<const CellSou
             continue;
         }
         const int buffers = std::clamp(int(stagingBytes / slotBytes), leastStaging, mostStaging);
-        auto readers = CellReaders::create(std::move(source), side, buffers, threads);
-        if (!readers) return tl::make_unexpected(readers.error());
+        auto readers = TRY(CellReaders::create(std::move(source), side, buffers, threads));
         return std::unique_ptr<CellPool>(new CellPool(cells, border, std::move(*atlas),
-                                                      shape.texels / side, std::move(*readers)));
+                                                      shape.texels / side, std::move(readers)));
     }
 }
 

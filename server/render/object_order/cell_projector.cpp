@@ -20,11 +20,9 @@ static_assert(itemsInBatch >= (maxPictureSide / rayTile) * (maxPictureSide / ray
 }  // namespace
 
 Result<CellProjector> CellProjector::create(int batchCells) {
-    auto batches = gpu::MappedBuffer::create(batchesAhead * batchBytes, "cells to draw");
-    if (!batches) return tl::make_unexpected(batches.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::CellUniforms));
-    if (!block) return tl::make_unexpected(block.error());
-    return CellProjector(std::move(*batches), std::move(*block), batchCells);
+    auto batches = TRY(gpu::MappedBuffer::create(batchesAhead * batchBytes, "cells to draw"));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::CellUniforms)));
+    return CellProjector(std::move(batches), std::move(block), batchCells);
 }
 
 CellProjector::CellProjector(gpu::MappedBuffer batches, gpu::UniformBuffer block, int batchCells)
@@ -43,15 +41,13 @@ std::size_t CellProjector::gpuBytes() const {
 Result<void> CellProjector::begin(glm::ivec2 bandSize, const CellGrid& cells, glm::vec4 eye) {
     if (!rays_ || glm::ivec2(rays_->size()) != bandSize) {
         rays_.reset();
-        auto rays = gpu::Texture::create(2, {bandSize, 1}, gpu::TexelFormat::rgba32f,
-                                         gpu::Filter::nearest, "rays");
-        if (!rays) return tl::make_unexpected(rays.error());
+        auto rays = TRY(gpu::Texture::create(2, {bandSize, 1}, gpu::TexelFormat::rgba32f,
+                                             gpu::Filter::nearest, "rays"));
         tiles_ = (bandSize + rayTile - 1) / rayTile;
-        auto live = gpu::MappedBuffer::create(
-            std::size_t(tiles_.x) * std::size_t(tiles_.y) * sizeof(std::int32_t), "live rays");
-        if (!live) return tl::make_unexpected(live.error());
-        rays_ = std::move(*rays);
-        live_ = std::move(*live);
+        auto live = TRY(gpu::MappedBuffer::create(
+            std::size_t(tiles_.x) * std::size_t(tiles_.y) * sizeof(std::int32_t), "live rays"));
+        rays_ = std::move(rays);
+        live_ = std::move(live);
     }
     rays_->clear();
     auto* live = reinterpret_cast<std::int32_t*>(live_->data());

@@ -24,14 +24,12 @@ Result<CellRaycaster> CellRaycaster::create(gpu::Context& context, const Grid& g
                                             std::shared_ptr<const CellSource> source,
                                             const ObjectOrderOptions& options, glm::ivec3 leaves,
                                             int leafSide) {
-    auto projector = CellProjector::create(options.batchCells);
-    if (!projector) return tl::make_unexpected(projector.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms));
-    if (!block) return tl::make_unexpected(block.error());
+    auto projector = TRY(CellProjector::create(options.batchCells));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::MarchUniforms)));
     CellRaycaster made(context, grid, std::move(source), options, leaves, leafSide,
-                       std::move(*projector), std::move(*block));
+                       std::move(projector), std::move(block));
     // A budget without room is found here, not at the first picture.
-    if (auto room = made.makePool(1); !room) return tl::make_unexpected(room.error());
+    TRY(made.makePool(1));
     return made;
 }
 
@@ -54,24 +52,23 @@ Result<void> CellRaycaster::makePool(int border) {
     // depends on what else is in a slot.
     if (pool_ && pool_->border() >= border) return {};
     pool_.reset();
-    auto made = CellPool::create(source_, cells_, border, options_.budgetBytes, options_.threads);
-    if (!made) return tl::make_unexpected(made.error());
-    pool_ = std::move(*made);
+    auto made =
+        TRY(CellPool::create(source_, cells_, border, options_.budgetBytes, options_.threads));
+    pool_ = std::move(made);
     return {};
 }
 
 Result<void> CellRaycaster::makeTargets(const CameraView& view, glm::ivec2 size) {
     using gpu::Filter, gpu::Texture, gpu::TexelFormat;
     if (!picture_ || glm::ivec2(picture_->size()) != size) {
-        auto made = Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture");
-        if (!made) return tl::make_unexpected(made.error());
-        picture_ = std::move(*made);
+        auto made =
+            TRY(Texture::create(2, {size, 1}, TexelFormat::rgba8, Filter::nearest, "picture"));
+        picture_ = std::move(made);
     }
     if (!view.backdrop || view.backdrop == backdrop_) return {};
-    auto made = Texture::create(2, {view.backdrop->size, 1}, TexelFormat::rgba32f, Filter::nearest,
-                                "backdrop");
-    if (!made) return tl::make_unexpected(made.error());
-    backdropTexture_ = std::move(*made);
+    auto made = TRY(Texture::create(2, {view.backdrop->size, 1}, TexelFormat::rgba32f,
+                                    Filter::nearest, "backdrop"));
+    backdropTexture_ = std::move(made);
     backdropTexture_->upload(view.backdrop->pixels.data());
     backdrop_ = view.backdrop;
     return {};
@@ -102,8 +99,8 @@ Result<void> CellRaycaster::render(const CameraView& view, const Band& band,
     const int errorsBefore = context_->errorCount();
     const auto start = std::chrono::steady_clock::now();
     const glm::ivec2 size(band.pictureSize.x, band.rows);
-    if (auto made = makeTargets(view, size); !made) return made;
-    if (auto made = makePool(border); !made) return made;
+    TRY(makeTargets(view, size));
+    TRY(makePool(border));
     const std::vector<PlannedCell> planned = planFrame(cells_, shown.needed, grid_, view.camera,
                                                        band.pictureSize, band.firstRow, band.rows);
     stats_ = {};
@@ -112,7 +109,7 @@ Result<void> CellRaycaster::render(const CameraView& view, const Band& band,
     stats_.inView = int(planned.size());
     const double planMs = msSince(start);
 
-    if (auto begun = projector_.begin(size, cells_, eyeInCells(view)); !begun) return begun;
+    TRY(projector_.begin(size, cells_, eyeInCells(view)));
     bind(view, band, shown);
     projector_.project(planned, cells_, *pool_, cast, stats_);
     const double castMs = msSince(start) - planMs;

@@ -29,10 +29,9 @@ Result<std::unique_ptr<CellReaders>> CellReaders::create(std::shared_ptr<const C
                                                          int side, int buffers, int threads) {
     const std::size_t bytes = source->texelBytes() * std::size_t(side) * std::size_t(side) *
                               std::size_t(side) * std::size_t(buffers);
-    auto memory = gpu::MappedBuffer::create(bytes, "cells on their way to the GPU");
-    if (!memory) return tl::make_unexpected(memory.error());
+    auto memory = TRY(gpu::MappedBuffer::create(bytes, "cells on their way to the GPU"));
     return std::unique_ptr<CellReaders>(
-        new CellReaders(std::move(source), side, std::move(*memory), buffers, threads));
+        new CellReaders(std::move(source), side, std::move(memory), buffers, threads));
 }
 
 CellReaders::CellReaders(std::shared_ptr<const CellSource> source, int side,

@@ -25,8 +25,7 @@ const std::array<double, 256>& linearOfByte() {
 }  // namespace
 
 Result<LabelledColorVolume> makeLabelledColor(Volume<Rgba> color, Volume<std::int16_t> labels) {
-    if (auto sound = checkGrid(color.grid(), "colour volume"); !sound)
-        return tl::make_unexpected(sound.error());
+    TRY(checkGrid(color.grid(), "colour volume"));
     if (!labels.empty() && !sameGrid(color.grid(), labels.grid()))
         return fail(ErrorKind::badInput, "the labels are not on the colours' grid",
                     "colour volume");

@@ -107,10 +107,9 @@ struct LabelledRaycaster::Impl {
                 [&](const ShownCells& one) { return one.classified.isFor(optics, step, leaping); }))
             return known;
         auto made =
-            Classification::create(optics, step, leaping, octree->level(0), options.threads);
-        if (!made) return tl::make_unexpected(made.error());
+            TRY(Classification::create(optics, step, leaping, octree->level(0), options.threads));
         shown.makeRoom();
-        ShownCells fresh{std::move(*made), std::vector<std::uint8_t>(labelsOfCell.size(), 0)};
+        ShownCells fresh{std::move(made), std::vector<std::uint8_t>(labelsOfCell.size(), 0)};
         int level = 0;
         while (octree->sideAt(level) < options.cellSide)
             ++level;
@@ -130,14 +129,13 @@ struct LabelledRaycaster::Impl {
             if (known == variant) return &program;
         using shaders::shaderSource;
         const std::string defines = variant.defines() + "#define COLOR_CELLS 1\n";
-        auto program = gpu::ComputeProgram::create(
+        auto program = TRY(gpu::ComputeProgram::create(
             "cell_rays.comp", {defines, shaderSource("uniforms.h"), shaderSource("optics.glsl"),
                                shaderSource("march.glsl"), shaderSource("picture.glsl"),
                                shaderSource("cell_uniforms.h"), shaderSource("cells.glsl"),
-                               shaderSource("cell_rays.comp")});
-        if (!program) return tl::make_unexpected(program.error());
+                               shaderSource("cell_rays.comp")}));
         casts.reserve(4);  // shading and backdrop, each on or off: pointers stay valid
-        casts.emplace_back(variant, std::move(*program));
+        casts.emplace_back(variant, std::move(program));
         return &casts.back().second;
     }
 };
@@ -145,17 +143,16 @@ struct LabelledRaycaster::Impl {
 Result<std::unique_ptr<LabelledRaycaster>> LabelledRaycaster::create(
     gpu::Context& context, std::shared_ptr<const LabelledColorVolume> volume,
     ObjectOrderOptions options) {
-    if (auto sound = checkObjectOrder(options); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkObjectOrder(options));
     auto source = std::make_shared<ColorCells>(volume);
     const Grid& grid = volume->grid();
     const int leafSide = leafSideOf(options, grid.size);
     const glm::ivec3 leaves = glm::max((grid.size - 1 + leafSide - 1) / leafSide, glm::ivec3(1));
-    auto cells = CellRaycaster::create(context, grid, source, options, leaves, leafSide);
-    if (!cells) return tl::make_unexpected(cells.error());
+    auto cells = TRY(CellRaycaster::create(context, grid, source, options, leaves, leafSide));
     auto labels = labelsOfCells(*volume, options.cellSide, options.threads);
     std::unique_ptr<LabelledRaycaster> made(new LabelledRaycaster(std::unique_ptr<Impl>(new Impl{
-        std::move(volume), std::move(source), options, std::move(*cells), std::move(labels)})));
-    if (auto all = made->choose({}); !all) return tl::make_unexpected(all.error());
+        std::move(volume), std::move(source), options, std::move(cells), std::move(labels)})));
+    TRY(made->choose({}));
     return made;
 }
 
@@ -169,17 +166,14 @@ Result<void> LabelledRaycaster::choose(std::vector<std::int16_t> labels) {
 Result<void> LabelledRaycaster::render(const CameraView& asked, const Band& band, Image& picture) {
     CameraView view = asked;
     view.optics = opacityRamp(asked.optics);
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
-    const auto seen = impl_->classify(view.optics, view.march);
-    if (!seen) return tl::make_unexpected(seen.error());
+    TRY(checkBand(band, picture));
+    TRY(checkCameraView(view, band.pictureSize));
+    const auto seen = TRY(impl_->classify(view.optics, view.march));
     const auto variant = MarchVariant::of(view.optics, false, view.backdrop != nullptr);
-    const auto cast = impl_->cast(variant);
-    if (!cast) return tl::make_unexpected(cast.error());
-    const auto resolve = impl_->resolve.program(variant);
-    if (!resolve) return tl::make_unexpected(resolve.error());
+    const auto cast = TRY(impl_->cast(variant));
+    const auto resolve = TRY(impl_->resolve.program(variant));
     constexpr int border = 2;  // of gradients, and of samples that rounding puts past a face
-    return impl_->cells.render(view, band, **seen, border, **cast, **resolve, picture);
+    return impl_->cells.render(view, band, *seen, border, *cast, *resolve, picture);
 }
 
 std::size_t LabelledRaycaster::gpuBytes() const {

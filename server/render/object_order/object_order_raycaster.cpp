@@ -69,9 +69,8 @@ struct ObjectOrderRaycaster::Impl {
                 [&](const ShownCells& one) { return one.classified.isFor(optics, step, leaping); }))
             return known;
         shown.makeRoom();
-        auto made = Classification::create(optics, step, leaping, octree.level(0), threads);
-        if (!made) return tl::make_unexpected(made.error());
-        ShownCells fresh{std::move(*made), {}};
+        auto made = TRY(Classification::create(optics, step, leaping, octree.level(0), threads));
+        ShownCells fresh{std::move(made), {}};
         if (leaping) {
             const ClassifiedOctree classes(octree, fresh.classified.table(), threads);
             const bool segments = MarchVariant::of(optics, false, false).preIntegrated;
@@ -85,15 +84,12 @@ struct ObjectOrderRaycaster::Impl {
     }
 
     Result<void> render(const CameraView& view, const Band& band, Image& image) {
-        const auto seen = classify(view.optics, view.march);
-        if (!seen) return tl::make_unexpected(seen.error());
+        const auto seen = TRY(classify(view.optics, view.march));
         const auto variant = MarchVariant::of(view.optics, false, view.backdrop != nullptr);
-        const auto casting = cast.program(variant);
-        if (!casting) return tl::make_unexpected(casting.error());
-        const auto resolving = resolve.program(variant);
-        if (!resolving) return tl::make_unexpected(resolving.error());
-        return cells.render(view, band, **seen, borderOf(view.optics, view.march), **casting,
-                            **resolving, image);
+        const auto casting = TRY(cast.program(variant));
+        const auto resolving = TRY(resolve.program(variant));
+        return cells.render(view, band, *seen, borderOf(view.optics, view.march), *casting,
+                            *resolving, image);
     }
 };
 
@@ -122,18 +118,17 @@ int leafSideOf(const ObjectOrderOptions& options, glm::ivec3 voxels) {
 
 Result<std::unique_ptr<ObjectOrderRaycaster>> ObjectOrderRaycaster::create(
     gpu::Context& context, std::shared_ptr<const Scene> scene, ObjectOrderOptions options) {
-    if (auto sound = checkObjectOrder(options); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkObjectOrder(options));
     const Grid& grid = scene->grid();
     const int leafSide = leafSideOf(options, grid.size);
     auto octree = MinMaxOctree::build(scene->volume, leafSide, options.threads);
     auto cells =
-        CellRaycaster::create(context, grid, std::make_shared<ScanCells>(scene->volume.share()),
-                              options, octree.level(0).size, leafSide);
-    if (!cells) return tl::make_unexpected(cells.error());
+        TRY(CellRaycaster::create(context, grid, std::make_shared<ScanCells>(scene->volume.share()),
+                                  options, octree.level(0).size, leafSide));
     std::unique_ptr<ObjectOrderRaycaster> made(new ObjectOrderRaycaster(std::unique_ptr<Impl>(
-        new Impl{std::move(scene), options.threads, std::move(octree), std::move(*cells)})));
+        new Impl{std::move(scene), options.threads, std::move(octree), std::move(cells)})));
     // A driver that refuses the text is found here.
-    if (auto cast = made->impl_->cast.program({}); !cast) return tl::make_unexpected(cast.error());
+    TRY(made->impl_->cast.program({}));
     return made;
 }
 
@@ -142,8 +137,8 @@ ObjectOrderRaycaster::~ObjectOrderRaycaster() = default;
 
 Result<void> ObjectOrderRaycaster::render(const CameraView& view, const Band& band,
                                           Image& picture) {
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    TRY(checkBand(band, picture));
+    TRY(checkCameraView(view, band.pictureSize));
     return impl_->render(view, band, picture);
 }
 

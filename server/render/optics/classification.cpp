@@ -18,23 +18,20 @@ Result<Classification> Classification::create(const Optics& optics, double stepM
         if (made) made->upload(texels.data());
         return made;
     };
-    Result<Texture> tableTexture = tableOf(table.rgba, table.rows);
-    if (!tableTexture) return tl::make_unexpected(tableTexture.error());
+    auto tableTexture = TRY(tableOf(table.rgba, table.rows));
     std::optional<Texture> integralTexture;
     if (!table.integrals.empty()) {
-        Result<Texture> made = tableOf(table.integrals, 1);
-        if (!made) return tl::make_unexpected(made.error());
-        integralTexture = std::move(*made);
+        auto made = TRY(tableOf(table.integrals, 1));
+        integralTexture = std::move(made);
     }
-    Result<Texture> leapTexture =
-        Texture::create(3, ranges.size, TexelFormat::r8ui, Filter::nearest, "leap map");
-    if (!leapTexture) return tl::make_unexpected(leapTexture.error());
+    auto leapTexture =
+        TRY(Texture::create(3, ranges.size, TexelFormat::r8ui, Filter::nearest, "leap map"));
     const std::vector<std::uint8_t> distances =
         leaping ? leapDistances(ranges, table, threads)
                 : std::vector<std::uint8_t>(ranges.lowHu.size(), 0);
-    leapTexture->uploadSlices(0, ranges.size.z, distances.data());
-    return Classification(optics, stepMm, leaping, std::move(table), std::move(*tableTexture),
-                          std::move(integralTexture), std::move(*leapTexture));
+    leapTexture.uploadSlices(0, ranges.size.z, distances.data());
+    return Classification(optics, stepMm, leaping, std::move(table), std::move(tableTexture),
+                          std::move(integralTexture), std::move(leapTexture));
 }
 
 Classification::Classification(Optics optics, double stepMm, bool leaping, TransferTable table,

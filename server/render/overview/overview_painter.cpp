@@ -159,25 +159,24 @@ Result<std::unique_ptr<OverviewPainter>> OverviewPainter::create(
     using gpu::RasterProgram, gpu::StorageBuffer, shaders::shaderSource;
     const auto structs = shaderSource("uniforms.h"), own = shaderSource("overview_uniforms.h"),
                shared = shaderSource("overview.glsl"), vertex = shaderSource("overview.vert");
-    auto wall = RasterProgram::create("overview_wall", {structs, own, vertex},
-                                      {structs, own, shared, shaderSource("overview_wall.frag")});
-    if (!wall) return tl::make_unexpected(wall.error());
-    auto marks = RasterProgram::create("overview_marks", {structs, own, vertex},
-                                       {structs, own, shared, shaderSource("overview_marks.frag")});
-    if (!marks) return tl::make_unexpected(marks.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::OverviewUniforms));
-    if (!block) return tl::make_unexpected(block.error());
+    auto wall =
+        TRY(RasterProgram::create("overview_wall", {structs, own, vertex},
+                                  {structs, own, shared, shaderSource("overview_wall.frag")}));
+    auto marks =
+        TRY(RasterProgram::create("overview_marks", {structs, own, vertex},
+                                  {structs, own, shared, shaderSource("overview_marks.frag")}));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::OverviewUniforms)));
     std::unique_ptr<OverviewPainter> painter(new OverviewPainter(
-        context, std::move(scene), std::move(*wall), std::move(*marks), std::move(*block)));
+        context, std::move(scene), std::move(wall), std::move(marks), std::move(block)));
     const TriMesh* mesh = painter->scene_->wall.get();
     if (mesh && !mesh->triangles.empty()) {
         const OverviewShapes shape = wallShape(*mesh, painter->originMm_);
-        auto vertices = StorageBuffer::create(std::span(shape.vertices), "the wall's vertices");
-        if (!vertices) return tl::make_unexpected(vertices.error());
-        auto triangles = StorageBuffer::create(std::span(shape.indices), "the wall's triangles");
-        if (!triangles) return tl::make_unexpected(triangles.error());
-        painter->wallVertices_ = std::move(*vertices);
-        painter->wallTriangles_ = std::move(*triangles);
+        auto vertices =
+            TRY(StorageBuffer::create(std::span(shape.vertices), "the wall's vertices"));
+        auto triangles =
+            TRY(StorageBuffer::create(std::span(shape.indices), "the wall's triangles"));
+        painter->wallVertices_ = std::move(vertices);
+        painter->wallTriangles_ = std::move(triangles);
     }
     return painter;
 }
@@ -204,13 +203,12 @@ Result<void> OverviewPainter::makeTargets(glm::ivec2 size) {
     const int side = std::int64_t(size.x) * size.y <= finePixels ? fineSide : 1;
     if (wallTarget_ && wallTarget_->size() == side * size) return {};
     using gpu::TexelFormat;
-    auto wall = gpu::RasterTarget::create(side * size, TexelFormat::rgba32f, "wall from outside");
-    if (!wall) return tl::make_unexpected(wall.error());
+    auto wall =
+        TRY(gpu::RasterTarget::create(side * size, TexelFormat::rgba32f, "wall from outside"));
     auto marks =
-        gpu::RasterTarget::create(side * size, TexelFormat::rgba8, "marks on the overview");
-    if (!marks) return tl::make_unexpected(marks.error());
-    wallTarget_ = std::move(*wall);
-    marksTarget_ = std::move(*marks);
+        TRY(gpu::RasterTarget::create(side * size, TexelFormat::rgba8, "marks on the overview"));
+    wallTarget_ = std::move(wall);
+    marksTarget_ = std::move(marks);
     inTarget_.reset();
     return {};
 }
@@ -250,11 +248,9 @@ Result<void> OverviewPainter::drawGround(const OverviewView& view, const Band& b
     if (!view.body) {
         for (std::size_t i = begin; i < begin + bytes; ++i)
             picture.rgb[i] = byteOf(displayed(double(wall->pixels[i / 3][int(i % 3)])));
-    } else if (auto drawn = raycaster.render(
-                   {view.camera, view.optics, view.march, std::move(wall)}, band, picture);
-               !drawn) {
-        return drawn;
-    }
+    } else
+        TRY(raycaster.render({view.camera, view.optics, view.march, std::move(wall)}, band,
+                             picture));
     // Rows that follow on are kept, so that one picture after the other needs none of them again.
     if (band.firstRow == 0) ground_ = Ground{view, {picture.width, picture.height, {}}, 0};
     if (shows(view, band.pictureSize) && ground_->rows == band.firstRow) {
@@ -268,15 +264,13 @@ Result<void> OverviewPainter::drawGround(const OverviewView& view, const Band& b
 Result<void> OverviewPainter::addMarks(const OverviewView& view, Image& picture) {
     const OverviewShapes shapes = markShapes(view, scene_->path.get(), originMm_);
     if (shapes.indices.empty()) return {};
-    auto vertices = gpu::StorageBuffer::create(std::span(shapes.vertices), "marks' vertices");
-    if (!vertices) return tl::make_unexpected(vertices.error());
-    auto triangles = gpu::StorageBuffer::create(std::span(shapes.indices), "marks' triangles");
-    if (!triangles) return tl::make_unexpected(triangles.error());
+    auto vertices = TRY(gpu::StorageBuffer::create(std::span(shapes.vertices), "marks' vertices"));
+    auto triangles = TRY(gpu::StorageBuffer::create(std::span(shapes.indices), "marks' triangles"));
     rasterizeWall({view.camera, {picture.width, picture.height}});  // marks fade behind it
     marksTarget_->clear(glm::vec4(0.0f));
-    vertices->bind(shaders::overviewVertexBinding);
+    vertices.bind(shaders::overviewVertexBinding);
     wallTarget_->texture().bind(shaders::overviewWallUnit);
-    marks_.drawNearest(*marksTarget_, *triangles, 0, int(shapes.indices.size() / 3));
+    marks_.drawNearest(*marksTarget_, triangles, 0, int(shapes.indices.size() / 3));
 
     const glm::ivec2 size(picture.width, picture.height);
     const auto marks =
@@ -295,9 +289,9 @@ Result<void> OverviewPainter::addMarks(const OverviewView& view, Image& picture)
 Result<void> OverviewPainter::draw(const OverviewView& view, const Band& band, Raycaster& raycaster,
                                    Image& picture) {
     const int errorsBefore = context_.errorCount();
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkOverview(view); !sound) return sound;
-    if (auto made = makeTargets(band.pictureSize); !made) return made;
+    TRY(checkBand(band, picture));
+    TRY(checkOverview(view));
+    TRY(makeTargets(band.pictureSize));
     block_.write(uniformsOf(view, *scene_, originMm_, band.pictureSize));
     auto drawn = drawGround(view, band, raycaster, picture);
     if (drawn && band.firstRow + band.rows == band.pictureSize.y) drawn = addMarks(view, picture);

@@ -32,23 +32,19 @@ Result<void> checkWall(const Scene& scene) {
 Result<std::unique_ptr<PolygonAssistedRaycaster>> PolygonAssistedRaycaster::create(
     std::shared_ptr<GlScene> scene, int threads) {
     using shaders::shaderSource;
-    if (auto sound = checkWall(scene->scene()); !sound) return tl::make_unexpected(sound.error());
-    auto rays = SinglePassRaycaster::create(scene);
-    if (!rays) return tl::make_unexpected(rays.error());
+    TRY(checkWall(scene->scene()));
+    auto rays = TRY(SinglePassRaycaster::create(scene));
     const auto structs = shaderSource("uniforms.h"), own = shaderSource("wall_uniforms.h"),
                wall = shaderSource("wall.glsl");
-    auto entry = gpu::RasterProgram::create("wall_entry",
-                                            {structs, own, wall, shaderSource("wall_entry.vert")},
-                                            {structs, own, wall, shaderSource("wall_entry.frag")});
-    if (!entry) return tl::make_unexpected(entry.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::WallUniforms));
-    if (!block) return tl::make_unexpected(block.error());
+    auto entry = TRY(gpu::RasterProgram::create(
+        "wall_entry", {structs, own, wall, shaderSource("wall_entry.vert")},
+        {structs, own, wall, shaderSource("wall_entry.frag")}));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::WallUniforms)));
     WallEntry around(scene->scene());
-    auto mesh = upload(around.wall());
-    if (!mesh) return tl::make_unexpected(mesh.error());
+    auto mesh = TRY(upload(around.wall()));
     return std::unique_ptr<PolygonAssistedRaycaster>(
-        new PolygonAssistedRaycaster(std::move(scene), threads, std::move(*rays), std::move(*entry),
-                                     std::move(*block), std::move(around), std::move(*mesh)));
+        new PolygonAssistedRaycaster(std::move(scene), threads, std::move(rays), std::move(entry),
+                                     std::move(block), std::move(around), std::move(mesh)));
 }
 
 PolygonAssistedRaycaster::PolygonAssistedRaycaster(std::shared_ptr<GlScene> scene, int threads,
@@ -67,11 +63,10 @@ PolygonAssistedRaycaster::PolygonAssistedRaycaster(std::shared_ptr<GlScene> scen
 Result<PolygonAssistedRaycaster::Mesh> PolygonAssistedRaycaster::upload(
     const EntryTriangles& triangles) {
     using gpu::StorageBuffer;
-    auto places = StorageBuffer::create(std::span<const glm::vec4>(triangles.places), "wall");
-    if (!places) return tl::make_unexpected(places.error());
-    auto indices = StorageBuffer::create(std::span<const glm::ivec3>(triangles.triangles), "wall");
-    if (!indices) return tl::make_unexpected(indices.error());
-    return Mesh{std::move(*places), std::move(*indices), int(triangles.triangles.size())};
+    auto places = TRY(StorageBuffer::create(std::span<const glm::vec4>(triangles.places), "wall"));
+    auto indices =
+        TRY(StorageBuffer::create(std::span<const glm::ivec3>(triangles.triangles), "wall"));
+    return Mesh{std::move(places), std::move(indices), int(triangles.triangles.size())};
 }
 
 Result<const PolygonAssistedRaycaster::Before*> PolygonAssistedRaycaster::findBefore(
@@ -91,9 +86,8 @@ Result<const PolygonAssistedRaycaster::Before*> PolygonAssistedRaycaster::findBe
     if (before.count > 0 && !before.tooMany) {
         const EntryTriangles faces = wall_.faces(before.visible);
         if (!faces.triangles.empty()) {
-            auto uploaded = upload(faces);
-            if (!uploaded) return tl::make_unexpected(uploaded.error());
-            before.faces = std::move(*uploaded);
+            auto uploaded = TRY(upload(faces));
+            before.faces = std::move(uploaded);
         }
     }
     return before_.keep(std::move(before));
@@ -109,9 +103,9 @@ Result<void> PolygonAssistedRaycaster::drawEntry(const CameraView& view, const B
                                                  double stepMm, const Before& before) {
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     if (!firstStep_ || firstStep_->size() != size) {
-        auto made = gpu::RasterTarget::create(size, gpu::TexelFormat::r32f, "rays' beginnings");
-        if (!made) return tl::make_unexpected(made.error());
-        firstStep_ = std::move(*made);
+        auto made =
+            TRY(gpu::RasterTarget::create(size, gpu::TexelFormat::r32f, "rays' beginnings"));
+        firstStep_ = std::move(made);
     }
     const Grid& grid = scene_->scene().grid();
     shaders::WallUniforms u = wallProjection(
@@ -131,19 +125,17 @@ Result<void> PolygonAssistedRaycaster::drawEntry(const CameraView& view, const B
 
 Result<void> PolygonAssistedRaycaster::render(const CameraView& view, const Band& band,
                                               Image& picture) {
-    if (auto sound = checkBand(band, picture); !sound) return sound;
-    if (auto sound = checkCameraView(view, band.pictureSize); !sound) return sound;
+    TRY(checkBand(band, picture));
+    TRY(checkCameraView(view, band.pictureSize));
     timestamps_.restart();
     timestamps_.mark();
-    const auto classified = scene_->classification(view.optics, view.march);
-    if (!classified) return tl::make_unexpected(classified.error());
+    const auto classified = TRY(scene_->classification(view.optics, view.march));
     const double step = stepMm(view.march, scene_->scene().grid());
-    const auto before = findBefore(view.optics, step, (*classified)->table());
-    if (!before) return tl::make_unexpected(before.error());
-    blocksBefore_ = (*before)->count;
-    beganAtMesh_ = mayBeginAtMesh(view, **before);
+    const auto before = TRY(findBefore(view.optics, step, classified->table()));
+    blocksBefore_ = before->count;
+    beganAtMesh_ = mayBeginAtMesh(view, *before);
     if (!beganAtMesh_) return rays_->render(view, band, picture);
-    if (auto drawn = drawEntry(view, band, step, **before); !drawn) return drawn;
+    TRY(drawEntry(view, band, step, *before));
     timestamps_.mark();
     return rays_->renderFrom(firstStep_->texture(), view, band, picture);
 }

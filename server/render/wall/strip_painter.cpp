@@ -33,8 +33,7 @@ StripPainter::StripPainter(std::shared_ptr<const WallSight> sight) : sight_(std:
 Result<std::shared_ptr<const StripPainter>> StripPainter::of(
     std::shared_ptr<const WallSight> sight) {
     const FlatMap& map = sight->map();
-    const auto geometry = FlatGeometry::of(map, sight->originMm());
-    if (!geometry) return tl::make_unexpected(geometry.error());
+    const auto geometry = TRY(FlatGeometry::of(map, sight->originMm()));
     std::shared_ptr<StripPainter> made(new StripPainter(std::move(sight)));
     int around = pixelsAround;
     while (std::ceil(map.height * around) > maxPaintSide)
@@ -43,11 +42,9 @@ Result<std::shared_ptr<const StripPainter>> StripPainter::of(
     made->size_ = size;
     const FlatWindow window{{0.5, 0.5 * size.y / around}, double(around)};
     std::vector<FlatPixel> pixels(std::size_t(size.x) * std::size_t(size.y));
-    coverRows(**geometry, (*geometry)->lattice(window, Band::whole(size.x, size.y)), 0, size.y,
-              pixels);
+    coverRows(*geometry, geometry->lattice(window, Band::whole(size.x, size.y)), 0, size.y, pixels);
     for (const FlatPixel& pixel : pixels)
-        made->triangle_.push_back(pixel.triangle < 0 ? -1
-                                                     : (*geometry)->mapTriangle(pixel.triangle));
+        made->triangle_.push_back(pixel.triangle < 0 ? -1 : geometry->mapTriangle(pixel.triangle));
     return std::shared_ptr<const StripPainter>(std::move(made));
 }
 

@@ -41,16 +41,13 @@ Result<WallIndex> WallIndex::create() {
     using shaders::shaderSource;
     const auto structs = shaderSource("uniforms.h"), flatMap = shaderSource("flat_map.glsl"),
                own = shaderSource("wall_uniforms.h"), wall = shaderSource("wall.glsl");
-    auto triangles = gpu::RasterProgram::create(
+    auto triangles = TRY(gpu::RasterProgram::create(
         "wall_triangles", {structs, flatMap, own, wall, shaderSource("wall_triangles.vert")},
-        {structs, own, wall, shaderSource("wall_triangles.frag")});
-    if (!triangles) return tl::make_unexpected(triangles.error());
-    auto places = gpu::ComputeProgram::create(
-        "wall_index.comp", {structs, flatMap, own, wall, shaderSource("wall_index.comp")});
-    if (!places) return tl::make_unexpected(places.error());
-    auto block = gpu::UniformBuffer::create(sizeof(shaders::WallUniforms));
-    if (!block) return tl::make_unexpected(block.error());
-    return WallIndex(std::move(*triangles), std::move(*places), std::move(*block));
+        {structs, own, wall, shaderSource("wall_triangles.frag")}));
+    auto places = TRY(gpu::ComputeProgram::create(
+        "wall_index.comp", {structs, flatMap, own, wall, shaderSource("wall_index.comp")}));
+    auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::WallUniforms)));
+    return WallIndex(std::move(triangles), std::move(places), std::move(block));
 }
 
 WallIndex::WallIndex(gpu::RasterProgram triangles, gpu::ComputeProgram places,
@@ -60,15 +57,13 @@ WallIndex::WallIndex(gpu::RasterProgram triangles, gpu::ComputeProgram places,
 Result<void> WallIndex::makeTargets(glm::ivec2 picture, glm::ivec2 raster) {
     using gpu::Filter, gpu::RasterTarget, gpu::TexelFormat, gpu::Texture;
     if (!triangleOfPixel_ || triangleOfPixel_->size() != raster) {
-        auto made = RasterTarget::create(raster, TexelFormat::rg32i, "triangles of the wall");
-        if (!made) return tl::make_unexpected(made.error());
-        triangleOfPixel_ = std::move(*made);
+        auto made = TRY(RasterTarget::create(raster, TexelFormat::rg32i, "triangles of the wall"));
+        triangleOfPixel_ = std::move(made);
     }
     if (!placeOfPixel_ || glm::ivec2(placeOfPixel_->size()) != picture) {
-        auto made = Texture::create(2, {picture, 1}, TexelFormat::rgba32f, Filter::nearest,
-                                    "places of the wall");
-        if (!made) return tl::make_unexpected(made.error());
-        placeOfPixel_ = std::move(*made);
+        auto made = TRY(Texture::create(2, {picture, 1}, TexelFormat::rgba32f, Filter::nearest,
+                                        "places of the wall"));
+        placeOfPixel_ = std::move(made);
     }
     return {};
 }
@@ -121,8 +116,7 @@ Result<std::vector<WallPixel>> WallIndex::find(gpu::Context& context, const Flat
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     const bool cube = camera.lens == Lens::fisheye;
     const int side = cube ? cubeSidePixels(camera, band) : 0;
-    if (auto made = makeTargets(size, cube ? glm::ivec2(side) : size); !made)
-        return tl::make_unexpected(made.error());
+    TRY(makeTargets(size, cube ? glm::ivec2(side) : size));
     // What lies within 125° of the axis is on the first five sides, to their corners.
     const bool behind =
         camera.fovDegrees * std::hypot(1.0, double(size.x) / band.pictureSize.y) > 2.0 * 125.0;

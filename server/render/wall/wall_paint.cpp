@@ -84,7 +84,7 @@ glm::u8vec4 WallPaint::at(glm::dvec2 flat) const {
 }
 
 Result<void> checkWallPaint(const WallPaint& paint) {
-    if (auto sound = checkSize(paint.size.x, paint.size.y); !sound) return sound;
+    TRY(checkSize(paint.size.x, paint.size.y));
     if (paint.pixels.size() != std::size_t(paint.size.x) * std::size_t(paint.size.y))
         return fail(ErrorKind::badInput, "the number of pixels is not the picture's", "wall paint");
     if (!(paint.height > 0.0 && paint.height <= maxFlatHeight))
@@ -110,7 +110,7 @@ Result<std::shared_ptr<const WallPaint>> readWallPaint(const std::filesystem::pa
     paint->pixels.resize(std::size_t(png.width) * png.height);
     if (!png_image_finish_read(&png, nullptr, paint->pixels.data(), 0, nullptr))
         return refuse(std::string("cannot be read: ") + png.message);
-    if (auto sound = checkWallPaint(*paint); !sound) return tl::make_unexpected(sound.error());
+    TRY(checkWallPaint(*paint));
     return std::shared_ptr<const WallPaint>(std::move(paint));
 }
 
