@@ -5,9 +5,18 @@ find_package(Threads REQUIRED)
 
 add_library(haustra_flags INTERFACE)
 target_compile_options(haustra_flags INTERFACE
-    -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+    -Wall -Wextra -Wnon-virtual-dtor
+    # Files that are compiled as one (CMAKE_UNITY_BUILD) shadow what others of them declare.
+    $<$<NOT:$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wshadow>
     # Products are byte-identical on every machine: no contraction into fused multiply-adds.
     -ffp-contract=off)
+# Hardened: untrusted files and messages are parsed here. The sanitizers bring their own checks.
+if(NOT HAUSTRA_SANITIZE)
+    target_compile_options(haustra_flags INTERFACE
+        -fstack-protector-strong $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>)
+    target_compile_definitions(haustra_flags INTERFACE _GLIBCXX_ASSERTIONS)
+    target_link_options(haustra_flags INTERFACE LINKER:-z,relro LINKER:-z,now)
+endif()
 if(HAUSTRA_SANITIZE)
     target_compile_options(haustra_flags INTERFACE
         -fsanitize=${HAUSTRA_SANITIZE} -fno-omit-frame-pointer)

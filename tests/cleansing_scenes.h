@@ -44,10 +44,10 @@ inline Scene makeScene(glm::ivec3 size, double taggedHu, double noiseSd,
                 {},
                 std::move(sharesAt)};
     std::mt19937 random(5);
-    std::normal_distribution<double> noise(0.0, noiseSd);
+    std::normal_distribution<double> unit;  // times a deviation, which may be 0
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const Shares s = scene.sharesAt(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))));
-        const double grain = noiseSd > 0.0 ? noise(random) : 0.0;
+        const double grain = noiseSd > 0.0 ? noiseSd * unit(random) : 0.0;
         const double rest = s.soft() * sceneSoftHu + grain;
         const auto stored = [](double hu) {
             return std::int16_t(std::lround(std::max(hu, -1024.0)));

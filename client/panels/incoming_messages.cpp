@@ -8,7 +8,7 @@
 namespace haustra::panels {
 namespace {
 
-constexpr double maxStripHeight = 4096.0, maxBinHu = 1e6;
+constexpr double maxBinHu = 1e6;
 constexpr std::size_t maxBins = 65536;
 
 glm::dvec3 vectorFrom(const protocol::Vec3& v) {

@@ -7,7 +7,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double maxArcMm = 1e5, maxStripHeight = 4096.0;
+constexpr double maxArcMm = 1e5;
 constexpr std::size_t maxMeasuredPoints = 128;
 
 ViewAction readView(Fields& in) {

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double maxPositionMm = 1e5, maxTurns = 32.0, maxStripHeight = 4096.0;
+constexpr double maxPositionMm = 1e5, maxTurns = 32.0;
 
 std::string span(double low, double high) {
     const auto text = [](double v) {

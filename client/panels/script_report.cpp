@@ -9,13 +9,13 @@
 namespace haustra::panels {
 namespace {
 
-using json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 double rounded(double value) {
     return std::round(value * 1000.0) / 1000.0;
 }
 
-json jsonOf(const Summary& summary) {
+ordered_json jsonOf(const Summary& summary) {
     return {{"count", summary.count},
             {"mean", rounded(summary.mean)},
             {"p50", rounded(summary.p50)},
@@ -23,27 +23,28 @@ json jsonOf(const Summary& summary) {
             {"max", rounded(summary.max)}};
 }
 
-json jsonOf(glm::dvec3 v) {
-    return json::array({v.x, v.y, v.z});
+ordered_json jsonOf(glm::dvec3 v) {
+    return ordered_json::array({v.x, v.y, v.z});
 }
 
-json jsonOf(const WallPlace& place) {
-    return {{"flat", json::array({place.flat.x, place.flat.y})},
+ordered_json jsonOf(const WallPlace& place) {
+    return {{"flat", ordered_json::array({place.flat.x, place.flat.y})},
             {"position_mm", jsonOf(place.positionMm)},
             {"triangle", place.triangle},
             {"arc_mm", place.arcMm},
             {"camera_mm", jsonOf(place.cameraMm)}};
 }
 
-json jsonOf(const FlatMeasure& measure) {
+ordered_json jsonOf(const FlatMeasure& measure) {
     return {{"length_mm", measure.lengthMm},
             {"straight_mm", measure.straightMm},
             {"area_mm2", measure.areaMm2},
             {"largest_diameter_mm", measure.largestDiameterMm}};
 }
 
-json jsonOf(const ActionReport& action) {
-    json out = {{"line", action.line}, {"do", action.name}, {"seconds", rounded(action.seconds)}};
+ordered_json jsonOf(const ActionReport& action) {
+    ordered_json out = {
+        {"line", action.line}, {"do", action.name}, {"seconds", rounded(action.seconds)}};
     if (!action.file.empty()) out["file"] = action.file;
     if (action.positions > 0) {
         out["positions"] = action.positions;
@@ -62,12 +63,12 @@ json jsonOf(const ActionReport& action) {
                                    {"encode", summarize(action.encodeMicroseconds).p50}};
         if (!action.raycaster.empty()) out["raycaster"] = action.raycaster;
         out["coarse_pictures"] = action.coarse;
-        out["latencies_ms"] = json::array();
+        out["latencies_ms"] = ordered_json::array();
         for (const double ms : action.latencyMs)
             out["latencies_ms"].push_back(rounded(ms));
     }
     if (!action.acknowledged.empty()) {
-        out["acknowledged"] = json::array();
+        out["acknowledged"] = ordered_json::array();
         for (const Acknowledgement& a : action.acknowledged)
             out["acknowledged"].push_back({{"id", a.id}, {"client_key", a.clientKey}});
     }
@@ -90,24 +91,24 @@ std::string toJson(const FlatMeasure& measure) {
 }
 
 std::string seenShareJson(double share) {
-    return json{{"seen_share", share}}.dump(2) + "\n";
+    return ordered_json{{"seen_share", share}}.dump(2) + "\n";
 }
 
 std::string toJson(const PlayReport& report) {
-    json out = {{"client", report.clientSoftware},
-                {"server", report.serverSoftware},
-                {"renderer", report.renderer},
-                {"fingerprint", report.fingerprint},
-                {"case", report.caseName},
-                {"centerline_mm", rounded(report.centerlineMm)},
-                {"round_trip_ms", rounded(report.roundTripMs)}};
-    out["bridges"] = json::array();
+    ordered_json out = {{"client", report.clientSoftware},
+                        {"server", report.serverSoftware},
+                        {"renderer", report.renderer},
+                        {"fingerprint", report.fingerprint},
+                        {"case", report.caseName},
+                        {"centerline_mm", rounded(report.centerlineMm)},
+                        {"round_trip_ms", rounded(report.roundTripMs)}};
+    out["bridges"] = ordered_json::array();
     for (const Bridge& bridge : report.bridges)
         out["bridges"].push_back({{"from_arc_mm", rounded(bridge.fromArcMm)},
                                   {"to_arc_mm", rounded(bridge.toArcMm)},
                                   {"length_mm", rounded(bridge.lengthMm())}});
     if (report.trust) {
-        auto segments = json::object();
+        auto segments = ordered_json::object();
         for (int n = 0; n < colonSegments; ++n) {
             const SegmentDistension& segment = report.trust->segments[std::size_t(n)];
             segments[toString(ColonSegment(n))] = {{"length_mm", rounded(segment.lengthMm)},
@@ -119,11 +120,11 @@ std::string toJson(const PlayReport& report) {
                         {"warnings", report.trust->warnings},
                         {"segments", segments}};
     }
-    out["error"] = report.failure ? json(describe(*report.failure)) : json();
-    out["actions"] = json::array();
+    out["error"] = report.failure ? ordered_json(describe(*report.failure)) : ordered_json();
+    out["actions"] = ordered_json::array();
     for (const ActionReport& action : report.actions)
         out["actions"].push_back(jsonOf(action));
-    return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace haustra::panels

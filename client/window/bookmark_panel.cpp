@@ -1,4 +1,5 @@
 // The list of bookmarks at the right.
+#include "core/printed_text.h"
 #include "window/ui.h"
 #include "window/widgets.h"
 
@@ -29,7 +30,7 @@ void drawRow(Ui& ui, const panels::Bookmark& bookmark, int number) {
             ? bookmark.createdUtc.substr(0, 10) + "  " + bookmark.createdUtc.substr(11, 5)
             : "";
     const std::string where =
-        format("%.0f mm   %s", bookmark.arcMm, bookmark.acknowledged() ? when.c_str() : "saving…");
+        printed("%.0f mm   %s", bookmark.arcMm, bookmark.acknowledged() ? when.c_str() : "saving…");
     list->AddText(ui.fonts.small, ui.fonts.small->FontSize,
                   {corner.x + ui.px(12), corner.y + ui.px(26)}, color::muted, where.c_str());
     list->PopClipRect();

@@ -1,5 +1,6 @@
 // The flattened strip and the window onto it: pictures, what is drawn on them, the mouse.
 #include "core/bridges.h"
+#include "core/printed_text.h"
 #include "window/pane.h"
 #include "window/widgets.h"
 
@@ -54,7 +55,7 @@ void drawBridges(Ui& ui, const FlatArea& flat, ImDrawList* list) {
         const double y = strip.yAtArc(0.5 * (bridge.fromArcMm + bridge.toArcMm));
         const float row = flat.screen({0.0, y}).y - ui.fonts.small->FontSize / 2;
         outlinedText(list, ui.fonts.small, {flat.area.min.x + ui.px(8), row}, color::bookmark,
-                     format("bridge %.0f mm", bridge.lengthMm()));
+                     printed("bridge %.0f mm", bridge.lengthMm()));
     }
 }
 
@@ -107,7 +108,7 @@ void handleStripMouse(Ui& ui, const StripLayout& layout, Rect area, double pixel
         reader.goToFlat(*flat, true);
     }
     if (hovered && !ImGui::IsItemActive())
-        tooltip(format("%.0f mm", reader.tour().strip().arcAtY(flat->y)).c_str());
+        tooltip(printed("%.0f mm", reader.tour().strip().arcAtY(flat->y)).c_str());
 }
 
 // ---- the window onto it -----------------------------------------------------------------------
@@ -148,8 +149,8 @@ void drawMeasurement(Ui& ui, const FlatArea& flat, ImDrawList* list) {
     const panels::FlatMeasure& result = *measurement->result;
     const std::string text =
         measurement->closed
-            ? format("%.1f mm across   %.0f mm²", result.largestDiameterMm, result.areaMm2)
-            : format("%.1f mm   straight %.1f mm", result.lengthMm, result.straightMm);
+            ? printed("%.1f mm across   %.0f mm²", result.largestDiameterMm, result.areaMm2)
+            : printed("%.1f mm   straight %.1f mm", result.lengthMm, result.straightMm);
     const ImVec2 size = textSize(ui.fonts.normal, text);
     const ImVec2 corner(
         std::clamp(low.x - size.x / 2, flat.area.min.x + ui.px(6),
@@ -220,12 +221,12 @@ void drawZoomTexts(Ui& ui, const FlatArea& flat, ImDrawList* list) {
     const ImVec2 corner(area.min.x + margin, area.min.y + ui.px(8));
     if (tour.flyingOver())
         outlinedText(list, ui.fonts.normal, corner, color::accent,
-                     format("Fly-over   %.0f mm", tour.arcMm()));
+                     printed("Fly-over   %.0f mm", tour.arcMm()));
     else
         outlinedText(list, ui.fonts.small, corner, color::text, "Flattened wall");
     const double zoom = tour.window().pixelsPerUnit / panels::wholeCircumference(flat.size.x);
     const std::string right =
-        std::abs(zoom - 1.0) < 0.01 ? std::string("cecum ↑") : format("×%.1f   cecum ↑", zoom);
+        std::abs(zoom - 1.0) < 0.01 ? std::string("cecum ↑") : printed("×%.1f   cecum ↑", zoom);
     outlinedText(list, ui.fonts.small,
                  {area.max.x - margin - textSize(ui.fonts.small, right).x, corner.y}, pale, right);
     if (ui.tool == DrawingTool::none) return;

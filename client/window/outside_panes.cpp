@@ -1,4 +1,5 @@
 // The colon from outside, and the slice across the gaze.
+#include "core/printed_text.h"
 #include "panels/overview_map.h"
 #include "window/pane.h"
 #include "window/widgets.h"
@@ -124,7 +125,7 @@ void drawScaleBar(Ui& ui, double pixelsPerMm, Rect area, ImDrawList* list) {
     const ImVec2 to(area.max.x - margin, area.max.y - margin), from(to.x - long_, to.y);
     list->AddLine(from, to, IM_COL32(0, 0, 0, 200), ui.px(4));
     list->AddLine(from, to, color::text, ui.px(1.5f));
-    const std::string text = format("%g mm", mm);
+    const std::string text = printed("%g mm", mm);
     outlinedText(list, ui.fonts.small,
                  {(from.x + to.x - textSize(ui.fonts.small, text).x) / 2,
                   to.y - ui.fonts.small->FontSize - ui.px(4)},
@@ -199,7 +200,7 @@ void drawObliquePane(Ui& ui, Rect area) {
     const double ahead =
         glm::dot(shown.positionMm - reader.flight().camera().positionMm, shown.forward);
     if (std::abs(ahead) >= 0.5) {
-        const std::string text = format("%+.0f mm ahead", ahead);
+        const std::string text = printed("%+.0f mm ahead", ahead);
         outlinedText(list, ui.fonts.small,
                      {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize}, dim,
                      text);

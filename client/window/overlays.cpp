@@ -1,4 +1,5 @@
 // What lies over the views: notices, the help, and the start page while no case is open.
+#include "core/printed_text.h"
 #include "window/ui.h"
 #include "window/widgets.h"
 
@@ -104,8 +105,8 @@ void drawNotices(Ui& ui, Rect area) {
         const bool final = session.phase() == panels::Phase::failed;
         draw(describe(session.failure()) + (final ? "" : "  Trying again…"), true);
         if (session.owedBookmarks() > 0)
-            draw(format("%zu bookmark%s will be saved when the server is back",
-                        session.owedBookmarks(), session.owedBookmarks() == 1 ? "" : "s"),
+            draw(printed("%zu bookmark%s will be saved when the server is back",
+                         session.owedBookmarks(), session.owedBookmarks() == 1 ? "" : "s"),
                  true);
     }
     for (const Notice& notice : ui.notices)

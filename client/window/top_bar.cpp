@@ -1,4 +1,5 @@
 // The line along the top: which case, which server, how fast.
+#include "core/printed_text.h"
 #include "window/ui.h"
 #include "window/widgets.h"
 
@@ -40,18 +41,18 @@ void drawTopBar(Ui& ui, Rect area) {
         write(ui.fonts.normal, color::text, info.name);
         std::string about = toString(info.position);
         if (info.position == PatientPosition::unknown) about.clear();
-        about += format("%s%d×%d×%d", about.empty() ? "" : "   ", info.grid.size.x,
-                        info.grid.size.y, info.grid.size.z);
+        about += printed("%s%d×%d×%d", about.empty() ? "" : "   ", info.grid.size.x,
+                         info.grid.size.y, info.grid.size.z);
         write(ui.fonts.small, color::muted, about);
         if (!info.cleansed) write(ui.fonts.small, color::bookmark, "not cleansed");
         if (info.trust) {
             const float from = x;
             const std::size_t places = info.trust->warnings.size();
             write(ui.fonts.small, places > 0 ? color::bookmark : color::muted,
-                  format("colon %.0f %% sure", 100.0 * info.trust->confidence) +
+                  printed("colon %.0f %% sure", 100.0 * info.trust->confidence) +
                       (places == 0   ? std::string()
                        : places == 1 ? std::string(", 1 place to look at")
-                                     : format(", %d places to look at", int(places))));
+                                     : printed(", %d places to look at", int(places))));
             if (places > 0 && ImGui::IsMouseHoveringRect({from, area.min.y}, {x, area.max.y})) {
                 std::string all;
                 for (const std::string& warning : info.trust->warnings)
@@ -78,22 +79,22 @@ void drawTopBar(Ui& ui, Rect area) {
     right = drawFigure(ui, list, right, middle, "server", ui.serverName,
                        up ? color::text : color::trouble);
     if (!ui.reader.isOpen()) return;
-    right = drawFigure(ui, list, right, middle, "link", format("%.1f ms", session.roundTripMs()),
+    right = drawFigure(ui, list, right, middle, "link", printed("%.1f ms", session.roundTripMs()),
                        color::text);
     if (latency.count > 0)
         right = drawFigure(ui, list, right, middle, "hand to picture",
-                           format("%.0f ms, p95 %.0f", latency.p50, latency.p95),
+                           printed("%.0f ms, p95 %.0f", latency.p50, latency.p95),
                            latency.p95 > 150.0 ? color::bookmark : color::text);
     right = drawFigure(ui, list, right, middle, "pictures/s",
-                       format("%.0f", ui.reader.picturesPerSecond()), color::text);
+                       printed("%.0f", ui.reader.picturesPerSecond()), color::text);
     const tiles::Picture& shown = ui.reader.picture(panels::View::endoscopic);
     const std::string raycaster = protocol::raycasterName(shown.raycaster);
     if (!raycaster.empty())
         right = drawFigure(ui, list, right, middle, raycaster.c_str(),
-                           format("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);
+                           printed("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);
     if (ui.reader.hasStrip())
         drawFigure(ui, list, right, middle, "wall seen",
-                   format("%.1f %%", 100.0 * session.seenShare()), color::text);
+                   printed("%.1f %%", 100.0 * session.seenShare()), color::text);
 }
 
 }  // namespace haustra::window

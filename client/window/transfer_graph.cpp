@@ -1,5 +1,6 @@
 #include "window/transfer_graph.h"
 
+#include "core/printed_text.h"
 #include "window/widgets.h"
 
 #include <algorithm>
@@ -66,7 +67,7 @@ void drawScales(Ui& ui, const Graph& graph, ImDrawList* list) {
     for (double n = std::ceil(graph.lowHu / step); n * step <= graph.highHu; ++n) {
         const float x = graph.place(n * step, 0.0).x;
         list->AddLine({x, area.min.y}, {x, area.max.y}, color::border);
-        const std::string text = format("%.0f", n * step + 0.0);
+        const std::string text = printed("%.0f", n * step + 0.0);
         const float wide = textSize(font, text).x;
         const float left = std::clamp(x - wide / 2, area.min.x, area.max.x - wide);
         list->AddText(font, font->FontSize, {left, area.max.y + ui.px(3)}, color::muted,
@@ -75,7 +76,7 @@ void drawScales(Ui& ui, const Graph& graph, ImDrawList* list) {
     for (const double opacity : {0.01, 0.1, 0.5, 1.0}) {
         const float y = graph.place(0.0, opacity).y;
         if (opacity < 1.0) list->AddLine({area.min.x, y}, {area.max.x, y}, color::border);
-        const std::string text = format("%g", opacity);
+        const std::string text = printed("%g", opacity);
         list->AddText(font, font->FontSize,
                       {area.min.x - ui.px(6) - textSize(font, text).x, y - font->FontSize / 2},
                       color::muted, text.c_str());

@@ -1,4 +1,5 @@
 // The optics of the wall, changed by hand: presets, points, composition and light.
+#include "core/printed_text.h"
 #include "window/transfer_graph.h"
 #include "window/ui.h"
 #include "window/widgets.h"
@@ -9,10 +10,6 @@ namespace haustra::window {
 namespace {
 
 using panels::OpticsEditor, panels::TransferCurve;
-
-void sameRow(Ui& ui, float gap = 8) {
-    ImGui::SameLine(0, ui.px(gap));
-}
 
 void mutedText(Ui& ui, const std::string& text) {
     ImGui::PushFont(ui.fonts.small);
@@ -63,7 +60,7 @@ void chooseRow(Ui& ui) {
         sameRow(ui, 6);
         if (ImGui::GetCursorScreenPos().x > right - ui.px(190)) ImGui::NewLine();
         const std::string label =
-            row == 0 && optics.rows() == 1 ? "any" : format("%.0f", optics.gradientOf(row));
+            row == 0 && optics.rows() == 1 ? "any" : printed("%.0f", optics.gradientOf(row));
         const bool chosen = row == optics.row();
         ImGui::PushID(int(row));
         if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, color::accentDim);

@@ -1,5 +1,6 @@
 // The bar along the bottom: the centerline from rectum to cecum, and the controls of the flight.
 #include "core/bridges.h"
+#include "core/printed_text.h"
 #include "window/ui.h"
 #include "window/widgets.h"
 
@@ -56,11 +57,7 @@ void drawTrack(Ui& ui, Rect area) {
     const bool antegrade = flight.direction() == FlightDirection::antegrade;
     drawIcon(list, antegrade ? Icon::forward : Icon::backward, center, knob * 0.9f,
              color::background);
-    if (hovered) tooltip(format("%.0f mm", mouseArc).c_str());
-}
-
-void sameRow(Ui& ui, float gap = 8) {
-    ImGui::SameLine(0, ui.px(gap));
+    if (hovered) tooltip(printed("%.0f mm", mouseArc).c_str());
 }
 
 // A small grey label, centred on the row of controls.
@@ -172,7 +169,7 @@ void drawControls(Ui& ui) {
         flight.setSpeed(speed);
     tooltip("Speed (+ and −)");
     sameRow(ui);
-    label(ui, format("%.0f mm/s", flight.speedMmPerS()).c_str());
+    label(ui, printed("%.0f mm/s", flight.speedMmPerS()).c_str());
 
     sameRow(ui, 20);
     panels::OpticsEditor& optics = reader.optics();

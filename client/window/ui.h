@@ -81,4 +81,9 @@ void drawStart(Ui& ui, Rect area);
 /// Acts on the keyboard. False: the reader asked to quit.
 bool handleKeys(Ui& ui, const std::vector<KeyPress>& presses, double seconds);
 
+/// The next item goes beside the last one.
+inline void sameRow(Ui& ui, float gap = 8) {
+    ImGui::SameLine(0, ui.px(gap));
+}
+
 }  // namespace haustra::window

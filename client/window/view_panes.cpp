@@ -1,5 +1,6 @@
 // The endoscopic view and the slices: pictures, what is written on them, the mouse.
 #include "core/bridges.h"
+#include "core/printed_text.h"
 #include "panels/slice_map.h"
 #include "window/pane.h"
 #include "window/widgets.h"
@@ -126,24 +127,24 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
     const double length = flight.centerline().lengthMm();
     const bool antegrade = flight.direction() == FlightDirection::antegrade;
     outlinedText(list, ui.fonts.large, {area.min.x + margin, area.min.y + margin}, color::text,
-                 flight.isFree() ? std::string("Free flight") : format("%.0f mm", flight.arcMm()));
+                 flight.isFree() ? std::string("Free flight") : printed("%.0f mm", flight.arcMm()));
     outlinedText(list, ui.fonts.small,
                  {area.min.x + margin, area.min.y + margin + ui.fonts.large->FontSize + ui.px(4)},
                  IM_COL32(200, 208, 216, 255),
                  flight.isFree() ? std::string("W A S D move, drag to look, C returns to the path")
-                                 : format("of %.0f mm, %s", length,
-                                          antegrade ? "towards the cecum" : "towards the rectum"));
+                                 : printed("of %.0f mm, %s", length,
+                                           antegrade ? "towards the cecum" : "towards the rectum"));
     for (const Bridge& bridge : bridgesOf(flight.centerline())) {
         if (flight.isFree() || flight.arcMm() < bridge.fromArcMm || flight.arcMm() > bridge.toArcMm)
             continue;
         outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin + ui.px(46)},
                      color::bookmark,
-                     format("bridge of %.0f mm: the colon is collapsed or filled, no wall is seen",
-                            bridge.lengthMm()));
+                     printed("bridge of %.0f mm: the colon is collapsed or filled, no wall is seen",
+                             bridge.lengthMm()));
     }
     if (flight.yawDegrees() != 0.0 || flight.pitchDegrees() != 0.0) {
-        const std::string look = format("look %+.0f°  %+.0f°   double-click: straight ahead",
-                                        flight.yawDegrees(), flight.pitchDegrees());
+        const std::string look = printed("look %+.0f°  %+.0f°   double-click: straight ahead",
+                                         flight.yawDegrees(), flight.pitchDegrees());
         outlinedText(list, ui.fonts.small,
                      {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
                      IM_COL32(200, 208, 216, 255), look);
@@ -187,7 +188,7 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
     const double coordinate = glm::dot(shown.positionMm, panels::sliceNormal(view));
     outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin}, color::text,
                  shown.cleansed ? std::string(title(view)) + ", cleansed" : title(view));
-    const std::string place = format("%s %.1f mm", axisName(view), coordinate);
+    const std::string place = printed("%s %.1f mm", axisName(view), coordinate);
     outlinedText(list, ui.fonts.small,
                  {area.max.x - margin - textSize(ui.fonts.small, place).x, area.min.y + margin},
                  IM_COL32(200, 208, 216, 255), place);
@@ -196,10 +197,10 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
         outlinedText(list, ui.fonts.small,
                      {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
                      IM_COL32(200, 208, 216, 255),
-                     format("C %.0f  W %.0f HU", window.centerHu, window.widthHu));
+                     printed("C %.0f  W %.0f HU", window.centerHu, window.widthHu));
     }
     if (shown.zoom > 1.001) {
-        const std::string zoom = format("×%.1f", shown.zoom);
+        const std::string zoom = printed("×%.1f", shown.zoom);
         outlinedText(list, ui.fonts.small,
                      {area.max.x - margin - textSize(ui.fonts.small, zoom).x,
                       area.max.y - margin - ui.fonts.small->FontSize},

@@ -1,18 +1,6 @@
 #include "window/widgets.h"
 
-#include <cstdarg>
-#include <cstdio>
-
 namespace haustra::window {
-
-std::string format(const char* pattern, ...) {
-    char text[512];
-    va_list arguments;
-    va_start(arguments, pattern);
-    std::vsnprintf(text, sizeof text, pattern, arguments);
-    va_end(arguments);
-    return text;
-}
 
 ImVec2 textSize(ImFont* font, const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e6f, 0.0f, text.c_str());

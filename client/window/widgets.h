@@ -41,7 +41,4 @@ ImVec2 textSize(ImFont* font, const std::string& text);
 /// A tooltip for the last item, after a moment's hovering.
 void tooltip(const char* text);
 
-/// printf into a std::string.
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-
 }  // namespace haustra::window

@@ -11,8 +11,8 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr double cellMm = 3.0;
-constexpr double sampleMm3 = 1.8;  // of gas, one voxel of so much is looked at
-constexpr double voxelMm3 = 0.6;   // whose weight is 1
+constexpr double gasSampleMm3 = 1.8;  // of gas, one voxel of so much is looked at
+constexpr double voxelMm3 = 0.6;      // whose weight is 1
 
 // Sums over one cell.
 struct CellSums {
@@ -139,7 +139,7 @@ LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
 
     means.noise = measureNoise(scan, tissue, segmentation, threads, from);
     const float unit = float(grid.voxelVolumeMm3() / voxelMm3);
-    const int every = std::max(1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())));
+    const int every = std::max(1, int(std::lround(gasSampleMm3 / grid.voxelVolumeMm3())));
     const int sampled = from.x + from.y + from.z;
 
     // One slab of cells is one thread's, so sums do not depend on the threads.

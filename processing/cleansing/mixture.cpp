@@ -115,7 +115,9 @@ private:
             std::clamp((1.0 - soft) * fluidAt(*depth), std::min(least, most), most);
         // Equation 3.1 gives the rest.
         const double wall = (y - tagged * taggedHu - (1.0 - tagged) * airHu) / (softHu - airHu);
-        return roundedFractions(1.0 - tagged - std::clamp(wall, 0.0, 1.0 - tagged), tagged);
+        // What is brighter than the tagged material is no wall.
+        const double rest = 1.0 - tagged;
+        return roundedFractions(rest - std::min(std::max(wall, 0.0), rest), tagged);
     }
 
     /// Whether fluid that this voxel can hold the top of lies below it or one look aside of that.

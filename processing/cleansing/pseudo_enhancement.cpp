@@ -14,10 +14,10 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr std::array<double, 5> widthsMm = {8.0, 12.0, 16.0, 24.0, 32.0};
-constexpr double cellMm = 3.0;     // in the slice
-constexpr double sampleMm3 = 4.0;  // one voxel of so much is looked at
+constexpr double cellMm = 3.0;                // in the slice
+constexpr double enhancementSampleMm3 = 4.0;  // one voxel of so much is looked at
 constexpr double leastEdgeHu = 4.0;
-constexpr double fewest = 500.0;
+constexpr double fewestSamples = 500.0;
 
 /// The tagging's excess over gas, in cells of one slice each of the whole scan.
 SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentation, double airHu,
@@ -125,7 +125,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         }
     }
     const Ball ball = blurBall(grid);
-    const int every = std::max(1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())));
+    const int every = std::max(1, int(std::lround(enhancementSampleMm3 / grid.voxelVolumeMm3())));
     const auto isGas = [&](std::size_t n) {
         return LumenLabel(segmentation[n]) == LumenLabel::air;
     };
@@ -158,7 +158,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
     std::size_t at = 0;
     for (std::size_t w = 0; w < lines.size(); ++w) {
         const Line& line = lines[w];
-        if (line.count < fewest || line.joint() <= 0.0) continue;
+        if (line.count < fewestSamples || line.joint() <= 0.0) continue;
         const double explained = line.joint() * line.slope();  // of the squares
         if (explained <= most) continue;
         most = explained, at = w;

@@ -1,8 +1,9 @@
 #include "core/colon_record.h"
 
+#include "core/printed_text.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -72,13 +73,9 @@ std::vector<std::string> piecesPassedBy(const Centerline& path,
             missedMm += pieces[n].lengthMm;
         } else if (missedMm > 0.0) {
             const ColonPiece& last = pieces[n - 1];
-            char line[200];
-            std::snprintf(line, sizeof line,
-                          "about %.0f mm of the colon have no centerline, up to the %s at (%.0f, "
-                          "%.0f, %.0f) mm",
-                          missedMm, toString(last.part), last.centreMm.x, last.centreMm.y,
-                          last.centreMm.z);
-            lines.push_back(line);
+            lines.push_back(
+                printed("about %.0f mm of the colon have no centerline, up to the %s at %s",
+                        missedMm, toString(last.part), placeText(last.centreMm).c_str()));
             missedMm = 0.0;
         }
     }

@@ -1,8 +1,9 @@
 #include "dicom/series_geometry.h"
 
+#include "core/printed_text.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace haustra::dicom {
@@ -15,9 +16,7 @@ constexpr double leastTiltPixels = 0.5;  // over the whole stack
 constexpr double sidewaysPixels = 1.0;   // off the tilted axis
 
 std::string millimetres(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f mm", value);
-    return text;
+    return printed("%.2f mm", value);
 }
 
 /// "z = -12.50 mm" for an axial series, "12.50 mm along the slice normal" for any other.
@@ -190,9 +189,7 @@ Result<void> squareUp(const std::vector<Slice>& slices, const Column& column, Sl
     glm::dmat4& affine = stack.grid.patientFromVoxel;
     affine[3] += affine[0] * low.x + affine[1] * low.y;
     affine[2] = glm::dvec4(column.normal * glm::dot(glm::dvec3(affine[2]), column.normal), 0.0);
-    char note[64];
-    std::snprintf(note, sizeof note, "corrected a gantry tilt of %.1f degrees", tilt);
-    stack.notes.push_back(note);
+    stack.notes.push_back(printed("corrected a gantry tilt of %.1f degrees", tilt));
     return {};
 }
 

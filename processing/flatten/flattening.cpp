@@ -1,5 +1,6 @@
 #include "flatten/flattening.h"
 
+#include "core/printed_text.h"
 #include "flatten/flip_repair.h"
 #include "flatten/pouches.h"
 #include "flatten/unified_flattening.h"
@@ -8,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <numeric>
@@ -169,14 +169,12 @@ tl::unexpected<Error> foldsRemain(const Cut& cut, const FlatteningOptions& optio
     const auto& at = cut.map.surface.vertices;
     const glm::dvec3 place =
         (at[std::size_t(t.x)] + at[std::size_t(t.y)] + at[std::size_t(t.z)]) / 3.0;
-    char coordinates[80];
-    std::snprintf(coordinates, sizeof coordinates, "%.1f, %.1f, %.1f mm", place.x, place.y,
-                  place.z);
     return fail(
         ErrorKind::noResult,
         "the surface cannot be flattened without folds: " + std::to_string(cut.folded.size()) +
             " of the flat map's triangles would be turned over, the first at " +
-            (options.placeName ? options.placeName(place) : coordinates),
+            (options.placeName ? options.placeName(place)
+                               : printed("%.1f, %.1f, %.1f mm", place.x, place.y, place.z)),
         "flattening");
 }
 

@@ -1,3 +1,4 @@
+#include "core/printed_text.h"
 #include "flatten/camera_registration.h"
 #include "flatten/end_holes.h"
 #include "flatten/flattening.h"
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace haustra::pipeline {
 namespace {
@@ -51,13 +51,10 @@ void setDistortion(Attributes& attributes, const std::string& prefix,
 }
 
 std::string distortionNote(const flatten::Distortion& distortion) {
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
+    return printed(
         "angles off by %.2f° in the mean (no map: below %.2f°), areas by a factor of %.2f",
         distortion.angleErrorDegrees.mean, distortion.angleFloorDegrees,
         std::exp(distortion.logAreaDeviation));
-    return text;
 }
 
 Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedTube& punched,
@@ -76,19 +73,17 @@ Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedT
         {"triangles", std::to_string(flat.map.surface.triangles.size())},
         {"cameras", std::to_string(flat.map.cameras.size())}};
     setDistortion(attributes, "", flat.distortion);
-    char start[80];
-    std::snprintf(start, sizeof start, "modulus %.3f (certificate %.1e), ", flat.modulus,
-                  flat.certificate);
-    std::vector<std::string> notes{start + distortionNote(flat.distortion)};
+    std::vector<std::string> notes{
+        printed("modulus %.3f (certificate %.1e), ", flat.modulus, flat.certificate) +
+        distortionNote(flat.distortion)};
     if (flat.pouches > 0) {
         setDistortion(attributes, "outside-", flat.outside);
         attributes["pouches"] = std::to_string(flat.pouches);
         attributes["pouch-area-mm2"] = exactText(flat.pouchAreaMm2);
-        char told[120];
-        std::snprintf(told, sizeof told,
-                      "%zu blind pouches of %.0f mm² in all are mapped apart; outside them ",
-                      flat.pouches, flat.pouchAreaMm2);
-        notes.push_back(told + distortionNote(flat.outside));
+        notes.push_back(
+            printed("%zu blind pouches of %.0f mm² in all are mapped apart; outside them ",
+                    flat.pouches, flat.pouchAreaMm2) +
+            distortionNote(flat.outside));
     }
     if (flat.areaWeight > 0.0) {
         setDistortion(attributes, "conformal-", flat.conformal);

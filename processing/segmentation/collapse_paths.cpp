@@ -16,7 +16,7 @@
 namespace haustra::segmentation {
 namespace {
 
-constexpr double cellMm = 2.5;
+constexpr double pathCellMm = 2.5;
 constexpr double fatCost = 6.0, softFromHu = -30.0, fatHu = -70.0;
 constexpr double deepMm = 10.0, deeperMm = 5.0;
 constexpr float besideLumenCost = 1.0f;
@@ -35,7 +35,7 @@ CellGrid makeCellGrid(const Volume<std::int16_t>& hu, const BowelContents& conte
                       const TubePieces& cut, const std::vector<std::int32_t>& nodeOf, int threads) {
     const Grid& fine = hu.grid();
     CellGrid cells;
-    cells.block = glm::max(glm::ivec3(1), glm::ivec3(glm::round(cellMm / fine.spacingMm())));
+    cells.block = glm::max(glm::ivec3(1), glm::ivec3(glm::round(pathCellMm / fine.spacingMm())));
     cells.grid.size = (fine.size + cells.block - 1) / cells.block;
     cells.grid.patientFromVoxel = fine.patientFromVoxel;
     for (int axis = 0; axis < 3; ++axis)

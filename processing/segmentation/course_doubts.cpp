@@ -1,6 +1,6 @@
 #include "segmentation/course_doubts.h"
 
-#include "segmentation/printed_text.h"
+#include "core/printed_text.h"
 
 #include <algorithm>
 #include <array>
@@ -34,14 +34,16 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         const ColonPiece &a = record.pieces[n], &b = record.pieces[n + 1];
         if (junction.kind == JunctionKind::collapse) {
             lengthMm[std::size_t(a.part)] += junction.lengthMm;
-            doubt(wrongCollapse(junction.lengthMm, a.radiusMm / b.radiusMm),
-                  junction.lengthMm > 0.0 && junction.lengthMm < twoWallsMm
-                      ? text("two loops may only touch where %.0f mm were crossed from the %s on",
-                             junction.lengthMm, toString(a.part))
-                      : text("a loop may lie in the %.0f mm that were crossed from the %s on",
-                             junction.lengthMm, toString(a.part)));
+            doubt(
+                wrongCollapse(junction.lengthMm, a.radiusMm / b.radiusMm),
+                junction.lengthMm > 0.0 && junction.lengthMm < twoWallsMm
+                    ? printed("two loops may only touch where %.0f mm were crossed from the %s on",
+                              junction.lengthMm, toString(a.part))
+                    : printed("a loop may lie in the %.0f mm that were crossed from the %s on",
+                              junction.lengthMm, toString(a.part)));
         } else if (junction.kind == JunctionKind::thinWall) {
-            doubt(0.12, text("what was taken for open in the %s may be a wall", toString(a.part)));
+            doubt(0.12,
+                  printed("what was taken for open in the %s may be a wall", toString(a.part)));
         }
     }
     constexpr std::array<std::pair<ColonPart, double>, 4> leastMm{{{ColonPart::sigmoid, 130.0},
@@ -52,8 +54,8 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         const double mm = lengthMm[std::size_t(part)];
         if (mm < least)
             doubt(0.4 * (1.0 - mm / least),
-                  text("no more than %.0f mm of %s%s were found", mm, toString(part),
-                       part == ColonPart::sigmoid ? "" : " in all"));
+                  printed("no more than %.0f mm of %s%s were found", mm, toString(part),
+                          part == ColonPart::sigmoid ? "" : " in all"));
     }
     constexpr double farLeft = 0.2, high = 0.6;  // of a cecum's lowest place
     if (!record.pieces.empty() && record.pieces.front().part > ColonPart::sigmoid)
@@ -65,24 +67,24 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
     for (const LeftOutBody& body : record.leftOut) {
         constexpr double tellMl = 5.0, muchMl = 25.0;
         if (!body.gas || body.volumeMl < tellMl) continue;
-        doubt(
-            0.03 * std::min(1.0, body.volumeMl / muchMl) + (body.opens ? 0.05 : 0.0),
-            text("%.0f ml of gas near the %s may be colon", body.volumeMl, toString(body.nearest)));
+        doubt(0.03 * std::min(1.0, body.volumeMl / muchMl) + (body.opens ? 0.05 : 0.0),
+              printed("%.0f ml of gas near the %s may be colon", body.volumeMl,
+                      toString(body.nearest)));
     }
     for (const RebuiltWallRecord& wall : record.walls) {
         constexpr double tellMm2 = 20.0;
         if (wall.betweenLoops && wall.areaMm2 > tellMm2)
-            doubt(0.02, text("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
+            doubt(0.02, printed("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
     }
     double untaggedMl = 0.0;
     for (const ColonPiece& piece : record.pieces)
         untaggedMl += piece.untaggedMl;
     if (untaggedMl > 0.0)
         doubt(0.1 * std::min(1.0, untaggedMl / 50.0),
-              text("%.0f ml of untagged fluid may be other than lumen", untaggedMl));
+              printed("%.0f ml of untagged fluid may be other than lumen", untaggedMl));
     for (const UntaggedPool& pool : record.untaggedPools)
         doubt(0.1 * std::min(1.0, pool.areaMm2 / 1000.0),
-              text("untagged fluid in the %s may hide lumen", toString(pool.part)));
+              printed("untagged fluid in the %s may hide lumen", toString(pool.part)));
     std::stable_sort(doubts.begin(), doubts.end(),
                      [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
     return doubts;

@@ -1,7 +1,7 @@
 #include "segmentation/edge_overshoot.h"
 
+#include "core/printed_text.h"
 #include "core/voxel_sweep.h"
-#include "segmentation/printed_text.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 namespace haustra::segmentation {
 namespace {
 
-constexpr double wallMm = 2.0, rimMm = 2.5;
+constexpr double besideMm = 2.0, rimMm = 2.5;
 constexpr int lowestHu = -1024, highestHu = 3071;
 
 bool isGas(std::uint8_t content) {
@@ -24,7 +24,7 @@ std::vector<std::int16_t> peaksBeside(const Volume<std::int16_t>& hu,
                                       const Volume<std::uint8_t>& content, int axis, int sign,
                                       const std::vector<std::uint32_t>& border) {
     const Grid& grid = hu.grid();
-    const int reach = std::max(1, int(std::lround(wallMm / grid.spacingMm()[axis])));
+    const int reach = std::max(1, int(std::lround(besideMm / grid.spacingMm()[axis])));
     std::vector<std::int16_t> peaks;
     for (const std::uint32_t n : border) {
         glm::ivec3 v = grid.voxelAt(n);
@@ -105,10 +105,10 @@ void takeOffOvershoot(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                 voxels[m] = std::uint8_t(Content::tissue);
         });
     }
-    contents.notes.push_back(
-        text("the kernel is sharp: the wall beside gas is up to %.0f HU bright, as tagged material "
-             "is; thin residue on it is not seen",
-             overshootHu));
+    contents.notes.push_back(printed(
+        "the kernel is sharp: the wall beside gas is up to %.0f HU bright, as tagged material "
+        "is; thin residue on it is not seen",
+        overshootHu));
 }
 
 }  // namespace haustra::segmentation

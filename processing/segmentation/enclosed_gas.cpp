@@ -11,7 +11,7 @@
 namespace haustra::segmentation {
 namespace {
 
-constexpr double wallMm = 3.0, leastFacing = 0.75, leastMl = 5.0, leastRadiusMm = 3.0;
+constexpr double thickestWallMm = 3.0, leastFacing = 0.75, smallestMl = 5.0, thinnestRadiusMm = 3.0;
 
 /// What a way along one axis from a voxel of gas comes to first.
 enum class Side { gas, lumen, other };
@@ -24,7 +24,8 @@ public:
           content_(content),
           cut_(cut),
           labels_(labels.writable()),
-          reach_(glm::max(glm::ivec3(glm::round(wallMm / grid_.spacingMm())), glm::ivec3(1))),
+          reach_(
+              glm::max(glm::ivec3(glm::round(thickestWallMm / grid_.spacingMm())), glm::ivec3(1))),
           strides_{1, std::size_t(grid_.size.x),
                    std::size_t(grid_.size.x) * std::size_t(grid_.size.y)} {
         const glm::ivec3 most = reach_ + 1;
@@ -33,7 +34,8 @@ public:
                 for (int i = -most.x; i <= most.x; ++i) {
                     const glm::ivec3 step(i, j, k);
                     const glm::dvec3 gap(glm::max(glm::abs(step) - 1, glm::ivec3(0)));
-                    if (glm::length(gap * grid_.spacingMm()) <= wallMm) ball_.push_back(step);
+                    if (glm::length(gap * grid_.spacingMm()) <= thickestWallMm)
+                        ball_.push_back(step);
                 }
             }
         }
@@ -42,7 +44,7 @@ public:
     std::vector<EnclosedGas> run(int threads) {
         const auto gas =
             voxelsWhere(grid_, threads, [&](std::size_t n, glm::ivec3) { return isGas(n); });
-        const std::size_t least = std::size_t(leastMl * 1000.0 / grid_.voxelVolumeMm3());
+        const std::size_t least = std::size_t(smallestMl * 1000.0 / grid_.voxelVolumeMm3());
         std::vector<bool> seen(labels_.size(), false);
         std::vector<std::vector<std::uint32_t>> taken;
         std::vector<EnclosedGas> found;
@@ -51,7 +53,7 @@ public:
             std::vector<std::uint32_t> body = bodyOf(first, seen);
             if (body.size() < least) continue;
             const double facing = facingShare(body);
-            if (facing < leastFacing || radiusMm(body) < leastRadiusMm) continue;
+            if (facing < leastFacing || radiusMm(body) < thinnestRadiusMm) continue;
             found.push_back(described(body));
             found.back().facing = facing;
             taken.push_back(std::move(body));

@@ -1,11 +1,11 @@
 #include "segmentation/find_colon.h"
 
+#include "core/printed_text.h"
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
 #include "segmentation/edge_overshoot.h"
 #include "segmentation/haustral_folds.h"
-#include "segmentation/printed_text.h"
 #include "segmentation/record_colon.h"
 #include "segmentation/thin_walls.h"
 #include "segmentation/tube_pieces.h"
@@ -62,7 +62,7 @@ Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
     if (piece < 0) {
         return fail(ErrorKind::badInput,
                     "there is no air or fluid of a lumen within 3 mm of this point",
-                    text("%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z));
+                    printed("%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z));
     }
     return piece;
 }
@@ -251,11 +251,12 @@ Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>&
                     "segmentation");
     if (const double mm = distendedMm(course.graph, course.chains.front());
         mm < leastDistendedMm && !asked) {
-        return fail(ErrorKind::noResult,
-                    text("this is no CT colonography: no more than %.0f mm of distended colon were "
-                         "found; name a point in it (--seed) if it is one",
-                         mm),
-                    "segmentation");
+        return fail(
+            ErrorKind::noResult,
+            printed("this is no CT colonography: no more than %.0f mm of distended colon were "
+                    "found; name a point in it (--seed) if it is one",
+                    mm),
+            "segmentation");
     }
     course.labels =
         layLabels(among.hu, tissue, among.contents, course.cut, course.graph, course.chains.front(),
@@ -393,7 +394,7 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
     const double leftMl = (maskMl - keptMl) * grid.voxelVolumeMm3() / 1000.0;
     if (leftMl >= 0.5)
         found.notes.push_back(
-            text("%.1f ml of the mask are no part of the colon that was found in it", leftMl));
+            printed("%.1f ml of the mask are no part of the colon that was found in it", leftMl));
     return found;
 }
 

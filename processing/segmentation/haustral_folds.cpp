@@ -11,7 +11,7 @@
 namespace haustra::segmentation {
 namespace {
 
-constexpr double thickestMm = 4.5, leastDepthMm = 2.5, leastMl = 3.0, leastGas = 0.2;
+constexpr double thickestMm = 4.5, leastDepthMm = 2.5, leastPieceMl = 3.0, leastGas = 0.2;
 
 /// The smallest box of each piece's voxels.
 std::vector<VoxelBox> boxesOf(const TubePieces& cut, int threads) {
@@ -152,7 +152,7 @@ std::vector<double> foldDensityMm(const TubePieces& cut, const Volume<std::uint8
         for (std::size_t p = begin; p < end; ++p) {
             const TubePiece& piece = cut.pieces[p];
             if (double(piece.gasVoxels) > leastGas * double(piece.voxels) &&
-                piece.volumeMl >= leastMl)
+                piece.volumeMl >= leastPieceMl)
                 densities[p] = foldDensityOf(cut, std::int32_t(p), boxes[p], thinWalls);
         }
     });

@@ -1,7 +1,7 @@
 #include "segmentation/record_colon.h"
 
+#include "core/printed_text.h"
 #include "segmentation/course_doubts.h"
-#include "segmentation/printed_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -224,13 +224,13 @@ private:
             }
             if (bodies == 0) continue;
             made_.warnings.push_back(
-                text("%.0f ml of %s nearest to the %s%s, at ", sumMl,
-                     first.gas        ? "gas"
-                     : first.untagged ? "fluid without tagging"
-                                      : "tagged material",
-                     toString(first.nearest),
-                     first.opens ? " lie open to the colon and were taken for small bowel"
-                                 : " were taken for other than colon") +
+                printed("%.0f ml of %s nearest to the %s%s, at ", sumMl,
+                        first.gas        ? "gas"
+                        : first.untagged ? "fluid without tagging"
+                                         : "tagged material",
+                        toString(first.nearest),
+                        first.opens ? " lie open to the colon and were taken for small bowel"
+                                    : " were taken for other than colon") +
                 places + (bodies > mostPlaces ? " and elsewhere" : ""));
         }
     }
@@ -241,10 +241,10 @@ private:
         if (!contents_.levels.empty()) return;
         for (const ColonPiece& piece : made_.pieces) {
             if (piece.taggedMl < tellMl) continue;
-            made_.warnings.push_back(
-                text("%.0f ml in the %s are as bright as tagged material, which shows no level in "
-                     "this scan; they may be bone, at %s",
-                     piece.taggedMl, toString(piece.part), placeText(piece.centreMm).c_str()));
+            made_.warnings.push_back(printed(
+                "%.0f ml in the %s are as bright as tagged material, which shows no level in "
+                "this scan; they may be bone, at %s",
+                piece.taggedMl, toString(piece.part), placeText(piece.centreMm).c_str()));
         }
     }
 
@@ -255,23 +255,23 @@ private:
             const ColonJunction& junction = made_.junctions[n];
             const char* const part = toString(made_.pieces[n].part);
             if (junction.kind == JunctionKind::collapse) {
-                say(text("the %s is collapsed over %.0f mm, at %s", part, junction.lengthMm,
-                         placeText(junction.placeMm).c_str()));
+                say(printed("the %s is collapsed over %.0f mm, at %s", part, junction.lengthMm,
+                            placeText(junction.placeMm).c_str()));
             } else if (junction.kind == JunctionKind::thinWall) {
-                say(text("what looks like a thin wall in the %s was taken for open lumen, at %s",
-                         part, placeText(junction.placeMm).c_str()));
+                say(printed("what looks like a thin wall in the %s was taken for open lumen, at %s",
+                            part, placeText(junction.placeMm).c_str()));
             }
             if (junction.confidence < sure)
-                say(text("the way on from the %s is not sure (%.0f %%), at %s", part,
-                         100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
+                say(printed("the way on from the %s is not sure (%.0f %%), at %s", part,
+                            100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
         }
         sayLeftOut();
         sayUnseenTagging();
         for (const RebuiltWallRecord& wall : made_.walls) {
             constexpr double tellMm2 = 20.0;
             if (wall.betweenLoops && wall.areaMm2 > tellMm2)
-                say(text("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
-                         placeText(wall.placeMm).c_str()));
+                say(printed("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
+                            placeText(wall.placeMm).c_str()));
         }
         std::map<ColonPart, double> untaggedMl;
         for (const ColonPiece& piece : made_.pieces)
@@ -279,42 +279,43 @@ private:
         for (const auto& [part, ml] : untaggedMl) {
             constexpr double tellMl = 1.0;
             if (ml > tellMl)
-                say(text(
+                say(printed(
                     "%.0f ml of fluid without tagging were taken out of the %s; its wall shows "
                     "little contrast and may lie elsewhere by millimetres",
                     ml, toString(part)));
         }
         for (const EnclosedGas& gas : labels_.enclosed)
-            say(text(
+            say(printed(
                 "%.0f ml of gas stand in the lumen of the %s behind a wall of their own, as in "
                 "a catheter's balloon; both were taken out, at %s",
                 gas.volumeMl, toString(partAt(gas.placeMm)), placeText(gas.placeMm).c_str()));
         for (const UntaggedPool& pool : made_.untaggedPools)
-            say(text(
+            say(printed(
                 "fluid without tagging stands under the gas in the %s, its surface %.0f mm2; what "
                 "lies in it and beneath is not seen, at %s",
                 toString(pool.part), pool.areaMm2, placeText(pool.placeMm).c_str()));
         if (made_.chainConfidence < doubtful && !made_.runnersUp.empty()) {
             const RunnerUp& up = made_.runnersUp.front();
-            say(
-                text("another course is nearly as likely (%.0f %%): it adds %.0f ml and drops %.0f "
-                     "ml, at %s",
-                     100.0 * up.probability, up.addsMl, up.dropsMl, placeText(up.placeMm).c_str()));
+            say(printed(
+                "another course is nearly as likely (%.0f %%): it adds %.0f ml and drops %.0f "
+                "ml, at %s",
+                100.0 * up.probability, up.addsMl, up.dropsMl, placeText(up.placeMm).c_str()));
         }
         if (made_.confidence < doubtful && !made_.doubts.empty() &&
             made_.doubts.front().probability > 1.0 - made_.chainConfidence) {
-            say(text("the course is right with no more than %.0f %%; gravest: %s",
-                     100.0 * made_.confidence, made_.doubts.front().about.c_str()));
+            say(printed("the course is right with no more than %.0f %%; gravest: %s",
+                        100.0 * made_.confidence, made_.doubts.front().about.c_str()));
         }
         // Places of neighbouring parts overlap: only what lies farther off is told.
         if (made_.pieces.front().part > ColonPart::sigmoid)
-            say(text("the rectum was not found: the colon begins in the %s",
-                     toString(made_.pieces.front().part)));
+            say(printed("the rectum was not found: the colon begins in the %s",
+                        toString(made_.pieces.front().part)));
         if (made_.pieces.back().part < ColonPart::ascending)
-            say(text("the cecum was not found: the colon ends in the %s",
-                     toString(made_.pieces.back().part)));
+            say(printed("the cecum was not found: the colon ends in the %s",
+                        toString(made_.pieces.back().part)));
         if (labels_.strandedMl >= 0.5)
-            say(text("%.1f ml that nothing joins to the lumen were left out", labels_.strandedMl));
+            say(printed("%.1f ml that nothing joins to the lumen were left out",
+                        labels_.strandedMl));
     }
 
     const BowelContents& contents_;

@@ -14,13 +14,13 @@ namespace haustra::segmentation {
 namespace {
 
 constexpr double smoothMm = 1.5, centreSmoothMm = 3.0;
-constexpr double centreShare = 0.8;  // of the way to another tissue, at a ball's centre
-constexpr double aboveMm = 20.0;     // the level, where leaks are looked for
-constexpr double blurMm = 3.0;       // of partial volume at a level
-constexpr double wallMm = 1.0;       // taken for fluid beside fat
+constexpr double centreShare = 0.8;    // of the way to another tissue, at a ball's centre
+constexpr double aboveMm = 20.0;       // the level, where leaks are looked for
+constexpr double blurMm = 3.0;         // of partial volume at a level
+constexpr double blurredWallMm = 1.0;  // taken for fluid beside fat
 constexpr double overBoneMm = 2.5, besideBoneMm = 1.0;  // where a pool ends
 constexpr std::array<double, 5> ballsMm{3.0, 4.0, 5.0, 6.5, 8.0};
-constexpr double mostRisen = 0.15, leastFilled = 0.5, leastMl = 1.0;
+constexpr double mostRisen = 0.15, leastFilled = 0.5, leastPoolMl = 1.0;
 
 /// How far from its level a pool is sought: a haustrum's first, then a part of the colon's.
 struct Reach {
@@ -73,7 +73,7 @@ public:
         std::size_t filled = 0;
         for (const glm::ivec3 column : level_.columns)
             filled += fillsBelow(pool, column - box_.lo);
-        const bool sound = double(voxels) * grid.voxelVolumeMm3() / 1000.0 > leastMl &&
+        const bool sound = double(voxels) * grid.voxelVolumeMm3() / 1000.0 > leastPoolMl &&
                            double(risen) < mostRisen * double(underGas) &&
                            double(filled) > leastFilled * double(level_.columns.size());
         if (!sound) return tl::make_unexpected(NoPool::leaked);
@@ -178,7 +178,7 @@ private:
         const Volume<float> awayMm = topology::distanceToBoundaryMm(beyond, threads_);
         const auto in = pool.writable();
         for (std::size_t n = 0; n < in.size(); ++n)
-            in[n] = (fluid_[n] || blur_[n]) && awayMm[n] <= ballMm - wallMm;
+            in[n] = (fluid_[n] || blur_[n]) && awayMm[n] <= ballMm - blurredWallMm;
         return pool;
     }
 

@@ -11,7 +11,7 @@
 namespace haustra::topology {
 namespace {
 
-constexpr double stepMm = 1.0, courseMm = 6.0, smoothMm = 4.0;
+constexpr double sampleMm = 1.0, courseMm = 6.0, smoothMm = 4.0;
 constexpr double reachPerRadius = 2.5, reachMoreMm = 5.0, farthestMm = 40.0;
 constexpr int rounds = 2, halvings = 6;
 
@@ -19,7 +19,7 @@ std::vector<glm::dvec3> atSteps(const std::vector<glm::dvec3>& curve) {
     std::vector<double> arc(curve.size(), 0.0);
     for (std::size_t n = 1; n < curve.size(); ++n)
         arc[n] = arc[n - 1] + glm::distance(curve[n], curve[n - 1]);
-    const auto steps = std::max<std::size_t>(1, std::size_t(std::lround(arc.back() / stepMm)));
+    const auto steps = std::max<std::size_t>(1, std::size_t(std::lround(arc.back() / sampleMm)));
     std::vector<glm::dvec3> points(steps + 1);
     std::size_t n = 0;
     for (std::size_t i = 0; i <= steps; ++i) {
@@ -37,7 +37,7 @@ std::vector<glm::dvec3> atSteps(const std::vector<glm::dvec3>& curve) {
 /// that end, which so stays.
 std::vector<glm::dvec3> smoothed(const std::vector<glm::dvec3>& points, double sdMm) {
     const auto count = std::ptrdiff_t(points.size());
-    const auto reach = std::min(std::ptrdiff_t(std::ceil(3.0 * sdMm / stepMm)), count - 1);
+    const auto reach = std::min(std::ptrdiff_t(std::ceil(3.0 * sdMm / sampleMm)), count - 1);
     std::vector<glm::dvec3> means(points.size());
     for (std::ptrdiff_t n = 0; n < count; ++n) {
         glm::dvec3 sum(0.0);
@@ -48,7 +48,7 @@ std::vector<glm::dvec3> smoothed(const std::vector<glm::dvec3>& points, double s
                 m < 0        ? 2.0 * points.front() - points[std::size_t(-m)]
                 : m >= count ? 2.0 * points.back() - points[std::size_t(2 * (count - 1) - m)]
                              : points[std::size_t(m)];
-            const double w = std::exp(-0.5 * double(d * d) * stepMm * stepMm / (sdMm * sdMm));
+            const double w = std::exp(-0.5 * double(d * d) * sampleMm * sampleMm / (sdMm * sdMm));
             sum += w * p, weights += w;
         }
         means[std::size_t(n)] = sum / weights;
@@ -83,12 +83,12 @@ public:
     /// Middle of what the plane through `p` across `along` (unit) cuts; `p` where it cuts nothing.
     glm::dvec3 centroid(glm::dvec3 p, glm::dvec3 along) const {
         const double reachMm = std::min(reachPerRadius * distanceMm(p) + reachMoreMm, farthestMm);
-        const int reach = int(reachMm / stepMm), width = 2 * reach + 1;
+        const int reach = int(reachMm / sampleMm), width = 2 * reach + 1;
         const glm::dvec3 aside =
             std::abs(along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
         const glm::dvec3 u = glm::normalize(glm::cross(along, aside)), v = glm::cross(along, u);
         const auto place = [&](int a, int b) {
-            return voxel(p + stepMm * (double(a) * u + double(b) * v));
+            return voxel(p + sampleMm * (double(a) * u + double(b) * v));
         };
         if (!insideLumen(labels_, place(0, 0))) return p;
         std::vector<char> seen(std::size_t(width) * std::size_t(width), 0);
@@ -110,7 +110,7 @@ public:
                 front.push_back({c, d});
             }
         }
-        sum *= stepMm / double(front.size());
+        sum *= sampleMm / double(front.size());
         return p + sum.x * u + sum.y * v;
     }
 

@@ -1,6 +1,7 @@
 #include "topology/centerline_path.h"
 
 #include "core/ct_scan.h"
+#include "core/printed_text.h"
 #include "topology/centerline_branches.h"
 #include "topology/centerline_cross_sections.h"
 #include "topology/centerline_graph.h"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 namespace haustra::topology {
@@ -25,12 +25,6 @@ struct CurvePoint {
     glm::dvec3 positionMm{0.0};
     bool gapBefore = false;  ///< nothing but a guess joins it to the point before
 };
-
-std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
-    std::array<char, 200> text;
-    std::snprintf(text.data(), text.size(), pattern, a, b, c, d);
-    return text.data();
-}
 
 /// Cuts what is too narrow off the ends, but never more than leaves the widest place.
 void trimEnds(std::vector<glm::ivec3>& path, const Volume<float>& distanceMm, bool front,
@@ -123,8 +117,8 @@ Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
         if (!curve.empty()) {
             const glm::dvec3 from = curve.back().positionMm;
             traced.notes.push_back(
-                format("gap of %.0f mm after the segment that ends at (%.0f, %.0f, %.0f) mm",
-                       glm::distance(from, smooth.front()), from.x, from.y, from.z));
+                printed("gap of %.0f mm after the segment that ends at (%.0f, %.0f, %.0f) mm",
+                        glm::distance(from, smooth.front()), from.x, from.y, from.z));
         }
         for (std::size_t p = 0; p < smooth.size(); ++p)
             curve.push_back({smooth[p], p == 0 && !curve.empty()});

@@ -1,11 +1,11 @@
 #include "topology/centerline_segments.h"
 
+#include "core/printed_text.h"
 #include "topology/centerline_order.h"
 #include "topology/centerline_tip.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -17,12 +17,6 @@ constexpr double smallestSegmentMl = 2.0;
 constexpr std::size_t mostSegments = 12;
 // A point given by a person may be this far from the lumen.
 constexpr double farthestPointMm = 10.0;
-
-std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
-    std::array<char, 200> text;
-    std::snprintf(text.data(), text.size(), pattern, a, b, c, d);
-    return text.data();
-}
 
 /// The segment of one component. An end that is not given is the tip farthest from the other one,
 /// which is sought from the deepest place where neither is given.
@@ -111,8 +105,8 @@ std::vector<Segment> findSegments(const BlockGraph& graph, const GivenEnds& give
         }
     }
     if (leftOut > 0) {
-        notes.push_back(format("%.0f small pieces of the lumen left out, %.1f ml in all",
-                               double(leftOut), leftOutMl));
+        notes.push_back(printed("%.0f small pieces of the lumen left out, %.1f ml in all",
+                                double(leftOut), leftOutMl));
     }
     return segments;
 }
@@ -138,7 +132,7 @@ std::vector<SegmentVisit> orderOf(const std::vector<Segment>& segments, const Bl
                         [&](const SegmentVisit& v) { return v.segment == n; }))
             continue;
         const glm::dvec3 at = 0.5 * (ends[n].firstMm + ends[n].lastMm);
-        notes.push_back(format(
+        notes.push_back(printed(
             "a segment of %.0f mm at (%.0f, %.0f, %.0f) mm lies too far off the way to be visited",
             ends[n].lengthMm, at.x, at.y, at.z));
     }
@@ -156,7 +150,7 @@ Result<std::optional<std::int32_t>> nodeNear(const BlockGraph& graph,
     if (!(away <= farthestPointMm)) {
         return fail(ErrorKind::badInput,
                     std::string("the point given as the ") + name + " lies " +
-                        format("%.0f mm outside the lumen", away),
+                        printed("%.0f mm outside the lumen", away),
                     "centerline");
     }
     return std::optional<std::int32_t>(node);

@@ -1,6 +1,7 @@
 #include "topology/lumen_pieces.h"
 
 #include "core/parallel.h"
+#include "core/printed_text.h"
 #include "topology/centerline_graph.h"
 #include "topology/centerline_order.h"
 #include "topology/centerline_search.h"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace haustra::topology {
@@ -20,12 +20,6 @@ constexpr std::size_t mostPieces = 12;  // that orderSegments takes
 constexpr double notedIslandMm3 = 50.0;
 
 using Path = std::vector<glm::ivec3>;
-
-std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0, double d = 0.0) {
-    std::array<char, 200> text;
-    std::snprintf(text.data(), text.size(), pattern, a, b, c, d);
-    return text.data();
-}
 
 void setRun(BitMask& mask, const MaskRun& run) {
     for (int i = run.begin; i < run.end; ++i)
@@ -53,8 +47,8 @@ std::vector<BitMask> largePieces(const BitMask& mask, const Grid& grid, double s
             leftOutMl += volumeMl;
     }
     if (kept < bySize.size()) {
-        notes.push_back(format("%.0f small pieces of the lumen left out, %.2f ml in all",
-                               double(bySize.size() - kept), leftOutMl));
+        notes.push_back(printed("%.0f small pieces of the lumen left out, %.2f ml in all",
+                                double(bySize.size() - kept), leftOutMl));
     }
     std::vector<BitMask> pieces(kept, BitMask(mask.size()));
     for (const MaskRun& run : all.runs) {
@@ -79,8 +73,8 @@ long fillCavities(BitMask& mask, const Grid& grid, std::vector<std::string>& not
         if (volumeMm3 < notedIslandMm3) continue;
         const glm::dvec3 at = grid.patientFromVoxelPoint(middle[n] / double(cavities.voxels[n]));
         notes.push_back(
-            format("an island of %.0f mm3 in the lumen filled, at (%.0f, %.0f, %.0f) mm", volumeMm3,
-                   at.x, at.y, at.z));
+            printed("an island of %.0f mm3 in the lumen filled, at (%.0f, %.0f, %.0f) mm",
+                    volumeMm3, at.x, at.y, at.z));
     }
     return long(cavities.voxels.size());
 }
@@ -250,9 +244,9 @@ std::vector<std::size_t> orderPaths(std::vector<Path>& paths, const Grid& grid,
     for (std::size_t n = 0; n < paths.size(); ++n) {
         if (std::find(order.begin(), order.end(), n) != order.end()) continue;
         const glm::dvec3 at = 0.5 * (ends[n].firstMm + ends[n].lastMm);
-        notes.push_back(
-            format("a piece of %.0f mm at (%.0f, %.0f, %.0f) mm lies too far off the way: left out",
-                   ends[n].lengthMm, at.x, at.y, at.z));
+        notes.push_back(printed(
+            "a piece of %.0f mm at (%.0f, %.0f, %.0f) mm lies too far off the way: left out",
+            ends[n].lengthMm, at.x, at.y, at.z));
     }
     return order;
 }
@@ -284,8 +278,8 @@ JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOpt
             layBridge(joined.bridges, joined.path, from, to, grid, options.bridgeRadiusMm);
             const glm::dvec3 at = grid.patientFromVoxelPoint(0.5 * glm::dvec3(from + to));
             joined.notes.push_back(
-                format("a bridge of %.0f mm joins two pieces at (%.0f, %.0f, %.0f) mm",
-                       glm::length(grid.spacingMm() * glm::dvec3(to - from)), at.x, at.y, at.z));
+                printed("a bridge of %.0f mm joins two pieces at (%.0f, %.0f, %.0f) mm",
+                        glm::length(grid.spacingMm() * glm::dvec3(to - from)), at.x, at.y, at.z));
         }
         joined.path.insert(joined.path.end(), paths[n].begin(), paths[n].end());
     }

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct DenoiseArguments {
     fs::path mesh, out, report;
     int threads = 0;
 };
@@ -68,7 +68,7 @@ nlohmann::ordered_json reportOf(const TriMesh& before, const surface::HandleRemo
             {"handles", handles}};
 }
 
-Result<void> runDenoise(const Arguments& arguments) {
+Result<void> runDenoise(const DenoiseArguments& arguments) {
     for (const fs::path& file : {arguments.out, arguments.report}) {
         if (file.empty()) continue;
         TRY(checkOutputFile(file));
@@ -115,7 +115,7 @@ void checkMeshName(const char* argument, const fs::path& file) {
 }  // namespace
 
 Command addDenoise(CLI::App& program) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<DenoiseArguments>();
     CLI::App* command = program.add_subcommand(
         "denoise",
         "Remove the handles of a closed manifold triangle mesh: each is cut along its shortest "

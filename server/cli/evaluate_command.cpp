@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct EvaluateArguments {
     fs::path store, truth, report;
     std::string caseName;
 };
@@ -43,7 +43,7 @@ std::vector<Row> rowsOf(const phantom::LumenScore& score) {
         {"centerline_max_error_mm", "centerline, largest error", score.centerlineMaxErrorMm, "mm"}};
 }
 
-Result<void> runEvaluate(const Arguments& arguments) {
+Result<void> runEvaluate(const EvaluateArguments& arguments) {
     const auto found =
         TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
             return s.openCase(arguments.caseName);
@@ -67,7 +67,7 @@ Result<void> runEvaluate(const Arguments& arguments) {
 }  // namespace
 
 Command addEvaluate(CLI::App& program) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<EvaluateArguments>();
     CLI::App* command = program.add_subcommand(
         "evaluate", "Score a case's lumen and centerline against a phantom's truth.");
     command->add_option("CASE", arguments->caseName, "The case's name")->required();

@@ -50,7 +50,7 @@ std::vector<std::string> productNames() {
     return names;
 }
 
-struct Arguments {
+struct ExportArguments {
     fs::path store, file;
     std::string caseName, product;
     FlatImageOptions flatImage;
@@ -62,12 +62,12 @@ bool endsIn(const std::string& text, const std::string& ending) {
 }
 
 template <class T>
-Result<void> exportVolume(const store::Case& source, const Arguments& arguments) {
+Result<void> exportVolume(const store::Case& source, const ExportArguments& arguments) {
     const auto volume = TRY(source.readVolume<T>(arguments.product));
     return nifti::writeNifti(arguments.file, volume);
 }
 
-Result<void> runExport(const Arguments& arguments) {
+Result<void> runExport(const ExportArguments& arguments) {
     TRY(checkOutputFile(arguments.file));
     const auto source =
         TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
@@ -112,7 +112,7 @@ Result<void> runExport(const Arguments& arguments) {
 }  // namespace
 
 Command addExport(CLI::App& program) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<ExportArguments>();
     CLI::App* command = program.add_subcommand(
         "export",
         "Write a product to a file that other programs read: ct and cleansed (int16, HU), "

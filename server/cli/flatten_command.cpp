@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct FlattenArguments {
     fs::path mesh, out, report;
     std::vector<glm::dvec3> endsMm;
     flatten::SurfaceFlatteningOptions options;
@@ -133,7 +133,7 @@ void tell(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, double ar
 }
 
 /// Throws what wrong usage is where an option says nothing about a surface of this shape.
-Result<void> checkApplies(const TriMesh& mesh, const Arguments& arguments) {
+Result<void> checkApplies(const TriMesh& mesh, const FlattenArguments& arguments) {
     const auto given = [&](const char* option) { return arguments.command->count(option) > 0; };
     if (!given("--ends") && !given("--rim-mm") && !given("--area-weight")) return {};
     const auto shape = flatten::shapeOf(mesh);
@@ -154,7 +154,7 @@ Result<void> checkApplies(const TriMesh& mesh, const Arguments& arguments) {
     return {};
 }
 
-Result<void> runFlatten(const Arguments& arguments) {
+Result<void> runFlatten(const FlattenArguments& arguments) {
     for (const fs::path& file : {arguments.out, arguments.report}) {
         if (file.empty()) continue;
         TRY(checkOutputFile(file));
@@ -178,7 +178,7 @@ Result<void> runFlatten(const Arguments& arguments) {
     return writeTextFile(arguments.report, reportOf(mesh, *flat).dump(2) + "\n");
 }
 
-void checkNames(const Arguments& arguments) {
+void checkNames(const FlattenArguments& arguments) {
     const auto fits = [](const fs::path& file, std::initializer_list<const char*> endings) {
         std::string ending = file.extension().string();
         for (char& c : ending)
@@ -206,7 +206,7 @@ void checkNames(const Arguments& arguments) {
 }  // namespace
 
 Command addFlatten(CLI::App& program) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<FlattenArguments>();
     flatten::SurfaceFlatteningOptions& options = arguments->options;
     CLI::App* command = program.add_subcommand(
         "flatten",

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 // The options as text: chosen on the command line, and written into phantom.json. What is not
 // given is the preset's.
-struct Arguments {
+struct PhantomArguments {
     fs::path out;
     std::uint64_t seed = 1;
     std::string preset = "standard", position = "supine", size = "full";
@@ -49,7 +49,7 @@ const std::map<std::string, phantom::Size> sizes{
     {"full", phantom::Size::full},
     {"photon-counting", phantom::Size::photonCounting}};
 
-phantom::PhantomOptions optionsOf(const Arguments& arguments) {
+phantom::PhantomOptions optionsOf(const PhantomArguments& arguments) {
     phantom::PhantomOptions options;
     if (arguments.preset == kWild) {
         options = phantom::wildOptions(arguments.seed);
@@ -170,7 +170,7 @@ std::string structureJson(const phantom::Structure& structure) {
 }
 
 Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
-                      const Arguments& arguments, const phantom::PhantomOptions& options) {
+                      const PhantomArguments& arguments, const phantom::PhantomOptions& options) {
     std::error_code error;
     fs::create_directories(folder / "series", error);
     fs::create_directories(folder / "truth", error);
@@ -234,7 +234,7 @@ Result<void> moveInto(const fs::path& out, const fs::path& finished) {
     return {};
 }
 
-Result<void> runPhantom(const Arguments& arguments) {
+Result<void> runPhantom(const PhantomArguments& arguments) {
     std::error_code error;
     fs::path out = fs::weakly_canonical(arguments.out, error);
     if (fs::exists(out, error) && !fs::is_directory(out, error)) {
@@ -277,7 +277,7 @@ std::vector<std::string> namesOf(const std::map<std::string, T>& map) {
 }
 
 /// What a patient's bowel may have beyond the preset's; phantom/bowel_options.h tells more.
-void addBowelOptions(CLI::App& command, Arguments& arguments) {
+void addBowelOptions(CLI::App& command, PhantomArguments& arguments) {
     constexpr const char* group = "Bowel (each adds to the preset; wild draws what is not given)";
     const auto share = CLI::Range(0.0, 1.0);
     command
@@ -347,7 +347,7 @@ void addBowelOptions(CLI::App& command, Arguments& arguments) {
 }
 
 /// How the patient is scanned; phantom/scan_options.h tells more.
-void addScanOptions(CLI::App& command, Arguments& arguments) {
+void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
     constexpr const char* group = "Scanner (in place of what the preset draws)";
     const auto add = [&](const char* name, std::optional<double>& value, const char* help,
                          double low, double high, const char* unit) {
@@ -388,7 +388,7 @@ void addScanOptions(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 Command addPhantom(CLI::App& program) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<PhantomArguments>();
     CLI::App* command = program.add_subcommand(
         "phantom",
         "Make a synthetic abdominal CT: OUT/series/*.dcm, and beside it OUT/truth with "

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct PrepareArguments {
     fs::path store, report;
     std::string caseName;
     pipeline::PrepareOptions options;
@@ -76,7 +76,7 @@ std::string reportJson(const pipeline::PrepareReport& report, const std::string&
     return json.dump(2) + "\n";
 }
 
-Result<void> runPrepare(Arguments arguments) {
+Result<void> runPrepare(PrepareArguments arguments) {
     const fs::path& source =
         arguments.options.series.empty() ? arguments.options.lumenMask : arguments.options.series;
     // Before a store is made for it.
@@ -117,7 +117,7 @@ Result<void> runPrepare(Arguments arguments) {
 }  // namespace
 
 Command addPrepare(CLI::App& program) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<PrepareArguments>();
     pipeline::PrepareOptions& options = arguments->options;
     CLI::App* command = program.add_subcommand(
         "prepare",

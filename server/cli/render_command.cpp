@@ -61,8 +61,9 @@ Result<WallPlace> wallPlace(const RenderArguments& arguments, const Centerline& 
 }
 
 /// On the centerline, or turned from it to a place of the wall or a point near one.
-Result<CenterlineCamera> camera(const RenderArguments& arguments, const Centerline& centerline,
-                                const std::shared_ptr<const FlatMap>& map) {
+Result<CenterlineCamera> cameraOnPath(const RenderArguments& arguments,
+                                      const Centerline& centerline,
+                                      const std::shared_ptr<const FlatMap>& map) {
     if (arguments.arcMm) {
         return cameraAtArc(centerline, rotationMinimizingUps(centerline, flightPreferredUp),
                            *arguments.arcMm,
@@ -86,7 +87,7 @@ Result<render::Image> drawCamera(const RenderArguments& arguments, const render:
 
 Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Products& products,
                                      render::CaseRenderer& renderer) {
-    const auto from = TRY(camera(arguments, products.centerline, products.flatMap));
+    const auto from = TRY(cameraOnPath(arguments, products.centerline, products.flatMap));
     render::Camera camera{from.positionMm, from.forward, from.up,
                           fovOf(arguments, render::Camera{}.fovDegrees), arguments.lens};
     if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
@@ -132,7 +133,7 @@ Result<render::Image> drawOverview(const RenderArguments& arguments, const Produ
     view.optics = std::move(optics);
     view.march = marchOf(arguments, view.march);
     if (arguments.arcMm) {
-        const auto reader = TRY(camera(arguments, products.centerline, {}));
+        const auto reader = TRY(cameraOnPath(arguments, products.centerline, {}));
         view.reader = render::Camera{reader.positionMm, reader.forward, reader.up};
     }
     return renderer.render(view, arguments.size.x, arguments.size.y);
@@ -146,7 +147,7 @@ Result<render::Image> drawOblique(const RenderArguments& arguments, const Center
     view.scan = scan;
     view.heightMm = arguments.heightMm.value_or(view.heightMm);
     if (arguments.arcMm) {
-        const auto from = TRY(camera(arguments, centerline, {}));
+        const auto from = TRY(cameraOnPath(arguments, centerline, {}));
         view.positionMm = from.positionMm;
         view.forward = from.forward;
         view.up = from.up;

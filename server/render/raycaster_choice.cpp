@@ -1,7 +1,8 @@
 #include "render/raycaster_choice.h"
 
+#include "core/printed_text.h"
+
 #include <algorithm>
-#include <cstdio>
 
 namespace haustra::render {
 
@@ -90,11 +91,9 @@ std::string describe(const std::vector<RaycasterTrial>& trials) {
                                           : ": " + trial.failure;
             continue;
         }
-        char ms[64];
         const std::size_t pictures = trial.ms.size();
-        std::snprintf(ms, sizeof ms, " %.1f ms (%zu picture%s)", trial.medianMs(), pictures,
-                      pictures == 1 ? "" : "s");
-        text += ms;
+        text += printed(" %.1f ms (%zu picture%s)", trial.medianMs(), pictures,
+                        pictures == 1 ? "" : "s");
     }
     return text;
 }

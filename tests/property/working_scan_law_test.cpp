@@ -25,12 +25,13 @@ Volume<std::int16_t> ringScan(glm::ivec3 size, double spacingMm, double noiseSd)
     const glm::dvec3 origin = -0.5 * spacingMm * glm::dvec3(size - 1);
     Volume<std::int16_t> hu(axisAlignedGrid(size, glm::dvec3(spacingMm), origin));
     std::mt19937 random(7);
-    std::normal_distribution<double> noise(0.0, noiseSd);
+    std::normal_distribution<double> unit;  // times a deviation, which may be 0
     const auto out = hu.writable();
     for (std::size_t n = 0; n < out.size(); ++n) {
         const double mm = insideRing(hu.grid().patientFromVoxelPoint(hu.grid().voxelAt(n)));
         const double share = 0.5 * std::erfc(-mm / (0.4 * std::sqrt(2.0)));
-        out[n] = std::int16_t(std::lround(softHu + share * (gasHu - softHu) + noise(random)));
+        out[n] =
+            std::int16_t(std::lround(softHu + share * (gasHu - softHu) + noiseSd * unit(random)));
     }
     return hu;
 }

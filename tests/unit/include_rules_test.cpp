@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -161,21 +162,43 @@ TEST(IncludeRules, ForeignLibrariesStayInTheirFolders) {
     }
 }
 
+// What a command prints about a program of the build.
+std::string told(const std::string& command, const char* program) {
+    const char* bin = std::getenv("HAUSTRA_BIN");
+    if (!bin) throw std::runtime_error("HAUSTRA_BIN is not set");
+    const fs::path file = fs::path(bin) / program;
+    if (!fs::exists(file)) throw std::runtime_error(file.string() + " is not built");
+    std::string text;
+    FILE* pipe = popen((command + " '" + file.string() + "'").c_str(), "r");
+    for (char buffer[512]; pipe && std::fgets(buffer, sizeof buffer, pipe);)
+        text += buffer;
+    if (!pipe || pclose(pipe) != 0) throw std::runtime_error(command + " fails");
+    return text;
+}
+
 // A hostile DICOM file, or an abort in a mesh library, must cost one preparation, never a session.
 TEST(IncludeRules, TheServerLinksNoImageOrMeshLibrary) {
-    const char* bin = std::getenv("HAUSTRA_BIN");
-    ASSERT_TRUE(bin);
-    const fs::path server = fs::path(bin) / "haustra-server";
-    ASSERT_TRUE(fs::exists(server)) << server << " is not built";
-    std::string linked;
-    FILE* pipe = popen(("ldd '" + server.string() + "'").c_str(), "r");
-    ASSERT_TRUE(pipe);
-    for (char buffer[512]; std::fgets(buffer, sizeof buffer, pipe);)
-        linked += buffer;
-    ASSERT_EQ(pclose(pipe), 0);
+    const std::string linked = told("ldd", "haustra-server");
     EXPECT_NE(linked.find("libssl"), std::string::npos) << linked;
     for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti"}) {
         EXPECT_EQ(linked.find(library), std::string::npos) << "haustra-server links " << library;
+    }
+}
+
+// Sanitizers bring their own checks, and no stack protector.
+TEST(IncludeRules, ProgramsAreHardened) {
+    for (const char* program : {"haustra", "haustra-server", "haustra-client"}) {
+        const std::string symbols = told("readelf --wide --dyn-syms", program);
+        if (symbols.find("__asan_init") != std::string::npos ||
+            symbols.find("__tsan_init") != std::string::npos)
+            GTEST_SKIP() << "a sanitizer's build";
+        const std::string file = told("readelf --wide --file-header --segments --dynamic", program);
+        EXPECT_NE(file.find("DYN (Position-Independent Executable"), std::string::npos) << program;
+        EXPECT_NE(file.find("GNU_RELRO"), std::string::npos) << program;
+        EXPECT_NE(file.find("Flags: NOW"), std::string::npos) << program;
+        EXPECT_NE(symbols.find("__stack_chk_fail"), std::string::npos) << program;
+        EXPECT_NE(symbols.find("_chk@GLIBC"), std::string::npos) << program << ", _FORTIFY_SOURCE";
+        EXPECT_NE(symbols.find("__glibcxx_assert_fail"), std::string::npos) << program;
     }
 }
 

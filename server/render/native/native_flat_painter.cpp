@@ -11,7 +11,7 @@ namespace haustra::render {
 namespace {
 
 // Drawn by one thread at a time.
-constexpr int stripeRows = 8;
+constexpr int flatStripeRows = 8;
 
 }  // namespace
 
@@ -43,8 +43,8 @@ Result<Image> NativeFlatPainter::draw(const FlatView& view, const Band& band) {
     wall.u.ray = glm::vec4(std::ceil(flatRay.backMm / step), flatRay.riseHu,
                            std::ceil(flatRay.depthMm / step), 0.0);
     Image image = blankImage(size);
-    scene_->workers().run((size.y + stripeRows - 1) / stripeRows, [&](int stripe) {
-        const int first = stripe * stripeRows, rows = std::min(stripeRows, size.y - first);
+    scene_->workers().run((size.y + flatStripeRows - 1) / flatStripeRows, [&](int stripe) {
+        const int first = stripe * flatStripeRows, rows = std::min(flatStripeRows, size.y - first);
         std::vector<FlatPixel> pixels;
         coverRows(*geometry_, lattice, first, rows, pixels);
         cast_(packets, wall, {first, rows, pixels.data(), image.rgb.data()});

@@ -1,0 +1,24 @@
+#include "core/printed_text.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace haustra {
+
+std::string printed(const char* format, ...) {
+    va_list values, again;
+    va_start(values, format);
+    va_copy(again, values);
+    std::string text(std::size_t(std::max(0, std::vsnprintf(nullptr, 0, format, values))), '\0');
+    std::vsnprintf(text.data(), text.size() + 1, format, again);
+    va_end(again);
+    va_end(values);
+    return text;
+}
+
+std::string placeText(glm::dvec3 placeMm) {
+    return printed("(%.0f, %.0f, %.0f) mm", placeMm.x, placeMm.y, placeMm.z);
+}
+
+}  // namespace haustra
