@@ -44,8 +44,8 @@ Result<std::shared_ptr<const void>> lockCase(const fs::path& folder, const std::
     auto lock = std::make_shared<const FileLock>(descriptor);
     if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EWOULDBLOCK) {
-            return fail(ErrorKind::wrongState, "case " + name + " is being written by another process",
-                        folder.string());
+            return fail(ErrorKind::wrongState,
+                        "case " + name + " is being written by another process", folder.string());
         }
         return fail(ErrorKind::io, std::string("cannot lock: ") + std::strerror(errno),
                     file.string());
@@ -146,7 +146,8 @@ Result<void> Case::verify(std::string_view product) const {
 
 Result<void> Case::checkWritable() const {
     if (lock_) return {};
-    return fail(ErrorKind::wrongState, "case " + name_ + " is open for reading only", folder_.string());
+    return fail(ErrorKind::wrongState, "case " + name_ + " is open for reading only",
+                folder_.string());
 }
 
 Result<void> Case::announce(const ProductEntry& entry, const std::vector<std::string>& outdated) {

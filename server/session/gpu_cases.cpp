@@ -108,7 +108,7 @@ std::shared_ptr<const OpenCase> GpuCases::lend(const OpenCase& facts) const {
 std::shared_ptr<const OpenCase> GpuCases::find(const OpenCase& facts) {
     for (Entry& entry : cases_) {
         if (entry.facts.name != facts.name || entry.facts.content != facts.content ||
-            !entry.whole())
+            !entry.checkWhole())
             continue;
         if (auto of = entry.of.lock()) return of;
         auto of = lend(entry.facts);
@@ -133,23 +133,14 @@ render::CaseRenderer* GpuCases::rendererOf(const std::shared_ptr<const OpenCase>
 
 // ---- files that are cut short while they are read -----------------------------------------------
 
-bool GpuCases::Entry::whole() const {
-    return std::all_of(volumes.begin(), volumes.end(), store::isWhole);
+Result<void> GpuCases::Entry::checkWhole() const {
+    if (std::all_of(volumes.begin(), volumes.end(), store::isWhole)) return {};
+    return fail(ErrorKind::io, "the case's files were cut short, or their disk fails", "render");
 }
 
 Result<void> GpuCases::checkWhole(const std::shared_ptr<const OpenCase>& of) const {
     const Entry* const entry = entryOf(of);
-    if (!entry || entry->whole()) return {};
-    return fail(ErrorKind::io, "the case's files were cut short, or their disk fails", "render");
-}
-
-std::shared_ptr<const OpenCase> GpuCases::takeLost(const std::shared_ptr<const OpenCase>& of) {
-    for (Entry& entry : cases_) {
-        if (entry.of.lock() != of || entry.whole() || std::exchange(entry.toldLost, true)) continue;
-        spdlog::error("a case is lost: its files were cut short, or their disk fails");
-        return of;
-    }
-    return nullptr;
+    return entry ? entry->checkWhole() : Result<void>();
 }
 
 // ---- memory -------------------------------------------------------------------------------------
@@ -268,9 +259,7 @@ Result<std::shared_ptr<const OpenCase>> GpuCases::opened() {
     if (!opening_) return fail(ErrorKind::wrongState, "no case is being opened", "render");
     Opening my = std::move(*opening_);
     opening_.reset();
-    if (!my.entry.whole())
-        return fail(ErrorKind::io, "the case's files were cut short, or their disk fails",
-                    "render");
+    TRY(my.entry.checkWhole());
     render::CaseRenderer& renderer = *my.entry.renderer;
     OpenCase& facts = my.entry.facts;
     if (my.choice) {

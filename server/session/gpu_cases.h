@@ -64,8 +64,6 @@ public:
     /// Fails (io) where a page of the case's volumes that was read was not there: its pictures are
     /// worth nothing, and find() does not find it any more.
     Result<void> checkWhole(const std::shared_ptr<const OpenCase>& of) const;
-    /// The case where that is so and this has not told it yet, else null.
-    std::shared_ptr<const OpenCase> takeLost(const std::shared_ptr<const OpenCase>& of);
 
     /// Null where the case is not here.
     render::CaseRenderer* rendererOf(const std::shared_ptr<const OpenCase>& of);
@@ -81,9 +79,8 @@ private:
         std::optional<Clock::time_point> leftAt;  // since when nobody has it open
         std::unique_ptr<render::CaseRenderer> renderer;
         std::array<const void*, 2> volumes{};  // in mapped memory, which the renderer holds
-        bool toldLost = false;
 
-        bool whole() const;
+        Result<void> checkWhole() const;
     };
     struct Opening {
         Entry entry;

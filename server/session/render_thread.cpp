@@ -96,10 +96,12 @@ struct RenderThread::Drawing {
         render::CaseRenderer* const renderer = cases.rendererOf(frame.job.of);
         auto drawn = guarded([&]() -> Result<void> {
             if (!renderer) return fail(ErrorKind::device, "the case is not on the GPU", "render");
-            TRY(draw(*renderer, frame, turn.band));
-            return cases.checkWhole(frame.job.of);
+            return draw(*renderer, frame, turn.band);
         });
-        if (auto of = cases.takeLost(frame.job.of)) lost(std::move(of));
+        if (auto whole = cases.checkWhole(frame.job.of); !whole) {
+            drawn = std::move(whole);
+            lost(frame.job.of);
+        }
         const auto end = Clock::now();
         using Outcome = FrameScheduler::Outcome;
         Outcome outcome = Outcome::unwanted;

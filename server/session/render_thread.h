@@ -16,8 +16,8 @@ namespace haustra::session {
 /// the render thread and must not throw, nor take long.
 class RenderThread {
 public:
-    /// Called on the render thread, once for a case whose files turn out not to be whole while it
-    /// is drawn; it can be opened anew.
+    /// Called on the render thread for each picture of a case whose files turn out not to be whole
+    /// any more; it can be opened anew.
     using Lost = std::function<void(std::shared_ptr<const OpenCase>)>;
     /// Makes the context; fails where there is none to be had.
     static Result<std::unique_ptr<RenderThread>> start(DrawingOptions options, Lost lost);

@@ -229,6 +229,7 @@ void Session::leaveCase() {
 
 void Session::lost(const std::shared_ptr<const OpenCase>& of) {
     if (state_ != State::open || case_ != of) return;
+    spdlog::error("session {} has lost its case: files cut short, or a failing disk", id_);
     leaveCase();
     refuse(ErrorReport::CASE_LOST,
            "the case is closed: its files were cut short, or their disk fails");
