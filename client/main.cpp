@@ -1,7 +1,7 @@
 // haustra-client: reads a case that a Haustra server streams, in a window or from a script.
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
-#include "panels/script_player.h"
+#include "script/script_player.h"
 #include "window/reader_window.h"
 
 #include <cstdio>
@@ -119,18 +119,18 @@ bool readSize(const std::string& text, int& width, int& height) {
            height <= int(protocol::maxViewportPixels) * 4;
 }
 
-void tellFirstUse(const panels::Session& session, const link::ConnectionOptions& options) {
+void tellFirstUse(const reader::Session& session, const link::ConnectionOptions& options) {
     if (!session.server().firstUse) return;
     std::cerr << "haustra-client: first meeting with " << link::toString(options.address)
               << "; its certificate is now pinned: " << session.server().fingerprint << "\n";
 }
 
 int listCases(const link::ConnectionOptions& options, std::chrono::milliseconds patience) {
-    panels::Session session(options, "");
-    const auto deadline = panels::Clock::now() + patience;
-    while (session.phase() != panels::Phase::choosing) {
-        if (session.phase() == panels::Phase::failed) return failed(session.failure());
-        if (panels::Clock::now() > deadline)
+    reader::Session session(options, "");
+    const auto deadline = reader::Clock::now() + patience;
+    while (session.phase() != reader::Phase::choosing) {
+        if (session.phase() == reader::Phase::failed) return failed(session.failure());
+        if (reader::Clock::now() > deadline)
             return failed({ErrorKind::device, "the list of cases did not come in time",
                            link::toString(options.address)});
         session.poll(std::chrono::milliseconds(100));
@@ -142,7 +142,7 @@ int listCases(const link::ConnectionOptions& options, std::chrono::milliseconds 
 }
 
 int playScript(const Arguments& a, link::ConnectionOptions connection,
-               panels::PlayOptions options) {
+               reader::PlayOptions options) {
     options.scriptName = a.script == "-" ? "standard input" : a.script;
     options.outFolder = a.out;
     options.software = software;
@@ -151,7 +151,7 @@ int playScript(const Arguments& a, link::ConnectionOptions connection,
         file.open(a.script);
         if (!file) return failed({ErrorKind::notFound, "cannot read the script", a.script});
     }
-    const auto actions = panels::parseScript(a.script == "-" ? std::cin : file, options.scriptName);
+    const auto actions = reader::parseScript(a.script == "-" ? std::cin : file, options.scriptName);
     if (!actions) return failed(actions.error());
     std::error_code error;
     std::filesystem::create_directories(options.outFolder, error);
@@ -159,12 +159,12 @@ int playScript(const Arguments& a, link::ConnectionOptions connection,
         return failed({ErrorKind::io, "cannot make the output folder: " + error.message(), a.out});
 
     connection.reconnect = a.reconnect;
-    panels::Session session(connection, a.caseName);
-    const panels::PlayReport report = panels::play(session, *actions, options);
+    reader::Session session(connection, a.caseName);
+    const reader::PlayReport report = reader::play(session, *actions, options);
     tellFirstUse(session, connection);
     const auto reportFile = options.outFolder / "latencies.json";
     std::ofstream out(reportFile);
-    out << panels::toJson(report);
+    out << reader::toJson(report);
     if (report.failure) return failed(*report.failure);
     if (!out.flush())
         return failed({ErrorKind::io, "cannot write the report", reportFile.string()});
@@ -210,7 +210,7 @@ int main(int argc, char** argv) {
     if (a.headless) {
         if (a.script.empty() || a.out.empty())
             return wrongUsage("--headless needs --script FILE and --out DIR");
-        panels::PlayOptions options;
+        reader::PlayOptions options;
         options.patience = patience;
         if (width > 0) options.width = width, options.height = height;
         if (std::max(options.width, options.height) > int(protocol::maxViewportPixels))

@@ -11,8 +11,8 @@ using ivec4 = glm::ivec4;
 
 /// What is the same for all cells of a frame.
 struct CellUniforms {
-    vec4 voxels;        ///< xyz: of the volume; w: voxels along a slot's side
-    vec4 atlasPerVoxel; ///< xyz: 1 / texels of the atlas, powers of two
+    vec4 voxels;         ///< xyz: of the volume; w: voxels along a slot's side
+    vec4 atlasPerVoxel;  ///< xyz: 1 / texels of the atlas, powers of two
     vec4 cellsPerUnit;  ///< xyz: cells along the whole texture space, voxels / side; w: −½ / side
     vec4 eye;           ///< xyz: the eye in cells; w: 1 where all rays begin there
     ivec4 lastCell;     ///< xyz: highest cell index; w: items of this dispatch
@@ -21,9 +21,9 @@ struct CellUniforms {
 
 /// A cell that is on the GPU.
 struct CellInSlot {
-    ivec4 cell;    ///< xyz
-    vec4 corner;   ///< xyz: voxel whose value is in the slot's first texel
-    vec4 slot;     ///< xyz: the slot's first texel in the atlas
+    ivec4 cell;   ///< xyz
+    vec4 corner;  ///< xyz: voxel whose value is in the slot's first texel
+    vec4 slot;    ///< xyz: the slot's first texel in the atlas
 };
 
 #ifdef __cplusplus

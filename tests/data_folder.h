@@ -1,10 +1,10 @@
 // Where the tests find real data: $HAUSTRA_DATA, else ../shared/data beside the project.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <filesystem>
+
+#include <gtest/gtest.h>
 
 namespace haustra::tests {
 
@@ -17,7 +17,7 @@ inline std::filesystem::path dataFolder() {
 }  // namespace haustra::tests
 
 /// Skips the test, saying so, where `name` is missing from the real data; else defines `variable`.
-#define HAUSTRA_REAL_DATA(variable, name)                                             \
-    const std::filesystem::path variable = haustra::tests::dataFolder() / (name);     \
-    if (!std::filesystem::exists(variable))                                           \
+#define HAUSTRA_REAL_DATA(variable, name)                                         \
+    const std::filesystem::path variable = haustra::tests::dataFolder() / (name); \
+    if (!std::filesystem::exists(variable))                                       \
     GTEST_SKIP() << "no real data at " << variable << " (set HAUSTRA_DATA)"

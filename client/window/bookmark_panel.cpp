@@ -9,7 +9,7 @@ namespace haustra::window {
 namespace {
 
 // One bookmark: its place, note and whether the server has it. A click goes there.
-void drawRow(Ui& ui, const panels::Bookmark& bookmark, int number) {
+void drawRow(Ui& ui, const reader::Bookmark& bookmark, int number) {
     const float high = ui.px(46), wide = ImGui::GetContentRegionAvail().x;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImGui::PushID(number);

@@ -10,7 +10,7 @@
 namespace haustra::window {
 namespace {
 
-using panels::View;
+using reader::View;
 
 constexpr ImU32 pale = IM_COL32(200, 208, 216, 255);
 constexpr ImU32 measured = IM_COL32(255, 221, 87, 255);
@@ -50,7 +50,7 @@ void drawFlag(Ui& ui, ImDrawList* list, ImVec2 p) {
 // Their lengths beside the hatched bridges: what the strip makes long or short is not to be read
 // off.
 void drawBridges(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const panels::FlatStrip& strip = ui.reader.tour().strip();
+    const reader::FlatStrip& strip = ui.reader.tour().strip();
     for (const Bridge& bridge : bridgesOf(ui.reader.session().caseInfo()->centerline)) {
         const double y = strip.yAtArc(0.5 * (bridge.fromArcMm + bridge.toArcMm));
         const float row = flat.screen({0.0, y}).y - ui.fonts.small->FontSize / 2;
@@ -61,7 +61,7 @@ void drawBridges(Ui& ui, const FlatArea& flat, ImDrawList* list) {
 
 // The row of the camera, bookmarks, and the place that was picked.
 void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const panels::Reader& reader = ui.reader;
+    const reader::Reader& reader = ui.reader;
     const double y = reader.tour().strip().yAtArc(reader.placeArcMm());
     const float row = flat.screen({0.0, y}).y, tip = ui.px(6);
     const Rect& area = flat.area;
@@ -80,7 +80,7 @@ void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
 
 // What of the strip the zoom view shows, in one of the columns.
 void drawZoomFrame(Ui& ui, const FlatArea& column, ImDrawList* list) {
-    const panels::StripTour& tour = ui.reader.tour();
+    const reader::StripTour& tour = ui.reader.tour();
     const glm::dvec2 half = 0.5 * glm::dvec2(tour.paneSize()) / tour.window().pixelsPerUnit;
     const float left = column.area.min.x + ui.px(1), right = column.area.max.x - ui.px(1);
     const bool allAround = half.x >= 0.5;
@@ -96,7 +96,7 @@ void drawZoomFrame(Ui& ui, const FlatArea& column, ImDrawList* list) {
 }
 
 void handleStripMouse(Ui& ui, const StripLayout& layout, Rect area, double pixels, bool hovered) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const auto flat =
         layout.flatFromPixel({(mouse.x - area.min.x) / pixels, (mouse.y - area.min.y) / pixels},
@@ -104,7 +104,7 @@ void handleStripMouse(Ui& ui, const StripLayout& layout, Rect area, double pixel
     if (!flat) return;
     if (ImGui::IsItemActive() && ui.drag > ui.px(4)) reader.tour().centerOn(*flat);
     if (ImGui::IsItemDeactivated()) {
-        reader.setMotion(panels::Motion::paused);
+        reader.setMotion(reader::Motion::paused);
         reader.goToFlat(*flat, true);
     }
     if (hovered && !ImGui::IsItemActive())
@@ -146,7 +146,7 @@ void drawMeasurement(Ui& ui, const FlatArea& flat, ImDrawList* list) {
                p.y <= flat.area.max.y;
     });
     if (!measurement->result || !inSight) return;
-    const panels::FlatMeasure& result = *measurement->result;
+    const reader::FlatMeasure& result = *measurement->result;
     const std::string text =
         measurement->closed
             ? printed("%.1f mm across   %.0f mm²", result.largestDiameterMm, result.areaMm2)
@@ -181,7 +181,7 @@ void draw(Ui& ui, DrawingTool tool, const FlatArea& flat) {
 }
 
 void handleZoomMouse(Ui& ui, const FlatArea& flat, bool hovered) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     const ImGuiIO& io = ImGui::GetIO();
     const double pixels = flat.pixels();
     if (ImGui::IsItemActivated()) {
@@ -202,7 +202,7 @@ void handleZoomMouse(Ui& ui, const FlatArea& flat, bool hovered) {
     if (ImGui::IsItemDeactivated()) {
         if (!draws && ui.drag <= ui.px(4)) {
             reader.wall().clearMeasurement();
-            reader.setMotion(panels::Motion::paused);
+            reader.setMotion(reader::Motion::paused);
             reader.goToFlat(flat.flat(io.MousePos), false);
         }
         ui.drawing.clear();
@@ -214,8 +214,8 @@ void handleZoomMouse(Ui& ui, const FlatArea& flat, bool hovered) {
 }
 
 void drawZoomTexts(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const panels::Reader& reader = ui.reader;
-    const panels::StripTour& tour = reader.tour();
+    const reader::Reader& reader = ui.reader;
+    const reader::StripTour& tour = reader.tour();
     const Rect& area = flat.area;
     const float margin = ui.px(10), high = ui.fonts.small->FontSize;
     const ImVec2 corner(area.min.x + margin, area.min.y + ui.px(8));
@@ -224,7 +224,7 @@ void drawZoomTexts(Ui& ui, const FlatArea& flat, ImDrawList* list) {
                      printed("Fly-over   %.0f mm", tour.arcMm()));
     else
         outlinedText(list, ui.fonts.small, corner, color::text, "Flattened wall");
-    const double zoom = tour.window().pixelsPerUnit / panels::wholeCircumference(flat.size.x);
+    const double zoom = tour.window().pixelsPerUnit / reader::wholeCircumference(flat.size.x);
     const std::string right =
         std::abs(zoom - 1.0) < 0.01 ? std::string("cecum ↑") : printed("×%.1f   cecum ↑", zoom);
     outlinedText(list, ui.fonts.small,
@@ -238,7 +238,7 @@ void drawZoomTexts(Ui& ui, const FlatArea& flat, ImDrawList* list) {
 }  // namespace
 
 void drawStripPane(Ui& ui, Rect area) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     ImDrawList* list = ImGui::GetWindowDrawList();
     reader.setPaneSize(View::flattened, framebufferSize(area));
     drawPicture(ui, View::flattened, area, list);
@@ -277,7 +277,7 @@ void drawStripPane(Ui& ui, Rect area) {
 }
 
 void drawZoomPane(Ui& ui, Rect area) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     ImDrawList* list = ImGui::GetWindowDrawList();
     reader.setPaneSize(View::flattenedZoom, framebufferSize(area));
     const bool hovered = pane(ui, "zoom", area);

@@ -8,10 +8,10 @@
 namespace haustra::window {
 namespace {
 
-using panels::Flight;
-using panels::Motion;
+using reader::Flight;
+using reader::Motion;
 
-void toggle(panels::Reader& reader, Motion motion) {
+void toggle(reader::Reader& reader, Motion motion) {
     reader.setMotion(reader.motion() == motion ? Motion::paused : motion);
 }
 
@@ -26,12 +26,12 @@ void stepAlong(Flight& flight, double mm) {
     flight.goTo(flight.arcMm() + (flight.direction() == FlightDirection::antegrade ? mm : -mm));
 }
 
-void nextTransferFunction(panels::OpticsEditor& optics) {
+void nextTransferFunction(reader::OpticsEditor& optics) {
     optics.choose((optics.chosen() + 1) % optics.presets());
 }
 
-void togglePaint(Ui& ui, bool panels::WallPaint::*which) {
-    panels::WallPaint paint = ui.reader.wallPaint();
+void togglePaint(Ui& ui, bool reader::WallPaint::*which) {
+    reader::WallPaint paint = ui.reader.wallPaint();
     paint.*which = !(paint.*which);
     if (!ui.reader.setWallPaint(paint))
         ui.tell("this case has not been flattened: its wall cannot be coloured");
@@ -39,7 +39,7 @@ void togglePaint(Ui& ui, bool panels::WallPaint::*which) {
 
 // Letters as the layout of the keyboard gives them.
 void handleLetter(Ui& ui, ImWchar letter) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     Flight& flight = reader.flight();
     switch (letter) {
         case '?':
@@ -108,10 +108,10 @@ void handleLetter(Ui& ui, ImWchar letter) {
             break;
         case 'k':
         case 'K':
-            togglePaint(ui, &panels::WallPaint::marks);
+            togglePaint(ui, &reader::WallPaint::marks);
             break;
         case 'u':
-            togglePaint(ui, &panels::WallPaint::unseen);
+            togglePaint(ui, &reader::WallPaint::unseen);
             break;
         case 'U':
             reader.forgetSeen();
@@ -151,7 +151,7 @@ void moveFreely(Flight& flight, double seconds, bool fast) {
     flight.moveFreely(way * flight.speedMmPerS() * std::min(seconds, 0.1) * (fast ? 3.0 : 1.0));
 }
 
-void handleFlightKey(panels::Reader& reader, const KeyPress& key) {
+void handleFlightKey(reader::Reader& reader, const KeyPress& key) {
     Flight& flight = reader.flight();
     const double stepMm = key.shift ? 10.0 : 1.0;
     switch (key.scancode) {

@@ -1,6 +1,6 @@
 // The colon from outside, and the slice across the gaze.
 #include "core/printed_text.h"
-#include "panels/overview_map.h"
+#include "reader/overview_map.h"
 #include "window/pane.h"
 #include "window/widgets.h"
 
@@ -11,7 +11,7 @@
 namespace haustra::window {
 namespace {
 
-using panels::View;
+using reader::View;
 
 constexpr ImU32 dim = IM_COL32(200, 208, 216, 255);
 
@@ -62,7 +62,7 @@ void drawLetters(Ui& ui, glm::dvec3 right, glm::dvec3 up, Rect area, ImDrawList*
 
 /// The reader's camera as a cone that opens to where it looks.
 void drawReader(Ui& ui, const Orbit& orbit, Rect area, ImDrawList* list) {
-    const panels::Camera camera = ui.reader.flight().camera();
+    const reader::Camera camera = ui.reader.flight().camera();
     const glm::dvec2 size = sizeOf(area);
     const double lengthMm = ui.px(20) * orbit.heightMm / size.y, radiusMm = 0.42 * lengthMm;
     const glm::dvec3 right = glm::cross(camera.forward, camera.up);
@@ -87,7 +87,7 @@ void drawReader(Ui& ui, const Orbit& orbit, Rect area, ImDrawList* list) {
     list->AddCircleFilled(apex, ui.px(2.5f), IM_COL32(230, 250, 255, 255));
 }
 
-void drawBookmarks(Ui& ui, const Orbit& orbit, const std::vector<panels::Bookmark>& bookmarks,
+void drawBookmarks(Ui& ui, const Orbit& orbit, const std::vector<reader::Bookmark>& bookmarks,
                    std::optional<std::size_t> under, Rect area, ImDrawList* list) {
     for (std::size_t n = 0; n < bookmarks.size(); ++n) {
         const ImVec2 p =
@@ -98,10 +98,10 @@ void drawBookmarks(Ui& ui, const Orbit& orbit, const std::vector<panels::Bookmar
     }
 }
 
-void handleOverviewMouse(Ui& ui, const std::vector<panels::Bookmark>& bookmarks,
+void handleOverviewMouse(Ui& ui, const std::vector<reader::Bookmark>& bookmarks,
                          std::optional<std::size_t> under, glm::dvec2 pixel, Rect area,
                          bool hovered) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     const ImGuiIO& io = ImGui::GetIO();
     // The near side follows the hand.
     if (ImGui::IsItemActive() && ui.drag > ui.px(3))
@@ -111,9 +111,9 @@ void handleOverviewMouse(Ui& ui, const std::vector<panels::Bookmark>& bookmarks,
     if (!hovered || !ImGui::IsItemDeactivated() || ui.drag > ui.px(3)) return;
     if (under) return reader.goTo(bookmarks[*under]);
     const auto arc =
-        panels::arcAt(reader.orbit(), reader.flight().centerline(), pixel, sizeOf(area), ui.px(40));
+        reader::arcAt(reader.orbit(), reader.flight().centerline(), pixel, sizeOf(area), ui.px(40));
     if (!arc) return;
-    reader.setMotion(panels::Motion::paused);
+    reader.setMotion(reader::Motion::paused);
     reader.flight().goTo(*arc);
 }
 
@@ -135,7 +135,7 @@ void drawScaleBar(Ui& ui, double pixelsPerMm, Rect area, ImDrawList* list) {
 }  // namespace
 
 void drawOverviewPane(Ui& ui, Rect area) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     ImDrawList* list = ImGui::GetWindowDrawList();
     reader.setPaneSize(View::overview, framebufferSize(area));
     drawPicture(ui, View::overview, area, list);
@@ -144,10 +144,10 @@ void drawOverviewPane(Ui& ui, Rect area) {
     const glm::dvec2 pixel(mouse.x - area.min.x, mouse.y - area.min.y);
     const auto bookmarks = reader.session().bookmarks();
     std::vector<glm::dvec3> places;
-    for (const panels::Bookmark& bookmark : bookmarks)
+    for (const reader::Bookmark& bookmark : bookmarks)
         places.push_back(bookmark.camera.positionMm);
     const auto under = hovered
-                           ? panels::placeAt(reader.orbit(), places, pixel, sizeOf(area), ui.px(9))
+                           ? reader::placeAt(reader.orbit(), places, pixel, sizeOf(area), ui.px(9))
                            : std::nullopt;
     handleOverviewMouse(ui, bookmarks, under, pixel, area, hovered);
 
@@ -168,7 +168,7 @@ void drawOverviewPane(Ui& ui, Rect area) {
 }
 
 void drawObliquePane(Ui& ui, Rect area) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     ImDrawList* list = ImGui::GetWindowDrawList();
     reader.setPaneSize(View::oblique, framebufferSize(area));
     drawPicture(ui, View::oblique, area, list);
@@ -183,7 +183,7 @@ void drawObliquePane(Ui& ui, Rect area) {
     }
 
     const bool any = reader.pictureCount(View::oblique) > 0;
-    const panels::Oblique shown = any ? reader.shownOblique() : reader.oblique();
+    const reader::Oblique shown = any ? reader.shownOblique() : reader.oblique();
     const double pixelsPerMm = area.size().y / shown.heightMm;
     const ImVec2 middle((area.min.x + area.max.x) / 2, (area.min.y + area.max.y) / 2);
     list->PushClipRect(area.min, area.max, true);

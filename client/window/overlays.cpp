@@ -81,7 +81,7 @@ void Ui::tell(std::string text, bool trouble) {
 
 void drawNotices(Ui& ui, Rect area) {
     ImDrawList* list = ImGui::GetForegroundDrawList();
-    const panels::Session& session = ui.reader.session();
+    const reader::Session& session = ui.reader.session();
     std::erase_if(ui.notices,
                   [](const Notice& notice) { return notice.untilSeconds < ImGui::GetTime(); });
     float bottom = area.max.y - ui.px(16);
@@ -101,8 +101,8 @@ void drawNotices(Ui& ui, Rect area) {
         bottom = min.y - ui.px(8);
     };
     if (ui.reader.isOpen() &&
-        (session.phase() == panels::Phase::lost || session.phase() == panels::Phase::failed)) {
-        const bool final = session.phase() == panels::Phase::failed;
+        (session.phase() == reader::Phase::lost || session.phase() == reader::Phase::failed)) {
+        const bool final = session.phase() == reader::Phase::failed;
         draw(describe(session.failure()) + (final ? "" : "  Trying again…"), true);
         if (session.owedBookmarks() > 0)
             draw(printed("%zu bookmark%s will be saved when the server is back",
@@ -131,7 +131,7 @@ void drawHelp(Ui& ui, Rect area) {
     float y =
         drawKeys(ui, list, {right, top}, ui.px(150), "Mouse", mouseKeys, std::size(mouseKeys));
     y += ui.px(22);
-    const panels::Session& session = ui.reader.session();
+    const reader::Session& session = ui.reader.session();
     list->AddText(ui.fonts.normal, ui.fonts.normal->FontSize, {right, y}, color::accent, "About");
     const auto line = [&](const std::string& text) {
         y += ui.px(23);
@@ -155,18 +155,18 @@ void drawHelp(Ui& ui, Rect area) {
 
 void drawStart(Ui& ui, Rect area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    panels::Session& session = ui.reader.session();
+    reader::Session& session = ui.reader.session();
     const float middle = (area.min.x + area.max.x) / 2;
     float y = area.min.y + area.size().y * 0.3f;
-    if (session.phase() != panels::Phase::choosing) {
+    if (session.phase() != reader::Phase::choosing) {
         const bool trouble =
-            session.phase() == panels::Phase::lost || session.phase() == panels::Phase::failed;
-        const std::string heading = session.phase() == panels::Phase::failed ? "No connection"
+            session.phase() == reader::Phase::lost || session.phase() == reader::Phase::failed;
+        const std::string heading = session.phase() == reader::Phase::failed ? "No connection"
                                     : trouble ? "Waiting for the server"
                                     : session.server().fingerprint.empty() ? "Connecting"
                                                                            : "Opening the case";
         centered(ui, list, ui.fonts.large, middle, y, color::text,
-                 heading + (trouble && session.phase() == panels::Phase::failed ? "" : "…"));
+                 heading + (trouble && session.phase() == reader::Phase::failed ? "" : "…"));
         const std::string detail = trouble ? describe(session.failure()) : ui.serverName;
         const float wide = std::min(area.size().x - ui.px(80), ui.px(760));
         const ImVec2 size =

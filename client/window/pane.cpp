@@ -7,7 +7,7 @@
 
 namespace haustra::window {
 
-bool preparePicture(Ui& ui, panels::View view, Rect area, ImDrawList* list) {
+bool preparePicture(Ui& ui, reader::View view, Rect area, ImDrawList* list) {
     PictureTexture& texture = ui.textures[std::size_t(view)];
     texture.show(ui.reader.picture(view), ui.reader.pictureCount(view));
     list->AddRectFilled(area.min, area.max, IM_COL32_BLACK);
@@ -20,7 +20,7 @@ bool preparePicture(Ui& ui, panels::View view, Rect area, ImDrawList* list) {
     return false;
 }
 
-void drawPicture(Ui& ui, panels::View view, Rect area, ImDrawList* list) {
+void drawPicture(Ui& ui, reader::View view, Rect area, ImDrawList* list) {
     if (preparePicture(ui, view, area, list))
         list->AddImage(ui.textures[std::size_t(view)].id(), area.min, area.max);
 }
@@ -41,8 +41,8 @@ glm::ivec2 framebufferSize(Rect area) {
     return {std::max(1, int(area.size().x * scale.x)), std::max(1, int(area.size().y * scale.y))};
 }
 
-void dragWindow(panels::Reader& reader, ImVec2 moved) {
-    panels::WindowLevel window = reader.window();
+void dragWindow(reader::Reader& reader, ImVec2 moved) {
+    reader::WindowLevel window = reader.window();
     const double stepHu = std::max(1.0, window.widthHu / 400.0);
     window.widthHu += moved.x * stepHu;
     window.centerHu += moved.y * stepHu;

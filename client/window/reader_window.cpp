@@ -10,8 +10,8 @@
 namespace haustra::window {
 namespace {
 
-using panels::Clock;
-using panels::View;
+using reader::Clock;
+using reader::View;
 
 void drawEverything(Ui& ui) {
     ImGui::SetNextWindowPos({0, 0});
@@ -50,7 +50,7 @@ void drawEverything(Ui& ui) {
 class Watcher {
 public:
     void look(Ui& ui) {
-        panels::Session& session = ui.reader.session();
+        reader::Session& session = ui.reader.session();
         for (const Error& refusal : session.takeRefusals())
             ui.tell(describe(refusal), true);
         if (session.server().firstUse && !toldFirstUse_) {
@@ -68,25 +68,25 @@ private:
 };
 
 // When the time has come; where pictures are still on their way, up to 20 s later.
-bool readyForScreenshot(const panels::Reader& reader, const WindowOptions& options,
+bool readyForScreenshot(const reader::Reader& reader, const WindowOptions& options,
                         Clock::duration elapsed) {
     const auto due = std::chrono::milliseconds(options.screenshotAfterMs);
     if (elapsed < due) return false;
-    const panels::Phase phase = reader.session().phase();
-    bool waiting = phase == panels::Phase::connecting;
-    if (phase == panels::Phase::open && reader.motion() == panels::Motion::paused)
+    const reader::Phase phase = reader.session().phase();
+    bool waiting = phase == reader::Phase::connecting;
+    if (phase == reader::Phase::open && reader.motion() == reader::Motion::paused)
         for (const View view :
              {View::endoscopic, View::axial, View::coronal, View::sagittal, View::flattened,
               View::flattenedZoom, View::oblique, View::overview})
             waiting = waiting ||
-                      (!reader.picture(view).exact && (reader.hasStrip() || !panels::isFlat(view)));
+                      (!reader.picture(view).exact && (reader.hasStrip() || !reader::isFlat(view)));
     return !waiting || elapsed > due + std::chrono::seconds(20);
 }
 
 // Bookmarks on their way are waited for, but not for long.
-void finishBookmarks(panels::Session& session) {
+void finishBookmarks(reader::Session& session) {
     const auto deadline = Clock::now() + std::chrono::seconds(2);
-    while (session.owedBookmarks() > 0 && session.phase() == panels::Phase::open &&
+    while (session.owedBookmarks() > 0 && session.phase() == reader::Phase::open &&
            Clock::now() < deadline)
         session.poll(std::chrono::milliseconds(50));
 }
@@ -98,7 +98,7 @@ Result<void> run(WindowOptions options) {
     GlWindow& window = *made;
     options.connection.reconnect = true;
     options.connection.onEvent = [&window] { window.wake(); };
-    panels::Reader reader(options.connection, options.caseName);
+    reader::Reader reader(options.connection, options.caseName);
     Ui ui{reader, window.fonts(), float(window.scale()),
           link::toString(options.connection.address)};
     Watcher watcher;
@@ -125,13 +125,13 @@ Result<void> run(WindowOptions options) {
                          : std::max(0, busyFrames - 1);
         if (options.screenshot && readyForScreenshot(reader, options, now - start)) {
             TRY(window.writeScreenshot(*options.screenshot));
-            if (reader.session().phase() == panels::Phase::failed)
+            if (reader.session().phase() == reader::Phase::failed)
                 return tl::make_unexpected(reader.session().failure());
             break;
         }
     }
     finishBookmarks(reader.session());
-    if (!reader.isOpen() && reader.session().phase() == panels::Phase::failed)
+    if (!reader.isOpen() && reader.session().phase() == reader::Phase::failed)
         return tl::make_unexpected(reader.session().failure());
     return {};
 }

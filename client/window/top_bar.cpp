@@ -24,7 +24,7 @@ float drawFigure(Ui& ui, ImDrawList* list, float right, float middle, const char
 
 void drawTopBar(Ui& ui, Rect area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const panels::Session& session = ui.reader.session();
+    const reader::Session& session = ui.reader.session();
     list->AddRectFilled(area.min, area.max, color::bar);
     list->AddLine({area.min.x, area.max.y}, area.max, color::border);
     const float middle = (area.min.y + area.max.y) / 2;
@@ -37,7 +37,7 @@ void drawTopBar(Ui& ui, Rect area) {
     };
     write(ui.fonts.large, color::accent, "Haustra");
     if (ui.reader.isOpen()) {
-        const panels::CaseInfo& info = *session.caseInfo();
+        const reader::CaseInfo& info = *session.caseInfo();
         write(ui.fonts.normal, color::text, info.name);
         std::string about = toString(info.position);
         if (info.position == PatientPosition::unknown) about.clear();
@@ -73,9 +73,9 @@ void drawTopBar(Ui& ui, Rect area) {
         ui.showBookmarks = !ui.showBookmarks;
     right -= ui.px(20);
 
-    const panels::Summary latency = ui.reader.latencyMs();
+    const reader::Summary latency = ui.reader.latencyMs();
     const bool up =
-        session.phase() == panels::Phase::open || session.phase() == panels::Phase::choosing;
+        session.phase() == reader::Phase::open || session.phase() == reader::Phase::choosing;
     right = drawFigure(ui, list, right, middle, "server", ui.serverName,
                        up ? color::text : color::trouble);
     if (!ui.reader.isOpen()) return;
@@ -87,7 +87,7 @@ void drawTopBar(Ui& ui, Rect area) {
                            latency.p95 > 150.0 ? color::bookmark : color::text);
     right = drawFigure(ui, list, right, middle, "pictures/s",
                        printed("%.0f", ui.reader.picturesPerSecond()), color::text);
-    const tiles::Picture& shown = ui.reader.picture(panels::View::endoscopic);
+    const tiles::Picture& shown = ui.reader.picture(reader::View::endoscopic);
     const std::string raycaster = protocol::raycasterName(shown.raycaster);
     if (!raycaster.empty())
         right = drawFigure(ui, list, right, middle, raycaster.c_str(),

@@ -9,7 +9,7 @@
 namespace haustra::window {
 namespace {
 
-using panels::TransferCurve;
+using reader::TransferCurve;
 
 constexpr double leastAxisHu = 8.0, mostAxisHu = 70'000.0;
 
@@ -133,7 +133,7 @@ bool handleMouse(Ui& ui, const Graph& graph) {
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const ImGuiIO& io = ImGui::GetIO();
     const ImVec2 mouse = io.MousePos;
-    panels::OpticsEditor& optics = ui.reader.optics();
+    reader::OpticsEditor& optics = ui.reader.optics();
     TransferCurve curve = optics.curve();
     const auto under = pointUnder(ui, graph, curve, mouse);
     const bool hovered = ImGui::IsItemHovered();

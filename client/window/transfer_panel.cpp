@@ -9,7 +9,7 @@
 namespace haustra::window {
 namespace {
 
-using panels::OpticsEditor, panels::TransferCurve;
+using reader::OpticsEditor, reader::TransferCurve;
 
 void mutedText(Ui& ui, const std::string& text) {
     ImGui::PushFont(ui.fonts.small);

@@ -10,8 +10,8 @@
 namespace haustra::window {
 namespace {
 
-using panels::Flight;
-using panels::Motion;
+using reader::Flight;
+using reader::Motion;
 
 constexpr float controlSide = 32;  // height of all controls
 
@@ -45,7 +45,7 @@ void drawTrack(Ui& ui, Rect area) {
     for (const Bridge& bridge : bridgesOf(path))
         list->AddRectFilled({xOf(bridge.fromArcMm), middle - thick},
                             {xOf(bridge.toArcMm) + 1, middle + thick}, color::trouble);
-    for (const panels::Bookmark& bookmark : ui.reader.session().bookmarks()) {
+    for (const reader::Bookmark& bookmark : ui.reader.session().bookmarks()) {
         const float x = xOf(bookmark.arcMm);
         list->AddLine({x, middle - ui.px(9)}, {x, middle + thick}, color::bookmark, ui.px(1.5f));
         list->AddTriangleFilled({x, middle - ui.px(10)}, {x + ui.px(6), middle - ui.px(7.5f)},
@@ -83,7 +83,7 @@ void combo(Ui& ui, const char* id, const char* title, float width, const std::st
 
 struct WindowPreset {
     const char* name;
-    panels::WindowLevel window;
+    reader::WindowLevel window;
 };
 constexpr WindowPreset windowPresets[] = {{"colon", {0, 2000}},
                                           {"soft tissue", {40, 400}},
@@ -92,7 +92,7 @@ constexpr WindowPreset windowPresets[] = {{"colon", {0, 2000}},
 
 // The fly-over, and the tools of the flattened wall.
 void drawStripControls(Ui& ui, float side) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     const bool flyingOver = reader.tour().flyingOver();
     sameRow(ui, 12);
     if (iconButton("over", Icon::flyOver, side, "Fly over the flattened wall (V)", flyingOver))
@@ -109,8 +109,8 @@ void drawStripControls(Ui& ui, float side) {
 
 // What colours the wall. Greyed out where there is no flat map to colour it by.
 void drawPaintControls(Ui& ui) {
-    panels::Reader& reader = ui.reader;
-    panels::WallPaint paint = reader.wallPaint();
+    reader::Reader& reader = ui.reader;
+    reader::WallPaint paint = reader.wallPaint();
     const bool can = reader.hasStrip();
     const char* const cannot = "This case has not been flattened: its wall cannot be coloured";
     ImGui::BeginDisabled(!can);
@@ -125,7 +125,7 @@ void drawPaintControls(Ui& ui) {
 }
 
 void drawControls(Ui& ui) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     Flight& flight = reader.flight();
     const float side = ui.px(controlSide);
     const Motion motion = reader.motion();
@@ -172,7 +172,7 @@ void drawControls(Ui& ui) {
     label(ui, printed("%.0f mm/s", flight.speedMmPerS()).c_str());
 
     sameRow(ui, 20);
-    panels::OpticsEditor& optics = reader.optics();
+    reader::OpticsEditor& optics = reader.optics();
     std::vector<std::string> presets;
     for (std::size_t n = 0; n < optics.presets(); ++n)
         presets.push_back(optics.preset(n).name);

@@ -1,7 +1,7 @@
 // The endoscopic view and the slices: pictures, what is written on them, the mouse.
 #include "core/bridges.h"
 #include "core/printed_text.h"
-#include "panels/slice_map.h"
+#include "reader/slice_map.h"
 #include "window/pane.h"
 #include "window/widgets.h"
 
@@ -11,11 +11,11 @@
 namespace haustra::window {
 namespace {
 
-using panels::View;
+using reader::View;
 
 // Where the picked place is seen, or would be but for what is in front of it.
-void drawPicked(Ui& ui, const panels::WallPlace& place, Rect area, ImDrawList* list) {
-    const auto seen = panels::seenAt(ui.reader.flight().camera(), place.positionMm);
+void drawPicked(Ui& ui, const reader::WallPlace& place, Rect area, ImDrawList* list) {
+    const auto seen = reader::seenAt(ui.reader.flight().camera(), place.positionMm);
     if (!seen) return;
     const float high = area.size().y;
     list->PushClipRect(area.min, area.max, true);
@@ -26,7 +26,7 @@ void drawPicked(Ui& ui, const panels::WallPlace& place, Rect area, ImDrawList* l
 }
 
 void drawEdgeLetters(Ui& ui, View view, Rect area, ImDrawList* list) {
-    const panels::EdgeLetters letters = panels::edgeLetters(view);
+    const reader::EdgeLetters letters = reader::edgeLetters(view);
     ImFont* font = ui.fonts.small;
     const float middleX = (area.min.x + area.max.x) / 2, middleY = (area.min.y + area.max.y) / 2;
     const float margin = ui.px(5), high = font->FontSize, wide = textSize(font, "R").x;
@@ -40,9 +40,9 @@ void drawEdgeLetters(Ui& ui, View view, Rect area, ImDrawList* list) {
 }
 
 // A cross with an open middle where the camera is, and an arrow along its gaze.
-void drawCrosshair(Ui& ui, const panels::SliceMap& map, double pixelsPerPicturePixel, Rect area,
+void drawCrosshair(Ui& ui, const reader::SliceMap& map, double pixelsPerPicturePixel, Rect area,
                    ImDrawList* list) {
-    const panels::Camera camera = ui.reader.flight().camera();
+    const reader::Camera camera = ui.reader.flight().camera();
     const glm::dvec2 pixel = map.pixelFromPatient(camera.positionMm);
     const ImVec2 p(area.min.x + float((pixel.x + 0.5) * pixelsPerPicturePixel),
                    area.min.y + float((pixel.y + 0.5) * pixelsPerPicturePixel));
@@ -74,7 +74,7 @@ const char* title(View view) {
     return view == View::axial ? "Axial" : view == View::coronal ? "Coronal" : "Sagittal";
 }
 
-void handleSliceMouse(Ui& ui, View view, const panels::SliceMap& map, double pixelsPerPicturePixel,
+void handleSliceMouse(Ui& ui, View view, const reader::SliceMap& map, double pixelsPerPicturePixel,
                       Rect area, bool hovered) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActive() && ui.drag > ui.px(3)) dragWindow(ui.reader, io.MouseDelta);
@@ -99,8 +99,8 @@ void handleSliceMouse(Ui& ui, View view, const panels::SliceMap& map, double pix
 }  // namespace
 
 void drawEndoscopicPane(Ui& ui, Rect area) {
-    panels::Reader& reader = ui.reader;
-    panels::Flight& flight = reader.flight();
+    reader::Reader& reader = ui.reader;
+    reader::Flight& flight = reader.flight();
     ImDrawList* list = ImGui::GetWindowDrawList();
     reader.setPaneSize(View::endoscopic, framebufferSize(area));
     drawPicture(ui, View::endoscopic, area, list);
@@ -162,17 +162,17 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
 }
 
 void drawSlicePane(Ui& ui, View view, Rect area) {
-    panels::Reader& reader = ui.reader;
+    reader::Reader& reader = ui.reader;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const glm::ivec2 size = framebufferSize(area);
     reader.setPaneSize(view, size);
     drawPicture(ui, view, area, list);
     const bool hovered = pane(ui, title(view), area);
 
-    const panels::Slice shown =
+    const reader::Slice shown =
         reader.pictureCount(view) > 0 ? reader.shownSlice(view) : reader.slice();
     const double pixels = area.size().x / size.x;
-    const panels::SliceMap map(view, shown, reader.session().caseInfo()->grid, size.x, size.y);
+    const reader::SliceMap map(view, shown, reader.session().caseInfo()->grid, size.x, size.y);
     handleSliceMouse(ui, view, map, pixels, area, hovered);
 
     list->PushClipRect(area.min, area.max, true);
@@ -185,7 +185,7 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
     }
     drawEdgeLetters(ui, view, area, list);
     const float margin = ui.px(8);
-    const double coordinate = glm::dot(shown.positionMm, panels::sliceNormal(view));
+    const double coordinate = glm::dot(shown.positionMm, reader::sliceNormal(view));
     outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin}, color::text,
                  shown.cleansed ? std::string(title(view)) + ", cleansed" : title(view));
     const std::string place = printed("%s %.1f mm", axisName(view), coordinate);
@@ -193,7 +193,7 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
                  {area.max.x - margin - textSize(ui.fonts.small, place).x, area.min.y + margin},
                  IM_COL32(200, 208, 216, 255), place);
     if (view == View::axial) {
-        const panels::WindowLevel& window = reader.window();
+        const reader::WindowLevel& window = reader.window();
         outlinedText(list, ui.fonts.small,
                      {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
                      IM_COL32(200, 208, 216, 255),

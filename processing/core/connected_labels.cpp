@@ -49,8 +49,8 @@ public:
         const auto i = std::int32_t(index % std::size_t(grid_.size.x));
         const auto first = runs_.begin() + firstOfRow_[row],
                    last = runs_.begin() + firstOfRow_[row + 1];
-        const auto run = std::upper_bound(
-            first, last, i, [](std::int32_t x, const Run& r) { return x < r.begin; });
+        const auto run = std::upper_bound(first, last, i,
+                                          [](std::int32_t x, const Run& r) { return x < r.begin; });
         if (run != first && i < std::prev(run)->end) return std::prev(run)->body;
         const auto added = added_.find(index);
         return added == added_.end() ? none : added->second;

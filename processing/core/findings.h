@@ -1,9 +1,10 @@
 // Places in the colon that somebody, or something, wants a physician to judge.
 #pragma once
 
-#include <glm/glm.hpp>
 #include <string>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 namespace haustra {
 

@@ -5,7 +5,8 @@
 namespace haustra {
 
 glm::dvec3 Grid::spacingMm() const {
-    return {glm::length(glm::dvec3(patientFromVoxel[0])), glm::length(glm::dvec3(patientFromVoxel[1])),
+    return {glm::length(glm::dvec3(patientFromVoxel[0])),
+            glm::length(glm::dvec3(patientFromVoxel[1])),
             glm::length(glm::dvec3(patientFromVoxel[2]))};
 }
 
@@ -17,7 +18,8 @@ Grid axisAlignedGrid(glm::ivec3 size, glm::dvec3 spacingMm, glm::dvec3 originMm)
     Grid grid;
     grid.size = size;
     grid.patientFromVoxel = glm::dmat4(1.0);
-    for (int axis = 0; axis < 3; ++axis) grid.patientFromVoxel[axis][axis] = spacingMm[axis];
+    for (int axis = 0; axis < 3; ++axis)
+        grid.patientFromVoxel[axis][axis] = spacingMm[axis];
     grid.patientFromVoxel[3] = glm::dvec4(originMm, 1.0);
     return grid;
 }
@@ -25,8 +27,10 @@ Grid axisAlignedGrid(glm::ivec3 size, glm::dvec3 spacingMm, glm::dvec3 originMm)
 bool sameGrid(const Grid& a, const Grid& b) {
     if (a.size != b.size) return false;
     for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 v((corner & 1) ? a.size.x : 0, (corner & 2) ? a.size.y : 0, (corner & 4) ? a.size.z : 0);
-        if (!(glm::distance(a.patientFromVoxelPoint(v), b.patientFromVoxelPoint(v)) <= 1e-4)) return false;
+        const glm::dvec3 v((corner & 1) ? a.size.x : 0, (corner & 2) ? a.size.y : 0,
+                           (corner & 4) ? a.size.z : 0);
+        if (!(glm::distance(a.patientFromVoxelPoint(v), b.patientFromVoxelPoint(v)) <= 1e-4))
+            return false;
     }
     return true;
 }
@@ -35,8 +39,9 @@ Result<void> checkGrid(const Grid& grid, const std::string& place) {
     for (int axis = 0; axis < 3; ++axis) {
         if (grid.size[axis] < 1 || grid.size[axis] > maxGridSide) {
             return fail(ErrorKind::badInput,
-                        "the volume has " + std::to_string(grid.size[axis]) + " voxels along axis " +
-                            std::to_string(axis) + "; 1 to " + std::to_string(maxGridSide) + " are read",
+                        "the volume has " + std::to_string(grid.size[axis]) +
+                            " voxels along axis " + std::to_string(axis) + "; 1 to " +
+                            std::to_string(maxGridSide) + " are read",
                         place);
         }
     }
@@ -47,7 +52,8 @@ Result<void> checkGrid(const Grid& grid, const std::string& place) {
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 4; ++row) {
             if (!std::isfinite(m[column][row])) {
-                return fail(ErrorKind::badInput, "the voxel-to-patient matrix is not finite", place);
+                return fail(ErrorKind::badInput, "the voxel-to-patient matrix is not finite",
+                            place);
             }
         }
     }
@@ -64,29 +70,39 @@ Result<void> checkGrid(const Grid& grid, const std::string& place) {
 
 glm::dvec3 gravityDirection(PatientPosition position) {
     switch (position) {
-        case PatientPosition::supine: return {0, 1, 0};
-        case PatientPosition::prone: return {0, -1, 0};
-        case PatientPosition::leftDecubitus: return {1, 0, 0};
-        case PatientPosition::rightDecubitus: return {-1, 0, 0};
-        case PatientPosition::unknown: break;
+        case PatientPosition::supine:
+            return {0, 1, 0};
+        case PatientPosition::prone:
+            return {0, -1, 0};
+        case PatientPosition::leftDecubitus:
+            return {1, 0, 0};
+        case PatientPosition::rightDecubitus:
+            return {-1, 0, 0};
+        case PatientPosition::unknown:
+            break;
     }
     return glm::dvec3(0.0);
 }
 
 const char* toString(PatientPosition position) {
     switch (position) {
-        case PatientPosition::supine: return "supine";
-        case PatientPosition::prone: return "prone";
-        case PatientPosition::leftDecubitus: return "left-decubitus";
-        case PatientPosition::rightDecubitus: return "right-decubitus";
-        case PatientPosition::unknown: break;
+        case PatientPosition::supine:
+            return "supine";
+        case PatientPosition::prone:
+            return "prone";
+        case PatientPosition::leftDecubitus:
+            return "left-decubitus";
+        case PatientPosition::rightDecubitus:
+            return "right-decubitus";
+        case PatientPosition::unknown:
+            break;
     }
     return "unknown";
 }
 
 PatientPosition patientPositionFromString(const std::string& text) {
-    for (PatientPosition p : {PatientPosition::supine, PatientPosition::prone, PatientPosition::leftDecubitus,
-                              PatientPosition::rightDecubitus}) {
+    for (PatientPosition p : {PatientPosition::supine, PatientPosition::prone,
+                              PatientPosition::leftDecubitus, PatientPosition::rightDecubitus}) {
         if (text == toString(p)) return p;
     }
     return PatientPosition::unknown;

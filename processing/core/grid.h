@@ -1,12 +1,13 @@
 // Where voxels are: the size of a volume and its place in the patient.
 #pragma once
 
+#include "core/result.h"
+
 #include <cstddef>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <string>
 
-#include "core/result.h"
+#include <glm/glm.hpp>
 
 namespace haustra {
 
@@ -20,12 +21,14 @@ struct Grid {
         return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
     }
     std::size_t index(int i, int j, int k) const {
-        return std::size_t(i) + std::size_t(size.x) * (std::size_t(j) + std::size_t(size.y) * std::size_t(k));
+        return std::size_t(i) +
+               std::size_t(size.x) * (std::size_t(j) + std::size_t(size.y) * std::size_t(k));
     }
     std::size_t index(glm::ivec3 v) const { return index(v.x, v.y, v.z); }
     glm::ivec3 voxelAt(std::size_t index) const {
         const std::size_t row = index / std::size_t(size.x);
-        return {int(index % std::size_t(size.x)), int(row % std::size_t(size.y)), int(row / std::size_t(size.y))};
+        return {int(index % std::size_t(size.x)), int(row % std::size_t(size.y)),
+                int(row / std::size_t(size.y))};
     }
     bool contains(glm::ivec3 v) const {
         return v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x < size.x && v.y < size.y && v.z < size.z;
@@ -45,8 +48,8 @@ struct Grid {
     }
 };
 
-/// Calls visit(neighbour's index, axis) for each of the at most six voxels that share a face with the
-/// voxel of this index; the lower one first, along i, j, k.
+/// Calls visit(neighbour's index, axis) for each of the at most six voxels that share a face with
+/// the voxel of this index; the lower one first, along i, j, k.
 template <class Visit>
 void visitFaces(const Grid& grid, std::size_t index, const Visit& visit) {
     const std::size_t strides[3] = {1, std::size_t(grid.size.x),
@@ -69,8 +72,9 @@ bool sameGrid(const Grid& a, const Grid& b);
 inline constexpr int maxGridSide = 32767;
 inline constexpr std::size_t maxGridVoxels = std::size_t(1) << 36;
 
-/// Fails unless every extent is 1…maxGridSide, there are at most maxGridVoxels, and the affine is finite
-/// and invertible with an affine last row. Everything that reads a grid from a file calls this.
+/// Fails unless every extent is 1…maxGridSide, there are at most maxGridVoxels, and the affine is
+/// finite and invertible with an affine last row. Everything that reads a grid from a file calls
+/// this.
 Result<void> checkGrid(const Grid& grid, const std::string& place);
 
 /// Which way is down: the patient's position on the table (DICOM Patient Position).

@@ -1,13 +1,13 @@
 #include "core/parallel.h"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#include <sched.h>
 
 namespace haustra {
 
@@ -24,7 +24,8 @@ void parallelFor(std::size_t count, std::size_t grain, int threads,
     const std::size_t chunks = (count + grain - 1) / grain;
     const int workers = int(std::min<std::size_t>(std::size_t(threadCount(threads)), chunks));
     if (workers <= 1) {
-        for (std::size_t begin = 0; begin < count; begin += grain) body(begin, std::min(count, begin + grain));
+        for (std::size_t begin = 0; begin < count; begin += grain)
+            body(begin, std::min(count, begin + grain));
         return;
     }
     std::atomic<std::size_t> next{0};
@@ -42,9 +43,11 @@ void parallelFor(std::size_t count, std::size_t grain, int threads,
         }
     };
     std::vector<std::thread> pool;
-    for (int n = 1; n < workers; ++n) pool.emplace_back(work);
+    for (int n = 1; n < workers; ++n)
+        pool.emplace_back(work);
     work();
-    for (std::thread& thread : pool) thread.join();
+    for (std::thread& thread : pool)
+        thread.join();
     if (failure) std::rethrow_exception(failure);
 }
 

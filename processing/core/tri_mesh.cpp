@@ -7,7 +7,8 @@ namespace haustra {
 namespace {
 
 int findRoot(std::vector<int>& parent, int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    while (parent[v] != v)
+        v = parent[v] = parent[parent[v]];
     return v;
 }
 

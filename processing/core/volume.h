@@ -1,6 +1,8 @@
 // Volume<T>: one value for each voxel of a Grid, in memory of its own or mapped from a product.
 #pragma once
 
+#include "core/grid.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -8,8 +10,6 @@
 #include <new>
 #include <span>
 #include <utility>
-
-#include "core/grid.h"
 
 namespace haustra {
 

@@ -12,7 +12,7 @@ namespace haustra::organs {
 
 enum class LumenFinder {
     gasAndTagged,  ///< bowel gas, and tagged fluid and stool: topology/lumen.h
-    huRange,       ///< connected voxels of a range of HU: topology/hu_range_lumen.h
+    huRange,       ///< connected voxels of a range of HU: segmentation/hu_range_lumen.h
 };
 enum class ExpectedTopology {
     ball,  ///< handles are leaks and are cut

@@ -1,7 +1,7 @@
 #include "core/printed_text.h"
-#include "flatten/camera_registration.h"
-#include "flatten/end_holes.h"
-#include "flatten/flattening.h"
+#include "flatten/tube/camera_registration.h"
+#include "flatten/tube/end_holes.h"
+#include "flatten/tube/flattening.h"
 #include "pipeline/lumen_stages.h"
 #include "pipeline/product_attributes.h"
 

@@ -1,8 +1,8 @@
 #include "pipeline/lumen_stages.h"
 
+#include "centerline/path.h"
 #include "core/colon_record.h"
 #include "pipeline/product_attributes.h"
-#include "topology/centerline_path.h"
 #include "topology/digital_topology.h"
 #include "topology/distance_field.h"
 #include "topology/handle_cutting.h"
@@ -128,14 +128,14 @@ Result<ProductKey> traceCenterline(Preparation& preparation, const ProductKey& l
         store::Case& target = preparation.target();
         const auto labels = TRY(target.readVolume<std::uint8_t>(product::lumen));
         const auto distanceMm = TRY(target.readVolume<float>(product::distance));
-        topology::CenterlineOptions tracing;
+        centerline::CenterlineOptions tracing;
         tracing.threads = preparation.options().threads;
         tracing.progress = progress;
         tracing.ends = organ.endPoints == organs::EndPoints::farthest
-                           ? topology::EndRule::farthest
-                           : topology::EndRule::rectumToCecum;
+                           ? centerline::EndRule::farthest
+                           : centerline::EndRule::rectumToCecum;
         tracing.branches = organ.branches;
-        const auto traced = TRY(topology::traceCenterline(labels, distanceMm, tracing));
+        const auto traced = TRY(centerline::traceCenterline(labels, distanceMm, tracing));
         Attributes attributes{{"length-mm", exactText(traced.centerline.lengthMm())}};
         std::vector<std::string> notes = traced.notes;
         if (target.find(product::quality)) {

@@ -17,12 +17,11 @@ namespace haustra::pipeline {
 
 /// Products by the order in which they are made, so that none comes from a later one.
 namespace product {
-inline constexpr char ct[] = "ct", segmentation[] = "segmentation",
-                      quality[] = "quality", mixture[] = "mixture",
-                      cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
-                      lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
-                      branches[] = "branches", surface[] = "surface", flatMap[] = "flatmap",
-                      edits[] = "edits";
+inline constexpr char ct[] = "ct", segmentation[] = "segmentation", quality[] = "quality",
+                      mixture[] = "mixture", cleansedLumen[] = "cleansed-lumen",
+                      cleansed[] = "cleansed", lumen[] = "lumen", distance[] = "distance",
+                      centerline[] = "centerline", branches[] = "branches", surface[] = "surface",
+                      flatMap[] = "flatmap", edits[] = "edits";
 }  // namespace product
 
 /// The products that a product goes into, nearly or by way of others: what is outdated with it.

@@ -34,9 +34,10 @@ struct PrepareOptions {
     /// Forget what earlier calls said of a colon; else that stands where this call says nothing.
     bool forgetEdits = false;
     /// How far the surface may be from the contoured one, at the samples that
-    /// surface/simplification.h names; between them it is not bounded. 0.001 to 10.
+    /// simplification/simplification.h names; between them it is not bounded. 0.001 to 10.
     double surfaceErrorMm = 0.1;
-    /// Of the flat map, from 0 (angles are kept) to 1 (areas nearly are): flatten/flattening.h.
+    /// Of the flat map, from 0 (angles are kept) to 1 (areas nearly are):
+    /// flatten/tube/flattening.h.
     double areaWeight = 0.0;
     int threads = 0;  ///< ≤ 0: all cores
     /// How far a stage is, 0…1. Called from the thread that called prepare.

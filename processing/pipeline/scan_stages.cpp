@@ -4,13 +4,13 @@
 #include "cleansing/mixture.h"
 #include "cleansing/tissue_mixture.h"
 #include "cleansing/untagged_fluid.h"
+#include "contouring/wall_field.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/read_inputs.h"
 #include "pipeline/scan_identity.h"
 #include "pipeline/source_key.h"
 #include "segmentation/find_colon.h"
-#include "surface/wall_field.h"
-#include "topology/hu_range_lumen.h"
+#include "segmentation/hu_range_lumen.h"
 
 namespace haustra::pipeline {
 namespace {
@@ -78,15 +78,16 @@ Result<void> findHuRange(Preparation& preparation, const CtScan& scan, const Pro
     const PrepareOptions& options = preparation.options();
     const organs::OrganProfile& organ = preparation.organ();
     const Volume<std::int16_t> hu =
-        organ.smoothingMm > 0.0 ? topology::smoothHu(scan.hu, organ.smoothingMm, options.threads)
-                                : scan.hu.share();
+        organ.smoothingMm > 0.0
+            ? segmentation::smoothHu(scan.hu, organ.smoothingMm, options.threads)
+            : scan.hu.share();
     auto lumen =
-        TRY(topology::findHuRangeLumen(hu, {organ.contentHu, organ.openingMm, options.seedsMm,
-                                            options.excludesMm, options.threads, progress}));
+        TRY(segmentation::findHuRangeLumen(hu, {organ.contentHu, organ.openingMm, options.seedsMm,
+                                                options.excludesMm, options.threads, progress}));
     // Where the wall is sharp, the HU on its two sides are themselves close to it.
-    const auto wall = TRY(surface::contentField(scan.hu, lumen.labels, options.threads));
-    topology::growToWall(lumen.labels, hu, wall.negated ? -wall.isoHu : wall.isoHu, wall.negated,
-                         options.threads);
+    const auto wall = TRY(contouring::contentField(scan.hu, lumen.labels, options.threads));
+    segmentation::growToWall(lumen.labels, hu, wall.negated ? -wall.isoHu : wall.isoHu,
+                             wall.negated, options.threads);
     Attributes attributes{{"source", "scan"}, {"segments", std::to_string(lumen.bodies)}};
     setNotes(attributes, lumen.notes);
     return publishSegmentation(preparation, key, lumen.labels, attributes);

@@ -1,8 +1,8 @@
+#include "contouring/dual_contouring.h"
+#include "contouring/wall_field.h"
 #include "pipeline/lumen_stages.h"
 #include "pipeline/product_attributes.h"
-#include "surface/dual_contouring.h"
-#include "surface/simplification.h"
-#include "surface/wall_field.h"
+#include "simplification/simplification.h"
 
 #include <algorithm>
 #include <chrono>
@@ -37,16 +37,16 @@ const char* toString(WallRule rule) {
     return "";
 }
 
-Result<surface::WallField> readWall(Preparation& preparation, const WallSource& source,
-                                    const Volume<std::uint8_t>& lumen) {
+Result<contouring::WallField> readWall(Preparation& preparation, const WallSource& source,
+                                       const Volume<std::uint8_t>& lumen) {
     const int threads = preparation.options().threads;
     const WallRule rule = wallRule(preparation, source);
-    if (rule == WallRule::mask) return surface::smoothedMask(lumen, threads);
+    if (rule == WallRule::mask) return contouring::smoothedMask(lumen, threads);
     auto hu = TRY(preparation.target().readVolume<std::int16_t>(source.hu));
-    if (rule == WallRule::content) return surface::contentField(hu, lumen, threads);
+    if (rule == WallRule::content) return contouring::contentField(hu, lumen, threads);
     const auto attributes = TRY(preparation.target().attributes(product::segmentation));
     const auto tissue = TRY(tissueModelOf(attributes));
-    return surface::WallField{std::move(hu), tissue.airBelowHu, false};
+    return contouring::WallField{std::move(hu), tissue.airBelowHu, false};
 }
 
 // What every later stage relies on; that it holds is the contouring's and the simplification's
@@ -87,17 +87,18 @@ Result<WallSurface> surfaceOf(Preparation& preparation, const WallSource& source
     {
         const auto lumen = TRY(preparation.target().readVolume<std::uint8_t>(product::lumen));
         const auto wall = TRY(readWall(preparation, source, lumen));
-        auto contoured = TRY(surface::contourLumen(wall.hu, lumen, wall.isoHu, {options.threads}));
+        auto contoured =
+            TRY(contouring::contourLumen(wall.hu, lumen, wall.isoHu, {options.threads}));
         fine = std::move(contoured);
         if (!source.hu.empty())
             attributes["iso-hu"] = exactText(wall.negated ? -wall.isoHu : wall.isoHu);
     }
     progress(0.3);
-    surface::SimplificationOptions simplification;
+    simplification::SimplificationOptions simplification;
     simplification.errorMm = options.surfaceErrorMm;
     simplification.threads = options.threads;
     simplification.progress = [&](double fraction) { progress(0.3 + 0.7 * fraction); };
-    auto simple = TRY(surface::simplify(fine, simplification));
+    auto simple = TRY(simplification::simplify(fine, simplification));
     const MeshTopology topology = meshTopology(simple);
     TRY(checkSurface(topology, preparation.organ().topology));
     attributes["euler-characteristic"] = std::to_string(topology.eulerCharacteristic);

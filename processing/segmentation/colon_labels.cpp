@@ -3,8 +3,8 @@
 #include "core/connected_labels.h"
 #include "core/ct_scan.h"
 #include "core/voxel_sweep.h"
+#include "segmentation/hu_range_lumen.h"
 #include "segmentation/tagged_stool.h"
-#include "topology/hu_range_lumen.h"
 
 #include <algorithm>
 #include <array>
@@ -81,7 +81,7 @@ private:
 
     void smooth() {
         constexpr double smoothMm = 0.8;
-        if (!options_.asGiven) smooth_ = topology::smoothHu(hu_, smoothMm, 1);
+        if (!options_.asGiven) smooth_ = segmentation::smoothHu(hu_, smoothMm, 1);
     }
 
     // Doors between kept pieces: those of the chain and of its sacs are open; of the others the

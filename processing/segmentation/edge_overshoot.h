@@ -17,8 +17,8 @@ namespace haustra::segmentation {
 double overshootBesideGasHu(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
                             const TissueModel& tissue, int threads);
 
-/// Takes for tissue what looks tagged, is no brighter than overshootBesideGasHu and lies within 2.5 mm
-/// of gas, but not under a level, where it is fluid; a note says so. Nothing where there is no
+/// Takes for tissue what looks tagged, is no brighter than overshootBesideGasHu and lies within 2.5
+/// mm of gas, but not under a level, where it is fluid; a note says so. Nothing where there is no
 /// overshoot.
 void takeOffOvershoot(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                       BowelContents& contents, int threads);

@@ -2,8 +2,8 @@
 
 #include "core/connected_labels.h"
 #include "core/crop.h"
+#include "segmentation/hu_range_lumen.h"
 #include "topology/distance_field.h"
-#include "topology/hu_range_lumen.h"
 
 #include <algorithm>
 #include <array>
@@ -142,8 +142,8 @@ private:
             if (!isTissue(n) || hu_[n] < 2.0 * fatHu) continue;
             values[n] = hu_[n], weights[n] = one;
         }
-        value = topology::smoothHu(value, sdMm, threads_);
-        weight = topology::smoothHu(weight, sdMm, threads_);
+        value = segmentation::smoothHu(value, sdMm, threads_);
+        weight = segmentation::smoothHu(weight, sdMm, threads_);
         Volume<std::uint8_t> like(grid, std::uint8_t(0));
         const auto out = like.writable();
         for (std::size_t n = 0; n < out.size(); ++n) {

@@ -1,9 +1,9 @@
 // Exact Euclidean distance in a mask.
 #pragma once
 
-#include <cstdint>
-
 #include "core/volume.h"
+
+#include <cstdint>
 
 namespace haustra::topology {
 

@@ -1,11 +1,11 @@
 #include "topology/lumen_pieces.h"
 
+#include "centerline/graph.h"
+#include "centerline/order.h"
+#include "centerline/search.h"
+#include "centerline/segments.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
-#include "topology/centerline_graph.h"
-#include "topology/centerline_order.h"
-#include "topology/centerline_search.h"
-#include "topology/centerline_segments.h"
 #include "topology/distance_field.h"
 
 #include <algorithm>
@@ -166,13 +166,13 @@ enum class SkeletonEnds { anywhere, tips };
 
 Path skeletonOf(const BitMask& piece, const Volume<std::uint8_t>& labels,
                 const Volume<float>& distanceMm, SkeletonEnds ends, int threads) {
-    const BlockGraph graph = makeBlockGraph(labels, distanceMm, threads);
+    const centerline::BlockGraph graph = centerline::makeBlockGraph(labels, distanceMm, threads);
     std::vector<std::int32_t> route;
     if (ends == SkeletonEnds::tips) {
         std::vector<std::string> notes;  // a piece is one segment: there are none
-        route = segmentsToVisit(graph, {}, EndRule::farthest, notes).front().route;
+        route = segmentsToVisit(graph, {}, centerline::EndRule::farthest, notes).front().route;
     } else {
-        PathTree tree = growWidestTree(graph, graph.components.front().deepest);
+        centerline::PathTree tree = growWidestTree(graph, graph.components.front().deepest);
         const std::int32_t oneEnd = longestPathEnd(tree);
         tree = rerooted(std::move(tree), oneEnd);
         route = pathTo(tree, longestPathEnd(tree));
@@ -226,7 +226,7 @@ double lengthMm(const Path& path, glm::dvec3 spacing) {
 /// The pieces' paths in the order of travel, each in its direction; those left out go to `notes`.
 std::vector<std::size_t> orderPaths(std::vector<Path>& paths, const Grid& grid,
                                     std::vector<std::string>& notes) {
-    std::vector<SegmentEnds> ends;
+    std::vector<centerline::SegmentEnds> ends;
     glm::dvec3 lo(1e30), hi(-1e30);
     for (const Path& path : paths) {
         for (const glm::ivec3 v : path) {
@@ -237,7 +237,7 @@ std::vector<std::size_t> orderPaths(std::vector<Path>& paths, const Grid& grid,
                         grid.patientFromVoxelPoint(path.back()), lengthMm(path, grid.spacingMm())});
     }
     std::vector<std::size_t> order;
-    for (const SegmentVisit visit : orderSegments(ends, 0.5 * (lo + hi))) {
+    for (const centerline::SegmentVisit visit : orderSegments(ends, 0.5 * (lo + hi))) {
         order.push_back(visit.segment);
         if (visit.reversed) std::reverse(paths[visit.segment].begin(), paths[visit.segment].end());
     }

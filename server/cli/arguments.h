@@ -33,8 +33,8 @@ void addThreadsOption(CLI::App& command, int& threads);
 CLI::Option* addPointsOption(CLI::App& command, const std::string& name,
                              std::vector<glm::dvec3>& points, const std::string& description);
 
-/// --NAME x,y,z or x,y,z,r in patient millimetres: balls, of 3 mm radius where none is given; may be
-/// given again and again.
+/// --NAME x,y,z or x,y,z,r in patient millimetres: balls, of 3 mm radius where none is given; may
+/// be given again and again.
 CLI::Option* addBallsOption(CLI::App& command, const std::string& name, std::vector<CutBall>& balls,
                             const std::string& description);
 

@@ -3,8 +3,8 @@
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "handles/handle_removal.h"
 #include "mesh/mesh_file.h"
-#include "surface/handle_removal.h"
 
 #include <algorithm>
 #include <memory>
@@ -30,9 +30,9 @@ glm::dvec3 middleOf(const std::vector<glm::dvec3>& loop) {
     return sum / double(loop.size());
 }
 
-std::size_t crossingsOf(const surface::HandleRemoval& removal) {
+std::size_t crossingsOf(const handles::HandleRemoval& removal) {
     std::size_t crossings = 0;
-    for (const surface::RemovedHandle& handle : removal.handles)
+    for (const handles::RemovedHandle& handle : removal.handles)
         crossings += handle.crossings;
     return crossings;
 }
@@ -44,9 +44,9 @@ std::string tellCrossings(const char* before, std::size_t crossings) {
                        crossings == 1 ? "" : "s");
 }
 
-nlohmann::ordered_json reportOf(const TriMesh& before, const surface::HandleRemoval& removal) {
+nlohmann::ordered_json reportOf(const TriMesh& before, const handles::HandleRemoval& removal) {
     auto handles = nlohmann::ordered_json::array();
-    for (const surface::RemovedHandle& handle : removal.handles) {
+    for (const handles::RemovedHandle& handle : removal.handles) {
         const glm::dvec3 at = middleOf(handle.loopMm);
         auto loop = nlohmann::ordered_json::array();
         for (const glm::dvec3& p : handle.loopMm)
@@ -74,12 +74,12 @@ Result<void> runDenoise(const DenoiseArguments& arguments) {
         TRY(checkOutputFile(file));
     }
     const auto mesh = TRY(mesh::readMesh(arguments.mesh));
-    surface::HandleRemovalOptions options;
+    handles::HandleRemovalOptions options;
     options.threads = arguments.threads;
     auto removal = [&] {
         ProgressBar bar;
         options.progress = [&](double fraction) { bar.show("handles", fraction); };
-        return surface::removeHandles(mesh, options);
+        return handles::removeHandles(mesh, options);
     }();
     if (!removal) {
         const Error& error = removal.error();
@@ -89,7 +89,7 @@ Result<void> runDenoise(const DenoiseArguments& arguments) {
 
     const auto report = reportOf(mesh, *removal);
     for (std::size_t i = 0; i < removal->handles.size(); ++i) {
-        const surface::RemovedHandle& handle = removal->handles[i];
+        const handles::RemovedHandle& handle = removal->handles[i];
         const glm::dvec3 at = middleOf(handle.loopMm);
         fmt::print("handle {}: loop {:.2f} mm at {:.1f},{:.1f},{:.1f}, {:.2f} mm² filled{}\n",
                    i + 1, handle.lengthMm, at.x, at.y, at.z, handle.filledAreaMm2,

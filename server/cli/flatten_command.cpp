@@ -3,7 +3,7 @@
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
-#include "flatten/surface_flattening.h"
+#include "flatten/general/surface_flattening.h"
 #include "mesh/flat_map_file.h"
 #include "mesh/mesh_file.h"
 

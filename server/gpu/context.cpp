@@ -1,16 +1,16 @@
 #include "gpu/context.h"
 
-#include <spdlog/spdlog.h>
-
 #include <array>
 #include <atomic>
 #include <cstring>
 #include <vector>
 
+#include <spdlog/spdlog.h>
+
 // clang-format off: epoxy's khronos types must come before EGL's.
-#include <epoxy/gl.h>
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+#include <epoxy/gl.h>
 // clang-format on
 
 namespace haustra::gpu {

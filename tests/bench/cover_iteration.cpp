@@ -1,9 +1,9 @@
 #include "cover_iteration.h"
 
 #include "core/parallel.h"
-#include "flatten/double_cover.h"
-#include "flatten/hodge_star.h"
-#include "flatten/homology_basis.h"
+#include "flatten/general/double_cover.h"
+#include "flatten/general/hodge_star.h"
+#include "flatten/general/homology_basis.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/tri_mesh.h"
-#include "flatten/conjugate_gradient.h"
+#include "flatten/tube/conjugate_gradient.h"
 #include "process_cost.h"
 
 namespace haustra::bench {

@@ -5,10 +5,10 @@
 // `--help` tells the options.
 #include "core/flat_lookup.h"
 #include "flat_outline.h"
-#include "flatten/conformal_tube.h"
 #include "flatten/distortion.h"
-#include "flatten/seam.h"
-#include "flatten/unified_flattening.h"
+#include "flatten/tube/conformal_tube.h"
+#include "flatten/tube/seam.h"
+#include "flatten/tube/unified_flattening.h"
 #include "flatten_meshes.h"
 #include "phantom_polyps.h"
 #include "stopwatch.h"

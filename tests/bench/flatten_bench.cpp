@@ -1,10 +1,10 @@
 // Conformal maps of tubes: seconds, memory and distortion, beside conjugate gradients and CGAL's
 // parameterizers of the tube cut open, as Markdown tables. `--help` tells the options.
-#include "flatten/conformal_tube.h"
 #include "flatten/distortion.h"
-#include "flatten/flattening.h"
-#include "flatten/seam.h"
-#include "flatten/tube_topology.h"
+#include "flatten/tube/conformal_tube.h"
+#include "flatten/tube/flattening.h"
+#include "flatten/tube/seam.h"
+#include "flatten/tube/tube_topology.h"
 #include "flatten_cgal.h"
 #include "flatten_meshes.h"
 #include "flatten_race.h"

@@ -1,12 +1,12 @@
 #include "flatten_meshes.h"
 
+#include "contouring/dual_contouring.h"
 #include "core/parallel.h"
-#include "flatten/end_holes.h"
+#include "flatten/tube/end_holes.h"
 #include "mesh/halfedge_mesh.h"
 #include "mesh/mesh_file.h"
+#include "simplification/simplification.h"
 #include "store/case_store.h"
-#include "surface/dual_contouring.h"
-#include "surface/simplification.h"
 
 #include <algorithm>
 #include <cmath>
@@ -161,8 +161,8 @@ Result<Tube> generatedTube(double voxelMm, bool pouched) {
             }
         }
     });
-    auto closed = surface::contourLumen(hu, lumen, kIsoHu);
-    if (closed && pouched) closed = surface::simplify(*closed, {0.1});
+    auto closed = contouring::contourLumen(hu, lumen, kIsoHu);
+    if (closed && pouched) closed = simplification::simplify(*closed, {0.1});
     if (!closed) return tl::make_unexpected(closed.error());
     const glm::dvec3 ends[2] = {{60.0, 0.0, -75.0}, {60.0, 0.0, 75.0}};
     const glm::dvec3 outwards[2] = {{0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}};
@@ -204,8 +204,9 @@ Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseN
         const auto hu = opened->find(scan) ? opened->readVolume<std::int16_t>(scan)
                                            : Volume<std::int16_t>(lumen->grid(), 0);
         if (!hu) return tl::make_unexpected(hu.error());
-        closed = surface::contourLumen(*hu, *lumen, -400.0);
-        if (closed && choice.errorMm > 0.0) closed = surface::simplify(*closed, {choice.errorMm});
+        closed = contouring::contourLumen(*hu, *lumen, -400.0);
+        if (closed && choice.errorMm > 0.0)
+            closed = simplification::simplify(*closed, {choice.errorMm});
     }
     if (!closed) return tl::make_unexpected(closed.error());
     const CenterlinePose first = poseAtArc(*centerline, 0.0, 6.0),

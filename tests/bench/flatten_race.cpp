@@ -1,7 +1,7 @@
 #include "flatten_race.h"
 
 #include "cover_iteration.h"
-#include "flatten/conformal_tube.h"
+#include "flatten/tube/conformal_tube.h"
 #include "process_cost.h"
 #include "stopwatch.h"
 

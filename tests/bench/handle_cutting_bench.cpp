@@ -1,8 +1,8 @@
 // What cutting handles does to masks: one line of a table for each NIfTI mask given.
 // Arguments: [--threads N] [--write FOLDER] mask…
+#include "centerline/path.h"
 #include "nifti/nifti_file.h"
 #include "stopwatch.h"
-#include "topology/centerline_path.h"
 #include "topology/distance_field.h"
 #include "topology/handle_cutting.h"
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace haustra::topology {
+namespace haustra {
 namespace {
 
 using bench::cpuMilliseconds, bench::milliseconds;
@@ -29,26 +29,27 @@ bool printLine(const std::filesystem::path& file, int threads, const std::string
         std::fprintf(stderr, "%s\n", describe(mask.error()).c_str());
         return false;
     }
-    const DigitalTopology before = digitalTopology(*mask, threads);
-    const std::size_t voxels = maskOf(*mask, threads).count();
+    const topology::DigitalTopology before = topology::digitalTopology(*mask, threads);
+    const std::size_t voxels = topology::maskOf(*mask, threads).count();
     double wall = milliseconds(), cpu = cpuMilliseconds();
-    HandleCuttingOptions options;
+    topology::HandleCuttingOptions options;
     options.threads = threads;
-    const auto cut = cutHandles(*mask, options);
+    const auto cut = topology::cutHandles(*mask, options);
     if (!cut) {
         std::fprintf(stderr, "%s: %s\n", file.c_str(), describe(cut.error()).c_str());
         return false;
     }
     std::printf("%-24s %10zu %6ld %9ld %8ld | %6s %6ld %8zu %8zu %6.2f %6.2f | ",
                 file.filename().c_str(), voxels, before.components, before.cavities,
-                before.handles(), digitalTopology(cut->labels, threads).isBall() ? "yes" : "NO",
+                before.handles(),
+                topology::digitalTopology(cut->labels, threads).isBall() ? "yes" : "NO",
                 cut->cavitiesFilled, cut->voxelsRemoved, cut->voxelsAdded,
                 1e-3 * (milliseconds() - wall), 1e-3 * (cpuMilliseconds() - cpu));
     wall = milliseconds(), cpu = cpuMilliseconds();
-    CenterlineOptions centerline;
-    centerline.threads = threads;
-    const auto traced =
-        traceCenterline(cut->labels, distanceToBoundaryMm(cut->labels, threads), centerline);
+    centerline::CenterlineOptions tracing;
+    tracing.threads = threads;
+    const auto traced = centerline::traceCenterline(
+        cut->labels, topology::distanceToBoundaryMm(cut->labels, threads), tracing);
     std::printf("%10.0f %6.2f %6.2f\n", traced ? traced->centerline.lengthMm() : 0.0,
                 1e-3 * (milliseconds() - wall), 1e-3 * (cpuMilliseconds() - cpu));
     for (const std::string& note : cut->notes)
@@ -61,7 +62,7 @@ bool printLine(const std::filesystem::path& file, int threads, const std::string
 }
 
 }  // namespace
-}  // namespace haustra::topology
+}  // namespace haustra
 
 int main(int count, char** arguments) {
     std::vector<std::filesystem::path> masks;
@@ -81,9 +82,9 @@ int main(int count, char** arguments) {
                      "usage: handle_cutting_bench [--threads N] [--write FOLDER] mask...\n");
         return 2;
     }
-    haustra::topology::printHeader();
+    haustra::printHeader();
     bool all = true;
     for (const auto& mask : masks)
-        all = haustra::topology::printLine(mask, threads, folder) && all;
+        all = haustra::printLine(mask, threads, folder) && all;
     return all ? 0 : 1;
 }

@@ -2,11 +2,11 @@
 // Without meshes: surfaces whose period ratio is known. Of each closed mesh: its forms' laws; of
 // each tube: the general algorithm beside the reduced one.
 #include "core/tri_mesh.h"
-#include "flatten/conformal_tube.h"
-#include "flatten/double_cover_map.h"
-#include "flatten/fundamental_domain.h"
-#include "flatten/period_matrix.h"
-#include "flatten/torus_map.h"
+#include "flatten/general/double_cover_map.h"
+#include "flatten/general/fundamental_domain.h"
+#include "flatten/general/period_matrix.h"
+#include "flatten/general/torus_map.h"
+#include "flatten/tube/conformal_tube.h"
 #include "handle_meshes.h"
 #include "mesh/mesh_file.h"
 #include "stopwatch.h"

@@ -1,17 +1,17 @@
 #include "bench/phantom_study.h"
 
+#include "centerline/path.h"
 #include "cleansing/digital_cleansing.h"
 #include "cleansing/mixture.h"
 #include "cleansing/tissue_mixture.h"
-#include "flatten/end_holes.h"
-#include "flatten/flattening.h"
+#include "contouring/dual_contouring.h"
+#include "flatten/tube/end_holes.h"
+#include "flatten/tube/flattening.h"
+#include "handles/self_intersection.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "segmentation/find_colon.h"
-#include "surface/dual_contouring.h"
-#include "surface/self_intersection.h"
-#include "surface/simplification.h"
-#include "topology/centerline_path.h"
+#include "simplification/simplification.h"
 #include "topology/distance_field.h"
 
 #include <algorithm>
@@ -117,12 +117,12 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
     if (!trueBall) return tl::make_unexpected(trueBall.error());
     watch.lap();
     const auto ideal =
-        surface::contourLumen(truth.untaggedHu, trueBall->labels, study.airBelowHu, {threads});
+        contouring::contourLumen(truth.untaggedHu, trueBall->labels, study.airBelowHu, {threads});
     if (!ideal) return tl::make_unexpected(ideal.error());
     if (auto added = add("truth", *ideal, watch.lap()); !added) return added;
 
     watch.lap();
-    const auto fine = surface::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
+    const auto fine = contouring::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
     if (!fine) return tl::make_unexpected(fine.error());
     if (auto added = add("fine", *fine, watch.lap()); !added) return added;
     for (const double errorMm : options.errorBoundsMm) {
@@ -130,9 +130,9 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
         std::snprintf(what, sizeof what, "%.2f mm", errorMm);
         options.log(std::string("simplification to ") + what);
         watch.lap();
-        surface::SimplificationOptions simplification;
+        simplification::SimplificationOptions simplification;
         simplification.errorMm = errorMm, simplification.threads = threads;
-        const auto simple = surface::simplify(*fine, simplification);
+        const auto simple = simplification::simplify(*fine, simplification);
         if (!simple) return tl::make_unexpected(simple.error());
         if (auto added = add(what, *simple, watch.lap()); !added) return added;
     }
@@ -146,11 +146,11 @@ Result<std::size_t> flattenLumen(const Volume<std::int16_t>& cleansedHu,
     constexpr double endWindowMm = 6.0;
     const int threads = options.phantom.threads;
     Stopwatch watch;
-    const auto fine = surface::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
+    const auto fine = contouring::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
     if (!fine) return tl::make_unexpected(fine.error());
-    surface::SimplificationOptions simplification;
+    simplification::SimplificationOptions simplification;
     simplification.errorMm = options.prepareErrorMm, simplification.threads = threads;
-    const auto simple = surface::simplify(*fine, simplification);
+    const auto simple = simplification::simplify(*fine, simplification);
     if (!simple) return tl::make_unexpected(simple.error());
     study.colon.surfaceSeconds = watch.lap();
     const CenterlinePose first = poseAtArc(path, 0.0, endWindowMm),
@@ -175,7 +175,7 @@ Result<SurfaceStudy> studySurface(std::string what, const TriMesh& mesh,
     study.what = std::move(what);
     study.triangles = mesh.triangles.size();
     study.topology = meshTopology(mesh);
-    study.selfIntersections = surface::selfIntersections(mesh).size();
+    study.selfIntersections = handles::selfIntersections(mesh).size();
     study.angles = smallestAngles(mesh);
     phantom::SurfaceScoreOptions scoring;
     scoring.threads = threads;
@@ -247,10 +247,10 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     const Volume<std::uint8_t> lumen = std::move(cut->labels);
     study.cut = std::move(*cut);
     options.log("centerline");
-    topology::CenterlineOptions tracing;
+    centerline::CenterlineOptions tracing;
     tracing.threads = threads;
     const auto traced =
-        topology::traceCenterline(lumen, topology::distanceToBoundaryMm(lumen, threads), tracing);
+        centerline::traceCenterline(lumen, topology::distanceToBoundaryMm(lumen, threads), tracing);
     study.centerlineSeconds = watch.lap();
 
     // A lumen without a centerline still has a score of its own.

@@ -1,11 +1,11 @@
 // The colon surface of a case in a store: contouring and simplification at several bounds, beside
 // VTK's flying edges and decimation to as many triangles, as a Markdown table. `--help` tells the
 // options.
+#include "contouring/dual_contouring.h"
+#include "handles/self_intersection.h"
+#include "simplification/simplification.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
-#include "surface/dual_contouring.h"
-#include "surface/self_intersection.h"
-#include "surface/simplification.h"
 #include "surface_measure.h"
 
 #include <cstdlib>
@@ -56,7 +56,7 @@ void printRow(const std::string& name, const Timed& made, const TriMesh* fine, d
     const MeshTopology topology = meshTopology(mesh);
     const auto angles = tests::sortedSmallestAngles(mesh);
     const auto sharp = std::lower_bound(angles.begin(), angles.end(), 15.0) - angles.begin();
-    const std::size_t cuts = surface::selfIntersections(mesh).size();
+    const std::size_t cuts = handles::selfIntersections(mesh).size();
     std::string distances = "- | - | -";
     if (fine) {
         const auto forth = tests::sortedDistances(tests::samplesOn(mesh, spacingMm),
@@ -175,7 +175,7 @@ int run(const Input& input, const std::vector<double>& boundsMm) {
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     TriMesh fine;
     const double seconds = secondsOf([&] {
-        auto made = surface::contourLumen(input.hu, input.lumen, input.isoHu, {input.threads});
+        auto made = contouring::contourLumen(input.hu, input.lumen, input.isoHu, {input.threads});
         if (made) fine = std::move(*made);
     });
     if (fine.triangles.empty()) {
@@ -186,12 +186,13 @@ int run(const Input& input, const std::vector<double>& boundsMm) {
     printRow("dual contouring", whole, nullptr, input.spacingMm);
     std::vector<std::size_t> counts;
     for (const double errorMm : boundsMm) {
-        surface::SimplificationOptions options;
+        simplification::SimplificationOptions options;
         options.errorMm = errorMm;
         options.threads = input.threads;
         Timed simple{};
         simple.seconds = secondsOf([&] {
-            if (auto made = surface::simplify(whole.mesh, options)) simple.mesh = std::move(*made);
+            if (auto made = simplification::simplify(whole.mesh, options))
+                simple.mesh = std::move(*made);
         });
         if (simple.mesh.triangles.empty()) {
             fmt::print(stderr, "the surface cannot be simplified\n");

@@ -3,7 +3,7 @@
 #include "end_to_end/fake_wall.h"
 #include "end_to_end/reader_fixture.h"
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 using tests::FakeServer;
@@ -187,4 +187,4 @@ TEST_F(ClientFlatReaderWithoutStrip, NothingOfItIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

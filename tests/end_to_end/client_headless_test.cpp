@@ -2,8 +2,8 @@
 // pinning, refusals, lost links.
 #include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
-#include "panels/overview_map.h"
-#include "panels/script_player.h"
+#include "reader/overview_map.h"
+#include "script/script_player.h"
 
 #include <fstream>
 #include <sstream>
@@ -13,7 +13,7 @@
 #include <png.h>
 #include <unistd.h>
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 using tests::FakeServer;
@@ -46,7 +46,7 @@ protected:
         options.width = options.height = 200;
         options.patience = std::chrono::milliseconds(3000);
         Session session(connection, caseName);
-        return panels::play(session, *actions, options);
+        return reader::play(session, *actions, options);
     }
     std::vector<std::uint8_t> readPng(const std::string& name, int& width, int& height) const {
         png_image image{};
@@ -370,4 +370,4 @@ TEST_F(ClientHeadless, NobodyListeningIsAnErrorAtOnce) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

@@ -3,7 +3,7 @@
 #include "end_to_end/reader_fixture.h"
 #include "protocol/haustra.pb.h"
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 using tests::FakeServer;
@@ -251,4 +251,4 @@ TEST_F(ClientReaderOfAReplacedScan, WhatWasMarkedOnTheOneIsNotSentToTheOther) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "end_to_end/fake_server.h"
-#include "panels/reader.h"
+#include "reader/reader.h"
 
 #include <filesystem>
 #include <memory>
@@ -28,7 +28,7 @@ protected:
         options.address = {"127.0.0.1", server_.port()};
         options.pinning.knownServersFile = folder_ / "known_servers";
         options.reconnect = true;
-        reader_ = std::make_unique<panels::Reader>(options, "phantom");
+        reader_ = std::make_unique<reader::Reader>(options, "phantom");
     }
     void TearDown() override {
         reader_.reset();
@@ -49,7 +49,7 @@ protected:
 
     FakeServer server_;
     std::filesystem::path folder_;
-    std::unique_ptr<panels::Reader> reader_;
+    std::unique_ptr<reader::Reader> reader_;
 };
 
 }  // namespace haustra::tests

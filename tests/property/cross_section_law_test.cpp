@@ -1,7 +1,7 @@
 // Laws of the path in the middle of the lumen's cross-sections.
-#include "topology/centerline_cross_sections.h"
-#include "topology/centerline_path.h"
-#include "topology/centerline_spline.h"
+#include "centerline/cross_sections.h"
+#include "centerline/path.h"
+#include "centerline/spline.h"
 #include "topology/distance_field.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 using namespace haustra;
-using namespace haustra::topology;
+using namespace haustra::centerline;
 
 namespace {
 
@@ -47,7 +47,7 @@ double meanOffAxisMm(const std::vector<glm::dvec3>& points) {
 
 TEST(CrossSections, BringACurveBackToTheAxis) {
     const Volume<std::uint8_t> labels = tube(0.0);
-    const Volume<float> distanceMm = distanceToBoundaryMm(labels, 1);
+    const Volume<float> distanceMm = topology::distanceToBoundaryMm(labels, 1);
     std::vector<glm::dvec3> curve;  // cuts the bend short by up to 7 mm
     for (int n = 0; n <= 200; ++n) {
         const double t = double(n) / 200.0, angle = 0.15 + t * (M_PI / 2 - 0.3);
@@ -64,7 +64,7 @@ TEST(CrossSections, BringACurveBackToTheAxis) {
 
 TEST(CrossSections, StayOffTheWallAndInBridgesWhereTheyAre) {
     Volume<std::uint8_t> labels = tube(6.0);
-    const Volume<float> distanceMm = distanceToBoundaryMm(labels, 1);
+    const Volume<float> distanceMm = topology::distanceToBoundaryMm(labels, 1);
     std::vector<glm::dvec3> curve;
     for (int n = 0; n <= 200; ++n)
         curve.push_back(onAxis(0.15 + n / 200.0 * (M_PI / 2 - 0.3)) + glm::dvec3(0, 0, 4));
@@ -111,7 +111,7 @@ TEST(SmoothInsideLumen, IsAsLongAsItsPathWhereNoSplineFits) {
     }
     go(2, 1, 41 - at.z);
     go(2, 1, 14);
-    const auto curve = smoothInsideLumen(path, labels, distanceToBoundaryMm(labels, 1));
+    const auto curve = smoothInsideLumen(path, labels, topology::distanceToBoundaryMm(labels, 1));
     double pathMm = 0.0, curveMm = 0.0, longestMm = 0.0;
     for (std::size_t n = 1; n < path.size(); ++n)
         pathMm += 1.9 * glm::length(glm::dvec3(path[n] - path[n - 1]));

@@ -1,10 +1,10 @@
 // Laws of the lumen's surface: for any labels and any HU it is a closed manifold without
 // self-intersections, and its topology is that of the labels.
+#include "contouring/dual_contouring.h"
 #include "core/ct_scan.h"
+#include "handles/self_intersection.h"
 #include "label_topology.h"
 #include "mesh_laws.h"
-#include "surface/dual_contouring.h"
-#include "surface/self_intersection.h"
 
 #include <functional>
 #include <random>
@@ -34,7 +34,7 @@ Case makeCase(glm::ivec3 size, const std::function<bool(glm::ivec3)>& inside,
 }
 
 void expectLaws(const Case& given) {
-    const auto mesh = surface::contourLumen(given.hu, given.labels, -480.0, {1});
+    const auto mesh = contouring::contourLumen(given.hu, given.labels, -480.0, {1});
     ASSERT_TRUE(mesh) << describe(mesh.error());
     const MeshTopology topology = meshTopology(*mesh);
     ASSERT_TRUE(topology.closed());
@@ -44,7 +44,7 @@ void expectLaws(const Case& given) {
     ASSERT_EQ(topology.components, tests::componentCount(given.labels, true, 1) +
                                        tests::componentCount(given.labels, false, 2) - 1);
     ASSERT_GT(tests::signedVolumeMm3(*mesh), 0.0);
-    ASSERT_EQ(surface::selfIntersections(*mesh).size(), 0u);
+    ASSERT_EQ(handles::selfIntersections(*mesh).size(), 0u);
 }
 
 /// HU that make crossings anywhere, and gradients that make no sense.
@@ -114,10 +114,11 @@ TEST(DualContouringLaw, PartsTheObjectAcrossAnAmbiguousFace) {
     auto hu = [](glm::ivec3) { return -480; };
     const Case parted = makeCase(
         {2, 2, 1}, [](glm::ivec3 v) { return v.x == v.y; }, hu);
-    EXPECT_EQ(meshTopology(*surface::contourLumen(parted.hu, parted.labels, -480.0)).components, 2);
+    EXPECT_EQ(meshTopology(*contouring::contourLumen(parted.hu, parted.labels, -480.0)).components,
+              2);
     const Case ring = makeCase(
         glm::ivec3(3), [](glm::ivec3 v) { return v.z == 1 && !(v.x == 1 && v.y == 1); }, hu);
-    EXPECT_EQ(meshTopology(*surface::contourLumen(ring.hu, ring.labels, -480.0)).genus(), 1);
+    EXPECT_EQ(meshTopology(*contouring::contourLumen(ring.hu, ring.labels, -480.0)).genus(), 1);
 }
 
 Case noisyBall(std::uint32_t seed) {
@@ -135,9 +136,10 @@ Case noisyBall(std::uint32_t seed) {
 
 TEST(DualContouringLaw, IsTheSameForAnyNumberOfThreads) {
     const Case given = noisyBall(5);
-    const TriMesh one = *surface::contourLumen(given.hu, given.labels, -480.0, {1});
+    const TriMesh one = *contouring::contourLumen(given.hu, given.labels, -480.0, {1});
     for (int threads : {2, 3, 7}) {
-        const TriMesh several = *surface::contourLumen(given.hu, given.labels, -480.0, {threads});
+        const TriMesh several =
+            *contouring::contourLumen(given.hu, given.labels, -480.0, {threads});
         EXPECT_EQ(one.vertices, several.vertices);
         EXPECT_EQ(one.triangles, several.triangles);
     }
@@ -145,15 +147,15 @@ TEST(DualContouringLaw, IsTheSameForAnyNumberOfThreads) {
 
 TEST(DualContouringLaw, MovesWithTheGrid) {
     const Case given = noisyBall(6);
-    const TriMesh mesh = *surface::contourLumen(given.hu, given.labels, -480.0);
+    const TriMesh mesh = *contouring::contourLumen(given.hu, given.labels, -480.0);
     // The patient moves: the same triangles, every vertex shifted.
     Grid shifted = given.hu.grid();
     const glm::dvec3 shift(17.0, -230.0, 11.5);
     shifted.patientFromVoxel[3] += glm::dvec4(shift, 0.0);
     const auto none = std::shared_ptr<const void>();
-    const TriMesh moved =
-        *surface::contourLumen(Hu::view(shifted, given.hu.voxels().data(), none),
-                               Labels::view(shifted, given.labels.voxels().data(), none), -480.0);
+    const TriMesh moved = *contouring::contourLumen(
+        Hu::view(shifted, given.hu.voxels().data(), none),
+        Labels::view(shifted, given.labels.voxels().data(), none), -480.0);
     ASSERT_EQ(mesh.triangles, moved.triangles);
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
         ASSERT_LT(glm::distance(mesh.vertices[v] + shift, moved.vertices[v]), 1e-9);
@@ -161,12 +163,12 @@ TEST(DualContouringLaw, MovesWithTheGrid) {
 
 TEST(DualContouringLaw, MirroredGridsGiveTheSameSolid) {
     const Case given = noisyBall(7);
-    const TriMesh mesh = *surface::contourLumen(given.hu, given.labels, -480.0);
+    const TriMesh mesh = *contouring::contourLumen(given.hu, given.labels, -480.0);
     for (int axis = 0; axis < 3; ++axis) {
         Grid mirrored = given.hu.grid();
         mirrored.patientFromVoxel[axis] = -mirrored.patientFromVoxel[axis];
         const auto none = std::shared_ptr<const void>();
-        const TriMesh other = *surface::contourLumen(
+        const TriMesh other = *contouring::contourLumen(
             Hu::view(mirrored, given.hu.voxels().data(), none),
             Labels::view(mirrored, given.labels.voxels().data(), none), -480.0);
         EXPECT_NEAR(tests::signedVolumeMm3(other), tests::signedVolumeMm3(mesh), 1e-6);
@@ -175,11 +177,11 @@ TEST(DualContouringLaw, MirroredGridsGiveTheSameSolid) {
 
 TEST(DualContouringLaw, RefusesWhatHasNoSurface) {
     const Grid grid = axisAlignedGrid({4, 4, 4}, glm::dvec3(1.0));
-    const auto empty = surface::contourLumen(Hu(grid, 0), Labels(grid, 0), -480.0);
+    const auto empty = contouring::contourLumen(Hu(grid, 0), Labels(grid, 0), -480.0);
     ASSERT_FALSE(empty);
     EXPECT_EQ(empty.error().kind, ErrorKind::noResult);
-    const auto apart = surface::contourLumen(Hu(axisAlignedGrid({4, 4, 4}, glm::dvec3(2.0)), 0),
-                                             Labels(grid, 1), -480.0);
+    const auto apart = contouring::contourLumen(Hu(axisAlignedGrid({4, 4, 4}, glm::dvec3(2.0)), 0),
+                                                Labels(grid, 1), -480.0);
     ASSERT_FALSE(apart);
     EXPECT_EQ(apart.error().kind, ErrorKind::badInput);
 }

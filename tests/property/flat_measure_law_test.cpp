@@ -1,9 +1,9 @@
 // What is clicked and measured on a conformal map is what is on the surface.
 #include "analytic_tubes.h"
 #include "core/flat_lookup.h"
-#include "flatten/conformal_tube.h"
-#include "flatten/seam.h"
-#include "flatten/unified_flattening.h"
+#include "flatten/tube/conformal_tube.h"
+#include "flatten/tube/seam.h"
+#include "flatten/tube/unified_flattening.h"
 #include "tube_meshes.h"
 
 #include <cmath>

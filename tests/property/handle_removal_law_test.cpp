@@ -1,13 +1,13 @@
 // Laws of the loops that handles are cut along: against CGAL's exact search, and of the cover.
 #include "data_folder.h"
 #include "handle_meshes.h"
+#include "handles/covering_loops.h"
+#include "handles/covering_space.h"
+#include "handles/handle_removal.h"
+#include "handles/loop_coarsening.h"
+#include "handles/loop_homology.h"
+#include "handles/loop_search.h"
 #include "mesh/mesh_file.h"
-#include "surface/covering_loops.h"
-#include "surface/covering_space.h"
-#include "surface/handle_removal.h"
-#include "surface/loop_coarsening.h"
-#include "surface/loop_homology.h"
-#include "surface/loop_search.h"
 
 #include <limits>
 #include <set>
@@ -18,7 +18,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <gtest/gtest.h>
 
-namespace haustra::surface {
+namespace haustra::handles {
 namespace {
 
 using CgalMesh = CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3>;
@@ -278,4 +278,4 @@ TEST(HandleRemovalLaw, LoopsInTheCoverAgreeWithTheSearchOnTheMesh) {
 }
 
 }  // namespace
-}  // namespace haustra::surface
+}  // namespace haustra::handles

@@ -3,7 +3,7 @@
 #include "core/connected_labels.h"
 #include "phantom/phantom.h"
 #include "segmentation/find_colon.h"
-#include "topology/hu_range_lumen.h"
+#include "segmentation/hu_range_lumen.h"
 
 #include <algorithm>
 #include <string>
@@ -61,7 +61,7 @@ void LumenLaw::eachVoxelHoldsAirOrTaggedMaterialOrTheirPartialVolume() const {
     const Grid& grid = scan_.hu.grid();
     const double edgeHu = 0.5 * (tissue_.meanHu[int(Tissue::soft)] + tissue_.taggedAboveHu);
     // Noise may darken a voxel of fluid, but not what lies around it too.
-    const Volume<std::int16_t> smooth = topology::smoothHu(scan_.hu, 0.8);
+    const Volume<std::int16_t> smooth = segmentation::smoothHu(scan_.hu, 0.8);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const auto here = LumenLabel(lumen_.labels[n]);
         if (here == LumenLabel::air) {

@@ -1,13 +1,13 @@
 // Laws of flat maps of tubes with blind fingers: no fold after rounding, nothing lost, and the wall
 // outside the fingers as it would be without all this.
 #include "flat_meshes.h"
-#include "flatten/disc_embedding.h"
-#include "flatten/flattening.h"
-#include "flatten/flip_repair.h"
-#include "flatten/grid_drawing.h"
-#include "flatten/polygon_roll.h"
-#include "flatten/pouches.h"
-#include "flatten/seam.h"
+#include "flatten/tube/disc_embedding.h"
+#include "flatten/tube/flattening.h"
+#include "flatten/tube/flip_repair.h"
+#include "flatten/tube/grid_drawing.h"
+#include "flatten/tube/polygon_roll.h"
+#include "flatten/tube/pouches.h"
+#include "flatten/tube/seam.h"
 #include "mesh/halfedge_mesh.h"
 #include "pouched_tubes.h"
 

@@ -1,6 +1,6 @@
 // Topological numbers against components counted by the definition's letter, voxel by voxel.
-#include "topology/digital_topology.h"
 #include "core/simple_point.h"
+#include "topology/digital_topology.h"
 
 #include <algorithm>
 #include <array>

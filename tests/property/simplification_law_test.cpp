@@ -1,11 +1,11 @@
 // Laws of simplification: topology and embedding kept, the distance bounded both ways, corners not
 // sharpened, the same mesh for any number of threads.
+#include "contouring/dual_contouring.h"
 #include "data_folder.h"
+#include "handles/self_intersection.h"
 #include "mesh/mesh_file.h"
 #include "mesh_laws.h"
-#include "surface/dual_contouring.h"
-#include "surface/self_intersection.h"
-#include "surface/simplification.h"
+#include "simplification/simplification.h"
 #include "surface_measure.h"
 
 #include <functional>
@@ -16,8 +16,8 @@
 namespace haustra {
 namespace {
 
-using surface::SimplificationOptions;
-using surface::simplify;
+using simplification::SimplificationOptions;
+using simplification::simplify;
 
 /// The surface where `depthMm` is 0, as a scan of a smooth wall with noise shows it.
 TriMesh contoured(glm::ivec3 size, double noiseHu,
@@ -34,7 +34,7 @@ TriMesh contoured(glm::ivec3 size, double noiseHu,
         hu.writable()[n] = std::int16_t(-480.0 - 520.0 * std::tanh(depth / 0.9) + noise);
         inside.writable()[n] = depth > 0.0 ? 1 : 0;
     }
-    const auto mesh = surface::contourLumen(hu, inside, -480.0);
+    const auto mesh = contouring::contourLumen(hu, inside, -480.0);
     EXPECT_TRUE(mesh) << describe(mesh.error());
     return mesh ? *mesh : TriMesh{};
 }
@@ -82,7 +82,7 @@ void expectLaws(const TriMesh& before, const TriMesh& after, double errorMm) {
     EXPECT_TRUE(tests::everyVertexHasOneFan(after));
     EXPECT_EQ(is.eulerCharacteristic, was.eulerCharacteristic);
     EXPECT_EQ(is.components, was.components);
-    EXPECT_EQ(surface::selfIntersections(after).size(), 0u);
+    EXPECT_EQ(handles::selfIntersections(after).size(), 0u);
     EXPECT_LE(after.triangles.size(), before.triangles.size());
 
     const tests::SurfaceDistance toBefore(before), toAfter(after);
@@ -124,7 +124,7 @@ TEST(SimplificationLaw, HoldsForSmoothAndNoisyWalls) {
 
 TEST(SimplificationLaw, ThinSheetsStayApartWhereTheBoundIsAsWideAsThey) {
     const TriMesh mesh = thinSheets();
-    ASSERT_EQ(surface::selfIntersections(mesh).size(), 0u);
+    ASSERT_EQ(handles::selfIntersections(mesh).size(), 0u);
     for (const double errorMm : {0.2, 0.5, 1.0}) {
         SCOPED_TRACE(errorMm);
         const auto simple = simplify(mesh, {.errorMm = errorMm});
@@ -132,7 +132,7 @@ TEST(SimplificationLaw, ThinSheetsStayApartWhereTheBoundIsAsWideAsThey) {
         EXPECT_TRUE(meshTopology(*simple).closed());
         EXPECT_EQ(meshTopology(*simple).eulerCharacteristic,
                   meshTopology(mesh).eulerCharacteristic);
-        EXPECT_EQ(surface::selfIntersections(*simple).size(), 0u);
+        EXPECT_EQ(handles::selfIntersections(*simple).size(), 0u);
         EXPECT_LT(simple->triangles.size(), mesh.triangles.size() / 4);
     }
 }

@@ -172,9 +172,8 @@ TEST_F(Store, ACenterlineComesBackBitForBit) {
 
 TEST_F(Store, ATextComesBackBitForBit) {
     Case writing = writer();
-    for (const std::string& text :
-         {std::string(), std::string("{\"µ\": 1}\n"), std::string("a\0b", 3),
-          std::string(100000, 'x')}) {
+    for (const std::string& text : {std::string(), std::string("{\"µ\": 1}\n"),
+                                    std::string("a\0b", 3), std::string(100000, 'x')}) {
         ASSERT_TRUE(writing.publishText("quality", keyOf(int(text.size())), text));
         const auto back = writing.readText("quality");
         ASSERT_TRUE(back) << describe(back.error());

@@ -1,7 +1,7 @@
-#include "flatten/conformal_tube.h"
 #include "flatten/distortion.h"
-#include "flatten/strip_energy.h"
-#include "flatten/unified_flattening.h"
+#include "flatten/tube/conformal_tube.h"
+#include "flatten/tube/strip_energy.h"
+#include "flatten/tube/unified_flattening.h"
 #include "tube_meshes.h"
 
 #include <cmath>

@@ -2,9 +2,9 @@
 // as it is and no farther.
 #include "core/bridges.h"
 
+#include "centerline/path.h"
+#include "contouring/dual_contouring.h"
 #include "core/ct_scan.h"
-#include "surface/dual_contouring.h"
-#include "topology/centerline_path.h"
 #include "topology/distance_field.h"
 
 #include <numbers>
@@ -47,9 +47,9 @@ protected:
 };
 
 TEST_P(BridgeOf, KnownLengthHasExactlyItsArcsOnThePath) {
-    topology::CenterlineOptions options;
-    options.ends = topology::EndRule::farthest;
-    const auto traced = topology::traceCenterline(
+    centerline::CenterlineOptions options;
+    options.ends = centerline::EndRule::farthest;
+    const auto traced = centerline::traceCenterline(
         tube.labels, topology::distanceToBoundaryMm(tube.labels), options);
     ASSERT_TRUE(traced) << describe(traced.error());
     const Centerline& path = traced->centerline;
@@ -69,7 +69,7 @@ TEST_P(BridgeOf, KnownLengthHasExactlyItsArcsOnThePath) {
 }
 
 TEST_P(BridgeOf, KnownLengthHasExactlyItsTrianglesOnTheSurface) {
-    const auto surface = surface::contourLumen(tube.hu, tube.labels, -480.0);
+    const auto surface = contouring::contourLumen(tube.hu, tube.labels, -480.0);
     ASSERT_TRUE(surface) << describe(surface.error());
     const auto bridged = bridgedTriangles(*surface, tube.labels);
     ASSERT_EQ(bridged.size(), surface->triangles.size());
@@ -102,8 +102,8 @@ TEST(Bridges, AWallWithoutOneHasNone) {
     for (std::uint8_t& label : tube.labels.writable())
         label =
             label == std::uint8_t(LumenLabel::bridge) ? std::uint8_t(LumenLabel::tagged) : label;
-    const auto bridged =
-        bridgedTriangles(surface::contourLumen(tube.hu, tube.labels, -480.0).value(), tube.labels);
+    const auto bridged = bridgedTriangles(
+        contouring::contourLumen(tube.hu, tube.labels, -480.0).value(), tube.labels);
     EXPECT_EQ(std::count(bridged.begin(), bridged.end(), 0), std::ptrdiff_t(bridged.size()));
     EXPECT_TRUE(bridgesOf({}).empty());
 }

@@ -1,10 +1,10 @@
 // Laws of camera registration: each vertex looks from a near place of the centerline, and between
 // neighbours that place does not jump.
-#include "flatten/camera_registration.h"
+#include "flatten/tube/camera_registration.h"
 
 #include "flat_meshes.h"
-#include "flatten/flattening.h"
-#include "flatten/seam.h"
+#include "flatten/tube/flattening.h"
+#include "flatten/tube/seam.h"
 
 #include <algorithm>
 #include <cmath>

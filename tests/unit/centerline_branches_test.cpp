@@ -1,5 +1,5 @@
 // Centerlines of trees, of organs without a rectum, and across bridges.
-#include "topology/centerline_path.h"
+#include "centerline/path.h"
 #include "topology/distance_field.h"
 #include "topology/handle_cutting.h"
 #include "tube_phantom.h"
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace haustra::topology {
+namespace haustra::centerline {
 namespace {
 
 using tests::fillTube;
@@ -19,7 +19,7 @@ constexpr double pi = std::numbers::pi;
 const glm::dvec3 spacing(0.8, 0.8, 1.0);
 
 TracedCenterline trace(const Volume<std::uint8_t>& mask, const CenterlineOptions& options) {
-    auto traced = traceCenterline(mask, distanceToBoundaryMm(mask), options);
+    auto traced = traceCenterline(mask, topology::distanceToBoundaryMm(mask), options);
     EXPECT_TRUE(traced) << describe(traced.error());
     return traced ? std::move(*traced) : TracedCenterline();
 }
@@ -141,7 +141,7 @@ TEST(CenterlineGaps, ABridgeIsOne) {
     Volume<std::uint8_t> mask(gridAround(whole, 12.0, spacing), std::uint8_t(0));
     fillTube(mask, lower, 8.0);
     fillTube(mask, upper, 8.0);
-    const auto joined = cutHandles(mask);
+    const auto joined = topology::cutHandles(mask);
     ASSERT_TRUE(joined) << describe(joined.error());
     const TracedCenterline traced = trace(joined->labels, {});
     EXPECT_TRUE(traced.notes.empty());
@@ -165,4 +165,4 @@ TEST(CenterlineGaps, ABridgeIsOne) {
 }
 
 }  // namespace
-}  // namespace haustra::topology
+}  // namespace haustra::centerline

@@ -1,9 +1,9 @@
 // The order of the colon's segments.
-#include "topology/centerline_order.h"
+#include "centerline/order.h"
 
 #include <gtest/gtest.h>
 
-namespace haustra::topology {
+namespace haustra::centerline {
 namespace {
 
 // A colon in LPS mm: rectum low and posterior at the midline, descending colon to the patient's
@@ -64,4 +64,4 @@ TEST(CenterlineOrder, RectumIsCaudalPosteriorAndNearTheMidline) {
 }
 
 }  // namespace
-}  // namespace haustra::topology
+}  // namespace haustra::centerline

@@ -1,6 +1,5 @@
 // The centerline of tubes whose true one is known.
-#include "topology/centerline_path.h"
-
+#include "centerline/path.h"
 #include "topology/distance_field.h"
 #include "tube_phantom.h"
 
@@ -9,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace haustra::topology {
+namespace haustra::centerline {
 namespace {
 
 using tests::fillTube;
@@ -19,7 +18,7 @@ constexpr double pi = std::numbers::pi;
 const glm::dvec3 spacing(0.8, 0.8, 1.0);
 
 Centerline trace(const Volume<std::uint8_t>& mask, const CenterlineOptions& options = {}) {
-    const auto traced = traceCenterline(mask, distanceToBoundaryMm(mask), options);
+    const auto traced = traceCenterline(mask, topology::distanceToBoundaryMm(mask), options);
     EXPECT_TRUE(traced) << describe(traced.error());
     return traced ? traced->centerline : Centerline();
 }
@@ -158,7 +157,7 @@ TEST(CenterlinePath, ContinuesAcrossAGapAndMarksIt) {
     fillTube(mask, lower, 8.0);
     fillTube(mask, upper, 8.0, 2);
     mask.writable()[0] = 1;  // a crumb that is not worth a visit
-    const auto traced = traceCenterline(mask, distanceToBoundaryMm(mask));
+    const auto traced = traceCenterline(mask, topology::distanceToBoundaryMm(mask));
     ASSERT_TRUE(traced) << describe(traced.error());
     const Centerline& line = traced->centerline;
     expectSound(line, mask);
@@ -206,7 +205,7 @@ TEST(CenterlinePath, GoesTheOtherWayWhenThePersonSaysSo) {
     EXPECT_LT(glm::distance(trace(mask, onlyCecum).points.front().positionMm, truth.back()), 8.0);
     CenterlineOptions astray;
     astray.rectumMm = glm::dvec3(300.0, 0.0, 0.0);
-    EXPECT_FALSE(traceCenterline(mask, distanceToBoundaryMm(mask), astray));
+    EXPECT_FALSE(traceCenterline(mask, topology::distanceToBoundaryMm(mask), astray));
 }
 
 TEST(CenterlinePath, IsTheSameForAnyNumberOfThreads) {
@@ -223,15 +222,15 @@ TEST(CenterlinePath, IsTheSameForAnyNumberOfThreads) {
 
 TEST(CenterlinePath, RefusesWhatHoldsNoPath) {
     const Volume<std::uint8_t> empty(axisAlignedGrid({9, 9, 9}, glm::dvec3(1.0)), std::uint8_t(0));
-    const auto none = traceCenterline(empty, distanceToBoundaryMm(empty));
+    const auto none = traceCenterline(empty, topology::distanceToBoundaryMm(empty));
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().kind, ErrorKind::noResult);
     Volume<std::uint8_t> dot(axisAlignedGrid({9, 9, 9}, glm::dvec3(1.0)), std::uint8_t(0));
     dot.writable()[dot.grid().index(4, 4, 4)] = 1;
-    EXPECT_FALSE(traceCenterline(dot, distanceToBoundaryMm(dot)));
+    EXPECT_FALSE(traceCenterline(dot, topology::distanceToBoundaryMm(dot)));
     EXPECT_FALSE(
         traceCenterline(dot, Volume<float>(axisAlignedGrid({8, 9, 9}, glm::dvec3(1.0)), 0.0f)));
 }
 
 }  // namespace
-}  // namespace haustra::topology
+}  // namespace haustra::centerline

@@ -1,14 +1,14 @@
 // The centerline of a real lumen with 88 handles against the one that VMTK computed.
+#include "centerline/path.h"
 #include "data_folder.h"
 #include "nifti/nifti_file.h"
-#include "topology/centerline_path.h"
 #include "topology/distance_field.h"
 #include "tube_phantom.h"
 #include "vtp_points.h"
 
 #include <gtest/gtest.h>
 
-namespace haustra::topology {
+namespace haustra::centerline {
 namespace {
 
 // VMTK's line runs where the largest balls fit; ours does so too, until it moves to the middle of
@@ -20,7 +20,7 @@ TEST(CenterlinePath, LiesWithinTwoMillimetresOfVmtksInARealColon) {
     ASSERT_TRUE(read) << describe(read.error());
     const Volume<std::uint8_t>& mask = *read;
     const Grid& grid = mask.grid();
-    const Volume<float> distanceMm = distanceToBoundaryMm(mask);
+    const Volume<float> distanceMm = topology::distanceToBoundaryMm(mask);
     CenterlineOptions options;
     options.middle = Middle::deepest;
     const auto traced = traceCenterline(mask, distanceMm, options);
@@ -70,4 +70,4 @@ TEST(CenterlinePath, LiesWithinTwoMillimetresOfVmtksInARealColon) {
 }
 
 }  // namespace
-}  // namespace haustra::topology
+}  // namespace haustra::centerline

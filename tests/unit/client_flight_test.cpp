@@ -1,13 +1,13 @@
 // Laws of the fly-through: where the camera is, how it turns, how the hand leaves and finds the
 // path.
-#include "panels/flight.h"
+#include "reader/flight.h"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 // A helix of some 470 mm: curved and twisted everywhere.
@@ -168,4 +168,4 @@ TEST(Flight, WithoutAPathOnlyFreeFlightMoves) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

@@ -1,7 +1,7 @@
 // Optics while a hand changes them: always such as a server takes, kept beside each other, and as
 // a preset's file there and back. And as messages there and back.
-#include "panels/optics_editor.h"
 #include "protocol/optics_message.h"
+#include "reader/optics_editor.h"
 
 #include <filesystem>
 #include <fstream>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 OpticsPreset wall() {
@@ -215,4 +215,4 @@ TEST(OpticsMessage, GoesThereAndBack) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

@@ -1,7 +1,7 @@
 // The overview's map, fisheye cameras and transfer functions made by hand.
-#include "panels/flight.h"
-#include "panels/overview_map.h"
-#include "panels/script.h"
+#include "reader/flight.h"
+#include "reader/overview_map.h"
+#include "script/script.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 /// Once around a circle of 60 mm in the coronal plane, and on behind it.
@@ -177,4 +177,4 @@ TEST(Script, ActionsOfTheViewsFromOutsideHaveTheirBounds) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

@@ -1,9 +1,9 @@
 // Scripts of the headless client, and the statistics it reports.
-#include "panels/latency.h"
-#include "panels/pacing.h"
-#include "panels/script.h"
-#include "panels/script_report.h"
-#include "panels/slice_map.h"
+#include "reader/latency.h"
+#include "reader/pacing.h"
+#include "reader/slice_map.h"
+#include "script/report.h"
+#include "script/script.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 Result<std::vector<Action>> parse(const std::string& text) {
@@ -324,4 +324,4 @@ TEST(SliceMap, TheWholeScanFitsAtZoomOneAndZoomingHoldsThePosition) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

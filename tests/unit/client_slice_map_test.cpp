@@ -1,6 +1,6 @@
 // The client's map of a slice against the server's: a crosshair must lie where the server drew the
 // voxel.
-#include "panels/slice_map.h"
+#include "reader/slice_map.h"
 #include "render/view.h"
 
 #include <cmath>
@@ -33,16 +33,16 @@ TEST(ClientSliceMap, AgreesWithWhatTheServerDraws) {
         const int width = 200 + int(random() % 500), height = 200 + int(random() % 500);
         const double zoomed = zoom(random);
         const struct {
-            panels::View client;
+            reader::View client;
             render::View server;
-        } views[] = {{panels::View::axial, render::View::axial},
-                     {panels::View::coronal, render::View::coronal},
-                     {panels::View::sagittal, render::View::sagittal}};
+        } views[] = {{reader::View::axial, render::View::axial},
+                     {reader::View::coronal, render::View::coronal},
+                     {reader::View::sagittal, render::View::sagittal}};
         for (const auto& view : views) {
             const auto placed =
                 render::placeSlice({view.server, position, zoomed, {}}, grid, width, height);
             ASSERT_TRUE(placed);
-            const panels::SliceMap map(view.client, {position, zoomed}, grid, width, height);
+            const reader::SliceMap map(view.client, {position, zoomed}, grid, width, height);
             const glm::dvec2 at(pixel(random), pixel(random));
             const glm::dvec3 expected =
                 placed->topLeftMm + at.x * placed->rightMm + at.y * placed->downMm;

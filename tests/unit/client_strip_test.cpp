@@ -1,15 +1,15 @@
 // The strip as the client knows it, the window onto it, the fly-over, and descriptions of strips
 // that a server should not send.
-#include "panels/incoming_messages.h"
-#include "panels/strip_tour.h"
 #include "protocol/framing.h"
 #include "protocol/optics_message.h"
+#include "reader/incoming_messages.h"
+#include "reader/strip_tour.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace haustra::panels {
+namespace haustra::reader {
 namespace {
 
 FlatStrip evenStrip() {
@@ -253,4 +253,4 @@ TEST(ClientStrip, OnlySoundStripsAreTakenFromAServer) {
 }
 
 }  // namespace
-}  // namespace haustra::panels
+}  // namespace haustra::reader

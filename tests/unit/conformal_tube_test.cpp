@@ -1,5 +1,5 @@
 // Maps of tubes whose conformal map is known, and laws that hold for all.
-#include "flatten/conformal_tube.h"
+#include "flatten/tube/conformal_tube.h"
 
 #include "flatten/distortion.h"
 #include "tube_meshes.h"

@@ -1,7 +1,7 @@
 // Maps whose distortion is known.
 #include "flatten/distortion.h"
 
-#include "flatten/conformal_tube.h"
+#include "flatten/tube/conformal_tube.h"
 #include "tube_meshes.h"
 
 #include <random>

@@ -1,11 +1,11 @@
-#include "flatten/double_cover.h"
+#include "flatten/general/double_cover.h"
 
 #include "data_folder.h"
-#include "flatten/conformal_tube.h"
-#include "flatten/double_cover_map.h"
-#include "flatten/fundamental_domain.h"
+#include "flatten/general/double_cover_map.h"
+#include "flatten/general/fundamental_domain.h"
+#include "flatten/tube/conformal_tube.h"
+#include "handles/handle_removal.h"
 #include "mesh/mesh_file.h"
-#include "surface/handle_removal.h"
 #include "tube_meshes.h"
 
 #include <algorithm>
@@ -160,7 +160,7 @@ TEST(DoubleCoverMap, AgreesOnAModelledTube) {
 
 TEST(DoubleCoverMap, AgreesOnARealColon) {
     HAUSTRA_REAL_DATA(file, "meshes/colon00090_genus1_100k.ply");
-    TriMesh colon = surface::removeHandles(*mesh::readMesh(file))->mesh;
+    TriMesh colon = handles::removeHandles(*mesh::readMesh(file))->mesh;
     // Lowest and highest vertex stand in for the colon's ends.
     const auto [low, high] =
         std::minmax_element(colon.vertices.begin(), colon.vertices.end(),

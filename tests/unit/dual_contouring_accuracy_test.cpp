@@ -1,7 +1,7 @@
 // The lumen's surface against shapes given by formulas, seen as a scanner sees them: blurred by a
 // Gaussian, sampled at 0.75 × 0.75 × 1.05 mm, and noisy.
+#include "contouring/dual_contouring.h"
 #include "mesh_laws.h"
-#include "surface/dual_contouring.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +97,7 @@ SurfaceError errorOf(const TriMesh& mesh, const Distance& shape) {
 
 SurfaceError errorOf(const Distance& airShare, const Distance& shape, double noiseHu) {
     const Scan scan = scanOf(airShare, noiseHu);
-    return errorOf(*surface::contourLumen(scan.hu, scan.lumen, isoHu), shape);
+    return errorOf(*contouring::contourLumen(scan.hu, scan.lumen, isoHu), shape);
 }
 
 double torus(glm::dvec3 p) {
@@ -145,12 +145,12 @@ TEST(DualContouringAccuracy, HasNoBiasBesideTheBlurs) {
 TEST(DualContouringAccuracy, EnclosesTheVolume) {
     const Scan ring = scanOf(blurredWall(torus), 15.0);
     const double ringMm3 = 2.0 * std::pow(std::numbers::pi, 2) * 9.0 * 16.0;
-    EXPECT_NEAR(tests::signedVolumeMm3(*surface::contourLumen(ring.hu, ring.lumen, isoHu)), ringMm3,
-                0.01 * ringMm3);
+    EXPECT_NEAR(tests::signedVolumeMm3(*contouring::contourLumen(ring.hu, ring.lumen, isoHu)),
+                ringMm3, 0.01 * ringMm3);
     const Scan ball = scanOf(blurredWall([](glm::dvec3 p) { return glm::length(p) - 10.0; }), 15.0);
     const double ballMm3 = 4.0 / 3.0 * std::numbers::pi * 1000.0;
-    EXPECT_NEAR(tests::signedVolumeMm3(*surface::contourLumen(ball.hu, ball.lumen, isoHu)), ballMm3,
-                0.01 * ballMm3);
+    EXPECT_NEAR(tests::signedVolumeMm3(*contouring::contourLumen(ball.hu, ball.lumen, isoHu)),
+                ballMm3, 0.01 * ballMm3);
 }
 
 /// Labels alone, as along a bridge: no wall in the HU. The surface must not follow the voxels'
@@ -158,7 +158,7 @@ TEST(DualContouringAccuracy, EnclosesTheVolume) {
 TEST(DualContouringAccuracy, SmoothsTheStairsWhereHuShowNoWall) {
     Scan scan = scanOf(blurredWall(tube), 0.0);
     std::fill(scan.hu.writable().begin(), scan.hu.writable().end(), std::int16_t(20));
-    const SurfaceError error = errorOf(*surface::contourLumen(scan.hu, scan.lumen, isoHu), tube);
+    const SurfaceError error = errorOf(*contouring::contourLumen(scan.hu, scan.lumen, isoHu), tube);
     EXPECT_LT(error.normalDegrees, 10.0);
     EXPECT_LT(error.meanMm, 0.15);
 }
@@ -170,7 +170,7 @@ TEST(DualContouringAccuracy, ToleratesLabelsThatDisagreeWithTheHu) {
     std::normal_distribution<double> noise;
     for (std::size_t n = 0; n < scan.hu.voxels().size(); ++n)
         scan.lumen.writable()[n] = scan.hu[n] + 60.0 * noise(random) < isoHu ? 1 : 0;
-    const SurfaceError error = errorOf(*surface::contourLumen(scan.hu, scan.lumen, isoHu), tube);
+    const SurfaceError error = errorOf(*contouring::contourLumen(scan.hu, scan.lumen, isoHu), tube);
     EXPECT_LT(error.meanMm, 0.04);
     EXPECT_LT(error.percentile95Mm, 0.12);
 }

@@ -1,7 +1,7 @@
 // The cases of a cell, the search for boundary cells, and the envelopes of edges.
-#include "surface/boundary_cells.h"
-#include "surface/cell_cases.h"
-#include "surface/edge_polygon.h"
+#include "contouring/boundary_cells.h"
+#include "contouring/cell_cases.h"
+#include "contouring/edge_polygon.h"
 
 #include <array>
 #include <bit>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace haustra::surface {
+namespace haustra::contouring {
 namespace {
 
 bool isInside(unsigned inside, int corner) {
@@ -158,4 +158,4 @@ TEST(EdgePolygon, CutsNoPolygonThatWouldLeaveItsEnvelope) {
 }
 
 }  // namespace
-}  // namespace haustra::surface
+}  // namespace haustra::contouring

@@ -1,13 +1,13 @@
 // Laws of the two end holes: a tube is left, its rims are smooth loops of the length asked for, and
 // all else is the surface as it was.
-#include "flatten/end_holes.h"
+#include "flatten/tube/end_holes.h"
 
 #include "data_folder.h"
 #include "flat_meshes.h"
 #include "handle_meshes.h"
+#include "handles/handle_removal.h"
 #include "mesh/halfedge_mesh.h"
 #include "mesh/mesh_file.h"
-#include "surface/handle_removal.h"
 
 #include <algorithm>
 #include <map>
@@ -234,7 +234,7 @@ TEST(EndHoles, LeaveATubeAnywhereOnARealColon) {
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("genus 1"), std::string::npos);
 
-    const TriMesh closed = surface::removeHandles(colon)->mesh;
+    const TriMesh closed = handles::removeHandles(colon)->mesh;
     for (int n = 0; n < 12; ++n) {
         SCOPED_TRACE(n);
         const glm::dvec3 ends[2] = {place(), place()};

@@ -2,7 +2,7 @@
 
 #include "analytic_tubes.h"
 #include "bench/geodesic_frame.h"
-#include "flatten/conformal_tube.h"
+#include "flatten/tube/conformal_tube.h"
 #include "tube_meshes.h"
 
 #include <cmath>

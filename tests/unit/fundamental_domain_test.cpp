@@ -1,6 +1,6 @@
-#include "flatten/fundamental_domain.h"
+#include "flatten/general/fundamental_domain.h"
 
-#include "flatten/period_matrix.h"
+#include "flatten/general/period_matrix.h"
 #include "handle_meshes.h"
 #include "torus_meshes.h"
 

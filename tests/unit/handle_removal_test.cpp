@@ -1,17 +1,17 @@
 // Handles of known girth are cut where they are thinnest, and nothing else changes.
-#include "surface/handle_removal.h"
+#include "handles/handle_removal.h"
 
 #include "data_folder.h"
 #include "handle_meshes.h"
+#include "handles/self_intersection.h"
 #include "mesh/mesh_file.h"
-#include "surface/self_intersection.h"
 
 #include <algorithm>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-namespace haustra::surface {
+namespace haustra::handles {
 namespace {
 
 void expectSphere(const TriMesh& mesh) {
@@ -296,4 +296,4 @@ TEST(HandleRemoval, OpensTheRealColonsHandle) {
 }
 
 }  // namespace
-}  // namespace haustra::surface
+}  // namespace haustra::handles

@@ -1,8 +1,8 @@
-#include "flatten/holomorphic_forms.h"
+#include "flatten/general/holomorphic_forms.h"
 
-#include "flatten/fundamental_domain.h"
-#include "flatten/homology_basis.h"
-#include "flatten/period_matrix.h"
+#include "flatten/general/fundamental_domain.h"
+#include "flatten/general/homology_basis.h"
+#include "flatten/general/period_matrix.h"
 #include "handle_meshes.h"
 #include "torus_meshes.h"
 

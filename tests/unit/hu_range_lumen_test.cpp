@@ -1,5 +1,5 @@
 // Lumens of content with HU of its own: which bodies are taken, against sets counted by hand.
-#include "topology/hu_range_lumen.h"
+#include "segmentation/hu_range_lumen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace haustra::topology {
+namespace haustra::segmentation {
 namespace {
 
 const Grid grid = axisAlignedGrid({60, 50, 40}, {1.0, 1.0, 1.5}, {-30.0, 10.0, -100.0});
@@ -206,4 +206,4 @@ TEST(HuRangeLumen, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace haustra::topology
+}  // namespace haustra::segmentation

@@ -1,8 +1,8 @@
 // Laws of the seam: cut along it the tube lies in one sheet whose two sides are one curve.
-#include "flatten/seam.h"
+#include "flatten/tube/seam.h"
 
 #include "flat_meshes.h"
-#include "flatten/flattening.h"
+#include "flatten/tube/flattening.h"
 #include "mesh/halfedge_mesh.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Self-intersections against cases known by construction and CGAL's own answer on meshes.
-#include "surface/self_intersection.h"
+#include "handles/self_intersection.h"
 
 #include <algorithm>
 #include <random>
@@ -32,43 +32,43 @@ TriMesh together(TriMesh a, const TriMesh& b) {
 
 TEST(SelfIntersection, SolidsApartHaveNone) {
     const TriMesh one = tetrahedron({0, 0, 0}, 1.0);
-    EXPECT_TRUE(surface::selfIntersections(one).empty());
-    EXPECT_TRUE(surface::selfIntersections(together(one, tetrahedron({2, 0, 0}, 1.0))).empty());
+    EXPECT_TRUE(handles::selfIntersections(one).empty());
+    EXPECT_TRUE(handles::selfIntersections(together(one, tetrahedron({2, 0, 0}, 1.0))).empty());
 }
 
 TEST(SelfIntersection, FindsSolidsThatOverlapOrTouch) {
     const TriMesh one = tetrahedron({0, 0, 0}, 1.0);
     EXPECT_FALSE(
-        surface::selfIntersections(together(one, tetrahedron({0.1, 0.1, -0.1}, 1.0))).empty());
+        handles::selfIntersections(together(one, tetrahedron({0.1, 0.1, -0.1}, 1.0))).empty());
     // A corner that just touches, and the least that does not.
-    EXPECT_FALSE(surface::selfIntersections(together(one, tetrahedron({1, 0, 0}, 1.0))).empty());
+    EXPECT_FALSE(handles::selfIntersections(together(one, tetrahedron({1, 0, 0}, 1.0))).empty());
     const double after = std::nextafter(1.0, 2.0);
-    EXPECT_TRUE(surface::selfIntersections(together(one, tetrahedron({after, 0, 0}, 1.0))).empty());
+    EXPECT_TRUE(handles::selfIntersections(together(one, tetrahedron({after, 0, 0}, 1.0))).empty());
 }
 
 TEST(SelfIntersection, FindsTrianglesFoldedOverEachOther) {
     TriMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 0.7, 0}, {0.5, 0.7, 1e-300}};
     mesh.triangles = {{0, 1, 2}, {1, 0, 3}};
-    EXPECT_EQ(surface::selfIntersections(mesh), (Pairs{{0, 1}}));
+    EXPECT_EQ(handles::selfIntersections(mesh), (Pairs{{0, 1}}));
     mesh.triangles[1].z = 4;  // out of the plane by the least: they share their side alone
-    EXPECT_TRUE(surface::selfIntersections(mesh).empty());
+    EXPECT_TRUE(handles::selfIntersections(mesh).empty());
 }
 
 TEST(SelfIntersection, FindsTrianglesThatMeetBeyondACommonCorner) {
     TriMesh mesh;
     mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, -1}, {0.5, 0.5, 1}};
     mesh.triangles = {{0, 1, 2}, {0, 3, 4}};
-    EXPECT_EQ(surface::selfIntersections(mesh), (Pairs{{0, 1}}));
+    EXPECT_EQ(handles::selfIntersections(mesh), (Pairs{{0, 1}}));
     mesh.vertices[3] = {-0.5, -0.5, -1}, mesh.vertices[4] = {-0.5, -0.5, 1};
-    EXPECT_TRUE(surface::selfIntersections(mesh).empty());
+    EXPECT_TRUE(handles::selfIntersections(mesh).empty());
 }
 
 TEST(SelfIntersection, FindsTrianglesWithoutAreaAndTwins) {
     TriMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 0, 3}};
-    EXPECT_EQ(surface::selfIntersections(mesh), (Pairs{{0, 0}, {1, 2}}));
+    EXPECT_EQ(handles::selfIntersections(mesh), (Pairs{{0, 0}, {1, 2}}));
 }
 
 TEST(SelfIntersection, AgreesWithCgalOnCrumpledSheets) {
@@ -101,7 +101,7 @@ TEST(SelfIntersection, AgreesWithCgalOnCrumpledSheets) {
         for (const auto& [a, b] : faces)
             expected.emplace_back(std::minmax(int(a), int(b)));
         std::sort(expected.begin(), expected.end());
-        EXPECT_EQ(surface::selfIntersections(mesh), expected);
+        EXPECT_EQ(handles::selfIntersections(mesh), expected);
         found += expected.size();
     }
     EXPECT_GT(found, 100u);

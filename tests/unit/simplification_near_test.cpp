@@ -1,12 +1,12 @@
 // Nearness of points and triangles, against distances in double precision.
-#include "surface/simplification_near.h"
+#include "simplification/near.h"
 
 #include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
 
-namespace haustra::surface {
+namespace haustra::simplification {
 namespace {
 
 double segmentDistance(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
@@ -104,4 +104,4 @@ TEST_F(SimplificationNear, FindsTheNearestPoint) {
 }
 
 }  // namespace
-}  // namespace haustra::surface
+}  // namespace haustra::simplification

@@ -1,5 +1,5 @@
 // Surfaces of any shape on the plane: which way each is taken, and laws of what comes out.
-#include "flatten/surface_flattening.h"
+#include "flatten/general/surface_flattening.h"
 
 #include "flat_meshes.h"
 #include "handle_meshes.h"

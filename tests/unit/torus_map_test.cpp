@@ -1,4 +1,4 @@
-#include "flatten/torus_map.h"
+#include "flatten/general/torus_map.h"
 
 #include "data_folder.h"
 #include "flatten/distortion.h"

@@ -1,11 +1,11 @@
 // Laws of the steps from a tube's connectivity to its harmonic functions.
-#include "flatten/tube_solver.h"
+#include "flatten/tube/tube_solver.h"
 
-#include "flatten/conjugate_gradient.h"
 #include "flatten/cotangent_laplacian.h"
-#include "flatten/flip_repair.h"
-#include "flatten/shape_relaxation.h"
 #include "flatten/sparse_cholesky.h"
+#include "flatten/tube/conjugate_gradient.h"
+#include "flatten/tube/flip_repair.h"
+#include "flatten/tube/shape_relaxation.h"
 #include "tube_meshes.h"
 
 #include <random>

@@ -1,16 +1,16 @@
 // The fields that walls are contoured on: a mask's, and a scan's whose content is not air.
-#include "surface/wall_field.h"
+#include "contouring/wall_field.h"
 
+#include "contouring/dual_contouring.h"
 #include "core/ct_scan.h"
 #include "core/tri_mesh.h"
-#include "surface/dual_contouring.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace haustra::surface {
+namespace haustra::contouring {
 namespace {
 
 const Grid grid = axisAlignedGrid({50, 48, 40}, {0.8, 0.8, 1.1}, {-20.0, -15.0, 7.0});
@@ -126,4 +126,4 @@ TEST(WallField, WhatShowsNoWallIsRefused) {
 }
 
 }  // namespace
-}  // namespace haustra::surface
+}  // namespace haustra::contouring

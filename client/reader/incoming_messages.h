@@ -1,0 +1,18 @@
+// What the server said, in the client's own types. It is checked here: beyond this file a case has
+// a sound grid, a centerline with finite, ordered samples, and a strip whose rows are finite and in
+// order.
+#pragma once
+
+#include "protocol/haustra.pb.h"
+#include "reader/case_info.h"
+
+namespace haustra::reader {
+
+/// Fails, naming the field, where the server's description of the case is not sound.
+Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message);
+Bookmark bookmarkFrom(const protocol::Bookmark& message);
+/// Fail where a number is not finite.
+Result<WallPlace> placeFrom(const protocol::WallPlace& message);
+Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message);
+
+}  // namespace haustra::reader

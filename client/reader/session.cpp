@@ -1,0 +1,361 @@
+#include "reader/session.h"
+
+#include "reader/incoming_messages.h"
+#include "reader/outgoing_messages.h"
+
+#include <algorithm>
+#include <random>
+#include <utility>
+
+namespace haustra::reader {
+namespace {
+
+// 128 random bits: no two bookmarks of any client share a key.
+std::string newClientKey() {
+    std::random_device random;
+    static constexpr char digits[] = "0123456789abcdef";
+    std::string key;
+    for (int word = 0; word < 4; ++word)
+        for (std::uint32_t bits = random(), n = 0; n < 8; ++n, bits >>= 4)
+            key += digits[bits & 15];
+    return key;
+}
+
+// Cuts at a character's start: protobuf refuses broken UTF-8.
+std::string cutUtf8(std::string text, std::size_t maxBytes) {
+    if (text.size() <= maxBytes) return text;
+    while (maxBytes > 0 && (static_cast<unsigned char>(text[maxBytes]) & 0xC0) == 0x80)
+        --maxBytes;
+    text.resize(maxBytes);
+    return text;
+}
+
+bool sameStrip(const std::optional<FlatStrip>& a, const std::optional<FlatStrip>& b) {
+    return a.has_value() == b.has_value() &&
+           (!a || (a->height == b->height && a->rows.size() == b->rows.size()));
+}
+
+}  // namespace
+
+Session::Session(link::ConnectionOptions options, std::string caseName)
+    : caseName_(std::move(caseName)), connection_(std::move(options)) {}
+
+void Session::poll(std::chrono::milliseconds patience) {
+    if (phase_ == Phase::failed) return;
+    // A bound on the events, so that a stream faster than the decoder cannot keep the caller here.
+    constexpr int maxEvents = 64;
+    auto event = connection_.next(patience);
+    for (int n = 1; event;
+         event = n++ < maxEvents ? connection_.next(std::chrono::milliseconds(0)) : std::nullopt) {
+        if (auto* up = std::get_if<link::LinkUp>(&event->body))
+            handle(std::move(*up));
+        else if (auto* down = std::get_if<link::LinkDown>(&event->body))
+            handle(*down);
+        else if (auto* tile = std::get_if<link::TilePayload>(&event->body))
+            handle(*tile, event->at);
+        else
+            handle(std::get<protocol::ServerMessage>(event->body));
+        if (phase_ == Phase::failed) return;
+    }
+}
+
+void Session::handle(link::LinkUp up) {
+    server_ = std::move(up);
+    phase_ = Phase::connecting;
+    for (auto& assembler : assemblers_)
+        assembler.reset();
+    askForCase();
+}
+
+void Session::handle(const link::LinkDown& down) {
+    failure_ = down.error;
+    phase_ = down.final ? Phase::failed : Phase::lost;
+}
+
+void Session::handle(const protocol::ServerMessage& message) {
+    switch (message.body_case()) {
+        case protocol::ServerMessage::kCaseList:
+            caseNames_.assign(message.case_list().names().begin(),
+                              message.case_list().names().end());
+            if (caseName_.empty()) phase_ = Phase::choosing;
+            break;
+        case protocol::ServerMessage::kCaseOpened:
+            opened(message.case_opened());
+            break;
+        case protocol::ServerMessage::kBookmarkAdded:
+            acknowledge(bookmarkFrom(message.bookmark_added().bookmark()));
+            break;
+        case protocol::ServerMessage::kBookmarkList: {
+            bookmarks_.clear();
+            for (const auto& bookmark : message.bookmark_list().bookmarks())
+                acknowledge(bookmarkFrom(bookmark));
+            answeredList_ = std::max(answeredList_, message.bookmark_list().request());
+            break;
+        }
+        case protocol::ServerMessage::kWallPlace:
+            answeredAboutWall(message.wall_place(), placeFrom(message.wall_place()));
+            break;
+        case protocol::ServerMessage::kFlatMeasure:
+            answeredAboutWall(message.flat_measure(), measureFrom(message.flat_measure()));
+            break;
+        case protocol::ServerMessage::kWallSeen:
+            if (!(message.wall_seen().share() >= 0.0 && message.wall_seen().share() <= 1.0))
+                return giveUp(
+                    {ErrorKind::badInput, "the server sent a share that is none", "wall"});
+            seenShare_ = message.wall_seen().share();
+            questions_.erase(message.wall_seen().request());
+            answeredSeen_ = std::max(answeredSeen_, message.wall_seen().request());
+            break;
+        case protocol::ServerMessage::kError:
+            refused(message.error());
+            break;
+        default:
+            break;  // a newer server may say more than this client understands
+    }
+}
+
+void Session::opened(const protocol::CaseOpened& message) {
+    auto info = caseInfoFrom(message);
+    if (!info) return giveUp(info.error());
+    // After a reconnection the same case keeps its address, and the reader's flight with it.
+    const bool same = caseInfo_ && caseInfo_->name == info->name && caseInfo_->scan == info->scan &&
+                      caseInfo_->centerline.points.size() == info->centerline.points.size() &&
+                      caseInfo_->cleansed == info->cleansed &&
+                      sameStrip(caseInfo_->flat, info->flat) &&
+                      sameGrid(caseInfo_->grid, info->grid);
+    if (!same) caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
+    phase_ = Phase::open;
+    askAgain();
+}
+
+void Session::refused(const protocol::ErrorReport& report) {
+    const Error error{ErrorKind::badInput, "the server refused: " + report.message(), {}};
+    const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
+        return report.request() != 0 && o.request == report.request();
+    });
+    if (owed != owed_.end()) owed_.erase(owed);  // else it would be sent again for ever
+    if (questions_.erase(report.request()) > 0)
+        wallAnswers_.push_back({report.request(), tl::make_unexpected(error)});
+    refusals_.push_back(error);
+    // An input's late refusal (BAD_VALUE, BAD_STATE) does not tell of the case that is awaited.
+    const bool ofTheCase =
+        report.request() == 0 && (report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
+                                  report.code() == protocol::ErrorReport::INTERNAL ||
+                                  report.code() == protocol::ErrorReport::BUSY);
+    if (phase_ == Phase::connecting && (ofTheCase || report.fatal())) giveUp(error);
+    if (phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST) giveUp(error);
+}
+
+void Session::handle(const link::TilePayload& payload, Clock::time_point at) {
+    auto tile = decoder_.decode(payload.bytes);
+    if (!tile) return giveUp(tile.error());
+    if (tile->header.viewport >= assemblers_.size())
+        return giveUp(
+            {ErrorKind::badInput, "the server sent a tile of a viewport that cannot be", "tile"});
+    auto& assembler = assemblers_[tile->header.viewport];
+    auto picture = assembler.add(*tile);
+    if (!picture) return giveUp(picture.error());
+    if (!*picture) return;
+    arrivals_.push_back({std::move(**picture), at, Clock::now()});
+    if (arrivals_.size() > 64) arrivals_.pop_front();
+}
+
+void Session::giveUp(Error error) {
+    failure_ = std::move(error);
+    phase_ = Phase::failed;
+}
+
+// ---- asking ---------------------------------------------------------------------------------
+
+void Session::askForCase() {
+    protocol::ClientMessage message;
+    if (caseName_.empty())
+        message.mutable_list_cases();
+    else
+        message.mutable_open_case()->set_name(caseName_);
+    connection_.send(message);
+}
+
+void Session::openCase(const std::string& name) {
+    caseName_ = name;
+    bookmarks_.clear();
+    viewports_.clear();
+    questions_.clear();
+    wallAnswers_.clear();
+    paint_ = {};
+    if (phase_ == Phase::failed || phase_ == Phase::lost) return;
+    phase_ = Phase::connecting;
+    askForCase();
+}
+
+// Everything that the server has to know of a session that it sees for the first time.
+void Session::askAgain() {
+    seenShare_ = 0.0;
+    if (caseInfo_->flat && paint_.any()) connection_.send(paintMessage(++sequence_, paint_));
+    for (const auto& [id, state] : viewports_) {
+        if (state.width == 0) continue;  // spoken of before it was opened
+        connection_.send(viewportMessage({++sequence_, id}, state.view, state.width, state.height));
+        sayWhatWaited(id, state);
+    }
+    std::size_t kept = 0;
+    for (const Owed& owed : owed_) {
+        if (isOfOpenCase(owed))
+            connection_.send(bookmarkMessage(owed.request, owed.bookmark));
+        else
+            kept += owed.caseName == caseName_;
+    }
+    if (kept > 0)
+        refusals_.push_back({ErrorKind::badInput,
+                             "the case is of another scan now: " + std::to_string(kept) +
+                                 " bookmarks on the former one are not sent",
+                             {}});
+    for (const auto& [request, question] : questions_)
+        connection_.send(question);
+    requestBookmarks();
+}
+
+void Session::sendIfOpen(const protocol::ClientMessage& message) {
+    if (phase_ == Phase::open) connection_.send(message);
+}
+
+std::uint64_t Session::setViewport(int viewport, View view, int width, int height) {
+    ViewportState& state = viewports_[viewport];
+    const bool wasOpen = state.width > 0;
+    if (wasOpen && state.view != view) state = {};
+    state.view = view;
+    state.width = width;
+    state.height = height;
+    sendIfOpen(viewportMessage({++sequence_, viewport}, view, width, height));
+    if (!wasOpen && phase_ == Phase::open) sayWhatWaited(viewport, state);
+    if (width == 0 || height == 0) viewports_.erase(viewport);
+    return sequence_;
+}
+
+// What is said of a viewport before it is open waits in its state.
+template <class Input>
+std::uint64_t Session::setInput(int viewport, const Input& input, std::optional<bool> moving) {
+    ViewportState& state = viewports_[viewport];
+    std::get<std::optional<Input>>(state.inputs) = input;
+    state.moving = moving.value_or(state.moving);
+    ++sequence_;
+    if (state.width > 0) sendIfOpen(inputMessage({sequence_, viewport, state.moving}, input));
+    return sequence_;
+}
+
+void Session::sayWhatWaited(int viewport, const ViewportState& state) {
+    const auto say = [&](const auto& input) {
+        if (input) connection_.send(inputMessage({++sequence_, viewport, state.moving}, *input));
+    };
+    std::apply([&](const auto&... input) { (say(input), ...); }, state.inputs);
+}
+
+std::uint64_t Session::setCamera(int viewport, const Camera& camera, bool moving) {
+    return setInput(viewport, camera, moving);
+}
+std::uint64_t Session::setSlice(int viewport, const Slice& slice, bool moving) {
+    return setInput(viewport, slice, moving);
+}
+std::uint64_t Session::setFlat(int viewport, const FlatWindow& window, bool moving) {
+    return setInput(viewport, window, moving);
+}
+std::uint64_t Session::setOblique(int viewport, const Oblique& oblique, bool moving) {
+    return setInput(viewport, oblique, moving);
+}
+std::uint64_t Session::setOverview(int viewport, const Overview& overview, bool moving) {
+    return setInput(viewport, overview, moving);
+}
+std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
+    return setInput(viewport, window, std::nullopt);
+}
+std::uint64_t Session::setTransferFunction(int viewport, const OpticsChoice& optics) {
+    return setInput(viewport, optics, std::nullopt);
+}
+
+std::uint64_t Session::setWallPaint(const WallPaint& paint) {
+    paint_ = paint;
+    sendIfOpen(paintMessage(++sequence_, paint));
+    return sequence_;
+}
+
+// ---- the wall -------------------------------------------------------------------------------
+
+std::uint64_t Session::ask(const protocol::ClientMessage& question) {
+    questions_[request_] = question;
+    sendIfOpen(question);
+    return request_;
+}
+
+std::uint64_t Session::locate(glm::dvec2 flat) {
+    return ask(locateMessage(++request_, flat));
+}
+std::uint64_t Session::locate(glm::dvec3 positionMm) {
+    return ask(locateMessage(++request_, positionMm));
+}
+std::uint64_t Session::askSeen(bool forget) {
+    protocol::ClientMessage message;
+    message.mutable_ask_seen()->set_request(++request_);
+    message.mutable_ask_seen()->set_forget(forget);
+    return ask(message);
+}
+std::uint64_t Session::measure(const std::vector<glm::dvec2>& points, bool closed) {
+    return ask(measureMessage(++request_, points, closed));
+}
+
+template <class Message, class Body>
+void Session::answeredAboutWall(const Message& message, Result<Body> body) {
+    if (questions_.erase(message.request()) == 0) return;  // of a case that is left
+    if (!body) return giveUp(body.error());
+    wallAnswers_.push_back({message.request(), std::move(*body)});
+}
+
+// ---- bookmarks ------------------------------------------------------------------------------
+
+// One made on a scan that the case is no longer of belongs to another patient, it may be.
+bool Session::isOfOpenCase(const Owed& owed) const {
+    return owed.caseName == caseName_ && (!caseInfo_ || owed.scan == caseInfo_->scan);
+}
+
+std::string Session::addBookmark(const Camera& camera, double arcMm, std::string note) {
+    Bookmark bookmark;
+    bookmark.camera = camera;
+    bookmark.arcMm = arcMm;
+    bookmark.note = cutUtf8(std::move(note), maxNoteBytes);
+    bookmark.clientKey = newClientKey();
+    owed_.push_back({caseName_, caseInfo_ && caseInfo_->name == caseName_ ? caseInfo_->scan : "",
+                     ++request_, bookmark});
+    sendIfOpen(bookmarkMessage(request_, bookmark));
+    return bookmark.clientKey;
+}
+
+std::uint64_t Session::requestBookmarks() {
+    protocol::ClientMessage message;
+    message.mutable_list_bookmarks()->set_request(++request_);
+    sendIfOpen(message);
+    return request_;
+}
+
+void Session::acknowledge(const Bookmark& bookmark) {
+    std::erase_if(owed_,
+                  [&](const Owed& owed) { return owed.bookmark.clientKey == bookmark.clientKey; });
+    const auto same = std::find_if(bookmarks_.begin(), bookmarks_.end(),
+                                   [&](const Bookmark& b) { return b.id == bookmark.id; });
+    if (same == bookmarks_.end())
+        bookmarks_.push_back(bookmark);
+    else
+        *same = bookmark;
+}
+
+std::vector<Bookmark> Session::bookmarks() const {
+    std::vector<Bookmark> all = bookmarks_;
+    for (const Owed& owed : owed_)
+        if (isOfOpenCase(owed)) all.push_back(owed.bookmark);
+    return all;
+}
+
+const Bookmark* Session::acknowledgedBookmark(const std::string& clientKey) const {
+    const auto found = std::find_if(bookmarks_.begin(), bookmarks_.end(),
+                                    [&](const Bookmark& b) { return b.clientKey == clientKey; });
+    return found == bookmarks_.end() ? nullptr : &*found;
+}
+
+}  // namespace haustra::reader

@@ -1,0 +1,169 @@
+// The reader's session with a server: what is asked for, what has come, what is still owed.
+#pragma once
+
+#include "link/connection.h"
+#include "protocol/framing.h"
+#include "reader/case_info.h"
+#include "reader/latency.h"
+#include "tiles/picture_assembler.h"
+
+#include <array>
+#include <deque>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <variant>
+
+namespace haustra::reader {
+
+using link::Clock;
+
+enum class Phase {
+    connecting,  ///< no link yet, or the case is being opened
+    choosing,    ///< linked; no case was named: caseNames() tells what there is
+    open,        ///< pictures flow
+    lost,        ///< the link is down; it is tried again
+    failed,      ///< for good: failure() tells why
+};
+
+/// A picture that has been decoded, with when its last tile came and when decoding was done.
+struct Arrival {
+    tiles::Picture picture;
+    Clock::time_point receivedAt, decodedAt;
+};
+
+/// Owns the connection; belongs to one thread. The session remembers what each viewport is to
+/// show, so that after a lost link everything is asked for again, and bookmarks that the server
+/// has not acknowledged are sent again under the same key.
+class Session {
+public:
+    /// Opens `caseName` once linked; where it is empty, asks for the list of cases.
+    Session(link::ConnectionOptions options, std::string caseName);
+
+    /// Takes in what has arrived, waiting at most `patience` for the first event. Decodes tiles.
+    void poll(std::chrono::milliseconds patience);
+
+    Phase phase() const { return phase_; }
+    const Error& failure() const { return failure_; }  ///< of phases lost and failed
+    const link::LinkUp& server() const { return server_; }
+    double roundTripMs() const { return connection_.roundTripMs(); }
+    std::uint64_t receivedBytes() const { return connection_.receivedBytes(); }
+
+    const std::vector<std::string>& caseNames() const { return caseNames_; }
+    void openCase(const std::string& name);
+    /// The open case; empty before. Its address changes only when a case is opened.
+    const std::shared_ptr<const CaseInfo>& caseInfo() const { return caseInfo_; }
+
+    /// Each of these returns the sequence number that the answering picture will reach. They may
+    /// be called in any phase: what is asked for early is sent when the case is open.
+    std::uint64_t setViewport(int viewport, View view, int width, int height);
+    std::uint64_t setCamera(int viewport, const Camera& camera, bool moving);
+    std::uint64_t setSlice(int viewport, const Slice& slice, bool moving);
+    std::uint64_t setFlat(int viewport, const FlatWindow& window, bool moving);
+    std::uint64_t setOblique(int viewport, const Oblique& oblique, bool moving);
+    std::uint64_t setOverview(int viewport, const Overview& overview, bool moving);
+    std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
+    std::uint64_t setTransferFunction(int viewport, const OpticsChoice& optics);
+
+    /// What colours the wall, in all viewports that show it. Of a case that has been flattened.
+    std::uint64_t setWallPaint(const WallPaint& paint);
+    const WallPaint& wallPaint() const { return paint_; }
+    /// How much of the wall's area this session's pictures have shown, 0…1, as the server told
+    /// last. A link that was lost begins anew.
+    double seenShare() const { return seenShare_; }
+    /// Asks for it, of all pictures so far; with `forget`, nothing has been shown. Returns the
+    /// request's number.
+    std::uint64_t askSeen(bool forget);
+    std::uint64_t answeredSeenRequest() const { return answeredSeen_; }
+
+    /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
+    std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
+    /// What the server refused since the last call; the session goes on.
+    std::vector<Error> takeRefusals() { return std::exchange(refusals_, {}); }
+
+    /// Returns the bookmark's client key. `note` is cut to maxNoteBytes.
+    std::string addBookmark(const Camera& camera, double arcMm, std::string note);
+    /// Returns the request's number; after a reconnection the list is asked for anew.
+    std::uint64_t requestBookmarks();
+    /// Acknowledged ones first, in the server's order, then those still owed.
+    std::vector<Bookmark> bookmarks() const;
+    const Bookmark* acknowledgedBookmark(const std::string& clientKey) const;
+    std::size_t owedBookmarks() const { return owed_.size(); }
+    /// Number of the newest requestBookmarks that was answered.
+    std::uint64_t answeredBookmarkRequest() const { return answeredList_; }
+
+    /// Questions about the wall; each returns its request's number. What has no answer when the
+    /// link is lost is asked again when it is back; another case forgets it.
+    std::uint64_t locate(glm::dvec2 flat);
+    std::uint64_t locate(glm::dvec3 positionMm);
+    std::uint64_t measure(const std::vector<glm::dvec2>& points, bool closed);
+    struct WallAnswer {
+        std::uint64_t request;
+        Result<std::variant<WallPlace, FlatMeasure>> body;
+    };
+    /// What has been answered since the last call, or refused.
+    std::vector<WallAnswer> takeWallAnswers() { return std::exchange(wallAnswers_, {}); }
+
+    static constexpr std::size_t maxNoteBytes = 1000;
+
+private:
+    struct ViewportState {
+        View view = View::endoscopic;
+        int width = 0, height = 0;
+        // In the order in which the server hears them again.
+        std::tuple<std::optional<WindowLevel>, std::optional<OpticsChoice>, std::optional<Camera>,
+                   std::optional<Slice>, std::optional<FlatWindow>, std::optional<Oblique>,
+                   std::optional<Overview>>
+            inputs;
+        bool moving = false;
+    };
+    struct Owed {
+        std::string caseName;
+        std::string scan;  // that the reader saw
+        std::uint64_t request;
+        Bookmark bookmark;
+    };
+
+    bool isOfOpenCase(const Owed& owed) const;
+    void handle(link::LinkUp up);
+    void handle(const link::LinkDown& down);
+    void handle(const protocol::ServerMessage& message);
+    void handle(const link::TilePayload& tile, Clock::time_point at);
+    void opened(const protocol::CaseOpened& message);
+    void refused(const protocol::ErrorReport& report);
+    void acknowledge(const Bookmark& bookmark);
+    std::uint64_t ask(const protocol::ClientMessage& question);
+    template <class Message, class Body>
+    void answeredAboutWall(const Message& message, Result<Body> body);
+    void askForCase();
+    void askAgain();
+    void giveUp(Error error);
+    void sayWhatWaited(int viewport, const ViewportState& state);
+    template <class Input>
+    std::uint64_t setInput(int viewport, const Input& input, std::optional<bool> moving);
+    void sendIfOpen(const protocol::ClientMessage& message);
+
+    Phase phase_ = Phase::connecting;
+    Error failure_;
+    link::LinkUp server_;
+    std::string caseName_;
+    std::vector<std::string> caseNames_;
+    std::shared_ptr<const CaseInfo> caseInfo_;
+
+    WallPaint paint_;
+    double seenShare_ = 0.0;
+    std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0;
+    std::map<int, ViewportState> viewports_;
+    tiles::TileDecoder decoder_;
+    std::array<tiles::PictureAssembler, protocol::maxViewports> assemblers_;
+    std::deque<Arrival> arrivals_;
+    std::vector<Error> refusals_;
+    std::vector<Bookmark> bookmarks_;
+    std::deque<Owed> owed_;
+    std::map<std::uint64_t, protocol::ClientMessage> questions_;  // without an answer, by request
+    std::vector<WallAnswer> wallAnswers_;
+
+    link::Connection connection_;  // last: its events must not outlive what they change
+};
+
+}  // namespace haustra::reader

@@ -1,0 +1,130 @@
+#include "script/report.h"
+
+#include "reader/latency.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace haustra::reader {
+namespace {
+
+using nlohmann::ordered_json;
+
+double rounded(double value) {
+    return std::round(value * 1000.0) / 1000.0;
+}
+
+ordered_json jsonOf(const Summary& summary) {
+    return {{"count", summary.count},
+            {"mean", rounded(summary.mean)},
+            {"p50", rounded(summary.p50)},
+            {"p95", rounded(summary.p95)},
+            {"max", rounded(summary.max)}};
+}
+
+ordered_json jsonOf(glm::dvec3 v) {
+    return ordered_json::array({v.x, v.y, v.z});
+}
+
+ordered_json jsonOf(const WallPlace& place) {
+    return {{"flat", ordered_json::array({place.flat.x, place.flat.y})},
+            {"position_mm", jsonOf(place.positionMm)},
+            {"triangle", place.triangle},
+            {"arc_mm", place.arcMm},
+            {"camera_mm", jsonOf(place.cameraMm)}};
+}
+
+ordered_json jsonOf(const FlatMeasure& measure) {
+    return {{"length_mm", measure.lengthMm},
+            {"straight_mm", measure.straightMm},
+            {"area_mm2", measure.areaMm2},
+            {"largest_diameter_mm", measure.largestDiameterMm}};
+}
+
+ordered_json jsonOf(const ActionReport& action) {
+    ordered_json out = {
+        {"line", action.line}, {"do", action.name}, {"seconds", rounded(action.seconds)}};
+    if (!action.file.empty()) out["file"] = action.file;
+    if (action.positions > 0) {
+        out["positions"] = action.positions;
+        out["pipelined"] = action.pipelined;
+    }
+    if (!action.latencyMs.empty()) out["latency_ms"] = jsonOf(summarize(action.latencyMs));
+    if (!action.decodeMs.empty()) {
+        const std::size_t pictures = action.decodeMs.size();
+        out["pictures"] = pictures;
+        if (action.seconds > 0.0) out["fps"] = rounded(double(pictures) / action.seconds);
+        out["bytes"] = action.bytes;
+        out["bytes_per_picture"] = action.bytes / pictures;
+        out["decode_ms"] = jsonOf(summarize(action.decodeMs));
+        out["server_median_us"] = {{"queue", summarize(action.queueMicroseconds).p50},
+                                   {"render", summarize(action.renderMicroseconds).p50},
+                                   {"encode", summarize(action.encodeMicroseconds).p50}};
+        if (!action.raycaster.empty()) out["raycaster"] = action.raycaster;
+        out["coarse_pictures"] = action.coarse;
+        out["latencies_ms"] = ordered_json::array();
+        for (const double ms : action.latencyMs)
+            out["latencies_ms"].push_back(rounded(ms));
+    }
+    if (!action.acknowledged.empty()) {
+        out["acknowledged"] = ordered_json::array();
+        for (const Acknowledgement& a : action.acknowledged)
+            out["acknowledged"].push_back({{"id", a.id}, {"client_key", a.clientKey}});
+    }
+    if (action.bookmarks) out["bookmarks"] = *action.bookmarks;
+    if (action.following) out["following"] = *action.following;
+    if (action.place) out["place"] = jsonOf(*action.place);
+    if (action.measure) out["measure"] = jsonOf(*action.measure);
+    if (action.seenShare) out["seen_share"] = *action.seenShare;
+    return out;
+}
+
+}  // namespace
+
+std::string toJson(const WallPlace& place) {
+    return jsonOf(place).dump(2) + "\n";
+}
+
+std::string toJson(const FlatMeasure& measure) {
+    return jsonOf(measure).dump(2) + "\n";
+}
+
+std::string seenShareJson(double share) {
+    return ordered_json{{"seen_share", share}}.dump(2) + "\n";
+}
+
+std::string toJson(const PlayReport& report) {
+    ordered_json out = {{"client", report.clientSoftware},
+                        {"server", report.serverSoftware},
+                        {"renderer", report.renderer},
+                        {"fingerprint", report.fingerprint},
+                        {"case", report.caseName},
+                        {"centerline_mm", rounded(report.centerlineMm)},
+                        {"round_trip_ms", rounded(report.roundTripMs)}};
+    out["bridges"] = ordered_json::array();
+    for (const Bridge& bridge : report.bridges)
+        out["bridges"].push_back({{"from_arc_mm", rounded(bridge.fromArcMm)},
+                                  {"to_arc_mm", rounded(bridge.toArcMm)},
+                                  {"length_mm", rounded(bridge.lengthMm())}});
+    if (report.trust) {
+        auto segments = ordered_json::object();
+        for (int n = 0; n < colonSegments; ++n) {
+            const SegmentDistension& segment = report.trust->segments[std::size_t(n)];
+            segments[toString(ColonSegment(n))] = {{"length_mm", rounded(segment.lengthMm)},
+                                                   {"diameter_mm", rounded(segment.diameterMm)},
+                                                   {"collapsed_mm", rounded(segment.collapsedMm)}};
+        }
+        out["trust"] = {{"confidence", rounded(report.trust->confidence)},
+                        {"length_mm", rounded(report.trust->lengthMm)},
+                        {"warnings", report.trust->warnings},
+                        {"segments", segments}};
+    }
+    out["error"] = report.failure ? ordered_json(describe(*report.failure)) : ordered_json();
+    out["actions"] = ordered_json::array();
+    for (const ActionReport& action : report.actions)
+        out["actions"].push_back(jsonOf(action));
+    return out.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace haustra::reader

@@ -1,0 +1,297 @@
+#include "script/script.h"
+
+#include "script/fields.h"
+
+namespace haustra::reader {
+namespace {
+
+using nlohmann::json;
+
+constexpr double maxArcMm = 1e5;
+constexpr std::size_t maxMeasuredPoints = 128;
+
+ViewAction readView(Fields& in) {
+    ViewAction action;
+    if (in.has("viewport")) action.viewport = in.viewport();
+    action.view = in.view("view");
+    if (in.has("size")) {
+        const glm::ivec2 size = in.size("size");
+        action.width = size.x;
+        action.height = size.y;
+    }
+    return action;
+}
+
+GoAction readGo(Fields& in) {
+    GoAction action;
+    if (in.has("arc_mm")) action.arcMm = in.number("arc_mm", 0.0, maxArcMm);
+    if (in.has("fraction")) action.fraction = in.number("fraction", 0.0, 1.0);
+    if (action.arcMm && action.fraction)
+        Fields::refuse("fraction", "and \"arc_mm\" exclude each other");
+    if (in.has("direction")) {
+        const std::string text = in.text("direction");
+        if (text == "antegrade")
+            action.direction = FlightDirection::antegrade;
+        else if (text == "retrograde")
+            action.direction = FlightDirection::retrograde;
+        else
+            Fields::refuse("direction", "must be antegrade or retrograde");
+    }
+    if (in.has("yaw_deg")) action.yawDegrees = in.number("yaw_deg", -360.0, 360.0);
+    if (in.has("pitch_deg"))
+        action.pitchDegrees =
+            in.number("pitch_deg", -Flight::maxPitchDegrees, Flight::maxPitchDegrees);
+    if (in.has("lens")) {
+        const std::string text = in.text("lens");
+        if (text != "perspective" && text != "fisheye")
+            Fields::refuse("lens", "must be perspective or fisheye");
+        action.fisheye = text == "fisheye";
+    }
+    if (in.has("fov_deg"))
+        action.fovDegrees = in.number("fov_deg", 10.0, action.fisheye.value_or(false) ? 240 : 150);
+    return action;
+}
+
+FlyAction readFly(Fields& in) {
+    FlyAction action;
+    if (in.has("from_mm")) action.fromMm = in.number("from_mm", 0.0, maxArcMm);
+    if (in.has("to_mm")) action.toMm = in.number("to_mm", 0.0, maxArcMm);
+    if (in.has("positions")) action.positions = in.integer("positions", 2, 100'000);
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("pipelined")) action.pipelined = in.flag("pipelined");
+    return action;
+}
+
+StillAction readStill(Fields& in) {
+    StillAction action;
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+SliceAction readSlice(Fields& in) {
+    SliceAction action;
+    action.view = in.view("view");
+    if (!isSlice(action.view)) Fields::refuse("view", "must be axial, coronal or sagittal");
+    if (in.has("position_mm")) action.positionMm = in.position("position_mm");
+    if (in.has("zoom")) action.zoom = in.number("zoom", 1.0, 64.0);
+    if (in.has("cleansed")) action.cleansed = in.flag("cleansed");
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+FlatAction readFlat(Fields& in) {
+    FlatAction action;
+    if (in.has("center")) action.center = in.flat("center");
+    if (in.has("arc_mm")) action.arcMm = in.number("arc_mm", 0.0, maxArcMm);
+    if (action.center && action.arcMm)
+        Fields::refuse("arc_mm", "and \"center\" exclude each other");
+    if (in.has("pixels_per_circumference"))
+        action.pixelsPerCircumference = in.number("pixels_per_circumference", 16.0, 65536.0);
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+ObliqueAction readOblique(Fields& in) {
+    ObliqueAction action;
+    if (in.has("position_mm")) action.positionMm = in.position("position_mm");
+    if (in.has("forward")) action.forward = in.position("forward");
+    if (in.has("up")) action.up = in.position("up");
+    if (action.forward.has_value() != action.up.has_value())
+        Fields::refuse("up", "and \"forward\" go together");
+    if (action.forward && !(glm::length(glm::cross(*action.forward, *action.up)) > 0.0))
+        Fields::refuse("up", "is along \"forward\"");
+    if (in.has("ahead_mm")) action.aheadMm = in.number("ahead_mm", -1000.0, 1000.0);
+    if (in.has("height_mm")) action.heightMm = in.number("height_mm", 1.0, 2000.0);
+    if (in.has("cleansed")) action.cleansed = in.flag("cleansed");
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+OverviewAction readOverview(Fields& in) {
+    OverviewAction action;
+    if (in.has("azimuth_deg")) action.azimuthDegrees = in.number("azimuth_deg", -360.0, 360.0);
+    if (in.has("elevation_deg")) action.elevationDegrees = in.number("elevation_deg", -90.0, 90.0);
+    if (in.has("height_mm")) action.heightMm = in.number("height_mm", 1.0, 5000.0);
+    if (in.has("reader")) action.reader = in.flag("reader");
+    if (in.has("bookmarks")) action.bookmarks = in.flag("bookmarks");
+    if (in.has("body")) action.body = in.flag("body");
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+StripAction readStrip(Fields& in) {
+    StripAction action;
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("size")) action.size = in.size("size");
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+FlyOverAction readFlyOver(Fields& in) {
+    FlyOverAction action;
+    if (in.has("from")) action.from = in.number("from", 0.0, maxStripHeight);
+    if (in.has("to")) action.to = in.number("to", 0.0, maxStripHeight);
+    if (in.has("positions")) action.positions = in.integer("positions", 2, 100'000);
+    if (in.has("pixels_per_circumference"))
+        action.pixelsPerCircumference = in.number("pixels_per_circumference", 16.0, 65536.0);
+    if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("pipelined")) action.pipelined = in.flag("pipelined");
+    if (in.has("endoscopic")) action.endoscopic = in.flag("endoscopic");
+    if (action.endoscopic && action.viewport == 0)
+        Fields::refuse("viewport", "0 shows the endoscopic view");
+    return action;
+}
+
+LocateAction readLocate(Fields& in) {
+    LocateAction action;
+    if (in.has("flat")) action.flat = in.flat("flat");
+    if (in.has("position_mm")) action.positionMm = in.position("position_mm");
+    if (action.flat.has_value() == action.positionMm.has_value())
+        Fields::refuse("flat", "or \"position_mm\" is needed, not both");
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+MeasureAction readMeasure(Fields& in) {
+    MeasureAction action;
+    if (in.has("closed")) action.closed = in.flag("closed");
+    action.points = in.flats("flat", action.closed ? 3 : 2, maxMeasuredPoints);
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+PaintAction readPaint(Fields& in) {
+    PaintAction action;
+    if (in.has("marks")) action.paint.marks = in.flag("marks");
+    if (in.has("unseen")) action.paint.unseen = in.flag("unseen");
+    if (in.has("radius_mm")) action.paint.markRadiusMm = in.number("radius_mm", 1.0, 20.0);
+    return action;
+}
+
+SeenAction readSeen(Fields& in) {
+    SeenAction action;
+    if (in.has("forget")) action.forget = in.flag("forget");
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+WindowAction readWindow(Fields& in) {
+    WindowAction action;
+    if (in.has("viewport")) action.viewport = in.viewport();
+    action.window.centerHu = in.number("center_hu", -5000.0, 5000.0);
+    action.window.widthHu = in.number("width_hu", 1.0, 10'000.0);
+    return action;
+}
+
+TransferAction readTransfer(Fields& in) {
+    TransferAction action;
+    if (in.has("viewport")) action.viewport = in.viewport();
+    const bool preset = in.has("preset"), points = in.has("points"), optics = in.has("optics"),
+               file = in.has("file");
+    if (preset + points + optics + file != 1)
+        Fields::refuse("preset", "or \"points\", \"optics\" or \"file\" is needed, one of them");
+    if (preset) action.optics = in.text("preset");
+    if (points) action.optics = in.opticsOfPoints("points");
+    if (optics) action.optics = in.opticsOfObject("optics");
+    if (file) action.optics = in.opticsOfFile("file");
+    return action;
+}
+
+BookmarkAction readBookmark(Fields& in) {
+    BookmarkAction action;
+    if (in.has("note")) action.note = in.text("note");
+    if (in.has("count")) action.count = in.integer("count", 1, 1'000'000);
+    return action;
+}
+
+BookmarksAction readBookmarks(Fields& in) {
+    BookmarksAction action;
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+WaitAction readWait(Fields& in) {
+    return {in.number("ms", 0.0, 3'600'000.0)};
+}
+
+Action readAction(const std::string& line) {
+    const json object = json::parse(line, nullptr, false);
+    if (object.is_discarded()) throw ScriptRefusal{"not a JSON object"};
+    if (!object.is_object()) throw ScriptRefusal{"not a JSON object"};
+    Fields in(object);
+    Action action;
+    action.name = in.text("do");
+    if (action.name == "view")
+        action.body = readView(in);
+    else if (action.name == "go")
+        action.body = readGo(in);
+    else if (action.name == "fly")
+        action.body = readFly(in);
+    else if (action.name == "still")
+        action.body = readStill(in);
+    else if (action.name == "slice")
+        action.body = readSlice(in);
+    else if (action.name == "oblique")
+        action.body = readOblique(in);
+    else if (action.name == "overview")
+        action.body = readOverview(in);
+    else if (action.name == "flat")
+        action.body = readFlat(in);
+    else if (action.name == "strip")
+        action.body = readStrip(in);
+    else if (action.name == "flyover")
+        action.body = readFlyOver(in);
+    else if (action.name == "locate")
+        action.body = readLocate(in);
+    else if (action.name == "measure")
+        action.body = readMeasure(in);
+    else if (action.name == "paint")
+        action.body = readPaint(in);
+    else if (action.name == "seen")
+        action.body = readSeen(in);
+    else if (action.name == "window")
+        action.body = readWindow(in);
+    else if (action.name == "transfer")
+        action.body = readTransfer(in);
+    else if (action.name == "bookmark")
+        action.body = readBookmark(in);
+    else if (action.name == "bookmarks")
+        action.body = readBookmarks(in);
+    else if (action.name == "wait")
+        action.body = readWait(in);
+    else
+        throw ScriptRefusal{"no such action: \"" + action.name + "\""};
+    in.allMustBeKnown();
+    return action;
+}
+
+}  // namespace
+
+Result<std::vector<Action>> parseScript(std::istream& in, const std::string& name) {
+    std::vector<Action> actions;
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        const std::size_t start = line.find_first_not_of(" \t\r");
+        if (start == std::string::npos || line[start] == '#') continue;
+        try {
+            actions.push_back(readAction(line));
+            actions.back().line = number;
+        } catch (const ScriptRefusal& refusal) {
+            return fail(ErrorKind::badInput, refusal.message, name + ":" + std::to_string(number));
+        } catch (const json::exception& error) {
+            return fail(ErrorKind::badInput, error.what(), name + ":" + std::to_string(number));
+        }
+    }
+    return actions;
+}
+
+}  // namespace haustra::reader

@@ -1,0 +1,198 @@
+#include "contouring/dual_contouring.h"
+
+#include "contouring/edge_polygon.h"
+#include "contouring/face_vertices.h"
+#include "contouring/vertex_placement.h"
+#include "core/parallel.h"
+
+#include <array>
+#include <optional>
+
+namespace haustra::contouring {
+namespace {
+
+/// Everything that the polygons are made from. Vertices are numbered: loops', faces', edges'.
+struct DualVertices {
+    const BoundaryCells& cells;
+    const BoundaryCrossings& crossings;
+    const FaceVertices& faceVertices;
+    const std::vector<glm::dvec3>& loopVertices;  ///< voxel coordinates
+    std::int32_t edgeVerticesBegin() const {
+        return std::int32_t(loopVertices.size() + faceVertices.positions().size());
+    }
+};
+
+/// The triangles of the edges that one layer's cells own: those from their corner 0.
+struct LayerSurface {
+    std::vector<glm::dvec3> edgeVertices;  ///< voxel coordinates
+    /// Vertex numbers; −1 − n is the layer's edge vertex n.
+    std::vector<glm::ivec3> triangles;
+};
+
+/// The polygon of one crossed edge, counter-clockwise seen from the edge's far end.
+struct DualPolygon {
+    std::array<std::int32_t, 4> corners;     ///< vertices of the cells around the edge
+    std::array<std::int32_t, 4> afterwards;  ///< vertex on the arc to the next corner; −1: none
+    bool plain() const { return afterwards == std::array<std::int32_t, 4>{-1, -1, -1, -1}; }
+};
+
+class LayerContourer {
+public:
+    LayerContourer(const DualVertices& dual, bool mirrored)
+        : dual_(dual), mirrored_(mirrored), pair_(dual.cells) {}
+
+    LayerSurface contour(int layer) {
+        LayerSurface surface;
+        pair_.moveTo(layer);
+        const int k = BoundaryCells::kOfLayer(layer);
+        for (const BoundaryCell& cell : dual_.cells.layer(layer)) {
+            for (int axis = 0; axis < 3; ++axis) {
+                const bool insideHere = cell.inside & 1,
+                           insideThere = cell.inside >> (1 << axis) & 1;
+                if (insideHere != insideThere)
+                    addPolygon(surface, {cell.i, cell.j, k}, axis, insideHere);
+            }
+        }
+        return surface;
+    }
+
+private:
+    DualPolygon polygonAround(glm::ivec3 voxel, int axis, bool insideHere) const {
+        const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+        const glm::ivec2 quadrants[4] = {{0, 0}, {-1, 0}, {-1, -1}, {0, -1}};
+        DualPolygon polygon;
+        std::array<std::int32_t, 4> around;
+        for (int n = 0; n < 4; ++n) {
+            glm::ivec3 place(0);
+            place[b] = quadrants[n].x, place[c] = quadrants[n].y;
+            around[n] = pair_.find(voxel.x + place.x, voxel.y + place.y, place.z < 0);
+            const BoundaryCell& cell = dual_.cells.cells()[std::size_t(around[n])];
+            const int edge = cellEdge(axis, cornerOf(-place));
+            polygon.corners[n] = cell.firstVertex + cellLoops(cell.inside).loopOfEdge[edge];
+        }
+        // The face between cells n and n + 1 is the low one of that on the face's far side.
+        const int farSide[4] = {0, 1, 3, 0}, faceAxis[4] = {b, c, b, c};
+        for (int n = 0; n < 4; ++n) {
+            const std::int32_t owner = around[farSide[n]];
+            glm::ivec3 corner(0);
+            corner[b] = -quadrants[farSide[n]].x, corner[c] = -quadrants[farSide[n]].y;
+            corner[axis] = insideHere ? 0 : 1;
+            const std::int32_t vertex =
+                dual_.faceVertices.find(owner, dual_.cells.cells()[std::size_t(owner)].inside,
+                                        faceAxis[n], cornerOf(corner));
+            polygon.afterwards[n] =
+                vertex < 0 ? -1 : vertex + std::int32_t(dual_.loopVertices.size());
+        }
+        return polygon;
+    }
+
+    std::optional<int> diagonalOf(const DualPolygon& polygon, glm::ivec3 voxel, int axis) const {
+        std::array<glm::dvec3, 4> local, mm;
+        for (int n = 0; n < 4; ++n) {
+            const glm::dvec3 p =
+                dual_.loopVertices[std::size_t(polygon.corners[n])] - glm::dvec3(voxel);
+            local[n] = {p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]};
+            mm[n] = dual_.crossings.mmFromVoxel() * p;
+        }
+        return envelopeDiagonal(local, mm);
+    }
+
+    void addPolygon(LayerSurface& surface, glm::ivec3 voxel, int axis, bool insideHere) const {
+        const DualPolygon polygon = polygonAround(voxel, axis, insideHere);
+        const bool flip = insideHere == mirrored_;
+        auto add = [&](std::int32_t p, std::int32_t q, std::int32_t r) {
+            surface.triangles.push_back(flip ? glm::ivec3(p, r, q) : glm::ivec3(p, q, r));
+        };
+        const auto& corners = polygon.corners;
+        const std::optional<int> diagonal =
+            polygon.plain() ? diagonalOf(polygon, voxel, axis) : std::nullopt;
+        if (diagonal) {
+            const int d = *diagonal;
+            add(corners[d], corners[d + 1], corners[d + 2]);
+            add(corners[d], corners[d + 2], corners[(d + 3) % 4]);
+            return;
+        }
+        glm::ivec3 inside = voxel, outside = voxel;
+        (insideHere ? outside : inside)[axis] += 1;
+        const std::int32_t centre = -1 - std::int32_t(surface.edgeVertices.size());
+        surface.edgeVertices.push_back(dual_.crossings.between(inside, outside).onEdge);
+        for (int n = 0; n < 4; ++n) {
+            std::int32_t from = corners[n];
+            if (const std::int32_t middle = polygon.afterwards[n]; middle >= 0) {
+                add(centre, from, middle);
+                from = middle;
+            }
+            add(centre, from, corners[(n + 1) % 4]);
+        }
+    }
+
+    static int cornerOf(glm::ivec3 offset) { return offset.x | offset.y << 1 | offset.z << 2; }
+
+    const DualVertices& dual_;
+    bool mirrored_;
+    LayerPair pair_;
+};
+
+/// One mesh of all layers' triangles, vertices in patient mm.
+TriMesh assemble(const DualVertices& dual, const std::vector<LayerSurface>& layers,
+                 const Grid& grid, int threads) {
+    std::vector<std::size_t> vertexBegin{std::size_t(dual.edgeVerticesBegin())}, triangleBegin{0};
+    for (const LayerSurface& layer : layers) {
+        vertexBegin.push_back(vertexBegin.back() + layer.edgeVertices.size());
+        triangleBegin.push_back(triangleBegin.back() + layer.triangles.size());
+    }
+    TriMesh mesh;
+    mesh.vertices.resize(vertexBegin.back());
+    mesh.triangles.resize(triangleBegin.back());
+    const std::size_t loops = dual.loopVertices.size();
+    const auto& facePositions = dual.faceVertices.positions();
+    parallelFor(vertexBegin.front(), 1 << 16, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            mesh.vertices[v] = grid.patientFromVoxelPoint(v < loops ? dual.loopVertices[v]
+                                                                    : facePositions[v - loops]);
+        }
+    });
+    parallelFor(layers.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            for (std::size_t v = 0; v < layers[n].edgeVertices.size(); ++v)
+                mesh.vertices[vertexBegin[n] + v] =
+                    grid.patientFromVoxelPoint(layers[n].edgeVertices[v]);
+            for (std::size_t t = 0; t < layers[n].triangles.size(); ++t) {
+                glm::ivec3 triangle = layers[n].triangles[t];
+                for (int corner = 0; corner < 3; ++corner) {
+                    if (triangle[corner] < 0)
+                        triangle[corner] = int(vertexBegin[n]) - 1 - triangle[corner];
+                }
+                mesh.triangles[triangleBegin[n] + t] = triangle;
+            }
+        }
+    });
+    return mesh;
+}
+
+}  // namespace
+
+Result<TriMesh> contourLumen(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& lumen,
+                             double isoHu, const ContouringOptions& options) {
+    if (!sameGrid(hu.grid(), lumen.grid()))
+        return fail(ErrorKind::badInput, "the HU and the lumen are on different grids", "surface");
+    const BoundaryCells cells(lumen, options.threads);
+    if (cells.cells().empty())
+        return fail(ErrorKind::noResult, "the lumen is empty: there is no surface", "surface");
+
+    const BoundaryCrossings crossings(hu, isoHu);
+    const FaceVertices faceVertices(cells, crossings, options.threads);
+    const std::vector<glm::dvec3> loopVertices = placeVertices(cells, crossings, options.threads);
+    const DualVertices dual{cells, crossings, faceVertices, loopVertices};
+
+    const bool mirrored = glm::determinant(crossings.mmFromVoxel()) < 0.0;
+    std::vector<LayerSurface> layers{std::size_t(cells.layers())};
+    parallelFor(layers.size(), 16, options.threads, [&](std::size_t begin, std::size_t end) {
+        LayerContourer contourer(dual, mirrored);
+        for (std::size_t n = begin; n < end; ++n)
+            layers[n] = contourer.contour(int(n));
+    });
+    return assemble(dual, layers, hu.grid(), options.threads);
+}
+
+}  // namespace haustra::contouring
