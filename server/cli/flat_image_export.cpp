@@ -6,8 +6,8 @@
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "gpu/context.h"
-#include "render/flat/strip_picture.h"
 #include "render/png_file.h"
+#include "render/strip_picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/flat_map.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 #include "render/view.h"
 
 #include <filesystem>

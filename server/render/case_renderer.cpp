@@ -1,15 +1,15 @@
 #include "render/case_renderer.h"
 
-#include "render/case_pictures.h"
 #include "render/gl/gl_pictures.h"
 #include "render/gl/single_pass_raycaster.h"
 #include "render/hybrid/hybrid_raycaster.h"
-#include "render/lately_used.h"
 #include "render/native/native_pictures.h"
 #include "render/native/native_raycaster.h"
 #include "render/object_order/object_order_raycaster.h"
 #include "render/overview/overview_painter.h"
-#include "render/wall/polygon_assisted_raycaster.h"
+#include "render/polygon_assisted/polygon_assisted_raycaster.h"
+#include "render/scene/case_pictures.h"
+#include "render/scene/lately_used.h"
 #include "render/wall/wall_index.h"
 
 #include <algorithm>

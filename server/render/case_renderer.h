@@ -2,8 +2,8 @@
 #pragma once
 
 #include "gpu/context.h"
-#include "render/prepared_case.h"
-#include "render/raycaster.h"
+#include "render/scene/prepared_case.h"
+#include "render/scene/raycaster.h"
 #include "render/view.h"
 #include "render/wall/wall_paint.h"
 

@@ -1,7 +1,7 @@
 // Which raycaster draws a case fastest on this machine, found by trying them.
 #pragma once
 
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 #include <cstddef>
 #include <optional>

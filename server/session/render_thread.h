@@ -1,7 +1,7 @@
 // The thread that owns the GPU: its EGL context and every case's renderer.
 #pragma once
 
-#include "render/prepared_case.h"
+#include "render/scene/prepared_case.h"
 #include "session/frame_scheduler.h"
 #include "session/gpu_cases.h"
 #include "session/open_case.h"

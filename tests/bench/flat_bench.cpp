@@ -1,7 +1,7 @@
 // Times the flattened views of a prepared case, and counts the triangles that the strip shows.
 // usage: flat_bench STORE CASE [PRESET [RAYCASTER]]
-#include "render/flat/flat_painter.h"
-#include "render/flat/strip_picture.h"
+#include "render/gl/flat_painter.h"
+#include "render/strip_picture.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 

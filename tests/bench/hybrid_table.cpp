@@ -5,7 +5,7 @@
 #include "render/gl/single_pass_raycaster.h"
 #include "render/hybrid/hybrid_raycaster.h"
 #include "render/optics/optics_presets.h"
-#include "render/wall/polygon_assisted_raycaster.h"
+#include "render/polygon_assisted/polygon_assisted_raycaster.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 

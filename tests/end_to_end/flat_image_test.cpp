@@ -3,7 +3,7 @@
 #include "end_to_end/flat_store.h"
 #include "end_to_end/run_program.h"
 #include "read_png.h"
-#include "render/flat/strip_picture.h"
+#include "render/strip_picture.h"
 
 #include <algorithm>
 

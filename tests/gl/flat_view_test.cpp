@@ -1,7 +1,7 @@
 // The flattened wall against a tube whose map is known, and against a plain ray caster on the CPU.
 #include "flat_reference.h"
 #include "flat_tube.h"
-#include "render/flat/flat_painter.h"
+#include "render/gl/flat_painter.h"
 #include "render_scene.h"
 
 #include <limits>

@@ -1,8 +1,8 @@
 // Slices and flattened views of the CPU against those of the GPU and against plain ones.
 #include "flat_reference.h"
 #include "flat_tube.h"
-#include "render/flat/flat_painter.h"
-#include "render/native/flat_coverage.h"
+#include "render/flat/flat_coverage.h"
+#include "render/gl/flat_painter.h"
 #include "render_scene.h"
 
 #include <random>

@@ -2,7 +2,7 @@
 #include "reference_marcher.h"
 #include "render/gl/single_pass_raycaster.h"
 #include "render/optics/optics_presets.h"
-#include "render/wall/polygon_assisted_raycaster.h"
+#include "render/polygon_assisted/polygon_assisted_raycaster.h"
 #include "wall_scene.h"
 
 #include <map>

@@ -1,5 +1,5 @@
 // The min-max octree against its definition, and rays through it against plain stepping.
-#include "render/min_max_octree.h"
+#include "render/scene/min_max_octree.h"
 
 #include "random_volume.h"
 

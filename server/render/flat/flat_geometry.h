@@ -5,7 +5,7 @@
 #include "core/grid.h"
 #include "core/result.h"
 #include "core/strip_layout.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 #include "shaders/uniforms.h"
 
 #include <memory>

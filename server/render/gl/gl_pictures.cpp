@@ -2,8 +2,8 @@
 
 #include "render/gl/march_variant.h"
 #include "render/gl/picture_readback.h"
-#include "render/gl/ray_setup.h"
-#include "render/gl/stored_value.h"
+#include "render/scene/ray_setup.h"
+#include "render/scene/stored_value.h"
 #include "shaders/shader_source.h"
 #include "shaders/uniforms.h"
 

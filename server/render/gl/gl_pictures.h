@@ -4,9 +4,9 @@
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
-#include "render/case_pictures.h"
-#include "render/flat/flat_painter.h"
+#include "render/gl/flat_painter.h"
 #include "render/gl/gl_scene.h"
+#include "render/scene/case_pictures.h"
 
 #include <memory>
 #include <optional>

@@ -3,8 +3,8 @@
 #include "core/parallel.h"
 #include "gpu/program.h"
 #include "render/gl/march_variant.h"
-#include "render/gl/ray_setup.h"
-#include "render/gl/stored_value.h"
+#include "render/scene/ray_setup.h"
+#include "render/scene/stored_value.h"
 #include "shaders/shader_source.h"
 
 #include <algorithm>

@@ -4,9 +4,9 @@
 #include "gpu/buffer.h"
 #include "gpu/context.h"
 #include "gpu/texture.h"
-#include "render/lately_used.h"
 #include "render/optics/classification.h"
-#include "render/scene.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/scene.h"
 #include "render/view.h"
 #include "shaders/uniforms.h"
 

@@ -1,7 +1,7 @@
 #include "render/gl/single_pass_raycaster.h"
 
 #include "render/gl/picture_readback.h"
-#include "render/gl/ray_setup.h"
+#include "render/scene/ray_setup.h"
 #include "shaders/shader_source.h"
 
 #include <utility>

@@ -6,7 +6,7 @@
 #include "gpu/timestamps.h"
 #include "render/gl/gl_scene.h"
 #include "render/gl/march_variant.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 #include <memory>
 #include <optional>

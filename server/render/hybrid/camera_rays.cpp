@@ -1,6 +1,6 @@
 #include "render/hybrid/camera_rays.h"
 
-#include "render/gl/ray_setup.h"
+#include "render/scene/ray_setup.h"
 
 #include <cmath>
 #include <numbers>

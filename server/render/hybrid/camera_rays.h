@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/grid.h"
-#include "render/min_max_octree.h"
+#include "render/scene/min_max_octree.h"
 #include "render/view.h"
 
 #include <optional>

@@ -4,13 +4,13 @@
 #include "gpu/timestamps.h"
 #include "render/gl/march_variant.h"
 #include "render/gl/picture_readback.h"
-#include "render/gl/ray_setup.h"
 #include "render/hybrid/camera_rays.h"
 #include "render/hybrid/quad_list.h"
 #include "render/hybrid/ray_tiles.h"
 #include "render/hybrid/reader_balances.h"
-#include "render/lately_used.h"
 #include "render/native/tile_workers.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/ray_setup.h"
 
 #include <algorithm>
 #include <chrono>

@@ -4,7 +4,7 @@
 
 #include "render/gl/gl_scene.h"
 #include "render/hybrid/balance.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 #include <memory>
 #include <optional>

@@ -5,9 +5,9 @@
 #include "core/volume.h"
 #include "render/hybrid/balance.h"
 #include "render/hybrid/camera_rays.h"
-#include "render/min_max_octree.h"
 #include "render/optics/transfer_table.h"
-#include "render/raycaster.h"
+#include "render/scene/min_max_octree.h"
+#include "render/scene/raycaster.h"
 
 #include <cstdint>
 #include <span>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "render/hybrid/balance.h"
-#include "render/lately_used.h"
-#include "render/raycaster.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/raycaster.h"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 // The flattened wall's rays, as packets.
 #pragma once
 
-#include "render/native/flat_coverage.h"
+#include "render/flat/flat_coverage.h"
 #include "render/native/packet_scene.h"
 
 namespace haustra::render {

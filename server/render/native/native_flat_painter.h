@@ -4,7 +4,7 @@
 #include "render/flat/flat_geometry.h"
 #include "render/native/flat_packets.h"
 #include "render/native/native_scene.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 #include <memory>
 

@@ -1,10 +1,10 @@
 // Slices and flattened views, drawn on the CPU's vector units.
 #pragma once
 
-#include "render/case_pictures.h"
 #include "render/native/native_flat_painter.h"
 #include "render/native/native_scene.h"
 #include "render/native/slice_packets.h"
+#include "render/scene/case_pictures.h"
 
 #include <memory>
 #include <optional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/native/native_scene.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 #include <memory>
 

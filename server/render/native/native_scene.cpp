@@ -1,6 +1,6 @@
 #include "render/native/native_scene.h"
 
-#include "render/gl/ray_setup.h"
+#include "render/scene/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

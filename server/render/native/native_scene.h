@@ -1,11 +1,11 @@
 // A scene as the CPU's raycasters read it.
 #pragma once
 
-#include "render/lately_used.h"
 #include "render/native/packet_scene.h"
 #include "render/native/tile_workers.h"
 #include "render/optics/transfer_table.h"
-#include "render/scene.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/scene.h"
 #include "render/view.h"
 
 #include <memory>

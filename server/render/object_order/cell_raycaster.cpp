@@ -1,7 +1,7 @@
 #include "render/object_order/cell_raycaster.h"
 
 #include "render/gl/picture_readback.h"
-#include "render/gl/ray_setup.h"
+#include "render/scene/ray_setup.h"
 #include "shaders/uniforms.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "render/object_order/cell_pool.h"
 #include "render/object_order/cell_projector.h"
 #include "render/optics/classification.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 #include "render/view.h"
 
 #include <cstdint>

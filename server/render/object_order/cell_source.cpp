@@ -1,6 +1,6 @@
 #include "render/object_order/cell_source.h"
 
-#include "render/gl/stored_value.h"
+#include "render/scene/stored_value.h"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 #include "render/object_order/labelled_raycaster.h"
 
 #include "render/gl/march_variant.h"
-#include "render/gl/ray_setup.h"
-#include "render/lately_used.h"
-#include "render/min_max_octree.h"
 #include "render/object_order/cell_raycaster.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/min_max_octree.h"
+#include "render/scene/ray_setup.h"
 #include "shaders/shader_source.h"
 
 #include <algorithm>

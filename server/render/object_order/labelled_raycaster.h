@@ -4,7 +4,7 @@
 #include "gpu/context.h"
 #include "render/object_order/labelled_color.h"
 #include "render/object_order/object_order_raycaster.h"
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 #include <cstdint>
 #include <memory>

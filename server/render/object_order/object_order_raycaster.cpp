@@ -1,12 +1,12 @@
 #include "render/object_order/object_order_raycaster.h"
 
 #include "render/gl/march_variant.h"
-#include "render/gl/ray_setup.h"
-#include "render/lately_used.h"
-#include "render/min_max_octree.h"
 #include "render/object_order/cell_projector.h"
 #include "render/object_order/cell_raycaster.h"
 #include "render/optics/classification.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/min_max_octree.h"
+#include "render/scene/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>

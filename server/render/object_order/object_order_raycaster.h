@@ -2,8 +2,8 @@
 #pragma once
 
 #include "gpu/context.h"
-#include "render/raycaster.h"
-#include "render/scene.h"
+#include "render/scene/raycaster.h"
+#include "render/scene/scene.h"
 
 #include <cstddef>
 #include <memory>

@@ -4,9 +4,9 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 #include "gpu/raster_target.h"
-#include "render/lately_used.h"
-#include "render/raycaster.h"
-#include "render/scene.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/raycaster.h"
+#include "render/scene/scene.h"
 #include "render/view.h"
 #include "shaders/overview_uniforms.h"
 

@@ -1,7 +1,7 @@
 #include "render/wall/strip_painter.h"
 
+#include "render/flat/flat_coverage.h"
 #include "render/flat/flat_geometry.h"
-#include "render/native/flat_coverage.h"
 
 #include <algorithm>
 #include <cmath>

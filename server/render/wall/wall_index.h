@@ -5,8 +5,8 @@
 #include "gpu/program.h"
 #include "gpu/raster_target.h"
 #include "gpu/texture.h"
-#include "render/flat/flat_surface.h"
-#include "render/raycaster.h"
+#include "render/gl/flat_surface.h"
+#include "render/scene/raycaster.h"
 #include "render/wall/wall_paint.h"
 #include "shaders/wall_uniforms.h"
 

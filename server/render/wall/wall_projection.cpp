@@ -9,11 +9,11 @@ namespace {
 
 constexpr double nearMm = 0.1, farMm = 10000.0;
 
-struct Axes {
+struct CameraAxes {
     glm::dvec3 forward, right, down;
 };
 
-Axes axesOf(const Camera& camera) {
+CameraAxes axesOf(const Camera& camera) {
     const glm::dvec3 forward = glm::normalize(camera.forward);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
     return {forward, right, glm::cross(forward, right)};
@@ -21,7 +21,7 @@ Axes axesOf(const Camera& camera) {
 
 /// Everything but how the pass itself projects.
 shaders::WallUniforms lensOf(const Camera& camera, const Band& band, glm::dvec3 originMm) {
-    const Axes axes = axesOf(camera);
+    const CameraAxes axes = axesOf(camera);
     const double aspect = double(band.pictureSize.x) / band.pictureSize.y;
     const bool parallel = camera.lens == Lens::orthographic;
     double half = 1.0;
@@ -50,7 +50,7 @@ void project(shaders::WallUniforms& u, glm::dvec3 forward, glm::dvec3 right, glm
 
 shaders::WallUniforms wallProjection(const Camera& camera, const Band& band, glm::dvec3 originMm) {
     shaders::WallUniforms u = lensOf(camera, band, originMm);
-    const Axes axes = axesOf(camera);
+    const CameraAxes axes = axesOf(camera);
     const double halfWidth = glm::length(glm::dvec3(u.lensRight)),
                  halfHeight = glm::length(glm::dvec3(u.lensDown));
     project(u, axes.forward, axes.right / halfWidth, axes.down / halfHeight,
@@ -64,13 +64,13 @@ shaders::WallUniforms wallProjection(const Camera& camera, const Band& band, glm
 shaders::WallUniforms cubeSide(const Camera& camera, const Band& band, glm::dvec3 originMm,
                                int side) {
     const auto [ahead, right, down] = axesOf(camera);
-    const std::array<Axes, 6> sides = {{{ahead, right, down},
-                                        {right, -ahead, down},
-                                        {-right, ahead, down},
-                                        {down, right, -ahead},
-                                        {-down, right, ahead},
-                                        {-ahead, -right, down}}};
-    const Axes& axes = sides[std::size_t(side)];
+    const std::array<CameraAxes, 6> sides = {{{ahead, right, down},
+                                              {right, -ahead, down},
+                                              {-right, ahead, down},
+                                              {down, right, -ahead},
+                                              {-down, right, ahead},
+                                              {-ahead, -right, down}}};
+    const CameraAxes& axes = sides[std::size_t(side)];
     shaders::WallUniforms u = lensOf(camera, band, originMm);
     project(u, axes.forward, axes.right, axes.down, false);
     u.rows = glm::vec4(1.0, 0.0, 0.0, 0.0);

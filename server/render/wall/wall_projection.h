@@ -1,7 +1,7 @@
 // How a camera projects the wall's triangles.
 #pragma once
 
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 #include "render/view.h"
 #include "shaders/wall_uniforms.h"
 

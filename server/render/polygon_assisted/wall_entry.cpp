@@ -1,7 +1,7 @@
-#include "render/wall/wall_entry.h"
+#include "render/polygon_assisted/wall_entry.h"
 
 #include "core/parallel.h"
-#include "render/wall/wall_normals.h"
+#include "render/scene/wall_normals.h"
 
 #include <algorithm>
 #include <array>

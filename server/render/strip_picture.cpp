@@ -1,4 +1,4 @@
-#include "render/flat/strip_picture.h"
+#include "render/strip_picture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/wall/wall_normals.h"
+#include "render/scene/wall_normals.h"
 
 #include <algorithm>
 #include <cmath>

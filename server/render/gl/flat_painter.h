@@ -4,7 +4,7 @@
 #include "core/grid.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
-#include "render/flat/flat_surface.h"
+#include "render/gl/flat_surface.h"
 #include "render/gl/march_variant.h"
 #include "render/view.h"
 #include "shaders/uniforms.h"

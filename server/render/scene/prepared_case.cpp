@@ -1,4 +1,4 @@
-#include "render/prepared_case.h"
+#include "render/scene/prepared_case.h"
 
 #include <algorithm>
 #include <string>

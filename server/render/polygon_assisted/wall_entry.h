@@ -4,7 +4,7 @@
 
 #include "render/optics/leap_map.h"
 #include "render/optics/transfer_table.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 
 #include <cstdint>
 #include <vector>

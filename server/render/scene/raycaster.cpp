@@ -1,4 +1,4 @@
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 namespace haustra::render {
 

@@ -1,6 +1,6 @@
-#include "render/wall/polygon_assisted_raycaster.h"
+#include "render/polygon_assisted/polygon_assisted_raycaster.h"
 
-#include "render/gl/ray_setup.h"
+#include "render/scene/ray_setup.h"
 #include "render/wall/wall_projection.h"
 #include "shaders/shader_source.h"
 

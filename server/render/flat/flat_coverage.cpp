@@ -1,4 +1,4 @@
-#include "render/native/flat_coverage.h"
+#include "render/flat/flat_coverage.h"
 
 #include <algorithm>
 #include <cmath>

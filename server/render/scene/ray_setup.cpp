@@ -1,7 +1,7 @@
-#include "render/gl/ray_setup.h"
+#include "render/scene/ray_setup.h"
 
-#include "render/gl/stored_value.h"
 #include "render/optics/leap_map.h"
+#include "render/scene/stored_value.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Slices and flattened views of a case, whoever draws them.
 #pragma once
 
-#include "render/raycaster.h"
+#include "render/scene/raycaster.h"
 
 #include <cstddef>
 

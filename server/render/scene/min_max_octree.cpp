@@ -1,4 +1,4 @@
-#include "render/min_max_octree.h"
+#include "render/scene/min_max_octree.h"
 
 #include "core/parallel.h"
 

@@ -7,9 +7,9 @@
 #include "render/gl/gl_scene.h"
 #include "render/gl/march_variant.h"
 #include "render/gl/single_pass_raycaster.h"
-#include "render/lately_used.h"
-#include "render/raycaster.h"
-#include "render/wall/wall_entry.h"
+#include "render/polygon_assisted/wall_entry.h"
+#include "render/scene/lately_used.h"
+#include "render/scene/raycaster.h"
 
 #include <optional>
 

@@ -1,6 +1,6 @@
-#include "render/flat/flat_painter.h"
+#include "render/gl/flat_painter.h"
 
-#include "render/gl/stored_value.h"
+#include "render/scene/stored_value.h"
 #include "shaders/shader_source.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/flat/flat_surface.h"
+#include "render/gl/flat_surface.h"
 
 #include "shaders/uniforms.h"
 
