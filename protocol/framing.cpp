@@ -1,7 +1,5 @@
 #include "protocol/framing.h"
 
-#include <array>
-
 namespace haustra::protocol {
 namespace {
 
@@ -134,12 +132,6 @@ Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes) {
         (header.viewportHeight > 0 && header.viewportHeight < header.pictureHeight))
         return malformed("a tile's picture does not fit into its viewport");
     return header;
-}
-
-const char* raycasterName(std::uint8_t number) {
-    constexpr std::array names{"",      "native", "single-pass", "polygon-assisted", "object-order",
-                               "hybrid"};
-    return number < names.size() ? names[number] : "";
 }
 
 }  // namespace haustra::protocol

@@ -60,7 +60,7 @@ struct TileHeader {
     std::uint16_t x = 0, y = 0, width = 0, height = 0;
     std::uint32_t renderMicroseconds = 0, encodeMicroseconds = 0;
     std::uint32_t queueMicroseconds = 0;  ///< from the input's arrival to the start of rendering
-    std::uint8_t raycaster = 0;           ///< that draws the case (raycasterName); 0: not told
+    std::uint8_t raycaster = 0;  ///< that draws the case (wireId of core/raycasters.h); 0: not told
     /// The viewport that the picture fills; where it is coarse, larger than the picture. 0: not
     /// told, as large as the picture.
     std::uint16_t viewportWidth = 0, viewportHeight = 0;
@@ -71,9 +71,6 @@ inline constexpr std::size_t tileHeaderBytes = 56;
 void appendTileHeader(std::vector<std::uint8_t>& out, const TileHeader& header);
 /// Fails unless the tile lies within its picture and the picture within the bounds.
 Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes);
-
-/// "native" 1, "single-pass" 2, "polygon-assisted" 3, "object-order" 4, "hybrid" 5; else "".
-const char* raycasterName(std::uint8_t number);
 
 /// Lossless pictures: the MED (LOCO-I) prediction residual of a reversible colour transform,
 /// zstd-compressed (METHODS §3). `rgb` is width·height·3 bytes.

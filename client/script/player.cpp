@@ -1,5 +1,6 @@
 #include "script/player.h"
 
+#include "core/raycasters.h"
 #include "script/report.h"
 #include "tiles/png_file.h"
 
@@ -23,7 +24,7 @@ void count(ActionReport& report, const Arrival& arrival, Clock::time_point asked
     report.renderMicroseconds.push_back(picture.renderMicroseconds);
     report.encodeMicroseconds.push_back(picture.encodeMicroseconds);
     report.queueMicroseconds.push_back(picture.queueMicroseconds);
-    report.raycaster = protocol::raycasterName(picture.raycaster);
+    report.raycaster = raycasterName(picture.raycaster);
     report.coarse += picture.coarse;
     report.bytes += picture.wireBytes;
 }

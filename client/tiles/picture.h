@@ -17,7 +17,7 @@ struct Picture {
     std::size_t wireBytes = 0;   ///< payload bytes of all its tiles
     double decodeMs = 0.0;       ///< time that decoding its tiles took
     std::uint32_t renderMicroseconds = 0, encodeMicroseconds = 0, queueMicroseconds = 0;
-    std::uint8_t raycaster = 0;  ///< that drew it (protocol::raycasterName)
+    std::uint8_t raycaster = 0;  ///< that drew it (raycasterName of core/raycasters.h)
     bool coarse = false;         ///< smaller than its viewport, over which it is to be stretched
 };
 

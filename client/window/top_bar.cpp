@@ -1,5 +1,6 @@
 // The line along the top: which case, which server, how fast.
 #include "core/printed_text.h"
+#include "core/raycasters.h"
 #include "window/ui.h"
 #include "window/widgets.h"
 
@@ -88,7 +89,7 @@ void drawTopBar(Ui& ui, Rect area) {
     right = drawFigure(ui, list, right, middle, "pictures/s",
                        printed("%.0f", ui.reader.picturesPerSecond()), color::text);
     const tiles::Picture& shown = ui.reader.picture(reader::View::endoscopic);
-    const std::string raycaster = protocol::raycasterName(shown.raycaster);
+    const std::string raycaster = raycasterName(shown.raycaster);
     if (!raycaster.empty())
         right = drawFigure(ui, list, right, middle, raycaster.c_str(),
                            printed("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);

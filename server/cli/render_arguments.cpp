@@ -139,15 +139,13 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
             return "\"" + text + "\" is neither the name of a .json file nor a preset (" +
                    presetNames() + ")";
         });
-    addText(command, "--raycaster", "KIND",
-            "What casts the rays: single-pass, native (the CPU), polygon-assisted, object-order "
-            "or hybrid",
+    addText(command, "--raycaster", "KIND", "What casts the rays: " + raycasterNames(),
             [&my](const std::string& text) {
-                const auto kind = render::raycasterFromString(text);
+                const auto kind = raycasterFromString(text);
                 if (kind) my.raycaster = *kind;
                 return kind.has_value();
             })
-        ->default_str("single-pass");
+        ->default_str(toString(my.raycaster));
     command
         .add_option(
             "--gpu-budget", my.gpuBudgetMb,
@@ -341,7 +339,7 @@ void checkUsage(const RenderArguments& my) {
     if (!my.optics.empty() && !my.labels.empty())
         wrong("--tf", "a colour volume has colours of its own");
     if (my.gpuBudgetMb > 0.0 && my.labels.empty() &&
-        (!my.castsRays() || my.raycaster != render::RaycasterKind::objectOrder))
+        (!my.castsRays() || raycasterEntry(my.raycaster).volume != VolumeOnGpu::cells))
         wrong("--gpu-budget",
               "only the object-order raycaster has one; give --raycaster "
               "object-order");

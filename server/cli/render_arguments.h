@@ -42,7 +42,7 @@ struct RenderArguments {
 
     std::string optics;  ///< a preset's name or a file; empty: the view's own
     std::filesystem::path paint;
-    render::RaycasterKind raycaster = render::RaycasterKind::singlePass;
+    RaycasterKind raycaster = RaycasterKind::singlePass;
     double gpuBudgetMb = 0.0;
     std::filesystem::path labels;      ///< of a colour volume's voxels
     std::vector<int> shownLabels;      ///< empty: all

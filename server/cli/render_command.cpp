@@ -232,7 +232,7 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
         TRY(keep(render::readWallPaint(arguments.paint, products.flatMap->height), products.paint));
     if (bridged) TRY(keep(paintBridges(source, products.flatMap, products.paint), products.paint));
     if (view == View::overview ||
-        (arguments.castsRays() && arguments.raycaster == render::RaycasterKind::polygonAssisted))
+        (arguments.castsRays() && raycasterEntry(arguments.raycaster).needsWallMesh))
         TRY(keep(source.readMesh(), products.wall));
     return products;
 }

@@ -1,4 +1,5 @@
 // haustra-server: streams the store's cases to clients.
+#include "core/raycasters.h"
 #include "net/server.h"
 #include "store/durable_file.h"
 #include "store/lost_pages.h"
@@ -76,8 +77,8 @@ void addOptions(CLI::App& program, Arguments& arguments) {
     program
         .add_option("--raycaster", arguments.raycaster,
                     "What draws: auto tries those that work on this machine when a "
-                    "case is opened, for a moment, and takes the fastest; or native, "
-                    "single-pass, polygon-assisted, object-order, hybrid")
+                    "case is opened, for a moment, and takes the fastest; or " +
+                        haustra::raycasterNames())
         ->type_name("KIND")
         ->capture_default_str();
     program
@@ -135,7 +136,7 @@ int runProgram(int argc, char** argv) {
         arguments.server.listen = std::move(*listen);
         if (!arguments.presets.empty()) arguments.server.presets = arguments.presets;
         if (arguments.raycaster != automatic) {
-            const auto kind = haustra::render::raycasterFromString(arguments.raycaster);
+            const auto kind = haustra::raycasterFromString(arguments.raycaster);
             if (!kind) throw CLI::ValidationError("--raycaster", kind.error().message);
             arguments.server.drawing.raycaster = *kind;
         }

@@ -11,8 +11,10 @@
 #include "render/scene/case_pictures.h"
 #include "render/scene/lately_used.h"
 #include "render/wall/wall_index.h"
+#include "shaders/overview_uniforms.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <span>
@@ -43,7 +45,7 @@ Result<std::unique_ptr<Raycaster>> asRaycaster(Result<std::unique_ptr<T>> made) 
 /// Whether slices and flattened views are drawn on the CPU too: so that nothing asks for a copy of
 /// the whole volume on the GPU.
 bool picturesOnCpu(RaycasterKind kind) {
-    return kind == RaycasterKind::native || kind == RaycasterKind::objectOrder;
+    return !raycasterEntry(kind).needsWholeVolume();
 }
 
 }  // namespace
@@ -116,10 +118,8 @@ struct CaseRenderer::Impl {
                     {.budgetBytes = options.gpuBudgetBytes, .threads = options.threads}));
             case RaycasterKind::hybrid:
                 return asRaycaster(HybridRaycaster::create(glScene, {.threads = options.threads}));
-            default:
-                return fail(ErrorKind::device,
-                            std::string("no ") + toString(kind) + " raycaster is built in");
         }
+        std::abort();  // no such kind
     }
 
     Result<void> drawSlice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
@@ -218,7 +218,7 @@ RaycasterKind CaseRenderer::raycaster() const {
 Result<void> CaseRenderer::use(RaycasterKind kind) {
     Impl& my = *impl_;
     if (!my.raycasters.contains(kind)) {
-        if (my.scene->ranges.lowHu.empty() && kind != RaycasterKind::objectOrder)
+        if (my.scene->ranges.lowHu.empty() && raycasterEntry(kind).volume != VolumeOnGpu::cells)
             return fail(ErrorKind::device, "only the object-order raycaster draws so large a scan",
                         "render");
         TRY(my.makePictures(kind));
@@ -308,6 +308,24 @@ Result<void> CaseRenderer::render(const OverviewView& view, const Band& band, Im
     }
     TRY(my.overview->draw(view, band, *my.raycasters.at(my.used), picture));
     return view.paint ? my.paintWall(view.camera, *view.paint, band, picture) : Result<void>{};
+}
+
+CaseGpuBytes CaseRenderer::gpuBytesFor(const PreparedCase& prepared) {
+    const bool two = !prepared.cleansed.empty() &&
+                     prepared.cleansed.voxels().data() != prepared.ct.voxels().data();
+    CaseGpuBytes bytes;
+    bytes.volumes = prepared.ct.grid().voxelCount() * sizeof(std::int16_t) * (two ? 2 : 1);
+    bytes.rest = GlScene::classificationsKept * prepared.ranges.lowHu.size();
+    // The wall twice: from within, moved inwards, and from outside, with normals.
+    if (const auto& wall = prepared.wall)
+        bytes.rest +=
+            (sizeof(glm::vec4) + sizeof(shaders::OverviewVertex)) * wall->vertices.size() +
+            2 * sizeof(glm::ivec3) * wall->triangles.size();
+    if (const auto& map = prepared.flatMap)
+        bytes.rest += sizeof(shaders::FlatVertex) * map->flat.size() +
+                      sizeof(glm::ivec3) * map->surface.triangles.size() +
+                      sizeof(shaders::FlatEye) * map->cameras.size();
+    return bytes;
 }
 
 std::size_t CaseRenderer::gpuBytes() const {

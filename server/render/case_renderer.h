@@ -21,6 +21,14 @@ struct RendererOptions {
     int threads = 0;  ///< ≤ 0: all cores; changes no pixel
 };
 
+/// What a case comes to hold of the GPU's memory, as far as it grows with the case; targets of
+/// pictures and tables of transfer functions come on top.
+struct CaseGpuBytes {
+    std::size_t volumes = 0;  ///< of a raycaster that needs the whole volume there
+    std::size_t rest = 0;     ///< of any: leap maps, the wall, the flat map
+    std::size_t whole() const { return volumes + rest; }
+};
+
 /// Draws one case's volumes: the scan, for slices, and the cleansed scan, for the endoscopic view.
 /// The native raycaster reads them where they are, and so do slices and flattened views while it or
 /// the object-order one is used; the others have them copied to the GPU when first used. Belongs to
@@ -86,6 +94,8 @@ public:
     /// Of the last camera view.
     std::vector<PassTime> passTimes() const;
 
+    /// Of a case that is to be drawn.
+    static CaseGpuBytes gpuBytesFor(const PreparedCase& prepared);
     /// Bytes of GPU memory held: textures, meshes, tables, targets. Not counted are uniform blocks
     /// of some hundred bytes, and mapped memory, which is the CPU's (gpu::MappedBuffer).
     std::size_t gpuBytes() const;

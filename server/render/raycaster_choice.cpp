@@ -76,9 +76,19 @@ std::optional<RaycasterKind> RaycasterChoice::fastest() const {
 }
 
 std::vector<RaycasterKind> raycasterCandidates(bool softwareDevice) {
-    using enum RaycasterKind;
-    if (softwareDevice) return {native, singlePass, polygonAssisted, hybrid, objectOrder};
-    return {singlePass, polygonAssisted, hybrid, objectOrder, native};
+    std::vector<RaycasterEntry> entries(raycasters().begin(), raycasters().end());
+    // Cells that come and go are for volumes that do not fit; the CPU is better at what a device
+    // draws in software.
+    const auto cost = [&](const RaycasterEntry& entry) {
+        const bool onCpu = entry.processor == Processor::cpu;
+        return onCpu ? (softwareDevice ? 0 : 3) : entry.needsWholeVolume() ? 1 : 2;
+    };
+    std::stable_sort(entries.begin(), entries.end(),
+                     [&](const auto& a, const auto& b) { return cost(a) < cost(b); });
+    std::vector<RaycasterKind> kinds;
+    for (const RaycasterEntry& entry : entries)
+        kinds.push_back(entry.kind);
+    return kinds;
 }
 
 std::string describe(const std::vector<RaycasterTrial>& trials) {

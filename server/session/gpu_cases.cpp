@@ -11,8 +11,6 @@
 
 namespace haustra::session {
 
-using render::RaycasterKind;
-
 namespace {
 
 constexpr int trialSide = 256;  // pixels of the pictures that find the fastest raycaster
@@ -46,26 +44,10 @@ std::vector<render::CameraView> trialViews(const OpenCase& facts, int count) {
     return views;
 }
 
-bool needsWhole(RaycasterKind kind) {
-    return kind != RaycasterKind::native && kind != RaycasterKind::objectOrder;
-}
-
-// What a renderer comes to hold of a case in whole, as far as it grows with the case: volumes.
-std::size_t volumeBytes(const render::PreparedCase& prepared) {
-    const bool two = !prepared.cleansed.empty() &&
-                     prepared.cleansed.voxels().data() != prepared.ct.voxels().data();
-    return prepared.ct.grid().voxelCount() * sizeof(std::int16_t) * (two ? 2 : 1);
-}
-// And besides: leap maps of four transfer functions, the wall twice (from within, from outside),
-// the flat map.
-std::size_t otherBytes(const render::PreparedCase& prepared) {
-    std::size_t bytes = 4 * prepared.ranges.lowHu.size();
-    if (const auto& wall = prepared.wall)
-        bytes += 64 * wall->vertices.size() + 24 * wall->triangles.size();
-    if (const auto& map = prepared.flatMap)
-        bytes +=
-            48 * map->flat.size() + 12 * map->surface.triangles.size() + 32 * map->cameras.size();
-    return bytes;
+RaycasterKind firstThatKeeps(VolumeOnGpu volume) {
+    return std::find_if(raycasters().begin(), raycasters().end(),
+                        [&](const RaycasterEntry& entry) { return entry.volume == volume; })
+        ->kind;
 }
 
 }  // namespace
@@ -167,26 +149,27 @@ Result<GpuCases::Made> GpuCases::makeRenderer(render::PreparedCase prepared) {
     for (const Entry& entry : cases_)
         held.push_back({entry.renderer->gpuBytes(), !entry.leftAt,
                         entry.leftAt.value_or(Clock::time_point{})});
-    const std::size_t others = otherBytes(prepared), whole = volumeBytes(prepared) + others;
+    const render::CaseGpuBytes wanted = render::CaseRenderer::gpuBytesFor(prepared);
+    const std::size_t whole = wanted.whole();
     const Room room = makeRoom(held, options_.gpuBudgetBytes, whole);
     for (auto gone = room.released.rbegin(); gone != room.released.rend(); ++gone)
         cases_.erase(cases_.begin() + std::ptrdiff_t(*gone));
 
-    // Whoever is chosen later, the native raycaster costs nothing to begin with.
-    // A scan without block ranges is drawn in object order alone.
+    // Whoever is chosen later, one that keeps nothing on the GPU costs nothing to begin with. A
+    // scan without block ranges is drawn from cells alone.
     const RaycasterKind kind = options_.raycaster.value_or(
-        prepared.ranges.lowHu.empty() ? RaycasterKind::objectOrder : RaycasterKind::native);
+        firstThatKeeps(prepared.ranges.lowHu.empty() ? VolumeOnGpu::cells : VolumeOnGpu::none));
     const bool fits = whole <= room.freeBytes;
     render::RendererOptions how;
     how.raycaster = kind;
     if (options_.gpuBudgetBytes > 0) {
         // Cells get what the rest leaves, but half at least; 0 would have no bounds.
         how.gpuBudgetBytes =
-            std::max<std::size_t>(room.freeBytes - std::min(others, room.freeBytes / 2), 1);
+            std::max<std::size_t>(room.freeBytes - std::min(wanted.rest, room.freeBytes / 2), 1);
         how.gradientBudgetBytes =
             std::min(how.gradientBudgetBytes, fits ? room.freeBytes - whole : 0);
     }
-    if (!fits && needsWhole(kind))
+    if (!fits && raycasterEntry(kind).needsWholeVolume())
         return fail(ErrorKind::device,
                     "the GPU has no room for the case: it needs " + std::to_string(mib(whole)) +
                         " MiB, and " + std::to_string(mib(room.freeBytes)) + " of " +
@@ -201,7 +184,8 @@ std::vector<RaycasterKind> GpuCases::candidates(bool fits) const {
     if (options_.gpuBudgetBytes == 0) return kinds;
     // Within a budget cells make sense where the whole does not fit, and nothing else does.
     std::erase_if(kinds, [&](RaycasterKind kind) {
-        return fits ? kind == RaycasterKind::objectOrder : needsWhole(kind);
+        const VolumeOnGpu volume = raycasterEntry(kind).volume;
+        return volume == (fits ? VolumeOnGpu::cells : VolumeOnGpu::whole);
     });
     return kinds;
 }

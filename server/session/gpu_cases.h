@@ -19,8 +19,8 @@ namespace haustra::session {
 
 /// How cases are drawn.
 struct DrawingOptions {
-    std::optional<render::RaycasterKind> raycaster;  ///< none: the fastest, found by trying
-    std::size_t gpuBudgetBytes = 0;                  ///< for all cases; 0: what the device has
+    std::optional<RaycasterKind> raycaster;  ///< none: the fastest, found by trying
+    std::size_t gpuBudgetBytes = 0;          ///< for all cases; 0: what the device has
 };
 
 /// A case on the GPU, as far as its memory is concerned.
@@ -93,7 +93,7 @@ private:
         bool fits;  ///< there is room for the whole volume
     };
     Result<Made> makeRenderer(render::PreparedCase prepared);
-    std::vector<render::RaycasterKind> candidates(bool fits) const;
+    std::vector<RaycasterKind> candidates(bool fits) const;
     const Entry* entryOf(const std::shared_ptr<const OpenCase>& of) const;
     std::shared_ptr<const OpenCase> lend(const OpenCase& facts) const;
     /// For the log: what was tried, and what was not, and why.

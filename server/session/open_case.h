@@ -31,7 +31,7 @@ struct OpenCase {
     bool cleansed = false;             ///< the endoscopic view shows the cleansed scan, slices can
     std::shared_ptr<const Wall> wall;  ///< empty where the case has not been flattened
     /// What draws it, and what was measured to choose it (nothing where it was not).
-    render::RaycasterKind raycaster = render::RaycasterKind::singlePass;
+    RaycasterKind raycaster = RaycasterKind::singlePass;
     std::vector<render::RaycasterTrial> trials;
 };
 

@@ -117,7 +117,7 @@ struct RenderThread::Drawing {
         protocol::TileHeader header = frame.job.header;
         header.queueMicroseconds = microseconds(msBetween(frame.job.inputAt, frame.begunAt));
         header.renderMicroseconds = microseconds(frame.spentMs);
-        if (renderer) header.raycaster = std::uint8_t(1 + int(renderer->raycaster()));
+        if (renderer) header.raycaster = raycasterEntry(renderer->raycaster()).wireId;
         if (drawn)
             frame.job.done(header, std::move(frame.picture));
         else

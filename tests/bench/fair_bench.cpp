@@ -1,5 +1,6 @@
 // Readers who fly through one case at once, each by a connection of its own to a real server: how
 // many pictures each gets, and what of the GPU. Needs HAUSTRA_BIN, the folder of the programs.
+#include "core/raycasters.h"
 #include "end_to_end/server_process.h"
 #include "end_to_end/server_test_client.h"
 #include "stopwatch.h"
@@ -112,7 +113,7 @@ void run(const char* title, std::uint16_t port, const std::string& caseName,
             one.gpuMs / std::max(one.pictures, 1), median(one.latencyMs), one.restMs, widths);
     }
     fmt::print("  together {:.1f} pictures/s, GPU {:.0f} %, by the {} raycaster\n\n", all / seconds,
-               0.1 * used / seconds, protocol::raycasterName(flown.front().raycaster));
+               0.1 * used / seconds, raycasterName(flown.front().raycaster));
     std::fflush(stdout);
 }
 

@@ -174,7 +174,7 @@ Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
 
 Result<void> timeCase(const std::string& store, const std::string& name, const std::string& preset,
                       const std::string& raycaster) {
-    const auto kind = render::raycasterFromString(raycaster);
+    const auto kind = raycasterFromString(raycaster);
     if (!kind) return tl::make_unexpected(kind.error());
     const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
         return s.openCase(name);

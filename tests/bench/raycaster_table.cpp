@@ -48,11 +48,9 @@ double psnr(const Image& a, const Image& b) {
 std::vector<Contestant> contestants(render::CaseRenderer& renderer,
                                     [[maybe_unused]] const Volume<std::int16_t>& shown,
                                     [[maybe_unused]] const Arguments& given) {
-    using render::RaycasterKind;
     std::vector<Contestant> all;
-    for (const RaycasterKind kind :
-         {RaycasterKind::native, RaycasterKind::singlePass, RaycasterKind::polygonAssisted,
-          RaycasterKind::objectOrder, RaycasterKind::hybrid}) {
+    for (const RaycasterEntry& entry : raycasters()) {
+        const RaycasterKind kind = entry.kind;
         if (const auto made = renderer.use(kind); !made) {
             fmt::print("{}: {}\n", toString(kind), describe(made.error()));
             continue;
@@ -101,7 +99,7 @@ Result<void> table(const Arguments& given) {
     if (!context) return tl::make_unexpected(context.error());
     const auto renderer = render::CaseRenderer::upload(
         **context, std::move(*prepared),
-        {.raycaster = render::RaycasterKind::native, .threads = given.threads});
+        {.raycaster = RaycasterKind::native, .threads = given.threads});
     if (!renderer) return tl::make_unexpected(renderer.error());
     fmt::print("{} ({}), {}, {} places\n", (*context)->renderer(), (*context)->platform(),
                given.preset, given.places);

@@ -23,8 +23,6 @@
 namespace haustra {
 namespace {
 
-using render::RaycasterKind;
-
 std::size_t residentMib() {
     std::size_t total = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> total >> resident;
@@ -211,13 +209,12 @@ int soak(int argc, char** argv) {
         auto renderer = render::CaseRenderer::upload(**context, std::move(*prepared), options);
         if (!renderer) return broken(renderer.error());
         std::vector<RaycasterKind> kinds;
-        for (int kind = 0; kind <= int(RaycasterKind::hybrid); ++kind) {
-            const auto used = (*renderer)->use(RaycasterKind(kind));
+        for (const RaycasterEntry& entry : raycasters()) {
+            const auto used = (*renderer)->use(entry.kind);
             if (used)
-                kinds.push_back(RaycasterKind(kind));
+                kinds.push_back(entry.kind);
             else if (lifetime == 0)
-                fmt::print("no {} raycaster: {}\n", toString(RaycasterKind(kind)),
-                           describe(used.error()));
+                fmt::print("no {} raycaster: {}\n", entry.name, describe(used.error()));
         }
         if (kinds.empty()) return broken({ErrorKind::device, "no raycaster can be made", ""});
         std::vector<Kept> kept;

@@ -1,5 +1,6 @@
 // The flattened views of the real haustra-server, and its answers about the wall, on a tube whose
 // conformal map is known.
+#include "core/raycasters.h"
 #include "end_to_end/flat_store.h"
 #include "end_to_end/server_test_client.h"
 #include "gpu/context.h"
@@ -205,8 +206,7 @@ TEST_F(ServerFlatTest, PicturesAreTheRenderersOwnPixels) {
     ASSERT_TRUE(picture);
     EXPECT_TRUE(picture->header.exact);
     EXPECT_EQ(picture->header.sequence, 2u);
-    const auto kind =
-        render::raycasterFromString(protocol::raycasterName(picture->header.raycaster));
+    const auto kind = raycasterFromString(raycasterName(picture->header.raycaster));
     ASSERT_TRUE(kind && (*renderer)->use(*kind));
     auto image = (*renderer)->render(render::FlatView{{{0.25, 0.4}, 220.0}, mucosa, {}}, 150, 120);
     ASSERT_TRUE(image);

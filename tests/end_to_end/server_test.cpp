@@ -1,4 +1,5 @@
 // The real haustra-server on a small store, by TLS on the loopback.
+#include "core/raycasters.h"
 #include "end_to_end/server_process.h"
 #include "end_to_end/server_test_client.h"
 #include "gpu/context.h"
@@ -345,8 +346,8 @@ TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     EXPECT_EQ(picture->header.pictureWidth, 531);
     EXPECT_FALSE(picture->header.coarse());
     const std::uint8_t drawnBy = picture->header.raycaster;
-    ASSERT_STRNE(protocol::raycasterName(drawnBy), "");
-    const auto kind = render::raycasterFromString(protocol::raycasterName(drawnBy));
+    ASSERT_STRNE(raycasterName(drawnBy), "");
+    const auto kind = raycasterFromString(raycasterName(drawnBy));
     ASSERT_TRUE(kind && (*renderer)->use(*kind)) << int(drawnBy);
     auto image = (*renderer)->render(endoscopic, 531, 300);
     ASSERT_TRUE(image);

@@ -49,7 +49,7 @@ std::size_t deviceBytes() {
     return bytes;
 }
 
-class GpuMemory : public Drawing, public testing::WithParamInterface<RaycasterKind> {};
+class GpuMemory : public Drawing, public testing::WithParamInterface<RaycasterEntry> {};
 
 TEST_P(GpuMemory, IsAllCounted) {
     const Grid grid = obliqueGrid({96, 90, 110}, {0.4, 0.4, 0.4});
@@ -59,13 +59,21 @@ TEST_P(GpuMemory, IsAllCounted) {
     prepared->wall = std::make_shared<const TriMesh>(std::move(tube.wall));
     prepared->flatMap = std::make_shared<const FlatMap>(std::move(tube.map));
 
+    const CaseGpuBytes wanted = CaseRenderer::gpuBytesFor(*prepared);
+    EXPECT_EQ(wanted.volumes, 2u * 2u * grid.voxelCount()) << "before and after cleansing";
     ASSERT_EQ(deviceBytes(), 0u);
-    auto renderer = CaseRenderer::upload(*context, std::move(*prepared), {.raycaster = GetParam()});
+    auto renderer =
+        CaseRenderer::upload(*context, std::move(*prepared), {.raycaster = GetParam().kind});
     ASSERT_TRUE(renderer);
     const auto expectCounted = [&](const char* when) {
         EXPECT_EQ((*renderer)->gpuBytes(), deviceBytes()) << when;
     };
     expectCounted("made");
+    if (GetParam().needsWholeVolume()) {
+        EXPECT_GE(deviceBytes(), wanted.volumes);
+    } else if (GetParam().volume == VolumeOnGpu::none) {
+        EXPECT_EQ(deviceBytes(), 0u);
+    }
     const auto drawAll = [&](const char* preset) {
         CameraView camera;
         camera.optics = *opticsPreset(preset);
@@ -94,8 +102,9 @@ TEST_P(GpuMemory, IsAllCounted) {
 
     // And what was only tried is let go of.
     const std::size_t before = deviceBytes();
-    ASSERT_TRUE((*renderer)->use(GetParam() == RaycasterKind::native ? RaycasterKind::singlePass
-                                                                     : RaycasterKind::native));
+    ASSERT_TRUE((*renderer)->use(GetParam().kind == RaycasterKind::native
+                                     ? RaycasterKind::singlePass
+                                     : RaycasterKind::native));
     expectCounted("two raycasters");
     EXPECT_GE(deviceBytes(), before);
     (*renderer)->keepOnlyUsed();
@@ -105,11 +114,9 @@ TEST_P(GpuMemory, IsAllCounted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GpuMemory,
-                         testing::Values(RaycasterKind::native, RaycasterKind::singlePass,
-                                         RaycasterKind::polygonAssisted, RaycasterKind::objectOrder,
-                                         RaycasterKind::hybrid),
-                         [](const auto& kind) {
-                             std::string name = toString(kind.param);
+                         testing::ValuesIn(raycasters().begin(), raycasters().end()),
+                         [](const auto& entry) {
+                             std::string name = entry.param.name;
                              std::erase(name, '-');
                              return name;
                          });

@@ -52,7 +52,7 @@ const std::map<std::string, Names>& allowed() {
         {"shaders", {}},
         {"server/gpu", {}},
         {"server/render",
-         {"gpu", "render/flat", "render/gl", "render/hybrid", "render/native",
+         {"gpu", "shaders", "render/flat", "render/gl", "render/hybrid", "render/native",
           "render/object_order", "render/optics", "render/overview", "render/polygon_assisted",
           "render/scene", "render/wall"}},
         {"server/render/optics", {"gpu", "shaders"}},

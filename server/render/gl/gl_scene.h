@@ -24,6 +24,9 @@ Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int thread
 /// Belongs to the thread of the context, which must be current and outlive it.
 class GlScene {
 public:
+    /// Each holds a leap map, a byte a block.
+    static constexpr std::size_t classificationsKept = 4;
+
     /// 2 bytes a voxel on the GPU, and those of the gradients if they are at most
     /// `gradientBudgetBytes`. Fails as uploadVolume does.
     static Result<std::unique_ptr<GlScene>> upload(gpu::Context& context,
@@ -56,8 +59,6 @@ private:
             std::size_t gradientBudgetBytes, gpu::Texture volume, gpu::UniformBuffer marchBlock);
     Result<gpu::Texture> makeGradients();
 
-    // Each holds a leap map, a byte for eight voxels.
-    static constexpr std::size_t classificationsKept = 4;
     gpu::Context& context_;
     std::shared_ptr<const Scene> scene_;
     int threads_;

@@ -2,33 +2,6 @@
 
 namespace haustra::render {
 
-const char* toString(RaycasterKind kind) {
-    switch (kind) {
-        case RaycasterKind::native:
-            return "native";
-        case RaycasterKind::singlePass:
-            return "single-pass";
-        case RaycasterKind::polygonAssisted:
-            return "polygon-assisted";
-        case RaycasterKind::objectOrder:
-            return "object-order";
-        case RaycasterKind::hybrid:
-            return "hybrid";
-    }
-    return "";
-}
-
-Result<RaycasterKind> raycasterFromString(const std::string& text) {
-    std::string names;
-    for (const RaycasterKind kind :
-         {RaycasterKind::native, RaycasterKind::singlePass, RaycasterKind::polygonAssisted,
-          RaycasterKind::objectOrder, RaycasterKind::hybrid}) {
-        if (text == toString(kind)) return kind;
-        names += std::string(names.empty() ? "" : ", ") + toString(kind);
-    }
-    return fail(ErrorKind::badInput, "no raycaster named '" + text + "' (" + names + ")");
-}
-
 Result<void> checkPictureSize(glm::ivec2 size) {
     if (size.x >= 1 && size.y >= 1 && size.x <= maxPictureSide && size.y <= maxPictureSide)
         return {};

@@ -3,6 +3,7 @@
 // interpolation, classification and light are the same (optics.h).
 #pragma once
 
+#include "core/raycasters.h"
 #include "core/result.h"
 #include "render/view.h"
 
@@ -11,18 +12,6 @@
 #include <vector>
 
 namespace haustra::render {
-
-enum class RaycasterKind {
-    native,           ///< ray packets on the CPU's vector units; needs no GPU
-    singlePass,       ///< image order, one compute pass, leaping over empty blocks
-    polygonAssisted,  ///< rays start at the wall's rasterised mesh (§6.3.1)
-    objectOrder,      ///< cells in layers, resident in a bounded GPU pool (§5.2)
-    hybrid,           ///< rays found and ended on the CPU, integrated in slabs on the GPU (§5.3)
-};
-const char* toString(RaycasterKind kind);
-/// "native", "single-pass", "polygon-assisted", "object-order", "hybrid"; fails (badInput) and
-/// names them.
-Result<RaycasterKind> raycasterFromString(const std::string& text);
 
 /// Some rows of a picture: a frame may be drawn in several bands, and left unfinished. Whatever
 /// the bands, the pixels are the same.
