@@ -5,10 +5,6 @@ layout(rgba32f, binding = 1) uniform readonly image2D rays;
 
 void main() {
     ivec2 pixel = ivec2(gl_WorkGroupID.xy * gl_WorkGroupSize.xy) + pixelOfLane(gl_LocalInvocationIndex);
-    vec4 sum = imageLoad(rays, pixel);
-#if COMPOSITION == MAXIMUM_INTENSITY
-    vec4 here = classify(sum.x, 0.0);
-    sum = mayShow(sum.x) ? vec4(here.rgb * here.a, here.a) : vec4(0.0);
-#endif
+    vec4 sum = finished(imageLoad(rays, pixel));
     if (all(lessThan(pixel, imageSize(picture)))) imageStore(picture, pixel, pixelColor(sum, backdropOf(pixel).rgb));
 }

@@ -2,21 +2,23 @@
 #ifdef __cplusplus
 #pragma once
 
-#include <glm/glm.hpp>
+#include "shaders/uniforms.h"
 
 namespace haustra::shaders {
-using vec4 = glm::vec4;
-using ivec4 = glm::ivec4;
 #endif
 
 /// What is the same for all cells of a frame.
 struct CellUniforms {
-    vec4 voxels;         ///< xyz: of the volume; w: voxels along a slot's side
-    vec4 atlasPerVoxel;  ///< xyz: 1 / texels of the atlas, powers of two
-    vec4 cellsPerUnit;  ///< xyz: cells along the whole texture space, voxels / side; w: −½ / side
-    vec4 eye;           ///< xyz: the eye in cells; w: 1 where all rays begin there
-    ivec4 lastCell;     ///< xyz: highest cell index; w: items of this dispatch
-    ivec4 tiles;        ///< xy: tiles along the band
+    vec3 voxels;           ///< of the volume
+    float slotSide;        ///< voxels
+    vec4 atlasPerVoxel;    ///< xyz: 1 / texels of the atlas, powers of two
+    vec3 cellsPerUnit;     ///< cells along the whole texture space, voxels / side
+    float firstCell;       ///< cell coordinate of texture coordinate 0: −½ / side
+    vec3 eye;              ///< in cells
+    float raysBeginAtEye;  ///< 1 where all rays do, else 0
+    ivec3 lastCell;        ///< highest cell index
+    int items;             ///< of this dispatch
+    ivec4 tiles;           ///< xy: tiles along the band
 };
 
 /// A cell that is on the GPU.

@@ -1,8 +1,11 @@
-// Rays among cells (dissertation §5.2): which samples of a ray belong to a cell, and what is in it.
+// Rays among cells (dissertation §5.2): which samples of a ray belong to a cell, and, in place of
+// volume.glsl, what is in it.
 #ifndef COLOR_CELLS
 #define COLOR_CELLS 0
 #endif
 layout(std140, binding = 3) uniform CellBlock { CellUniforms cells; };
+// The slots of all cells.
+layout(binding = 0) uniform sampler3D volume;
 
 // The first n beyond the face before cell k + side, where a ray's coordinate is `start` at n = 0.
 // `precise`: two cells must find the same number for the face between them.
@@ -15,8 +18,8 @@ float faceAt(float k, float start, float inverseStep) {
 // belongs to one cell: to the one that the ray is in when it has passed a face at or before it.
 // The outermost cells hold what is beyond them.
 vec2 samplesInCell(Ray ray, ivec3 cell) {
-    vec3 start = cells.eye.w == 1.0 ? cells.eye.xyz : ray.origin * cells.cellsPerUnit.xyz + cells.cellsPerUnit.w;
-    vec3 step = ray.step * cells.cellsPerUnit.xyz;
+    vec3 start = cells.raysBeginAtEye == 1.0 ? cells.eye : ray.origin * cells.cellsPerUnit + cells.firstCell;
+    vec3 step = ray.step * cells.cellsPerUnit;
     step = mix(step, vec3(1e-12), equal(step, vec3(0.0)));
     vec3 inverse = 1.0 / step;
     vec2 samples = vec2(0.0, 1e30);
@@ -31,35 +34,43 @@ vec2 samplesInCell(Ray ray, ivec3 cell) {
     return samples;
 }
 
+// The cell that this invocation samples.
+CellInSlot cell = CellInSlot(ivec4(0), vec4(0.0), vec4(0.0));
+
 // Places in a slot lie on a lattice of 1/4096 voxel, to which they are rounded before the slot counts:
 // then all that follows is exact, whichever slot the cell is in and however far it reaches beyond
 // the cell, for the atlas has sides of powers of two.
-vec3 inSlot(vec3 position, CellInSlot cell) {
-    precise vec3 voxel = position * cells.voxels.xyz;
+vec3 inSlot(vec3 position) {
+    precise vec3 voxel = position * cells.voxels;
     precise vec3 onLattice = floor(voxel * 4096.0 + 0.5) * (1.0 / 4096.0);
     return onLattice - cell.corner.xyz;
 }
-vec3 atlasPlace(vec3 inSlot, CellInSlot cell) { return (inSlot + cell.slot.xyz) * cells.atlasPerVoxel.xyz; }
-
-vec4 texelInSlot(vec3 place, CellInSlot cell) { return textureLod(volume, atlasPlace(place, cell), 0.0); }
-
-// The value whose gradient makes surfaces: of colour volumes, the opacity.
-float storedInSlot(vec3 place, CellInSlot cell) {
-#if COLOR_CELLS
-    return texelInSlot(place, cell).a;
-#else
-    return texelInSlot(place, cell).r;
-#endif
+vec4 texelInSlot(vec3 place) {
+    return textureLod(volume, (place + cell.slot.xyz) * cells.atlasPerVoxel.xyz, 0.0);
 }
-float storedIn(CellInSlot cell, vec3 position) { return storedInSlot(inSlot(position, cell), cell); }
 
-// As gradientAt; what would be read beyond the slot has no weight, and is not another cell's.
-vec3 gradientIn(CellInSlot cell, vec3 position) {
-    vec3 place = inSlot(position, cell);
+#if COLOR_CELLS
+// Voxels have colours of their own, as displayed, and opacity for 1 mm, whose gradient makes surfaces.
+#define SAMPLE vec4
+float valueInSlot(vec3 place) { return texelInSlot(place).a; }
+SAMPLE sampleAt(vec3 position) { return texelInSlot(inSlot(position)); }
+bool mayShow(SAMPLE texel) { return texel.a > 0.0; }
+vec4 classify(SAMPLE texel, float slope) {
+    return vec4(linearOf(texel.rgb), 1.0 - pow(max(1.0 - texel.a, 0.0), u.stepMm));
+}
+#else
+#define SAMPLE float
+float valueInSlot(vec3 place) { return texelInSlot(place).r; }
+SAMPLE sampleAt(vec3 position) { return valueInSlot(inSlot(position)); }
+#endif
+
+// As in volume.glsl; what would be read beyond the slot has no weight, and is not another cell's.
+vec3 gradientAt(vec3 position) {
+    vec3 place = inSlot(position);
     vec3 low = max(place - 1.0, 0.5);
-    vec3 high = min(place + 1.0, cells.voxels.w - 0.5);
-    vec3 differences = vec3(storedInSlot(vec3(high.x, place.yz), cell) - storedInSlot(vec3(low.x, place.yz), cell),
-                            storedInSlot(vec3(place.x, high.y, place.z), cell) - storedInSlot(vec3(place.x, low.y, place.z), cell),
-                            storedInSlot(vec3(place.xy, high.z), cell) - storedInSlot(vec3(place.xy, low.z), cell));
-    return differences * cells.voxels.xyz;
+    vec3 high = min(place + 1.0, cells.slotSide - 0.5);
+    vec3 differences = vec3(valueInSlot(vec3(high.x, place.yz)) - valueInSlot(vec3(low.x, place.yz)),
+                            valueInSlot(vec3(place.x, high.y, place.z)) - valueInSlot(vec3(place.x, low.y, place.z)),
+                            valueInSlot(vec3(place.xy, high.z)) - valueInSlot(vec3(place.xy, low.z)));
+    return differences * cells.voxels;
 }

@@ -5,11 +5,11 @@ layout(r32f, binding = 1) uniform writeonly image2D firstStep;
 
 void main() {
     ivec2 tile = tileOfGroup() * ivec2(gl_WorkGroupSize.xy) + ivec2(gl_LocalInvocationID.xy);
-    float side = float(u.lastBlock.w);
+    float side = float(u.coneTileSide);
     vec2 low = vec2(tile) * side;
     Ray axis = rayThrough(low + 0.5 * side);
     vec2 inside = insideRange(axis);
-    vec3 step = axis.step * u.blocksPerUnit.xyz;
+    vec3 step = axis.step * u.blocksPerUnit;
     // How fast the rays at the tile's corners leave the axis, in blocks a step; of an orthographic
     // lens, how far they are from it. Directions between corners stay within this but for their
     // curvature: a twentieth more covers it where they do not differ much.
@@ -18,8 +18,8 @@ void main() {
     float leastCosine = 1.0;
     for (int corner = 0; corner < 4; ++corner) {
         Ray ray = rayThrough(low + side * vec2(corner & 1, corner >> 1));
-        spread = max(spread, abs(ray.step * u.blocksPerUnit.xyz - step));
-        beside = max(beside, abs((ray.origin - axis.origin) * u.blocksPerUnit.xyz));
+        spread = max(spread, abs(ray.step * u.blocksPerUnit - step));
+        beside = max(beside, abs((ray.origin - axis.origin) * u.blocksPerUnit));
         leastCosine = min(leastCosine, dot(ray.directionMm, axis.directionMm));
     }
     float widening = 1.05 * max(spread.x, max(spread.y, spread.z));

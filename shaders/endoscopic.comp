@@ -10,8 +10,8 @@ void main() {
     Ray ray = rayThrough(center);
     vec2 inside = insideRange(ray);
     vec4 behindRay = backdropOf(pixel);
-    float tileStart = texelFetch(firstStep, pixel / u.lastBlock.w, 0).r;
-    float end = isInPicture(center) ? floor(min(inside.y, behindRay.w / u.stepping.x)) : -1.0;
+    float tileStart = texelFetch(firstStep, pixel / u.coneTileSide, 0).r;
+    float end = isInPicture(center) ? floor(min(inside.y, behindRay.w / u.stepMm)) : -1.0;
     vec4 sum = march(ray, max(ceil(inside.x), tileStart), end);
     if (all(lessThan(pixel, imageSize(picture)))) imageStore(picture, pixel, pixelColor(sum, behindRay.rgb));
 }

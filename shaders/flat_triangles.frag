@@ -2,4 +2,4 @@
 flat in int stripCopy;
 layout(location = 0) out ivec2 triangle;
 
-void main() { triangle = ivec2(flatWindow.picture.z + gl_PrimitiveID, stripCopy); }
+void main() { triangle = ivec2(flatWindow.firstTriangle + gl_PrimitiveID, stripCopy); }

@@ -29,7 +29,7 @@ void main() {
     vec2 inside = insideRange(ray);
     float first = max(span.x, ceil(inside.x));
     float slab = span.x + float(quad.y) * slabSamples;
-    float end = min(span.y, floor(min(inside.y, backdropOf(pixel).w / u.stepping.x)));
+    float end = min(span.y, floor(min(inside.y, backdropOf(pixel).w / u.stepMm)));
     end = isInPicture(center) ? end : -1.0;
     end = samples > 0u ? min(end, slab + float(samples) - 1.0) : end;
     vec4 before = imageLoad(rays, pixel);

@@ -33,9 +33,9 @@ layout(binding = 5) uniform sampler1D integralTable;
 
 // Colour and opacity of a sample. `slope` is the length of its normal.
 vec4 classify(float stored, float slope) {
-    float entry = stored * u.visibleRange.z + u.visibleRange.w;
+    float entry = stored * u.entryScale + u.entryBias;
 #if GRADIENT_ROWS
-    return textureLod(transferTable, vec2(entry, slope * u.slopes.x + u.slopes.y), 0.0);
+    return textureLod(transferTable, vec2(entry, slope * u.rowScale + u.rowBias), 0.0);
 #else
     return textureLod(transferTable, entry, 0.0);
 #endif
@@ -54,7 +54,7 @@ vec4 integralTo(float entry) {
 // count as an entry apart, lest their difference drown in rounding.
 vec4 classifySegment(float front, float back) {
     float last = float(textureSize(integralTable, 0) - 1);
-    vec2 ends = (vec2(front, back) * u.visibleRange.z + u.visibleRange.w) * (last + 1.0) - 0.5;
+    vec2 ends = (vec2(front, back) * u.entryScale + u.entryBias) * (last + 1.0) - 0.5;
     float middle = 0.5 * (ends.x + ends.y);
     float reach = 0.5 * max(abs(ends.y - ends.x), 1.0);
     vec4 between = max(integralTo(middle + reach) - integralTo(middle - reach), 0.0);
@@ -64,17 +64,17 @@ vec4 classifySegment(float front, float back) {
 #endif
 
 // Whether a stored value may be visible, or first hit; of a 2-D table, at some gradient.
-bool mayShow(float stored) { return stored > u.visibleRange.x && stored < u.visibleRange.y; }
+bool mayShow(float stored) { return stored > u.visibleAbove && stored < u.visibleBelow; }
 // The same of a segment.
 bool mayShow(float front, float back) {
-    return max(front, back) > u.visibleRange.x && min(front, back) < u.visibleRange.y;
+    return max(front, back) > u.visibleAbove && min(front, back) < u.visibleBelow;
 }
 
 // A gradient, differences over two voxels as gradientAt gives it, in the patient: it transforms by
 // the inverse transpose of patientFromTexture. Twice as long as the slope in stored value per mm.
 vec3 normalOf(vec3 gradientTexture) {
-    return gradientTexture.x * u.textureRowX.xyz + gradientTexture.y * u.textureRowY.xyz +
-           gradientTexture.z * u.textureRowZ.xyz;
+    return gradientTexture.x * u.textureRowX + gradientTexture.y * u.textureRowY +
+           gradientTexture.z * u.textureRowZ;
 }
 
 // A lamp, seen from where it hangs, `n` steps away; colours are linear light, `lightMm` is unit.
@@ -83,11 +83,11 @@ vec3 shade(vec3 color, vec3 normal, vec3 lightMm, float n) {
     // Light comes along the line of sight, so N·L = N·V = R·V's half angle; both faces are lit. Where
     // the volume is flat there is no surface, and nothing to shade.
     float facing = slope > 1e-20 ? abs(dot(normal, lightMm)) * inversesqrt(slope) : 1.0;
-    float depth = n * u.stepping.x / u.stepping.w;
+    float depth = n * u.stepMm / u.lightHalvesMm;
     float falloff = 1.0 / (1.0 + depth * depth);
     float mirror = max(2.0 * facing * facing - 1.0, 0.0);
-    float highlight = slope > 1e-20 ? u.light.z * pow(mirror, u.light.w) : 0.0;
-    return falloff * (color * (u.light.x + u.light.y * facing) + highlight);
+    float highlight = slope > 1e-20 ? u.specular * pow(mirror, u.shininess) : 0.0;
+    return falloff * (color * (u.ambient + u.diffuse * facing) + highlight);
 }
 
 // Front to back, equation 5.1: `sum` with what lies behind it.
@@ -96,10 +96,23 @@ vec4 behind(vec4 sum, vec3 color, float opacity) {
     return sum + vec4(share * color, share);
 }
 
-// sRGB's transfer curve (IEC 61966-2-1).
-vec3 displayed(vec3 linear) {
-    vec3 c = clamp(linear, 0.0, 1.0);
-    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
+// Whether a ray goes on that has gathered this: of maximum intensity x is the greatest value.
+bool isLive(vec4 sum) {
+#if COMPOSITION == MAXIMUM_INTENSITY
+    return sum.x < u.lastVisible;
+#else
+    return sum.a < u.terminationOpacity;
+#endif
+}
+
+// What a ray has gathered at its end.
+vec4 finished(vec4 sum) {
+#if COMPOSITION == MAXIMUM_INTENSITY
+    vec4 here = classify(sum.x, 0.0);
+    return mayShow(sum.x) ? vec4(here.rgb * here.a, here.a) : vec4(0.0);
+#else
+    return sum;
+#endif
 }
 
 // What a ray's pixel shows: its sum, before the linear light that comes from behind.
@@ -107,7 +120,7 @@ vec4 pixelColor(vec4 sum, vec3 backdrop) {
     vec3 color = sum.rgb + (1.0 - sum.a) * backdrop;
 #if COMPOSITION != MAXIMUM_INTENSITY
     // A ray that was ended early counts as opaque, or its pixel would be darker than its neighbours.
-    color = sum.a >= u.stepping.y ? sum.rgb / sum.a : color;
+    color = sum.a >= u.terminationOpacity ? sum.rgb / sum.a : color;
 #endif
     return vec4(displayed(color), 1.0);
 }

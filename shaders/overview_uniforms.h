@@ -11,18 +11,23 @@ namespace haustra::shaders {
 /// How the colon is seen from outside.
 struct OverviewUniforms {
     vec4 clipRowX, clipRowY, clipRowZ, clipRowW;  ///< clip coordinates of a place
-    vec4 eye;      ///< xyz: the camera; w: 1 where rays start at it, 0 at its plane
-    vec4 forward;  ///< xyz: unit, the camera's axis
-    vec4 light;    ///< xyz: unit, towards the lamp; w: how dark the farthest wall is
-    vec4 depth;    ///< x: where the wall begins before the camera, y: 1 / its depth; z: how far
-                   ///< behind a wall marks fade
+    vec3 eye;                                     ///< the camera
+    float raysBeginAtEye;                         ///< 1 where they do, 0 where they do at its plane
+    vec3 forward;                                 ///< unit, the camera's axis
+    float wallBegins;                             ///< so far before the camera
+    vec3 light;                                   ///< unit, towards the lamp
+    float farthestShare;                          ///< how dark the farthest wall is
+    float perWallDepth;                           ///< 1 / the wall's depth
+    float fadeMm;                                 ///< how far behind a wall marks fade
+    float unused, unused2;
 };
 
 /// A vertex of the wall, or of a mark.
 struct OverviewVertex {
-    vec4 placeMm;  ///< w: of a mark, what shows of it far behind a wall, 0…1
-    vec4 normal;   ///< xyz: unit, outwards
-    vec4 color;    ///< rgb: linear
+    vec3 placeMm;
+    float shownBehind;  ///< of a mark, what shows of it far behind a wall, 0…1
+    vec4 normal;        ///< xyz: unit, outwards
+    vec4 color;         ///< rgb: linear
 };
 
 #ifdef __cplusplus

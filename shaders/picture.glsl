@@ -32,7 +32,7 @@ ivec2 tileOfGroup() {
 // What lies behind a pixel of the band.
 vec4 backdropOf(ivec2 pixel) {
 #if BACKDROP
-    return texelFetch(backdrop, pixel + ivec2(0, u.pictureSize.w), 0);
+    return texelFetch(backdrop, pixel + ivec2(0, u.firstRow), 0);
 #else
     return vec4(0.0, 0.0, 0.0, 1e30);
 #endif

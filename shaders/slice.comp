@@ -6,9 +6,9 @@ layout(rgba8, binding = 0) uniform writeonly image2D picture;
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    vec3 position = u.originTexture.xyz + float(pixel.x) * u.rightTexture.xyz + float(pixel.y + u.pictureSize.z) * u.downTexture.xyz;
+    vec3 position = u.originTexture.xyz + float(pixel.x) * u.rightTexture.xyz + float(pixel.y + u.firstRow) * u.downTexture;
     float stored = textureLod(volume, position, 0.0).r;
     bool inside = all(greaterThanEqual(position, vec3(0.0))) && all(lessThanEqual(position, vec3(1.0)));
-    float grey = inside ? clamp(stored * u.window.x + u.window.y, 0.0, 1.0) : 0.0;
-    if (all(lessThan(pixel, u.pictureSize.xy))) imageStore(picture, pixel, vec4(vec3(grey), 1.0));
+    float grey = inside ? clamp(stored * u.greyScale + u.greyBias, 0.0, 1.0) : 0.0;
+    if (all(lessThan(pixel, u.bandSize))) imageStore(picture, pixel, vec4(vec3(grey), 1.0));
 }

@@ -2,8 +2,8 @@
 layout(std140, binding = 2) uniform WallBlock { WallUniforms wall; };
 
 vec4 projected(vec3 fromEyeMm) {
-    float depth = dot(wall.forward.xyz, fromEyeMm);
-    float w = wall.eyeMm.w == 1.0 ? 1.0 : depth;
-    return vec4(dot(wall.right.xyz, fromEyeMm), wall.rows.x * dot(wall.down.xyz, fromEyeMm) + wall.rows.y * w,
-                wall.forward.w * depth + wall.right.w, w);
+    float depth = dot(wall.forward, fromEyeMm);
+    float w = wall.lens == orthographicLens ? 1.0 : depth;
+    return vec4(dot(wall.right, fromEyeMm), wall.rowScale * dot(wall.down, fromEyeMm) + wall.rowBias * w,
+                wall.depthScale * depth + wall.depthBias, w);
 }

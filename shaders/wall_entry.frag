@@ -3,6 +3,6 @@ in vec3 fromEyeMm;
 layout(location = 0) out float firstStep;
 
 void main() {
-    float depthMm = wall.eyeMm.w == 1.0 ? dot(wall.forward.xyz, fromEyeMm) : length(fromEyeMm);
-    firstStep = max(floor(depthMm * wall.lensDown.w) - 1.0, 0.0);
+    float depthMm = wall.lens == orthographicLens ? dot(wall.forward, fromEyeMm) : length(fromEyeMm);
+    firstStep = max(floor(depthMm * wall.stepsPerMm) - 1.0, 0.0);
 }

@@ -3,6 +3,6 @@ layout(std430, binding = 0) readonly buffer WallVertices { vec4 places[]; };
 out vec3 fromEyeMm;
 
 void main() {
-    fromEyeMm = places[gl_VertexID].xyz - wall.eyeMm.xyz;
+    fromEyeMm = places[gl_VertexID].xyz - wall.eyeMm;
     gl_Position = projected(fromEyeMm);
 }

@@ -4,59 +4,44 @@ layout(rgba32f, binding = 0) uniform writeonly image2D places;
 layout(binding = 4) uniform isampler2D triangleOfPixel;
 layout(std430, binding = 1) readonly buffer FlatTriangles { uint corners[]; };
 
-struct Sight {
-    vec3 fromEyeMm;  // where the ray begins
-    vec3 direction;  // unit
-    bool seen;
-};
-
-Sight sightThrough(vec2 pixel) {
-    vec2 ndc = 2.0 * (pixel + vec2(0.0, wall.picture.z)) / vec2(wall.picture.xy) - 1.0;
-    vec3 aside = ndc.x * wall.lensRight.xyz + ndc.y * wall.lensDown.xyz;
-    if (wall.eyeMm.w == 1.0) return Sight(aside, wall.lensAhead.xyz, true);
-    if (wall.down.w == 0.0) return Sight(vec3(0.0), normalize(wall.lensAhead.xyz + aside), true);
-    float radius = length(aside);
-    float angle = radius * wall.down.w;
-    vec3 across = radius > 0.0 ? aside / radius : vec3(0.0);
-    return Sight(vec3(0.0), cos(angle) * wall.lensAhead.xyz + sin(angle) * across, angle <= 3.14159265);
-}
-
 // Where on its triangle a ray is, and how far: x, y: flat coordinates, z: mm.
-vec4 placeOn(int triangle, Sight sight) {
+vec4 placeOn(int triangle, LensRay ray) {
     FlatVertex a = flatVertices[corners[3 * triangle]];
     FlatVertex b = flatVertices[corners[3 * triangle + 1]];
     FlatVertex c = flatVertices[corners[3 * triangle + 2]];
-    vec3 ab = b.placeMm.xyz - a.placeMm.xyz;
-    vec3 ac = c.placeMm.xyz - a.placeMm.xyz;
-    vec3 fromA = sight.fromEyeMm + wall.eyeMm.xyz - a.placeMm.xyz;
+    vec3 ab = b.placeMm - a.placeMm;
+    vec3 ac = c.placeMm - a.placeMm;
+    vec3 fromA = ray.fromEye + wall.eyeMm - a.placeMm;
     // Möller and Trumbore's test.
-    vec3 p = cross(sight.direction, ac);
+    vec3 p = cross(ray.direction, ac);
     float determinant = dot(ab, p);
     float inverse = determinant != 0.0 ? 1.0 / determinant : 0.0;
     vec3 q = cross(fromA, ab);
     // A pixel may lie beside the triangle that was found to cover it: a hair, or up to half a
     // texel of a cube's side.
-    vec2 weights = clamp(vec2(dot(fromA, p), dot(sight.direction, q)) * inverse, -0.5, 1.5);
+    vec2 weights = clamp(vec2(dot(fromA, p), dot(ray.direction, q)) * inverse, -0.5, 1.5);
     vec2 flatPlace = (vec2(a.flatPlace.xy) + weights.x * vec2(b.flatPlace.xy - a.flatPlace.xy) +
-                      weights.y * vec2(c.flatPlace.xy - a.flatPlace.xy)) / wall.lensRight.w;
+                      weights.y * vec2(c.flatPlace.xy - a.flatPlace.xy)) / wall.unitsPerCircumference;
     vec3 meets = weights.x * ab + weights.y * ac - fromA;
-    return vec4(flatPlace, max(dot(meets, sight.direction), 0.0), 0.0);
+    return vec4(flatPlace, max(dot(meets, ray.direction), 0.0), 0.0);
 }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(places)))) return;
-    Sight sight = sightThrough(vec2(pixel) + 0.5);
+    vec2 place = placeInPicture(vec2(pixel) + 0.5, wall.firstRow, wall.pictureSize);
+    vec3 aside = place.x * wall.lensRight + place.y * wall.lensDown;
+    LensRay ray = lensRay(wall.lens, wall.lensAhead, aside);
     ivec2 texel = pixel;
-    if (wall.picture.w == 1) {
-        vec2 onSide = vec2(dot(wall.right.xyz, sight.direction), dot(wall.down.xyz, sight.direction));
-        float depth = dot(wall.forward.xyz, sight.direction);
+    if (wall.isCubeSide == 1) {
+        vec2 onSide = vec2(dot(wall.right, ray.direction), dot(wall.down, ray.direction));
+        float depth = dot(wall.forward, ray.direction);
         // This side's pixels alone; those of a shared edge may be drawn by both.
         if (depth <= 0.0 || max(abs(onSide.x), abs(onSide.y)) > depth * 1.000001) return;
         ivec2 sides = textureSize(triangleOfPixel, 0);
         texel = clamp(ivec2((0.5 * onSide / depth + 0.5) * vec2(sides)), ivec2(0), sides - 1);
     }
     int triangle = texelFetch(triangleOfPixel, texel, 0).x;
-    bool seen = triangle >= 0 && sight.seen;
-    imageStore(places, pixel, seen ? placeOn(triangle, sight) : vec4(0.0, 0.0, -1.0, 0.0));
+    bool seen = triangle >= 0 && isShown(wall.lens, aside);
+    imageStore(places, pixel, seen ? placeOn(triangle, ray) : vec4(0.0, 0.0, -1.0, 0.0));
 }

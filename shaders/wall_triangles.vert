@@ -1,2 +1,2 @@
 // The flat map's surface as a camera sees it.
-void main() { gl_Position = projected(flatVertices[gl_VertexID].placeMm.xyz - wall.eyeMm.xyz); }
+void main() { gl_Position = projected(flatVertices[gl_VertexID].placeMm - wall.eyeMm); }

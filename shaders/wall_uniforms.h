@@ -10,18 +10,25 @@ namespace haustra::shaders {
 /// A raster pass over the wall, from a camera's eye or through one side of a cube around it.
 /// Millimetres are counted from the volume's centre, in patient directions.
 struct WallUniforms {
-    vec4 eyeMm;      ///< xyz; w: 1 where rays are parallel, 0 where they come from the eye
-    vec4 forward;    ///< xyz: unit; w: gl_Position.z = depth · w + right.w
-    vec4 right;      ///< xyz: gl_Position.x of a vector from the eye
-    vec4 down;       ///< xyz: likewise y, in the whole picture; w: a fisheye's half angle, else 0
-    vec4 lensRight;  ///< xyz: to the picture's right edge: of a direction at depth 1, of a fisheye
-                     ///< in half heights, of an orthographic camera in mm; w: units of flat
-                     ///< coordinates a circumference
-    vec4 lensDown;   ///< xyz: likewise to its bottom edge; w: steps a mm
-    vec4 lensAhead;  ///< xyz: unit, the camera's own forward; w: the first triangle of the draw
-    vec4 rows;       ///< x, y: gl_Position.y in the band = y · x + w · y
-    ivec4 picture;   ///< x, y: pixels of the whole picture, z: first row of the band, w: 1 where
-                     ///< the pass is a cube's side
+    vec3 eyeMm;
+    float depthScale;  ///< gl_Position.z = depth · depthScale + depthBias
+    vec3 forward;      ///< unit
+    float depthBias;
+    vec3 right;                   ///< gl_Position.x of a vector from the eye
+    int isCubeSide;               ///< 1 where the pass is one
+    vec3 down;                    ///< likewise y, in the whole picture
+    int lens;                     ///< render::Lens in order
+    vec3 lensRight;               ///< to the picture's right edge, as rightMm of MarchUniforms
+    float unitsPerCircumference;  ///< of flat coordinates
+    vec3 lensDown;                ///< likewise to its bottom edge
+    float stepsPerMm;
+    vec3 lensAhead;           ///< unit, the camera's own forward
+    int firstTriangle;        ///< of the draw
+    float rowScale, rowBias;  ///< gl_Position.y in the band = y · rowScale + w · rowBias
+    ivec2 unused;
+    ivec2 pictureSize;  ///< pixels of the whole picture
+    int firstRow;       ///< of the band
+    int unused2;
 };
 
 #ifdef __cplusplus

@@ -48,18 +48,19 @@ void clip(Span& span, Corner a, Corner b, std::int64_t y) {
 void coverRows(const FlatGeometry& geometry, const FlatLattice& lattice, int firstRow, int rows,
                std::vector<FlatPixel>& pixels) {
     const shaders::FlatUniforms& u = lattice.uniforms;
-    const std::int64_t width = u.picture.x, endRow = firstRow + rows;
+    const std::int64_t width = u.pictureSize.x, endRow = firstRow + rows;
     pixels.assign(std::size_t(width) * std::size_t(rows), {});
-    const double perRow = u.scale.x / geometry.unitsPerCircumference();
+    const double perRow = u.unitsPerPixel / geometry.unitsPerCircumference();
     const double edge = double(u.lattice.y) + u.phase.y;
     const TriangleRange range = geometry.trianglesWithin((edge - double(endRow) - 1.0) * perRow,
                                                          (edge - double(firstRow) + 1.0) * perRow);
     const auto snapped = [&](double place, int axis) {
         return std::int64_t(u.lattice[axis]) * parts -
-               std::int64_t(std::floor((place * u.scale.y - u.phase[axis]) * double(parts) + 0.5));
+               std::int64_t(
+                   std::floor((place * u.pixelsPerUnit - u.phase[axis]) * double(parts) + 0.5));
     };
-    for (int copy = u.lattice.w; copy < u.lattice.w + lattice.copies; ++copy) {
-        const double shift = double(copy) * double(u.lattice.z);
+    for (int copy = u.firstCopy; copy < u.firstCopy + lattice.copies; ++copy) {
+        const double shift = double(copy) * double(u.unitsPerCircumference);
         for (int t = range.first; t < range.first + range.count; ++t) {
             const glm::ivec3 vertices = geometry.triangles()[std::size_t(t)];
             Corner corners[3];

@@ -84,9 +84,8 @@ Result<std::shared_ptr<const FlatGeometry>> FlatGeometry::of(const FlatMap& map,
     made->vertices_.resize(map.flat.size());
     for (std::size_t i = 0; i < map.flat.size(); ++i) {
         const glm::ivec2 flat(glm::round(map.flat[i] * double(made->unitsPerCircumference_)));
-        made->vertices_[i] = {glm::ivec4(flat, 0, 0),
-                              glm::vec4(map.surface.vertices[i] - originMm, map.camera[i]),
-                              glm::vec4(normals[i], 0.0)};
+        made->vertices_[i] = {glm::ivec4(flat, 0, 0), map.surface.vertices[i] - originMm,
+                              float(map.camera[i]), glm::vec4(normals[i], 0.0)};
     }
     const auto& triangles = map.surface.triangles;
     const auto flatY = [&](int triangle, int corner) {
@@ -138,13 +137,19 @@ FlatLattice FlatGeometry::lattice(const FlatWindow& window, const Band& band) co
         trianglesWithin(flatY(band.firstRow + band.rows + 1), flatY(band.firstRow - 1));
     shaders::FlatUniforms& u = lattice.uniforms;
     u.phase = edge - whole;
-    u.scale = {units / pixels, pixels / units};
+    u.unitsPerPixel = units / pixels;
+    u.pixelsPerUnit = pixels / units;
     const int firstCopy = int(std::floor((edge.x - size.x) / pixels));
     lattice.copies = int(std::floor(edge.x / pixels)) - firstCopy + 1;
-    u.lattice = glm::ivec4(glm::ivec2(whole) - glm::ivec2(0, band.firstRow), unitsPerCircumference_,
-                           firstCopy);
-    u.picture = glm::ivec4(size.x, band.rows, lattice.triangles.first, int(cameras_.size()) - 1);
-    u.angles = glm::vec4(flatRay.mostRayAngle, flatRay.mostLightAngle, flatRay.lampAhead, 0.0);
+    u.lattice = glm::ivec2(whole) - glm::ivec2(0, band.firstRow);
+    u.unitsPerCircumference = unitsPerCircumference_;
+    u.firstCopy = firstCopy;
+    u.pictureSize = {size.x, band.rows};
+    u.firstTriangle = lattice.triangles.first;
+    u.lastCamera = int(cameras_.size()) - 1;
+    u.mostRayAngle = float(flatRay.mostRayAngle);
+    u.mostLightAngle = float(flatRay.mostLightAngle);
+    u.lampAhead = float(flatRay.lampAhead);
     return lattice;
 }
 

@@ -18,7 +18,8 @@ struct TriangleRange {
     int first = 0, count = 0;
 };
 
-/// How a band's pixels lie over the strip; see FlatUniforms. The rows of a ray (u.ray) are zero.
+/// How a band's pixels lie over the strip; see FlatUniforms. What depends on the step or on who
+/// draws (reachPixels, mostStepsBack, riseThatEnds, mostStepsOn) is zero.
 struct FlatLattice {
     shaders::FlatUniforms uniforms{};
     TriangleRange triangles;  ///< all that the band shows, and more

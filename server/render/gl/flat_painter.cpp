@@ -40,7 +40,7 @@ Result<void> FlatPainter::findTriangles(const FlatWindow& window, const Band& ba
     }
     const FlatLattice lattice = surface_->geometry().lattice(window, band);
     uniforms_ = lattice.uniforms;
-    uniforms_.angles.w = float(gpu::RasterProgram::reachPixels);
+    uniforms_.reachPixels = float(gpu::RasterProgram::reachPixels);
     block_.write(uniforms_);
     block_.bind(shaders::flatUniformBinding);
     surface_->bind();
@@ -63,8 +63,9 @@ std::vector<int> FlatPainter::triangleOfPixel() const {
 Result<void> FlatPainter::castRays(const MarchVariant& variant, double stepMm,
                                    const gpu::Texture& picture) {
     const auto rays = TRY(rays_.program(variant));
-    uniforms_.ray = glm::vec4(std::ceil(flatRay.backMm / stepMm), flatRay.riseHu / storedRange,
-                              std::ceil(flatRay.depthMm / stepMm), 0.0);
+    uniforms_.mostStepsBack = float(std::ceil(flatRay.backMm / stepMm));
+    uniforms_.riseThatEnds = float(flatRay.riseHu / storedRange);
+    uniforms_.mostStepsOn = float(std::ceil(flatRay.depthMm / stepMm));
     block_.write(uniforms_);
     block_.bind(shaders::flatUniformBinding);
     surface_->bind();

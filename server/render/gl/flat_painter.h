@@ -29,7 +29,7 @@ public:
     /// What it found, rows from the top: the number of the map's triangle, or −1 beyond the strip.
     std::vector<int> triangleOfPixel() const;
     /// Casts the rays of the band that findTriangles was given last, into the whole of `picture`,
-    /// which has the band's size. The volume, its classification and the block of march.glsl must
+    /// which has the band's size. The volume, its classification and the block of optics.glsl must
     /// be bound; `stepMm` is that block's. Fails (device) where the driver refuses the variant's
     /// text.
     Result<void> castRays(const MarchVariant& variant, double stepMm, const gpu::Texture& picture);
@@ -40,7 +40,7 @@ private:
                 gpu::UniformBuffer block);
     std::shared_ptr<const FlatSurface> surface_;
     gpu::RasterProgram triangles_;
-    MarchPrograms rays_{"flattened.comp", {"flat_map.glsl"}};
+    MarchPrograms rays_{"flattened.comp", {"volume.glsl"}, {"flat_map.glsl", "flat_wall.glsl"}};
     gpu::UniformBuffer block_;
     shaders::FlatUniforms uniforms_{};
     std::optional<gpu::Texture> triangleOfPixel_;

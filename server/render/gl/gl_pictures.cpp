@@ -72,10 +72,11 @@ Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLev
     u.originTexture = glm::vec4(
         (glm::dvec3(voxelFromPatient * glm::dvec4(placement.topLeftMm, 1.0)) + 0.5) / voxels, 0.0);
     u.rightTexture = glm::vec4(textureVector(placement.rightMm), 0.0);
-    u.downTexture = glm::vec4(textureVector(placement.downMm), 0.0);
-    u.window = glm::vec4(storedRange / window.widthHu,
-                         0.5 - (storedOffset + window.centerHu) / window.widthHu, 0, 0);
-    u.pictureSize = glm::ivec4(size, band.firstRow, 0);
+    u.downTexture = textureVector(placement.downMm);
+    u.greyScale = float(storedRange / window.widthHu);
+    u.greyBias = float(0.5 - (storedOffset + window.centerHu) / window.widthHu);
+    u.bandSize = size;
+    u.firstRow = band.firstRow;
     sliceBlock_.write(u);
     sliceBlock_.bind(shaders::uniformBinding);
     (scan == Scan::original && ct_ ? *ct_ : scene_->volume()).bind(shaders::volumeUnit);

@@ -20,8 +20,8 @@ namespace haustra::render {
 Result<gpu::Texture> uploadVolume(const Volume<std::int16_t>& volume, int threads,
                                   const char* what);
 
-/// The volume's texture, the uniform block of march.glsl, and the classifications lately asked for.
-/// Belongs to the thread of the context, which must be current and outlive it.
+/// The volume's texture, the uniform block of optics.glsl, and the classifications lately asked
+/// for. Belongs to the thread of the context, which must be current and outlive it.
 class GlScene {
 public:
     /// Each holds a leap map, a byte a block.

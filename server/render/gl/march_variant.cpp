@@ -25,8 +25,11 @@ std::string MarchVariant::defines() const {
            define("GRADIENT_TEXTURE", gradientTexture) + define("BACKDROP", backdrop);
 }
 
-MarchPrograms::MarchPrograms(std::string entry, std::vector<std::string> between)
-    : entry_(std::move(entry)) {
+MarchPrograms::MarchPrograms(std::string entry, const std::vector<std::string>& sampler,
+                             const std::vector<std::string>& between, std::string defines)
+    : entry_(std::move(entry)), defines_(std::move(defines)) {
+    for (const std::string& file : sampler)
+        sampler_ += shaders::shaderSource(file);
     for (const std::string& file : between)
         between_ += shaders::shaderSource(file);
 }
@@ -35,11 +38,12 @@ Result<const gpu::ComputeProgram*> MarchPrograms::program(const MarchVariant& va
     for (const auto& [known, program] : made_)
         if (known == variant) return program.get();
     using shaders::shaderSource;
-    const std::string defines = variant.defines();
+    const std::string defines = variant.defines() + defines_;
     auto program = TRY(gpu::ComputeProgram::create(
-        entry_.c_str(), {defines, shaderSource("uniforms.h"), shaderSource("optics.glsl"),
-                         shaderSource("march.glsl"), shaderSource("picture.glsl"), between_,
-                         shaderSource(entry_)}));
+        entry_.c_str(), {defines, shaderSource("uniforms.h"), shaderSource("srgb.glsl"),
+                         shaderSource("lens.glsl"), shaderSource("optics.glsl"),
+                         shaderSource("rays.glsl"), sampler_, shaderSource("march.glsl"),
+                         shaderSource("picture.glsl"), between_, shaderSource(entry_)}));
     made_.emplace_back(variant, std::make_unique<gpu::ComputeProgram>(std::move(program)));
     return made_.back().second.get();
 }

@@ -29,16 +29,19 @@ struct MarchVariant {
 /// the context.
 class MarchPrograms {
 public:
-    /// The shader is uniforms.h, optics.glsl, march.glsl, picture.glsl, `between` and `entry`, all
-    /// names of shaders/.
-    explicit MarchPrograms(std::string entry, std::vector<std::string> between = {});
+    /// The shader is uniforms.h, srgb.glsl, lens.glsl, optics.glsl, rays.glsl, `sampler` (what
+    /// march() samples), march.glsl, picture.glsl, `between` and `entry`, all names of shaders/.
+    /// `defines` stands before all of it.
+    explicit MarchPrograms(std::string entry,
+                           const std::vector<std::string>& sampler = {"volume.glsl"},
+                           const std::vector<std::string>& between = {}, std::string defines = {});
 
     /// Compiling takes some 0.1 s the first time on a machine. Fails (device) where the driver
     /// refuses the text. Valid while this lives.
     Result<const gpu::ComputeProgram*> program(const MarchVariant& variant);
 
 private:
-    std::string entry_, between_;
+    std::string entry_, sampler_, between_, defines_;
     std::vector<std::pair<MarchVariant, std::unique_ptr<gpu::ComputeProgram>>> made_;
 };
 

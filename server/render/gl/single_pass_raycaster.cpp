@@ -13,8 +13,9 @@ Result<std::unique_ptr<SinglePassRaycaster>> SinglePassRaycaster::create(
     using shaders::shaderSource;
     auto cone = TRY(gpu::ComputeProgram::create(
         "cone_start.comp",
-        {shaderSource("uniforms.h"), shaderSource("optics.glsl"), shaderSource("march.glsl"),
-         shaderSource("picture.glsl"), shaderSource("cone_start.comp")}));
+        {shaderSource("uniforms.h"), shaderSource("srgb.glsl"), shaderSource("lens.glsl"),
+         shaderSource("optics.glsl"), shaderSource("rays.glsl"), shaderSource("picture.glsl"),
+         shaderSource("cone_start.comp")}));
     std::unique_ptr<SinglePassRaycaster> made(
         new SinglePassRaycaster(std::move(scene), std::move(cone)));
     // A driver that refuses the text is found here, not in a reader's session.
@@ -58,8 +59,8 @@ Result<void> SinglePassRaycaster::cast(const gpu::Texture* firstSteps, const Cam
     const Scene& scene = scene_->scene();
     shaders::MarchUniforms uniforms =
         marchUniforms(view, scene.grid(), classified->table(), scene.ranges.size, band.pictureSize);
-    uniforms.pictureSize.w = band.firstRow;
-    if (firstSteps) uniforms.lastBlock.w = 1;
+    uniforms.firstRow = band.firstRow;
+    if (firstSteps) uniforms.coneTileSide = 1;
     const auto rays = TRY(cast_.program(MarchVariant::of(
         view.optics, scene_->hasGradients(view.optics), view.backdrop != nullptr)));
     scene_->bind(uniforms, *classified);

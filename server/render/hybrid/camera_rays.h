@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/grid.h"
+#include "render/scene/lens.h"
 #include "render/scene/min_max_octree.h"
 #include "render/view.h"
 
@@ -9,7 +10,7 @@
 
 namespace haustra::render {
 
-/// The rays of shaders/march.glsl in voxel coordinates; t counts samples from the eye or from an
+/// The rays of shaders/rays.glsl in voxel coordinates; t counts samples from the eye or from an
 /// orthographic camera's plane. In double precision: they lie within a hundredth of a voxel of the
 /// shaders'. Immutable; any number of threads.
 class CameraRays {
@@ -25,13 +26,12 @@ public:
         return through(glm::dvec2(pixel) + 0.5);
     }
     /// Whether rays spread from one point, evenly over the picture.
-    bool perspective() const { return lens_ == Lens::perspective; }
+    bool perspective() const { return frame_.lens == Lens::perspective; }
 
 private:
-    Lens lens_;
-    glm::dvec3 eye_;                     // voxel coordinates
-    glm::dmat3 voxelFromMm_;             // of vectors
-    glm::dvec3 forward_, right_, down_;  // mm; to the picture's edges, of a fisheye in radians
+    LensFrame frame_;
+    glm::dvec3 eye_;          // voxel coordinates
+    glm::dmat3 voxelFromMm_;  // of vectors
     glm::dvec2 size_;
     double stepMm_;
 };

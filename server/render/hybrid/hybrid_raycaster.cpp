@@ -226,7 +226,7 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
 
     shaders::MarchUniforms uniforms =
         marchUniforms(view, scene.grid(), table, scene.ranges.size, band.pictureSize);
-    uniforms.pictureSize.w = band.firstRow;
+    uniforms.firstRow = band.firstRow;
     my.scene->bind(uniforms, *onGpu);
     if (view.backdrop) {
         TRY(my.scene->bindBackdrop(view.backdrop));

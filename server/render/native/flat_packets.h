@@ -11,7 +11,7 @@ struct PacketWall {
     const shaders::FlatVertex* vertices = nullptr;
     const glm::ivec3* triangles = nullptr;
     const shaders::FlatEye* cameras = nullptr;
-    shaders::FlatUniforms u{};  ///< but u.ray.y: the rise in HU
+    shaders::FlatUniforms u{};  ///< but u.riseThatEnds: in HU
 };
 
 /// Some rows of a picture.

@@ -46,7 +46,7 @@ HWY_INLINE Range insideRange(const PacketScene& scene, const Rays& rays) {
     const Range y = axis(rays.origin.y, rays.inverseStep.y, scene.size[1]);
     const Range z = axis(rays.origin.z, rays.inverseStep.z, scene.size[2]);
     return {hn::Max(most({x.first, y.first, z.first}), hn::Zero(f)),
-            hn::Min(least({x.last, y.last, z.last}), set(scene.u.stepping.z))};
+            hn::Min(least({x.last, y.last, z.last}), set(scene.u.mostSteps))};
 }
 
 /// Blocks of the leap map that places lie in, their lower corners (voxels) and distances.
@@ -161,8 +161,8 @@ HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<AnyVoxel
         }
         sum = behind(sum, here, at.found);
         n = hn::Add(n, one);
-        active =
-            hn::And(at.found, hn::And(hn::Le(n, last), hn::Lt(sum.a, set(scene.u.stepping.y))));
+        active = hn::And(at.found,
+                         hn::And(hn::Le(n, last), hn::Lt(sum.a, set(scene.u.terminationOpacity))));
     }
     return sum;
 }
@@ -216,7 +216,8 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxe
         sum = behind(sum, here, found);
         front = back;
         n = hn::Add(n, one);
-        active = hn::And(found, hn::And(hn::Le(n, last), hn::Lt(sum.a, set(scene.u.stepping.y))));
+        active = hn::And(found,
+                         hn::And(hn::Le(n, last), hn::Lt(sum.a, set(scene.u.terminationOpacity))));
     }
     return sum;
 }
@@ -255,7 +256,7 @@ HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<AnyVoxe
                                  const Rays& rays, VF first, VF last) {
     constexpr int bisections = 8;
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
-    const VF enough = set(scene.u.slopes.w);
+    const VF enough = set(scene.u.firstHitOpacity);
     VF n = first, hit = first;
     MF active = hn::Le(n, last), ended = hn::Lt(one, zero);
     for (bool again = false; any(active); again = true) {
@@ -316,7 +317,7 @@ HWY_MAYBE_UNUSED static HWY_NOINLINE void pixelColors(const PacketScene& scene, 
     // neighbours.
     const MF ended = scene.composition == Composition::maximumIntensity
                          ? hn::Lt(set(1.0f), hn::Zero(f))
-                         : hn::Ge(sum.a, set(scene.u.stepping.y));
+                         : hn::Ge(sum.a, set(scene.u.terminationOpacity));
     const VF scale = hn::Div(set(1.0f), hn::Max(sum.a, set(1e-6f)));
     const auto shown = [&](VF color, VF behindIt) HWY_ATTR {
         return displayed(

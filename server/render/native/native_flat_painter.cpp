@@ -40,8 +40,9 @@ Result<Image> NativeFlatPainter::draw(const FlatView& view, const Band& band) {
     const double step = stepMm(view.march, scene.grid());
     PacketWall wall{geometry_->vertices().data(), geometry_->triangles().data(),
                     geometry_->cameras().data(), lattice.uniforms};
-    wall.u.ray = glm::vec4(std::ceil(flatRay.backMm / step), flatRay.riseHu,
-                           std::ceil(flatRay.depthMm / step), 0.0);
+    wall.u.mostStepsBack = float(std::ceil(flatRay.backMm / step));
+    wall.u.riseThatEnds = float(flatRay.riseHu);
+    wall.u.mostStepsOn = float(std::ceil(flatRay.depthMm / step));
     Image image = blankImage(size);
     scene_->workers().run((size.y + flatStripeRows - 1) / flatStripeRows, [&](int stripe) {
         const int first = stripe * flatStripeRows, rows = std::min(flatStripeRows, size.y - first);

@@ -135,12 +135,13 @@ HWY_INLINE Color shaded(const PacketScene& scene, const Color& color, V3 normal,
     const MF steep = hn::Gt(slope, least);
     const VF facing = hn::IfThenElse(
         steep, hn::Div(hn::Abs(dot(normal, lightMm)), hn::Sqrt(hn::Max(slope, least))), one);
-    const glm::vec4 light = scene.u.light;
-    const VF depth = hn::Mul(n, set(scene.u.stepping.x / scene.u.stepping.w));
+    const shaders::MarchUniforms& u = scene.u;
+    const VF depth = hn::Mul(n, set(u.stepMm / u.lightHalvesMm));
     const VF falloff = hn::Div(one, hn::MulAdd(depth, depth, one));
     const VF mirror = hn::MulSub(hn::Add(facing, facing), facing, one);
-    const VF highlight = hn::IfThenElseZero(steep, hn::Mul(set(light.z), glossOf(mirror, light.w)));
-    const VF matt = hn::MulAdd(set(light.y), facing, set(light.x));
+    const VF highlight =
+        hn::IfThenElseZero(steep, hn::Mul(set(u.specular), glossOf(mirror, u.shininess)));
+    const VF matt = hn::MulAdd(set(u.diffuse), facing, set(u.ambient));
     const auto lit = [&](VF c)
                          HWY_ATTR { return hn::Mul(falloff, hn::MulAdd(c, matt, highlight)); };
     return {lit(color.r), lit(color.g), lit(color.b), color.a};

@@ -56,12 +56,12 @@ Result<void> CellProjector::begin(glm::ivec2 bandSize, const CellGrid& cells, gl
             const glm::ivec2 of = glm::min(bandSize - rayTile * glm::ivec2(x, y), rayTile);
             live[x + y * tiles_.x] = of.x * of.y;
         }
-    const glm::vec3 voxels(cells.voxels);
-    uniforms_.voxels = glm::vec4(voxels, 0.0f);
-    uniforms_.cellsPerUnit =
-        glm::vec4(glm::dvec3(cells.voxels) / double(cells.side), -0.5 / double(cells.side));
+    uniforms_.voxels = cells.voxels;
+    uniforms_.cellsPerUnit = glm::dvec3(cells.voxels) / double(cells.side);
+    uniforms_.firstCell = float(-0.5 / double(cells.side));
     uniforms_.eye = eye;
-    uniforms_.lastCell = glm::ivec4(cells.count() - 1, 0);
+    uniforms_.raysBeginAtEye = eye.w;
+    uniforms_.lastCell = cells.count() - 1;
     uniforms_.tiles = glm::ivec4(tiles_, 0, 0);
     return {};
 }
@@ -102,9 +102,9 @@ bool CellProjector::add(const PlannedCell& planned, const CellGrid& cells, const
 
 void CellProjector::flush(CellPool& pool, const gpu::ComputeProgram& program) {
     if (itemCount_ > 0) {
-        uniforms_.voxels.w = float(pool.slotSide());
+        uniforms_.slotSide = float(pool.slotSide());
         uniforms_.atlasPerVoxel = glm::vec4(1.0f / glm::vec3(pool.atlas().size()), 0.0f);
-        uniforms_.lastCell.w = itemCount_;
+        uniforms_.items = itemCount_;
         block_.write(uniforms_);
         block_.bind(shaders::cellUniformBinding);
         const std::size_t at = ring_[current_].offset;

@@ -84,8 +84,9 @@ void CellRaycaster::bind(const CameraView& view, const Band& band, const ShownCe
     shaders::MarchUniforms u =
         marchUniforms(view, grid_, shown.classified.table(), leaves_, band.pictureSize);
     const double side = leafSide_;
-    u.blocksPerUnit = glm::vec4(glm::dvec3(cells_.voxels) / side, -0.5 / side);
-    u.pictureSize.w = band.firstRow;
+    u.blocksPerUnit = glm::dvec3(cells_.voxels) / side;
+    u.firstBlock = float(-0.5 / side);
+    u.firstRow = band.firstRow;
     marchBlock_.write(u);
     marchBlock_.bind(shaders::uniformBinding);
     shown.classified.bind();

@@ -1,5 +1,7 @@
 #include "render/object_order/footprint.h"
 
+#include "render/scene/lens.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,13 +28,13 @@ struct Bounds {
 }  // namespace
 
 Footprint::Footprint(const Camera& camera, const Grid& grid, glm::ivec2 pictureSize)
-    : camera_(camera), size_(pictureSize) {
-    const glm::dvec3 ahead = glm::normalize(camera.forward);
-    const glm::dvec3 right = glm::normalize(glm::cross(ahead, camera.up));
-    const glm::dvec3 down = glm::cross(ahead, right);
+    : lens_(camera.lens), size_(pictureSize) {
+    const LensFrame frame = lensFrame(camera, 1.0);
+    perUnit_ = 1.0 / glm::length(frame.down);
+    const glm::dvec3 right = glm::normalize(frame.right), down = glm::normalize(frame.down);
     glm::dmat4 cameraFromPatient(1.0);
     for (int axis = 0; axis < 3; ++axis)
-        cameraFromPatient[axis] = {right[axis], down[axis], ahead[axis], 0.0};
+        cameraFromPatient[axis] = {right[axis], down[axis], frame.ahead[axis], 0.0};
     cameraFromPatient[3] =
         glm::dvec4(-glm::dvec3(cameraFromPatient * glm::dvec4(camera.positionMm, 0.0)), 1.0);
     cameraFromVoxel_ = cameraFromPatient * grid.patientFromVoxel;
@@ -54,7 +56,7 @@ PixelRect Footprint::of(glm::dvec3 low, glm::dvec3 high) const {
     // A hair more, for what rounding takes for inside.
     low -= 1e-3;
     high += 1e-3;
-    switch (camera_.lens) {
+    switch (lens_) {
         case Lens::fisheye:
             return fisheye(low, high);
         case Lens::orthographic:
@@ -86,8 +88,7 @@ PixelRect Footprint::perspective(glm::dvec3 low, glm::dvec3 high) const {
             bounds.add(glm::dvec2(cut) / near);
         }
     }
-    const double scale = 1.0 / std::tan(glm::radians(0.5 * camera_.fovDegrees));
-    return around(bounds.low * scale, bounds.high * scale);
+    return around(bounds.low * perUnit_, bounds.high * perUnit_);
 }
 
 PixelRect Footprint::orthographic(glm::dvec3 low, glm::dvec3 high) const {
@@ -99,7 +100,7 @@ PixelRect Footprint::orthographic(glm::dvec3 low, glm::dvec3 high) const {
         ahead = ahead || at.z >= 0.0;
     }
     if (!ahead) return {};
-    return around(bounds.low * 2.0 / camera_.heightMm, bounds.high * 2.0 / camera_.heightMm);
+    return around(bounds.low * perUnit_, bounds.high * perUnit_);
 }
 
 // The box's sphere, seen from the eye, is a disc of directions.
@@ -113,9 +114,8 @@ PixelRect Footprint::fisheye(glm::dvec3 low, glm::dvec3 high) const {
     if (distance <= radius) return around(glm::dvec2(-whole), glm::dvec2(whole));
     const double spread = std::asin(radius / distance);
     const double axis = std::atan2(glm::length(glm::dvec2(center)), center.z);
-    const double perRadian = 2.0 / glm::radians(camera_.fovDegrees);
-    const double inner = std::max(axis - spread, 0.0) * perRadian;
-    const double outer = std::min(axis + spread, std::numbers::pi) * perRadian;
+    const double inner = std::max(axis - spread, 0.0) * perUnit_;
+    const double outer = std::min(axis + spread, std::numbers::pi) * perUnit_;
     Bounds bounds;
     const bool allAround = axis <= spread || axis + spread >= std::numbers::pi;
     const double turn =

@@ -34,7 +34,8 @@ private:
         return glm::dvec3(cameraFromVoxel_ * glm::dvec4(voxel, 1.0));
     }
 
-    Camera camera_;
+    Lens lens_;
+    double perUnit_;  // half heights of the picture for each unit of LensFrame
     glm::ivec2 size_;
     glm::dmat4 cameraFromVoxel_;  // mm; x right, y down, z ahead
 };

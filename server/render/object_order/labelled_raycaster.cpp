@@ -75,6 +75,8 @@ struct LabelledRaycaster::Impl {
     std::optional<MinMaxOctree> octree = std::nullopt;  // of the opacities that show
     LatelyUsed<ShownCells> shown{1};
     std::vector<std::pair<MarchVariant, gpu::ComputeProgram>> casts = {};
+    MarchPrograms cast{
+        "cell_rays.comp", {"cell_uniforms.h", "cells.glsl"}, {}, "#define COLOR_CELLS 1\n"};
     MarchPrograms resolve{"cell_picture.comp"};
 
     Result<void> choose(std::vector<std::int16_t> labels) {
@@ -123,21 +125,6 @@ struct LabelledRaycaster::Impl {
         fresh.count = int(std::count(fresh.needed.begin(), fresh.needed.end(), 1));
         return shown.keep(std::move(fresh));
     }
-
-    Result<const gpu::ComputeProgram*> cast(const MarchVariant& variant) {
-        for (const auto& [known, program] : casts)
-            if (known == variant) return &program;
-        using shaders::shaderSource;
-        const std::string defines = variant.defines() + "#define COLOR_CELLS 1\n";
-        auto program = TRY(gpu::ComputeProgram::create(
-            "cell_rays.comp", {defines, shaderSource("uniforms.h"), shaderSource("optics.glsl"),
-                               shaderSource("march.glsl"), shaderSource("picture.glsl"),
-                               shaderSource("cell_uniforms.h"), shaderSource("cells.glsl"),
-                               shaderSource("cell_rays.comp")}));
-        casts.reserve(4);  // shading and backdrop, each on or off: pointers stay valid
-        casts.emplace_back(variant, std::move(program));
-        return &casts.back().second;
-    }
 };
 
 Result<std::unique_ptr<LabelledRaycaster>> LabelledRaycaster::create(
@@ -170,7 +157,7 @@ Result<void> LabelledRaycaster::render(const CameraView& asked, const Band& band
     TRY(checkCameraView(view, band.pictureSize));
     const auto seen = TRY(impl_->classify(view.optics, view.march));
     const auto variant = MarchVariant::of(view.optics, false, view.backdrop != nullptr);
-    const auto cast = TRY(impl_->cast(variant));
+    const auto cast = TRY(impl_->cast.program(variant));
     const auto resolve = TRY(impl_->resolve.program(variant));
     constexpr int border = 2;  // of gradients, and of samples that rounding puts past a face
     return impl_->cells.render(view, band, *seen, border, *cast, *resolve, picture);

@@ -41,8 +41,8 @@ public:
         shown_ = shown;
     }
     std::uint32_t vertex(glm::dvec3 placeMm, glm::dvec3 normal) {
-        shapes_.vertices.push_back({glm::vec4(placeMm - originMm_, shown_), glm::vec4(normal, 0.0),
-                                    glm::vec4(color_, 0.0)});
+        shapes_.vertices.push_back(
+            {placeMm - originMm_, float(shown_), glm::vec4(normal, 0.0), glm::vec4(color_, 0.0)});
         return std::uint32_t(shapes_.vertices.size() - 1);
     }
     void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -157,8 +157,8 @@ OverviewShapes wallShape(const TriMesh& wall, glm::dvec3 originMm) {
     for (std::size_t i = 0; i < wall.vertices.size(); ++i) {
         const double length = glm::length(normals[i]);
         const glm::dvec3 normal = length > 0.0 ? normals[i] / length : glm::dvec3(0.0, 0.0, 1.0);
-        shapes.vertices.push_back({glm::vec4(wall.vertices[i] - originMm, 0.0),
-                                   glm::vec4(normal, 0.0), glm::vec4(wallColor, 0.0)});
+        shapes.vertices.push_back(
+            {wall.vertices[i] - originMm, 0.0f, glm::vec4(normal, 0.0), glm::vec4(wallColor, 0.0)});
     }
     return shapes;
 }

@@ -2,6 +2,7 @@
 
 #include "render/optics/srgb.h"
 #include "render/overview/overview_marks.h"
+#include "render/scene/lens.h"
 #include "shaders/shader_source.h"
 
 #include <algorithm>
@@ -54,12 +55,10 @@ Range depthsOf(const Camera& camera, glm::dvec3 low, glm::dvec3 high) {
 shaders::OverviewUniforms uniformsOf(const OverviewView& view, const Scene& scene,
                                      glm::dvec3 originMm, glm::ivec2 size) {
     const Camera& camera = view.camera;
-    const glm::dvec3 forward = glm::normalize(camera.forward);
-    const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
-    const glm::dvec3 down = glm::cross(forward, right);
+    const LensFrame frame = lensFrame(camera, double(size.x) / size.y);
+    const glm::dvec3 forward = frame.ahead, right = glm::normalize(frame.right),
+                     down = glm::normalize(frame.down);
     const bool perspective = camera.lens == Lens::perspective;
-    const double halfHeight =
-        perspective ? std::tan(glm::radians(0.5 * camera.fovDegrees)) : 0.5 * camera.heightMm;
     const glm::dvec3 eye = camera.positionMm - originMm;
 
     glm::dvec3 low(INFINITY), high(-INFINITY);
@@ -90,8 +89,8 @@ shaders::OverviewUniforms uniformsOf(const OverviewView& view, const Scene& scen
         return glm::vec4(axis, offset - glm::dot(eye, axis));
     };
     shaders::OverviewUniforms u{};
-    u.clipRowX = row(right * (double(size.y) / (size.x * halfHeight)));
-    u.clipRowY = row(down / halfHeight);
+    u.clipRowX = row(frame.right / glm::dot(frame.right, frame.right));
+    u.clipRowY = row(frame.down / glm::dot(frame.down, frame.down));
     if (perspective) {
         u.clipRowZ = row(forward * ((far + near) / (far - near)), -2.0 * far * near / (far - near));
         u.clipRowW = row(forward);
@@ -99,11 +98,15 @@ shaders::OverviewUniforms uniformsOf(const OverviewView& view, const Scene& scen
         u.clipRowZ = row(forward * (2.0 / (far - near)), -(far + near) / (far - near));
         u.clipRowW = glm::vec4(0.0, 0.0, 0.0, 1.0);
     }
-    u.eye = glm::vec4(eye, perspective ? 1.0 : 0.0);
-    u.forward = glm::vec4(forward, 0.0);
+    u.eye = eye;
+    u.raysBeginAtEye = perspective ? 1.0f : 0.0f;
+    u.forward = forward;
     // From the upper left, as shapes are drawn.
-    u.light = glm::vec4(glm::normalize(-forward - 0.55 * down - 0.40 * right), farthestShare);
-    u.depth = glm::vec4(wall.low, 1.0 / std::max(wall.high - wall.low, 1.0), fadeMm, 0.0);
+    u.light = glm::normalize(-forward - 0.55 * down - 0.40 * right);
+    u.farthestShare = float(farthestShare);
+    u.wallBegins = float(wall.low);
+    u.perWallDepth = float(1.0 / std::max(wall.high - wall.low, 1.0));
+    u.fadeMm = float(fadeMm);
     return u;
 }
 
@@ -158,13 +161,14 @@ Result<std::unique_ptr<OverviewPainter>> OverviewPainter::create(
     gpu::Context& context, std::shared_ptr<const Scene> scene) {
     using gpu::RasterProgram, gpu::StorageBuffer, shaders::shaderSource;
     const auto structs = shaderSource("uniforms.h"), own = shaderSource("overview_uniforms.h"),
-               shared = shaderSource("overview.glsl"), vertex = shaderSource("overview.vert");
+               curve = shaderSource("srgb.glsl"), shared = shaderSource("overview.glsl"),
+               vertex = shaderSource("overview.vert");
     auto wall =
         TRY(RasterProgram::create("overview_wall", {structs, own, vertex},
                                   {structs, own, shared, shaderSource("overview_wall.frag")}));
-    auto marks =
-        TRY(RasterProgram::create("overview_marks", {structs, own, vertex},
-                                  {structs, own, shared, shaderSource("overview_marks.frag")}));
+    auto marks = TRY(
+        RasterProgram::create("overview_marks", {structs, own, vertex},
+                              {structs, own, curve, shared, shaderSource("overview_marks.frag")}));
     auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::OverviewUniforms)));
     std::unique_ptr<OverviewPainter> painter(new OverviewPainter(
         context, std::move(scene), std::move(wall), std::move(marks), std::move(block)));

@@ -35,10 +35,10 @@ Result<std::unique_ptr<PolygonAssistedRaycaster>> PolygonAssistedRaycaster::crea
     TRY(checkWall(scene->scene()));
     auto rays = TRY(SinglePassRaycaster::create(scene));
     const auto structs = shaderSource("uniforms.h"), own = shaderSource("wall_uniforms.h"),
-               wall = shaderSource("wall.glsl");
+               lens = shaderSource("lens.glsl"), wall = shaderSource("wall.glsl");
     auto entry = TRY(gpu::RasterProgram::create(
-        "wall_entry", {structs, own, wall, shaderSource("wall_entry.vert")},
-        {structs, own, wall, shaderSource("wall_entry.frag")}));
+        "wall_entry", {structs, own, lens, wall, shaderSource("wall_entry.vert")},
+        {structs, own, lens, wall, shaderSource("wall_entry.frag")}));
     auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::WallUniforms)));
     WallEntry around(scene->scene());
     auto mesh = TRY(upload(around.wall()));
@@ -110,7 +110,7 @@ Result<void> PolygonAssistedRaycaster::drawEntry(const CameraView& view, const B
     const Grid& grid = scene_->scene().grid();
     shaders::WallUniforms u = wallProjection(
         view.camera, band, grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size) - 0.5));
-    u.lensDown.w = float(1.0 / stepMm);
+    u.stepsPerMm = float(1.0 / stepMm);
     block_.write(u);
     block_.bind(shaders::wallUniformBinding);
     firstStep_->clear(glm::vec4(0.0f));

@@ -1,6 +1,7 @@
 #include "render/scene/ray_setup.h"
 
 #include "render/optics/leap_map.h"
+#include "render/scene/lens.h"
 #include "render/scene/stored_value.h"
 
 #include <algorithm>
@@ -20,8 +21,7 @@ shaders::MarchUniforms marchUniforms(const Optics& optics, const MarchOptions& m
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     const double step = stepMm(march, grid);
     const auto row = [&](int r) {
-        return glm::vec4(voxelFromPatient[0][r], voxelFromPatient[1][r], voxelFromPatient[2][r],
-                         0.0) /
+        return glm::vec3(voxelFromPatient[0][r], voxelFromPatient[1][r], voxelFromPatient[2][r]) /
                float(grid.size[r]);
     };
     const double perHu = (TransferTable::entries - 1) / (table.lastHu - table.firstHu);
@@ -35,23 +35,31 @@ shaders::MarchUniforms marchUniforms(const Optics& optics, const MarchOptions& m
     u.textureRowX = row(0);
     u.textureRowY = row(1);
     u.textureRowZ = row(2);
-    u.voxelTexture = glm::vec4(1.0 / voxels, 0.0);
-    u.blocksPerUnit = glm::vec4(voxels / double(blockSide), -0.5 / blockSide);
-    u.visibleRange =
-        glm::vec4(limit(table.visibleAboveHu), limit(table.visibleBelowHu),
-                  storedRange * perHu / TransferTable::entries,
-                  ((-storedOffset - table.firstHu) * perHu + 0.5) / TransferTable::entries);
-    u.stepping = glm::vec4(step, terminationOpacity, std::ceil(diagonalMm / step) + 1.0,
-                           optics.light.halfDepthMm);
-    u.light = glm::vec4(optics.light.ambient, optics.light.diffuse, optics.light.specular,
-                        optics.light.shininess);
-    u.pictureSize = glm::ivec4(size, 0, 0);
-    u.lastBlock = glm::ivec4(blocks - 1, coneTile);
+    u.voxelTexture = 1.0 / voxels;
+    u.blocksPerUnit = voxels / double(blockSide);
+    u.firstBlock = float(-0.5 / blockSide);
+    u.visibleAbove = float(limit(table.visibleAboveHu));
+    u.visibleBelow = float(limit(table.visibleBelowHu));
+    u.lastVisible = float(limit(std::min(table.lastHu, 32767.0)));
+    u.entryScale = float(storedRange * perHu / TransferTable::entries);
+    u.entryBias = float(((-storedOffset - table.firstHu) * perHu + 0.5) / TransferTable::entries);
+    u.stepMm = float(step);
+    u.terminationOpacity = float(terminationOpacity);
+    u.firstHitOpacity = float(firstHitOpacity);
+    u.mostSteps = float(std::ceil(diagonalMm / step) + 1.0);
+    u.lightHalvesMm = float(optics.light.halfDepthMm);
+    u.ambient = float(optics.light.ambient);
+    u.diffuse = float(optics.light.diffuse);
+    u.specular = float(optics.light.specular);
+    u.shininess = float(optics.light.shininess);
+    u.pictureSize = size;
+    u.lastBlock = blocks - 1;
+    u.coneTileSide = coneTile;
     // A normal as long as the slope over two voxels, in stored fractions a millimetre.
     const double rowsPerSlope =
         table.rows > 1 ? 0.5 * storedRange * (table.rows - 1) / table.lastRowHuPerMm : 0.0;
-    u.slopes = glm::vec4(rowsPerSlope / table.rows, 0.5 / table.rows,
-                         limit(std::min(table.lastHu, 32767.0)), firstHitOpacity);
+    u.rowScale = float(rowsPerSlope / table.rows);
+    u.rowBias = float(0.5 / table.rows);
     u.integralBelow = table.integralBelow;
     u.integralAbove = table.integralAbove;
     return u;
@@ -61,20 +69,13 @@ shaders::MarchUniforms marchUniforms(const CameraView& view, const Grid& grid,
                                      const TransferTable& table, glm::ivec3 blocks,
                                      glm::ivec2 size) {
     shaders::MarchUniforms u = marchUniforms(view.optics, view.march, grid, table, blocks, size);
-    const glm::dvec3 forward = glm::normalize(view.camera.forward);
-    const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
-    const glm::dvec3 up = glm::cross(right, forward);
-    const double aspect = double(size.x) / size.y, fov = glm::radians(view.camera.fovDegrees);
-    const double halfHeight = view.camera.lens == Lens::perspective ? std::tan(0.5 * fov)
-                              : view.camera.lens == Lens::fisheye   ? 0.5 * fov
-                                                                    : 0.5 * view.camera.heightMm;
+    const LensFrame frame = lensFrame(view.camera, double(size.x) / size.y);
     const glm::dvec3 voxels(grid.size);
-    u.eyeTexture =
-        glm::vec4((grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels, 0.0);
-    u.forwardMm = glm::vec4(forward, 0.0);
-    u.rightMm = glm::vec4(right * halfHeight * aspect, 0.0);
-    u.downMm = glm::vec4(-up * halfHeight, 0.0);
-    u.pictureSize.z = int(view.camera.lens);
+    u.eyeTexture = (grid.voxelFromPatientPoint(view.camera.positionMm) + 0.5) / voxels;
+    u.forwardMm = frame.ahead;
+    u.rightMm = frame.right;
+    u.downMm = frame.down;
+    u.lens = int(frame.lens);
     // No ray inside the volume is longer than the way from the camera to the farthest corner.
     double farthestMm = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -83,7 +84,7 @@ shaders::MarchUniforms marchUniforms(const CameraView& view, const Grid& grid,
             farthestMm,
             glm::distance(view.camera.positionMm, grid.patientFromVoxelPoint(side * voxels - 0.5)));
     }
-    u.stepping.z = float(std::ceil(farthestMm / double(stepMm(view.march, grid))) + 1.0);
+    u.mostSteps = float(std::ceil(farthestMm / double(stepMm(view.march, grid))) + 1.0);
     return u;
 }
 

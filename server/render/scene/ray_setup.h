@@ -14,7 +14,7 @@ inline constexpr int coneTile = 8;
 /// Millimetres between samples on this grid.
 double stepMm(const MarchOptions& march, const Grid& grid);
 
-/// The uniform block of march.glsl for rays from anywhere, in a picture of `size` pixels; the
+/// The uniform block of optics.glsl for rays from anywhere, in a picture of `size` pixels; the
 /// fields of a camera are left zero. `blocks` is the leap map's size; `table` is made for this
 /// step.
 shaders::MarchUniforms marchUniforms(const Optics& optics, const MarchOptions& march,

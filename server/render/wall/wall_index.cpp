@@ -22,13 +22,11 @@ constexpr int trianglesOfRun = 1024;
 
 /// Whether a ball, given from the eye, shows nothing in a pass.
 bool isOutside(const shaders::WallUniforms& pass, glm::vec3 middle, float radius) {
-    const glm::vec3 forward(pass.forward);
-    const bool parallel = pass.eyeMm.w == 1.0f;
+    const bool parallel = pass.lens == int(Lens::orthographic);
     radius += 0.01f + 1e-4f * glm::length(middle);  // rounding
-    if (glm::dot(forward, middle) < -radius) return true;
-    for (const glm::vec3 side : {glm::vec3(pass.right), -glm::vec3(pass.right),
-                                 glm::vec3(pass.down), -glm::vec3(pass.down)}) {
-        const glm::vec3 outward = parallel ? side : side - forward;
+    if (glm::dot(pass.forward, middle) < -radius) return true;
+    for (const glm::vec3 side : {pass.right, -pass.right, pass.down, -pass.down}) {
+        const glm::vec3 outward = parallel ? side : side - pass.forward;
         if (glm::dot(outward, middle) - (parallel ? 1.0f : 0.0f) > radius * glm::length(outward))
             return true;
     }
@@ -40,12 +38,13 @@ bool isOutside(const shaders::WallUniforms& pass, glm::vec3 middle, float radius
 Result<WallIndex> WallIndex::create() {
     using shaders::shaderSource;
     const auto structs = shaderSource("uniforms.h"), flatMap = shaderSource("flat_map.glsl"),
-               own = shaderSource("wall_uniforms.h"), wall = shaderSource("wall.glsl");
+               own = shaderSource("wall_uniforms.h"), lens = shaderSource("lens.glsl"),
+               wall = shaderSource("wall.glsl");
     auto triangles = TRY(gpu::RasterProgram::create(
-        "wall_triangles", {structs, flatMap, own, wall, shaderSource("wall_triangles.vert")},
-        {structs, own, wall, shaderSource("wall_triangles.frag")}));
+        "wall_triangles", {structs, flatMap, own, lens, wall, shaderSource("wall_triangles.vert")},
+        {structs, own, lens, wall, shaderSource("wall_triangles.frag")}));
     auto places = TRY(gpu::ComputeProgram::create(
-        "wall_index.comp", {structs, flatMap, own, wall, shaderSource("wall_index.comp")}));
+        "wall_index.comp", {structs, flatMap, own, lens, wall, shaderSource("wall_index.comp")}));
     auto block = TRY(gpu::UniformBuffer::create(sizeof(shaders::WallUniforms)));
     return WallIndex(std::move(triangles), std::move(places), std::move(block));
 }
@@ -76,7 +75,7 @@ void WallIndex::makeRuns(const FlatGeometry& geometry) {
         for (int t = first; t < first + run.triangles.count; ++t) {
             for (int corner = 0; corner < 3; ++corner) {
                 const int vertex = triangles[std::size_t(t)][corner];
-                const glm::vec3 place(geometry.vertices()[std::size_t(vertex)].placeMm);
+                const glm::vec3 place = geometry.vertices()[std::size_t(vertex)].placeMm;
                 low = glm::min(low, place);
                 high = glm::max(high, place);
             }
@@ -95,13 +94,13 @@ void WallIndex::drawSeen(const FlatSurface& surface, shaders::WallUniforms& pass
     TriangleRange draw;
     const auto flush = [&] {
         if (draw.count == 0) return;
-        pass.lensAhead.w = float(draw.first);
+        pass.firstTriangle = draw.first;
         block_.write(pass);
         triangles_.drawNearest(*triangleOfPixel_, surface.triangles(), draw.first, draw.count);
         draw = {};
     };
     for (const Run& run : runs_) {
-        if (isOutside(pass, run.middleMm - glm::vec3(pass.eyeMm), run.radiusMm)) continue;
+        if (isOutside(pass, run.middleMm - pass.eyeMm, run.radiusMm)) continue;
         if (draw.count > 0 && draw.first + draw.count != run.triangles.first) flush();
         if (draw.count == 0) draw.first = run.triangles.first;
         draw.count += run.triangles.count;
@@ -125,7 +124,7 @@ Result<std::vector<WallPixel>> WallIndex::find(gpu::Context& context, const Flat
     for (int pass = 0; pass < passes; ++pass) {
         shaders::WallUniforms u = cube ? cubeSide(camera, band, surface.originMm(), pass)
                                        : wallProjection(camera, band, surface.originMm());
-        u.lensRight.w = float(surface.unitsPerCircumference());
+        u.unitsPerCircumference = float(surface.unitsPerCircumference());
         drawSeen(surface, u);
         triangleOfPixel_->texture().bind(shaders::triangleUnit);
         placeOfPixel_->bindImage(shaders::pictureImage);
