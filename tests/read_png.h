@@ -1,7 +1,7 @@
 // Pictures that programs wrote, read back.
 #pragma once
 
-#include "render/view.h"
+#include "render/picture.h"
 
 #include <string>
 

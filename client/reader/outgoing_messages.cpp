@@ -93,7 +93,7 @@ protocol::ClientMessage inputMessage(InputHeader header, const Overview& overvie
     protocol::ClientMessage message;
     auto* body = begin(message.mutable_set_overview(), header);
     protocol::Camera* camera = body->mutable_camera();
-    setPose(camera, poseOf(overview.orbit));
+    setPose(camera, cameraOf(overview.orbit));
     camera->set_lens(protocol::ORTHOGRAPHIC);
     camera->set_height_mm(overview.orbit.heightMm);
     body->set_hide_body(!overview.body);

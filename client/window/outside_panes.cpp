@@ -80,7 +80,7 @@ void drawReader(Ui& ui, const Orbit& orbit, Rect area, ImDrawList* list) {
         list->AddTriangleFilled(apex, rim[std::size_t(side)], rim[std::size_t((side + 1) % sides)],
                                 IM_COL32(60, 205, 235, 235));
     // Seen from where it looks to, the opening is darker than the mantle.
-    const bool open = glm::dot(camera.forward, poseOf(orbit).forward) < 0.0;
+    const bool open = glm::dot(camera.forward, cameraOf(orbit).forward) < 0.0;
     list->AddConvexPolyFilled(rim.data(), sides,
                               open ? IM_COL32(120, 230, 250, 255) : IM_COL32(40, 165, 195, 235));
     list->AddPolyline(rim.data(), sides, IM_COL32(8, 30, 38, 200), ImDrawFlags_Closed, ui.px(1));
@@ -156,8 +156,8 @@ void drawOverviewPane(Ui& ui, Rect area) {
         const Orbit& shown = reader.shownOrbit();
         drawBookmarks(ui, shown, bookmarks, under, area, list);
         drawReader(ui, shown, area, list);
-        const OrbitPose pose = poseOf(shown);
-        drawLetters(ui, pose.right, pose.up, area, list);
+        const haustra::Camera pose = cameraOf(shown);
+        drawLetters(ui, glm::cross(pose.forward, pose.up), pose.up, area, list);
     }
     outlinedText(list, ui.fonts.small, {area.min.x + ui.px(8), area.min.y + ui.px(8)}, color::text,
                  "Overview");

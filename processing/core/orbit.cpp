@@ -5,24 +5,26 @@
 
 namespace haustra {
 
-OrbitPose poseOf(const Orbit& orbit) {
+Camera cameraOf(const Orbit& orbit) {
     const double azimuth = glm::radians(orbit.azimuthDegrees);
     const double elevation = glm::radians(orbit.elevationDegrees);
     const glm::dvec3 outwards(std::sin(azimuth), -std::cos(azimuth), 0.0), head(0.0, 0.0, 1.0);
-    OrbitPose pose;
-    pose.forward = -std::cos(elevation) * outwards - std::sin(elevation) * head;
-    pose.up = std::cos(elevation) * head - std::sin(elevation) * outwards;
-    pose.right = glm::cross(pose.forward, pose.up);
-    pose.positionMm = orbit.centerMm - orbit.radiusMm * pose.forward;
-    return pose;
+    Camera camera;
+    camera.forward = -std::cos(elevation) * outwards - std::sin(elevation) * head;
+    camera.up = std::cos(elevation) * head - std::sin(elevation) * outwards;
+    camera.positionMm = orbit.centerMm - orbit.radiusMm * camera.forward;
+    camera.lens = Lens::orthographic;
+    camera.heightMm = orbit.heightMm;
+    return camera;
 }
 
-glm::dvec3 projected(const Orbit& orbit, glm::dvec3 pointMm, glm::dvec2 size) {
-    const OrbitPose pose = poseOf(orbit);
-    const double pixelsPerMm = size.y / orbit.heightMm;
-    const glm::dvec3 from = pointMm - pose.positionMm;
-    return {0.5 * size.x + pixelsPerMm * glm::dot(from, pose.right),
-            0.5 * size.y - pixelsPerMm * glm::dot(from, pose.up), glm::dot(from, pose.forward)};
+glm::dvec3 projected(const Camera& orthographic, glm::dvec3 pointMm, glm::dvec2 size) {
+    const double pixelsPerMm = size.y / orthographic.heightMm;
+    const glm::dvec3 right = glm::cross(orthographic.forward, orthographic.up);
+    const glm::dvec3 from = pointMm - orthographic.positionMm;
+    return {0.5 * size.x + pixelsPerMm * glm::dot(from, right),
+            0.5 * size.y - pixelsPerMm * glm::dot(from, orthographic.up),
+            glm::dot(from, orthographic.forward)};
 }
 
 Orbit orbitAround(glm::dvec3 lowMm, glm::dvec3 highMm, double aspect) {

@@ -1,6 +1,8 @@
 // A view from outside: a camera that circles a place and looks at it.
 #pragma once
 
+#include "core/camera.h"
+
 #include <glm/glm.hpp>
 
 namespace haustra {
@@ -16,16 +18,15 @@ struct Orbit {
     bool operator==(const Orbit&) const = default;
 };
 
-/// Where the camera stands; the directions are unit and orthogonal.
-struct OrbitPose {
-    glm::dvec3 positionMm{0.0};
-    glm::dvec3 forward{0.0, 1.0, 0.0}, up{0.0, 0.0, 1.0}, right{1.0, 0.0, 0.0};
-};
-OrbitPose poseOf(const Orbit& orbit);
+/// Where it stands, its directions unit and orthogonal, through an orthographic lens.
+Camera cameraOf(const Orbit& orbit);
 
 /// The pixel (x to the right, y down, centres at halves) of a picture of `size` where a point
-/// appears, and how far before the camera it is, mm.
-glm::dvec3 projected(const Orbit& orbit, glm::dvec3 pointMm, glm::dvec2 size);
+/// appears to such a camera, and how far before it the point is, mm.
+glm::dvec3 projected(const Camera& orthographic, glm::dvec3 pointMm, glm::dvec2 size);
+inline glm::dvec3 projected(const Orbit& orbit, glm::dvec3 pointMm, glm::dvec2 size) {
+    return projected(cameraOf(orbit), pointMm, size);
+}
 
 /// From the front, with the box [low, high] whole in a picture that is `aspect` times as wide as
 /// high, from whichever side it is then looked at, and a twelfth of the picture free around it; the

@@ -21,6 +21,7 @@ struct FlatWindow {
     glm::dvec2 pixelFromFlat(glm::dvec2 flat, glm::ivec2 size) const {
         return 0.5 * glm::dvec2(size) - (flat - center) * pixelsPerUnit;
     }
+    bool operator==(const FlatWindow&) const = default;
 };
 
 /// One column of the overview: pixels [left, left + width) × [0, height) of the picture.

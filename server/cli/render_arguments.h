@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/flat_map.h"
+#include "render/scene/picture.h"
 #include "render/scene/raycaster.h"
-#include "render/view.h"
 
 #include <filesystem>
 #include <optional>

@@ -16,7 +16,8 @@ constexpr double marginShare = 1.04;
 
 render::Camera cameraOutside(const Grid& grid, Direction from, render::Lens lens, double fovDegrees,
                              double aspect) {
-    const OrbitPose pose = poseOf(Orbit{{}, 1.0, from.azimuthDegrees, from.elevationDegrees, 1.0});
+    const Camera pose = cameraOf({{}, 1.0, from.azimuthDegrees, from.elevationDegrees, 1.0});
+    const glm::dvec3 right = glm::cross(pose.forward, pose.up);
     const glm::dvec3 faces(grid.size);
     const glm::dvec3 middle = grid.patientFromVoxelPoint(0.5 * faces - 0.5);
     // A fisheye sees no less than a perspective does of what is within its middle.
@@ -26,7 +27,7 @@ render::Camera cameraOutside(const Grid& grid, Direction from, render::Lens lens
         const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
         const glm::dvec3 mm = grid.patientFromVoxelPoint(side * faces - 0.5) - middle;
         const double aside = marginShare * std::max(std::abs(glm::dot(mm, pose.up)),
-                                                    std::abs(glm::dot(mm, pose.right)) / aspect);
+                                                    std::abs(glm::dot(mm, right)) / aspect);
         halfHeight = std::max(halfHeight, aside);
         const double depth = glm::dot(mm, pose.forward);
         distance = std::max(

@@ -122,11 +122,8 @@ Result<render::Image> drawOverview(const RenderArguments& arguments, const Produ
     orbit.azimuthDegrees = arguments.azimuthDegrees;
     orbit.elevationDegrees = arguments.elevationDegrees;
     if (arguments.heightMm) orbit.heightMm = *arguments.heightMm;
-    const OrbitPose pose = poseOf(orbit);
     render::OverviewView view;
-    view.camera = {pose.positionMm, pose.forward, pose.up};
-    view.camera.lens = Lens::orthographic;
-    view.camera.heightMm = orbit.heightMm;
+    view.camera = cameraOf(orbit);
     view.bookmarksMm = arguments.marksMm;
     view.paint = products.paint;
     view.body = arguments.body;

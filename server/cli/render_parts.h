@@ -5,7 +5,7 @@
 #include "core/grid.h"
 #include "core/optics.h"
 #include "core/result.h"
-#include "render/view.h"
+#include "render/picture.h"
 
 namespace haustra::cli {
 

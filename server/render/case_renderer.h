@@ -2,9 +2,9 @@
 #pragma once
 
 #include "gpu/context.h"
+#include "render/scene/picture.h"
 #include "render/scene/prepared_case.h"
 #include "render/scene/raycaster.h"
-#include "render/view.h"
 #include "render/wall/wall_paint.h"
 
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "core/tissue.h"
 #include "core/volume.h"
-#include "render/view.h"
+#include "render/picture.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Pictures to PNG files.
 #pragma once
 
-#include "render/view.h"
+#include "render/picture.h"
 
 #include <filesystem>
 #include <memory>

@@ -5,7 +5,7 @@
 #include "protocol/haustra.pb.h"
 #include "records/bookmarks.h"
 #include "render/optics/optics_presets.h"
-#include "render/view.h"
+#include "render/picture.h"
 #include "session/wall_reading.h"
 
 #include <string>

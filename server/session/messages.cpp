@@ -2,7 +2,7 @@
 
 #include "protocol/framing.h"
 #include "protocol/optics_message.h"
-#include "render/view.h"
+#include "render/picture.h"
 
 namespace haustra::session {
 namespace {

@@ -183,10 +183,10 @@ TEST_F(ClientHeadless, TheViewsFromOutsideAndAcrossTheGazeAreTheServers) {
               tests::syntheticPicture(90, 70, {1, 2, 3}, tests::cleansedShiftHu));
     Orbit orbit = orbitOf(path, 1.2);
     EXPECT_EQ(readPng("alone.png", width, height),
-              tests::syntheticPicture(120, 100, poseOf(orbit).positionMm, 0.0));
+              tests::syntheticPicture(120, 100, cameraOf(orbit).positionMm, 0.0));
     orbit.azimuthDegrees = 90.0;
     EXPECT_EQ(readPng("left.png", width, height),
-              tests::syntheticPicture(120, 100, poseOf(orbit).positionMm, camera.positionMm.z));
+              tests::syntheticPicture(120, 100, cameraOf(orbit).positionMm, camera.positionMm.z));
 }
 
 TEST_F(ClientHeadless, AFlyOverMeasuresEachPosition) {

@@ -47,7 +47,7 @@ TEST_F(ClientReader, TheOverviewStandsStillWhileTheReaderFliesAndTurnsByHand) {
     }));
     const auto expectBoth = [&] {
         EXPECT_EQ(reader_->picture(View::overview).rgb,
-                  tests::syntheticPicture(120, 100, poseOf(reader_->orbit()).positionMm, 0.0));
+                  tests::syntheticPicture(120, 100, cameraOf(reader_->orbit()).positionMm, 0.0));
         EXPECT_EQ(reader_->shownOrbit(), reader_->orbit());
         EXPECT_EQ(reader_->picture(View::oblique).rgb,
                   tests::syntheticPicture(80, 60, reader_->oblique().positionMm,

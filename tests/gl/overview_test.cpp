@@ -44,11 +44,8 @@ protected:
         return {glm::dvec3(0.0), 300.0, azimuth, elevation, 100.0};
     }
     static OverviewView seenFrom(const Orbit& orbit) {
-        const OrbitPose pose = poseOf(orbit);
         OverviewView view;
-        view.camera = {pose.positionMm, pose.forward, pose.up};
-        view.camera.lens = Lens::orthographic;
-        view.camera.heightMm = orbit.heightMm;
+        view.camera = cameraOf(orbit);
         view.body = false;
         view.optics.transferFunction = everywhere(0.0);
         return view;

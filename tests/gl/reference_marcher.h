@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/volume.h"
-#include "render/view.h"
+#include "render/picture.h"
 #include "render_scene.h"
 
 #include <algorithm>

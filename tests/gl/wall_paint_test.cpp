@@ -38,7 +38,7 @@ protected:
         return cameras;
     }
 
-    /// The ray of a pixel, as view.h words it: where it begins, and its unit direction.
+    /// The ray of a pixel, as picture.h words it: where it begins, and its unit direction.
     static std::optional<std::pair<glm::dvec3, glm::dvec3>> ray(const Camera& camera,
                                                                 glm::ivec2 pixel, glm::ivec2 size) {
         const glm::dvec3 forward = glm::normalize(camera.forward);

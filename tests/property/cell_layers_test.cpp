@@ -74,7 +74,7 @@ struct Ray {
     bool shown = true;
 };
 
-/// By the definition of the lenses (view.h).
+/// By the definition of the lenses (core/camera.h).
 Ray rayOf(const Camera& camera, glm::ivec2 size, glm::dvec2 pixel) {
     const glm::dvec3 ahead = glm::normalize(camera.forward);
     const glm::dvec3 right = glm::normalize(glm::cross(ahead, camera.up));

@@ -17,10 +17,10 @@ void expectNear(glm::dvec3 a, glm::dvec3 b, double error = 1e-9) {
 TEST(Orbit, StandsWhereItsAnglesSay) {
     const glm::dvec3 center(10.0, -20.0, 30.0);
     const auto at = [&](double azimuth, double elevation) {
-        return poseOf({center, 100.0, azimuth, elevation, 50.0});
+        return cameraOf({center, 100.0, azimuth, elevation, 50.0});
     };
     expectNear(at(0, 0).positionMm, center + glm::dvec3(0, -100, 0));    // before the patient
-    expectNear(at(0, 0).right, {1, 0, 0});                               // the patient's left
+    expectNear(glm::cross(at(0, 0).forward, at(0, 0).up), {1, 0, 0});    // the patient's left
     expectNear(at(0, 0).up, {0, 0, 1});                                  // the head
     expectNear(at(90, 0).positionMm, center + glm::dvec3(100, 0, 0));    // at the patient's left
     expectNear(at(180, 0).positionMm, center + glm::dvec3(0, 100, 0));   // behind
@@ -34,14 +34,16 @@ TEST(Orbit, LooksAtItsCentreWithUnitOrthogonalAxes) {
     std::uniform_real_distribution<double> angle(-180.0, 180.0);
     for (int n = 0; n < 200; ++n) {
         const Orbit orbit{{1, 2, 3}, 80.0, angle(random), angle(random) / 2.0, 60.0};
-        const OrbitPose pose = poseOf(orbit);
+        const Camera pose = cameraOf(orbit);
+        const glm::dvec3 right = glm::cross(pose.forward, pose.up);
         EXPECT_NEAR(glm::length(pose.forward), 1.0, 1e-12);
         EXPECT_NEAR(glm::length(pose.up), 1.0, 1e-12);
-        expectNear(pose.right, glm::cross(pose.forward, pose.up), 1e-12);
+        EXPECT_EQ(pose.lens, Lens::orthographic);
+        EXPECT_EQ(pose.heightMm, 60.0);
         EXPECT_NEAR(glm::dot(pose.forward, pose.up), 0.0, 1e-12);
         expectNear(pose.positionMm + 80.0 * pose.forward, orbit.centerMm);
         const glm::dvec3 seen =
-            projected(orbit, orbit.centerMm + 6.0 * pose.right + 3.0 * pose.up, {200.0, 120.0});
+            projected(orbit, orbit.centerMm + 6.0 * right + 3.0 * pose.up, {200.0, 120.0});
         expectNear(seen, {100.0 + 12.0, 60.0 - 6.0, 80.0});
     }
 }

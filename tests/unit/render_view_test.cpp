@@ -1,7 +1,7 @@
 // Cameras, transfer functions and slices, where no GL is needed.
 #include "render/optics/transfer_table.h"
+#include "render/picture.h"
 #include "render/png_file.h"
-#include "render/view.h"
 
 #include <cmath>
 

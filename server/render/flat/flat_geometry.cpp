@@ -1,7 +1,7 @@
 #include "render/flat/flat_geometry.h"
 
+#include "render/scene/picture.h"
 #include "render/scene/wall_normals.h"
-#include "render/view.h"
 
 #include <algorithm>
 #include <cmath>

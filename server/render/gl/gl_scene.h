@@ -6,8 +6,8 @@
 #include "gpu/texture.h"
 #include "render/optics/classification.h"
 #include "render/scene/lately_used.h"
+#include "render/scene/picture.h"
 #include "render/scene/scene.h"
-#include "render/view.h"
 #include "shaders/uniforms.h"
 
 #include <memory>

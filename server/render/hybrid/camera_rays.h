@@ -4,7 +4,7 @@
 #include "core/grid.h"
 #include "render/scene/lens.h"
 #include "render/scene/min_max_octree.h"
-#include "render/view.h"
+#include "render/scene/picture.h"
 
 #include <optional>
 

@@ -5,8 +5,8 @@
 #include "render/native/tile_workers.h"
 #include "render/optics/transfer_table.h"
 #include "render/scene/lately_used.h"
+#include "render/scene/picture.h"
 #include "render/scene/scene.h"
-#include "render/view.h"
 
 #include <memory>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/grid.h"
-#include "render/view.h"
+#include "render/picture.h"
 
 #include <cstdlib>
 

@@ -5,8 +5,8 @@
 #include "render/object_order/cell_pool.h"
 #include "render/object_order/cell_projector.h"
 #include "render/optics/classification.h"
+#include "render/scene/picture.h"
 #include "render/scene/raycaster.h"
-#include "render/view.h"
 
 #include <cstdint>
 #include <memory>

@@ -5,9 +5,9 @@
 #include "gpu/program.h"
 #include "gpu/raster_target.h"
 #include "render/scene/lately_used.h"
+#include "render/scene/picture.h"
 #include "render/scene/raycaster.h"
 #include "render/scene/scene.h"
-#include "render/view.h"
 #include "shaders/overview_uniforms.h"
 
 #include <memory>

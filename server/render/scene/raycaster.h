@@ -5,7 +5,7 @@
 
 #include "core/raycasters.h"
 #include "core/result.h"
-#include "render/view.h"
+#include "render/picture.h"
 
 #include <cstddef>
 #include <string>

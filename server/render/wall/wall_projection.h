@@ -1,8 +1,8 @@
 // How a camera projects the wall's triangles.
 #pragma once
 
+#include "render/scene/picture.h"
 #include "render/scene/raycaster.h"
-#include "render/view.h"
 #include "shaders/wall_uniforms.h"
 
 namespace haustra::render {

@@ -1,9 +1,10 @@
-// What a picture shows: cameras, slices, transfer functions. No GL here.
+// A picture, and what is drawn into it: a view of the case (core/view.h) with the optics, sampling
+// and paint that it is drawn by. No GL here.
 #pragma once
 
 #include "core/grid.h"
 #include "core/result.h"
-#include "core/strip_layout.h"
+#include "core/view.h"
 #include "render/optics/optics.h"
 
 #include <cstdint>
@@ -27,43 +28,20 @@ inline Image blankImage(glm::ivec2 size) {
             std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
 }
 
-/// How a camera's rays spread over its picture; y is the distance of a pixel from the picture's
-/// middle in half heights of the picture.
-enum class Lens {
-    perspective,   ///< tan θ = y · tan(fov / 2)
-    fisheye,       ///< θ = y · fov / 2, equidistant; black beyond θ = 180°
-    orthographic,  ///< rays are parallel, y · heightMm / 2 beside the camera
-};
-
-/// A camera in patient space (LPS mm). The field of view is vertical. `forward` and `up` need not
-/// be unit or orthogonal, only finite and not parallel.
-struct Camera {
-    glm::dvec3 positionMm{0.0};
-    glm::dvec3 forward{0.0, 0.0, 1.0};
-    glm::dvec3 up{0.0, -1.0, 0.0};
-    double fovDegrees = 90.0;  ///< perspective 1…170, fisheye 1…360
-    Lens lens = Lens::perspective;
-    double heightMm = 100.0;  ///< of an orthographic picture, over 0
-    bool operator==(const Camera&) const = default;
-};
-
-struct WindowLevel {
-    double centerHu = 0.0;
-    double widthHu = 2000.0;  ///< wide enough for colon reading: −1000…1000
-};
-
-enum class View {
-    endoscopic,
-    axial,
-    coronal,
-    sagittal,
-    flattened,
-    flattenedZoom,
-    oblique,
-    overview,
-};
-Result<View> viewFromString(const std::string& text);
-const char* toString(View view);
+// The values that a picture shows, among the renderer's names.
+using haustra::Camera;
+using haustra::checkCamera;
+using haustra::checkOverview;
+using haustra::Lens;
+using haustra::maxObliqueMm;
+using haustra::maxOverviewBookmarks;
+using haustra::minObliqueMm;
+using haustra::ObliqueView;
+using haustra::Scan;
+using haustra::SliceView;
+using haustra::View;
+using haustra::viewFromString;
+using haustra::WindowLevel;
 
 /// How rays are sampled. The defaults are what readers see; the rest serves measurements.
 struct MarchOptions {
@@ -96,27 +74,9 @@ struct CameraView {
 /// another size.
 Result<void> checkCameraView(const CameraView& view, glm::ivec2 pictureSize);
 
-/// Says what is wrong with a camera: field of view, height, directions finite and not parallel.
-Result<void> checkCamera(const Camera& camera);
-
 /// Fails (badInput) where the sampling distance is out of range, for these optics too.
 Result<void> checkMarch(const MarchOptions& march);
 Result<void> checkMarch(const MarchOptions& march, const Optics& optics);
-
-/// Which of a case's two scans a slice shows.
-enum class Scan { original, cleansed };
-
-/// A slice through `positionMm`, radiological convention: axial seen from the feet (patient's
-/// left on the picture's right), coronal from the front, sagittal from the patient's left.
-/// At zoom 1 the whole slice fits the picture, centred, with square millimetres; zooming holds
-/// `positionMm` where it is in the picture.
-struct SliceView {
-    View plane = View::axial;
-    glm::dvec3 positionMm{0.0};
-    double zoom = 1.0;  ///< 1…64
-    WindowLevel window;
-    Scan scan = Scan::original;
-};
 
 /// Where a slice's pixels lie: the centre of pixel (x, y) is topLeftMm + x·rightMm + y·downMm.
 struct SlicePlacement {
@@ -129,43 +89,17 @@ struct SlicePlacement {
 /// Slices are planes of patient space also where the grid is oblique.
 Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height);
 
-/// A slice in any direction, as an orthographic camera at `positionMm` sees the plane before it:
-/// `positionMm` is in the picture's middle, the picture's right is forward × up. Looking along the
-/// colon's path it is the lumen's cross-section, the way the endoscopic view shows it.
-struct ObliqueView {
-    glm::dvec3 positionMm{0.0};
-    glm::dvec3 forward{0.0, 0.0, 1.0};  ///< as of a camera: not parallel to `up`, any length
-    glm::dvec3 up{0.0, -1.0, 0.0};
-    double heightMm = 60.0;  ///< of the picture, minObliqueMm…maxObliqueMm
-    WindowLevel window;
-    Scan scan = Scan::original;
-};
-inline constexpr double minObliqueMm = 1.0, maxObliqueMm = 2000.0;
-
 /// Fails (badInput) on directions that span no plane, height or window out of range, or a picture
 /// without pixels.
 Result<SlicePlacement> placeSlice(const ObliqueView& view, int width, int height);
 
-/// The colon from outside (dissertation §6.3.2), within the body: the wall's mesh, lit; the path in
-/// it, where the reader is, and bookmarks, which show through what stands before them; the scan
-/// around it, ray-cast.
-struct OverviewView {
-    Camera camera;  ///< perspective or orthographic
-    /// The reader's camera: a cone that opens forwards.
-    std::optional<Camera> reader;
-    std::vector<glm::dvec3> bookmarksMm;  ///< balls; at most maxOverviewBookmarks
-    bool path = true;
-    bool body = true;
+/// The colon from outside: the wall's mesh, lit, and the body around it, ray-cast.
+struct OverviewView : Overview {
     Optics optics;  ///< of the body: translucent
     /// The body is a soft shadow: samples a voxel apart show all of it.
     MarchOptions march{.stepVoxels = 1.0};
     std::shared_ptr<const WallPaint> paint = nullptr;  ///< as of a CameraView
 };
-inline constexpr std::size_t maxOverviewBookmarks = 1024;
-
-/// Fails (badInput) where the camera is not sound or has a fisheye lens, a place is not finite, or
-/// there are too many.
-Result<void> checkOverview(const OverviewView& view);
 
 /// A window onto the flattened wall (dissertation §4.3.2). Each pixel's place on the surface is
 /// interpolated from the flat map's triangle that covers it, at whatever enlargement, and a ray
