@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/result.h"
+#include "protocol/limits.h"
 
 #include <cstdint>
 #include <optional>
@@ -17,13 +18,6 @@ inline constexpr std::uint32_t protocolVersion = 1;
 /// A frame is: u32 payload length, u8 type, then the payload. All integers little-endian.
 enum class FrameType : std::uint8_t { control = 1, tile = 2 };
 inline constexpr std::size_t frameHeaderBytes = 5;
-inline constexpr std::uint32_t maxClientControlBytes = 64 * 1024;
-inline constexpr std::uint32_t maxServerControlBytes = 4 * 1024 * 1024;
-inline constexpr std::uint32_t maxTileBytes = 16 * 1024 * 1024;
-inline constexpr int maxWarnings = 200;  ///< of ColonTrust
-inline constexpr std::size_t maxWarningBytes = 400;
-inline constexpr std::uint32_t maxViewports = 8;
-inline constexpr std::uint32_t maxViewportPixels = 2048;  ///< width and height, each
 
 struct FrameHeader {
     std::uint32_t payloadBytes = 0;

@@ -60,10 +60,6 @@ bool showsWall(View view) {
     return !isGrey(view);
 }
 
-bool canBeCoarse(View view) {
-    return !isGrey(view) && view != View::flattened;
-}
-
 View viewOf(const ViewState& state) {
     return std::visit([](const auto& shown) { return kindOf(shown); }, state);
 }

@@ -43,8 +43,6 @@ bool isFlat(View view);
 bool isGrey(View view);
 /// Views of the wall, which paint colours.
 bool showsWall(View view);
-/// Whether a smaller picture shows the same, coarser, and is worth it while the view moves.
-bool canBeCoarse(View view);
 
 struct WindowLevel {
     double centerHu = 0.0;    ///< within ±65 536

@@ -1,5 +1,7 @@
 #include "records/bookmarks.h"
 
+#include "protocol/limits.h"
+
 #include <optional>
 
 #include <sqlite3.h>
@@ -53,7 +55,7 @@ Result<void> run(sqlite3* database, const char* sql, const char* doing) {
 }
 
 std::size_t listBytes(const NewBookmark& bookmark) {
-    return bookmark.note.size() + bookmark.clientKey.size() + 256;
+    return bookmark.note.size() + bookmark.clientKey.size() + protocol::bookmarkOverheadBytes;
 }
 
 Bookmark bookmarkAt(const Statement& row) {
@@ -121,10 +123,10 @@ Result<BookmarkStore> BookmarkStore::open(const std::filesystem::path& file) {
 }
 
 Result<void> BookmarkStore::measure() {
-    auto sizes = TRY(Statement::prepare(
-        database_.get(),
-        "SELECT scan, sum(length(CAST(note AS BLOB)) + length(CAST(client_key AS BLOB)) + "
-        "256) FROM scan_bookmarks GROUP BY scan"));
+    const std::string sums =
+        "SELECT scan, sum(length(CAST(note AS BLOB)) + length(CAST(client_key AS BLOB)) + " +
+        std::to_string(protocol::bookmarkOverheadBytes) + ") FROM scan_bookmarks GROUP BY scan";
+    auto sizes = TRY(Statement::prepare(database_.get(), sums.c_str()));
     scanBytes_.clear();
     unadopted_.clear();
     auto row = sizes.step();
@@ -158,7 +160,7 @@ Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
     if (!found) return tl::make_unexpected(found.error());
     if (known) return *known;
 
-    if (scanBytes_[bookmark.scan] + listBytes(bookmark) > maxScanBytes)
+    if (scanBytes_[bookmark.scan] + listBytes(bookmark) > protocol::maxScanBookmarkBytes)
         return fail(ErrorKind::badInput, "the scan holds as many bookmarks as it can", "bookmarks");
     int parameter = 0;
     insert_.bind(++parameter, bookmark.caseName);

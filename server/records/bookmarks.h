@@ -31,10 +31,6 @@ struct Bookmark : NewBookmark {
     std::string createdUtc;  ///< "2020-01-31T23:59:59Z"
 };
 
-/// What all bookmarks of a scan may take together, so that their list fits in one message: each
-/// counts its note's and key's bytes and 256 more.
-inline constexpr std::size_t maxScanBytes = 4'000'000;
-
 /// The table of bookmarks. SQLite in WAL mode with synchronous=FULL: what add() has returned
 /// survives a crash of the process, and of the machine where its disk honours fsync. Belongs to
 /// one thread; other processes may have the same file open.
@@ -49,8 +45,9 @@ public:
 
     /// Adds all in one transaction, which costs one fsync. Where a scan already holds the client
     /// key, the bookmark of that key is returned and nothing is stored: a client that has lost an
-    /// acknowledgement may ask again. One that would take its scan past maxScanBytes is refused
-    /// (badInput), and the others are added. Where the transaction fails, none is there.
+    /// acknowledgement may ask again. One that would take its scan past
+    /// protocol::maxScanBookmarkBytes is refused (badInput), and the others are added. Where the
+    /// transaction fails, none is there.
     Result<std::vector<Result<Bookmark>>> add(const std::vector<NewBookmark>& bookmarks);
 
     /// A scan's bookmarks in the order in which they were added.

@@ -2,7 +2,7 @@
 
 #include "protocol/framing.h"
 #include "protocol/optics_message.h"
-#include "render/picture.h"
+#include "protocol/view_message.h"
 
 namespace haustra::session {
 namespace {
@@ -31,15 +31,6 @@ void fill(protocol::ColonTrust& message, const ColonTrust& trust) {
         told->set_tagged_ml(segment.taggedMl + segment.untaggedMl);
         told->set_collapsed_mm(segment.collapsedMm);
     }
-}
-
-}  // namespace
-namespace {
-
-void fill(protocol::Vec3& message, glm::dvec3 v) {
-    message.set_x(v.x);
-    message.set_y(v.y);
-    message.set_z(v.z);
 }
 
 }  // namespace
@@ -119,9 +110,7 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
 
 void fill(protocol::Bookmark& message, const records::Bookmark& bookmark) {
     message.set_id(bookmark.id);
-    fill(*message.mutable_position_mm(), bookmark.positionMm);
-    fill(*message.mutable_forward(), bookmark.forward);
-    fill(*message.mutable_up(), bookmark.up);
+    protocol::fillPose(message, bookmark);
     message.set_arc_mm(bookmark.arcMm);
     message.set_note(bookmark.note);
     message.set_created_utc(bookmark.createdUtc);

@@ -1,13 +1,19 @@
 #include "session/picture_job.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace haustra::session {
 
 bool canBeCoarse(const AnyView& view) {
-    return std::holds_alternative<render::CameraView>(view) ||
-           std::holds_alternative<render::OverviewView>(view) ||
-           std::holds_alternative<render::FlatView>(view);
+    return std::visit(
+        [](const auto& any) {
+            if constexpr (requires { any.optics; })
+                return !std::is_same_v<decltype(any), const render::FlatOverview&>;
+            else
+                return false;
+        },
+        view);
 }
 
 void setPaint(AnyView& view, std::shared_ptr<const render::WallPaint> paint) {

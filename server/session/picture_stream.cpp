@@ -1,7 +1,7 @@
 #include "session/picture_stream.h"
 
+#include "protocol/view_message.h"
 #include "session/guarded.h"
-#include "session/inputs.h"
 
 #include <algorithm>
 
@@ -44,54 +44,38 @@ Result<void> PictureStream::takeSequence(std::uint64_t sequence) {
     return {};
 }
 
-template <class Input>
-Result<void> PictureStream::input(const Input& message) {
-    TRY(takeSequence(message.sequence()));
-    if (message.viewport() >= slots_.size())
+Result<void> PictureStream::input(const protocol::ClientMessage& message) {
+    const protocol::InputHeader header = *protocol::inputHeader(message);
+    TRY(takeSequence(header.sequence));
+    if (header.viewport >= slots_.size())
         return fail(ErrorKind::badInput, "viewports have numbers below 8", "viewport");
-    Slot& slot = slots_[message.viewport()];
-    if (!std::is_same_v<Input, protocol::SetViewport> && !slot.viewport.isOpen())
+    Slot& slot = slots_[header.viewport];
+    if (!message.has_set_viewport() && !slot.viewport.isOpen())
         return fail(ErrorKind::wrongState, "the viewport is not open", "viewport");
-    if constexpr (std::is_same_v<Input, protocol::SetSlice> ||
-                  std::is_same_v<Input, protocol::SetOblique>) {
-        if (message.cleansed() && !(case_ && case_->cleansed))
-            return fail(ErrorKind::badInput, "the case has no cleansed scan", "viewport");
-    }
-    if constexpr (std::is_same_v<Input, protocol::SetViewport>) {
-        if (isFlat(message.view()) && !(case_ && case_->wall))
-            return fail(ErrorKind::badInput, "the case has not been flattened", "viewport");
-    }
-    Result<void> applied;
-    if constexpr (std::is_same_v<Input, protocol::SetTransferFunction>)
-        applied = slot.viewport.apply(message, presets_);
-    else
-        applied = slot.viewport.apply(message);
-    if (!applied) return applied;
-    slot.sequence = message.sequence();
-    changed(message.viewport());
+    Viewport next = slot.viewport;
+    TRY(next.apply(message, presets_));
+    if (next.isDrawable() && showsCleansed(*next.state()) && !(case_ && case_->cleansed))
+        return fail(ErrorKind::badInput, "the case has no cleansed scan", "viewport");
+    if (next.isOpen() && isFlat(next.kind()) && !(case_ && case_->wall))
+        return fail(ErrorKind::badInput, "the case has not been flattened", "viewport");
+    slot.viewport = std::move(next);
+    slot.sequence = header.sequence;
+    changed(header.viewport);
     // While it moved, the other views of the wall kept their paint.
     if (!slot.viewport.moving()) repaint();
     return {};
 }
-template Result<void> PictureStream::input(const protocol::SetViewport&);
-template Result<void> PictureStream::input(const protocol::SetCamera&);
-template Result<void> PictureStream::input(const protocol::SetSlice&);
-template Result<void> PictureStream::input(const protocol::SetOblique&);
-template Result<void> PictureStream::input(const protocol::SetOverview&);
-template Result<void> PictureStream::input(const protocol::SetFlat&);
-template Result<void> PictureStream::input(const protocol::SetWindowLevel&);
-template Result<void> PictureStream::input(const protocol::SetTransferFunction&);
 
 Result<void> PictureStream::input(const protocol::SetWallPaint& message) {
     TRY(takeSequence(message.sequence()));
     if (!reading_)
         return fail(ErrorKind::badInput, "the case has not been flattened: its wall has no paint",
                     "wall paint");
-    const auto choice = TRY(paintChoiceFrom(message));
+    const auto choice = TRY(protocol::paintFrom(message));
     reading_->choose(choice);
     for (std::size_t id = 0; id < slots_.size(); ++id) {
         Slot& slot = slots_[id];
-        if (!slot.viewport.isOpen() || !slot.viewport.showsWall()) continue;
+        if (!slot.viewport.isOpen() || !showsWall(slot.viewport.kind())) continue;
         slot.sequence = message.sequence();
         changed(id);
     }
@@ -104,7 +88,7 @@ void PictureStream::repaint() {
         return slot.viewport.isDrawable() && slot.viewport.moving();
     });
     for (Slot& slot : slots_) {
-        if (moves || slot.due || !slot.viewport.isDrawable() || !slot.viewport.showsWall() ||
+        if (moves || slot.due || !slot.viewport.isDrawable() || !showsWall(slot.viewport.kind()) ||
             slot.paint == reading_->paint())
             continue;
         slot.due = true;
@@ -115,7 +99,7 @@ void PictureStream::repaint() {
 
 // Not while the paint that it is to show is being made.
 bool PictureStream::canDraw(const Slot& slot) const {
-    return slot.due && (!reading_ || reading_->ready() || !slot.viewport.showsWall());
+    return slot.due && (!reading_ || reading_->ready() || !showsWall(slot.viewport.kind()));
 }
 
 void PictureStream::changed(std::size_t id) {

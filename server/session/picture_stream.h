@@ -49,13 +49,10 @@ public:
     /// one moves, only that one shows it.
     void repaint();
 
-    /// SetViewport, SetCamera, SetSlice, SetOblique, SetOverview, SetFlat, SetWindowLevel,
-    /// SetTransferFunction. Fails
+    /// An input of one viewport, or SetWallPaint, which is for all views of the wall. Fails
     /// (badInput) and changes nothing but the sequence where the message is out of bounds,
     /// (wrongState) where the viewport is not open.
-    template <class Input>
-    Result<void> input(const Input& message);
-    /// Likewise, for all views of the wall.
+    Result<void> input(const protocol::ClientMessage& message);
     Result<void> input(const protocol::SetWallPaint& message);
 
     void pictureSent();

@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include "protocol/view_message.h"
 #include "session/guarded.h"
 #include "session/inputs.h"
 #include "session/messages.h"
@@ -88,28 +89,12 @@ void Session::dispatch(const ClientMessage& message) {
             return handle(message.list_cases());
         case ClientMessage::kOpenCase:
             return handle(message.open_case());
-        case ClientMessage::kSetViewport:
-            return handleInput(message.set_viewport());
-        case ClientMessage::kSetCamera:
-            return handleInput(message.set_camera());
-        case ClientMessage::kSetSlice:
-            return handleInput(message.set_slice());
-        case ClientMessage::kSetOblique:
-            return handleInput(message.set_oblique());
-        case ClientMessage::kSetOverview:
-            return handleInput(message.set_overview());
-        case ClientMessage::kSetFlat:
-            return handleInput(message.set_flat());
         case ClientMessage::kLocateFlat:
             return handleQuestion(message.locate_flat());
         case ClientMessage::kLocatePoint:
             return handleQuestion(message.locate_point());
         case ClientMessage::kMeasureFlat:
             return handleQuestion(message.measure_flat());
-        case ClientMessage::kSetWindowLevel:
-            return handleInput(message.set_window_level());
-        case ClientMessage::kSetTransferFunction:
-            return handleInput(message.set_transfer_function());
         case ClientMessage::kAddBookmark:
             return handle(message.add_bookmark());
         case ClientMessage::kListBookmarks:
@@ -120,8 +105,8 @@ void Session::dispatch(const ClientMessage& message) {
             return handle(message.ask_seen());
         case ClientMessage::kPing:
             return handle(message.ping());
-        case ClientMessage::BODY_NOT_SET:
-            break;
+        default:
+            if (protocol::inputHeader(message)) return handleInput(message);
     }
     end(ErrorReport::BAD_MESSAGE, "a control message says nothing that this version knows");
 }
@@ -193,7 +178,7 @@ auto Session::answer(void (Session::*then)(std::uint64_t, Result<T>), std::uint6
 }
 
 void Session::handle(const protocol::ListCases&) {
-    services_.records.listCases(answer(&Session::listedCases, 0, listWeight));
+    services_.records.listCases(answer(&Session::listedCases, 0, protocol::listWeight));
 }
 
 void Session::listedCases(std::uint64_t, Result<std::vector<std::string>> names) {
@@ -252,8 +237,7 @@ void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
     send(caseOpenedMessage(*case_, services_.presets));
 }
 
-template <class Input>
-void Session::handleInput(const Input& message) {
+void Session::handleInput(const ClientMessage& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open");
     if (const auto taken = pictures_->input(message); !taken) report(taken.error());
 }
@@ -312,7 +296,7 @@ void Session::handle(const protocol::SetWallPaint& message) {
     if (const auto taken = pictures_->input(message); !taken) return report(taken.error());
     if (message.marks())
         services_.records.list(case_->name, case_->scan,
-                               answer(&Session::listedToPaint, readings_, listWeight));
+                               answer(&Session::listedToPaint, readings_, protocol::listWeight));
 }
 
 void Session::listedToPaint(std::uint64_t ofReading,
@@ -327,7 +311,7 @@ void Session::handle(const protocol::AskSeen& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
     if (!reading_)
         return refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
-    const int weight = message.forget() ? listWeight : 1;  // to begin anew takes a while
+    const int weight = message.forget() ? protocol::listWeight : 1;  // to begin anew takes a while
     unanswered_ += weight;
     reading_->ask(message.forget(),
                   [weak = weak_from_this(), request, weight](Result<double> share) {
@@ -378,7 +362,7 @@ void Session::handle(const protocol::ListBookmarks& message) {
     const std::uint64_t request = message.request();
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
     services_.records.list(case_->name, case_->scan,
-                           answer(&Session::listedBookmarks, request, listWeight));
+                           answer(&Session::listedBookmarks, request, protocol::listWeight));
 }
 
 void Session::listedBookmarks(std::uint64_t request,

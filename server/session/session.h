@@ -61,10 +61,7 @@ public:
 
     bool greeted() const { return state_ != State::hello; }
     /// So many requests wait for their answer that no more should be read.
-    bool tooBusy() const { return unanswered_ >= maxUnanswered; }
-
-    static constexpr int maxUnanswered = 256;
-    static constexpr int listWeight = 64;  ///< a list's answer is long
+    bool tooBusy() const { return unanswered_ >= protocol::maxUnanswered; }
 
 private:
     enum class State { hello, ready, opening, open, ended };
@@ -78,8 +75,7 @@ private:
     void handle(const protocol::SetWallPaint& message);
     void handle(const protocol::AskSeen& message);
     void handle(const protocol::Ping& message);
-    template <class Input>
-    void handleInput(const Input& message);
+    void handleInput(const protocol::ClientMessage& message);
     template <class Question>
     void handleQuestion(const Question& message);
     void askNext();

@@ -2,13 +2,10 @@
 #pragma once
 
 #include "protocol/haustra.pb.h"
+#include "protocol/limits.h"
 #include "session/wall.h"
 
 namespace haustra::session {
-
-inline constexpr int maxMeasuredPoints = 128;
-inline constexpr double maxMeasuredTurns = 32.0;  ///< |x| of a measured point
-inline constexpr double maxLineCircumferences = 256.0, maxOutlineCircumferences = 16.0;
 
 /// Each fails (badInput), naming the field, on a value out of its bounds.
 Result<WallQuestion> questionFrom(const protocol::LocateFlat& message, const Wall& wall);
@@ -23,7 +20,7 @@ inline int weightOf(const protocol::LocatePoint&) {
     return 1;
 }
 inline int weightOf(const protocol::MeasureFlat&) {
-    return 16;
+    return protocol::measurementWeight;
 }
 
 protocol::ServerMessage messageOf(const WallAnswer& answer, std::uint64_t request);

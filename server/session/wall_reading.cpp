@@ -115,7 +115,7 @@ void WallReading::addBookmark(const records::Bookmark& bookmark) {
 }
 
 void WallReading::keep(const records::Bookmark& bookmark) {
-    if (gazes_.size() == maxPaintedBookmarks) gazes_.erase(gazes_.begin());
+    if (gazes_.size() == protocol::maxMarkedBookmarks) gazes_.erase(gazes_.begin());
     gazes_.push_back({bookmark.id, bookmark.positionMm, bookmark.forward});
     gazesAreNew_ = true;
 }

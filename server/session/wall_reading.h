@@ -19,16 +19,6 @@
 
 namespace haustra::session {
 
-/// What colours the wall.
-struct WallPaintChoice {
-    bool marks = false;   ///< discs around the places that bookmarks mean
-    bool unseen = false;  ///< what no endoscopic picture of the session has shown yet
-    double markRadiusMm = 5.0;
-    bool any() const { return marks || unseen; }
-};
-
-/// The newest bookmarks of a case that are painted.
-inline constexpr std::size_t maxPaintedBookmarks = 1024;
 /// A place stays painted for so long after it has been shown: long enough to be noticed as one that
 /// had been missed.
 inline constexpr std::chrono::milliseconds repaintAfter{1000};

@@ -1,4 +1,5 @@
 // One fault costs one piece of work, never a thread.
+#include "protocol/view_message.h"
 #include "render/native/tile_workers.h"
 #include "session/guarded.h"
 #include "session/picture_stream.h"
@@ -105,19 +106,10 @@ TEST(WorkerFaults, APictureThatFailedIsDrawnOnceMoreAndThenReported) {
     facts->grid = axisAlignedGrid({32, 32, 32}, {1.0, 1.0, 1.0});
     stream->setCase(facts);
     for (int n = 1; n <= 3; ++n) {
-        protocol::SetViewport viewport;
-        viewport.set_sequence(std::uint64_t(2 * n - 1));
-        viewport.set_viewport(0);
-        viewport.set_view(protocol::AXIAL);
-        viewport.set_width(64);
-        viewport.set_height(64);
-        ASSERT_TRUE(stream->input(viewport));
-        protocol::SetSlice slice;
-        slice.set_sequence(std::uint64_t(2 * n));
-        slice.set_viewport(0);
-        slice.mutable_position_mm()->set_x(16.0);
-        slice.set_zoom(1.0);
-        ASSERT_TRUE(stream->input(slice));
+        const auto before = std::uint64_t(2 * n - 1);
+        ASSERT_TRUE(stream->input(protocol::viewportMessage({before, 0}, View::axial, 64, 64)));
+        ASSERT_TRUE(stream->input(
+            protocol::stateMessage({before + 1, 0}, SliceView{View::axial, {16.0, 0.0, 0.0}})));
         const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (reported < n && std::chrono::steady_clock::now() < until) {
             io.restart();

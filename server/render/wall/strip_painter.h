@@ -16,7 +16,6 @@ struct WallMark {
     glm::dvec2 flat{0.0};
     glm::dvec3 positionMm{0.0};
 };
-inline constexpr double minMarkRadiusMm = 1.0, maxMarkRadiusMm = 20.0;
 
 /// Pixels of a strip's paint that marks colour, and how much, 0…255; in the order of pixels.
 struct MarkedPixel {

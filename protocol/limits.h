@@ -1,0 +1,56 @@
+// What either side may ask of the other: the bounds of PROTOCOL.md, each of them once. Those of the
+// values that views are made of stand with the values, and have their names here too.
+#pragma once
+
+#include "core/flat_map.h"
+#include "core/view.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace haustra::protocol {
+
+// ---- §3, frames: the greatest payloads
+inline constexpr std::uint32_t maxClientControlBytes = 64 * 1024;
+inline constexpr std::uint32_t maxServerControlBytes = 4 * 1024 * 1024;
+inline constexpr std::uint32_t maxTileBytes = 16 * 1024 * 1024;
+
+// ---- §4, viewports
+inline constexpr std::uint32_t maxViewports = 8;  ///< of a session: ids are 0…7
+inline constexpr std::uint32_t minViewportPixels = 16, maxViewportPixels = 2048;  ///< of each side
+
+// ---- §4, what views show
+inline constexpr double maxCoordinateMm = 1e6;  ///< of each coordinate, either way
+using haustra::maxMarkRadiusMm;
+using haustra::maxObliqueMm;
+using haustra::maxOverviewBookmarks;
+using haustra::maxSliceZoom;
+using haustra::minMarkRadiusMm;
+using haustra::minObliqueMm;
+inline constexpr double maxTurns = 1e6;  ///< |x| of a place in the strip
+using haustra::maxFlatHeight;            ///< |y| of a place in the strip, and the strip's height
+/// Of a window onto the strip.
+inline constexpr double minPixelsPerCircumference = 16.0, maxPixelsPerCircumference = 65536.0;
+
+// ---- §4, measurements in the strip
+inline constexpr int minLinePoints = 2, minOutlinePoints = 3, maxMeasuredPoints = 128;
+inline constexpr double maxMeasuredTurns = 32.0;  ///< |x| of a measured point
+inline constexpr double maxLineCircumferences = 256.0, maxOutlineCircumferences = 16.0;
+
+// ---- §4, bookmarks
+inline constexpr std::size_t maxNoteBytes = 2000;
+inline constexpr std::size_t maxClientKeyBytes = 64;
+/// What all bookmarks of a scan may take together, so that their list fits in one message: each
+/// counts its note's and key's bytes and bookmarkOverheadBytes.
+inline constexpr std::size_t maxScanBookmarkBytes = 4'000'000, bookmarkOverheadBytes = 256;
+/// The newest ones have discs on the wall.
+inline constexpr std::size_t maxMarkedBookmarks = 1024;
+
+// ---- §4, the trust in a colon
+inline constexpr int maxWarnings = 200;
+inline constexpr std::size_t maxWarningBytes = 400;
+
+// ---- §7, requests without an answer: at most so much weight of them at a time
+inline constexpr int maxUnanswered = 256, listWeight = 64, measurementWeight = 16;
+
+}  // namespace haustra::protocol
