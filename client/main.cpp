@@ -114,9 +114,9 @@ int wrongUsage(const std::string& message) {
 
 bool readSize(const std::string& text, int& width, int& height) {
     char rest = 0;
-    return std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) == 2 && width >= 16 &&
-           height >= 16 && width <= int(protocol::maxViewportPixels) * 4 &&
-           height <= int(protocol::maxViewportPixels) * 4;
+    return std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) == 2 &&
+           std::min(width, height) >= int(protocol::minViewportPixels) &&
+           std::max(width, height) <= int(protocol::maxViewportPixels) * 4;
 }
 
 void tellFirstUse(const reader::Session& session, const link::ConnectionOptions& options) {

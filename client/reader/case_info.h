@@ -1,4 +1,4 @@
-// What the client knows of a case: the nouns that cross the protocol, in the client's own types.
+// What the client knows of a case.
 #pragma once
 
 #include "core/centerline.h"
@@ -6,11 +6,9 @@
 #include "core/grid.h"
 #include "core/histogram.h"
 #include "core/optics_preset.h"
-#include "core/orbit.h"
+#include "core/view.h"
 #include "reader/flat_strip.h"
-#include "reader/flight.h"
 
-#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -19,74 +17,6 @@
 #include <glm/glm.hpp>
 
 namespace haustra::reader {
-
-/// Shortest side of a picture that a server draws.
-inline constexpr int minViewportPixels = 16;
-
-/// The whole flattened strip, and a window onto it, are views of cases that have been flattened.
-/// Oblique: a slice across the gaze. Overview: the colon from outside.
-enum class View {
-    endoscopic,
-    axial,
-    coronal,
-    sagittal,
-    flattened,
-    flattenedZoom,
-    oblique,
-    overview,
-};
-inline constexpr std::array allViews = {View::endoscopic, View::axial,     View::coronal,
-                                        View::sagittal,   View::flattened, View::flattenedZoom,
-                                        View::oblique,    View::overview};
-inline constexpr std::size_t viewCount = allViews.size();
-inline bool isSlice(View view) {
-    return view == View::axial || view == View::coronal || view == View::sagittal;
-}
-inline bool isFlat(View view) {
-    return view == View::flattened || view == View::flattenedZoom;
-}
-const char* toString(View view);
-std::optional<View> viewFromString(const std::string& text);
-
-/// The plane through a patient point that a slice viewport shows.
-struct Slice {
-    glm::dvec3 positionMm{0.0};
-    double zoom = 1.0;
-    bool cleansed = false;  ///< of the scan after digital cleansing
-    bool operator==(const Slice&) const = default;
-};
-
-/// The plane that a camera at `positionMm` would see before it, without perspective.
-struct Oblique {
-    glm::dvec3 positionMm{0.0};
-    glm::dvec3 forward{0.0, 0.0, 1.0}, up{0.0, -1.0, 0.0};
-    double heightMm = 60.0;  ///< of the picture
-    bool cleansed = false;
-    bool operator==(const Oblique&) const = default;
-};
-
-/// The colon from outside, and what is marked on it.
-inline constexpr std::size_t maxMarkedBookmarks = 1024;
-struct Overview {
-    Orbit orbit;
-    std::optional<Camera> reader;
-    std::vector<glm::dvec3> bookmarksMm;
-    bool body = true;  ///< shows around the colon
-    bool operator==(const Overview&) const = default;
-};
-
-/// What colours the wall.
-struct WallPaint {
-    bool marks = false;   ///< discs where bookmarks are, whoever added them
-    bool unseen = false;  ///< what no endoscopic picture of this session has shown
-    double markRadiusMm = 5.0;
-    bool any() const { return marks || unseen; }
-};
-
-struct WindowLevel {
-    double centerHu = 0.0, widthHu = 2000.0;
-    bool operator==(const WindowLevel&) const = default;
-};
 
 struct CaseInfo {
     std::string name;
@@ -103,7 +33,7 @@ struct CaseInfo {
 
 struct Bookmark {
     std::uint64_t id = 0;  ///< the server's number; 0 until it acknowledged
-    Camera camera;
+    Camera camera;         ///< a place and a gaze; its lens means nothing
     double arcMm = 0.0;
     std::string note, createdUtc;
     std::string clientKey;  ///< chosen by the client: the same bookmark sent twice is kept once

@@ -9,8 +9,6 @@
 
 namespace haustra::reader {
 
-inline constexpr double maxStripHeight = 4096.0;  ///< circumferences; a longer one is refused
-
 /// The flattened colon as the server describes it: x around the colon in circumferences, periodic,
 /// y from 0 at the rectum to `height` at the cecum.
 struct FlatStrip {

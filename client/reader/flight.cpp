@@ -30,7 +30,7 @@ std::optional<glm::dvec2> seenAt(const Camera& camera, glm::dvec3 pointMm) {
     const glm::dvec2 aside(glm::dot(to, rightOf(camera)), -glm::dot(to, camera.up));
     const double half = glm::radians(0.5 * camera.fovDegrees), sine = glm::length(aside);
     glm::dvec2 place(0.0);
-    if (camera.fisheye) {
+    if (camera.lens == Lens::fisheye) {
         if (sine > 0.0) place = aside / sine * std::atan2(sine, depth) / half;
     } else if (depth > 0.0) {
         place = aside / (depth * std::tan(half));
@@ -77,16 +77,16 @@ void Flight::setSpeed(double mmPerS) {
 }
 
 void Flight::setFov(double degrees) {
-    fovDegrees_ = std::clamp(degrees, 10.0, fisheye_ ? 240.0 : 150.0);
+    fovDegrees_ = std::clamp(degrees, 10.0, isFisheye() ? 240.0 : 150.0);
     freeCamera_.fovDegrees = fovDegrees_;
 }
 
 void Flight::setFisheye(bool fisheye) {
-    if (fisheye == fisheye_) return;
-    fisheye_ = fisheye;
+    if (fisheye == isFisheye()) return;
+    lens_ = fisheye ? Lens::fisheye : Lens::perspective;
     std::swap(fovDegrees_, otherFovDegrees_);
     freeCamera_.fovDegrees = fovDegrees_;
-    freeCamera_.fisheye = fisheye_;
+    freeCamera_.lens = lens_;
 }
 
 void Flight::look(double yawDegrees, double pitchDegrees) {
@@ -123,6 +123,11 @@ void Flight::returnToCenterline() {
     resetLook();
 }
 
+double Flight::placeArcMm() const {
+    return free_ && !centerline_.points.empty() ? nearestArc(centerline_, freeCamera_.positionMm)
+                                                : arcMm_;
+}
+
 void Flight::goTo(const Camera& camera, double arcMm) {
     motion_ = Motion::paused;
     if (!centerline_.points.empty()) {
@@ -136,7 +141,7 @@ void Flight::goTo(const Camera& camera, double arcMm) {
     }
     freeCamera_ = camera;
     freeCamera_.fovDegrees = fovDegrees_;
-    freeCamera_.fisheye = fisheye_;
+    freeCamera_.lens = lens_;
     free_ = true;
 }
 
@@ -175,7 +180,7 @@ void Flight::lookAlong(glm::dvec3 direction) {
 // The camera that looks straight along the path.
 Camera Flight::straightCamera() const {
     const CenterlineCamera camera = cameraAtArc(centerline_, ups_, arcMm_, direction_);
-    return {camera.positionMm, camera.forward, camera.up, fovDegrees_, fisheye_};
+    return {camera.positionMm, camera.forward, camera.up, fovDegrees_, lens_};
 }
 
 Camera Flight::centerlineCamera() const {

@@ -2,6 +2,7 @@
 // window, no network: time comes in as seconds.
 #pragma once
 
+#include "core/camera.h"
 #include "core/centerline.h"
 
 #include <optional>
@@ -11,20 +12,9 @@
 
 namespace haustra::reader {
 
-/// A camera in patient space (LPS mm): unit forward and up, orthogonal; the field of view is
-/// vertical. A fisheye shows equal angles as equal lengths, a perspective their tangents.
-struct Camera {
-    glm::dvec3 positionMm{0.0};
-    glm::dvec3 forward{0.0, 0.0, 1.0};
-    glm::dvec3 up{0.0, -1.0, 0.0};
-    double fovDegrees = 90.0;
-    bool fisheye = false;
-    bool operator==(const Camera&) const = default;
-};
-
-/// Where in a picture, in its heights from the middle, x to the right and y down, a camera sees a
-/// point; nothing where it cannot: behind a perspective's plane, or a picture's height and more
-/// away.
+/// Where in a picture, in its heights from the middle, x to the right and y down, a camera with
+/// unit, orthogonal directions and a perspective or fisheye lens sees a point; nothing where it
+/// cannot: behind a perspective's plane, or a picture's height and more away.
 std::optional<glm::dvec2> seenAt(const Camera& camera, glm::dvec3 pointMm);
 
 /// `forward` goes where the camera faces, `backward` the other way without turning round.
@@ -55,7 +45,7 @@ public:
     void setFov(double degrees);
     /// Each lens keeps a field of view of its own: 90 degrees, of a fisheye 180, until it is set.
     void setFisheye(bool fisheye);
-    bool isFisheye() const { return fisheye_; }
+    bool isFisheye() const { return lens_ == Lens::fisheye; }
 
     /// Turns the view: positive yaw to the right, positive pitch up. On the centerline it adds to
     /// an offset from the direction of flight, in free flight it turns the camera itself.
@@ -77,8 +67,11 @@ public:
     /// or where the point is the camera's own place, only the former.
     void lookAt(double arcMm, glm::dvec3 targetMm);
 
+    /// Its directions are unit and orthogonal.
     Camera camera() const { return free_ ? freeCamera_ : centerlineCamera(); }
     double arcMm() const { return arcMm_; }  ///< in free flight: where the centerline was left
+    /// Where the camera is along the path; in free flight, the nearest place of it.
+    double placeArcMm() const;
     bool isFree() const { return free_; }
     Motion motion() const { return motion_; }
     FlightDirection direction() const { return direction_; }
@@ -98,7 +91,7 @@ private:
     double arcMm_ = 0.0, yawDegrees_ = 0.0, pitchDegrees_ = 0.0;
     double speedMmPerS_ = defaultSpeedMmPerS, fovDegrees_ = 90.0;
     double otherFovDegrees_ = 180.0;  // of the lens that is not on
-    bool fisheye_ = false;
+    Lens lens_ = Lens::perspective;
     FlightDirection direction_ = FlightDirection::antegrade;
     Motion motion_ = Motion::paused;
     bool free_ = false;

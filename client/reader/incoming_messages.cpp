@@ -1,7 +1,9 @@
 #include "reader/incoming_messages.h"
 
-#include "protocol/framing.h"
+#include "core/flat_map.h"
+#include "protocol/limits.h"
 #include "protocol/optics_message.h"
+#include "protocol/view_message.h"
 
 #include <cmath>
 
@@ -10,10 +12,6 @@ namespace {
 
 constexpr double maxBinHu = 1e6;
 constexpr std::size_t maxBins = 65536;
-
-glm::dvec3 vectorFrom(const protocol::Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
 
 Result<Centerline> centerlineFrom(const protocol::CaseOpened& message) {
     const auto refuse = [](const char* what) {
@@ -50,7 +48,7 @@ Result<FlatStrip> stripFrom(const protocol::FlatStrip& message) {
     FlatStrip strip;
     strip.height = message.height();
     strip.circumferenceMm = message.circumference_mm();
-    if (!(strip.height > 0.0 && strip.height <= maxStripHeight))
+    if (!(strip.height > 0.0 && strip.height <= maxFlatHeight))
         return refuse("the strip's height is none");
     if (!(strip.circumferenceMm > 0.0) || !std::isfinite(strip.circumferenceMm))
         return refuse("its circumference is none");
@@ -146,9 +144,9 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
 Bookmark bookmarkFrom(const protocol::Bookmark& message) {
     Bookmark bookmark;
     bookmark.id = message.id();
-    bookmark.camera.positionMm = vectorFrom(message.position_mm());
-    bookmark.camera.forward = vectorFrom(message.forward());
-    bookmark.camera.up = vectorFrom(message.up());
+    bookmark.camera.positionMm = protocol::vectorFrom(message.position_mm());
+    bookmark.camera.forward = protocol::vectorFrom(message.forward());
+    bookmark.camera.up = protocol::vectorFrom(message.up());
     bookmark.arcMm = message.arc_mm();
     bookmark.note = message.note();
     bookmark.createdUtc = message.created_utc();
@@ -159,13 +157,13 @@ Bookmark bookmarkFrom(const protocol::Bookmark& message) {
 Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
     WallPlace place;
     place.flat = {message.flat().x(), message.flat().y()};
-    place.positionMm = vectorFrom(message.position_mm());
+    place.positionMm = protocol::vectorFrom(message.position_mm());
     place.triangle = message.triangle();
     place.arcMm = message.arc_mm();
-    place.cameraMm = vectorFrom(message.camera_mm());
+    place.cameraMm = protocol::vectorFrom(message.camera_mm());
     const glm::dvec3 sum = place.positionMm + place.cameraMm;
     const bool inStrip = place.flat.x >= 0.0 && place.flat.x < 1.0 && place.flat.y >= 0.0 &&
-                         place.flat.y <= maxStripHeight;
+                         place.flat.y <= maxFlatHeight;
     if (!inStrip || !std::isfinite(sum.x + sum.y + sum.z + place.arcMm))
         return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
     return place;

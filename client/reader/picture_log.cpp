@@ -1,6 +1,5 @@
 #include "reader/picture_log.h"
 
-#include <optional>
 #include <utility>
 
 namespace haustra::reader {
@@ -8,6 +7,7 @@ namespace haustra::reader {
 void PictureLog::clear() {
     for (ViewLog& view : views_) {
         view.asked.clear();
+        view.shown.reset();
         view.picture = {};
         view.count = 0;
     }
@@ -31,7 +31,7 @@ void PictureLog::take(std::deque<Arrival> arrivals, Clock::time_point now) {
             answered = view.asked.front();
             view.asked.pop_front();
         }
-        if (answered) view.shown = answered->sight;
+        if (answered) view.shown = answered->state;
         if (endoscopic) decodedAt_.push_back(arrival.decodedAt);
         if (answered && answered->moving) {
             const double ms =

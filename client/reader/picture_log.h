@@ -8,16 +8,9 @@
 
 #include <array>
 #include <deque>
+#include <optional>
 
 namespace haustra::reader {
-
-/// What the views other than the endoscopic one show at a time; each shows one of these.
-struct Sight {
-    Slice slice;
-    FlatWindow window;
-    Oblique oblique;
-    Orbit orbit;
-};
 
 /// Belongs to one thread. Viewport numbers are those of View.
 class PictureLog {
@@ -25,7 +18,7 @@ public:
     struct Asked {
         std::uint64_t sequence;
         Clock::time_point at;
-        Sight sight;
+        ViewState state;
         bool moving;
     };
 
@@ -38,7 +31,7 @@ public:
     const tiles::Picture& picture(View view) const { return of(view).picture; }
     std::uint64_t count(View view) const { return of(view).count; }
     /// What the newest picture of a view was asked to show; it lags behind what is asked now.
-    const Sight& shown(View view) const { return of(view).shown; }
+    const std::optional<ViewState>& shown(View view) const { return of(view).shown; }
     /// The size at which moving pictures of a view keep up, as a share of its pane's.
     double movingScale(View view) const { return of(view).detail.scale(); }
 
@@ -50,7 +43,7 @@ public:
 private:
     struct ViewLog {
         std::deque<Asked> asked;  // without an answer, oldest first
-        Sight shown;
+        std::optional<ViewState> shown;
         tiles::Picture picture;
         std::uint64_t count = 0;
         MovingDetail detail;

@@ -1,7 +1,8 @@
 #include "reader/session.h"
 
+#include "protocol/optics_message.h"
+#include "protocol/view_message.h"
 #include "reader/incoming_messages.h"
-#include "reader/outgoing_messages.h"
 
 #include <algorithm>
 #include <random>
@@ -33,6 +34,55 @@ std::string cutUtf8(std::string text, std::size_t maxBytes) {
 bool sameStrip(const std::optional<FlatStrip>& a, const std::optional<FlatStrip>& b) {
     return a.has_value() == b.has_value() &&
            (!a || (a->height == b->height && a->rows.size() == b->rows.size()));
+}
+
+// ---- what the session says that is no view (protocol/view_message.h) ------------------------
+
+protocol::ClientMessage opticsMessage(std::uint64_t sequence, int viewport,
+                                      const OpticsChoice& optics) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_set_transfer_function();
+    body->set_sequence(sequence);
+    body->set_viewport(std::uint32_t(viewport));
+    if (const auto* preset = std::get_if<std::string>(&optics)) body->set_preset(*preset);
+    if (const auto* own = std::get_if<Optics>(&optics)) fill(*body->mutable_optics(), *own);
+    return message;
+}
+
+protocol::ClientMessage bookmarkMessage(std::uint64_t request, const Bookmark& bookmark) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_add_bookmark();
+    body->set_request(request);
+    protocol::fillPose(*body, bookmark.camera);
+    body->set_arc_mm(bookmark.arcMm);
+    body->set_note(bookmark.note);
+    body->set_client_key(bookmark.clientKey);
+    return message;
+}
+
+protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec2 flat) {
+    protocol::ClientMessage message;
+    message.mutable_locate_flat()->set_request(request);
+    protocol::fill(*message.mutable_locate_flat()->mutable_flat(), flat);
+    return message;
+}
+
+protocol::ClientMessage locateMessage(std::uint64_t request, glm::dvec3 positionMm) {
+    protocol::ClientMessage message;
+    message.mutable_locate_point()->set_request(request);
+    protocol::fill(*message.mutable_locate_point()->mutable_position_mm(), positionMm);
+    return message;
+}
+
+protocol::ClientMessage measureMessage(std::uint64_t request, const std::vector<glm::dvec2>& points,
+                                       bool closed) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_measure_flat();
+    body->set_request(request);
+    for (const glm::dvec2 point : points)
+        protocol::fill(*body->add_points(), point);
+    body->set_closed(closed);
+    return message;
 }
 
 }  // namespace
@@ -191,10 +241,12 @@ void Session::openCase(const std::string& name) {
 // Everything that the server has to know of a session that it sees for the first time.
 void Session::askAgain() {
     seenShare_ = 0.0;
-    if (caseInfo_->flat && paint_.any()) connection_.send(paintMessage(++sequence_, paint_));
+    if (caseInfo_->flat && paint_.any())
+        connection_.send(protocol::paintMessage(++sequence_, paint_));
     for (const auto& [id, state] : viewports_) {
         if (state.width == 0) continue;  // spoken of before it was opened
-        connection_.send(viewportMessage({++sequence_, id}, state.view, state.width, state.height));
+        connection_.send(protocol::viewportMessage({++sequence_, std::uint32_t(id)}, state.view,
+                                                   state.width, state.height));
         sayWhatWaited(id, state);
     }
     std::size_t kept = 0;
@@ -225,55 +277,51 @@ std::uint64_t Session::setViewport(int viewport, View view, int width, int heigh
     state.view = view;
     state.width = width;
     state.height = height;
-    sendIfOpen(viewportMessage({++sequence_, viewport}, view, width, height));
+    sendIfOpen(
+        protocol::viewportMessage({++sequence_, std::uint32_t(viewport)}, view, width, height));
     if (!wasOpen && phase_ == Phase::open) sayWhatWaited(viewport, state);
     if (width == 0 || height == 0) viewports_.erase(viewport);
     return sequence_;
 }
 
 // What is said of a viewport before it is open waits in its state.
-template <class Input>
-std::uint64_t Session::setInput(int viewport, const Input& input, std::optional<bool> moving) {
+std::uint64_t Session::look(int viewport, const ViewState& shown, bool moving) {
     ViewportState& state = viewports_[viewport];
-    std::get<std::optional<Input>>(state.inputs) = input;
-    state.moving = moving.value_or(state.moving);
+    state.state = shown;
+    state.moving = moving;
+    const protocol::InputHeader header{++sequence_, std::uint32_t(viewport), moving};
+    if (state.width > 0) sendIfOpen(protocol::stateMessage(header, shown));
+    return sequence_;
+}
+
+std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
+    ViewportState& state = viewports_[viewport];
+    state.window = window;
+    const protocol::InputHeader header{++sequence_, std::uint32_t(viewport)};
+    if (state.width > 0) sendIfOpen(protocol::windowMessage(header, window));
+    return sequence_;
+}
+
+std::uint64_t Session::setTransferFunction(int viewport, const OpticsChoice& optics) {
+    ViewportState& state = viewports_[viewport];
+    state.optics = optics;
     ++sequence_;
-    if (state.width > 0) sendIfOpen(inputMessage({sequence_, viewport, state.moving}, input));
+    if (state.width > 0) sendIfOpen(opticsMessage(sequence_, viewport, optics));
     return sequence_;
 }
 
 void Session::sayWhatWaited(int viewport, const ViewportState& state) {
-    const auto say = [&](const auto& input) {
-        if (input) connection_.send(inputMessage({++sequence_, viewport, state.moving}, *input));
+    const auto header = [&] {
+        return protocol::InputHeader{++sequence_, std::uint32_t(viewport), state.moving};
     };
-    std::apply([&](const auto&... input) { (say(input), ...); }, state.inputs);
+    if (state.window) connection_.send(protocol::windowMessage(header(), *state.window));
+    if (state.optics) connection_.send(opticsMessage(++sequence_, viewport, *state.optics));
+    if (state.state) connection_.send(protocol::stateMessage(header(), *state.state));
 }
 
-std::uint64_t Session::setCamera(int viewport, const Camera& camera, bool moving) {
-    return setInput(viewport, camera, moving);
-}
-std::uint64_t Session::setSlice(int viewport, const Slice& slice, bool moving) {
-    return setInput(viewport, slice, moving);
-}
-std::uint64_t Session::setFlat(int viewport, const FlatWindow& window, bool moving) {
-    return setInput(viewport, window, moving);
-}
-std::uint64_t Session::setOblique(int viewport, const Oblique& oblique, bool moving) {
-    return setInput(viewport, oblique, moving);
-}
-std::uint64_t Session::setOverview(int viewport, const Overview& overview, bool moving) {
-    return setInput(viewport, overview, moving);
-}
-std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
-    return setInput(viewport, window, std::nullopt);
-}
-std::uint64_t Session::setTransferFunction(int viewport, const OpticsChoice& optics) {
-    return setInput(viewport, optics, std::nullopt);
-}
-
-std::uint64_t Session::setWallPaint(const WallPaint& paint) {
+std::uint64_t Session::setWallPaint(const WallPaintChoice& paint) {
     paint_ = paint;
-    sendIfOpen(paintMessage(++sequence_, paint));
+    sendIfOpen(protocol::paintMessage(++sequence_, paint));
     return sequence_;
 }
 
@@ -319,7 +367,7 @@ std::string Session::addBookmark(const Camera& camera, double arcMm, std::string
     Bookmark bookmark;
     bookmark.camera = camera;
     bookmark.arcMm = arcMm;
-    bookmark.note = cutUtf8(std::move(note), maxNoteBytes);
+    bookmark.note = cutUtf8(std::move(note), protocol::maxNoteBytes);
     bookmark.clientKey = newClientKey();
     owed_.push_back({caseName_, caseInfo_ && caseInfo_->name == caseName_ ? caseInfo_->scan : "",
                      ++request_, bookmark});

@@ -10,7 +10,6 @@
 #include <array>
 #include <deque>
 #include <map>
-#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -57,17 +56,14 @@ public:
     /// Each of these returns the sequence number that the answering picture will reach. They may
     /// be called in any phase: what is asked for early is sent when the case is open.
     std::uint64_t setViewport(int viewport, View view, int width, int height);
-    std::uint64_t setCamera(int viewport, const Camera& camera, bool moving);
-    std::uint64_t setSlice(int viewport, const Slice& slice, bool moving);
-    std::uint64_t setFlat(int viewport, const FlatWindow& window, bool moving);
-    std::uint64_t setOblique(int viewport, const Oblique& oblique, bool moving);
-    std::uint64_t setOverview(int viewport, const Overview& overview, bool moving);
+    /// Where it looks. Windows of grey values go by setWindowLevel.
+    std::uint64_t look(int viewport, const ViewState& state, bool moving);
     std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
     std::uint64_t setTransferFunction(int viewport, const OpticsChoice& optics);
 
     /// What colours the wall, in all viewports that show it. Of a case that has been flattened.
-    std::uint64_t setWallPaint(const WallPaint& paint);
-    const WallPaint& wallPaint() const { return paint_; }
+    std::uint64_t setWallPaint(const WallPaintChoice& paint);
+    const WallPaintChoice& wallPaint() const { return paint_; }
     /// How much of the wall's area this session's pictures have shown, 0…1, as the server told
     /// last. A link that was lost begins anew.
     double seenShare() const { return seenShare_; }
@@ -81,7 +77,7 @@ public:
     /// What the server refused since the last call; the session goes on.
     std::vector<Error> takeRefusals() { return std::exchange(refusals_, {}); }
 
-    /// Returns the bookmark's client key. `note` is cut to maxNoteBytes.
+    /// Returns the bookmark's client key. `note` is cut to protocol::maxNoteBytes.
     std::string addBookmark(const Camera& camera, double arcMm, std::string note);
     /// Returns the request's number; after a reconnection the list is asked for anew.
     std::uint64_t requestBookmarks();
@@ -104,17 +100,14 @@ public:
     /// What has been answered since the last call, or refused.
     std::vector<WallAnswer> takeWallAnswers() { return std::exchange(wallAnswers_, {}); }
 
-    static constexpr std::size_t maxNoteBytes = 1000;
-
 private:
     struct ViewportState {
         View view = View::endoscopic;
         int width = 0, height = 0;
         // In the order in which the server hears them again.
-        std::tuple<std::optional<WindowLevel>, std::optional<OpticsChoice>, std::optional<Camera>,
-                   std::optional<Slice>, std::optional<FlatWindow>, std::optional<Oblique>,
-                   std::optional<Overview>>
-            inputs;
+        std::optional<WindowLevel> window;
+        std::optional<OpticsChoice> optics;
+        std::optional<ViewState> state;
         bool moving = false;
     };
     struct Owed {
@@ -139,8 +132,6 @@ private:
     void askAgain();
     void giveUp(Error error);
     void sayWhatWaited(int viewport, const ViewportState& state);
-    template <class Input>
-    std::uint64_t setInput(int viewport, const Input& input, std::optional<bool> moving);
     void sendIfOpen(const protocol::ClientMessage& message);
 
     Phase phase_ = Phase::connecting;
@@ -150,7 +141,7 @@ private:
     std::vector<std::string> caseNames_;
     std::shared_ptr<const CaseInfo> caseInfo_;
 
-    WallPaint paint_;
+    WallPaintChoice paint_;
     double seenShare_ = 0.0;
     std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0;
     std::map<int, ViewportState> viewports_;

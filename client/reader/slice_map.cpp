@@ -23,8 +23,8 @@ Axes axesOf(View view) {
 
 }  // namespace
 
-SliceMap::SliceMap(View view, const Slice& slice, const Grid& grid, int width, int height) {
-    const auto [right, down] = axesOf(view);
+SliceMap::SliceMap(const SliceView& slice, const Grid& grid, int width, int height) {
+    const auto [right, down] = axesOf(slice.plane);
     right_ = right;
     down_ = down;
     // The box of the voxels' outer faces in patient space.

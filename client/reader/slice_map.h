@@ -1,7 +1,8 @@
 // Where a slice's pixels lie in the patient: what crosshairs and clicks on slices need.
 #pragma once
 
-#include "reader/case_info.h"
+#include "core/grid.h"
+#include "core/view.h"
 
 namespace haustra::reader {
 
@@ -12,8 +13,8 @@ namespace haustra::reader {
 /// it is.
 class SliceMap {
 public:
-    /// `view` is a slice; width and height are positive.
-    SliceMap(View view, const Slice& slice, const Grid& grid, int width, int height);
+    /// Width and height are positive.
+    SliceMap(const SliceView& slice, const Grid& grid, int width, int height);
 
     glm::dvec3 patientFromPixel(glm::dvec2 pixel) const;
     /// Of the point's projection onto the slice.

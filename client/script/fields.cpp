@@ -1,7 +1,8 @@
 #include "script/fields.h"
 
+#include "core/flat_map.h"
 #include "core/optics_preset.h"
-#include "protocol/framing.h"
+#include "protocol/limits.h"
 
 #include <cmath>
 
@@ -10,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double maxPositionMm = 1e5, maxTurns = 32.0;
+constexpr double maxPositionMm = 1e5;
 
 std::string span(double low, double high) {
     const auto text = [](double v) {
@@ -79,7 +80,7 @@ std::vector<double> Fields::numbersOf(const char* key, const json& list, std::si
 }
 
 glm::dvec2 Fields::flat(const char* key) {
-    const auto values = numbers(key, 2, -maxStripHeight, maxStripHeight);
+    const auto values = numbers(key, 2, -maxFlatHeight, maxFlatHeight);
     return {values[0], values[1]};
 }
 
@@ -91,8 +92,9 @@ std::vector<glm::dvec2> Fields::flats(const char* key, std::size_t least, std::s
                         " pairs of numbers");
     std::vector<glm::dvec2> points;
     for (const json& item : list) {
-        const auto pair = numbersOf(key, item, 2, -maxStripHeight, maxStripHeight);
-        if (std::abs(pair[0]) > maxTurns) refuse(key, "must not turn round more than 32 times");
+        const auto pair = numbersOf(key, item, 2, -maxFlatHeight, maxFlatHeight);
+        if (std::abs(pair[0]) > protocol::maxMeasuredTurns)
+            refuse(key, "must not turn round more than 32 times");
         points.push_back({pair[0], pair[1]});
     }
     return points;
@@ -133,17 +135,19 @@ Optics Fields::opticsOfFile(const char* key) {
 }
 
 glm::ivec2 Fields::size(const char* key) {
-    const auto values = numbers(key, 2, minViewportPixels, protocol::maxViewportPixels);
+    const auto values = numbers(key, 2, protocol::minViewportPixels, protocol::maxViewportPixels);
     return {int(values[0]), int(values[1])};
 }
 
 View Fields::view(const char* key) {
     const auto found = viewFromString(text(key));
-    if (!found)
-        refuse(key,
-               "must be endoscopic, axial, coronal, sagittal, flattened, flattened-zoom, oblique "
-               "or overview");
-    return *found;
+    if (found) return *found;
+    std::string names;
+    for (const View view : allViews) {
+        if (view != allViews.front()) names += view == allViews.back() ? " or " : ", ";
+        names += toString(view);
+    }
+    refuse(key, "must be " + names);
 }
 
 int Fields::viewport() {

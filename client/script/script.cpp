@@ -1,5 +1,8 @@
 #include "script/script.h"
 
+#include "core/flat_map.h"
+#include "protocol/limits.h"
+#include "reader/flight.h"
 #include "script/fields.h"
 
 namespace haustra::reader {
@@ -8,7 +11,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double maxArcMm = 1e5;
-constexpr std::size_t maxMeasuredPoints = 128;
 
 ViewAction readView(Fields& in) {
     ViewAction action;
@@ -74,7 +76,7 @@ SliceAction readSlice(Fields& in) {
     action.view = in.view("view");
     if (!isSlice(action.view)) Fields::refuse("view", "must be axial, coronal or sagittal");
     if (in.has("position_mm")) action.positionMm = in.position("position_mm");
-    if (in.has("zoom")) action.zoom = in.number("zoom", 1.0, 64.0);
+    if (in.has("zoom")) action.zoom = in.number("zoom", 1.0, maxSliceZoom);
     if (in.has("cleansed")) action.cleansed = in.flag("cleansed");
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
@@ -89,7 +91,9 @@ FlatAction readFlat(Fields& in) {
     if (action.center && action.arcMm)
         Fields::refuse("arc_mm", "and \"center\" exclude each other");
     if (in.has("pixels_per_circumference"))
-        action.pixelsPerCircumference = in.number("pixels_per_circumference", 16.0, 65536.0);
+        action.pixelsPerCircumference =
+            in.number("pixels_per_circumference", protocol::minPixelsPerCircumference,
+                      protocol::maxPixelsPerCircumference);
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
     if (in.has("png")) action.png = in.fileName("png", ".png");
@@ -106,7 +110,7 @@ ObliqueAction readOblique(Fields& in) {
     if (action.forward && !(glm::length(glm::cross(*action.forward, *action.up)) > 0.0))
         Fields::refuse("up", "is along \"forward\"");
     if (in.has("ahead_mm")) action.aheadMm = in.number("ahead_mm", -1000.0, 1000.0);
-    if (in.has("height_mm")) action.heightMm = in.number("height_mm", 1.0, 2000.0);
+    if (in.has("height_mm")) action.heightMm = in.number("height_mm", minObliqueMm, maxObliqueMm);
     if (in.has("cleansed")) action.cleansed = in.flag("cleansed");
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
@@ -138,11 +142,13 @@ StripAction readStrip(Fields& in) {
 
 FlyOverAction readFlyOver(Fields& in) {
     FlyOverAction action;
-    if (in.has("from")) action.from = in.number("from", 0.0, maxStripHeight);
-    if (in.has("to")) action.to = in.number("to", 0.0, maxStripHeight);
+    if (in.has("from")) action.from = in.number("from", 0.0, maxFlatHeight);
+    if (in.has("to")) action.to = in.number("to", 0.0, maxFlatHeight);
     if (in.has("positions")) action.positions = in.integer("positions", 2, 100'000);
     if (in.has("pixels_per_circumference"))
-        action.pixelsPerCircumference = in.number("pixels_per_circumference", 16.0, 65536.0);
+        action.pixelsPerCircumference =
+            in.number("pixels_per_circumference", protocol::minPixelsPerCircumference,
+                      protocol::maxPixelsPerCircumference);
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("pipelined")) action.pipelined = in.flag("pipelined");
     if (in.has("endoscopic")) action.endoscopic = in.flag("endoscopic");
@@ -164,7 +170,9 @@ LocateAction readLocate(Fields& in) {
 MeasureAction readMeasure(Fields& in) {
     MeasureAction action;
     if (in.has("closed")) action.closed = in.flag("closed");
-    action.points = in.flats("flat", action.closed ? 3 : 2, maxMeasuredPoints);
+    action.points =
+        in.flats("flat", action.closed ? protocol::minOutlinePoints : protocol::minLinePoints,
+                 protocol::maxMeasuredPoints);
     if (in.has("json")) action.json = in.fileName("json", ".json");
     return action;
 }
@@ -173,7 +181,8 @@ PaintAction readPaint(Fields& in) {
     PaintAction action;
     if (in.has("marks")) action.paint.marks = in.flag("marks");
     if (in.has("unseen")) action.paint.unseen = in.flag("unseen");
-    if (in.has("radius_mm")) action.paint.markRadiusMm = in.number("radius_mm", 1.0, 20.0);
+    if (in.has("radius_mm"))
+        action.paint.markRadiusMm = in.number("radius_mm", minMarkRadiusMm, maxMarkRadiusMm);
     return action;
 }
 

@@ -53,7 +53,7 @@ struct ObliqueAction {
     std::optional<glm::dvec3> positionMm;   ///< default: where the camera is
     std::optional<glm::dvec3> forward, up;  ///< default: the camera's; both or neither
     double aheadMm = 0.0;                   ///< moved along forward
-    double heightMm = Oblique{}.heightMm;
+    double heightMm = ObliqueView{}.heightMm;
     bool cleansed = false;
     int viewport = int(View::oblique);
     std::optional<glm::ivec2> size;
@@ -99,7 +99,7 @@ struct TransferAction {
     OpticsChoice optics;
 };
 struct PaintAction {
-    WallPaint paint;
+    WallPaintChoice paint;
 };
 struct SeenAction {
     bool forget = false;

@@ -1,8 +1,586 @@
 #include "script/script_player.h"
 
-#include "script/player.h"
+#include "protocol/limits.h"
+#include "reader/overview_map.h"
+#include "reader/strip_tour.h"
+#include "tiles/png_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <map>
+
+#include <nlohmann/json.hpp>
 
 namespace haustra::reader {
+namespace {
+
+using Status = Result<void>;
+
+double msBetween(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+// Adds a picture's times to a report.
+void count(ActionReport& report, const Arrival& arrival, Clock::time_point askedAt) {
+    const tiles::Picture& picture = arrival.picture;
+    report.latencyMs.push_back(msBetween(askedAt, arrival.decodedAt));
+    report.decodeMs.push_back(picture.decodeMs);
+    report.renderMicroseconds.push_back(picture.renderMicroseconds);
+    report.encodeMicroseconds.push_back(picture.encodeMicroseconds);
+    report.queueMicroseconds.push_back(picture.queueMicroseconds);
+    report.raycaster = protocol::raycasterName(picture.raycaster);
+    report.coarse += picture.coarse;
+    report.bytes += picture.wireBytes;
+}
+
+/// One script's reader: a flight through the case, and the viewports that the script has opened.
+/// The session and the options must outlive it.
+class Player {
+public:
+    Player(Session& session, const PlayOptions& options)
+        : session_(session), options_(options), flight_({}) {}
+
+    /// Waits until the case is open; where none was named, opens the only one.
+    Status awaitCase();
+    Status play(const Action& action, ActionReport& report) {
+        return std::visit([&](const auto& body) { return run(body, report); }, action.body);
+    }
+
+private:
+    struct OpenViewport {
+        View view;
+        int width, height;
+        ViewState state;  ///< of an endoscopic one, the flight's camera when it is asked for
+    };
+    /// A way past equally spaced positions, each of which is asked for and measured.
+    struct Course {
+        int positions = 0, viewport = 0;
+        bool pipelined = false;
+        /// To so much of the way, 0…1; returns the sequence that the picture will reach.
+        std::function<std::uint64_t(double)> goTo;
+    };
+
+    Status run(const ViewAction&, ActionReport&);
+    Status run(const GoAction&, ActionReport&);
+    Status run(const FlyAction&, ActionReport&);
+    Status run(const StillAction&, ActionReport&);
+    Status run(const SliceAction&, ActionReport&);
+    Status run(const ObliqueAction&, ActionReport&);
+    Status run(const OverviewAction&, ActionReport&);
+    Status run(const FlatAction&, ActionReport&);
+    Status run(const StripAction&, ActionReport&);
+    Status run(const FlyOverAction&, ActionReport&);
+    Status run(const LocateAction&, ActionReport&);
+    Status run(const MeasureAction&, ActionReport&);
+    Status run(const PaintAction&, ActionReport&);
+    Status run(const SeenAction&, ActionReport&);
+    Status run(const WindowAction&, ActionReport&);
+    Status run(const TransferAction&, ActionReport&);
+    Status run(const BookmarkAction&, ActionReport&);
+    Status run(const BookmarksAction&, ActionReport&);
+    Status run(const WaitAction&, ActionReport&);
+
+    Status travel(const Course&, ActionReport&);
+    Status travelStepwise(const Course&, ActionReport&);
+    Status travelPipelined(const Course&, ActionReport&);
+
+    OpenViewport& open(int viewport, View view, int width, int height);
+    /// As large as it was, or `size`, or as the options say.
+    OpenViewport& open(int viewport, View view, std::optional<glm::ivec2> size);
+    Status mustBeOpen(int viewport);
+    Status mustBeFlattened();
+    /// What a view of this size shows where the script has not said anything else.
+    ViewState firstState(View view, int width, int height) const;
+    ObliqueView obliqueAtCamera() const;
+    Overview overviewFromFront(int width, int height) const;
+    FlatWindow windowAround(double y, std::optional<double> pixelsPerCircumference,
+                            int width) const;
+    std::uint64_t ask(int viewport, bool moving);
+    Status still(int viewport, const std::string& png, ActionReport& report);
+    Status awaitStill(int viewport, std::uint64_t sequence, Clock::time_point askedAt,
+                      const std::string& png, ActionReport& report);
+    Result<Arrival> awaitPicture(int viewport, std::uint64_t sequence, bool exact);
+    Result<Session::WallAnswer> awaitWallAnswer(std::uint64_t request, ActionReport& report);
+    Status awaitBookmarkList();
+    Status awaitThat(const std::function<bool()>& done, const std::string& what);
+    Status writeJson(const std::string& file, const std::string& text, ActionReport& report);
+
+    Session& session_;
+    const PlayOptions& options_;
+    Flight flight_;
+    std::map<int, OpenViewport> viewports_;
+    std::deque<Arrival> arrivals_;
+    std::map<int, int> passedOver_;  // pictures that came while another viewport's was awaited
+};
+
+// ---- waiting --------------------------------------------------------------------------------
+
+Status Player::awaitThat(const std::function<bool()>& done, const std::string& what) {
+    const auto deadline = Clock::now() + options_.patience;
+    for (;;) {
+        // Before the success: a refusal may arrive together with the picture that follows it.
+        if (const auto refusals = session_.takeRefusals(); !refusals.empty())
+            return tl::make_unexpected(refusals.front());
+        if (done()) return {};
+        if (session_.phase() == Phase::failed) return tl::make_unexpected(session_.failure());
+        const auto now = Clock::now();
+        if (now >= deadline) {
+            const bool lost = session_.phase() == Phase::lost;
+            return fail(ErrorKind::device,
+                        what + " did not come within " +
+                            std::to_string(options_.patience.count() / 1000) + " s" +
+                            (lost ? " (" + describe(session_.failure()) + ")" : ""));
+        }
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - now);
+        session_.poll(
+            std::min(left + std::chrono::milliseconds(1), std::chrono::milliseconds(100)));
+    }
+}
+
+// The list's answer tells that the server has taken in all that was said before, so that a refusal
+// names the line that caused it.
+Status Player::awaitBookmarkList() {
+    const auto request = session_.requestBookmarks();
+    return awaitThat([&] { return session_.answeredBookmarkRequest() >= request; },
+                     "the list of bookmarks");
+}
+
+Status Player::awaitCase() {
+    auto known = awaitThat(
+        [&] { return session_.phase() == Phase::open || session_.phase() == Phase::choosing; },
+        "the case");
+    if (!known || session_.phase() == Phase::open) {
+        if (known) flight_ = Flight(session_.caseInfo()->centerline);
+        return known;
+    }
+    const auto& names = session_.caseNames();
+    if (names.empty()) return fail(ErrorKind::notFound, "the server has no case");
+    if (names.size() > 1) {
+        std::string list;
+        for (const std::string& name : names)
+            list += (list.empty() ? "" : ", ") + name;
+        return fail(ErrorKind::badInput,
+                    "the server has several cases; choose one with --case: " + list);
+    }
+    session_.openCase(names.front());
+    return awaitCase();
+}
+
+Result<Arrival> Player::awaitPicture(int viewport, std::uint64_t sequence, bool exact) {
+    Result<Arrival> found = fail(ErrorKind::noResult, "");
+    const auto look = [&] {
+        for (Arrival& arrival : session_.takePictures())
+            arrivals_.push_back(std::move(arrival));
+        while (!found && !arrivals_.empty()) {
+            const tiles::Picture& picture = arrivals_.front().picture;
+            if (picture.viewport == viewport && picture.sequence >= sequence &&
+                (picture.exact || !exact))
+                found = std::move(arrivals_.front());
+            else if (picture.viewport != viewport)
+                ++passedOver_[picture.viewport];
+            arrivals_.pop_front();
+        }
+        return bool(found);
+    };
+    const std::string what = exact ? "the exact picture" : "the picture";
+    TRY(awaitThat(look, what + " of viewport " + std::to_string(viewport)));
+    return found;
+}
+
+Status Player::awaitStill(int viewport, std::uint64_t sequence, Clock::time_point askedAt,
+                          const std::string& png, ActionReport& report) {
+    auto arrival = TRY(awaitPicture(viewport, sequence, true));
+    count(report, arrival, askedAt);
+    report.seconds = msBetween(askedAt, arrival.decodedAt) / 1000.0;
+    if (png.empty()) return {};
+    report.file = png;
+    return tiles::writePng(options_.outFolder / png, arrival.picture.rgb, arrival.picture.width,
+                           arrival.picture.height);
+}
+
+// ---- actions --------------------------------------------------------------------------------
+
+Player::OpenViewport& Player::open(int viewport, View view, int width, int height) {
+    const auto found = viewports_.find(viewport);
+    if (found != viewports_.end() && found->second.view == view && found->second.width == width &&
+        found->second.height == height)
+        return found->second;
+    session_.setViewport(viewport, view, width, height);
+    return viewports_[viewport] = {view, width, height, firstState(view, width, height)};
+}
+
+ViewState Player::firstState(View view, int width, int height) const {
+    switch (view) {
+        case View::endoscopic:
+            return flight_.camera();
+        case View::axial:
+        case View::coronal:
+        case View::sagittal:
+            return SliceView{view, flight_.camera().positionMm};
+        case View::flattened:
+            return WholeStrip{};
+        case View::flattenedZoom: {
+            const auto& strip = session_.caseInfo()->flat;
+            return windowAround(strip ? strip->yAtArc(flight_.arcMm()) : 0.0, std::nullopt, width);
+        }
+        case View::oblique:
+            return obliqueAtCamera();
+        case View::overview:
+            return overviewFromFront(width, height);
+    }
+    return {};
+}
+
+Player::OpenViewport& Player::open(int viewport, View view, std::optional<glm::ivec2> size) {
+    const auto found = viewports_.find(viewport);
+    if (!size && found != viewports_.end() && found->second.view == view) return found->second;
+    const glm::ivec2 pixels = size.value_or(glm::ivec2(options_.width, options_.height));
+    return open(viewport, view, pixels.x, pixels.y);
+}
+
+// Asks for what the viewport is to show now.
+std::uint64_t Player::ask(int id, bool moving) {
+    OpenViewport& viewport = viewports_.at(id);
+    if (viewport.view == View::endoscopic) viewport.state = flight_.camera();
+    return session_.look(id, viewport.state, moving);
+}
+
+Status Player::still(int viewport, const std::string& png, ActionReport& report) {
+    const auto askedAt = Clock::now();
+    return awaitStill(viewport, ask(viewport, false), askedAt, png, report);
+}
+
+// Viewport 0 shows the endoscopic view unless the script says otherwise; others must be opened.
+Status Player::mustBeOpen(int viewport) {
+    if (viewports_.count(viewport)) return {};
+    if (viewport != 0)
+        return fail(ErrorKind::badInput,
+                    "viewport " + std::to_string(viewport) +
+                        " shows nothing yet: a \"view\" or \"slice\" action must come first");
+    open(0, View::endoscopic, options_.width, options_.height);
+    return {};
+}
+
+Status Player::run(const ViewAction& action, ActionReport&) {
+    if (isFlat(action.view)) {
+        TRY(mustBeFlattened());
+    }
+    open(action.viewport, action.view, action.width, action.height);
+    return {};
+}
+
+Status Player::run(const GoAction& action, ActionReport&) {
+    if ((action.arcMm || action.fraction) && flight_.centerline().points.empty())
+        return fail(ErrorKind::notFound, "the case has no centerline");
+    if (action.direction) flight_.setDirection(*action.direction);
+    if (action.arcMm) flight_.goTo(*action.arcMm);
+    if (action.fraction) flight_.goTo(*action.fraction * flight_.centerline().lengthMm());
+    flight_.setLook(action.yawDegrees.value_or(flight_.yawDegrees()),
+                    action.pitchDegrees.value_or(flight_.pitchDegrees()));
+    if (action.fisheye) flight_.setFisheye(*action.fisheye);
+    if (action.fovDegrees) flight_.setFov(*action.fovDegrees);
+    return {};
+}
+
+Status Player::run(const StillAction& action, ActionReport& report) {
+    TRY(mustBeOpen(action.viewport));
+    return still(action.viewport, action.png, report);
+}
+
+Status Player::run(const SliceAction& action, ActionReport& report) {
+    const int id = action.viewport.value_or(int(action.view));
+    open(id, action.view, action.size).state =
+        SliceView{action.view,
+                  action.positionMm.value_or(flight_.camera().positionMm),
+                  action.zoom,
+                  {},
+                  action.cleansed ? Scan::cleansed : Scan::original};
+    return still(id, action.png, report);
+}
+
+Status Player::run(const WindowAction& action, ActionReport&) {
+    TRY(mustBeOpen(action.viewport));
+    session_.setWindowLevel(action.viewport, action.window);
+    return awaitBookmarkList();
+}
+
+Status Player::run(const TransferAction& action, ActionReport&) {
+    TRY(mustBeOpen(action.viewport));
+    session_.setTransferFunction(action.viewport, action.optics);
+    return awaitBookmarkList();
+}
+
+Status Player::run(const BookmarkAction& action, ActionReport& report) {
+    const auto start = Clock::now();
+    for (int n = 0; n < action.count; ++n) {
+        const auto askedAt = Clock::now();
+        const std::string key =
+            session_.addBookmark(flight_.camera(), flight_.arcMm(), action.note);
+        const Bookmark* added = nullptr;
+        auto came =
+            awaitThat([&] { return (added = session_.acknowledgedBookmark(key)) != nullptr; },
+                      "the acknowledgement of a bookmark");
+        report.seconds = msBetween(start, Clock::now()) / 1000.0;
+        if (!came) return came;
+        report.latencyMs.push_back(msBetween(askedAt, Clock::now()));
+        report.acknowledged.push_back({added->id, key});
+    }
+    return {};
+}
+
+Status Player::run(const BookmarksAction& action, ActionReport& report) {
+    TRY(awaitBookmarkList());
+    const auto bookmarks = session_.bookmarks();
+    report.bookmarks = bookmarks.size();
+    if (action.json.empty()) return {};
+    const auto triple = [](glm::dvec3 v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); };
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Bookmark& b : bookmarks)
+        list.push_back({{"id", b.id},
+                        {"arc_mm", b.arcMm},
+                        {"position_mm", triple(b.camera.positionMm)},
+                        {"forward", triple(b.camera.forward)},
+                        {"up", triple(b.camera.up)},
+                        {"note", b.note},
+                        {"created_utc", b.createdUtc},
+                        {"client_key", b.clientKey}});
+    return writeJson(action.json,
+                     nlohmann::ordered_json{{"bookmarks", list}}.dump(
+                         2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                         "\n",
+                     report);
+}
+
+Status Player::writeJson(const std::string& file, const std::string& text, ActionReport& report) {
+    report.file = file;
+    std::ofstream out(options_.outFolder / file);
+    out << text;
+    if (!out.flush()) return fail(ErrorKind::io, "cannot write the file", file);
+    return {};
+}
+
+Status Player::run(const WaitAction& action, ActionReport&) {
+    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                          std::chrono::duration<double, std::milli>(action.ms));
+    while (Clock::now() < until) {
+        session_.poll(
+            std::min(std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
+                         std::chrono::milliseconds(1),
+                     std::chrono::milliseconds(100)));
+        if (session_.phase() == Phase::failed) return tl::make_unexpected(session_.failure());
+    }
+    return {};
+}
+
+// ---- flights --------------------------------------------------------------------------------
+
+Status Player::run(const FlyAction& action, ActionReport& report) {
+    if (flight_.centerline().points.empty())
+        return fail(ErrorKind::notFound, "the case has no centerline");
+    TRY(mustBeOpen(action.viewport));
+    if (viewports_[action.viewport].view != View::endoscopic)
+        return fail(ErrorKind::badInput, "only an endoscopic viewport can fly");
+    const double length = flight_.centerline().lengthMm();
+    const bool antegrade = flight_.direction() == FlightDirection::antegrade;
+    const double fromMm = std::min(action.fromMm.value_or(antegrade ? 0.0 : length), length);
+    const double toMm = std::min(action.toMm.value_or(antegrade ? length : 0.0), length);
+    Course course{action.positions, action.viewport, action.pipelined, {}};
+    course.goTo = [&](double part) {
+        flight_.goTo(fromMm + (toMm - fromMm) * part);
+        return ask(action.viewport, true);
+    };
+    return travel(course, report);
+}
+
+Status Player::run(const FlyOverAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    if (action.endoscopic) {
+        TRY(mustBeOpen(0));
+        if (viewports_[0].view != View::endoscopic)
+            return fail(ErrorKind::badInput, "viewport 0 does not show the endoscopic view");
+    }
+    OpenViewport& zoom = open(action.viewport, View::flattenedZoom, std::nullopt);
+    const FlatStrip& strip = *session_.caseInfo()->flat;
+    const double from = std::min(action.from.value_or(0.0), strip.height);
+    const double to = std::min(action.to.value_or(strip.height), strip.height);
+    FlatWindow window = windowAround(from, action.pixelsPerCircumference, zoom.width);
+    Course course{action.positions, action.viewport, action.pipelined, {}};
+    course.goTo = [&](double part) {
+        window.center.y = from + (to - from) * part;
+        zoom.state = window;
+        flight_.goTo(strip.arcAtY(window.center.y));
+        if (action.endoscopic) ask(0, true);
+        return ask(action.viewport, true);
+    };
+    passedOver_.clear();
+    auto flown = travel(course, report);
+    if (action.endoscopic) report.following = passedOver_[0];
+    return flown;
+}
+
+Status Player::travel(const Course& course, ActionReport& report) {
+    report.positions = course.positions;
+    report.pipelined = course.pipelined;
+    const auto start = Clock::now();
+    auto travelled =
+        course.pipelined ? travelPipelined(course, report) : travelStepwise(course, report);
+    report.seconds = msBetween(start, Clock::now()) / 1000.0;
+    return travelled;
+}
+
+// One position on its way at a time: what a hand on the mouse feels.
+Status Player::travelStepwise(const Course& course, ActionReport& report) {
+    for (int n = 0; n < course.positions; ++n) {
+        const auto askedAt = Clock::now();
+        const auto sequence = course.goTo(double(n) / (course.positions - 1));
+        auto arrival = TRY(awaitPicture(course.viewport, sequence, false));
+        count(report, arrival, askedAt);
+    }
+    return {};
+}
+
+// Two positions on their way: the server finds the next one waiting when it has finished a picture.
+Status Player::travelPipelined(const Course& course, ActionReport& report) {
+    std::map<std::uint64_t, Clock::time_point> askedAt;
+    int sent = 0;
+    while (sent < course.positions || !askedAt.empty()) {
+        while (sent < course.positions && askedAt.size() < 2) {
+            const auto now = Clock::now();
+            askedAt.emplace(course.goTo(double(sent++) / (course.positions - 1)), now);
+        }
+        auto arrival = TRY(awaitPicture(course.viewport, askedAt.begin()->first, false));
+        // A picture answers its input and all before it that it overtook.
+        const auto past = askedAt.upper_bound(arrival.picture.sequence);
+        count(report, arrival, std::prev(past)->second);
+        askedAt.erase(askedAt.begin(), past);
+    }
+    return {};
+}
+
+// ---- the flattened wall ---------------------------------------------------------------------
+
+Status Player::mustBeFlattened() {
+    if (session_.caseInfo()->flat) return {};
+    return fail(ErrorKind::notFound, "the case has not been flattened");
+}
+
+FlatWindow Player::windowAround(double y, std::optional<double> pixelsPerCircumference,
+                                int width) const {
+    return {{0.5, y}, pixelsPerCircumference.value_or(wholeCircumference(width))};
+}
+
+Status Player::run(const FlatAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    OpenViewport& zoom = open(action.viewport, View::flattenedZoom, action.size);
+    const FlatStrip& strip = *session_.caseInfo()->flat;
+    FlatWindow window = windowAround(strip.yAtArc(action.arcMm.value_or(flight_.arcMm())),
+                                     action.pixelsPerCircumference, zoom.width);
+    if (action.center) window.center = *action.center;
+    zoom.state = window;
+    return still(action.viewport, action.png, report);
+}
+
+Status Player::run(const StripAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    open(action.viewport, View::flattened, action.size);
+    return still(action.viewport, action.png, report);
+}
+
+Result<Session::WallAnswer> Player::awaitWallAnswer(std::uint64_t request, ActionReport& report) {
+    const auto askedAt = Clock::now();
+    std::optional<Session::WallAnswer> found;
+    auto came = awaitThat(
+        [&] {
+            for (Session::WallAnswer& answer : session_.takeWallAnswers())
+                if (answer.request == request) found = std::move(answer);
+            return found.has_value();
+        },
+        "the answer about the wall");
+    report.seconds = msBetween(askedAt, Clock::now()) / 1000.0;
+    if (!came) return tl::make_unexpected(came.error());
+    report.latencyMs.push_back(report.seconds * 1000.0);
+    return std::move(*found);
+}
+
+Status Player::run(const LocateAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    const auto request =
+        action.flat ? session_.locate(*action.flat) : session_.locate(*action.positionMm);
+    auto answer = TRY(awaitWallAnswer(request, report));
+    report.place = std::get<WallPlace>(TRY(std::move(answer.body)));
+    return action.json.empty() ? Status{} : writeJson(action.json, toJson(*report.place), report);
+}
+
+Status Player::run(const MeasureAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    auto answer = TRY(awaitWallAnswer(session_.measure(action.points, action.closed), report));
+    report.measure = std::get<FlatMeasure>(TRY(std::move(answer.body)));
+    return action.json.empty() ? Status{} : writeJson(action.json, toJson(*report.measure), report);
+}
+
+Status Player::run(const PaintAction& action, ActionReport&) {
+    TRY(mustBeFlattened());
+    session_.setWallPaint(action.paint);
+    return awaitBookmarkList();
+}
+
+Status Player::run(const SeenAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    const auto request = session_.askSeen(action.forget);
+    TRY(awaitThat([&] { return session_.answeredSeenRequest() >= request; },
+                  "the share of the wall that has been seen"));
+    report.seenShare = session_.seenShare();
+    return action.json.empty() ? Status{}
+                               : writeJson(action.json, seenShareJson(*report.seenShare), report);
+}
+
+// ---- across the gaze, and from outside ------------------------------------------------------
+
+ObliqueView Player::obliqueAtCamera() const {
+    const Camera camera = flight_.camera();
+    return {camera.positionMm, camera.forward, camera.up};
+}
+
+Overview Player::overviewFromFront(int width, int height) const {
+    return {cameraOf(orbitOf(flight_.centerline(), double(width) / height)), flight_.camera(), {}};
+}
+
+Status Player::run(const ObliqueAction& action, ActionReport& report) {
+    ObliqueView oblique = obliqueAtCamera();
+    if (action.positionMm) oblique.positionMm = *action.positionMm;
+    if (action.forward) {
+        oblique.forward = glm::normalize(*action.forward);
+        oblique.up = *action.up;
+    }
+    oblique.positionMm += action.aheadMm * oblique.forward;
+    oblique.heightMm = action.heightMm;
+    oblique.scan = action.cleansed ? Scan::cleansed : Scan::original;
+    open(action.viewport, View::oblique, action.size).state = oblique;
+    return still(action.viewport, action.png, report);
+}
+
+Status Player::run(const OverviewAction& action, ActionReport& report) {
+    OpenViewport& viewport = open(action.viewport, View::overview, action.size);
+    Orbit orbit = orbitOf(flight_.centerline(), double(viewport.width) / viewport.height);
+    orbit.azimuthDegrees = action.azimuthDegrees;
+    orbit.elevationDegrees = action.elevationDegrees;
+    if (action.heightMm) orbit.heightMm = *action.heightMm;
+    Overview overview = overviewFromFront(viewport.width, viewport.height);
+    overview.camera = cameraOf(orbit);
+    if (!action.reader) overview.reader.reset();
+    overview.body = action.body;
+    if (action.bookmarks) {
+        TRY(awaitBookmarkList());
+        for (const Bookmark& bookmark : session_.bookmarks())
+            if (overview.bookmarksMm.size() < maxOverviewBookmarks)
+                overview.bookmarksMm.push_back(bookmark.camera.positionMm);
+    }
+    viewport.state = std::move(overview);
+    return still(action.viewport, action.png, report);
+}
+
+}  // namespace
 
 PlayReport play(Session& session, const std::vector<Action>& actions, const PlayOptions& options) {
     PlayReport report;

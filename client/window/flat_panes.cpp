@@ -10,8 +10,6 @@
 namespace haustra::window {
 namespace {
 
-using reader::View;
-
 constexpr ImU32 pale = IM_COL32(200, 208, 216, 255);
 constexpr ImU32 measured = IM_COL32(255, 221, 87, 255);
 
@@ -50,7 +48,7 @@ void drawFlag(Ui& ui, ImDrawList* list, ImVec2 p) {
 // Their lengths beside the hatched bridges: what the strip makes long or short is not to be read
 // off.
 void drawBridges(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const reader::FlatStrip& strip = ui.reader.tour().strip();
+    const reader::FlatStrip& strip = ui.reader.flat().tour().strip();
     for (const Bridge& bridge : bridgesOf(ui.reader.session().caseInfo()->centerline)) {
         const double y = strip.yAtArc(0.5 * (bridge.fromArcMm + bridge.toArcMm));
         const float row = flat.screen({0.0, y}).y - ui.fonts.small->FontSize / 2;
@@ -62,7 +60,7 @@ void drawBridges(Ui& ui, const FlatArea& flat, ImDrawList* list) {
 // The row of the camera, bookmarks, and the place that was picked.
 void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
     const reader::Reader& reader = ui.reader;
-    const double y = reader.tour().strip().yAtArc(reader.placeArcMm());
+    const double y = reader.flat().tour().strip().yAtArc(reader.flight().placeArcMm());
     const float row = flat.screen({0.0, y}).y, tip = ui.px(6);
     const Rect& area = flat.area;
     list->AddLine({area.min.x, row}, {area.max.x, row}, IM_COL32(72, 190, 199, 110));
@@ -70,9 +68,9 @@ void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
                             {area.min.x, row + tip}, color::accent);
     list->AddTriangleFilled({area.max.x, row - tip}, {area.max.x, row + tip},
                             {area.max.x - tip, row}, color::accent);
-    for (const auto& [key, place] : reader.wall().bookmarkPlaces())
+    for (const auto& [key, place] : reader.flat().wall().bookmarkPlaces())
         flat.forEachCopy(place.flat, [&](ImVec2 p) { drawFlag(ui, list, p); });
-    if (const auto& picked = reader.pickedPlace())
+    if (const auto& picked = reader.flat().picked())
         flat.forEachCopy(picked->flat, [&](ImVec2 p) { drawPickedCross(ui, list, p); });
 }
 
@@ -80,7 +78,7 @@ void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
 
 // What of the strip the zoom view shows, in one of the columns.
 void drawZoomFrame(Ui& ui, const FlatArea& column, ImDrawList* list) {
-    const reader::StripTour& tour = ui.reader.tour();
+    const reader::StripTour& tour = ui.reader.flat().tour();
     const glm::dvec2 half = 0.5 * glm::dvec2(tour.paneSize()) / tour.window().pixelsPerUnit;
     const float left = column.area.min.x + ui.px(1), right = column.area.max.x - ui.px(1);
     const bool allAround = half.x >= 0.5;
@@ -100,15 +98,15 @@ void handleStripMouse(Ui& ui, const StripLayout& layout, Rect area, double pixel
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const auto flat =
         layout.flatFromPixel({(mouse.x - area.min.x) / pixels, (mouse.y - area.min.y) / pixels},
-                             reader.tour().strip().height);
+                             reader.flat().tour().strip().height);
     if (!flat) return;
-    if (ImGui::IsItemActive() && ui.drag > ui.px(4)) reader.tour().centerOn(*flat);
+    if (ImGui::IsItemActive() && ui.drag > ui.px(4)) reader.flat().tour().centerOn(*flat);
     if (ImGui::IsItemDeactivated()) {
         reader.setMotion(reader::Motion::paused);
-        reader.goToFlat(*flat, true);
+        reader.flat().goTo(*flat, true);
     }
     if (hovered && !ImGui::IsItemActive())
-        tooltip(printed("%.0f mm", reader.tour().strip().arcAtY(flat->y)).c_str());
+        tooltip(printed("%.0f mm", reader.flat().tour().strip().arcAtY(flat->y)).c_str());
 }
 
 // ---- the window onto it -----------------------------------------------------------------------
@@ -117,14 +115,15 @@ void handleStripMouse(Ui& ui, const StripLayout& layout, Rect area, double pixel
 void drawZoomPicture(Ui& ui, const FlatArea& flat, ImDrawList* list) {
     if (!preparePicture(ui, View::flattenedZoom, flat.area, list)) return;
     FlatArea shown = flat;
-    shown.window = ui.reader.shownWindow();
+    if (const auto* window = ui.reader.panes().shown<FlatWindow>(View::flattenedZoom))
+        shown.window = *window;
     shown.window.center.x += std::round(flat.window.center.x - shown.window.center.x);
     list->AddImage(ui.textures[std::size_t(View::flattenedZoom)].id(),
                    flat.screen(shown.flat(flat.area.min)), flat.screen(shown.flat(flat.area.max)));
 }
 
 void drawMeasurement(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const auto& measurement = ui.reader.wall().measurement();
+    const auto& measurement = ui.reader.flat().wall().measurement();
     if (!measurement || measurement->points.size() < 2) return;
     // The copy that is nearest to the window's middle.
     const double turn = std::round(flat.window.center.x - measurement->points.front().x);
@@ -177,7 +176,7 @@ void draw(Ui& ui, DrawingTool tool, const FlatArea& flat) {
         }
     }
     const bool closed = tool == DrawingTool::outline;
-    if (points.size() >= (closed ? 3u : 2u)) ui.reader.wall().measure(points, closed);
+    if (points.size() >= (closed ? 3u : 2u)) ui.reader.flat().wall().measure(points, closed);
 }
 
 void handleZoomMouse(Ui& ui, const FlatArea& flat, bool hovered) {
@@ -197,25 +196,25 @@ void handleZoomMouse(Ui& ui, const FlatArea& flat, bool hovered) {
         if (draws)
             draw(ui, ui.drawsOutline ? DrawingTool::outline : DrawingTool::line, flat);
         else
-            reader.tour().drag({io.MouseDelta.x / pixels, io.MouseDelta.y / pixels});
+            reader.flat().tour().drag({io.MouseDelta.x / pixels, io.MouseDelta.y / pixels});
     }
     if (ImGui::IsItemDeactivated()) {
         if (!draws && ui.drag <= ui.px(4)) {
-            reader.wall().clearMeasurement();
+            reader.flat().wall().clearMeasurement();
             reader.setMotion(reader::Motion::paused);
-            reader.goToFlat(flat.flat(io.MousePos), false);
+            reader.flat().goTo(flat.flat(io.MousePos), false);
         }
         ui.drawing.clear();
     }
     if (hovered && io.MouseWheel != 0.0f)
-        reader.tour().zoom(std::pow(1.2, io.MouseWheel),
-                           {(io.MousePos.x - flat.area.min.x) / pixels,
-                            (io.MousePos.y - flat.area.min.y) / pixels});
+        reader.flat().tour().zoom(std::pow(1.2, io.MouseWheel),
+                                  {(io.MousePos.x - flat.area.min.x) / pixels,
+                                   (io.MousePos.y - flat.area.min.y) / pixels});
 }
 
 void drawZoomTexts(Ui& ui, const FlatArea& flat, ImDrawList* list) {
     const reader::Reader& reader = ui.reader;
-    const reader::StripTour& tour = reader.tour();
+    const reader::StripTour& tour = reader.flat().tour();
     const Rect& area = flat.area;
     const float margin = ui.px(10), high = ui.fonts.small->FontSize;
     const ImVec2 corner(area.min.x + margin, area.min.y + ui.px(8));
@@ -243,9 +242,9 @@ void drawStripPane(Ui& ui, Rect area) {
     reader.setPaneSize(View::flattened, framebufferSize(area));
     drawPicture(ui, View::flattened, area, list);
     const bool hovered = pane(ui, "strip", area);
-    const glm::ivec2 size = reader.paneSize(View::flattened);
+    const glm::ivec2 size = reader.panes().size(View::flattened);
     const double pixels = area.size().x / size.x;
-    const double height = reader.tour().strip().height;
+    const double height = reader.flat().tour().strip().height;
     const StripLayout layout = layOutStrip(height, size);
     handleStripMouse(ui, layout, area, pixels, hovered);
 
@@ -282,7 +281,7 @@ void drawZoomPane(Ui& ui, Rect area) {
     reader.setPaneSize(View::flattenedZoom, framebufferSize(area));
     const bool hovered = pane(ui, "zoom", area);
     const auto here = [&] {
-        return FlatArea{area, reader.tour().window(), reader.tour().paneSize()};
+        return FlatArea{area, reader.flat().tour().window(), reader.flat().tour().paneSize()};
     };
     handleZoomMouse(ui, here(), hovered);
     const FlatArea flat = here();  // as the hand has left it

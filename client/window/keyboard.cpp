@@ -17,7 +17,7 @@ void toggle(reader::Reader& reader, Motion motion) {
 
 // A tool of the flattened wall, or none where it was chosen already.
 void toggle(Ui& ui, DrawingTool tool) {
-    if (!ui.reader.hasStrip()) return ui.tell("this case has not been flattened");
+    if (!ui.reader.flat().hasStrip()) return ui.tell("this case has not been flattened");
     ui.tool = ui.tool == tool ? DrawingTool::none : tool;
 }
 
@@ -30,10 +30,10 @@ void nextTransferFunction(reader::OpticsEditor& optics) {
     optics.choose((optics.chosen() + 1) % optics.presets());
 }
 
-void togglePaint(Ui& ui, bool reader::WallPaint::*which) {
-    reader::WallPaint paint = ui.reader.wallPaint();
+void togglePaint(Ui& ui, bool WallPaintChoice::*which) {
+    WallPaintChoice paint = ui.reader.flat().paint();
     paint.*which = !(paint.*which);
-    if (!ui.reader.setWallPaint(paint))
+    if (!ui.reader.flat().setPaint(paint))
         ui.tell("this case has not been flattened: its wall cannot be coloured");
 }
 
@@ -104,22 +104,22 @@ void handleLetter(Ui& ui, ImWchar letter) {
             break;
         case 'y':
         case 'Y':
-            reader.setShowsBody(!reader.showsBody());
+            reader.outside().setShowsBody(!reader.outside().showsBody());
             break;
         case 'k':
         case 'K':
-            togglePaint(ui, &reader::WallPaint::marks);
+            togglePaint(ui, &WallPaintChoice::marks);
             break;
         case 'u':
-            togglePaint(ui, &reader::WallPaint::unseen);
+            togglePaint(ui, &WallPaintChoice::unseen);
             break;
         case 'U':
-            reader.forgetSeen();
+            reader.flat().forgetSeen();
             break;
         case 'v':
         case 'V':
-            if (reader.hasStrip())
-                reader.setFlyingOver(!reader.tour().flyingOver());
+            if (reader.flat().hasStrip())
+                reader.flat().setFlyingOver(!reader.flat().tour().flyingOver());
             else
                 ui.tell("this case has not been flattened");
             break;
@@ -134,7 +134,7 @@ void handleLetter(Ui& ui, ImWchar letter) {
         case 'x':
         case 'X':
             if (reader.session().caseInfo()->cleansed)
-                reader.setSlicesCleansed(!reader.slicesCleansed());
+                reader.slices().setCleansed(!reader.slices().cleansed());
             else
                 ui.tell("this case has no cleansed scan");
             break;
@@ -190,7 +190,8 @@ bool handleKeys(Ui& ui, const std::vector<KeyPress>& presses, double seconds) {
         if (key.ctrl && key.scancode == SDL_SCANCODE_Q) return false;
         if (key.scancode == SDL_SCANCODE_F1) ui.showHelp = !ui.showHelp;
         if (key.scancode == SDL_SCANCODE_ESCAPE) {
-            if (!ui.showHelp) ui.tool = DrawingTool::none, ui.reader.wall().clearMeasurement();
+            if (!ui.showHelp)
+                ui.tool = DrawingTool::none, ui.reader.flat().wall().clearMeasurement();
             ui.showHelp = false;
         }
     }

@@ -29,7 +29,7 @@ Layout layOut(const Ui& ui, ImVec2 size) {
     if (ui.showBookmarks) layout.bookmarks = {{right, bottom - listHigh}, {size.x, bottom}};
     const float left = sliceWide + gap;
     right -= gap;
-    if (!ui.reader.hasStrip()) {
+    if (!ui.reader.flat().hasStrip()) {
         layout.endoscopic = {{left, top}, {right, bottom}};
         return layout;
     }
@@ -37,7 +37,7 @@ Layout layOut(const Ui& ui, ImVec2 size) {
     layout.strip = {{right - stripWide, top}, {right, bottom}};
     right -= stripWide + gap;
     // In a fly-over the reader looks at the wall, and at the lumen to make sure.
-    const float zoomHigh = high * (ui.reader.tour().flyingOver() ? 0.58f : 0.4f);
+    const float zoomHigh = high * (ui.reader.flat().tour().flyingOver() ? 0.58f : 0.4f);
     layout.zoom = {{left, bottom - zoomHigh}, {right, bottom}};
     layout.endoscopic = {{left, top}, {right, bottom - zoomHigh - gap}};
     return layout;

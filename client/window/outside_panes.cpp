@@ -11,8 +11,6 @@
 namespace haustra::window {
 namespace {
 
-using reader::View;
-
 constexpr ImU32 dim = IM_COL32(200, 208, 216, 255);
 
 ImVec2 screenFrom(glm::dvec3 seen, Rect area) {
@@ -61,12 +59,12 @@ void drawLetters(Ui& ui, glm::dvec3 right, glm::dvec3 up, Rect area, ImDrawList*
 }
 
 /// The reader's camera as a cone that opens to where it looks.
-void drawReader(Ui& ui, const Orbit& orbit, Rect area, ImDrawList* list) {
-    const reader::Camera camera = ui.reader.flight().camera();
+void drawReader(Ui& ui, const Camera& from, Rect area, ImDrawList* list) {
+    const Camera camera = ui.reader.flight().camera();
     const glm::dvec2 size = sizeOf(area);
-    const double lengthMm = ui.px(20) * orbit.heightMm / size.y, radiusMm = 0.42 * lengthMm;
+    const double lengthMm = ui.px(20) * from.heightMm / size.y, radiusMm = 0.42 * lengthMm;
     const glm::dvec3 right = glm::cross(camera.forward, camera.up);
-    const auto seen = [&](glm::dvec3 mm) { return screenFrom(projected(orbit, mm, size), area); };
+    const auto seen = [&](glm::dvec3 mm) { return screenFrom(projected(from, mm, size), area); };
     constexpr int sides = 24;
     std::array<ImVec2, sides> rim;
     for (int side = 0; side < sides; ++side) {
@@ -80,18 +78,18 @@ void drawReader(Ui& ui, const Orbit& orbit, Rect area, ImDrawList* list) {
         list->AddTriangleFilled(apex, rim[std::size_t(side)], rim[std::size_t((side + 1) % sides)],
                                 IM_COL32(60, 205, 235, 235));
     // Seen from where it looks to, the opening is darker than the mantle.
-    const bool open = glm::dot(camera.forward, cameraOf(orbit).forward) < 0.0;
+    const bool open = glm::dot(camera.forward, from.forward) < 0.0;
     list->AddConvexPolyFilled(rim.data(), sides,
                               open ? IM_COL32(120, 230, 250, 255) : IM_COL32(40, 165, 195, 235));
     list->AddPolyline(rim.data(), sides, IM_COL32(8, 30, 38, 200), ImDrawFlags_Closed, ui.px(1));
     list->AddCircleFilled(apex, ui.px(2.5f), IM_COL32(230, 250, 255, 255));
 }
 
-void drawBookmarks(Ui& ui, const Orbit& orbit, const std::vector<reader::Bookmark>& bookmarks,
+void drawBookmarks(Ui& ui, const Camera& from, const std::vector<reader::Bookmark>& bookmarks,
                    std::optional<std::size_t> under, Rect area, ImDrawList* list) {
     for (std::size_t n = 0; n < bookmarks.size(); ++n) {
         const ImVec2 p =
-            screenFrom(projected(orbit, bookmarks[n].camera.positionMm, sizeOf(area)), area);
+            screenFrom(projected(from, bookmarks[n].camera.positionMm, sizeOf(area)), area);
         const float radius = ui.px(under == n ? 6.0f : 4.5f);
         list->AddCircleFilled(p, radius + ui.px(1.2f), IM_COL32(20, 14, 4, 220));
         list->AddCircleFilled(p, radius, color::bookmark);
@@ -105,13 +103,13 @@ void handleOverviewMouse(Ui& ui, const std::vector<reader::Bookmark>& bookmarks,
     const ImGuiIO& io = ImGui::GetIO();
     // The near side follows the hand.
     if (ImGui::IsItemActive() && ui.drag > ui.px(3))
-        reader.turnOverview(-0.5 * io.MouseDelta.x / ui.scale, 0.5 * io.MouseDelta.y / ui.scale);
-    if (hovered && io.MouseWheel != 0.0f) reader.zoomOverview(std::pow(1.15, io.MouseWheel));
-    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) reader.resetOverview();
+        reader.outside().turn(-0.5 * io.MouseDelta.x / ui.scale, 0.5 * io.MouseDelta.y / ui.scale);
+    if (hovered && io.MouseWheel != 0.0f) reader.outside().zoom(std::pow(1.15, io.MouseWheel));
+    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) reader.outside().reset();
     if (!hovered || !ImGui::IsItemDeactivated() || ui.drag > ui.px(3)) return;
     if (under) return reader.goTo(bookmarks[*under]);
-    const auto arc =
-        reader::arcAt(reader.orbit(), reader.flight().centerline(), pixel, sizeOf(area), ui.px(40));
+    const auto arc = reader::arcAt(reader.outside().orbit(), reader.flight().centerline(), pixel,
+                                   sizeOf(area), ui.px(40));
     if (!arc) return;
     reader.setMotion(reader::Motion::paused);
     reader.flight().goTo(*arc);
@@ -146,18 +144,17 @@ void drawOverviewPane(Ui& ui, Rect area) {
     std::vector<glm::dvec3> places;
     for (const reader::Bookmark& bookmark : bookmarks)
         places.push_back(bookmark.camera.positionMm);
-    const auto under = hovered
-                           ? reader::placeAt(reader.orbit(), places, pixel, sizeOf(area), ui.px(9))
-                           : std::nullopt;
+    const auto under =
+        hovered ? reader::placeAt(reader.outside().orbit(), places, pixel, sizeOf(area), ui.px(9))
+                : std::nullopt;
     handleOverviewMouse(ui, bookmarks, under, pixel, area, hovered);
 
     list->PushClipRect(area.min, area.max, true);
-    if (reader.pictureCount(View::overview) > 0) {
-        const Orbit& shown = reader.shownOrbit();
-        drawBookmarks(ui, shown, bookmarks, under, area, list);
-        drawReader(ui, shown, area, list);
-        const haustra::Camera pose = cameraOf(shown);
-        drawLetters(ui, glm::cross(pose.forward, pose.up), pose.up, area, list);
+    if (const Overview* pictured = reader.panes().shown<Overview>(View::overview)) {
+        const Camera& from = pictured->camera;
+        drawBookmarks(ui, from, bookmarks, under, area, list);
+        drawReader(ui, from, area, list);
+        drawLetters(ui, glm::cross(from.forward, from.up), from.up, area, list);
     }
     outlinedText(list, ui.fonts.small, {area.min.x + ui.px(8), area.min.y + ui.px(8)}, color::text,
                  "Overview");
@@ -177,13 +174,14 @@ void drawObliquePane(Ui& ui, Rect area) {
     if (ImGui::IsItemActive() && ui.drag > ui.px(3)) dragWindow(reader, io.MouseDelta);
     if (hovered && io.MouseWheel != 0.0f) {
         if (io.KeyCtrl)
-            reader.zoomOblique(std::pow(1.2, io.MouseWheel));
+            reader.slices().zoomOblique(std::pow(1.2, io.MouseWheel));
         else
-            reader.scrollOblique(io.MouseWheel * (io.KeyShift ? 10.0 : 1.0));
+            reader.slices().scrollOblique(io.MouseWheel * (io.KeyShift ? 10.0 : 1.0));
     }
 
-    const bool any = reader.pictureCount(View::oblique) > 0;
-    const reader::Oblique shown = any ? reader.shownOblique() : reader.oblique();
+    const ObliqueView* pictured = reader.panes().shown<ObliqueView>(View::oblique);
+    const ObliqueView shown =
+        pictured ? *pictured : reader.slices().oblique(reader.flight().camera());
     const double pixelsPerMm = area.size().y / shown.heightMm;
     const ImVec2 middle((area.min.x + area.max.x) / 2, (area.min.y + area.max.y) / 2);
     list->PushClipRect(area.min, area.max, true);
@@ -196,7 +194,7 @@ void drawObliquePane(Ui& ui, Rect area) {
     drawScaleBar(ui, pixelsPerMm, area, list);
     const float margin = ui.px(8);
     outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin}, color::text,
-                 shown.cleansed ? "Across the gaze, cleansed" : "Across the gaze");
+                 shown.scan == Scan::cleansed ? "Across the gaze, cleansed" : "Across the gaze");
     const double ahead =
         glm::dot(shown.positionMm - reader.flight().camera().positionMm, shown.forward);
     if (std::abs(ahead) >= 0.5) {

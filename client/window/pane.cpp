@@ -7,9 +7,9 @@
 
 namespace haustra::window {
 
-bool preparePicture(Ui& ui, reader::View view, Rect area, ImDrawList* list) {
+bool preparePicture(Ui& ui, View view, Rect area, ImDrawList* list) {
     PictureTexture& texture = ui.textures[std::size_t(view)];
-    texture.show(ui.reader.picture(view), ui.reader.pictureCount(view));
+    texture.show(ui.reader.panes().picture(view), ui.reader.panes().pictureCount(view));
     list->AddRectFilled(area.min, area.max, IM_COL32_BLACK);
     if (!texture.empty()) return true;
     const std::string waiting = "waiting for the picture…";
@@ -20,7 +20,7 @@ bool preparePicture(Ui& ui, reader::View view, Rect area, ImDrawList* list) {
     return false;
 }
 
-void drawPicture(Ui& ui, reader::View view, Rect area, ImDrawList* list) {
+void drawPicture(Ui& ui, View view, Rect area, ImDrawList* list) {
     if (preparePicture(ui, view, area, list))
         list->AddImage(ui.textures[std::size_t(view)].id(), area.min, area.max);
 }
@@ -42,11 +42,11 @@ glm::ivec2 framebufferSize(Rect area) {
 }
 
 void dragWindow(reader::Reader& reader, ImVec2 moved) {
-    reader::WindowLevel window = reader.window();
+    WindowLevel window = reader.slices().window();
     const double stepHu = std::max(1.0, window.widthHu / 400.0);
     window.widthHu += moved.x * stepHu;
     window.centerHu += moved.y * stepHu;
-    reader.setWindow(window);
+    reader.slices().setWindow(window);
 }
 
 void drawPickedCross(Ui& ui, ImDrawList* list, ImVec2 p) {

@@ -7,9 +7,9 @@ namespace haustra::window {
 
 /// Black over `area`, and a dim note where the view has no picture yet. False then. Uploads the
 /// newest picture otherwise.
-bool preparePicture(Ui& ui, reader::View view, Rect area, ImDrawList* list);
+bool preparePicture(Ui& ui, View view, Rect area, ImDrawList* list);
 /// The view's newest picture over all of `area`.
-void drawPicture(Ui& ui, reader::View view, Rect area, ImDrawList* list);
+void drawPicture(Ui& ui, View view, Rect area, ImDrawList* list);
 /// An invisible button that takes the mouse over the pane; Ui::drag grows while it is held. True
 /// while the mouse is over it.
 bool pane(Ui& ui, const char* id, Rect area);

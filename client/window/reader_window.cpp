@@ -11,8 +11,6 @@ namespace haustra::window {
 namespace {
 
 using reader::Clock;
-using reader::View;
-
 void drawEverything(Ui& ui) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
@@ -29,7 +27,7 @@ void drawEverything(Ui& ui) {
         drawSlicePane(ui, View::axial, layout.axial);
         drawSlicePane(ui, View::coronal, layout.coronal);
         drawSlicePane(ui, View::sagittal, layout.sagittal);
-        if (ui.reader.hasStrip()) {
+        if (ui.reader.flat().hasStrip()) {
             drawStripPane(ui, layout.strip);
             drawZoomPane(ui, layout.zoom);
         }
@@ -75,11 +73,9 @@ bool readyForScreenshot(const reader::Reader& reader, const WindowOptions& optio
     const reader::Phase phase = reader.session().phase();
     bool waiting = phase == reader::Phase::connecting;
     if (phase == reader::Phase::open && reader.motion() == reader::Motion::paused)
-        for (const View view :
-             {View::endoscopic, View::axial, View::coronal, View::sagittal, View::flattened,
-              View::flattenedZoom, View::oblique, View::overview})
-            waiting = waiting ||
-                      (!reader.picture(view).exact && (reader.hasStrip() || !reader::isFlat(view)));
+        for (const View view : allViews)
+            waiting = waiting || (!reader.panes().picture(view).exact &&
+                                  (reader.flat().hasStrip() || !isFlat(view)));
     return !waiting || elapsed > due + std::chrono::seconds(20);
 }
 

@@ -74,7 +74,7 @@ void drawTopBar(Ui& ui, Rect area) {
         ui.showBookmarks = !ui.showBookmarks;
     right -= ui.px(20);
 
-    const reader::Summary latency = ui.reader.latencyMs();
+    const reader::Summary latency = ui.reader.panes().latencyMs();
     const bool up =
         session.phase() == reader::Phase::open || session.phase() == reader::Phase::choosing;
     right = drawFigure(ui, list, right, middle, "server", ui.serverName,
@@ -87,13 +87,13 @@ void drawTopBar(Ui& ui, Rect area) {
                            printed("%.0f ms, p95 %.0f", latency.p50, latency.p95),
                            latency.p95 > 150.0 ? color::bookmark : color::text);
     right = drawFigure(ui, list, right, middle, "pictures/s",
-                       printed("%.0f", ui.reader.picturesPerSecond()), color::text);
-    const tiles::Picture& shown = ui.reader.picture(reader::View::endoscopic);
+                       printed("%.0f", ui.reader.panes().picturesPerSecond()), color::text);
+    const tiles::Picture& shown = ui.reader.panes().picture(View::endoscopic);
     const std::string raycaster = raycasterName(shown.raycaster);
     if (!raycaster.empty())
         right = drawFigure(ui, list, right, middle, raycaster.c_str(),
                            printed("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);
-    if (ui.reader.hasStrip())
+    if (ui.reader.flat().hasStrip())
         drawFigure(ui, list, right, middle, "wall seen",
                    printed("%.1f %%", 100.0 * session.seenShare()), color::text);
 }

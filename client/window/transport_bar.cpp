@@ -83,7 +83,7 @@ void combo(Ui& ui, const char* id, const char* title, float width, const std::st
 
 struct WindowPreset {
     const char* name;
-    reader::WindowLevel window;
+    WindowLevel window;
 };
 constexpr WindowPreset windowPresets[] = {{"colon", {0, 2000}},
                                           {"soft tissue", {40, 400}},
@@ -93,10 +93,10 @@ constexpr WindowPreset windowPresets[] = {{"colon", {0, 2000}},
 // The fly-over, and the tools of the flattened wall.
 void drawStripControls(Ui& ui, float side) {
     reader::Reader& reader = ui.reader;
-    const bool flyingOver = reader.tour().flyingOver();
+    const bool flyingOver = reader.flat().tour().flyingOver();
     sameRow(ui, 12);
     if (iconButton("over", Icon::flyOver, side, "Fly over the flattened wall (V)", flyingOver))
-        reader.setFlyingOver(!flyingOver);
+        reader.flat().setFlyingOver(!flyingOver);
     const auto toolButton = [&](const char* id, Icon icon, const char* hint, DrawingTool tool) {
         sameRow(ui, 4);
         if (iconButton(id, icon, side, hint, ui.tool == tool))
@@ -110,8 +110,8 @@ void drawStripControls(Ui& ui, float side) {
 // What colours the wall. Greyed out where there is no flat map to colour it by.
 void drawPaintControls(Ui& ui) {
     reader::Reader& reader = ui.reader;
-    reader::WallPaint paint = reader.wallPaint();
-    const bool can = reader.hasStrip();
+    WallPaintChoice paint = reader.flat().paint();
+    const bool can = reader.flat().hasStrip();
     const char* const cannot = "This case has not been flattened: its wall cannot be coloured";
     ImGui::BeginDisabled(!can);
     sameRow(ui, 12);
@@ -121,7 +121,7 @@ void drawPaintControls(Ui& ui) {
     changed |= ImGui::Checkbox("unseen", &paint.unseen);
     tooltip(can ? "Colour what has not been seen yet (U); Shift U: begin anew" : cannot);
     ImGui::EndDisabled();
-    if (changed) reader.setWallPaint(paint);
+    if (changed) reader.flat().setPaint(paint);
 }
 
 void drawControls(Ui& ui) {
@@ -156,7 +156,7 @@ void drawControls(Ui& ui) {
     sameRow(ui, 4);
     if (iconButton("bookmark", Icon::bookmark, side, "Bookmark this place (B)"))
         reader.addBookmark("");
-    if (reader.hasStrip()) drawStripControls(ui, side);
+    if (reader.flat().hasStrip()) drawStripControls(ui, side);
     drawPaintControls(ui);
 
     sameRow(ui, 20);
@@ -186,11 +186,11 @@ void drawControls(Ui& ui) {
     std::string current = "own";
     for (const WindowPreset& preset : windowPresets) {
         names.push_back(preset.name);
-        if (preset.window == reader.window()) current = preset.name;
+        if (preset.window == reader.slices().window()) current = preset.name;
     }
     combo(ui, "##window", "slices", wide, current, names, [&](const std::string& name) {
         for (const WindowPreset& preset : windowPresets)
-            if (name == preset.name) reader.setWindow(preset.window);
+            if (name == preset.name) reader.slices().setWindow(preset.window);
     });
 }
 

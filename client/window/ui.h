@@ -37,7 +37,7 @@ struct Ui {
     Fonts fonts;
     float scale = 1.0f;
     std::string serverName;
-    std::array<PictureTexture, reader::viewCount> textures{};
+    std::array<PictureTexture, viewCount> textures{};
     std::deque<Notice> notices{};
     bool showHelp = false, showBookmarks = true, focusNote = false, showTransfer = false;
     TransferPanel transfer{};
@@ -60,7 +60,7 @@ struct Rect {
 /// Each draws one part within `area` (screen coordinates) and acts on what the hand does there.
 void drawTopBar(Ui& ui, Rect area);
 void drawEndoscopicPane(Ui& ui, Rect area);
-void drawSlicePane(Ui& ui, reader::View view, Rect area);
+void drawSlicePane(Ui& ui, View view, Rect area);
 /// The whole flattened strip, and the window onto it.
 void drawStripPane(Ui& ui, Rect area);
 void drawZoomPane(Ui& ui, Rect area);

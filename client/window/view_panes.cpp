@@ -11,8 +11,6 @@
 namespace haustra::window {
 namespace {
 
-using reader::View;
-
 // Where the picked place is seen, or would be but for what is in front of it.
 void drawPicked(Ui& ui, const reader::WallPlace& place, Rect area, ImDrawList* list) {
     const auto seen = reader::seenAt(ui.reader.flight().camera(), place.positionMm);
@@ -42,7 +40,7 @@ void drawEdgeLetters(Ui& ui, View view, Rect area, ImDrawList* list) {
 // A cross with an open middle where the camera is, and an arrow along its gaze.
 void drawCrosshair(Ui& ui, const reader::SliceMap& map, double pixelsPerPicturePixel, Rect area,
                    ImDrawList* list) {
-    const reader::Camera camera = ui.reader.flight().camera();
+    const Camera camera = ui.reader.flight().camera();
     const glm::dvec2 pixel = map.pixelFromPatient(camera.positionMm);
     const ImVec2 p(area.min.x + float((pixel.x + 0.5) * pixelsPerPicturePixel),
                    area.min.y + float((pixel.y + 0.5) * pixelsPerPicturePixel));
@@ -86,13 +84,13 @@ void handleSliceMouse(Ui& ui, View view, const reader::SliceMap& map, double pix
     }
     if (io.MouseWheel == 0.0f) return;
     if (io.KeyCtrl) {
-        ui.reader.zoomSlices(std::pow(1.2, io.MouseWheel));
+        ui.reader.slices().zoom(std::pow(1.2, io.MouseWheel));
     } else {
         const glm::dvec3 spacing = ui.reader.session().caseInfo()->grid.spacingMm();
         const double step = view == View::axial     ? spacing.z
                             : view == View::coronal ? spacing.y
                                                     : spacing.x;
-        ui.reader.scrollSlice(view, io.MouseWheel * step * (io.KeyShift ? 10.0 : 1.0));
+        ui.reader.slices().scroll(view, io.MouseWheel * step * (io.KeyShift ? 10.0 : 1.0));
     }
 }
 
@@ -122,7 +120,7 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
                         (flight.direction() == FlightDirection::antegrade ? stepMm : -stepMm));
     }
 
-    if (const auto& picked = reader.pickedPlace()) drawPicked(ui, *picked, area, list);
+    if (const auto& picked = reader.flat().picked()) drawPicked(ui, *picked, area, list);
     const float margin = ui.px(12);
     const double length = flight.centerline().lengthMm();
     const bool antegrade = flight.direction() == FlightDirection::antegrade;
@@ -149,12 +147,12 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
                      {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
                      IM_COL32(200, 208, 216, 255), look);
     }
-    const bool exact = reader.picture(View::endoscopic).exact;
+    const bool exact = reader.panes().picture(View::endoscopic).exact;
     const std::string badge = exact ? "exact" : "moving";
     const ImVec2 size = textSize(ui.fonts.small, badge);
     const float dot = ui.px(4);
     const ImVec2 corner(area.max.x - margin - size.x, area.max.y - margin - size.y);
-    if (reader.pictureCount(View::endoscopic) > 0) {
+    if (reader.panes().pictureCount(View::endoscopic) > 0) {
         list->AddCircleFilled({corner.x - 2.2f * dot, corner.y + size.y / 2}, dot,
                               exact ? color::accent : color::bookmark);
         outlinedText(list, ui.fonts.small, corner, IM_COL32(200, 208, 216, 255), badge);
@@ -169,15 +167,15 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
     drawPicture(ui, view, area, list);
     const bool hovered = pane(ui, title(view), area);
 
-    const reader::Slice shown =
-        reader.pictureCount(view) > 0 ? reader.shownSlice(view) : reader.slice();
+    const SliceView* pictured = reader.panes().shown<SliceView>(view);
+    const SliceView shown = pictured ? *pictured : reader.slices().slice(view);
     const double pixels = area.size().x / size.x;
-    const reader::SliceMap map(view, shown, reader.session().caseInfo()->grid, size.x, size.y);
+    const reader::SliceMap map(shown, reader.session().caseInfo()->grid, size.x, size.y);
     handleSliceMouse(ui, view, map, pixels, area, hovered);
 
     list->PushClipRect(area.min, area.max, true);
     drawCrosshair(ui, map, pixels, area, list);
-    if (const auto& picked = reader.pickedPlace()) {
+    if (const auto& picked = reader.flat().picked()) {
         const glm::dvec2 pixel = map.pixelFromPatient(picked->positionMm);
         drawPickedCross(ui, list,
                         {area.min.x + float((pixel.x + 0.5) * pixels),
@@ -186,14 +184,15 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
     drawEdgeLetters(ui, view, area, list);
     const float margin = ui.px(8);
     const double coordinate = glm::dot(shown.positionMm, reader::sliceNormal(view));
-    outlinedText(list, ui.fonts.small, {area.min.x + margin, area.min.y + margin}, color::text,
-                 shown.cleansed ? std::string(title(view)) + ", cleansed" : title(view));
+    outlinedText(
+        list, ui.fonts.small, {area.min.x + margin, area.min.y + margin}, color::text,
+        shown.scan == Scan::cleansed ? std::string(title(view)) + ", cleansed" : title(view));
     const std::string place = printed("%s %.1f mm", axisName(view), coordinate);
     outlinedText(list, ui.fonts.small,
                  {area.max.x - margin - textSize(ui.fonts.small, place).x, area.min.y + margin},
                  IM_COL32(200, 208, 216, 255), place);
     if (view == View::axial) {
-        const reader::WindowLevel& window = reader.window();
+        const WindowLevel& window = reader.slices().window();
         outlinedText(list, ui.fonts.small,
                      {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
                      IM_COL32(200, 208, 216, 255),

@@ -62,7 +62,7 @@ struct SliceView {
     View plane = View::axial;
     glm::dvec3 positionMm{0.0};
     double zoom = 1.0;  ///< 1…maxSliceZoom
-    WindowLevel window;
+    WindowLevel window{};
     Scan scan = Scan::original;
     bool operator==(const SliceView&) const = default;
 };
@@ -76,7 +76,7 @@ struct ObliqueView {
     glm::dvec3 forward{0.0, 0.0, 1.0};  ///< as of a camera: not parallel to `up`, any length
     glm::dvec3 up{0.0, -1.0, 0.0};
     double heightMm = 60.0;  ///< of the picture, minObliqueMm…maxObliqueMm
-    WindowLevel window;
+    WindowLevel window{};
     Scan scan = Scan::original;
     bool operator==(const ObliqueView&) const = default;
 };

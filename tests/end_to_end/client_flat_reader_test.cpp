@@ -24,12 +24,13 @@ protected:
         if (!reader_->isOpen() || reader_->restless()) return false;
         for (const View view :
              {View::endoscopic, View::axial, View::flattened, View::flattenedZoom})
-            if ((reader_->hasStrip() || !isFlat(view)) && !reader_->picture(view).exact)
+            if ((reader_->flat().hasStrip() || !isFlat(view)) &&
+                !reader_->panes().picture(view).exact)
                 return false;
         return true;
     }
     void expectZoomPictureOf(glm::dvec2 center, double pixelsPerCircumference) const {
-        EXPECT_EQ(reader_->picture(View::flattenedZoom).rgb,
+        EXPECT_EQ(reader_->panes().picture(View::flattenedZoom).rgb,
                   tests::syntheticPicture(
                       232, 100, tests::syntheticPosition(center, pixelsPerCircumference), 0.0));
     }
@@ -38,87 +39,94 @@ protected:
 };
 
 TEST_F(ClientFlatReader, TheWindowFollowsTheFlight) {
-    EXPECT_TRUE(reader_->hasStrip());
+    EXPECT_TRUE(reader_->flat().hasStrip());
     expectZoomPictureOf({0.5, 0.0}, 200.0);  // all around, with the seam's margins
     reader_->flight().goTo(0.5 * length());
     reader_->update(0.0);
-    EXPECT_NEAR(reader_->tour().window().center.y, 3.0, 1e-9);
+    EXPECT_NEAR(reader_->flat().tour().window().center.y, 3.0, 1e-9);
     ASSERT_TRUE(runUntil([&] { return atRest(); }));
-    expectZoomPictureOf(reader_->tour().window().center, 200.0);
-    EXPECT_EQ(reader_->shownWindow().center, reader_->tour().window().center);
+    expectZoomPictureOf(reader_->flat().tour().window().center, 200.0);
+    EXPECT_EQ(reader_->panes().shown<FlatWindow>(View::flattenedZoom)->center,
+              reader_->flat().tour().window().center);
     reader_->flight().flyFreely();
-    const double arc = reader_->placeArcMm();
+    const double arc = reader_->flight().placeArcMm();
     reader_->flight().moveFreely({0.0, 0.0, 40.0});
     reader_->update(0.0);
-    EXPECT_GT(reader_->placeArcMm(), arc + 10.0);
-    EXPECT_NEAR(reader_->tour().window().center.y, 6.0 * reader_->placeArcMm() / length(), 1e-6);
+    EXPECT_GT(reader_->flight().placeArcMm(), arc + 10.0);
+    EXPECT_NEAR(reader_->flat().tour().window().center.y,
+                6.0 * reader_->flight().placeArcMm() / length(), 1e-6);
 }
 
 TEST_F(ClientFlatReader, MovingTheWindowLeavesTheCamera) {
     const Camera camera = reader_->flight().camera();
-    reader_->tour().drag({30.0, 50.0});
-    reader_->tour().zoom(2.0, {116.0, 50.0});
+    reader_->flat().tour().drag({30.0, 50.0});
+    reader_->flat().tour().zoom(2.0, {116.0, 50.0});
     ASSERT_TRUE(runUntil([&] {
-        return atRest() && reader_->shownWindow().center == reader_->tour().window().center;
+        return atRest() && reader_->panes().shown<FlatWindow>(View::flattenedZoom)->center ==
+                               reader_->flat().tour().window().center;
     }));
     EXPECT_EQ(reader_->flight().camera(), camera);
-    EXPECT_NEAR(reader_->tour().window().center.y, 0.25, 1e-12);
-    expectZoomPictureOf(reader_->tour().window().center, 400.0);
+    EXPECT_NEAR(reader_->flat().tour().window().center.y, 0.25, 1e-12);
+    expectZoomPictureOf(reader_->flat().tour().window().center, 400.0);
 }
 
 TEST_F(ClientFlatReader, AClickOnTheStripLeadsAllViewsThere) {
     const glm::dvec2 flat(0.3, 2.4);
     const glm::dvec3 wall = vector(tests::fakePlace(flat).position_mm());
     reader_->flight().setMotion(Motion::forward);
-    reader_->goToFlat(flat, true);
+    reader_->flat().goTo(flat, true);
     EXPECT_TRUE(reader_->restless());
-    ASSERT_TRUE(runUntil([&] { return reader_->pickedPlace().has_value(); }));
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
     const Camera camera = reader_->flight().camera();
     EXPECT_EQ(reader_->flight().motion(), Motion::paused);
     EXPECT_NEAR(reader_->flight().arcMm(), 0.4 * length(), 1e-9);
     EXPECT_GT(glm::dot(camera.forward, glm::normalize(wall - camera.positionMm)), 1.0 - 1e-9);
-    EXPECT_EQ(reader_->tour().window().center, flat);
-    ASSERT_TRUE(runUntil([&] { return atRest() && reader_->shownWindow().center == flat; }));
-    EXPECT_LT(glm::distance(reader_->shownSlice(View::axial).positionMm, wall), 1e-9);
-    EXPECT_EQ(reader_->picture(View::endoscopic).rgb,
+    EXPECT_EQ(reader_->flat().tour().window().center, flat);
+    ASSERT_TRUE(runUntil([&] {
+        return atRest() && reader_->panes().shown<FlatWindow>(View::flattenedZoom)->center == flat;
+    }));
+    EXPECT_LT(glm::distance(reader_->panes().shown<SliceView>(View::axial)->positionMm, wall),
+              1e-9);
+    EXPECT_EQ(reader_->panes().picture(View::endoscopic).rgb,
               tests::syntheticPicture(100, 90, camera.positionMm, 0.0));
     expectZoomPictureOf(flat, 200.0);
     // The mark goes when the camera goes on, and slices follow the camera again.
     reader_->flight().goTo(10.0);
     reader_->update(0.0);
-    EXPECT_FALSE(reader_->pickedPlace());
-    EXPECT_EQ(reader_->slice().positionMm, reader_->flight().camera().positionMm);
+    EXPECT_FALSE(reader_->flat().picked());
+    EXPECT_EQ(reader_->slices().slice(View::axial).positionMm,
+              reader_->flight().camera().positionMm);
 }
 
 TEST_F(ClientFlatReader, AClickInTheWindowLeavesItWhereItIs) {
-    reader_->tour().centerOn({0.5, 3.0});
-    reader_->goToFlat({1.2, 3.1}, false);  // past the seam
-    ASSERT_TRUE(runUntil([&] { return reader_->pickedPlace().has_value(); }));
-    EXPECT_NEAR(reader_->pickedPlace()->flat.x, 0.2, 1e-9);
-    EXPECT_EQ(reader_->tour().window().center, glm::dvec2(0.5, 3.0));
+    reader_->flat().tour().centerOn({0.5, 3.0});
+    reader_->flat().goTo({1.2, 3.1}, false);  // past the seam
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
+    EXPECT_NEAR(reader_->flat().picked()->flat.x, 0.2, 1e-9);
+    EXPECT_EQ(reader_->flat().tour().window().center, glm::dvec2(0.5, 3.0));
     EXPECT_NEAR(reader_->flight().arcMm(), 3.1 / 6.0 * length(), 1e-9);
-    reader_->goToFlat({0.5, 99.0}, false);  // held to the strip
-    ASSERT_TRUE(runUntil([&] { return reader_->pickedPlace()->flat.y == 6.0; }));
+    reader_->flat().goTo({0.5, 99.0}, false);  // held to the strip
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked()->flat.y == 6.0; }));
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
 }
 
 TEST_F(ClientFlatReader, TheCameraFollowsTheFlyOver) {
-    reader_->setFlyingOver(true);
+    reader_->flat().setFlyingOver(true);
     reader_->flight().setSpeed(180.0);  // two circumferences a second
     reader_->setMotion(Motion::forward);
     EXPECT_EQ(reader_->flight().motion(), Motion::paused);
-    const auto pictures = reader_->pictureCount(View::flattenedZoom),
-               followed = reader_->pictureCount(View::endoscopic);
+    const auto pictures = reader_->panes().pictureCount(View::flattenedZoom),
+               followed = reader_->panes().pictureCount(View::endoscopic);
     double y = 0.0;
     ASSERT_TRUE(runUntil([&] {
-        EXPECT_GE(reader_->tour().window().center.y, y);
-        y = reader_->tour().window().center.y;
+        EXPECT_GE(reader_->flat().tour().window().center.y, y);
+        y = reader_->flat().tour().window().center.y;
         EXPECT_NEAR(reader_->flight().arcMm(), y / 6.0 * length(), 1e-6);
         return reader_->motion() == Motion::paused;
     }));
     EXPECT_EQ(y, 6.0);
-    EXPECT_GT(reader_->pictureCount(View::flattenedZoom), pictures + 10);
-    EXPECT_GT(reader_->pictureCount(View::endoscopic), followed + 10);
+    EXPECT_GT(reader_->panes().pictureCount(View::flattenedZoom), pictures + 10);
+    EXPECT_GT(reader_->panes().pictureCount(View::endoscopic), followed + 10);
     ASSERT_TRUE(runUntil([&] { return atRest(); }));
     expectZoomPictureOf({0.5, 6.0}, 200.0);
     // Whoever takes the camera elsewhere takes the fly-over along.
@@ -126,8 +134,8 @@ TEST_F(ClientFlatReader, TheCameraFollowsTheFlyOver) {
     reader_->flight().goTo(0.5 * length());
     reader_->update(0.01);
     EXPECT_EQ(reader_->motion(), Motion::paused);
-    EXPECT_NEAR(reader_->tour().window().center.y, 3.0, 1e-9);
-    reader_->setFlyingOver(false);
+    EXPECT_NEAR(reader_->flat().tour().window().center.y, 3.0, 1e-9);
+    reader_->flat().setFlyingOver(false);
     reader_->setMotion(Motion::forward);
     EXPECT_EQ(reader_->flight().motion(), Motion::forward);
 }
@@ -138,15 +146,15 @@ TEST_F(ClientFlatReader, BookmarksFindTheirPlaceOnTheStrip) {
         reader_->flight().setLook(90.0, 0.0);
         reader_->addBookmark("");
     }
-    ASSERT_TRUE(runUntil([&] { return reader_->wall().bookmarkPlaces().size() == 3; }));
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().wall().bookmarkPlaces().size() == 3; }));
     for (const Bookmark& bookmark : reader_->session().bookmarks()) {
-        const WallPlace& place = reader_->wall().bookmarkPlaces().at(bookmark.clientKey);
+        const WallPlace& place = reader_->flat().wall().bookmarkPlaces().at(bookmark.clientKey);
         EXPECT_NEAR(place.flat.y, 6.0 * bookmark.arcMm / length(), 0.2);
     }
 }
 
 TEST_F(ClientFlatReader, LinesAndOutlinesAreMeasuredWhileTheyAreDrawn) {
-    WallQuestions& wall = reader_->wall();
+    WallQuestions& wall = reader_->flat().wall();
     for (const double x : {0.6, 0.7, 0.8, 0.9})  // only the newest counts
         wall.measure({{0.5, 1.0}, {x, 1.0}}, false);
     ASSERT_TRUE(runUntil([&] {
@@ -173,16 +181,16 @@ protected:
 };
 
 TEST_F(ClientFlatReaderWithoutStrip, NothingOfItIsAskedFor) {
-    EXPECT_FALSE(reader_->hasStrip());
-    reader_->goToFlat({0.5, 0.5}, true);
-    reader_->setFlyingOver(true);
-    EXPECT_FALSE(reader_->tour().flyingOver());
+    EXPECT_FALSE(reader_->flat().hasStrip());
+    reader_->flat().goTo({0.5, 0.5}, true);
+    reader_->flat().setFlyingOver(true);
+    EXPECT_FALSE(reader_->flat().tour().flyingOver());
     reader_->addBookmark("");
     EXPECT_TRUE(reader_->optics().choose("translucent"));
     reader_->flight().goTo(200.0);
     ASSERT_TRUE(runUntil([&] { return atRest(); }));
-    EXPECT_EQ(reader_->pictureCount(View::flattened), 0u);
-    EXPECT_EQ(reader_->pictureCount(View::flattenedZoom), 0u);
+    EXPECT_EQ(reader_->panes().pictureCount(View::flattened), 0u);
+    EXPECT_EQ(reader_->panes().pictureCount(View::flattenedZoom), 0u);
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
 }
 

@@ -24,16 +24,17 @@ protected:
     bool allAtRest() const {
         if (!reader_->isOpen() || reader_->restless()) return false;
         for (const View view : views)
-            if (!reader_->picture(view).exact) return false;
+            if (!reader_->panes().picture(view).exact) return false;
         return true;
     }
     void expectPicturesOf(glm::dvec3 positionMm) const {
-        EXPECT_EQ(reader_->picture(View::endoscopic).rgb,
+        EXPECT_EQ(reader_->panes().picture(View::endoscopic).rgb,
                   tests::syntheticPicture(240, 160, positionMm, 0.0));
         for (const View view : {View::axial, View::coronal, View::sagittal}) {
-            EXPECT_EQ(reader_->picture(view).rgb,
-                      tests::syntheticPicture(100, 90, positionMm, reader_->window().centerHu));
-            EXPECT_EQ(reader_->shownSlice(view).positionMm, positionMm);
+            EXPECT_EQ(
+                reader_->panes().picture(view).rgb,
+                tests::syntheticPicture(100, 90, positionMm, reader_->slices().window().centerHu));
+            EXPECT_EQ(reader_->panes().shown<SliceView>(view)->positionMm, positionMm);
         }
     }
 };
@@ -42,34 +43,44 @@ TEST_F(ClientReader, TheOverviewStandsStillWhileTheReaderFliesAndTurnsByHand) {
     reader_->setPaneSize(View::overview, {120, 100});
     reader_->setPaneSize(View::oblique, {80, 60});
     ASSERT_TRUE(runUntil([&] {
-        return allAtRest() && reader_->picture(View::overview).exact &&
-               reader_->picture(View::oblique).exact;
+        return allAtRest() && reader_->panes().picture(View::overview).exact &&
+               reader_->panes().picture(View::oblique).exact;
     }));
     const auto expectBoth = [&] {
-        EXPECT_EQ(reader_->picture(View::overview).rgb,
-                  tests::syntheticPicture(120, 100, cameraOf(reader_->orbit()).positionMm, 0.0));
-        EXPECT_EQ(reader_->shownOrbit(), reader_->orbit());
-        EXPECT_EQ(reader_->picture(View::oblique).rgb,
-                  tests::syntheticPicture(80, 60, reader_->oblique().positionMm,
-                                          reader_->window().centerHu));
-        EXPECT_EQ(reader_->shownOblique(), reader_->oblique());
+        EXPECT_EQ(reader_->panes().picture(View::overview).rgb,
+                  tests::syntheticPicture(120, 100, cameraOf(reader_->outside().orbit()).positionMm,
+                                          0.0));
+        EXPECT_EQ(reader_->panes().shown<Overview>(View::overview)->camera,
+                  cameraOf(reader_->outside().orbit()));
+        EXPECT_EQ(reader_->panes().picture(View::oblique).rgb,
+                  tests::syntheticPicture(
+                      80, 60, reader_->slices().oblique(reader_->flight().camera()).positionMm,
+                      reader_->slices().window().centerHu));
+        EXPECT_EQ(*reader_->panes().shown<ObliqueView>(View::oblique),
+                  reader_->slices().oblique(reader_->flight().camera()));
     };
     expectBoth();
-    const auto overviews = reader_->pictureCount(View::overview);
+    const auto overviews = reader_->panes().pictureCount(View::overview);
     reader_->flight().goTo(70.0);
-    reader_->scrollOblique(8.0);
-    ASSERT_TRUE(runUntil([&] { return reader_->shownOblique() == reader_->oblique(); }));
-    ASSERT_TRUE(runUntil([&] { return allAtRest() && reader_->picture(View::oblique).exact; }));
-    EXPECT_EQ(reader_->pictureCount(View::overview), overviews);
-    reader_->turnOverview(40.0, -200.0);
-    EXPECT_EQ(reader_->orbit().elevationDegrees, -90.0);
-    reader_->zoomOverview(2.0);
+    reader_->slices().scrollOblique(8.0);
     ASSERT_TRUE(runUntil([&] {
-        return reader_->shownOrbit() == reader_->orbit() && reader_->picture(View::overview).exact;
+        return *reader_->panes().shown<ObliqueView>(View::oblique) ==
+               reader_->slices().oblique(reader_->flight().camera());
+    }));
+    ASSERT_TRUE(
+        runUntil([&] { return allAtRest() && reader_->panes().picture(View::oblique).exact; }));
+    EXPECT_EQ(reader_->panes().pictureCount(View::overview), overviews);
+    reader_->outside().turn(40.0, -200.0);
+    EXPECT_EQ(reader_->outside().orbit().elevationDegrees, -90.0);
+    reader_->outside().zoom(2.0);
+    ASSERT_TRUE(runUntil([&] {
+        return reader_->panes().shown<Overview>(View::overview)->camera ==
+                   cameraOf(reader_->outside().orbit()) &&
+               reader_->panes().picture(View::overview).exact;
     }));
     expectBoth();
-    reader_->resetOverview();
-    EXPECT_EQ(reader_->orbit().azimuthDegrees, 0.0);
+    reader_->outside().reset();
+    EXPECT_EQ(reader_->outside().orbit().azimuthDegrees, 0.0);
 }
 
 TEST_F(ClientReader, OpticsAreShownWhileTheHandChangesThem) {
@@ -140,23 +151,24 @@ INSTANTIATE_TEST_SUITE_P(Codes, ClientReaderRefused,
 TEST_F(ClientReader, AtRestAllViewsAreExactAndShowTheCamerasPlace) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     expectPicturesOf(reader_->flight().camera().positionMm);
-    reader_->setWindow({40, 400});
+    reader_->slices().setWindow({40, 400});
     reader_->flight().goTo(300.0);
     ASSERT_TRUE(runUntil([&] {
-        return allAtRest() &&
-               reader_->shownSlice(View::axial).positionMm == reader_->flight().camera().positionMm;
+        return allAtRest() && reader_->panes().shown<SliceView>(View::axial)->positionMm ==
+                                  reader_->flight().camera().positionMm;
     }));
     expectPicturesOf(reader_->flight().camera().positionMm);
 }
 
 TEST_F(ClientReader, InFlightPicturesMoveAndAfterwardsTheyAreExact) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
-    const auto before = reader_->pictureCount(View::endoscopic);
+    const auto before = reader_->panes().pictureCount(View::endoscopic);
     reader_->flight().setMotion(Motion::forward);
-    ASSERT_TRUE(runUntil([&] { return reader_->pictureCount(View::endoscopic) > before + 10; }));
+    ASSERT_TRUE(
+        runUntil([&] { return reader_->panes().pictureCount(View::endoscopic) > before + 10; }));
     EXPECT_TRUE(reader_->restless());
-    EXPECT_FALSE(reader_->picture(View::endoscopic).exact);
-    EXPECT_GT(reader_->latencyMs().count, 5u);
+    EXPECT_FALSE(reader_->panes().picture(View::endoscopic).exact);
+    EXPECT_GT(reader_->panes().latencyMs().count, 5u);
     reader_->flight().setMotion(Motion::paused);
     EXPECT_GT(reader_->flight().arcMm(), 0.0);
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
@@ -165,18 +177,21 @@ TEST_F(ClientReader, InFlightPicturesMoveAndAfterwardsTheyAreExact) {
 
 TEST_F(ClientReader, SlicesShowTheCleansedScanOnRequest) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
-    reader_->setSlicesCleansed(true);
-    ASSERT_TRUE(runUntil([&] { return reader_->shownSlice(View::sagittal).cleansed; }));
+    reader_->slices().setCleansed(true);
+    ASSERT_TRUE(runUntil(
+        [&] { return showsCleansed(*reader_->panes().shown<SliceView>(View::sagittal)); }));
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     const glm::dvec3 camera = reader_->flight().camera().positionMm;
     for (const View view : {View::axial, View::coronal, View::sagittal}) {
-        EXPECT_TRUE(reader_->shownSlice(view).cleansed);
-        EXPECT_EQ(reader_->picture(view).rgb,
-                  tests::syntheticPicture(100, 90, camera,
-                                          reader_->window().centerHu + tests::cleansedShiftHu));
+        EXPECT_TRUE(showsCleansed(*reader_->panes().shown<SliceView>(view)));
+        EXPECT_EQ(
+            reader_->panes().picture(view).rgb,
+            tests::syntheticPicture(100, 90, camera,
+                                    reader_->slices().window().centerHu + tests::cleansedShiftHu));
     }
-    reader_->setSlicesCleansed(false);
-    ASSERT_TRUE(runUntil([&] { return !reader_->shownSlice(View::axial).cleansed; }));
+    reader_->slices().setCleansed(false);
+    ASSERT_TRUE(
+        runUntil([&] { return !showsCleansed(*reader_->panes().shown<SliceView>(View::axial)); }));
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     expectPicturesOf(camera);
 }
@@ -184,15 +199,17 @@ TEST_F(ClientReader, SlicesShowTheCleansedScanOnRequest) {
 TEST_F(ClientReader, ScrollingASliceLeavesTheCameraAndStaysWithinTheScan) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     const glm::dvec3 camera = reader_->flight().camera().positionMm;
-    reader_->scrollSlice(View::axial, 15.0);
-    EXPECT_EQ(reader_->slice().positionMm, camera + glm::dvec3(0, 0, 15));
+    reader_->slices().scroll(View::axial, 15.0);
+    EXPECT_EQ(reader_->slices().slice(View::axial).positionMm, camera + glm::dvec3(0, 0, 15));
     EXPECT_EQ(reader_->flight().camera().positionMm, camera);
-    reader_->scrollSlice(View::axial, 1e6);
+    reader_->slices().scroll(View::axial, 1e6);
     const Grid& grid = reader_->session().caseInfo()->grid;
-    EXPECT_NEAR(reader_->slice().positionMm.z, grid.patientFromVoxelPoint(grid.size - 1).z, 1e-9);
+    EXPECT_NEAR(reader_->slices().slice(View::axial).positionMm.z,
+                grid.patientFromVoxelPoint(grid.size - 1).z, 1e-9);
     reader_->flight().goTo(50.0);
     reader_->update(0.0);
-    EXPECT_EQ(reader_->slice().positionMm, reader_->flight().camera().positionMm);
+    EXPECT_EQ(reader_->slices().slice(View::axial).positionMm,
+              reader_->flight().camera().positionMm);
 }
 
 TEST_F(ClientReader, BookmarksLeadAlongTheColon) {
@@ -217,7 +234,7 @@ TEST_F(ClientReaderWithALossyLink, ALostLinkComesBackWithViewsFlightAndBookmarks
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     reader_->flight().goTo(123.0);
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
-    const auto before = reader_->pictureCount(View::endoscopic);
+    const auto before = reader_->panes().pictureCount(View::endoscopic);
     reader_->addBookmark("first");
     reader_->addBookmark("second: stored, but the link breaks before its acknowledgement");
     ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::lost; }));
@@ -227,7 +244,7 @@ TEST_F(ClientReaderWithALossyLink, ALostLinkComesBackWithViewsFlightAndBookmarks
     ASSERT_TRUE(runUntil([&] { return reader_->session().owedBookmarks() == 0 && allAtRest(); }));
     EXPECT_EQ(server_.storedBookmarkKeys().size(), 3u);
     EXPECT_EQ(reader_->flight().arcMm(), 123.0);
-    ASSERT_TRUE(runUntil([&] { return reader_->pictureCount(View::endoscopic) > before; }));
+    ASSERT_TRUE(runUntil([&] { return reader_->panes().pictureCount(View::endoscopic) > before; }));
     expectPicturesOf(reader_->flight().camera().positionMm);
 }
 

@@ -5,6 +5,7 @@
 #include "protocol/framing.h"
 #include "protocol/haustra.pb.h"
 #include "protocol/optics_message.h"
+#include "protocol/view_message.h"
 
 #include <array>
 #include <cmath>
@@ -51,10 +52,6 @@ Identity makeIdentity() {
     identity.fingerprint = link::fingerprintOf({der, std::size_t(bytes)});
     OPENSSL_free(der);
     return identity;
-}
-
-glm::dvec3 pointOf(const protocol::Vec3& p) {
-    return {p.x(), p.y(), p.z()};
 }
 
 struct Viewport {
@@ -273,12 +270,14 @@ struct FakeServer::Impl {
                 case ClientMessage::kSetCamera: {
                     const auto& set = message.set_camera();
                     if (!set.moving() && misbehaviour.noStills) break;
-                    sendPicture(stream, ++pictures, set, viewports, pointOf(set.position_mm()));
+                    sendPicture(stream, ++pictures, set, viewports,
+                                protocol::vectorFrom(set.position_mm()));
                     break;
                 }
                 case ClientMessage::kSetSlice: {
                     const auto& set = message.set_slice();
-                    sendPicture(stream, ++pictures, set, viewports, pointOf(set.position_mm()),
+                    sendPicture(stream, ++pictures, set, viewports,
+                                protocol::vectorFrom(set.position_mm()),
                                 set.cleansed() ? cleansedShiftHu : 0.0);
                     break;
                 }
@@ -291,14 +290,15 @@ struct FakeServer::Impl {
                 }
                 case ClientMessage::kSetOblique: {
                     const auto& set = message.set_oblique();
-                    sendPicture(stream, ++pictures, set, viewports, pointOf(set.position_mm()),
+                    sendPicture(stream, ++pictures, set, viewports,
+                                protocol::vectorFrom(set.position_mm()),
                                 set.cleansed() ? cleansedShiftHu : 0.0);
                     break;
                 }
                 case ClientMessage::kSetOverview: {
                     const auto& set = message.set_overview();
                     sendPicture(stream, ++pictures, set, viewports,
-                                pointOf(set.camera().position_mm()),
+                                protocol::vectorFrom(set.camera().position_mm()),
                                 set.has_reader() ? set.reader().position_mm().z() : 0.0);
                     break;
                 }

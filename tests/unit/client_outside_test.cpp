@@ -68,7 +68,7 @@ TEST(OverviewMap, FindsTheNearestOfSeveralPlaces) {
 }
 
 TEST(Fisheye, EqualAnglesAreEqualLengths) {
-    Camera camera{{1, 2, 3}, {0, 0, 1}, {0, -1, 0}, 200.0, true};
+    Camera camera{{1, 2, 3}, {0, 0, 1}, {0, -1, 0}, 200.0, Lens::fisheye};
     for (const double degrees : {0.0, 20.0, 60.0, 95.0, 140.0}) {
         const double angle = glm::radians(degrees);
         const auto seen = seenAt(
@@ -79,7 +79,7 @@ TEST(Fisheye, EqualAnglesAreEqualLengths) {
     }
     const auto above = seenAt(camera, camera.positionMm + glm::dvec3(0, -5, 5));
     EXPECT_NEAR(above->y, -45.0 / 200.0, 1e-12);
-    camera = {{0, 0, 0}, {0, 0, 1}, {0, -1, 0}, 90.0, false};
+    camera = {{0, 0, 0}, {0, 0, 1}, {0, -1, 0}, 90.0};
     EXPECT_NEAR(seenAt(camera, {0.5, 0, 1})->x, 0.25, 1e-12);
     EXPECT_FALSE(seenAt(camera, {0, 0, -1}));
     EXPECT_FALSE(seenAt(camera, {1, 0, 0}));
@@ -89,7 +89,7 @@ TEST(Fisheye, KeepsItsOwnFieldOfView) {
     Flight flight{Centerline{}};
     flight.setFov(70.0);
     flight.setFisheye(true);
-    EXPECT_TRUE(flight.camera().fisheye);
+    EXPECT_EQ(flight.camera().lens, Lens::fisheye);
     EXPECT_EQ(flight.camera().fovDegrees, 180.0);
     flight.setFov(1000.0);
     EXPECT_EQ(flight.camera().fovDegrees, 240.0);

@@ -27,10 +27,10 @@ TEST(Script, PaintsTheWallWithinBounds) {
                                "\n"
                                R"({"do":"seen","forget":true,"json":"seen.json"})");
     ASSERT_TRUE(actions) << describe(actions.error());
-    const WallPaint marks = std::get<PaintAction>((*actions)[0].body).paint;
+    const WallPaintChoice marks = std::get<PaintAction>((*actions)[0].body).paint;
     EXPECT_TRUE(marks.marks && !marks.unseen);
     EXPECT_EQ(marks.markRadiusMm, 8.0);
-    const WallPaint unseen = std::get<PaintAction>((*actions)[1].body).paint;
+    const WallPaintChoice unseen = std::get<PaintAction>((*actions)[1].body).paint;
     EXPECT_TRUE(unseen.unseen && !unseen.marks);
     EXPECT_TRUE(std::get<SeenAction>((*actions)[2].body).forget);
     EXPECT_EQ(std::get<SeenAction>((*actions)[2].body).json, "seen.json");
@@ -291,9 +291,9 @@ TEST(MovingDetail, GivesWayToASlowServerAndComesBack) {
 
 TEST(SliceMap, PixelsAndPatientPointsAreInverseAndThePositionLiesOnTheSlice) {
     const Grid grid = axisAlignedGrid({512, 512, 430}, {0.7, 0.7, 0.8}, {-180, -160, -900});
-    const Slice slice{{20, 30, -700}, 3.0};
     for (const View view : {View::axial, View::coronal, View::sagittal}) {
-        const SliceMap map(view, slice, grid, 640, 480);
+        const SliceView slice{view, {20, 30, -700}, 3.0};
+        const SliceMap map(slice, grid, 640, 480);
         const glm::dvec2 pixel(123.25, 77.5);
         const glm::dvec3 point = map.patientFromPixel(pixel);
         EXPECT_LT(glm::distance(map.pixelFromPatient(point), pixel), 1e-9);
@@ -304,8 +304,8 @@ TEST(SliceMap, PixelsAndPatientPointsAreInverseAndThePositionLiesOnTheSlice) {
 TEST(SliceMap, TheWholeScanFitsAtZoomOneAndZoomingHoldsThePosition) {
     const Grid grid = axisAlignedGrid({512, 512, 430}, {0.7, 0.7, 0.8}, {-180, -160, -900});
     for (const View view : {View::axial, View::coronal, View::sagittal}) {
-        Slice slice{{20, 30, -700}, 1.0};
-        const SliceMap whole(view, slice, grid, 640, 480);
+        SliceView slice{view, {20, 30, -700}, 1.0};
+        const SliceMap whole(slice, grid, 640, 480);
         for (int corner = 0; corner < 8; ++corner) {
             const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
             const glm::dvec2 pixel = whole.pixelFromPatient(
@@ -317,7 +317,7 @@ TEST(SliceMap, TheWholeScanFitsAtZoomOneAndZoomingHoldsThePosition) {
         }
         const glm::dvec2 before = whole.pixelFromPatient(slice.positionMm);
         slice.zoom = 5.0;
-        const SliceMap near(view, slice, grid, 640, 480);
+        const SliceMap near(slice, grid, 640, 480);
         EXPECT_LT(glm::distance(near.pixelFromPatient(slice.positionMm), before), 1e-6);
         EXPECT_NEAR(near.pixelMm() * 5.0, whole.pixelMm(), 1e-12);
     }

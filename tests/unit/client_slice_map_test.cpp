@@ -32,17 +32,11 @@ TEST(ClientSliceMap, AgreesWithWhatTheServerDraws) {
         const glm::dvec3 position = grid.patientFromVoxelPoint(voxel * glm::dvec3(grid.size - 1));
         const int width = 200 + int(random() % 500), height = 200 + int(random() % 500);
         const double zoomed = zoom(random);
-        const struct {
-            reader::View client;
-            render::View server;
-        } views[] = {{reader::View::axial, render::View::axial},
-                     {reader::View::coronal, render::View::coronal},
-                     {reader::View::sagittal, render::View::sagittal}};
-        for (const auto& view : views) {
-            const auto placed =
-                render::placeSlice({view.server, position, zoomed, {}}, grid, width, height);
+        for (const View plane : {View::axial, View::coronal, View::sagittal}) {
+            const SliceView slice{plane, position, zoomed};
+            const auto placed = render::placeSlice(slice, grid, width, height);
             ASSERT_TRUE(placed);
-            const reader::SliceMap map(view.client, {position, zoomed}, grid, width, height);
+            const reader::SliceMap map(slice, grid, width, height);
             const glm::dvec2 at(pixel(random), pixel(random));
             const glm::dvec3 expected =
                 placed->topLeftMm + at.x * placed->rightMm + at.y * placed->downMm;

@@ -131,7 +131,7 @@ TEST(ViewMessage, WhatIsOutOfBoundsIsRefused) {
     const auto refused = [](const ViewState& state) {
         return !stateFrom(overTheWire(stateMessage({1, 0}, state)), viewOf(state));
     };
-    for (const double bad : {NAN, double(INFINITY), 1.01 * maxCoordinateMm}) {
+    for (const double bad : {double(NAN), double(INFINITY), 1.01 * maxCoordinateMm}) {
         haustra::Camera camera;
         camera.positionMm.y = bad;
         EXPECT_TRUE(refused(camera));

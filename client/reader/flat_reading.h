@@ -1,0 +1,61 @@
+// Reading the flattened wall: where its window is, which leads the flight or is led by it, the
+// place that was picked, and what colours the wall.
+#pragma once
+
+#include "reader/flight.h"
+#include "reader/session.h"
+#include "reader/strip_tour.h"
+#include "reader/wall_questions.h"
+
+#include <memory>
+#include <optional>
+
+namespace haustra::reader {
+
+/// Belongs to the session's thread; session and flight must outlive it.
+class FlatReading {
+public:
+    FlatReading(Session& session, Flight& flight) : session_(session), flight_(flight) {}
+
+    /// Another case is open, and the flight is at its start.
+    void open(std::shared_ptr<const CaseInfo> info, glm::ivec2 paneSize);
+    bool hasStrip() const { return case_ && case_->flat; }
+
+    /// The window of the zoom view. It follows the camera along the colon; moving it leaves the
+    /// camera, but for the fly-over, which the camera follows.
+    StripTour& tour() { return tour_; }
+    const StripTour& tour() const { return tour_; }
+    void setFlyingOver(bool on);
+
+    /// Goes to a place of the flattened wall: once the server has said where it is, the camera
+    /// looks at it, slices show it, and with `center` the zoom view has it in its middle.
+    void goTo(glm::dvec2 flat, bool center);
+    /// The place that was gone to last, until the camera moves on.
+    const std::optional<WallPlace>& picked() const { return picked_; }
+    WallQuestions& wall() { return wall_; }
+    const WallQuestions& wall() const { return wall_; }
+
+    /// What colours the wall; refused (false) where the case has not been flattened.
+    bool setPaint(const WallPaintChoice& paint);
+    const WallPaintChoice& paint() const { return session_.wallPaint(); }
+    void forgetSeen();
+
+    /// One step of the loop: takes in the server's answers, and moves flight and window on by
+    /// `seconds`. The place that has just been reached by goTo(), if any.
+    std::optional<WallPlace> update(double seconds);
+
+private:
+    std::optional<WallPlace> takePicked();
+    void travel(double seconds);
+
+    Session& session_;
+    Flight& flight_;
+    std::shared_ptr<const CaseInfo> case_;
+    StripTour tour_;
+    WallQuestions wall_{session_};
+    std::optional<WallPlace> picked_;
+    bool centerPicked_ = false;
+    double followedArcMm_ = 0.0, followedY_ = 0.0;  // of camera and tour, when last one led
+};
+
+}  // namespace haustra::reader
