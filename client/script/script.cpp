@@ -217,7 +217,7 @@ TransferAction readTransfer(Fields& in) {
 
 BookmarkAction readBookmark(Fields& in) {
     BookmarkAction action;
-    if (in.has("note")) action.note = in.text("note");
+    if (in.has("note")) action.note = in.text("note", protocol::maxNoteBytes);
     if (in.has("count")) action.count = in.integer("count", 1, 1'000'000);
     return action;
 }
