@@ -191,12 +191,9 @@ void Case::sweep(const std::vector<ProductEntry>& kept) const {
     for (fs::directory_iterator at(folder_, ignored), end; !ignored && at != end;
          at.increment(ignored)) {
         const std::string name = at->path().filename().string();
-        const std::string extension = at->path().extension().string();
         const bool temporary = name.rfind(temporaryPrefix, 0) == 0;
-        const bool product = extension == ".hvol" || extension == ".hline" ||
-                             extension == ".hmesh" || extension == ".hflat" ||
-                             extension == ".htext";
-        if (temporary || (product && !names.count(name))) rubbish.push_back(at->path());
+        if (temporary || (isProductFileName(name) && !names.count(name)))
+            rubbish.push_back(at->path());
     }
     for (const fs::path& file : rubbish)
         fs::remove(file, ignored);

@@ -1,11 +1,11 @@
 // A case's flat maps: from memory to product files and back.
 #include "store/case_store.h"
 #include "store/product_file.h"
-#include "store/product_values.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 namespace haustra::store {
 namespace {
@@ -66,7 +66,7 @@ const char* flawOf(const FlatMap& map) {
 
 Result<FlatMap> Case::readFlatMap(std::string_view product) const {
     const auto mapped = TRY(map(product));
-    TRY(checkContent(mapped, Content::flatMap, product, folder_));
+    TRY(checkContent(mapped, Content::flatMap, product));
     // mapProduct has held the three counts against the number of bytes.
     const glm::ivec3 size = mapped.header.grid.size;
     const std::size_t vertices = std::size_t(size.x), triangles = std::size_t(size.y);
@@ -103,7 +103,8 @@ Result<void> Case::publishFlatMap(std::string_view product, const ProductKey& ke
                                   const FlatMap& map, const Attributes& attributes,
                                   const std::vector<std::string>& outdated) {
     TRY(checkWritable());
-    const ProductEntry entry{std::string(product), key, productFileName(product, key, ".hflat")};
+    const ProductEntry entry{std::string(product), key,
+                             productFileName(product, key.hex, Content::flatMap)};
     const std::string place = (folder_ / entry.file).string();
     const std::size_t most =
         std::max({map.surface.vertices.size(), map.surface.triangles.size(), map.cameras.size()});
@@ -122,20 +123,14 @@ Result<void> Case::publishFlatMap(std::string_view product, const ProductKey& ke
         const glm::dvec3 p = camera.positionMm;
         cameras.push_back({p.x, p.y, p.z, camera.arcMm});
     }
-    std::vector<std::byte> bytes;
-    bytes.reserve(sizeof(double) + map.flat.size() * flatMapVertexBytes +
-                  map.surface.triangles.size() * flatMapTriangleBytes +
-                  cameras.size() * flatMapCameraBytes);
-    appendBytes(bytes, std::vector<double>{map.height});
-    appendBytes(bytes, map.surface.vertices);
-    appendBytes(bytes, map.flat);
-    appendBytes(bytes, cameras);
-    appendBytes(bytes, map.surface.triangles);
-    appendBytes(bytes, map.sourceTriangle);
-    appendBytes(bytes, map.camera);
-    return writeProduct(folder_, entry.file, header, bytes).and_then([&] {
-        return announce(entry, outdated);
-    });
+    const std::span height(&map.height, 1);
+    return writeProduct(
+               folder_, entry.file, header,
+               {std::as_bytes(height), std::as_bytes(std::span(map.surface.vertices)),
+                std::as_bytes(std::span(map.flat)), std::as_bytes(std::span(cameras)),
+                std::as_bytes(std::span(map.surface.triangles)),
+                std::as_bytes(std::span(map.sourceTriangle)), std::as_bytes(std::span(map.camera))})
+        .and_then([&] { return announce(entry, outdated); });
 }
 
 }  // namespace haustra::store

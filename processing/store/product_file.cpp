@@ -1,7 +1,6 @@
 #include "store/product_file.h"
 
 #include "core/parallel.h"
-#include "core/tissue.h"
 #include "store/durable_file.h"
 #include "store/lost_pages.h"
 
@@ -40,46 +39,6 @@ struct FixedHeader {
     Digest headerDigest;
 };
 static_assert(sizeof(FixedHeader) == 240 && std::is_trivially_copyable_v<FixedHeader>);
-
-bool isVolume(Content content) {
-    return content != Content::centerline && content != Content::mesh &&
-           content != Content::flatMap && content != Content::text;
-}
-
-std::size_t mostElements(Content content) {
-    const bool triangles = content == Content::mesh || content == Content::flatMap;
-    return triangles ? mostMeshElements : std::size_t(1) << 24;
-}
-
-// The sizes have been held against mostElements, so that nothing overflows.
-std::size_t valuesBytes(Content content, const Grid& grid) {
-    switch (content) {
-        case Content::int16Volume:
-            return grid.voxelCount() * sizeof(std::int16_t);
-        case Content::uint8Volume:
-            return grid.voxelCount();
-        case Content::floatVolume:
-            return grid.voxelCount() * sizeof(float);
-        case Content::fractionsVolume:
-            return grid.voxelCount() * sizeof(TissueFractions);
-        case Content::centerline:
-            return std::size_t(grid.size.x) * centerlineSampleBytes;
-        case Content::mesh:
-            return std::size_t(grid.size.x) * meshVertexBytes +
-                   std::size_t(grid.size.y) * meshTriangleBytes;
-        case Content::flatMap:
-            return sizeof(double) + std::size_t(grid.size.x) * flatMapVertexBytes +
-                   std::size_t(grid.size.y) * flatMapTriangleBytes +
-                   std::size_t(grid.size.z) * flatMapCameraBytes;
-        case Content::text:
-            return std::size_t(grid.size.x);
-    }
-    return 0;
-}
-
-bool isKnown(Content content) {
-    return content >= Content::int16Volume && content <= Content::text;
-}
 
 Digest headerDigest(const FixedHeader& fixed, std::string_view attributes) {
     Sha256 hash;
@@ -189,25 +148,23 @@ Result<MappedProduct> mapProduct(const std::filesystem::path& file) {
 
     MappedProduct product;
     product.header.content = Content(fixed.content);
-    const Content content = product.header.content;
-    if (!isKnown(content)) return damaged("it holds an unknown kind of content", file);
+    const ContentKind* const kind = kindOf(product.header.content);
+    if (!kind) return damaged("it holds an unknown kind of content", file);
     for (int axis = 0; axis < 3; ++axis) {
-        if (fixed.size[axis] > mostElements(content)) return damaged("its size is absurd", file);
+        if (fixed.size[axis] > kind->mostElements ||
+            (axis >= kind->counts && fixed.size[axis] != 1))
+            return damaged("its size is absurd", file);
         product.header.grid.size[axis] = int(fixed.size[axis]);
     }
     for (int n = 0; n < 12; ++n) {
         product.header.grid.patientFromVoxel[n / 3][n % 3] = fixed.patientFromVoxel[n];
     }
-    const bool oneCount = content == Content::centerline || content == Content::text;
-    if ((oneCount && fixed.size[1] != 1) ||
-        ((oneCount || content == Content::mesh) && fixed.size[2] != 1)) {
-        return damaged("its size is absurd", file);
-    }
-    if (isVolume(content)) {
+    if (kind->hasGrid) {
         TRY(checkGrid(product.header.grid, file.string()));
     }
+    // The sizes are bounded now, so that nothing overflows.
     if (fixed.valuesOffset != alignedOffset(fixed.attributesBytes) ||
-        fixed.valuesBytes != valuesBytes(content, product.header.grid)) {
+        fixed.valuesBytes != kind->valuesBytes(product.header.grid.size)) {
         return damaged("its header contradicts itself", file);
     }
     if (length < fixed.valuesOffset || length - fixed.valuesOffset != fixed.valuesBytes) {
@@ -259,12 +216,44 @@ Result<void> writeProduct(const std::filesystem::path& folder, const std::string
 }
 
 Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
-                          ProductHeader header, std::span<const std::byte> values) {
-    return writeProduct(folder, name, std::move(header), values.size(),
-                        [&](std::size_t offset, std::span<std::byte> out) {
-                            std::copy_n(values.begin() + std::ptrdiff_t(offset), out.size(),
-                                        out.begin());
-                        });
+                          ProductHeader header,
+                          const std::vector<std::span<const std::byte>>& parts) {
+    std::size_t bytes = 0;
+    for (const auto part : parts)
+        bytes += part.size();
+    // A block is what the parts have of it.
+    const auto values = [&](std::size_t offset, std::span<std::byte> out) {
+        for (const auto part : parts) {
+            if (offset < part.size() && !out.empty()) {
+                const auto piece = part.subspan(offset, std::min(out.size(), part.size() - offset));
+                std::ranges::copy(piece, out.begin());
+                out = out.subspan(piece.size());
+                offset = 0;
+            } else {
+                offset -= std::min(offset, part.size());
+            }
+        }
+    };
+    return writeProduct(folder, name, std::move(header), bytes, values);
+}
+
+std::string productFileName(std::string_view product, std::string_view keyHex, Content content) {
+    return std::string(product) + "-" + std::string(keyHex.substr(0, 16)) +
+           kindOf(content)->extension;
+}
+
+bool isProductFileName(const std::filesystem::path& name) {
+    return std::ranges::any_of(contentKinds(), [&](const ContentKind& kind) {
+        return name.extension() == kind.extension;
+    });
+}
+
+Result<void> checkContent(const MappedProduct& mapped, Content wanted, std::string_view product) {
+    if (mapped.header.content == wanted) return {};
+    return fail(ErrorKind::badInput,
+                std::string(product) + " is " + kindOf(mapped.header.content)->description +
+                    ", not " + kindOf(wanted)->description,
+                mapped.file.parent_path().string());
 }
 
 Result<void> checkWhole(const MappedProduct& product) {

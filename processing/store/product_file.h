@@ -3,11 +3,8 @@
 //   offset  bytes  field (all little endian)
 //        0      8  "HAUSTRA\n"
 //        8      4  version of this layout, 1
-//       12      4  content: 1 int16 volume, 2 uint8 volume, 3 float volume, 4 centerline,
-//                  5 volume of tissue fractions, 6 mesh, 7 flat map, 8 text
-//       16     12  size i, j, k (volume); samples, 1, 1 (centerline); vertices, triangles, 1
-//       (mesh); bytes, 1, 1 (text);
-//                  vertices, triangles, cameras (flat map)
+//       12      4  content (store/content.h)
+//       16     12  three numbers of elements, which the content says the meaning of
 //       28      4  bytes of attributes, A
 //       32     96  patientFromVoxel, four columns of three doubles
 //      128      8  offset of the values, a multiple of 4096
@@ -17,19 +14,12 @@
 //      208     32  SHA-256 of bytes 0…207 and the attributes
 //      240      A  attributes, a JSON object of strings
 //
-// Values: a volume's voxels, i fastest (of fractions: two bytes, air and tagged in 255ths); a
-// centerline's samples, six doubles each: x, y, z, arc, radius (mm), gap (0 or 1); a mesh's
-// vertices, three doubles each (LPS, mm), then its triangles, three int32 each, counted from 0. A
-// flat map: its height, a double; its vertices, three doubles each (LPS, mm); their flat places,
-// two doubles each (unit: the circumference); its cameras, four doubles each (LPS and arc, mm); its
-// triangles, three int32 each; for each triangle the one of the closed surface that it is a part
-// of, an int32; and for each vertex its camera, an int32. A text: UTF-8, not ended by a zero.
-//
 // The values end the file. A reader believes no field before the file's length bears it out.
 #pragma once
 
 #include "core/grid.h"
 #include "core/result.h"
+#include "store/content.h"
 #include "store/sha256.h"
 
 #include <cstddef>
@@ -39,26 +29,10 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace haustra::store {
-
-enum class Content : std::uint32_t {
-    int16Volume = 1,
-    uint8Volume = 2,
-    floatVolume = 3,
-    centerline = 4,
-    fractionsVolume = 5,
-    mesh = 6,
-    flatMap = 7,
-    text = 8,
-};
-inline constexpr std::size_t centerlineSampleBytes = 6 * sizeof(double);
-inline constexpr std::size_t meshVertexBytes = 3 * sizeof(double);
-inline constexpr std::size_t meshTriangleBytes = 3 * sizeof(std::int32_t);
-inline constexpr std::size_t flatMapVertexBytes = 5 * sizeof(double) + sizeof(std::int32_t);
-inline constexpr std::size_t flatMapTriangleBytes = 4 * sizeof(std::int32_t);
-inline constexpr std::size_t flatMapCameraBytes = 4 * sizeof(double);
-inline constexpr std::size_t mostMeshElements = std::size_t(1) << 28;
 
 /// Everything of a product file but its values.
 struct ProductHeader {
@@ -94,9 +68,19 @@ Result<void> writeProduct(const std::filesystem::path& folder, const std::string
                           ProductHeader header, std::size_t bytes, const ValueSource& values,
                           int threads = 0);
 
-/// The same of values in memory.
+/// The same of values in memory, one part after the other.
 Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,
-                          ProductHeader header, std::span<const std::byte> values);
+                          ProductHeader header,
+                          const std::vector<std::span<const std::byte>>& parts);
+
+/// "product-0123456789abcdef.hvol": its name, the first digits of its key, its content's extension.
+std::string productFileName(std::string_view product, std::string_view keyHex, Content content);
+/// True where the name ends as a product's of some content does.
+bool isProductFileName(const std::filesystem::path& name);
+
+/// Fails (badInput) where `mapped`, which is called `product`, holds another kind of content than
+/// `wanted`.
+Result<void> checkContent(const MappedProduct& mapped, Content wanted, std::string_view product);
 
 /// Fails (io) where a page of the values that has been read was not there (isWhole()).
 Result<void> checkWhole(const MappedProduct& product);

@@ -133,7 +133,7 @@ TEST_F(FlatMapStore, AMapThatWouldBeReadOutsideItselfIsRefused) {
     const auto readForged = [&](const FlatMap& map, glm::ivec3 size) {
         ProductHeader header{Content::flatMap, {}, digestFromHex(keyOf(1).hex), {}, {}};
         header.grid.size = size;
-        EXPECT_TRUE(writeProduct(writing.folder(), name, header, layOut(map)));
+        EXPECT_TRUE(writeProduct(writing.folder(), name, header, {layOut(map)}));
         return writing.readFlatMap();
     };
     ASSERT_TRUE(readForged(sound, {40, 70, 9}));

@@ -214,7 +214,7 @@ TEST_F(Store, AMeshThatWouldBeReadOutsideItselfIsRefused) {
         std::memcpy(bytes.data(), mesh.vertices.data(), mesh.vertices.size() * 24);
         std::memcpy(bytes.data() + mesh.vertices.size() * 24, mesh.triangles.data(),
                     mesh.triangles.size() * 12);
-        EXPECT_TRUE(writeProduct(writing.folder(), name, header, bytes));
+        EXPECT_TRUE(writeProduct(writing.folder(), name, header, {bytes}));
         return writing.readMesh();
     };
     ASSERT_TRUE(readForged(sound, {40, 70, 1}));
