@@ -6,35 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <map>
 #include <sstream>
 #include <utility>
 
 namespace haustra::pipeline {
 
-const std::vector<std::string>& madeFrom(const std::string& product) {
-    using namespace product;
-    static const std::map<std::string, std::vector<std::string>> dependents{
-        {ct,
-         {segmentation, quality, mixture, cleansedLumen, cleansed, lumen, distance, centerline,
-          branches, surface, flatMap}},
-        {segmentation,
-         {quality, mixture, cleansedLumen, cleansed, lumen, distance, centerline, branches, surface,
-          flatMap}},
-        {quality, {}},
-        {mixture,
-         {cleansedLumen, cleansed, lumen, distance, centerline, branches, surface, flatMap}},
-        {cleansedLumen, {cleansed, lumen, distance, centerline, branches, surface, flatMap}},
-        {cleansed, {lumen, distance, centerline, branches, surface, flatMap}},
-        {lumen, {distance, centerline, branches, surface, flatMap}},
-        {distance, {centerline, branches, flatMap}},
-        {centerline, {branches, flatMap}},
-        {branches, {}},
-        {surface, {flatMap}},
-        {flatMap, {}},
-        {edits, {}}};
-    return dependents.at(product);
-}
+namespace product = store::product;
 
 Preparation::Preparation(store::Case target, const PrepareOptions& options,
                          organs::OrganProfile organ, std::string studyUid)
@@ -77,12 +54,33 @@ bool Preparation::wanted(const std::string& stage) const {
     return std::find(names.begin(), names.end(), stage) <= last;
 }
 
-bool Preparation::reusable(const Stage& stage) {
-    for (const std::string& product : stage.products) {
-        if (!target_.has(product, stage.key)) return false;
+std::optional<store::ProductKey> Preparation::keyOf(const std::string& product) const {
+    const auto entry = target_.find(product);
+    return entry ? std::optional(entry->key) : std::nullopt;
+}
+
+Result<ColonEdits> Preparation::takeEdits() {
+    ColonEdits edits{options_.seedsMm, options_.excludesMm, options_.cuts, options_.joins};
+    if (edits.empty() && !options_.forgetEdits) {
+        if (!target_.find(product::edits)) return edits;
+        const auto text = TRY(target_.readText(product::edits));
+        auto kept = editsFromJson(text);
+        if (kept && !kept->empty())
+            note("segmentation: what an earlier call said of the colon stands (edits)");
+        return kept;
+    }
+    if (edits.empty() && !target_.find(product::edits)) return edits;
+    const std::string text = editsJson(edits);
+    const auto key = store::makeKey("edits", 1, text, {});
+    return target_.publishText(product::edits, key, text).map([&] { return edits; });
+}
+
+bool Preparation::reusable(const StageCase& stage) {
+    for (const std::string& product : stage.products()) {
+        if (!target_.has(product, stage.key())) return false;
     }
     bool all = true;
-    for (const std::string& product : stage.products) {
+    for (const std::string& product : stage.products()) {
         if (const auto sound = target_.verify(product); !sound) {
             report_.notes.push_back(product + " is made again: " + describe(sound.error()));
             all = false;
@@ -91,10 +89,11 @@ bool Preparation::reusable(const Stage& stage) {
     return all;
 }
 
-Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
-                              const std::function<Result<void>(const Progress&)>& make) {
+Result<store::ProductKey> Preparation::run(
+    const StageCase& stage, const StageMeter& meter,
+    const std::function<Result<void>(const Progress&)>& make) {
     const Progress progress = [this, &stage](double fraction) {
-        if (options_.progress) options_.progress(stage.name, std::clamp(fraction, 0.0, 1.0));
+        if (options_.progress) options_.progress(stage.name(), std::clamp(fraction, 0.0, 1.0));
     };
     const bool reused = reusable(stage);
     if (!reused) {
@@ -102,25 +101,29 @@ Result<void> Preparation::run(const Stage& stage, const StageMeter& meter,
         if (Result<void> made = make(progress); !made) {
             std::string& place = made.error().place;
             if (place.find('/') == std::string::npos)
-                place = "case " + target_.name() + ", " + (place.empty() ? stage.name : place);
-            return made;
+                place = "case " + target_.name() + ", " + (place.empty() ? stage.name() : place);
+            return tl::make_unexpected(made.error());
         }
     }
     progress(1.0);
-    for (const std::string& product : stage.products) {
+    for (const std::string& product : stage.products()) {
         const auto attributes = TRY(target_.attributes(product));
         for (const std::string& note : notesOf(attributes))
-            report_.notes.push_back(stage.name + ": " + note);
+            report_.notes.push_back(stage.name() + ": " + note);
     }
-    report_.stages.push_back(
-        {stage.name, reused, meter.wallSeconds(), meter.besideSeconds(), meter.peakMemoryMib()});
+    report_.stages.push_back({stage.name(),
+                              reused,
+                              {stage.read().begin(), stage.read().end()},
+                              meter.wallSeconds(),
+                              meter.besideSeconds(),
+                              meter.peakMemoryMib()});
     if (options_.log) {
         options_.log(
-            stage.name +
+            stage.name() +
             (reused ? ": already done"
                     : ": done in " + exactText(std::round(meter.wallSeconds() * 10) / 10) + " s"));
     }
-    return {};
+    return stage.key();
 }
 
 Result<void> Preparation::noteBridges() {
@@ -152,15 +155,6 @@ Result<void> Preparation::noteBridgedWall() {
              " mm2 enclose bridges; all views hatch them, and they are no wall to be seen");
     }
     return {};
-}
-
-Result<CtScan> Preparation::readScan() const {
-    auto hu = TRY(target_.readVolume<std::int16_t>(product::ct));
-    const auto attributes = TRY(target_.attributes(product::ct));
-    const auto position = attributes.find("position");
-    return CtScan{std::move(hu), position == attributes.end()
-                                     ? PatientPosition::unknown
-                                     : patientPositionFromString(position->second)};
 }
 
 }  // namespace haustra::pipeline

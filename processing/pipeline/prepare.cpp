@@ -1,9 +1,8 @@
 #include "pipeline/prepare.h"
 
 #include "organs/organ_profile.h"
-#include "pipeline/lumen_stages.h"
 #include "pipeline/preparation.h"
-#include "pipeline/scan_stages.h"
+#include "pipeline/stages.h"
 
 #include <algorithm>
 #include <new>
@@ -11,6 +10,8 @@
 
 namespace haustra::pipeline {
 namespace {
+
+namespace product = store::product;
 
 // Beyond these a surface is no surface of the organ, or simplification has nothing to take.
 constexpr double leastSurfaceErrorMm = 0.001, greatestSurfaceErrorMm = 10.0;
@@ -56,8 +57,8 @@ Result<PrepareReport> runStages(Preparation& preparation) {
     std::optional<ProductKey> ct;
     if (!options.series.empty()) {
         ct = TRY(importScan(preparation));
-    } else if (const auto published = preparation.target().find(product::ct)) {
-        ct = published->key;
+    } else {
+        ct = preparation.keyOf(product::ct);
     }
     if (!preparation.wanted("segmentation")) return preparation.takeReport();
     const auto segmentation =
@@ -123,9 +124,7 @@ void removeIfEmpty(const std::filesystem::path& folder) {
 }  // namespace
 
 const std::vector<std::string>& stageNames() {
-    static const std::vector<std::string> names{"import",     "segmentation", "mixture",
-                                                "cleansing",  "denoising",    "distance",
-                                                "centerline", "surface",      "flattening"};
+    static const std::vector<std::string> names = store::catalogue().stages();
     return names;
 }
 

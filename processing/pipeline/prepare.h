@@ -49,7 +49,8 @@ struct PrepareOptions {
 /// What one stage cost.
 struct StageReport {
     std::string stage;
-    bool reused = false;  ///< its product was in the store already
+    bool reused = false;            ///< its products were in the store already
+    std::vector<std::string> read;  ///< the products that it read; none where it was reused
     double wallSeconds = 0.0;
     double besideSeconds = 0.0;  ///< of them, those that passed beside the stages before it
     /// The most memory that the process held resident during the stage, MiB (mapped files count).
@@ -67,25 +68,11 @@ struct PrepareReport {
     std::vector<std::string> notes;  ///< what the stages found worth telling, reused ones too
 };
 
-/// Stages in order, by the names that `until` takes: import, segmentation, mixture, cleansing,
-/// denoising, distance, centerline, surface, flattening.
+/// Stages in order, by the names that `until` takes: those of the catalogue (store/products.h).
 const std::vector<std::string>& stageNames();
 
-/// Makes a case's products, each in its turn:
-///
-///   import        ct              the scan in HU
-///   segmentation  segmentation    the lumen as the organ's profile finds it, or the mask
-///                 quality         of a colon: how sure it is, and where to look (JSON)
-///   mixture       mixture         the tissues in each voxel
-///   cleansing     cleansed-lumen  the lumen once the tagging is taken out
-///                 cleansed        the scan in HU with air in the tagging's place
-///   denoising     lumen           the lumen with the organ's topology
-///   distance      distance        mm to the lumen's boundary
-///   centerline    centerline      and branches, where the organ's profile keeps them: one after
-///                                 the other, each from an arc of 0 on
-///   surface       surface         the lumen's closed surface
-///   flattening    flatmap         the surface on the plane, with the centerline's places that it
-///                                 is seen from
+/// Makes a case's products, stage by stage: which, and from which others, the catalogue tells.
+/// `quality` is made of a colon, `branches` where the organ's profile keeps them.
 ///
 /// What seeds, excludes, cuts and joins say of a colon is kept as the product `edits` (JSON).
 ///

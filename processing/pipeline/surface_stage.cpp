@@ -1,7 +1,7 @@
 #include "contouring/dual_contouring.h"
 #include "contouring/wall_field.h"
-#include "pipeline/lumen_stages.h"
 #include "pipeline/product_attributes.h"
+#include "pipeline/stages.h"
 #include "simplification/simplification.h"
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 namespace haustra::pipeline {
 namespace {
 
+namespace product = store::product;
 using organs::ExpectedTopology;
 using organs::LumenFinder;
 using store::Attributes;
@@ -37,14 +38,15 @@ const char* toString(WallRule rule) {
     return "";
 }
 
-Result<contouring::WallField> readWall(Preparation& preparation, const WallSource& source,
+Result<contouring::WallField> readWall(const Preparation& preparation, StageCase& stage,
+                                       const WallSource& source,
                                        const Volume<std::uint8_t>& lumen) {
     const int threads = preparation.options().threads;
     const WallRule rule = wallRule(preparation, source);
     if (rule == WallRule::mask) return contouring::smoothedMask(lumen, threads);
-    auto hu = TRY(preparation.target().readVolume<std::int16_t>(source.hu));
+    auto hu = TRY(stage.readVolume<std::int16_t>(source.hu));
     if (rule == WallRule::content) return contouring::contentField(hu, lumen, threads);
-    const auto attributes = TRY(preparation.target().attributes(product::segmentation));
+    const auto attributes = TRY(stage.attributes(product::segmentation));
     const auto tissue = TRY(tissueModelOf(attributes));
     return contouring::WallField{std::move(hu), tissue.airBelowHu, false};
 }
@@ -78,15 +80,15 @@ ProductKey surfaceKey(const Preparation& preparation, const WallSource& source,
                           inputs);
 }
 
-Result<WallSurface> surfaceOf(Preparation& preparation, const WallSource& source,
-                              const Progress& progress) {
+Result<WallSurface> surfaceOf(const Preparation& preparation, StageCase& stage,
+                              const WallSource& source, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const PrepareOptions& options = preparation.options();
     Attributes attributes;
     TriMesh fine;
     {
-        const auto lumen = TRY(preparation.target().readVolume<std::uint8_t>(product::lumen));
-        const auto wall = TRY(readWall(preparation, source, lumen));
+        const auto lumen = TRY(stage.readVolume<std::uint8_t>(product::lumen));
+        const auto wall = TRY(readWall(preparation, stage, source, lumen));
         auto contoured =
             TRY(contouring::contourLumen(wall.hu, lumen, wall.isoHu, {options.threads}));
         fine = std::move(contoured);
@@ -110,34 +112,34 @@ Result<WallSurface> surfaceOf(Preparation& preparation, const WallSource& source
              {attributes["triangles"] + " triangles of " + attributes["contoured-triangles"] +
               " contoured, Euler characteristic " + attributes["euler-characteristic"]});
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    return WallSurface{std::move(simple), std::move(attributes), took.count()};
+    return WallSurface{std::move(simple), std::move(attributes), stage.read(), took.count()};
 }
 
 }  // namespace
 
 std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const WallSource& source,
                                               const ProductKey& lumen) {
+    const ProductKey key = surfaceKey(preparation, source, lumen);
     if (threadCount(preparation.options().threads) == 1 ||
-        preparation.target().has(product::surface, surfaceKey(preparation, source, lumen)))
+        preparation.keyOf(product::surface) == key)
         return {};
-    return std::async(std::launch::async, [&preparation, source] {
-        return surfaceOf(preparation, source, [](double) {});
-    });
+    return std::async(std::launch::async,
+                      [&preparation, source, stage = preparation.open("surface", key)]() mutable {
+                          return surfaceOf(preparation, stage, source, [](double) {});
+                      });
 }
 
 Result<ProductKey> makeSurface(Preparation& preparation, const WallSource& source,
                                const ProductKey& lumen, std::future<Result<WallSurface>> begun) {
     StageMeter meter;
-    const ProductKey key = surfaceKey(preparation, source, lumen);
-    const auto make = [&](const Progress& progress) -> Result<void> {
+    StageCase stage = preparation.open("surface", surfaceKey(preparation, source, lumen));
+    return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {
         const bool beside = begun.valid();
-        const auto made = TRY(beside ? begun.get() : surfaceOf(preparation, source, progress));
+        const auto made =
+            TRY(beside ? begun.get() : surfaceOf(preparation, stage, source, progress));
         if (beside) meter.addBeside(std::max(0.0, made.seconds - meter.wallSeconds()));
-        return preparation.target().publishMesh(product::surface, key, made.mesh, made.attributes,
-                                                madeFrom(product::surface));
-    };
-    return preparation.run({"surface", key, {product::surface}}, meter, make).map([&] {
-        return key;
+        stage.addRead(made.read);
+        return stage.publish(product::surface, made.mesh, made.attributes);
     });
 }
 

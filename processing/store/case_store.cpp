@@ -4,6 +4,7 @@
 #include "store/durable_file.h"
 #include "store/lost_pages.h"
 #include "store/product_file.h"
+#include "store/products.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -56,7 +57,7 @@ Result<std::shared_ptr<const void>> lockCase(const fs::path& folder, const std::
 std::optional<ScanIdentity> scanOf(const CaseIndex& index) {
     if (index.scan) return index.scan;
     for (const ProductEntry& entry : index.products)
-        if (entry.product == "ct") return ScanIdentity{entry.key, {}, {}};
+        if (entry.product == product::ct) return ScanIdentity{entry.key, {}, {}};
     return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include "pipeline/scan_identity.h"
 #include "store/case_store.h"
 #include "store/case_trust.h"
+#include "store/products.h"
 
 #include <algorithm>
 #include <map>
@@ -31,7 +32,7 @@ Listed look(const store::CaseStore& store, const std::string& name) {
     if (!opened) return listed;
     if (const auto scan = opened->scan(); scan && *scan)
         listed.study = pipeline::studyCode((*scan)->studyUid);
-    if (const auto attributes = opened->attributes("ct")) {
+    if (const auto attributes = opened->attributes(store::product::ct)) {
         if (const auto at = attributes->find("position"); at != attributes->end())
             listed.position = at->second;
     }
@@ -64,7 +65,7 @@ std::vector<Listed> byStudy(const store::CaseStore& store, const std::vector<std
 // How sure the colon is, in a line; empty where the case does not say.
 std::string trustOf(const store::CaseStore& store, const std::string& name) {
     const auto opened = store.openCase(name);
-    if (!opened || !opened->find("quality")) return {};
+    if (!opened || !opened->find(store::product::quality)) return {};
     const auto trust = store::readTrust(*opened);
     if (!trust) return "quality: " + describe(trust.error());
     const std::size_t warnings = trust->warnings.size();
@@ -108,6 +109,7 @@ Command addList(CLI::App& program) {
                                "sizes; a study's scans one after the other, each "
                                "with the study's code, the patient's position, and how sure "
                                "its colon is.");
+    command->footer(store::catalogue().keptHelp());
     addStoreOption(*command, *folder);
     return {command, [folder] { return runList(*folder); }};
 }

@@ -6,6 +6,7 @@
 #include "pipeline/prepare.h"
 #include "pipeline/scan_identity.h"
 #include "pipeline/source_key.h"
+#include "store/products.h"
 
 #include <algorithm>
 #include <memory>
@@ -107,8 +108,9 @@ Result<void> runPrepare(PrepareArguments arguments) {
     fmt::print("case {} is prepared\n", report.caseName);
     if (arguments.report.empty()) return {};
     std::string quality;
-    if (const auto made = store.openCase(report.caseName); made && made->find("quality")) {
-        auto text = TRY(made->readText("quality"));
+    if (const auto made = store.openCase(report.caseName);
+        made && made->find(store::product::quality)) {
+        auto text = TRY(made->readText(store::product::quality));
         quality = std::move(text);
     }
     return writeTextFile(arguments.report, reportJson(report, quality));
@@ -121,10 +123,9 @@ Command addPrepare(CLI::App& program) {
     pipeline::PrepareOptions& options = arguments->options;
     CLI::App* command = program.add_subcommand(
         "prepare",
-        "Make a case's products from a CT series: the scan in HU, the colon's segmentation, the "
-        "tissues in each voxel, the scan cleansed of tagged residue, the lumen without handles, "
-        "the distance to its boundary, its centerline, its surface and the surface's flat map. "
-        "Work that the store holds already is not done again.");
+        "Make a case's products from a CT series. Work that the store holds already is not done "
+        "again.");
+    command->footer(store::catalogue().stageHelp());
     command
         ->add_option("SERIES", options.series,
                      "DICOM folder (files in any order and depth) or file, or one NIfTI file")

@@ -22,7 +22,7 @@ namespace haustra::session {
 struct OpenCase {
     std::string name;
     std::string scan;     ///< key of the scan that it is of: what bookmarks belong to
-    std::string content;  ///< equal for equal products of the same case
+    std::string content;  ///< equal for equal products of the case, of those that are shown
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
     std::optional<ColonTrust> trust;   ///< where a colon was searched for
@@ -44,8 +44,8 @@ struct CaseFiles {
     bool surface = false;           ///< there is the wall's mesh
 };
 
-/// Reads product "ct" of a case and, where they are there, "cleansed" and "centerline". Maps the
-/// volumes, reads no voxel.
+/// Reads product "ct" of a case and, where they are there, "cleansed", "centerline" and "quality".
+/// Maps the volumes, reads no voxel.
 Result<CaseFiles> readCase(const store::Case& source);
 
 /// Reads product "surface", the wall's mesh.

@@ -4,9 +4,11 @@
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
 #include "store/case_store.h"
+#include "store/products.h"
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -212,6 +214,43 @@ TEST_F(PreparedPhantom, TheSurfaceIsExportedInEachFormat) {
     }
     EXPECT_EQ(haustra({"export", "p", "surface", file("s.nii.gz"), "--store", store()}).exitCode,
               2);
+}
+
+// The phantom's colon has no branches, and nobody has edited it.
+void publishWhatIsMissing(store::Case target) {
+    const auto key = store::makeKey("test", 1, "", {});
+    const Centerline line = target.readCenterline().value();
+    ASSERT_TRUE(target.publishCenterline(store::product::branches, key, line));
+    ASSERT_TRUE(target.publishText(store::product::edits, key, "{}"));
+}
+
+TEST_F(PreparedPhantom, EachProductIsExportedInEachOfItsFormatsAndInNoOther) {
+    publishWhatIsMissing(store::CaseStore::open(store(), false)->createCase("p").value());
+    const auto exported = [&](const std::string& product, const std::string& name) {
+        Arguments arguments{"export", "p", product, file(name), "--store", store()};
+        if (product == store::product::flatImage)
+            arguments.insert(arguments.end(), {"--width", "100"});
+        return haustra(arguments);
+    };
+    std::set<std::string> allEndings{".txt", ".hvol", ".nii.gz.txt", "nii", ""};
+    for (const store::Product& product : store::catalogue().products())
+        allEndings.insert(product.endings.begin(), product.endings.end());
+    const std::string help = haustra({"export", "--help"}).out;
+    for (const store::Product& product : store::catalogue().products()) {
+        for (const std::string& ending : allEndings) {
+            const std::string name = "exported-" + product.name + ending;
+            const auto outcome = exported(product.name, name);
+            const bool may = std::ranges::find(product.endings, ending) != product.endings.end();
+            EXPECT_EQ(outcome.exitCode, may ? 0 : 2) << name << " " << outcome.err;
+            EXPECT_EQ(fs::exists(file(name)) && fs::file_size(file(name)) > 0, may) << name;
+        }
+        EXPECT_NE(help.find("  " + product.name + " "), std::string::npos) << product.name;
+    }
+    EXPECT_NE(help.find(store::catalogue().exportHelp()), std::string::npos) << help;
+    EXPECT_NE(haustra({"prepare", "--help"}).out.find(store::catalogue().stageHelp()),
+              std::string::npos);
+    EXPECT_NE(haustra({"list", "--help"}).out.find(store::catalogue().keptHelp()),
+              std::string::npos);
 }
 
 TEST_F(PreparedPhantom, TheFlatMapIsExportedWithItsFlatCoordinates) {

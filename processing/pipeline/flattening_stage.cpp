@@ -2,8 +2,8 @@
 #include "flatten/tube/camera_registration.h"
 #include "flatten/tube/end_holes.h"
 #include "flatten/tube/flattening.h"
-#include "pipeline/lumen_stages.h"
 #include "pipeline/product_attributes.h"
+#include "pipeline/stages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,7 @@
 namespace haustra::pipeline {
 namespace {
 
+namespace product = store::product;
 using store::Attributes;
 
 // Raise it whenever the flat map changes for the same input and options.
@@ -106,10 +107,10 @@ Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& su
     const ProductKey key =
         store::makeKey("flattening", flatteningVersion,
                        "area-weight=" + exactText(options.areaWeight), {surfaceKey, centerlineKey});
-    const auto make = [&](const Progress& progress) -> Result<void> {
-        store::Case& target = preparation.target();
-        const auto surface = TRY(target.readMesh(product::surface));
-        const auto centerline = TRY(target.readCenterline(product::centerline));
+    StageCase stage = preparation.open("flattening", key);
+    return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {
+        const auto surface = TRY(stage.readMesh(product::surface));
+        const auto centerline = TRY(stage.readCenterline(product::centerline));
         const auto punched = TRY(punch(surface, centerline));
         progress(0.1);
         flatten::FlatteningOptions flattening;
@@ -127,12 +128,8 @@ Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& su
         registration.threads = options.threads;
         registration.isPouch = flat.isPouch;
         TRY(flatten::registerCameras(flat.map, centerline, registration));
-        return target.publishFlatMap(product::flatMap, key, flat.map,
-                                     attributesOf(flat, punched, options.areaWeight),
-                                     madeFrom(product::flatMap));
-    };
-    return preparation.run({"flattening", key, {product::flatMap}}, meter, make).map([&] {
-        return key;
+        return stage.publish(product::flatMap, flat.map,
+                             attributesOf(flat, punched, options.areaWeight));
     });
 }
 
