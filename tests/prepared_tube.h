@@ -3,6 +3,7 @@
 
 #include "nifti/nifti_file.h"
 #include "pipeline/prepare.h"
+#include "store/products.h"
 
 #include <cmath>
 #include <fstream>
@@ -107,12 +108,7 @@ protected:
         return result;
     }
     static std::string stageOf(const std::string& product) {
-        static const std::map<std::string, std::string> stages{
-            {"ct", "import"},          {"quality", "segmentation"},
-            {"cleansed", "cleansing"}, {"cleansed-lumen", "cleansing"},
-            {"lumen", "denoising"},    {"flatmap", "flattening"}};
-        const auto found = stages.find(product);
-        return found == stages.end() ? product : found->second;
+        return store::catalogue().find(product)->stage;
     }
     fs::path folder_;
 };

@@ -1,11 +1,8 @@
 // The case store: one folder a case, one file a product, published whole or not at all.
 //
 //   STORE/cases/NAME/case.json              names the case's scan and the file of each product
-//   STORE/cases/NAME/<product>-<key16>.hvol  a volume (layout: store/product_file.h)
-//   STORE/cases/NAME/<product>-<key16>.hline a centerline
-//   STORE/cases/NAME/<product>-<key16>.hmesh a triangle mesh
-//   STORE/cases/NAME/<product>-<key16>.hflat a flat map
-//   STORE/cases/NAME/<product>-<key16>.htext a text
+//   STORE/cases/NAME/<product>-<key16>.hvol, .hline, .hmesh …: a product (store/products.h) of one
+//                                           kind of content (store/content.h)
 //   STORE/cases/NAME/.lock                  flocked by the one writer
 //   STORE/cases/NAME/.tmp-*                 being written, or left by a writer that was killed
 //

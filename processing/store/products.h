@@ -1,5 +1,9 @@
 // The catalogue of Haustra's products. What is to know of a product but how it is made is said
 // here: prepare, export, list, the server and their --help read it.
+//
+// A new product has an entry here, and a stage that publishes it: either one that is there, or one
+// of its own in a file of pipeline/, which is declared in pipeline/stages.h and has its turn in
+// pipeline/prepare.cpp. Only a new kind of content needs more (store/content.h).
 #pragma once
 
 #include "store/catalogue.h"
