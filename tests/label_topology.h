@@ -1,8 +1,10 @@
 // The topology of labelled voxels, counted in the plainest way.
 #pragma once
 
+#include "core/flood_fill.h"
 #include "core/volume.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -50,21 +52,42 @@ inline long componentCount(const Volume<std::uint8_t>& labels, bool ofObject, in
     for (std::size_t start = 0; start < seen.size(); ++start) {
         if (seen[start] || !member(ring.voxelAt(start))) continue;
         ++count;
-        std::vector<glm::ivec3> open{ring.voxelAt(start)};
+        std::vector<glm::ivec3> front{ring.voxelAt(start)};
         seen[start] = 1;
-        while (!open.empty()) {
-            const glm::ivec3 v = open.back();
-            open.pop_back();
+        const auto neighbours = [&](glm::ivec3 v, const auto& visit) {
             for (int n = 0; n < 27; ++n) {
-                const glm::ivec3 d(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-                if (glm::dot(glm::dvec3(d), glm::dvec3(d)) > reach || !member(v + d)) continue;
-                if (seen[ring.index(v + d)]) continue;
-                seen[ring.index(v + d)] = 1;
-                open.push_back(v + d);
+                const glm::ivec3 d = cornerStep(n);
+                if (d.x * d.x + d.y * d.y + d.z * d.z <= reach) visit(v + d);
             }
-        }
+        };
+        floodFill(front, neighbours, [&](glm::ivec3 v) {
+            if (!member(v) || seen[ring.index(v)]) return false;
+            seen[ring.index(v)] = 1;
+            return true;
+        });
     }
     return count;
+}
+
+/// Sizes, in voxels, of the 26-connected pieces of the voxels for which `in(index)` holds, largest
+/// first.
+template <class In>
+std::vector<std::size_t> pieceSizes(const Grid& grid, const In& in) {
+    std::vector<char> seen(grid.voxelCount(), 0);
+    std::vector<std::size_t> sizes, piece;
+    const auto take = [&](std::size_t n) {
+        if (seen[n] || !in(n)) return false;
+        seen[n] = 1;
+        return true;
+    };
+    for (std::size_t start = 0; start < seen.size(); ++start) {
+        if (!take(start)) continue;
+        piece.assign(1, start);
+        floodFill(piece, cornerNeighbours(grid), take);
+        sizes.push_back(piece.size());
+    }
+    std::sort(sizes.rbegin(), sizes.rend());
+    return sizes;
 }
 
 }  // namespace haustra::tests

@@ -2,6 +2,7 @@
 
 #include "centerline/spline.h"
 #include "core/ct_scan.h"
+#include "core/flood_fill.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -97,19 +98,21 @@ public:
             return std::size_t(a + reach) + std::size_t(width) * std::size_t(b + reach);
         };
         seen[at(0, 0)] = 1;
-        glm::dvec2 sum(0.0);
-        for (std::size_t head = 0; head < front.size(); ++head) {
-            const auto [a, b] = front[head];
-            sum += glm::dvec2(a, b);
+        const auto beside = [](std::array<int, 2> p, const auto& visit) {
             for (const auto& [da, db] :
-                 {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}, std::array{0, -1}}) {
-                const int c = a + da, d = b + db;
-                if (c * c + d * d > reach * reach || seen[at(c, d)]) continue;
-                if (!staysInside(labels_, place(a, b), place(c, d))) continue;
-                seen[at(c, d)] = 1;
-                front.push_back({c, d});
-            }
-        }
+                 {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}, std::array{0, -1}})
+                visit(std::array{p[0] + da, p[1] + db}, p);
+        };
+        floodFill(front, beside, [&](std::array<int, 2> to, std::array<int, 2> from) {
+            const auto [c, d] = to;
+            if (c * c + d * d > reach * reach || seen[at(c, d)]) return false;
+            if (!staysInside(labels_, place(from[0], from[1]), place(c, d))) return false;
+            seen[at(c, d)] = 1;
+            return true;
+        });
+        glm::dvec2 sum(0.0);
+        for (const auto& [a, b] : front)
+            sum += glm::dvec2(a, b);
         sum *= sampleMm / double(front.size());
         return p + sum.x * u + sum.y * v;
     }

@@ -1,5 +1,6 @@
 #include "centerline/graph.h"
 
+#include "core/flood_fill.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -114,7 +115,7 @@ bool appendFullNeighbours(const BlockGraph& graph, std::int32_t node,
         return false;
     std::array<std::int32_t, 27> around;
     for (int n = 0; n < 27; ++n) {
-        const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const glm::ivec3 step = cornerStep(n);
         const std::int32_t other = graph.nodeAt(block + step);
         if (other < 0 || graph.nodes[std::size_t(other)].inside != full) return false;
         around[std::size_t(n)] = other;
@@ -134,7 +135,7 @@ void appendNeighbours(const BlockGraph& graph, std::int32_t node,
     reached[place(glm::ivec3(0))].add(node);
     for (int axes = 1; axes <= 3; ++axes) {
         for (int n = 0; n < 27; ++n) {
-            const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            const glm::ivec3 step = cornerStep(n);
             if (std::abs(step.x) + std::abs(step.y) + std::abs(step.z) != axes) continue;
             FewNodes& found = reached[place(step)];
             for (int axis = 0; axis < 3; ++axis) {
@@ -188,21 +189,22 @@ void labelComponents(BlockGraph& graph) {
         BlockGraph::Component component{std::int32_t(first), 0};
         graph.nodes[first].component = number;
         front.assign(1, std::int32_t(first));
-        while (!front.empty()) {
-            const std::int32_t at = front.back();
-            front.pop_back();
+        const auto neighbours = [&](std::int32_t node, const auto& visit) {
+            for (const std::int32_t other : graph.neighbours(node))
+                visit(other);
+        };
+        floodFill(front, neighbours, [&](std::int32_t other) {
+            BlockGraph::Node& next = graph.nodes[std::size_t(other)];
+            if (next.component >= 0) return false;
+            next.component = number;
+            return true;
+        });
+        for (const std::int32_t at : front) {
             const BlockGraph::Node& node = graph.nodes[std::size_t(at)];
             component.voxels += std::size_t(std::popcount(node.inside));
             const float deepest = graph.nodes[std::size_t(component.deepest)].radiusMm;
-            if (node.radiusMm > deepest || (node.radiusMm == deepest && at < component.deepest)) {
+            if (node.radiusMm > deepest || (node.radiusMm == deepest && at < component.deepest))
                 component.deepest = at;
-            }
-            for (const std::int32_t other : graph.neighbours(at)) {
-                BlockGraph::Node& next = graph.nodes[std::size_t(other)];
-                if (next.component >= 0) continue;
-                next.component = number;
-                front.push_back(other);
-            }
         }
         graph.components.push_back(component);
     }

@@ -52,10 +52,9 @@ public:
     std::array<std::int32_t, 27> around(glm::ivec3 voxel) const {
         std::array<std::int32_t, 27> numbers;
         for (int n = 0; n < 27; ++n)
-            numbers[std::size_t(n)] = numberOf(voxel + stepOf(n));
+            numbers[std::size_t(n)] = numberOf(voxel + cornerStep(n));
         return numbers;
     }
-    static glm::ivec3 stepOf(int n) { return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}; }
     /// Whether voxels lead face by face from the middle of `numbers`, once at `at`, by `step`.
     static bool leads(const std::array<std::int32_t, 27>& numbers, glm::ivec3 at, glm::ivec3 step) {
         if (step == glm::ivec3(0)) return true;
@@ -231,7 +230,7 @@ std::vector<glm::ivec3> refineToVoxels(const BlockGraph& graph, const Volume<flo
         const double costHere = costPerMm(distanceMm.at(here));
         const auto around = corridor.around(here);
         for (int n = 0; n < 27; ++n) {
-            const glm::ivec3 step = Corridor::stepOf(n);
+            const glm::ivec3 step = cornerStep(n);
             const std::int32_t next = around[std::size_t(n)];
             if (n == 13 || next < 0 || done[std::size_t(next)]) continue;
             const double through =

@@ -2,6 +2,7 @@
 
 #include "cleansing/ball.h"
 #include "core/connected_labels.h"
+#include "core/flood_fill.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,21 +20,16 @@ std::vector<std::uint32_t> pieceOfWall(const Volume<std::uint8_t>& labels, std::
     const Grid& grid = labels.grid();
     std::vector<std::uint32_t> piece{seed};
     bool whole = !large[seed];
-    for (std::size_t head = 0; whole && head < piece.size(); ++head) {
-        const glm::ivec3 v = grid.voxelAt(piece[head]);
-        const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)), hi = glm::min(v + 1, grid.size - 1);
-        for (int k = lo.z; whole && k <= hi.z; ++k) {
-            for (int j = lo.y; whole && j <= hi.y; ++j) {
-                for (int i = lo.x; whole && i <= hi.x; ++i) {
-                    const std::size_t n = grid.index(i, j, k);
-                    if (LumenLabel(labels[n]) != LumenLabel::outside) continue;
-                    if (std::find(piece.begin(), piece.end(), n) != piece.end()) continue;
-                    whole = piece.size() < most && !large[n];
-                    piece.push_back(std::uint32_t(n));
-                }
-            }
-        }
-    }
+    const auto neighbours = [&](std::uint32_t n, const auto& visit) {
+        if (whole) visitCorners(grid, n, visit);
+    };
+    floodFill(piece, neighbours, [&](std::size_t n) {
+        if (!whole || LumenLabel(labels[n]) != LumenLabel::outside ||
+            std::find(piece.begin(), piece.end(), n) != piece.end())
+            return false;
+        whole = piece.size() < most && !large[n];
+        return true;
+    });
     if (whole) return piece;
     for (const std::uint32_t n : piece)
         large[n] = true;
@@ -41,16 +37,11 @@ std::vector<std::uint32_t> pieceOfWall(const Volume<std::uint8_t>& labels, std::
 }
 
 bool touchesLumen(const Volume<std::uint8_t>& labels, std::size_t index) {
-    const Grid& grid = labels.grid();
-    const glm::ivec3 v = grid.voxelAt(index);
-    for (int axis = 0; axis < 3; ++axis) {
-        for (int side = -1; side <= 1; side += 2) {
-            glm::ivec3 n = v;
-            n[axis] += side;
-            if (grid.contains(n) && LumenLabel(labels.at(n)) != LumenLabel::outside) return true;
-        }
-    }
-    return false;
+    bool touches = false;
+    visitFaces(labels.grid(), index, [&](std::size_t n, int) {
+        touches = touches || LumenLabel(labels[n]) != LumenLabel::outside;
+    });
+    return touches;
 }
 
 }  // namespace

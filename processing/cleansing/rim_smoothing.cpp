@@ -116,8 +116,7 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
     for (const std::uint32_t n : band) {
         const glm::ivec3 v = grid.voxelAt(n);
         for (int k = 0; k < 27; ++k)
-            voxels.push_back(
-                std::uint32_t(grid.index(v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))));
+            voxels.push_back(std::uint32_t(grid.index(v + cornerStep(k))));
     }
     std::sort(voxels.begin(), voxels.end());
     voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
@@ -129,8 +128,7 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
         for (std::size_t m = begin; m < end; ++m) {
             const glm::ivec3 v = grid.voxelAt(band[m]);
             for (int k = 0; k < 27; ++k) {
-                const auto n =
-                    std::uint32_t(grid.index(v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+                const auto n = std::uint32_t(grid.index(v + cornerStep(k)));
                 near[m][std::size_t(k)] = std::uint32_t(
                     std::lower_bound(voxels.begin(), voxels.end(), n) - voxels.begin());
             }

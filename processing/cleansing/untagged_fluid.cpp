@@ -18,7 +18,7 @@ int share(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
     int sum = 0;
     bool near = false;
     for (int n = 0; n < 27; ++n) {
-        const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const glm::ivec3 step = cornerStep(n);
         if (!labels.grid().contains(v + step)) continue;
         const std::uint8_t label = labels.at(v + step);
         near = near || label == untagged;

@@ -1,7 +1,5 @@
 #include "core/connected_labels.h"
 
-#include "core/simple_point.h"
-
 #include <algorithm>
 #include <iterator>
 #include <span>
@@ -179,14 +177,17 @@ double joinBodies(Volume<std::uint8_t>& labels, const std::function<bool(std::si
     return strandedMl;
 }
 
-bool joinsNothing(const Volume<std::uint8_t>& labels, std::size_t index) {
-    const Grid& grid = labels.grid();
-    const glm::ivec3 v = grid.voxelAt(index);
+Neighbourhood labelledAround(const Volume<std::uint8_t>& labels, glm::ivec3 voxel) {
     Neighbourhood around = 0;
     for (int n = 0; n < 27; ++n) {
-        const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-        if (grid.contains(w) && labels.at(w) != 0) around |= 1u << n;
+        const glm::ivec3 neighbour = voxel + cornerStep(n);
+        if (labels.grid().contains(neighbour) && labels.at(neighbour) != 0) around |= 1u << n;
     }
+    return around;
+}
+
+bool joinsNothing(const Volume<std::uint8_t>& labels, std::size_t index) {
+    const Neighbourhood around = labelledAround(labels, labels.grid().voxelAt(index));
     return topologicalNumber6(around) == 1 && topologicalNumber18(around) <= 1;
 }
 

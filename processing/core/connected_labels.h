@@ -1,6 +1,7 @@
 // Labels as one connected body.
 #pragma once
 
+#include "core/simple_point.h"
 #include "core/volume.h"
 
 #include <cstdint>
@@ -20,6 +21,9 @@ struct JoinBodiesOptions {
 double joinBodies(Volume<std::uint8_t>& labels, const std::function<bool(std::size_t)>& passable,
                   const std::function<std::uint8_t(std::size_t)>& labelOf,
                   const JoinBodiesOptions& options = {});
+
+/// The voxels around one (and itself) that have a label other than 0; none beyond the grid.
+Neighbourhood labelledAround(const Volume<std::uint8_t>& labels, glm::ivec3 voxel);
 
 /// Whether a voxel of label 0 could get another label without joining what is parted around it: one
 /// 6-connected body of labels among its neighbours, and of 0 one 18-connected body at most.

@@ -49,15 +49,37 @@ struct Grid {
 };
 
 /// Calls visit(neighbour's index, axis) for each of the at most six voxels that share a face with
-/// the voxel of this index; the lower one first, along i, j, k.
+/// `voxel`, which has this index; the lower one first, along i, j, k.
 template <class Visit>
-void visitFaces(const Grid& grid, std::size_t index, const Visit& visit) {
+void visitFaces(const Grid& grid, std::size_t index, glm::ivec3 voxel, const Visit& visit) {
     const std::size_t strides[3] = {1, std::size_t(grid.size.x),
                                     std::size_t(grid.size.x) * std::size_t(grid.size.y)};
-    const glm::ivec3 v = grid.voxelAt(index);
     for (int axis = 0; axis < 3; ++axis) {
-        if (v[axis] > 0) visit(index - strides[axis], axis);
-        if (v[axis] + 1 < grid.size[axis]) visit(index + strides[axis], axis);
+        if (voxel[axis] > 0) visit(index - strides[axis], axis);
+        if (voxel[axis] + 1 < grid.size[axis]) visit(index + strides[axis], axis);
+    }
+}
+
+/// The same for the voxel of this index.
+template <class Visit>
+void visitFaces(const Grid& grid, std::size_t index, const Visit& visit) {
+    visitFaces(grid, index, grid.voxelAt(index), visit);
+}
+
+/// Step `n` (0…26, in memory order) from a voxel to those around it that share at least a corner;
+/// number 13 is the voxel itself.
+constexpr glm::ivec3 cornerStep(int n) {
+    return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+}
+
+/// Calls visit(neighbour's index) for each of the at most 26 voxels that share at least a corner
+/// with the voxel of this index, in memory order.
+template <class Visit>
+void visitCorners(const Grid& grid, std::size_t index, const Visit& visit) {
+    const glm::ivec3 voxel = grid.voxelAt(index);
+    for (int n = 0; n < 27; ++n) {
+        const glm::ivec3 neighbour = voxel + cornerStep(n);
+        if (n != 13 && grid.contains(neighbour)) visit(grid.index(neighbour));
     }
 }
 

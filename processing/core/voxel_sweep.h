@@ -9,17 +9,6 @@
 
 namespace haustra {
 
-/// visitFaces (core/grid.h) where the voxel of the index is known.
-template <class Visit>
-void visitFaces(const Grid& grid, std::size_t index, glm::ivec3 v, const Visit& visit) {
-    const std::size_t strides[3] = {1, std::size_t(grid.size.x),
-                                    std::size_t(grid.size.x) * std::size_t(grid.size.y)};
-    for (int axis = 0; axis < 3; ++axis) {
-        if (v[axis] > 0) visit(index - strides[axis], axis);
-        if (v[axis] + 1 < grid.size[axis]) visit(index + strides[axis], axis);
-    }
-}
-
 /// Calls visit(index, voxel) for the voxels of the slices [first, last), in memory order.
 template <class Visit>
 void visitSlices(const Grid& grid, std::size_t first, std::size_t last, const Visit& visit) {

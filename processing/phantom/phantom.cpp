@@ -110,7 +110,7 @@ private:
         if (shape_.septumMm() >= 3.0 || s.lumenMm < -2.0 * spacing) return false;
         const double radius = shape_.path().at(s.arcMm).radiusMm;
         for (int n = 0; n < 27; ++n) {
-            const glm::ivec3 w = voxel + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            const glm::ivec3 w = voxel + cornerStep(n);
             if (n == 13 || !grid.contains(w)) continue;
             const ColonField::Sample& other = field_.at(w.x, w.y, w.z);
             if (other.lumenMm >= 0.0f) continue;

@@ -1,5 +1,6 @@
 #include "phantom/true_surface.h"
 
+#include "core/flood_fill.h"
 #include "core/parallel.h"
 #include "phantom/filled_colon.h"
 
@@ -254,15 +255,11 @@ Volume<std::uint8_t> largePieces(const Volume<std::uint8_t>& labels) {
     for (std::size_t start = 0; start < grid.voxelCount(); ++start) {
         if (!labels[start] || out[start]) continue;
         piece.assign(1, std::uint32_t(start)), out[start] = 1;
-        for (std::size_t head = 0; head < piece.size(); ++head) {
-            const glm::ivec3 v = grid.voxelAt(piece[head]);
-            for (int n = 0; n < 6; ++n) {
-                glm::ivec3 w = v;
-                w[n / 2] += n % 2 ? 1 : -1;
-                if (!grid.contains(w) || !labels.at(w) || out[grid.index(w)]) continue;
-                out[grid.index(w)] = 1, piece.push_back(std::uint32_t(grid.index(w)));
-            }
-        }
+        floodFill(piece, faceNeighbours(grid), [&](std::size_t n) {
+            if (!labels[n] || out[n]) return false;
+            out[n] = 1;
+            return true;
+        });
         if (double(piece.size()) >= least) continue;
         for (const std::uint32_t n : piece)
             out[n] = dropped;

@@ -1,5 +1,6 @@
 #include "segmentation/air_fluid_levels.h"
 
+#include "core/flood_fill.h"
 #include "core/parallel.h"
 #include "segmentation/bowel_contents.h"
 
@@ -204,33 +205,34 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
         atPlace[std::size_t(columns[n].below[across]) + width * std::size_t(columns[n].below.z)]
             .push_back(int(n));
     }
+    const auto visitAround = [&](int column, const auto& visit) {
+        const LevelColumn& c = columns[std::size_t(column)];
+        for (int d = 0; d < 9; ++d) {
+            const int n = c.below[across] + d % 3 - 1, z = c.below.z + d / 3 - 1;
+            if (n < 0 || z < 0 || n >= int(width) || z >= grid.size.z) continue;
+            const auto found = atPlace.find(std::size_t(n) + width * std::size_t(z));
+            if (found == atPlace.end()) continue;
+            for (const int other : found->second) {
+                const int height = columns[std::size_t(other)].below[down.axis];
+                if (std::abs(height - c.below[down.axis]) <= 1) visit(other);
+            }
+        }
+    };
     const glm::dvec3 spacing = grid.spacingMm();
     std::vector<char> visited(columns.size(), 0);
     std::vector<Level> levels;
     for (std::size_t seed = 0; seed < columns.size(); ++seed) {
         if (visited[seed]) continue;
-        std::vector<int> queue{int(seed)};
+        std::vector<int> members{int(seed)};
         visited[seed] = 1;
+        floodFill(members, visitAround, [&](int other) {
+            if (visited[std::size_t(other)]) return false;
+            visited[std::size_t(other)] = 1;
+            return true;
+        });
         std::vector<LevelColumn> patch;
-        for (std::size_t head = 0; head < queue.size(); ++head) {
-            const LevelColumn& c = columns[queue[head]];
-            patch.push_back(c);
-            for (int dz = -1; dz <= 1; ++dz) {
-                for (int dn = -1; dn <= 1; ++dn) {
-                    const int n = c.below[across] + dn, z = c.below.z + dz;
-                    if (n < 0 || z < 0 || n >= int(width) || z >= grid.size.z) continue;
-                    const auto found = atPlace.find(std::size_t(n) + width * std::size_t(z));
-                    if (found == atPlace.end()) continue;
-                    for (int other : found->second) {
-                        if (visited[other] ||
-                            std::abs(columns[other].below[down.axis] - c.below[down.axis]) > 1)
-                            continue;
-                        visited[other] = 1;
-                        queue.push_back(other);
-                    }
-                }
-            }
-        }
+        for (const int n : members)
+            patch.push_back(columns[std::size_t(n)]);
         keepIfFlat(patch, hu, tissue, down, spacing[across] * spacing.z, levels);
     }
     return levels;

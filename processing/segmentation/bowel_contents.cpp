@@ -1,10 +1,12 @@
 #include "segmentation/bowel_contents.h"
 
-#include "core/parallel.h"
+#include "core/flood_fill.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace haustra::segmentation {
 namespace {
@@ -14,74 +16,60 @@ constexpr double outsideReachMm = 6.0;
 constexpr double lungAboveGasHu = 60.0, lungBelowHu = -550.0;
 constexpr double smallestLungMl = 50.0;
 
-constexpr std::array<glm::ivec3, 6> faces{
-    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
-
 /// The scan in cubes of about 4 mm.
 struct Cells {
-    glm::ivec3 block{1}, size{0};
+    glm::ivec3 block{1};
+    Grid grid;  ///< of the cubes; its place is not set
     double cellMl = 0.0;
     std::vector<std::uint8_t> allAir;  ///< every voxel of the cube is below the wall's HU
     std::vector<float> meanHu;
 
-    std::size_t index(glm::ivec3 c) const {
-        return std::size_t(c.x) +
-               std::size_t(size.x) * (std::size_t(c.y) + std::size_t(size.y) * std::size_t(c.z));
-    }
-    bool contains(glm::ivec3 c) const {
-        return glm::all(glm::greaterThanEqual(c, glm::ivec3(0))) &&
-               glm::all(glm::lessThan(c, size));
-    }
     std::size_t count() const { return allAir.size(); }
-    glm::ivec3 at(std::size_t n) const {
-        return {int(n % std::size_t(size.x)), int(n / std::size_t(size.x) % std::size_t(size.y)),
-                int(n / std::size_t(size.x) / std::size_t(size.y))};
-    }
 };
 
 Cells makeCells(const Volume<std::int16_t>& hu, double airBelowHu, int threads) {
     const Grid& grid = hu.grid();
     Cells cells;
     cells.block = glm::max(glm::ivec3(1), glm::ivec3(glm::round(cellMm / grid.spacingMm())));
-    cells.size = (grid.size + cells.block - 1) / cells.block;
-    const std::size_t count =
-        std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z);
+    cells.grid.size = (grid.size + cells.block - 1) / cells.block;
+    const std::size_t count = cells.grid.voxelCount();
     cells.cellMl = grid.voxelVolumeMm3() * cells.block.x * cells.block.y * cells.block.z / 1000.0;
     cells.allAir.assign(count, 0);
     cells.meanHu.assign(count, 0.0f);
-    parallelFor(std::size_t(cells.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
-        std::vector<double> sum(std::size_t(cells.size.x));
-        std::vector<int> voxels(sum.size()), high(sum.size());
-        for (std::size_t z = first; z < last; ++z) {
-            for (int y = 0; y < cells.size.y; ++y) {
-                std::fill(sum.begin(), sum.end(), 0.0);
-                std::fill(voxels.begin(), voxels.end(), 0);
-                std::fill(high.begin(), high.end(), -32768);
-                const glm::ivec3 lo = glm::ivec3(0, y, int(z)) * cells.block;
-                const glm::ivec3 hi = glm::min(lo + cells.block, grid.size);
-                for (int k = lo.z; k < hi.z; ++k) {
-                    for (int j = lo.y; j < hi.y; ++j) {
-                        const std::int16_t* at = &hu.voxels()[grid.index(0, j, k)];
-                        const std::int16_t* const end = at + grid.size.x;
-                        for (std::size_t x = 0; x < sum.size(); ++x) {
-                            const std::int16_t* const next = std::min(at + cells.block.x, end);
-                            voxels[x] += int(next - at);
-                            int huSum = 0;
-                            for (; at != next; ++at)
-                                huSum += *at, high[x] = std::max(high[x], int(*at));
-                            sum[x] += huSum;
+    parallelFor(
+        std::size_t(cells.grid.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
+            std::vector<double> sum(std::size_t(cells.grid.size.x));
+            std::vector<int> voxels(sum.size()), high(sum.size());
+            for (std::size_t z = first; z < last; ++z) {
+                for (int y = 0; y < cells.grid.size.y; ++y) {
+                    std::fill(sum.begin(), sum.end(), 0.0);
+                    std::fill(voxels.begin(), voxels.end(), 0);
+                    std::fill(high.begin(), high.end(), -32768);
+                    const glm::ivec3 lo = glm::ivec3(0, y, int(z)) * cells.block;
+                    const glm::ivec3 hi = glm::min(lo + cells.block, grid.size);
+                    for (int k = lo.z; k < hi.z; ++k) {
+                        for (int j = lo.y; j < hi.y; ++j) {
+                            const std::int16_t* at = &hu.voxels()[grid.index(0, j, k)];
+                            const std::int16_t* const end = at + grid.size.x;
+                            for (std::size_t x = 0; x < sum.size(); ++x) {
+                                const std::int16_t* const next = std::min(at + cells.block.x, end);
+                                voxels[x] += int(next - at);
+                                int huSum = 0;
+                                for (; at != next; ++at)
+                                    huSum += *at, high[x] = std::max(high[x], int(*at));
+                                sum[x] += huSum;
+                            }
                         }
                     }
-                }
-                for (int x = 0; x < cells.size.x; ++x) {
-                    const std::size_t at = cells.index({x, y, int(z)});
-                    cells.meanHu[at] =
-                        float(sum[std::size_t(x)] / std::max(1, voxels[std::size_t(x)]));
-                    cells.allAir[at] = high[std::size_t(x)] < airBelowHu;
+                    for (int x = 0; x < cells.grid.size.x; ++x) {
+                        const std::size_t at = cells.grid.index({x, y, int(z)});
+                        cells.meanHu[at] =
+                            float(sum[std::size_t(x)] / std::max(1, voxels[std::size_t(x)]));
+                        cells.allAir[at] = high[std::size_t(x)] < airBelowHu;
+                    }
                 }
             }
-        }
-    });
+        });
     return cells;
 }
 
@@ -91,25 +79,19 @@ std::vector<std::uint8_t> flood(const Cells& cells, std::vector<std::size_t> fro
     std::vector<std::uint8_t> reached(cells.count(), 0);
     for (const std::size_t n : front)
         reached[n] = 1;
-    for (std::size_t head = 0; head < front.size(); ++head) {
-        const glm::ivec3 c = cells.at(front[head]);
-        for (const glm::ivec3 step : faces) {
-            if (!cells.contains(c + step)) continue;
-            const std::size_t next = cells.index(c + step);
-            if (reached[next] || !accept(next)) continue;
-            reached[next] = 1;
-            front.push_back(next);
-        }
-    }
+    floodFill(front, faceNeighbours(cells.grid), [&](std::size_t next) {
+        if (reached[next] || !accept(next)) return false;
+        reached[next] = 1;
+        return true;
+    });
     return reached;
 }
 
 std::vector<std::uint8_t> outsideCells(const Cells& cells) {
     std::vector<std::size_t> front;
     for (std::size_t n = 0; n < cells.count(); ++n) {
-        const glm::ivec3 c = cells.at(n);
-        const bool side =
-            c.x == 0 || c.y == 0 || c.x == cells.size.x - 1 || c.y == cells.size.y - 1;
+        const glm::ivec3 c = cells.grid.voxelAt(n), last = cells.grid.size - 1;
+        const bool side = c.x == 0 || c.y == 0 || c.x == last.x || c.y == last.y;
         if (side && cells.allAir[n]) front.push_back(n);
     }
     return flood(cells, std::move(front), [&](std::size_t n) { return cells.allAir[n] != 0; });
@@ -125,25 +107,20 @@ std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::u
     std::vector<std::uint8_t> deep(cells.count(), 0), lung(cells.count(), 0);
     for (std::size_t n = 0; n < cells.count(); ++n) {
         if (!lungLike(n)) continue;
-        const glm::ivec3 c = cells.at(n);
-        bool inside = true;
-        for (const glm::ivec3 step : faces)
-            inside = inside && cells.contains(c + step) && lungLike(cells.index(c + step));
-        deep[n] = inside;
+        int like = 0;
+        visitFaces(cells.grid, n, [&](std::size_t m, int) { like += lungLike(m); });
+        deep[n] = like == 6;
     }
     std::vector<std::uint8_t> seen(cells.count(), 0);
     for (std::size_t n = 0; n < cells.count(); ++n) {
         if (!deep[n] || seen[n]) continue;
         std::vector<std::size_t> body{n};
         seen[n] = 1;
-        for (std::size_t head = 0; head < body.size(); ++head) {
-            for (const glm::ivec3 step : faces) {
-                const glm::ivec3 c = cells.at(body[head]) + step;
-                if (!cells.contains(c) || !deep[cells.index(c)] || seen[cells.index(c)]) continue;
-                seen[cells.index(c)] = 1;
-                body.push_back(cells.index(c));
-            }
-        }
+        floodFill(body, faceNeighbours(cells.grid), [&](std::size_t m) {
+            if (!deep[m] || seen[m]) return false;
+            seen[m] = 1;
+            return true;
+        });
         if (double(body.size()) * cells.cellMl < smallestLungMl) continue;
         for (const std::size_t m : body)
             lung[m] = 1;
@@ -152,9 +129,7 @@ std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::u
     std::vector<std::uint8_t> grown = lung;
     for (std::size_t n = 0; n < cells.count(); ++n) {
         if (lung[n] || !lungLike(n)) continue;
-        const glm::ivec3 c = cells.at(n);
-        for (const glm::ivec3 step : faces)
-            grown[n] = grown[n] || (cells.contains(c + step) && lung[cells.index(c + step)]);
+        visitFaces(cells.grid, n, [&](std::size_t m, int) { grown[n] = grown[n] || lung[m]; });
     }
     return grown;
 }
@@ -170,7 +145,7 @@ void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
             for (int j = 0; j < grid.size.y; ++j) {
                 const std::size_t row = grid.index(0, j, int(k));
                 const auto cellsAt = [&](int y, int z) {
-                    return &outside[cells.index(glm::ivec3(0, y, z) / cells.block)];
+                    return &outside[cells.grid.index(glm::ivec3(0, y, z) / cells.block)];
                 };
                 const std::uint8_t* const own = cellsAt(j, int(k));
                 const std::array<const std::uint8_t*, 4> beside{
@@ -199,20 +174,14 @@ void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
     const glm::dvec3 spacing = grid.spacingMm();
     const int steps =
         std::max(1, int(std::lround(outsideReachMm / std::max({spacing.x, spacing.y, spacing.z}))));
-    std::size_t begin = 0;
     for (int step = 0; step < steps; ++step) {
-        const std::size_t end = front.size();
-        for (std::size_t head = begin; head < end; ++head) {
-            const glm::ivec3 v = grid.voxelAt(front[head]);
-            for (const glm::ivec3 face : faces) {
-                if (!grid.contains(v + face)) continue;
-                const std::size_t next = grid.index(v + face);
-                if (Content(voxels[next]) != Content::gas) continue;
+        for (const std::uint32_t n : std::exchange(front, {})) {
+            visitFaces(grid, n, [&](std::size_t next, int) {
+                if (Content(voxels[next]) != Content::gas) return;
                 voxels[next] = std::uint8_t(Content::outside);
                 front.push_back(std::uint32_t(next));
-            }
+            });
         }
-        begin = end;
     }
 }
 
@@ -346,7 +315,7 @@ BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition posit
                     Content content = Content::tissue;
                     if (value < tissue.airBelowHu) {
                         const std::size_t cell =
-                            cells.index(glm::ivec3(i, j, int(k)) / cells.block);
+                            cells.grid.index(glm::ivec3(i, j, int(k)) / cells.block);
                         content = outside[cell] ? Content::outside
                                   : lung[cell]  ? Content::lung
                                                 : Content::gas;

@@ -100,7 +100,7 @@ CellGrid makeCellGrid(const Volume<std::int16_t>& hu, const BowelContents& conte
     // Between the axis of a closed colon and another lumen lie its own wall and the other's.
     const auto isBesideLumen = [&](glm::ivec3 c) {
         for (int s = 0; s < 27; ++s) {
-            const glm::ivec3 by = c + glm::ivec3(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
+            const glm::ivec3 by = c + cornerStep(s);
             if (cells.grid.contains(by) && cells.node[cells.index(by)] >= 0) return true;
         }
         return false;
@@ -124,7 +124,7 @@ std::array<Step, 26> stepsOf(const Grid& grid) {
     std::size_t count = 0;
     for (int n = 0; n < 27; ++n) {
         if (n == 13) continue;
-        const glm::ivec3 by(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const glm::ivec3 by = cornerStep(n);
         steps[count++] = {by, glm::length(grid.spacingMm() * glm::dvec3(by))};
     }
     return steps;

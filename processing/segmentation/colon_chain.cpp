@@ -1,5 +1,7 @@
 #include "segmentation/colon_chain.h"
 
+#include "core/flood_fill.h"
+
 #include <algorithm>
 #include <bitset>
 #include <cmath>
@@ -452,22 +454,26 @@ private:
                 std::vector<int> body{side};
                 seen.set(std::size_t(side));
                 std::vector<int> doors{j};
-                double farthestMm = 0.0, volumeMl = 0.0;
-                for (std::size_t head = 0; head < body.size(); ++head) {
-                    farthestMm = std::max(farthestMm, reachBehindMm(j, body[head]));
-                    volumeMl += node(body[head]).volumeMl;
-                    for (const int k : around_[std::size_t(body[head])]) {
-                        const ChainJunction& way = junction(k);
-                        if (way.kind == JunctionKind::collapse || way.logOdds < 0.0) continue;
-                        const int next = otherEnd(k, body[head]);
-                        if (visited.test(std::size_t(next))) {
-                            if (k != j) doors.push_back(k);
-                            continue;
-                        }
-                        if (seen.test(std::size_t(next))) continue;
-                        seen.set(std::size_t(next));
-                        body.push_back(next);
+                const auto openDoors = [&](int from, const auto& visit) {
+                    for (const int k : around_[std::size_t(from)]) {
+                        if (junction(k).kind != JunctionKind::collapse &&
+                            junction(k).logOdds >= 0.0)
+                            visit(otherEnd(k, from), k);
                     }
+                };
+                floodFill(body, openDoors, [&](int next, int k) {
+                    if (visited.test(std::size_t(next))) {
+                        if (k != j) doors.push_back(k);
+                        return false;
+                    }
+                    if (seen.test(std::size_t(next))) return false;
+                    seen.set(std::size_t(next));
+                    return true;
+                });
+                double farthestMm = 0.0, volumeMl = 0.0;
+                for (const int n : body) {
+                    farthestMm = std::max(farthestMm, reachBehindMm(j, n));
+                    volumeMl += node(n).volumeMl;
                 }
                 const bool named = std::any_of(body.begin(), body.end(),
                                                [&](int n) { return node(n).given > 0.0; });

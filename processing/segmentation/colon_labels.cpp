@@ -550,7 +550,7 @@ private:
         };
         if (cut_.pieceAt.at(v) >= 0) return joins(cut_.pieceAt.at(v));
         for (int n = 0; n < 27; ++n) {  // a voxel that labelling added
-            const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            const glm::ivec3 w = v + cornerStep(n);
             if (grid_.contains(w) && joins(cut_.pieceAt.at(w))) return true;
         }
         return false;

@@ -1,6 +1,7 @@
 #include "segmentation/enclosed_gas.h"
 
 #include "core/ct_scan.h"
+#include "core/flood_fill.h"
 #include "core/voxel_sweep.h"
 #include "segmentation/bowel_contents.h"
 
@@ -78,13 +79,11 @@ private:
     std::vector<std::uint32_t> bodyOf(std::uint32_t first, std::vector<bool>& seen) const {
         std::vector<std::uint32_t> body{first};
         seen[first] = true;
-        for (std::size_t head = 0; head < body.size(); ++head) {
-            visitFaces(grid_, body[head], [&](std::size_t m, int) {
-                if (seen[m] || !isGas(m)) return;
-                seen[m] = true;
-                body.push_back(std::uint32_t(m));
-            });
-        }
+        floodFill(body, faceNeighbours(grid_), [&](std::size_t m) {
+            if (seen[m] || !isGas(m)) return false;
+            seen[m] = true;
+            return true;
+        });
         return body;
     }
 

@@ -121,7 +121,7 @@ double foldDensityOf(const TubePieces& cut, std::int32_t piece, const VoxelBox& 
     });
     if (wallMm2 == 0.0) return -1.0;
     for (int d = 14; d < 27; ++d) {  // one of each two opposite neighbours
-        const glm::ivec3 step(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
+        const glm::ivec3 step = cornerStep(d);
         const int most = int(std::floor(thickestMm / glm::length(spacing * glm::dvec3(step))));
         fillBetween(lumen, step, most, fold);
     }

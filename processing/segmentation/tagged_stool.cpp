@@ -1,6 +1,6 @@
 #include "segmentation/tagged_stool.h"
 
-#include "segmentation/axis_walk.h"
+#include "core/flood_fill.h"
 
 #include <algorithm>
 #include <vector>
@@ -9,111 +9,153 @@ namespace haustra::segmentation {
 namespace {
 
 constexpr double largestMl = 30.0;
+constexpr std::size_t fewestVoxels = 8;
 constexpr double smallestContactShare = 0.25;
 constexpr double smallestCoreShare = 0.1;
 constexpr double wellAboveHu = 60.0;
 constexpr int contactVoxels = 2;  // of partial volume between air and stool
 
+/// Bodies of tagged stool beside the air of a lumen, and that lumen's labels, which they join.
+class StoolSearch {
+public:
+    StoolSearch(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
+                const TissueModel& tissue, std::span<const std::uint32_t> excluded)
+        : grid_(labels.grid()),
+          hu_(hu.voxels()),
+          labels_(labels.writable()),
+          strides_{1, std::size_t(grid_.size.x),
+                   std::size_t(grid_.size.x) * std::size_t(grid_.size.y)},
+          largest_(std::size_t(largestMl * 1000.0 / grid_.voxelVolumeMm3())),
+          aboveHu_(tissue.taggedAboveHu),
+          barred_(labels_.size(), false),
+          seen_(labels_.size(), false) {
+        for (std::uint32_t index : excluded)
+            barred_[index] = true;
+    }
+
+    /// Voxels of stool that air of the lumen reaches, ascending.
+    std::vector<std::uint32_t> besideAir() const {
+        std::vector<std::uint32_t> found;
+        for (std::size_t n = 0; n < labels_.size(); ++n) {
+            if (labels_[n] != std::uint8_t(LumenLabel::air)) continue;
+            bool surface = false;
+            visitFaces(grid_, n, [&](std::size_t m, int) { surface = surface || labels_[m] == 0; });
+            if (!surface) continue;
+            reach(
+                n, [&](std::size_t at) { return isStool(at); },
+                [&](int, int, int, std::size_t at) { found.push_back(std::uint32_t(at)); });
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+
+    /// The body of a voxel, joined by faces; empty where it was returned before. All of a body is
+    /// seen, however large: what is left of bone must not pass for stool.
+    std::vector<std::uint32_t> takeBody(std::uint32_t seed) {
+        std::vector<std::uint32_t> body;
+        const auto take = [&](std::size_t n) {
+            if (seen_[n] || !isStool(n)) return false;
+            seen_[n] = true;
+            return true;
+        };
+        if (take(seed)) body.push_back(seed);
+        floodFill(body, faceNeighbours(grid_), take);
+        return body;
+    }
+
+    bool hasSizeOfStool(const std::vector<std::uint32_t>& body) const {
+        return body.size() >= fewestVoxels && body.size() <= largest_;
+    }
+
+    /// A coated fold is thin and no brighter than its blur: stool has an inside, well tagged.
+    bool isWellTagged(const std::vector<std::uint32_t>& body) const {
+        std::size_t core = 0;
+        double sum = 0.0;
+        for (std::uint32_t index : body) {
+            int around = 0;
+            visitFaces(grid_, index, [&](std::size_t m, int) { around += isStool(m); });
+            core += around == 6;
+            sum += hu_[index];
+        }
+        return double(core) >= smallestCoreShare * double(body.size()) &&
+               sum >= (aboveHu_ + wellAboveHu) * double(body.size());
+    }
+
+    /// Enough of its surface faces the lumen.
+    bool liesInLumen(const std::vector<std::uint32_t>& body) const {
+        std::size_t faces = 0, contacts = 0;
+        for (std::uint32_t index : body) {
+            visitFaces(grid_, index, [&](std::size_t m, int) { faces += !isStool(m); });
+            reach(
+                index, [&](std::size_t at) { return labels_[at] != 0 || isStool(at); },
+                [&](int, int, int, std::size_t at) { contacts += labels_[at] != 0; });
+        }
+        return double(contacts) >= smallestContactShare * double(faces);
+    }
+
+    /// Labels a body; the partial volume on the way to the air goes with it.
+    void label(const std::vector<std::uint32_t>& body) {
+        for (std::uint32_t index : body) {
+            reach(
+                index, [&](std::size_t at) { return labels_[at] == std::uint8_t(LumenLabel::air); },
+                [&](int axis, int sign, int steps, std::size_t) {
+                    std::size_t at = index;
+                    for (int n = 1; n < steps; ++n) {
+                        at = stepped(at, axis, sign);
+                        if (labels_[at] == 0) labels_[at] = std::uint8_t(LumenLabel::tagged);
+                    }
+                });
+            labels_[index] = std::uint8_t(LumenLabel::tagged);
+        }
+    }
+
+private:
+    bool isStool(std::size_t index) const {
+        return labels_[index] == 0 && hu_[index] > aboveHu_ && !barred_[index];
+    }
+
+    std::size_t stepped(std::size_t index, int axis, int sign) const {
+        return sign > 0 ? index + strides_[axis] : index - strides_[axis];
+    }
+
+    /// From the voxel `index` along ± each axis, across the partial volume between one body and the
+    /// next, to the first voxel for which `hit(index)` holds: visit(axis, sign, steps, its index).
+    template <class Hit, class Visit>
+    void reach(std::size_t index, const Hit& hit, const Visit& visit) const {
+        const glm::ivec3 v = grid_.voxelAt(index);
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int sign : {-1, 1}) {
+                const int within = sign > 0 ? grid_.size[axis] - 1 - v[axis] : v[axis];
+                std::size_t at = index;
+                for (int step = 1; step <= std::min(contactVoxels + 1, within); ++step) {
+                    at = stepped(at, axis, sign);
+                    if (!hit(at)) continue;
+                    visit(axis, sign, step, at);
+                    break;
+                }
+            }
+        }
+    }
+
+    const Grid grid_;
+    const std::span<const std::int16_t> hu_;
+    const std::span<std::uint8_t> labels_;
+    const std::size_t strides_[3];
+    const std::size_t largest_;
+    const double aboveHu_;
+    std::vector<bool> barred_, seen_;
+};
+
 }  // namespace
 
 void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
                     const TissueModel& tissue, std::span<const std::uint32_t> excluded) {
-    const Grid& grid = labels.grid();
-    const glm::ivec3 size = grid.size;
-    const auto out = labels.writable();
-    const std::size_t strides[3] = {1, std::size_t(size.x),
-                                    std::size_t(size.x) * std::size_t(size.y)};
-    const std::size_t largest = std::size_t(largestMl * 1000.0 / grid.voxelVolumeMm3());
-    const double above = tissue.taggedAboveHu;
-    std::vector<bool> barred(out.size(), false);
-    for (std::uint32_t index : excluded)
-        barred[index] = true;
-    auto isStool = [&](std::size_t index) {
-        return out[index] == 0 && hu[index] > above && !barred[index];
-    };
-
-    auto reaches = [&](std::size_t index, auto&& hit, auto&& visit) {
-        walkAxes(grid, index, contactVoxels, hit, visit);
-    };
-
-    // Candidates: stool voxels that lumen air reaches.
-    std::vector<std::uint32_t> seeds;
-    for (std::size_t n = 0; n < out.size(); ++n) {
-        if (out[n] != std::uint8_t(LumenLabel::air)) continue;
-        const glm::ivec3 v = grid.voxelAt(n);
-        bool surface = false;
-        for (int axis = 0; axis < 3 && !surface; ++axis) {
-            surface = (v[axis] > 0 && out[n - strides[axis]] == 0) ||
-                      (v[axis] + 1 < size[axis] && out[n + strides[axis]] == 0);
-        }
-        if (!surface) continue;
-        reaches(n, isStool,
-                [&](int, int, int, std::size_t at) { seeds.push_back(std::uint32_t(at)); });
-    }
-    std::sort(seeds.begin(), seeds.end());
-    seeds.erase(std::unique(seeds.begin(), seeds.end()), seeds.end());
-
-    std::vector<bool> seen(out.size(), false);
-    for (std::uint32_t seed : seeds) {
-        if (seen[seed] || !isStool(seed)) continue;
-        std::vector<std::uint32_t> body{seed};
-        seen[seed] = true;
-        // All of a body is seen, however large: what is left of bone must not pass for stool.
-        for (std::size_t head = 0; head < body.size(); ++head) {
-            const glm::ivec3 v = grid.voxelAt(body[head]);
-            for (int axis = 0; axis < 3; ++axis) {
-                for (int sign : {-1, 1}) {
-                    if (v[axis] + sign < 0 || v[axis] + sign >= size[axis]) continue;
-                    const std::uint32_t next = std::uint32_t(sign > 0 ? body[head] + strides[axis]
-                                                                      : body[head] - strides[axis]);
-                    if (seen[next] || !isStool(next)) continue;
-                    seen[next] = true;
-                    body.push_back(next);
-                }
-            }
-        }
-        if (body.size() < 8 || body.size() > largest) continue;
-        // A coated fold is thin and no brighter than its blur: stool has an inside, well tagged.
-        std::size_t core = 0;
-        double sum = 0.0;
-        for (std::uint32_t index : body) {
-            const glm::ivec3 v = grid.voxelAt(index);
-            bool inside = true;
-            for (int axis = 0; axis < 3 && inside; ++axis) {
-                inside = v[axis] > 0 && v[axis] + 1 < size[axis] &&
-                         isStool(index - strides[axis]) && isStool(index + strides[axis]);
-            }
-            core += inside;
-            sum += hu[index];
-        }
-        if (double(core) < smallestCoreShare * double(body.size()) ||
-            sum < (above + wellAboveHu) * double(body.size()))
-            continue;
-        std::size_t faces = 0, contacts = 0;
-        for (std::uint32_t index : body) {
-            const glm::ivec3 v = grid.voxelAt(index);
-            for (int axis = 0; axis < 3; ++axis) {
-                faces += v[axis] > 0 && !isStool(index - strides[axis]);
-                faces += v[axis] + 1 < size[axis] && !isStool(index + strides[axis]);
-            }
-            reaches(
-                index, [&](std::size_t at) { return out[at] != 0 || isStool(at); },
-                [&](int, int, int, std::size_t at) { contacts += out[at] != 0; });
-        }
-        if (double(contacts) < smallestContactShare * double(faces)) continue;
-        for (std::uint32_t index : body) {
-            // The partial volume on the way to the air goes with the stool.
-            reaches(
-                index, [&](std::size_t at) { return out[at] == std::uint8_t(LumenLabel::air); },
-                [&](int axis, int sign, int step, std::size_t) {
-                    std::size_t at = index;
-                    for (int n = 1; n < step; ++n) {
-                        at = sign > 0 ? at + strides[axis] : at - strides[axis];
-                        if (out[at] == 0) out[at] = std::uint8_t(LumenLabel::tagged);
-                    }
-                });
-            out[index] = std::uint8_t(LumenLabel::tagged);
-        }
+    StoolSearch search(labels, hu, tissue, excluded);
+    for (const std::uint32_t seed : search.besideAir()) {
+        const std::vector<std::uint32_t> body = search.takeBody(seed);
+        if (search.hasSizeOfStool(body) && search.isWellTagged(body) && search.liesInLumen(body))
+            search.label(body);
     }
 }
 

@@ -1,5 +1,6 @@
 #include "segmentation/thin_walls.h"
 
+#include "core/flood_fill.h"
 #include "core/voxel_sweep.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ std::array<Ray, 13> raysOf(const Grid& grid, double reachMm) {
     std::array<Ray, 13> rays;
     std::size_t count = 0;
     for (int n = 14; n < 27; ++n) {
-        const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const glm::ivec3 step = cornerStep(n);
         const double lengthMm = glm::length(grid.spacingMm() * glm::dvec3(step));
         rays[count++] = {
             step,
@@ -320,15 +321,11 @@ void dropSpecks(Volume<std::uint8_t>& walls, std::size_t smallest, int threads) 
         if (out[n] != 1) continue;
         patch.assign(1, n);
         out[n] = kept;
-        for (std::size_t head = 0; head < patch.size(); ++head) {
-            const glm::ivec3 v = grid.voxelAt(patch[head]);
-            for (int s = 0; s < 27; ++s) {
-                const glm::ivec3 w = v + glm::ivec3(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1);
-                if (!grid.contains(w) || out[grid.index(w)] != 1) continue;
-                out[grid.index(w)] = kept;
-                patch.push_back(std::uint32_t(grid.index(w)));
-            }
-        }
+        floodFill(patch, cornerNeighbours(grid), [&](std::size_t m) {
+            if (out[m] != 1) return false;
+            out[m] = kept;
+            return true;
+        });
         if (patch.size() >= smallest) continue;
         for (const std::uint32_t m : patch)
             out[m] = 0;

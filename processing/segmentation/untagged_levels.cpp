@@ -1,6 +1,7 @@
 #include "segmentation/untagged_levels.h"
 
 #include "core/ct_scan.h"
+#include "core/flood_fill.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -219,17 +220,20 @@ std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
     }
     const glm::dvec2 stepMm(grid.spacingMm()[across], grid.spacingMm().z);
     const double softHu = tissue.meanHu[int(Tissue::soft)];
-    // visit(floor, way to it in mm) of the floors of the eight columns around one.
-    const auto visitAround = [&](const Floor& from, const auto& visit) {
+    // The floors of the eight columns around one that go on from it gently.
+    const auto visitAround = [&](std::uint32_t at, const auto& visit) {
+        const Floor& from = floors[at];
         for (int dz = -1; dz <= 1; ++dz) {
             for (int dn = -1; dn <= 1; ++dn) {
                 const int n = from.across + dn, z = from.z + dz;
                 if (n < 0 || z < 0 || n >= int(width) || (dz == 0 && dn == 0)) continue;
                 const auto near = atPlace.find(std::size_t(n) + width * std::size_t(z));
                 if (near == atPlace.end()) continue;
-                for (const std::uint32_t other : near->second)
-                    visit(other,
-                          std::hypot(dn * grid.spacingMm()[across], dz * grid.spacingMm().z));
+                const double mm = std::hypot(dn * stepMm.x, dz * stepMm.y);
+                for (const std::uint32_t other : near->second) {
+                    const double rise = std::abs(floors[other].heightMm - from.heightMm);
+                    if (rise <= std::max(flatMm, gentleSlope * mm)) visit(other);
+                }
             }
         }
     };
@@ -255,17 +259,16 @@ std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
     std::vector<UntaggedLevel> levels;
     for (std::size_t seed = 0; seed < floors.size(); ++seed) {
         if (seen[seed]) continue;
-        std::vector<Floor> patch{floors[seed]};
+        std::vector<std::uint32_t> members{std::uint32_t(seed)};
         seen[seed] = true;
-        for (std::size_t head = 0; head < patch.size(); ++head) {
-            const Floor from = patch[head];
-            visitAround(from, [&](std::uint32_t other, double mm) {
-                const double step = std::abs(floors[other].heightMm - from.heightMm);
-                if (seen[other] || step > std::max(flatMm, gentleSlope * mm)) return;
-                seen[other] = true;
-                patch.push_back(floors[other]);
-            });
-        }
+        floodFill(members, visitAround, [&](std::uint32_t other) {
+            if (seen[other]) return false;
+            seen[other] = true;
+            return true;
+        });
+        std::vector<Floor> patch;
+        for (const std::uint32_t n : members)
+            patch.push_back(floors[n]);
         for (std::vector<Floor> level; !(level = takeLevel(patch, stepMm)).empty();) {
             if (const auto told = describe(level)) levels.push_back(*told);
         }

@@ -2,6 +2,7 @@
 
 #include "core/connected_labels.h"
 #include "core/crop.h"
+#include "core/flood_fill.h"
 #include "segmentation/hu_range_lumen.h"
 #include "topology/distance_field.h"
 
@@ -162,17 +163,18 @@ private:
         const auto out = beyond.writable();
         std::vector<std::uint32_t> front;
         const auto take = [&](std::size_t n) {
-            if (out[n] == 0 || !fluid_[n] || !centres_[n] || !(distanceMm_[n] > ballMm)) return;
+            if (out[n] == 0 || !fluid_[n] || !centres_[n] || !(distanceMm_[n] > ballMm))
+                return false;
             out[n] = 0;
-            front.push_back(std::uint32_t(n));
+            return true;
         };
         for (const glm::ivec3 column : level_.columns) {
             for (glm::ivec3 v = below(column - box_.lo);
-                 grid.contains(v) && depthMm(v) < ballMm + blurMm; v = below(v))
-                take(grid.index(v));
+                 grid.contains(v) && depthMm(v) < ballMm + blurMm; v = below(v)) {
+                if (take(grid.index(v))) front.push_back(std::uint32_t(grid.index(v)));
+            }
         }
-        for (std::size_t head = 0; head < front.size(); ++head)
-            visitFaces(grid, front[head], [&](std::size_t m, int) { take(m); });
+        floodFill(front, faceNeighbours(grid), take);
         Volume<std::uint8_t> pool(grid, std::uint8_t(0));
         if (front.empty()) return pool;
         const Volume<float> awayMm = topology::distanceToBoundaryMm(beyond, threads_);

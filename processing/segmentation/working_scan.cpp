@@ -1,6 +1,6 @@
 #include "segmentation/working_scan.h"
 
-#include "core/simple_point.h"
+#include "core/connected_labels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,15 +24,6 @@ Grid binnedGrid(const Grid& grid, glm::ivec3 by) {
     made.patientFromVoxel[3] =
         glm::dvec4(grid.patientFromVoxelPoint(0.5 * glm::dvec3(by - 1)), 1.0);
     return made;
-}
-
-Neighbourhood around(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
-    Neighbourhood object = 0;
-    for (int n = 0; n < 27; ++n) {
-        const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-        if (labels.grid().contains(w) && labels.at(w) != outside) object |= 1u << n;
-    }
-    return object;
 }
 
 }  // namespace
@@ -196,7 +187,7 @@ Volume<std::uint8_t> atFullResolution(const Volume<std::uint8_t>& labels,
                 continue;
             const bool interior = glm::all(glm::greaterThan(v, glm::ivec3(0))) &&
                                   glm::all(glm::lessThan(v, grid.size - 1));
-            if (!interior || !isSimple(around(fine, v))) continue;
+            if (!interior || !isSimple(labelledAround(fine, v))) continue;
             out[n] = was == air ? outside : air;
             visitFaces(grid, n, [&](std::size_t m, int) {
                 if (out[m] == was && isWrong(m)) next.push_back(std::uint32_t(m));

@@ -4,6 +4,7 @@
 #include "centerline/order.h"
 #include "centerline/search.h"
 #include "centerline/segments.h"
+#include "core/flood_fill.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
 #include "topology/distance_field.h"
@@ -110,15 +111,17 @@ Volume<float> depthOf(const Volume<std::uint8_t>& labels, const LumenJoinOptions
         out[n] = deepest, seen[n] = true;
         front.emplace_back(std::uint32_t(n), 0.0f);
     }
-    for (std::size_t head = 0; head < front.size(); ++head) {
-        const auto [n, way] = front[head];
-        visitFaces(grid, n, [&](std::size_t m, int axis) {
-            const float there = way + float(grid.spacingMm()[axis]);
-            if (labels[m] == 0 || seen[m] || there > taperReachMm) return;
-            out[m] = std::max(out[m], std::min(taperMm, deepest)), seen[m] = true;
-            front.emplace_back(std::uint32_t(m), there);
+    const auto neighbours = [&](std::pair<std::uint32_t, float> from, const auto& visit) {
+        visitFaces(grid, from.first, [&](std::size_t m, int axis) {
+            visit(std::pair(std::uint32_t(m), from.second + float(grid.spacingMm()[axis])));
         });
-    }
+    };
+    floodFill(front, neighbours, [&](std::pair<std::uint32_t, float> next) {
+        const auto [m, wayMm] = next;
+        if (labels[m] == 0 || seen[m] || wayMm > taperReachMm) return false;
+        out[m] = std::max(out[m], std::min(taperMm, deepest)), seen[m] = true;
+        return true;
+    });
     return mm;
 }
 
@@ -143,16 +146,17 @@ void connect(Path& path, glm::ivec3 target, const BitMask& mask) {
         return s;
     };
     cameBy[place(target)] = 6;
-    for (std::size_t head = 0; head < front.size() && cameBy[place(source)] < 0; ++head) {
-        for (int n = 0; n < 6; ++n) {
-            const glm::ivec3 next = front[head] - step(n);
-            if (glm::any(glm::lessThan(next, lo)) || glm::any(glm::greaterThan(next, hi)) ||
-                cameBy[place(next)] >= 0 || !mask.test(next))
-                continue;
-            cameBy[place(next)] = std::int8_t(n);
-            front.push_back(next);
-        }
-    }
+    const auto stepsBack = [&](glm::ivec3 from, const auto& visit) {
+        for (int n = 0; n < 6; ++n)
+            visit(from - step(n), n);
+    };
+    floodFill(front, stepsBack, [&](glm::ivec3 next, int n) {
+        if (glm::any(glm::lessThan(next, lo)) || glm::any(glm::greaterThan(next, hi)) ||
+            cameBy[place(next)] >= 0 || !mask.test(next))
+            return false;
+        cameBy[place(next)] = std::int8_t(n);
+        return true;
+    });
     if (cameBy[place(source)] < 0)
         path.push_back(target);
     else

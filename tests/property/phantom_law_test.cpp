@@ -1,4 +1,5 @@
 // Laws that every phantom obeys, on small ones of all presets and both positions.
+#include "label_topology.h"
 #include "phantom/phantom.h"
 
 #include <algorithm>
@@ -22,30 +23,6 @@ struct Case {
 
 void PrintTo(const Case& c, std::ostream* out) {
     *out << "seed " << c.seed;
-}
-
-/// Sizes of the 26-connected components of what is lumen, largest first.
-std::vector<std::size_t> components(const Volume<std::uint8_t>& labels) {
-    const Grid& grid = labels.grid();
-    std::vector<std::uint8_t> seen(grid.voxelCount());
-    std::vector<std::size_t> sizes, stack;
-    for (std::size_t start = 0; start < seen.size(); ++start) {
-        if (seen[start] || !labels[start]) continue;
-        std::size_t size = 0;
-        seen[start] = 1, stack.assign(1, start);
-        while (!stack.empty()) {
-            const glm::ivec3 v = grid.voxelAt(stack.back());
-            stack.pop_back(), ++size;
-            for (int n = 0; n < 27; ++n) {
-                const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-                if (!grid.contains(w) || seen[grid.index(w)] || !labels.at(w)) continue;
-                seen[grid.index(w)] = 1, stack.push_back(grid.index(w));
-            }
-        }
-        sizes.push_back(size);
-    }
-    std::sort(sizes.rbegin(), sizes.rend());
-    return sizes;
 }
 
 /// Voxels within `reach` voxels (a box) of one with the label.
@@ -147,7 +124,8 @@ void PhantomLaws::centerlineIsOneThatALumenCouldHave() {
 }
 
 void PhantomLaws::lumenIsOnePieceOrTwoWhereCollapsed() {
-    const auto sizes = components(phantom_.lumen);
+    const auto sizes = tests::pieceSizes(phantom_.lumen.grid(),
+                                         [&](std::size_t n) { return phantom_.lumen[n] != 0; });
     const std::size_t pieces = GetParam().preset == Preset::hard ? 2 : 1;
     ASSERT_GE(sizes.size(), pieces);
     // Behind a fold or a ball of stool a few voxels may be shut off.

@@ -1,4 +1,5 @@
 // Laws of what can be added to a phantom's bowel, on small phantoms.
+#include "label_topology.h"
 #include "phantom/filled_colon.h"
 #include "phantom/wild.h"
 
@@ -33,25 +34,9 @@ std::uint8_t valueAt(const Volume<std::uint8_t>& volume, glm::dvec3 p) {
 /// 26-connected pieces of what `in` says, of at least `least` voxels.
 template <class In>
 std::size_t pieces(const Grid& grid, std::size_t least, const In& in) {
-    std::vector<std::uint8_t> seen(grid.voxelCount());
-    std::vector<std::size_t> stack;
-    std::size_t count = 0;
-    for (std::size_t start = 0; start < seen.size(); ++start) {
-        if (seen[start] || !in(start)) continue;
-        std::size_t size = 0;
-        seen[start] = 1, stack.assign(1, start);
-        while (!stack.empty()) {
-            const glm::ivec3 v = grid.voxelAt(stack.back());
-            stack.pop_back(), ++size;
-            for (int n = 0; n < 27; ++n) {
-                const glm::ivec3 w = v + glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-                if (!grid.contains(w) || seen[grid.index(w)] || !in(grid.index(w))) continue;
-                seen[grid.index(w)] = 1, stack.push_back(grid.index(w));
-            }
-        }
-        count += size >= least;
-    }
-    return count;
+    const std::vector<std::size_t> sizes = tests::pieceSizes(grid, in);
+    return std::size_t(
+        std::count_if(sizes.begin(), sizes.end(), [&](std::size_t size) { return size >= least; }));
 }
 
 std::size_t countOf(const Volume<std::uint8_t>& volume, std::uint8_t value) {

@@ -1,11 +1,14 @@
 // Laws of the core nouns: grids, volumes, meshes, loops over threads.
+#include "core/flood_fill.h"
 #include "core/grid.h"
 #include "core/parallel.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -28,6 +31,62 @@ TEST(Grid, IndexAndVoxelAreInverse) {
     const Grid grid = obliqueGrid();
     for (std::size_t n = 0; n < grid.voxelCount(); ++n)
         EXPECT_EQ(grid.index(grid.voxelAt(n)), n);
+}
+
+TEST(Grid, NeighboursAreThoseWithinOneStep) {
+    const Grid grid = obliqueGrid();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        std::vector<std::size_t> faces, corners, facesWanted, cornersWanted;
+        visitFaces(grid, n, [&](std::size_t m, int axis) {
+            const glm::ivec3 step = grid.voxelAt(m) - grid.voxelAt(n);
+            EXPECT_EQ(std::abs(step[axis]), 1);
+            faces.push_back(m);
+        });
+        visitCorners(grid, n, [&](std::size_t m) { corners.push_back(m); });
+        for (std::size_t m = 0; m < grid.voxelCount(); ++m) {
+            const glm::ivec3 step = glm::abs(grid.voxelAt(m) - grid.voxelAt(n));
+            if (std::max({step.x, step.y, step.z}) == 1) cornersWanted.push_back(m);
+            if (step.x + step.y + step.z == 1) facesWanted.push_back(m);
+        }
+        std::sort(faces.begin(), faces.end());
+        EXPECT_EQ(faces, facesWanted);
+        EXPECT_EQ(corners, cornersWanted);  // in memory order
+    }
+}
+
+TEST(FloodFill, ReachesEachVoxelOnceByTheFewestSteps) {
+    // A wall through the middle slice of i but for one voxel.
+    const Grid grid = axisAlignedGrid({7, 5, 3}, {1, 1, 1});
+    const auto isOpen = [&](std::size_t n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        return v.x != 3 || v == glm::ivec3(3, 4, 2);
+    };
+    std::vector<int> steps(grid.voxelCount(), -1);
+    std::vector<std::size_t> reached{0};
+    steps[0] = 0;
+    const auto neighbours = [&](std::size_t n, const auto& visit) {
+        visitFaces(grid, n, [&](std::size_t m, int) { visit(m, steps[n] + 1); });
+    };
+    floodFill(reached, neighbours, [&](std::size_t m, int count) {
+        if (!isOpen(m) || steps[m] >= 0) return false;
+        steps[m] = count;
+        return true;
+    });
+    const glm::ivec3 door(3, 4, 2);
+    const auto apart = [](glm::ivec3 a, glm::ivec3 b) {
+        const glm::ivec3 d = glm::abs(a - b);
+        return d.x + d.y + d.z;
+    };
+    std::size_t open = 0;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        open += isOpen(n);
+        const int wanted = v.x < 3 ? apart(v, {0, 0, 0}) : apart(v, door) + apart(door, {0, 0, 0});
+        EXPECT_EQ(steps[n], isOpen(n) ? wanted : -1);
+    }
+    EXPECT_EQ(reached.size(), open);
+    EXPECT_TRUE(std::is_sorted(reached.begin(), reached.end(),
+                               [&](std::size_t a, std::size_t b) { return steps[a] < steps[b]; }));
 }
 
 TEST(Grid, PatientAndVoxelAreInverse) {

@@ -1,5 +1,7 @@
 #include "topology/run_components.h"
 
+#include "core/flood_fill.h"
+
 #include <random>
 
 #include <gtest/gtest.h>
@@ -21,19 +23,13 @@ TEST(RunComponents, AgreeWithAFloodFill) {
         int count = 0;
         for (std::size_t n = 0; n < g.voxelCount(); ++n) {
             if (volume[n] >= 1.5 || flood[n] >= 0) continue;
-            std::vector<std::size_t> stack{n};
+            std::vector<std::size_t> front{n};
             flood[n] = count;
-            while (!stack.empty()) {
-                const glm::ivec3 v = g.voxelAt(stack.back());
-                stack.pop_back();
-                for (int f = 0; f < 6; ++f) {
-                    glm::ivec3 w = v;
-                    w[f / 2] += f % 2 ? 1 : -1;
-                    if (!g.contains(w) || volume.at(w) >= 1.5 || flood[g.index(w)] >= 0) continue;
-                    flood[g.index(w)] = count;
-                    stack.push_back(g.index(w));
-                }
-            }
+            floodFill(front, faceNeighbours(g), [&](std::size_t m) {
+                if (volume[m] >= 1.5 || flood[m] >= 0) return false;
+                flood[m] = count;
+                return true;
+            });
             ++count;
         }
         ASSERT_EQ(int(runs.components().size()), count);

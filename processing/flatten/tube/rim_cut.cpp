@@ -1,5 +1,7 @@
 #include "flatten/tube/rim_cut.h"
 
+#include "core/flood_fill.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -168,20 +170,20 @@ private:
                 held[t] = isBeyond(made_.triangles[t][c]);
             if (held[t]) front.push_back(t);
         }
-        while (!front.empty()) {
-            const std::size_t t = front.back();
-            front.pop_back();
+        const auto across = [&](std::size_t t, const auto& visit) {
             for (int c = 0; c < 3; ++c) {
                 const auto found = byEdge.find(
                     std::minmax(made_.triangles[t][c], made_.triangles[t][(c + 1) % 3]));
                 if (found == byEdge.end()) continue;
-                for (const std::size_t other : found->second) {
-                    if (held[other]) continue;
-                    held[other] = 1;
-                    front.push_back(other);
-                }
+                for (const std::size_t other : found->second)
+                    visit(other);
             }
-        }
+        };
+        floodFill(front, across, [&](std::size_t other) {
+            if (held[other]) return false;
+            held[other] = 1;
+            return true;
+        });
         std::size_t kept = 0;
         for (std::size_t t = 0; t < held.size(); ++t) {
             if (!held[t]) continue;

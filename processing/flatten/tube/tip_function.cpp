@@ -1,5 +1,7 @@
 #include "flatten/tube/tip_function.h"
 
+#include "core/flood_fill.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -53,20 +55,19 @@ bool fillPockets(const HalfedgeMesh& halfedges, std::vector<char>& inside) {
         sizes.push_back(0);
         piece[std::size_t(seed)] = number;
         front.assign(1, seed);
-        while (!front.empty()) {
-            const int v = front.back();
-            front.pop_back();
-            ++sizes.back();
+        const auto neighbours = [&](int v, const auto& visit) {
             int h = halfedges.outgoing(v);
             do {
-                const auto w = std::size_t(halfedges.target(h));
-                if (!inside[w] && piece[w] < 0) {
-                    piece[w] = number;
-                    front.push_back(int(w));
-                }
+                visit(halfedges.target(h));
                 h = halfedges.turnLeft(h);
             } while (h != halfedges.outgoing(v));
-        }
+        };
+        floodFill(front, neighbours, [&](int w) {
+            if (inside[std::size_t(w)] || piece[std::size_t(w)] >= 0) return false;
+            piece[std::size_t(w)] = number;
+            return true;
+        });
+        sizes.back() = front.size();
     }
     if (sizes.empty()) return false;
     const auto largest = int(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
