@@ -9,9 +9,8 @@
 #include "render/overview/overview_painter.h"
 #include "render/polygon_assisted/polygon_assisted_raycaster.h"
 #include "render/scene/case_pictures.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/wall/wall_index.h"
-#include "shaders/overview_uniforms.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -73,7 +72,7 @@ struct CaseRenderer::Impl {
         glm::ivec2 size{0};
         std::vector<WallPixel> pixels;
     };
-    LatelyUsed<SeenWall> seenWalls{4};
+    LruCache<SeenWall> seenWalls{4};
 
     const Grid& grid() const { return scene->grid(); }
     CasePictures& pictures() { return picturesOnCpu(used) ? *nativePictures : *glPictures; }

@@ -84,9 +84,9 @@ struct Setup {
     std::optional<HybridControls> controls;
 };
 
-/// The lowest rung; balanced; with all that the CPU can do; and that without each control.
+/// The lowest split; balanced; with all that the CPU can do; and that without each control.
 std::vector<Setup> setups() {
-    return {{"least work for the CPU (rung 0)", hybridLadder[0]},
+    return {{"least work for the CPU (split 0)", hybridSplits[0]},
             {"balanced", std::nullopt},
             {"all that the CPU can do", HybridControls{0, true, 0, 0.0}},
             {"… 1: rays begin at level 3", HybridControls{3, false, 0, 0.0}},
@@ -96,18 +96,18 @@ std::vector<Setup> setups() {
             {"… 4: not followed", HybridControls{0, true, 0, 1.01}}};
 }
 
-/// Every rung, and where the balance comes to stand.
-std::vector<Setup> ladder() {
-    std::vector<Setup> rungs = {{"balanced", std::nullopt}};
-    for (std::size_t rung = 0; rung < hybridLadder.size(); ++rung)
-        rungs.push_back({fmt::format("rung {}", rung), hybridLadder[rung]});
-    return rungs;
+/// Every split, and where the balance comes to stand.
+std::vector<Setup> splits() {
+    std::vector<Setup> splits = {{"balanced", std::nullopt}};
+    for (std::size_t split = 0; split < hybridSplits.size(); ++split)
+        splits.push_back({fmt::format("split {}", split), hybridSplits[split]});
+    return splits;
 }
 
-/// "-" for controls that are none of the ladder's.
-char rungOf(const HybridControls& controls) {
-    const auto found = std::find(hybridLadder.begin(), hybridLadder.end(), controls);
-    return found == hybridLadder.end() ? '-' : char('0' + (found - hybridLadder.begin()));
+/// "-" for controls that are none of these.
+char splitOf(const HybridControls& controls) {
+    const auto found = std::find(hybridSplits.begin(), hybridSplits.end(), controls);
+    return found == hybridSplits.end() ? '-' : char('0' + (found - hybridSplits.begin()));
 }
 
 /// What one setup has cost, picture by picture.
@@ -148,13 +148,13 @@ Column measure(gpu::Context& context, const std::string& name, Volume<std::int16
         costs[i].raycaster = orEnd(HybridRaycaster::create(scene, {0, setups[i].controls}));
         // The balance needs some pictures to find its place.
         Times warm;
-        std::string rungs;
+        std::string splits;
         for (int n = 0; n < (setups[i].controls ? 1 : sizes.warm); ++n) {
             warm.draw(*costs[i].raycaster, views.front(), sizes.side);
-            rungs += rungOf(costs[i].raycaster->stats().controls);
+            splits += splitOf(costs[i].raycaster->stats().controls);
         }
         if (!setups[i].controls)
-            fmt::print("{}: rungs while the balance finds its place {}\n", name, rungs);
+            fmt::print("{}: splits while the balance finds its place {}\n", name, splits);
     }
     const double pictures = sizes.places * sizes.rounds;
     for (const CameraView& view : views) {
@@ -181,10 +181,10 @@ Column measure(gpu::Context& context, const std::string& name, Volume<std::int16
         column.cpuMs.push_back(median(cost.times.cpuMs));
         fmt::print(
             "  {:32s} {:6.1f} ms, CPU time {:6.1f} ms; cpu {:6.1f} gpu {:6.1f}, passes {:4.1f}, "
-            "quads {:.2f} + {:.2f} filled, most apart {}, rung {}\n",
+            "quads {:.2f} + {:.2f} filled, most apart {}, split {}\n",
             setups[i].name, column.ms.back(), column.cpuMs.back(), median(cost.cpu),
             median(cost.gpu), cost.passes, cost.cast, cost.filled, cost.most,
-            rungOf(cost.raycaster->stats().controls));
+            splitOf(cost.raycaster->stats().controls));
     }
     return column;
 }
@@ -270,7 +270,7 @@ int main(int argc, char** argv) {
     CLI::App program("Times the hybrid and the polygon-assisted raycaster beside the single pass.");
     std::string volumes, storeFolder, caseName, only;
     int side = 512, places = 3, rounds = 2, warm = 48;
-    bool ladderToo = false;
+    bool everySplit = false;
     program.add_option("--volumes", volumes, "Folder of engine, bonsai and head");
     program.add_option("--store", storeFolder, "A store with a prepared case");
     program.add_option("--case", caseName, "Its name");
@@ -280,7 +280,8 @@ int main(int argc, char** argv) {
     program.add_option("--warm", warm, "Pictures in which the balance finds its place")
         ->check(CLI::Range(1, 100000));
     program.add_option("--only", only, "One of the volumes");
-    program.add_flag("--ladder", ladderToo, "Every rung of the balance, in place of the controls");
+    program.add_flag("--splits", everySplit,
+                     "Every split of the balance, in place of the controls");
     CLI11_PARSE(program, argc, argv);
     // Lines appear as they are made, also in a file.
     std::setvbuf(stdout, nullptr, _IOLBF, 0);
@@ -296,7 +297,7 @@ int main(int argc, char** argv) {
     }
     if (volumes.empty()) return 0;
     const std::filesystem::path folder = volumes;
-    const std::vector<Setup> chosen = ladderToo ? ladder() : setups();
+    const std::vector<Setup> chosen = everySplit ? splits() : setups();
     std::vector<Column> columns;
     struct Data {
         const char* name;

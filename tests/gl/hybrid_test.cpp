@@ -69,8 +69,8 @@ TEST_F(Hybrid, DrawsTheSinglePassesPixelsWhateverItsControls) {
     const auto shared = scene(tubeWithResidue);
     const auto plain = *SinglePassRaycaster::create(shared);
     std::vector<std::unique_ptr<HybridRaycaster>> hybrids;
-    for (const int rung : {0, 2, 4, 6, 8})
-        hybrids.push_back(*HybridRaycaster::create(shared, {0, hybridLadder[std::size_t(rung)]}));
+    for (const int split : {0, 2, 4, 6, 8})
+        hybrids.push_back(*HybridRaycaster::create(shared, {0, hybridSplits[std::size_t(split)]}));
     for (const Optics& optics : allOptics()) {
         for (const Camera& camera : cameras()) {
             const CameraView view{camera, optics, {}};
@@ -88,7 +88,7 @@ TEST_F(Hybrid, DrawsTheSinglePassesPixelsWhateverItsControls) {
 TEST_F(Hybrid, StopsShortOfABoundaryThatIsManySamplesAway) {
     const auto shared = scene(tubeWithResidue);
     const auto plain = *SinglePassRaycaster::create(shared);
-    const auto hybrid = *HybridRaycaster::create(shared, {0, hybridLadder[8]});
+    const auto hybrid = *HybridRaycaster::create(shared, {0, hybridSplits[8]});
     CameraView view{cameras()[0], *opticsPreset("mucosa"), {}};
     view.march.stepVoxels = 0.05;  // forty samples and more to a leaf
     EXPECT_GE(psnr(drawn(*hybrid, view, {48, 32}), drawn(*plain, view, {48, 32})), 60.0);
@@ -97,7 +97,7 @@ TEST_F(Hybrid, StopsShortOfABoundaryThatIsManySamplesAway) {
 TEST_F(Hybrid, EndsRaysAtTheBackdrop) {
     const auto shared = scene(closedTube);
     const auto plain = *SinglePassRaycaster::create(shared);
-    const auto hybrid = *HybridRaycaster::create(shared, {0, hybridLadder[7]});
+    const auto hybrid = *HybridRaycaster::create(shared, {0, hybridSplits[7]});
     CameraView view{cameras()[0], {}, {}};
     view.optics.transferFunction = translucent();
     auto backdrop = std::make_shared<Backdrop>();
@@ -170,7 +170,7 @@ TEST_F(Hybrid, PixelsAreTheSameWhateverTheBalanceAsks) {
         if (std::find(asked.begin(), asked.end(), controls) == asked.end())
             asked.push_back(controls);
     }
-    EXPECT_EQ(asked.front(), hybridLadder.front());
+    EXPECT_EQ(asked.front(), hybridSplits.front());
     EXPECT_GE(asked.size(), 2u);
 }
 

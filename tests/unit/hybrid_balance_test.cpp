@@ -15,17 +15,17 @@ namespace haustra::tests {
 namespace {
 
 using render::HybridBalance;
-using render::hybridLadder;
+using render::hybridSplits;
 
-constexpr int rungs = int(hybridLadder.size()), last = rungs - 1;
-using Curve = std::array<double, rungs>;
+constexpr int splits = int(hybridSplits.size()), last = splits - 1;
+using Curve = std::array<double, splits>;
 
 struct NamedCurve {
     const char* name;
     Curve ms;
 };
 
-/// What a picture costs on each rung.
+/// What a picture costs on each split.
 const std::vector<NamedCurve> curves = {
     {"flat", {50, 50, 50, 50, 50, 50, 50, 50, 50}},
     {"rises", {50, 55, 62, 70, 80, 90, 105, 120, 140}},
@@ -55,16 +55,16 @@ public:
         return factor;
     }
 
-    /// Of each picture, what its rung and home cost without noise.
+    /// Of each picture, what its split and the best one cost without noise.
     struct Drawn {
-        double ms, homeMs;
+        double ms, bestMs;
     };
     std::vector<Drawn> run(HybridBalance& balance, const Curve& ms, int pictures,
                            double cpuPerGpu = 1.0) {
         std::vector<Drawn> drawn;
         for (int i = 0; i < pictures; ++i) {
-            const double cost = ms[std::size_t(balance.rung())];
-            drawn.push_back({cost, ms[std::size_t(balance.home())]});
+            const double cost = ms[std::size_t(balance.split())];
+            drawn.push_back({cost, ms[std::size_t(balance.best())]});
             const double cpuMs = cost * cpuPerGpu / (1.0 + cpuPerGpu);
             balance.drew(cpuMs * noise(), (cost - cpuMs) * noise(), cost * noise());
         }
@@ -94,9 +94,9 @@ void forAll(Body&& body) {
                          ", seed " + std::to_string(seed));
 }
 
-TEST(HybridBalance, EachRungGivesTheCpuMoreToDo) {
-    for (std::size_t i = 1; i < hybridLadder.size(); ++i) {
-        const auto &low = hybridLadder[i - 1], &high = hybridLadder[i];
+TEST(HybridBalance, EachSplitGivesTheCpuMoreToDo) {
+    for (std::size_t i = 1; i < hybridSplits.size(); ++i) {
+        const auto &low = hybridSplits[i - 1], &high = hybridSplits[i];
         EXPECT_FALSE(low == high);
         EXPECT_GE(low.entryLevel, high.entryLevel);
         EXPECT_LE(low.toBoundary, high.toBoundary);
@@ -108,25 +108,25 @@ TEST(HybridBalance, EachRungGivesTheCpuMoreToDo) {
     }
 }
 
-TEST(HybridBalance, FindsTheBestRungOfAnyCurve) {
+TEST(HybridBalance, FindsTheBestSplitOfAnyCurve) {
     forAll([](const Curve& ms, const Noise& noise, unsigned seed, const std::string& what) {
         HybridBalance balance;
         Machine machine(noise.spread, noise.spikes, seed);
         machine.run(balance, ms, 1500);
         double mean = 0.0;
         for (const auto& drawn : machine.run(balance, ms, 1500))
-            mean += drawn.homeMs / 1500;
+            mean += drawn.bestMs / 1500;
         EXPECT_LE(mean, (1.04 + 0.3 * noise.spread) * best(ms)) << what;
     });
 }
 
-TEST(HybridBalance, StandsOnNoRungThatIsWorseThanTheLowest) {
+TEST(HybridBalance, StaysWithNoSplitThatIsWorseThanTheFirst) {
     forAll([](const Curve& ms, const Noise& noise, unsigned seed, const std::string& what) {
         HybridBalance balance;
         Machine machine(noise.spread, noise.spikes, seed);
         int worse = 0, together = 0, longest = 0;
         for (const auto& drawn : machine.run(balance, ms, 4000)) {
-            const bool here = drawn.homeMs > (1.03 + noise.spread) * ms[0];
+            const bool here = drawn.bestMs > (1.03 + noise.spread) * ms[0];
             worse += here;
             together = here ? together + 1 : 0;
             longest = std::max(longest, together);
@@ -137,17 +137,17 @@ TEST(HybridBalance, StandsOnNoRungThatIsWorseThanTheLowest) {
     });
 }
 
-TEST(HybridBalance, AskingOthersCostsLittle) {
+TEST(HybridBalance, TrialsCostLittle) {
     forAll([](const Curve& ms, const Noise& noise, unsigned seed, const std::string& what) {
         HybridBalance balance;
         Machine machine(noise.spread, noise.spikes, seed);
         double lost = 0.0;
         int pictures = 0;
         for (const auto& drawn : machine.run(balance, ms, 3000)) {
-            lost += std::max(drawn.ms / drawn.homeMs - 1.0, 0.0);
-            const double oneAsking = 4.0;
-            EXPECT_LE(lost, (1.0 + noise.spread) * (HybridBalance::share * ++pictures +
-                                                    HybridBalance::mostCredit + oneAsking))
+            lost += std::max(drawn.ms / drawn.bestMs - 1.0, 0.0);
+            const double oneTrial = 4.0;
+            EXPECT_LE(lost, (1.0 + noise.spread) * (HybridBalance::costPerPicture * ++pictures +
+                                                    HybridBalance::mostCredit + oneTrial))
                 << what << " after " << pictures;
         }
     });
@@ -166,12 +166,12 @@ TEST(HybridBalance, FindsItsPlaceAnewWhereTheCurveChanges) {
                     // Soon as good as the lowest, and in time as good as the best.
                     double mean = 0.0;
                     for (const auto& drawn : machine.run(balance, ms, 400, cpuPerGpu))
-                        mean += drawn.homeMs / 400;
+                        mean += drawn.bestMs / 400;
                     EXPECT_LE(mean, (1.03 + noise.spread) * ms[0]) << before.name << " to " << what;
                     machine.run(balance, ms, 1000, cpuPerGpu);
                     mean = 0.0;
                     for (const auto& drawn : machine.run(balance, ms, 500, cpuPerGpu))
-                        mean += drawn.homeMs / 500;
+                        mean += drawn.bestMs / 500;
                     EXPECT_LE(mean, (1.05 + 0.4 * noise.spread) * best(ms))
                         << before.name << " to " << what;
                 });
@@ -188,7 +188,7 @@ TEST(HybridBalance, AChangeThatTheTimesTellIsSoonFollowed) {
             Machine machine(noise.spread, noise.spikes, seed);
             machine.run(balance, before.ms, 1000);
             machine.run(balance, ms, 60, 4.0);
-            late += ms[std::size_t(balance.home())] > (1.05 + noise.spread) * ms[0];
+            late += ms[std::size_t(balance.best())] > (1.05 + noise.spread) * ms[0];
             ++all;
         });
     }
@@ -196,15 +196,15 @@ TEST(HybridBalance, AChangeThatTheTimesTellIsSoonFollowed) {
 }
 
 TEST(HybridBalance, GivesASlowGpuLessAndASlowCpuLess) {
-    // Each rung takes a fifth more of the CPU's time and a tenth less of the GPU's.
+    // Each split takes a fifth more of the CPU's time and a tenth less of the GPU's.
     const auto standsOn = [](double cpuMs, double gpuMs) {
         HybridBalance balance;
         for (int i = 0; i < 400; ++i) {
-            const double cpu = cpuMs * std::pow(1.2, balance.rung()),
-                         gpu = gpuMs * std::pow(0.9, balance.rung());
+            const double cpu = cpuMs * std::pow(1.2, balance.split()),
+                         gpu = gpuMs * std::pow(0.9, balance.split());
             balance.drew(cpu, gpu, std::max(cpu, gpu));
         }
-        return balance.home();
+        return balance.best();
     };
     EXPECT_EQ(standsOn(2.0, 80.0), last);
     EXPECT_EQ(standsOn(80.0, 2.0), 0);
@@ -219,9 +219,9 @@ TEST(HybridBalance, ViewsThatCostMoreAndMoreMisleadNobody) {
         double mean = 0.0, pictures = 0.0;
         for (int i = 0; i < 4000; ++i) {
             const double view = std::exp(std::sin(0.02 * i));
-            const double ms = curve.ms[std::size_t(balance.rung())];
+            const double ms = curve.ms[std::size_t(balance.split())];
             if (i > 1500) {
-                mean += curve.ms[std::size_t(balance.home())];
+                mean += curve.ms[std::size_t(balance.best())];
                 ++pictures;
             }
             balance.drew(0.5 * ms * view, 0.5 * ms * view, ms * view * machine.noise());
@@ -231,13 +231,13 @@ TEST(HybridBalance, ViewsThatCostMoreAndMoreMisleadNobody) {
 }
 
 TEST(HybridBalance, NothingFromElsewhereIsCompared) {
-    // A picture here and one elsewhere that costs a tenth, in turns: a rung that was asked for here
+    // A picture here and one elsewhere that costs a tenth, in turns: a split that was tried here
     // would look ten times as good there.
     HybridBalance balance;
     for (int i = 0; i < 500; ++i) {
         balance.elsewhere();
         balance.drew(1.0, 1.0, i % 2 == 0 ? 100.0 : 10.0);
-        EXPECT_EQ(balance.home(), 0);
+        EXPECT_EQ(balance.best(), 0);
     }
 }
 
@@ -245,7 +245,7 @@ TEST(HybridBalance, TimesOfNothingAreNoReasonToMove) {
     HybridBalance balance;
     for (int i = 0; i < 200; ++i) {
         balance.drew(0.0, 0.0, 0.0);
-        EXPECT_EQ(balance.home(), 0);
+        EXPECT_EQ(balance.best(), 0);
     }
 }
 

@@ -5,7 +5,7 @@
 #include "gpu/context.h"
 #include "gpu/texture.h"
 #include "render/optics/classification.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/picture.h"
 #include "render/scene/scene.h"
 #include "shaders/uniforms.h"
@@ -66,7 +66,7 @@ private:
     gpu::Texture volume_;
     gpu::UniformBuffer marchBlock_;
     std::optional<gpu::Texture> gradients_;
-    LatelyUsed<Classification> recent_{classificationsKept};
+    LruCache<Classification> recent_{classificationsKept};
     std::shared_ptr<const Backdrop> backdrop_;
     std::optional<gpu::Texture> backdropTexture_;  // of backdrop_
 };

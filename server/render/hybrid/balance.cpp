@@ -7,10 +7,10 @@ namespace haustra::render {
 
 namespace {
 
-/// Home's pictures before another rung is asked.
-constexpr int fewestHome = 3;
-/// Pictures from doubt to doubt.
-constexpr long doubtEvery = 64;
+/// Pictures of the best split before another one is tried.
+constexpr int fewestOfBest = 3;
+/// Fewest pictures from one forgetting of old trials to the next.
+constexpr long distrustEvery = 64;
 
 }  // namespace
 
@@ -30,116 +30,117 @@ void HybridBalance::drew(double cpuMs, double gpuMs, double pictureMs) {
     ++pictures_;
     // Times of nothing tell nothing, and divide nothing.
     const double ms = std::max(pictureMs, 1e-3);
-    if (guestsTurn_)
-        drewGuest(ms);
+    if (candidatesTurn_)
+        drewCandidate(ms);
     else
-        drewHome(std::max(cpuMs, 1e-3), std::max(gpuMs, 1e-3), ms);
+        drewBest(std::max(cpuMs, 1e-3), std::max(gpuMs, 1e-3), ms);
 }
 
 void HybridBalance::elsewhere() {
-    guest_ = -1;
-    guestsTurn_ = false;
-    homeMs_.clear();
+    candidate_ = -1;
+    candidatesTurn_ = false;
+    bestMs_.clear();
     cpuPerGpu_.clear();
 }
 
-void HybridBalance::drewHome(double cpuMs, double gpuMs, double pictureMs) {
-    homeMs_.add(pictureMs);
+void HybridBalance::drewBest(double cpuMs, double gpuMs, double pictureMs) {
+    bestMs_.add(pictureMs);
     cpuPerGpu_.add(cpuMs / gpuMs);
-    credit_ = std::min(credit_ + share, mostCredit);
-    if (guest_ >= 0) {
+    credit_ = std::min(credit_ + costPerPicture, mostCredit);
+    if (candidate_ >= 0) {
         judge();
-        guestsTurn_ = guest_ >= 0;
+        candidatesTurn_ = candidate_ >= 0;
         return;
     }
-    if (homeMs_.count() < fewestHome) return;
-    doubt();
-    if (rest_ > 0) --rest_;
-    if (rest_ > 0 || credit_ <= 0.0) return;
-    guest_ = nextGuest();
-    guestsTurn_ = true;
-    guestMs_.clear();
+    if (bestMs_.count() < fewestOfBest) return;
+    distrustTrials();
+    if (pause_ > 0) --pause_;
+    if (pause_ > 0 || credit_ <= 0.0) return;
+    candidate_ = nextCandidate();
+    candidatesTurn_ = true;
+    candidateMs_.clear();
 }
 
-void HybridBalance::drewGuest(double pictureMs) {
-    const double ratio = pictureMs / homeMs_.median();
+void HybridBalance::drewCandidate(double pictureMs) {
+    const double ratio = pictureMs / bestMs_.median();
     credit_ -= std::max(ratio - 1.0, 0.0);
-    if (guestMs_.count() == 0) {
-        if (ratio > hopeless) return endAsking(false, ratio);
-        // Of home's pictures, only those drawn in turns with the guest's are compared with them.
-        homeMs_.clear();
+    if (candidateMs_.count() == 0) {
+        if (ratio > hopeless) return endTrial(false, ratio);
+        // Of the best one's pictures, only those drawn in turns with the candidate's are compared
+        // with them.
+        bestMs_.clear();
     }
-    guestMs_.add(pictureMs);
-    guestsTurn_ = false;
+    candidateMs_.add(pictureMs);
+    candidatesTurn_ = false;
 }
 
 void HybridBalance::judge() {
-    const int pairs = guestMs_.count();
-    const double ratio = guestMs_.median() / homeMs_.median();
-    const bool apart = guestMs_.most() < homeMs_.least();
+    const int pairs = candidateMs_.count();
+    const double ratio = candidateMs_.median() / bestMs_.median();
+    const bool apart = candidateMs_.most() < bestMs_.least();
     if (pairs >= pairsToLose && ratio > worse)
-        endAsking(false, ratio);
+        endTrial(false, ratio);
     else if (pairs == mostPairs || (pairs >= pairsToWin && apart))
-        endAsking(ratio < 1.0 - gain, ratio);
+        endTrial(ratio < 1.0 - gain, ratio);
 }
 
-void HybridBalance::endAsking(bool won, double ratio) {
-    asked_[std::size_t(guest_)] = {true, pictures_, ratio - 1.0};
+void HybridBalance::endTrial(bool won, double ratio) {
+    trials_[std::size_t(candidate_)] = {true, pictures_, ratio - 1.0};
     if (won) {
-        asked_[std::size_t(home_)] = {true, pictures_, 0.0};
-        for (Asked& one : asked_)
+        trials_[std::size_t(best_)] = {true, pictures_, 0.0};
+        for (Trial& one : trials_)
             one.excess = (1.0 + one.excess) / ratio - 1.0;
-        home_ = guest_;
-        homeMs_ = guestMs_;
+        best_ = candidate_;
+        bestMs_ = candidateMs_;
         cpuPerGpu_.clear();
         knownCpuPerGpu_ = 0.0;
-        nextRest_ = shortestRest;
-        rest_ = 0;
+        nextPause_ = shortestPause;
+        pause_ = 0;
     } else {
-        // Until all were asked once there is no reason to wait but what it costs.
+        // Until all were tried once there is no reason to wait but what it costs.
         bool all = true;
-        for (int rung = 0; rung < rungs; ++rung)
-            all = all && (rung == home_ || asked_[std::size_t(rung)].ever);
-        rest_ = all ? nextRest_ : 0;
-        if (all) nextRest_ = std::min(2 * nextRest_, longestRest);
+        for (int split = 0; split < splits; ++split)
+            all = all && (split == best_ || trials_[std::size_t(split)].ever);
+        pause_ = all ? nextPause_ : 0;
+        if (all) nextPause_ = std::min(2 * nextPause_, longestPause);
     }
-    guest_ = -1;
-    guestsTurn_ = false;
+    candidate_ = -1;
+    candidatesTurn_ = false;
 }
 
-void HybridBalance::doubt() {
-    const double ratio = cpuPerGpu_.count() < fewestHome ? 0.0 : cpuPerGpu_.median();
+void HybridBalance::distrustTrials() {
+    const double ratio = cpuPerGpu_.count() < fewestOfBest ? 0.0 : cpuPerGpu_.median();
     if (ratio == 0.0) return;
     if (knownCpuPerGpu_ == 0.0) knownCpuPerGpu_ = ratio;
-    if (ratio < knownCpuPerGpu_ * stirring && ratio > knownCpuPerGpu_ / stirring) return;
-    if (pictures_ - doubtedAt_ < doubtEvery) return;
-    doubtedAt_ = pictures_;
+    if (ratio < knownCpuPerGpu_ * mostChange && ratio > knownCpuPerGpu_ / mostChange) return;
+    if (pictures_ - distrustedAt_ < distrustEvery) return;
+    distrustedAt_ = pictures_;
     knownCpuPerGpu_ = ratio;
-    for (Asked& one : asked_)
+    for (Trial& one : trials_)
         one.excess = 0.0;
-    asked_[0].ever = false;
-    rest_ = 0;
-    nextRest_ = shortestRest;
+    trials_[0].ever = false;
+    pause_ = 0;
+    nextPause_ = shortestPause;
 }
 
-int HybridBalance::nextGuest() const {
+int HybridBalance::nextCandidate() const {
     const bool down = cpuPerGpu_.count() > 0 && cpuPerGpu_.median() > tolerance;
     int best = -1;
     double bestWaited = -1.0;
-    const auto consider = [&](int rung) {
-        if (rung < 0 || rung >= rungs || rung == home_) return;
-        const Asked& one = asked_[std::size_t(rung)];
-        const bool close = rung == 0 || std::abs(rung - home_) == 1;
+    const auto consider = [&](int split) {
+        if (split < 0 || split >= splits || split == best_) return;
+        const Trial& one = trials_[std::size_t(split)];
+        const bool close = split == 0 || std::abs(split - best_) == 1;
         const double slow = close ? 0.25 : std::clamp(one.excess, 0.25, 1.0);
         const double waited = one.ever ? double(pictures_ - one.at) / slow : HUGE_VAL;
         if (waited <= bestWaited) return;
-        best = rung;
+        best = split;
         bestWaited = waited;
     };
     consider(0);
     for (const int side : {down ? -1 : 1, down ? 1 : -1})
-        for (int away = 1; away < rungs; ++away)
-            consider(home_ + side * away);
+        for (int away = 1; away < splits; ++away)
+            consider(best_ + side * away);
     return best;
 }
 

@@ -18,16 +18,17 @@ struct HybridControls {
     bool toBoundary = false;
     /// 3: likewise from behind, where the ray leaves the volume; −1: it ends there.
     int exitLevel = -1;
-    /// 4: a tile is followed no longer when fewer of its quads than this share go on: their rays
-    /// are left to the filling of holes, where each goes to its own end without the CPU. (In the
-    /// dissertation, which had no loops in fragment programs that end by themselves, that meant
-    /// work for the CPU; here it means less.)
+    /// 4: a tile is followed no longer when fewer of its quads than this costPerPicture go on:
+    /// their rays are left to the filling of holes, where each goes to its own end without the CPU.
+    /// (In the dissertation, which had no loops in fragment programs that end by themselves, that
+    /// meant work for the CPU; here it means less.)
     double leftToFilling = 0.25;
     bool operator==(const HybridControls&) const = default;
 };
 
-/// From the least work for the CPU to the most. Each rung does a little more of one control.
-inline constexpr std::array<HybridControls, 9> hybridLadder = {{
+/// Ways to split the work, from the least for the CPU to the most: each gives it a little more by
+/// one control.
+inline constexpr std::array<HybridControls, 9> hybridSplits = {{
     {4, false, -1, 1.01},
     {3, false, -1, 0.75},
     {2, false, -1, 0.5},
@@ -39,41 +40,46 @@ inline constexpr std::array<HybridControls, 9> hybridLadder = {{
     {0, true, 0, 0.0},
 }};
 
-/// Which rung to stand on, by what pictures cost. It begins on the lowest, which costs about what a
-/// single pass does, and stands at home on the best that it knows. Now and then another rung is
-/// asked: its pictures are drawn in turns with home's, so that a view or a machine that changes
-/// meanwhile changes both, and the medians of up to `mostPairs` of each decide. One that is faster
-/// by `gain` is home from then on. No slope is followed from rung to rung: costs need not rise and
-/// fall but once along the ladder, and where the GPU is the CPU's own cores they do not.
+/// Finds the split that draws a picture fastest, by trials while pictures are drawn.
 ///
-/// Whom it asks: those never asked, first towards where the longer of the CPU's and the GPU's times
-/// says (the dissertation equalises the two; here they only give the direction); then whoever was
-/// not asked for the longest, where the waiting of those that were slow counts less, down to a
-/// quarter; but that of the lowest rung and of home's neighbours counts whole. What asking loses
-/// against home is bounded: `share` of a picture for each picture, of which up to `mostCredit` may
-/// be saved, and at most one asking beyond.
+/// It begins with split 0, which costs about what a single pass does, and draws with the best one
+/// known so far. Now and then another split is the candidate: its pictures alternate with those of
+/// the best one, so that a view or a machine that changes meanwhile changes both, and the medians
+/// of up to `mostPairs` pictures of each are compared. A candidate that is faster by `gain` becomes
+/// the best. There is no descent from split to split: the time need not have one minimum only, and
+/// where the GPU is the CPU's own cores it has several.
 ///
-/// Where home's times have changed by `stirring` in proportion to each other, what is known of the
-/// other rungs is doubted, and the lowest is asked first. Belongs to one thread.
+/// The next candidate: splits that were never tried, first towards where the longer of the CPU's
+/// and the GPU's times says (the dissertation equalises the two; here they only give the
+/// direction); then the one whose last trial was the longest ago. That time counts less, down to a
+/// quarter, for splits that were slow, but in full for split 0 and the neighbours of the best. What
+/// trials cost is bounded: a budget, in pictures of the best split, grows by `costPerPicture` with
+/// each picture up to `mostCredit`; a trial begins only while it is positive.
+///
+/// Where the ratio of the CPU's to the GPU's time has changed by the factor `mostChange`, earlier
+/// trials say little: split 0 is tried next, and all slow ones are as good as any. Belongs to one
+/// thread.
 class HybridBalance {
 public:
-    /// Pairs of a guest's and home's pictures: from the third on, a guest that is slower by
-    /// median / median > `worse` is dismissed; from the fifth on, one whose slowest is faster than
-    /// home's fastest wins; the seventh decides. A first picture that takes `hopeless` times home's
-    /// is enough.
+    /// A trial compares pairs of pictures, one of the candidate's and one of the best split's. From
+    /// the third pair on, a candidate with a ratio of medians over `worse` loses; from the fifth
+    /// on, one whose slowest picture is faster than the best split's fastest wins; the seventh
+    /// decides. A first picture that takes `hopeless` times as long loses at once.
     static constexpr int mostPairs = 7, pairsToWin = 5, pairsToLose = 3;
     static constexpr double gain = 0.03, hopeless = 2.0, worse = 1.1;
-    static constexpr double share = 1.0 / 32.0, mostCredit = 8.0;  ///< in pictures of home's
+    static constexpr double costPerPicture = 1.0 / 32.0,
+                            mostCredit = 8.0;  ///< in pictures of the best
     static constexpr double tolerance = 1.25;  ///< over it the CPU's time is the longer
-    static constexpr double stirring = 1.6;
-    /// Home's pictures from asking to asking, once all were asked: ever more, until another wins.
-    static constexpr int shortestRest = 8, longestRest = 32;
+    static constexpr double mostChange = 1.6;
+    /// Pictures of the best split between trials, once all were tried: ever more, until another
+    /// wins.
+    static constexpr int shortestPause = 8, longestPause = 32;
 
     /// For the next picture.
-    int rung() const { return guestsTurn_ ? guest_ : home_; }
-    const HybridControls& controls() const { return hybridLadder[std::size_t(rung())]; }
-    /// The rung that it holds for the best.
-    int home() const { return home_; }
+    int split() const { return candidatesTurn_ ? candidate_ : best_; }
+    const HybridControls& controls() const { return hybridSplits[std::size_t(split())]; }
+    /// The fastest split known.
+    int best() const { return best_; }
     /// Of a picture that was drawn with controls(): the CPU's part, the GPU's, and what it took in
     /// all, which is to become least.
     void drew(double cpuMs, double gpuMs, double pictureMs);
@@ -81,11 +87,11 @@ public:
     void elsewhere();
 
 private:
-    static constexpr int rungs = int(hybridLadder.size());
-    struct Asked {
+    static constexpr int splits = int(hybridSplits.size());
+    struct Trial {
         bool ever = false;
         long at = 0;          // in pictures_
-        double excess = 0.0;  // over home's time, in proportion to it
+        double excess = 0.0;  // of its time over the best's, in proportion to it
     };
     /// The last few values.
     class Few {
@@ -100,19 +106,19 @@ private:
     private:
         std::vector<double> values_;
     };
-    void drewHome(double cpuMs, double gpuMs, double pictureMs);
-    void drewGuest(double pictureMs);
-    void doubt();
-    int nextGuest() const;
+    void drewBest(double cpuMs, double gpuMs, double pictureMs);
+    void drewCandidate(double pictureMs);
+    void distrustTrials();
+    int nextCandidate() const;
     void judge();
-    void endAsking(bool won, double ratio);
+    void endTrial(bool won, double ratio);
 
-    int home_ = 0, guest_ = -1;
-    bool guestsTurn_ = false;
-    Few homeMs_, guestMs_, cpuPerGpu_;
-    std::array<Asked, rungs> asked_{};
-    long pictures_ = 0, doubtedAt_ = 0;
-    int rest_ = 0, nextRest_ = shortestRest;
+    int best_ = 0, candidate_ = -1;
+    bool candidatesTurn_ = false;
+    Few bestMs_, candidateMs_, cpuPerGpu_;
+    std::array<Trial, splits> trials_{};
+    long pictures_ = 0, distrustedAt_ = 0;
+    int pause_ = 0, nextPause_ = shortestPause;
     double credit_ = mostCredit;
     double knownCpuPerGpu_ = 0.0;  // 0: not yet
 };

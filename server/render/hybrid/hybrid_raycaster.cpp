@@ -9,7 +9,7 @@
 #include "render/hybrid/ray_tiles.h"
 #include "render/hybrid/reader_balances.h"
 #include "render/native/tile_workers.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/ray_setup.h"
 
 #include <algorithm>
@@ -77,7 +77,7 @@ struct HybridRaycaster::Impl {
     MinMaxOctree octree;
     MarchPrograms slabs{"hybrid_slab.comp"}, finish{"cell_picture.comp"};
     ReaderBalances balances;
-    LatelyUsed<Classified> classified{classificationsKept};
+    LruCache<Classified> classified{classificationsKept};
     int classifications = 0;
     std::optional<gpu::Texture> rays, target;
     std::optional<gpu::MappedBuffer> spans;

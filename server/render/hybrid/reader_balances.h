@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/hybrid/balance.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/raycaster.h"
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace haustra::render {
 /// compares pictures that follow each other: so each reader has its own, and only whole pictures
 /// count. Who a reader is is told by what is drawn: equal colours, sampling and size, and a camera
 /// near the last one. A camera that leaps, or a picture of another size, begins anew with what was
-/// known of the same colours; other colours begin on the lowest rung, which is never far from a
+/// known of the same colours; other colours begin with split 0, which is never far from a
 /// single pass. The last `readersKept` are known. Belongs to one thread.
 class ReaderBalances {
 public:
@@ -42,7 +42,7 @@ private:
     Reader& readerOf(const CameraView& view, const Band& band, double stepMm);
 
     double nearMm_;
-    LatelyUsed<std::unique_ptr<Reader>> readers_{readersKept};
+    LruCache<std::unique_ptr<Reader>> readers_{readersKept};
     Reader* drawing_ = nullptr;  // of the last band, where it counts
     Band band_;
 };

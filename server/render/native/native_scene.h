@@ -4,7 +4,7 @@
 #include "render/native/packet_scene.h"
 #include "render/native/tile_workers.h"
 #include "render/optics/transfer_table.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/picture.h"
 #include "render/scene/scene.h"
 
@@ -56,7 +56,7 @@ private:
     std::shared_ptr<const Scene> scene_;
     PacketVolume volume_;
     TileWorkers workers_;
-    LatelyUsed<Classified> recent_;
+    LruCache<Classified> recent_;
 };
 
 }  // namespace haustra::render

@@ -2,7 +2,7 @@
 
 #include "render/gl/march_variant.h"
 #include "render/object_order/cell_raycaster.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/min_max_octree.h"
 #include "render/scene/ray_setup.h"
 #include "shaders/shader_source.h"
@@ -73,7 +73,7 @@ struct LabelledRaycaster::Impl {
     CellRaycaster cells;
     std::vector<std::vector<std::int16_t>> labelsOfCell;
     std::optional<MinMaxOctree> octree = std::nullopt;  // of the opacities that show
-    LatelyUsed<ShownCells> shown{1};
+    LruCache<ShownCells> shown{1};
     std::vector<std::pair<MarchVariant, gpu::ComputeProgram>> casts = {};
     MarchPrograms cast{
         "cell_rays.comp", {"cell_uniforms.h", "cells.glsl"}, {}, "#define COLOR_CELLS 1\n"};

@@ -4,7 +4,7 @@
 #include "render/object_order/cell_projector.h"
 #include "render/object_order/cell_raycaster.h"
 #include "render/optics/classification.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/min_max_octree.h"
 #include "render/scene/ray_setup.h"
 
@@ -58,7 +58,7 @@ struct ObjectOrderRaycaster::Impl {
     int threads;
     MinMaxOctree octree;
     CellRaycaster cells;
-    LatelyUsed<ShownCells> shown{classificationsKept};
+    LruCache<ShownCells> shown{classificationsKept};
     MarchPrograms cast{"cell_rays.comp", {"cell_uniforms.h", "cells.glsl"}};
     MarchPrograms resolve{"cell_picture.comp"};
 

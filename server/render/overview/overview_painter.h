@@ -4,7 +4,7 @@
 #include "gpu/context.h"
 #include "gpu/program.h"
 #include "gpu/raster_target.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/picture.h"
 #include "render/scene/raycaster.h"
 #include "render/scene/scene.h"
@@ -69,7 +69,7 @@ private:
     std::optional<gpu::StorageBuffer> wallVertices_, wallTriangles_;
     std::optional<gpu::RasterTarget> wallTarget_, marksTarget_;
     std::optional<Sight> inTarget_;  // whose wall wallTarget_ holds
-    LatelyUsed<Wall> walls_{4};      // of 16 bytes a pixel: readers' bands alternate
+    LruCache<Wall> walls_{4};        // of 16 bytes a pixel: readers' bands alternate
     std::optional<Ground> ground_;
 };
 

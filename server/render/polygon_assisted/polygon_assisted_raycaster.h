@@ -8,7 +8,7 @@
 #include "render/gl/march_variant.h"
 #include "render/gl/single_pass_raycaster.h"
 #include "render/polygon_assisted/wall_entry.h"
-#include "render/scene/lately_used.h"
+#include "render/scene/lru_cache.h"
 #include "render/scene/raycaster.h"
 
 #include <optional>
@@ -74,7 +74,7 @@ private:
     WallEntry wall_;
     Mesh mesh_;
     static constexpr std::size_t searchesKept = 4;  // as many classifications as the scene keeps
-    LatelyUsed<Before> before_{searchesKept};
+    LruCache<Before> before_{searchesKept};
     int searches_ = 0;
     std::size_t blocksBefore_ = 0;
     std::optional<gpu::RasterTarget> firstStep_;

@@ -1,4 +1,4 @@
-// A few things that are dear to make, kept while they are asked for.
+// A cache of a few things that are dear to make.
 #pragma once
 
 #include <algorithm>
@@ -8,11 +8,11 @@
 
 namespace haustra::render {
 
-/// Keeps the `most` that were asked for last.
+/// Holds at most `most` things; the least recently used one makes room for another.
 template <class T>
-class LatelyUsed {
+class LruCache {
 public:
-    explicit LatelyUsed(std::size_t most) : most_(most) {}
+    explicit LruCache(std::size_t most) : most_(most) {}
 
     /// The first that `is(one)`, or null. Valid until the next call of find or keep.
     template <class Is>
@@ -22,13 +22,13 @@ public:
         std::rotate(found, found + 1, kept_.end());
         return &kept_.back();
     }
-    /// In the place of the one that was not asked for the longest, where there are `most`.
+    /// Evicts the least recently used one where there are `most`.
     const T* keep(T one) {
         makeRoom();
         kept_.push_back(std::move(one));
         return &kept_.back();
     }
-    /// Drops the one that keep() would: its memory is free before another is made.
+    /// Evicts what keep() would: its memory is free before another is made.
     void makeRoom() {
         if (kept_.size() == most_) kept_.erase(kept_.begin());
     }
@@ -37,7 +37,7 @@ public:
 
 private:
     std::size_t most_;
-    std::vector<T> kept_;  // the latest used last
+    std::vector<T> kept_;  // the most recently used last
 };
 
 }  // namespace haustra::render
