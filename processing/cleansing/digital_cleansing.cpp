@@ -4,7 +4,7 @@
 #include "cleansing/rim_smoothing.h"
 #include "cleansing/untagged_fluid.h"
 #include "core/connected_labels.h"
-#include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,14 +36,10 @@ std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& a
                 const glm::ivec3 lo = glm::max(v - 1, glm::ivec3(0)),
                                  hi = glm::min(v + 1, grid.size - 1);
                 int most = 0;
-                for (int k = lo.z; k <= hi.z; ++k) {
-                    for (int j = lo.y; j <= hi.y; ++j) {
-                        for (int i = lo.x; i <= hi.x; ++i) {
-                            const std::size_t m = grid.index(i, j, k);
-                            if (shellOf[m] == shell) most = std::max<int>(most, share[m]);
-                        }
-                    }
-                }
+                visitBox(lo, hi, [&](glm::ivec3 beside) {
+                    const std::size_t m = grid.index(beside);
+                    if (shellOf[m] == shell) most = std::max<int>(most, share[m]);
+                });
                 tagged = tagged > most + notRising ? 0 : std::min(tagged, most);
             }
             shares[shell].push_back(std::uint8_t(tagged));

@@ -1,7 +1,7 @@
 #include "cleansing/noise.h"
 
 #include "cleansing/ball.h"
-#include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
@@ -36,123 +36,166 @@ double standardDeviation(const Counts& counts) {
     return sd / std::sqrt(6.0);
 }
 
-/// Blocks of 6 mm that hold tagging, and those beside them.
-std::vector<char> blocksNearTagging(const Volume<std::uint8_t>& segmentation, glm::ivec3 block,
-                                    glm::ivec3 blocks, glm::ivec3 from) {
-    const Grid& grid = segmentation.grid();
-    std::vector<char> near(std::size_t(blocks.x) * std::size_t(blocks.y) * std::size_t(blocks.z));
-    for (int k = 0; k < grid.size.z; ++k) {
-        for (int j = 0; j < grid.size.y; ++j) {
-            for (int i = 0; i < grid.size.x; ++i) {
-                if (LumenLabel(segmentation.at(i, j, k)) != LumenLabel::tagged) continue;
-                const glm::ivec3 b = (glm::ivec3(i, j, k) + from) / block - from / block;
-                const glm::ivec3 lo = glm::max(b - 1, glm::ivec3(0)),
-                                 hi = glm::min(b + 1, blocks - 1);
-                for (int c = lo.z; c <= hi.z; ++c) {
-                    for (int a = lo.y; a <= hi.y; ++a) {
-                        const auto row =
-                            near.begin() + (std::ptrdiff_t(c) * blocks.y + a) * blocks.x;
-                        std::fill(row + lo.x, row + hi.x + 1, 1);
-                    }
+/// Blocks of 6 mm of the whole scan, of a box that begins at its voxel `from`: those that hold
+/// tagging, and those beside them.
+class BlocksNearTagging {
+public:
+    BlocksNearTagging(const Volume<std::uint8_t>& segmentation, glm::ivec3 from)
+        : from_(from),
+          voxels_(voxelsIn(segmentation.grid(), apartFromTaggingMm)),
+          first_(from / voxels_),
+          count_((from + segmentation.grid().size + voxels_ - 1) / voxels_ - first_),
+          near_(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z)) {
+        const Grid& grid = segmentation.grid();
+        for (int k = 0; k < grid.size.z; ++k) {
+            for (int j = 0; j < grid.size.y; ++j) {
+                for (int i = 0; i < grid.size.x; ++i) {
+                    if (LumenLabel(segmentation.at(i, j, k)) != LumenLabel::tagged) continue;
+                    const glm::ivec3 block = blockOf({i, j, k});
+                    mark(block);
+                    // The rest of the block adds nothing.
+                    i = (block.x + first_.x + 1) * voxels_.x - 1 - from.x;
                 }
-                // The rest of the block adds nothing.
-                i = (b.x + from.x / block.x + 1) * block.x - 1 - from.x;
             }
         }
     }
-    return near;
-}
 
-}  // namespace
+    bool hold(glm::ivec3 voxel) const { return near_[index(blockOf(voxel))] != 0; }
 
-NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
-                     const Volume<std::uint8_t>& segmentation, int threads, glm::ivec3 from) {
-    const Grid& grid = scan.hu.grid();
-    const Ball ball = blurBall(grid);
-    const glm::ivec3 apart(glm::ceil(apartMm / grid.spacingMm()));
-    const auto everyOf = [&](std::size_t voxels) {
-        return std::max(
-            {1, int(std::lround(sampleMm3 / grid.voxelVolumeMm3())), int(voxels / samples)});
-    };
-    // Blocks, and the voxels looked at, are those of the whole scan.
-    const glm::ivec3 block = voxelsIn(grid, apartFromTaggingMm),
-                     blocks = (from + grid.size + block - 1) / block - from / block;
-    const std::vector<char> near = blocksNearTagging(segmentation, block, blocks, from);
+    std::size_t voxelCount() const {
+        return std::size_t(std::count(near_.begin(), near_.end(), 1)) * std::size_t(voxels_.x) *
+               std::size_t(voxels_.y) * std::size_t(voxels_.z);
+    }
 
-    /// Differences about the voxels of which `is` holds, each deep inside.
-    const auto differences = [&](const auto& wanted, const auto& is, int every) {
+private:
+    glm::ivec3 blockOf(glm::ivec3 voxel) const { return (voxel + from_) / voxels_ - first_; }
+
+    std::size_t index(glm::ivec3 block) const {
+        return (std::size_t(block.z) * std::size_t(count_.y) + std::size_t(block.y)) *
+                   std::size_t(count_.x) +
+               std::size_t(block.x);
+    }
+
+    void mark(glm::ivec3 block) {
+        visitBox(glm::max(block - 1, glm::ivec3(0)), glm::min(block + 1, count_ - 1),
+                 [&](glm::ivec3 b) { near_[index(b)] = 1; });
+    }
+
+    const glm::ivec3 from_, voxels_, first_, count_;
+    std::vector<char> near_;
+};
+
+/// Second differences in a scan's box that begins at its voxel `from`.
+class Differences {
+public:
+    Differences(const CtScan& scan, glm::ivec3 from, int threads)
+        : hu_(scan.hu),
+          grid_(scan.hu.grid()),
+          ball_(blurBall(grid_)),
+          apart_(glm::ceil(apartMm / grid_.spacingMm())),
+          from_(from),
+          threads_(threads) {}
+
+    /// Their standard deviation about the voxels that are `wanted` and of a material, `is(index)`,
+    /// which has about so many voxels; 0 where there are too few.
+    template <class Wanted, class Is>
+    double sd(std::size_t voxels, const Wanted& wanted, const Is& is) const {
+        const int every = std::max(
+            {1, int(std::lround(sampleMm3 / grid_.voxelVolumeMm3())), int(voxels / samples)});
         Counts counts{};
         std::mutex mutex;
-        parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
-            Counts some{};
-            for (int k = int(begin); k < int(end); ++k) {
-                for (int j = 0; j < grid.size.y; ++j) {
-                    for (int i = firstSample(j + from.y + 2 * (k + from.z), from.x, every);
-                         i < grid.size.x; i += every) {
-                        const glm::ivec3 v(i, j, k);
-                        const auto deep = [&](glm::ivec3 n) {
-                            return is(grid.index(n)) && ball.everywhere(n, is);
-                        };
-                        if (!wanted(v) || !is(grid.index(v)) || !deep(v)) continue;
-                        for (int axis = 0; axis < 2; ++axis) {
-                            glm::ivec3 step(0);
-                            step[axis] = apart[axis];
-                            if (!grid.contains(v - step) || !grid.contains(v + step) ||
-                                !deep(v - step) || !deep(v + step))
-                                continue;
-                            const int d = std::abs(scan.hu.at(v - step) - 2 * scan.hu.at(v) +
-                                                   scan.hu.at(v + step));
-                            if (d < farthest) ++some[std::size_t(d)];
-                        }
-                    }
-                }
-            }
-            const std::lock_guard lock(mutex);  // sums of integers: the order does not matter
-            for (std::size_t d = 0; d < counts.size(); ++d)
-                counts[d] += some[d];
-        });
+        parallelFor(std::size_t(grid_.size.z), 4, threads_,
+                    [&](std::size_t begin, std::size_t end) {
+                        Counts some{};
+                        for (int k = int(begin); k < int(end); ++k)
+                            addSlice(k, every, wanted, is, some);
+                        const std::lock_guard lock(mutex);  // integers: in any order
+                        for (std::size_t d = 0; d < counts.size(); ++d)
+                            counts[d] += some[d];
+                    });
         std::uint64_t total = 0;
         for (const std::uint32_t count : counts)
             total += count;
         return total < fewest ? 0.0 : standardDeviation(counts);
-    };
-    const auto anywhere = [](glm::ivec3) { return true; };
-    const auto labelled = [&](LumenLabel label) {
-        return [&, label](std::size_t n) { return LumenLabel(segmentation[n]) == label; };
-    };
-    NoiseSd sd;
-    const auto voxelsOf = [&](LumenLabel label) {
-        return std::size_t(std::count(segmentation.voxels().begin(), segmentation.voxels().end(),
-                                      std::uint8_t(label)));
-    };
-    sd.gas = differences(anywhere, labelled(LumenLabel::air), everyOf(voxelsOf(LumenLabel::air)));
-    sd.tagged =
-        differences(anywhere, labelled(LumenLabel::tagged), everyOf(voxelsOf(LumenLabel::tagged)));
-    // Wide enough that the window cuts off none of the noise.
-    const double softHu = tissue.meanHu[int(Tissue::soft)],
-                 window = std::max(70.0, 4.5 * std::max(sd.gas, sd.tagged));
-    sd.soft = differences(
-        [&](glm::ivec3 v) {
-            const glm::ivec3 b = (v + from) / block - from / block;
-            return near[(std::size_t(b.z) * std::size_t(blocks.y) + std::size_t(b.y)) *
-                            std::size_t(blocks.x) +
-                        std::size_t(b.x)] != 0;
-        },
-        [&](std::size_t n) {
-            return segmentation[n] == 0 && std::abs(scan.hu[n] - softHu) < window;
-        },
-        everyOf(std::size_t(std::count(near.begin(), near.end(), 1)) * std::size_t(block.x) *
-                std::size_t(block.y) * std::size_t(block.z) / 4));
+    }
+
+private:
+    template <class Wanted, class Is>
+    void addSlice(int k, int every, const Wanted& wanted, const Is& is, Counts& counts) const {
+        for (int j = 0; j < grid_.size.y; ++j) {
+            const int first = firstSample(j + from_.y + 2 * (k + from_.z), from_.x, every);
+            for (int i = first; i < grid_.size.x; i += every) {
+                const glm::ivec3 v(i, j, k);
+                if (wanted(v) && isDeep(v, is)) addAbout(v, is, counts);
+            }
+        }
+    }
+
+    /// The voxel and all that the blur reaches is of the material.
+    template <class Is>
+    bool isDeep(glm::ivec3 v, const Is& is) const {
+        return is(grid_.index(v)) && ball_.everywhere(v, is);
+    }
+
+    template <class Is>
+    void addAbout(glm::ivec3 v, const Is& is, Counts& counts) const {
+        for (int axis = 0; axis < 2; ++axis) {
+            glm::ivec3 step(0);
+            step[axis] = apart_[axis];
+            if (!grid_.contains(v - step) || !grid_.contains(v + step) || !isDeep(v - step, is) ||
+                !isDeep(v + step, is))
+                continue;
+            const int d = std::abs(hu_.at(v - step) - 2 * hu_.at(v) + hu_.at(v + step));
+            if (d < farthest) ++counts[std::size_t(d)];
+        }
+    }
+
+    const Volume<std::int16_t>& hu_;
+    const Grid& grid_;
+    const Ball ball_;
+    const glm::ivec3 apart_, from_;
+    const int threads_;
+};
+
+/// What could not be measured is as another material's.
+NoiseSd completed(NoiseSd sd, double otherwise) {
     const double any = sd.gas > 0.0      ? sd.gas
                        : sd.tagged > 0.0 ? sd.tagged
                        : sd.soft > 0.0   ? sd.soft
-                                         : tissue.sdHu[int(Tissue::soft)];
+                                         : otherwise;
     if (sd.soft == 0.0) sd.soft = std::max(any, sd.tagged);
     if (sd.tagged == 0.0) sd.tagged = std::max(any, sd.soft);
     if (sd.gas == 0.0) sd.gas = any;
     for (double* each : {&sd.gas, &sd.soft, &sd.tagged})
         *each = std::clamp(*each, 4.0, 100.0);
     return sd;
+}
+
+}  // namespace
+
+NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
+                     const Volume<std::uint8_t>& segmentation, int threads, glm::ivec3 from) {
+    const Differences differences(scan, from, threads);
+    const auto ofLabel = [&](LumenLabel label) {
+        const auto all = segmentation.voxels();
+        return differences.sd(
+            std::size_t(std::count(all.begin(), all.end(), std::uint8_t(label))),
+            [](glm::ivec3) { return true; },
+            [&](std::size_t n) { return LumenLabel(segmentation[n]) == label; });
+    };
+    NoiseSd sd;
+    sd.gas = ofLabel(LumenLabel::air);
+    sd.tagged = ofLabel(LumenLabel::tagged);
+    // Wide enough that the window cuts off none of the noise.
+    const double softHu = tissue.meanHu[int(Tissue::soft)],
+                 window = std::max(70.0, 4.5 * std::max(sd.gas, sd.tagged));
+    const BlocksNearTagging near(segmentation, from);
+    sd.soft = differences.sd(
+        near.voxelCount() / 4, [&](glm::ivec3 v) { return near.hold(v); },
+        [&](std::size_t n) {
+            return segmentation[n] == 0 && std::abs(scan.hu[n] - softHu) < window;
+        });
+    return completed(sd, tissue.sdHu[int(Tissue::soft)]);
 }
 
 }  // namespace haustra::cleansing

@@ -1,7 +1,7 @@
 #include "cleansing/point_spread.h"
 
 #include "cleansing/normal_distribution.h"
-#include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
@@ -119,25 +119,16 @@ PointSpread measurePointSpread(const CtScan& scan, const Volume<std::uint8_t>& s
                                const LocalMeans& means, int threads) {
     const Grid& grid = scan.hu.grid();
     const Faces faces(scan, segmentation, means);
+    const auto isGas = [&](std::size_t n) {
+        return LumenLabel(segmentation[n]) == LumenLabel::air;
+    };
     std::vector<std::array<Lines, 3>> slices(std::size_t(grid.size.z));
-    parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            for (int j = 0; j < grid.size.y; ++j) {
-                for (int i = 0; i < grid.size.x; ++i) {
-                    const glm::ivec3 v(i, j, int(k));
-                    if (LumenLabel(segmentation.at(v)) != LumenLabel::air) continue;
-                    for (int axis = 0; axis < 3; ++axis) {
-                        for (int side = -1; side <= 1; side += 2) {
-                            glm::ivec3 n = v;
-                            n[axis] += side;
-                            if (grid.contains(n) &&
-                                LumenLabel(segmentation.at(n)) != LumenLabel::air)
-                                faces.addLine(v, axis, side, slices[k][std::size_t(axis)]);
-                        }
-                    }
-                }
-            }
-        }
+    forVoxels(grid, threads, [&](std::size_t n, glm::ivec3 v) {
+        if (!isGas(n)) return;
+        visitFaces(grid, n, v, [&](std::size_t m, int axis) {
+            if (!isGas(m))
+                faces.addLine(v, axis, m > n ? 1 : -1, slices[std::size_t(v.z)][std::size_t(axis)]);
+        });
     });
     std::array<Lines, 3> all;
     for (const auto& slice : slices) {

@@ -42,8 +42,8 @@ SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
     return excess;
 }
 
-/// Convolves the rows, or columns, of each slice with a Gaussian; nothing lies beyond the field.
-void spreadAlong(SmoothField& field, int axis, double sigmaCells, int threads) {
+/// A Gaussian whose weights sum to 1.
+std::vector<float> unitGaussian(double sigmaCells) {
     const int reach = int(std::ceil(3.0 * sigmaCells));
     std::vector<float> kernel;
     float sum = 0.0f;
@@ -53,31 +53,7 @@ void spreadAlong(SmoothField& field, int axis, double sigmaCells, int threads) {
     }
     for (float& w : kernel)
         w /= sum;
-    const glm::ivec3 size = field.cells();
-    const std::size_t stride = axis == 0 ? 1 : std::size_t(size.x);
-    const int lines = axis == 0 ? size.y : size.x, length = size[axis];
-    std::vector<float>& values = field.values();
-    parallelFor(std::size_t(size.z), 8, threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> line(static_cast<std::size_t>(length));
-        for (std::size_t k = begin; k < end; ++k) {
-            for (int l = 0; l < lines; ++l) {
-                const std::size_t first = k * std::size_t(size.x) * std::size_t(size.y) +
-                                          std::size_t(l) * (axis == 0 ? std::size_t(size.x) : 1);
-                bool any = false;
-                for (int n = 0; n < length; ++n) {
-                    line[std::size_t(n)] = values[first + std::size_t(n) * stride];
-                    any |= line[std::size_t(n)] != 0.0f;
-                }
-                if (!any) continue;
-                for (int n = 0; n < length; ++n) {
-                    float here = 0.0f;
-                    for (int m = std::max(0, n - reach); m <= std::min(length - 1, n + reach); ++m)
-                        here += kernel[std::size_t(m - n + reach)] * line[std::size_t(m)];
-                    values[first + std::size_t(n) * stride] = here;
-                }
-            }
-        }
-    });
+    return kernel;
 }
 
 /// Sums for a straight line through (spread excess, HU).
@@ -121,7 +97,8 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         fields.push_back(excess);
         for (int axis = 0; axis < 2; ++axis) {
             const double cell = grid.spacingMm()[axis] * excess.voxelsPerCell()[axis];
-            spreadAlong(fields.back(), axis, width / 2.3548 / cell, threads);
+            convolveAxis(fields.back().values(), excess.cells(), axis,
+                         unitGaussian(width / 2.3548 / cell), threads);
         }
     }
     const Ball ball = blurBall(grid);

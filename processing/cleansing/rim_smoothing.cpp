@@ -84,11 +84,10 @@ double curvatureSpeed(const std::vector<float>& f, const Neighbourhood& at, glm:
                (x * x + y * y + z * z + faint);
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels,
-                                     const TissueModel& tissue, const TaggedSurroundings& around,
-                                     int threads) {
+/// Voxels near both air and tagging that the wall passes, ascending.
+std::vector<std::uint32_t> bandOf(const Volume<std::int16_t>& hu,
+                                  const Volume<std::uint8_t>& labels, double wallHu,
+                                  const TaggedSurroundings& around, int threads) {
     const Grid& grid = hu.grid();
     const glm::ivec3 look = lookStep(grid);
     const Ball reach(grid, glm::dvec3(airReachMm));
@@ -99,7 +98,7 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
         parallelFor(shell.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t m = begin; m < end; ++m) {
                 const glm::ivec3 v = grid.voxelAt(shell[m]);
-                in[m] = isInterior(grid, v) && besideWall(hu, v, look, tissue.airBelowHu) &&
+                in[m] = isInterior(grid, v) && besideWall(hu, v, look, wallHu) &&
                         (isAir(shell[m]) ||
                          !reach.everywhere(v, [&](std::size_t n) { return !isAir(n); }));
             }
@@ -109,66 +108,103 @@ std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std:
         }
     }
     std::sort(band.begin(), band.end());
+    return band;
+}
 
-    // The band and all that touches it, by itself: it is a small part of the scan.
-    std::vector<std::uint32_t> voxels;
-    voxels.reserve(27 * band.size());
-    for (const std::uint32_t n : band) {
-        const glm::ivec3 v = grid.voxelAt(n);
-        for (int k = 0; k < 27; ++k)
-            voxels.push_back(std::uint32_t(grid.index(v + cornerStep(k))));
-    }
-    std::sort(voxels.begin(), voxels.end());
-    voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
-    std::vector<Neighbourhood> near(band.size());
-    std::vector<float> now(voxels.size());
-    for (std::size_t m = 0; m < voxels.size(); ++m)
-        now[m] = hu[voxels[m]];
-    parallelFor(band.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t m = begin; m < end; ++m) {
-            const glm::ivec3 v = grid.voxelAt(band[m]);
-            for (int k = 0; k < 27; ++k) {
-                const auto n = std::uint32_t(grid.index(v + cornerStep(k)));
-                near[m][std::size_t(k)] = std::uint32_t(
-                    std::lower_bound(voxels.begin(), voxels.end(), n) - voxels.begin());
-            }
+/// The band and all that touches it, by itself: it is a small part of the scan.
+class Band {
+public:
+    Band(const Volume<std::int16_t>& hu, const std::vector<std::uint32_t>& band, int threads)
+        : spacingMm_(hu.grid().spacingMm()), near_(band.size()), threads_(threads) {
+        const Grid& grid = hu.grid();
+        std::vector<std::uint32_t> voxels;
+        voxels.reserve(27 * band.size());
+        for (const std::uint32_t n : band) {
+            for (int k = 0; k < 27; ++k)
+                voxels.push_back(std::uint32_t(grid.index(grid.voxelAt(n) + cornerStep(k))));
         }
-    });
-
-    const glm::dvec3 spacingMm = grid.spacingMm();
-    const double least = std::min({spacingMm.x, spacingMm.y, spacingMm.z});
-    const int steps = std::max(1, int(std::ceil(flowMm2 / (stableStep * least * least))));
-    const double step = flowMm2 / steps;
-    std::vector<float> next = now;
-    for (int s = 0; s < steps; ++s) {
+        std::sort(voxels.begin(), voxels.end());
+        voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+        for (const std::uint32_t n : voxels)
+            values_.push_back(hu[n]);
+        before_ = values_;
         parallelFor(band.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t m = begin; m < end; ++m) {
-                const std::uint32_t here = near[m][13];
-                next[here] =
-                    float(now[here] + step * curvatureSpeed(now, near[m], 1.0 / spacingMm));
+                for (int k = 0; k < 27; ++k) {
+                    const auto n = std::uint32_t(grid.index(grid.voxelAt(band[m]) + cornerStep(k)));
+                    near_[m][std::size_t(k)] = std::uint32_t(
+                        std::lower_bound(voxels.begin(), voxels.end(), n) - voxels.begin());
+                }
             }
         });
-        std::swap(now, next);
     }
-    // Only where something rough has gone, and 1.5 mm around it: the rest stays as it was.
-    std::vector<char> moves(voxels.size(), 0);
-    for (std::size_t m = 0; m < band.size(); ++m) {
-        if (std::abs(now[near[m][13]] - float(hu[band[m]])) > roughHu) moves[near[m][13]] = 1;
-    }
-    for (int ring = 0; ring < std::max(1, int(std::lround(aroundRoughMm / least))); ++ring) {
-        const std::vector<char> before = moves;
-        for (std::size_t m = 0; m < band.size(); ++m) {
-            if (!before[near[m][13]]) continue;
-            for (const std::uint32_t n : near[m])
-                moves[n] = 1;
+
+    /// Moves the wall by its curvature.
+    void flow() {
+        const double least = leastSpacingMm();
+        const int steps = std::max(1, int(std::ceil(flowMm2 / (stableStep * least * least))));
+        const double step = flowMm2 / steps;
+        std::vector<float> next = values_;
+        for (int s = 0; s < steps; ++s) {
+            parallelFor(near_.size(), 1 << 13, threads_, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t m = begin; m < end; ++m) {
+                    const std::uint32_t here = near_[m][13];
+                    next[here] = float(values_[here] +
+                                       step * curvatureSpeed(values_, near_[m], 1.0 / spacingMm_));
+                }
+            });
+            std::swap(values_, next);
         }
     }
+
+    /// Of each of the band's voxels: whether something rough has gone there, or 1.5 mm around it.
+    std::vector<char> roughPlaces() const {
+        std::vector<char> moves(values_.size(), 0);
+        for (const Neighbourhood& near : near_)
+            moves[near[13]] = std::abs(values_[near[13]] - before_[near[13]]) > roughHu;
+        const int rings = std::max(1, int(std::lround(aroundRoughMm / leastSpacingMm())));
+        for (int ring = 0; ring < rings; ++ring) {
+            const std::vector<char> inner = moves;
+            for (const Neighbourhood& near : near_) {
+                if (!inner[near[13]]) continue;
+                for (const std::uint32_t n : near)
+                    moves[n] = 1;
+            }
+        }
+        std::vector<char> rough;
+        for (const Neighbourhood& near : near_)
+            rough.push_back(moves[near[13]]);
+        return rough;
+    }
+
+    float value(std::size_t m) const { return values_[near_[m][13]]; }
+
+private:
+    double leastSpacingMm() const { return std::min({spacingMm_.x, spacingMm_.y, spacingMm_.z}); }
+
+    const glm::dvec3 spacingMm_;
+    std::vector<Neighbourhood> near_;  ///< of each of the band's voxels, itself and those around it
+    std::vector<float> values_, before_;  ///< HU of each of those, now and before the flow
+    const int threads_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> smoothRim(Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels,
+                                     const TissueModel& tissue, const TaggedSurroundings& around,
+                                     int threads) {
+    const std::vector<std::uint32_t> voxels =
+        bandOf(hu, labels, tissue.airBelowHu, around, threads);
+    Band band(hu, voxels, threads);
+    band.flow();
+    // Only at rough places: the rest stays as it was.
+    const std::vector<char> rough = band.roughPlaces();
     const auto out = hu.writable();
     std::vector<std::uint32_t> moved;
-    for (std::size_t m = 0; m < band.size(); ++m) {
-        if (!moves[near[m][13]]) continue;
-        out[band[m]] = std::int16_t(std::clamp(std::lround(now[near[m][13]]), -1024L, 3071L));
-        moved.push_back(band[m]);
+    for (std::size_t m = 0; m < voxels.size(); ++m) {
+        if (!rough[m]) continue;
+        out[voxels[m]] = std::int16_t(std::clamp(std::lround(band.value(m)), -1024L, 3071L));
+        moved.push_back(voxels[m]);
     }
     return moved;
 }

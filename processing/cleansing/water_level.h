@@ -45,6 +45,16 @@ private:
         std::int32_t part;    ///< of the way between their centres, in 254ths
     };
 
+    struct Found {
+        std::size_t column;
+        Crossing crossing;
+    };
+
+    /// Which way the grid's axes lie to gravity, and what follows from it.
+    void findAxes(glm::dvec3 gravity);
+    void keep(const std::vector<Found>& sorted);
+    void markBlocks(const std::vector<Found>& found);
+
     /// Calls visit(voxel, crossing) for those in the columns around a voxel, as they are looked at.
     template <class Visit>
     void eachCrossing(glm::ivec3 voxel, double acrossMm, double heightMm, const Visit& visit) const;

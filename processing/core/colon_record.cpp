@@ -103,88 +103,109 @@ std::array<SegmentDistension, colonSegments> distensionOf(const ColonRecord& rec
     return all;
 }
 
-std::string qualityJson(const ColonRecord& record) {
-    Json pieces = Json::array(), junctions = Json::array(), leftOut = Json::array(),
-         walls = Json::array(), segments = Json::array(), runnersUp = Json::array(),
-         untagged = Json::array(), doubts = Json::array();
-    for (const ColonPiece& piece : record.pieces) {
-        pieces.push_back({{"part", toString(piece.part)},
-                          {"center_mm", place(piece.centreMm)},
-                          {"radius_mm", rounded(piece.radiusMm)},
-                          {"length_mm", rounded(piece.lengthMm)},
-                          {"gas_ml", rounded(piece.gasMl)},
-                          {"tagged_ml", rounded(piece.taggedMl)},
-                          {"untagged_ml", rounded(piece.untaggedMl)}});
-    }
-    for (const ColonJunction& junction : record.junctions) {
-        junctions.push_back({{"kind", toString(junction.kind)},
-                             {"place_mm", place(junction.placeMm)},
-                             {"length_mm", rounded(junction.lengthMm)},
-                             {"radius_mm", rounded(junction.radiusMm)},
-                             {"confidence", rounded(junction.confidence)}});
-    }
-    for (const RunnerUp& up : record.runnersUp) {
-        runnersUp.push_back({{"probability", rounded(up.probability)},
-                             {"adds_ml", rounded(up.addsMl)},
-                             {"drops_ml", rounded(up.dropsMl)},
-                             {"place_mm", place(up.placeMm)}});
-    }
-    double gasMl = 0.0, taggedMl = 0.0;
-    for (const LeftOutBody& body : record.leftOut) {
-        (body.gas ? gasMl : taggedMl) += body.volumeMl;
-        leftOut.push_back({{"center_mm", place(body.centreMm)},
-                           {"volume_ml", rounded(body.volumeMl)},
-                           {"content", body.gas        ? "gas"
-                                       : body.untagged ? "untagged"
-                                                       : "tagged"},
-                           {"nearest", toString(body.nearest)},
-                           {"distance_mm", rounded(body.distanceMm)},
-                           {"opens", body.opens}});
-    }
-    for (const RebuiltWallRecord& wall : record.walls) {
-        walls.push_back({{"place_mm", place(wall.placeMm)},
-                         {"area_mm2", rounded(wall.areaMm2)},
-                         {"between", wall.betweenLoops ? "loops" : "other bowel"}});
-    }
-    for (const UntaggedPool& pool : record.untaggedPools) {
-        untagged.push_back({{"part", toString(pool.part)},
-                            {"place_mm", place(pool.placeMm)},
-                            {"area_mm2", rounded(pool.areaMm2)},
-                            {"fluid_hu", rounded(pool.fluidHu)}});
-    }
-    for (const Doubt& doubt : record.doubts)
-        doubts.push_back({{"about", doubt.about}, {"probability", rounded(doubt.probability)}});
-    const auto distension = distensionOf(record);
+namespace {
+
+Json jsonOf(const ColonPiece& piece) {
+    return {{"part", toString(piece.part)},
+            {"center_mm", place(piece.centreMm)},
+            {"radius_mm", rounded(piece.radiusMm)},
+            {"length_mm", rounded(piece.lengthMm)},
+            {"gas_ml", rounded(piece.gasMl)},
+            {"tagged_ml", rounded(piece.taggedMl)},
+            {"untagged_ml", rounded(piece.untaggedMl)}};
+}
+
+Json jsonOf(const ColonJunction& junction) {
+    return {{"kind", toString(junction.kind)},
+            {"place_mm", place(junction.placeMm)},
+            {"length_mm", rounded(junction.lengthMm)},
+            {"radius_mm", rounded(junction.radiusMm)},
+            {"confidence", rounded(junction.confidence)}};
+}
+
+Json jsonOf(const RunnerUp& up) {
+    return {{"probability", rounded(up.probability)},
+            {"adds_ml", rounded(up.addsMl)},
+            {"drops_ml", rounded(up.dropsMl)},
+            {"place_mm", place(up.placeMm)}};
+}
+
+Json jsonOf(const LeftOutBody& body) {
+    return {{"center_mm", place(body.centreMm)},
+            {"volume_ml", rounded(body.volumeMl)},
+            {"content", body.gas        ? "gas"
+                        : body.untagged ? "untagged"
+                                        : "tagged"},
+            {"nearest", toString(body.nearest)},
+            {"distance_mm", rounded(body.distanceMm)},
+            {"opens", body.opens}};
+}
+
+Json jsonOf(const RebuiltWallRecord& wall) {
+    return {{"place_mm", place(wall.placeMm)},
+            {"area_mm2", rounded(wall.areaMm2)},
+            {"between", wall.betweenLoops ? "loops" : "other bowel"}};
+}
+
+Json jsonOf(const UntaggedPool& pool) {
+    return {{"part", toString(pool.part)},
+            {"place_mm", place(pool.placeMm)},
+            {"area_mm2", rounded(pool.areaMm2)},
+            {"fluid_hu", rounded(pool.fluidHu)}};
+}
+
+Json jsonOf(const Doubt& doubt) {
+    return {{"about", doubt.about}, {"probability", rounded(doubt.probability)}};
+}
+
+template <class T>
+Json listOf(const std::vector<T>& values) {
+    Json list = Json::array();
+    for (const T& value : values)
+        list.push_back(jsonOf(value));
+    return list;
+}
+
+Json jsonOf(const std::array<SegmentDistension, colonSegments>& distension) {
+    Json list = Json::array();
     for (int n = 0; n < colonSegments; ++n) {
         const SegmentDistension& segment = distension[std::size_t(n)];
         const double residueMl = segment.taggedMl + segment.untaggedMl,
                      ml = segment.gasMl + residueMl;
-        segments.push_back({{"segment", toString(ColonSegment(n))},
-                            {"length_mm", rounded(segment.lengthMm)},
-                            {"diameter_mm", rounded(segment.diameterMm)},
-                            {"gas_ml", rounded(segment.gasMl)},
-                            {"tagged_ml", rounded(segment.taggedMl)},
-                            {"untagged_ml", rounded(segment.untaggedMl)},
-                            {"residue", rounded(ml > 0.0 ? residueMl / ml : 0.0)},
-                            {"collapsed_mm", rounded(segment.collapsedMm)}});
+        list.push_back({{"segment", toString(ColonSegment(n))},
+                        {"length_mm", rounded(segment.lengthMm)},
+                        {"diameter_mm", rounded(segment.diameterMm)},
+                        {"gas_ml", rounded(segment.gasMl)},
+                        {"tagged_ml", rounded(segment.taggedMl)},
+                        {"untagged_ml", rounded(segment.untaggedMl)},
+                        {"residue", rounded(ml > 0.0 ? residueMl / ml : 0.0)},
+                        {"collapsed_mm", rounded(segment.collapsedMm)}});
     }
+    return list;
+}
+
+}  // namespace
+
+std::string qualityJson(const ColonRecord& record) {
+    double gasMl = 0.0, taggedMl = 0.0;
+    for (const LeftOutBody& body : record.leftOut)
+        (body.gas ? gasMl : taggedMl) += body.volumeMl;
+    const auto& end = record.endsAt;
     return Json{{"confidence", rounded(record.confidence)},
                 {"chain_confidence", rounded(record.chainConfidence)},
-                {"doubts", doubts},
+                {"doubts", listOf(record.doubts)},
                 {"length_mm", rounded(record.lengthMm())},
                 {"warnings", record.warnings},
-                {"segments", segments},
-                {"pieces", pieces},
-                {"junctions", junctions},
-                {"runners_up", runnersUp},
+                {"segments", jsonOf(distensionOf(record))},
+                {"pieces", listOf(record.pieces)},
+                {"junctions", listOf(record.junctions)},
+                {"runners_up", listOf(record.runnersUp)},
                 {"left_out_gas_ml", rounded(gasMl)},
                 {"left_out_tagged_ml", rounded(taggedMl)},
-                {"left_out", leftOut},
-                {"ends_at", record.endsAt
-                                ? Json{record.endsAt->x, record.endsAt->y, record.endsAt->z}
-                                : Json()},
-                {"rebuilt_walls", walls},
-                {"untagged_fluid", untagged},
+                {"left_out", listOf(record.leftOut)},
+                {"ends_at", end ? Json{end->x, end->y, end->z} : Json()},
+                {"rebuilt_walls", listOf(record.walls)},
+                {"untagged_fluid", listOf(record.untaggedPools)},
                 {"noise_sd_hu", rounded(record.noiseSdHu)}}
                .dump(2) +
            "\n";

@@ -21,6 +21,17 @@ void visitSlices(const Grid& grid, std::size_t first, std::size_t last, const Vi
     }
 }
 
+/// Calls visit(voxel) for the voxels of the box from `lo` to `hi`, both inclusive, in memory order.
+template <class Visit>
+void visitBox(glm::ivec3 lo, glm::ivec3 hi, const Visit& visit) {
+    for (int k = lo.z; k <= hi.z; ++k) {
+        for (int j = lo.y; j <= hi.y; ++j) {
+            for (int i = lo.x; i <= hi.x; ++i)
+                visit(glm::ivec3(i, j, k));
+        }
+    }
+}
+
 /// Calls visit(index, voxel) for all voxels, slice by slice; what it writes must be the voxel's
 /// own.
 template <class Visit>

@@ -110,6 +110,124 @@ std::vector<ColonPath::Collapse> squeeze(std::uint64_t seed, const ColonPath& pa
     return closed;
 }
 
+/// One closed stretch of the sigmoid or of the descending colon.
+ColonPath::Collapse drawSpasm(Random& random, const ColonPath& path) {
+    const double length = random.uniform(28.0, 50.0);
+    const bool sigmoid = random.chance(0.5);
+    const double from = sigmoid ? path.rectumEndMm + 60.0 : path.sigmoidEndMm + 20.0;
+    const double to = sigmoid ? path.sigmoidEndMm - 30.0 : path.descendingEndMm - 60.0;
+    const double begin = random.uniform(from, std::max(from, to - length));
+    return {begin, begin + length, 18.0};
+}
+
+/// The shape of a colon, laid out in the abdomen.
+struct Layout {
+    Variation vary;
+    Skeleton skeleton;
+};
+
+/// A colon as long as `targetMm`, and then `moreSigmoidMm` longer in its sigmoid.
+Layout layoutOfLength(Random& random, double targetMm, const BodyPlan& body, double moreSigmoidMm) {
+    Layout best;
+    // Crowded loops may not reach every length; then another variation does.
+    double error = 1e9, drawn = 0.0;
+    for (int attempt = 0; attempt < 6 && error > 40.0; ++attempt) {
+        const Variation other = drawVariation(random);
+        double lo = -0.2, hi = 2.0;
+        for (int round = 0; round < 8; ++round) {
+            const double redundancy = 0.5 * (lo + hi);
+            Skeleton candidate = layOut(other, redundancy, body);
+            const double length = lengthOf(candidate.nodes);
+            (length < targetMm ? lo : hi) = redundancy;
+            if (std::abs(length - targetMm) >= error) continue;
+            error = std::abs(length - targetMm);
+            best = {other, std::move(candidate)}, drawn = redundancy;
+        }
+    }
+    if (moreSigmoidMm <= 0.0) return best;
+    const double wantedMm = lengthOf(best.skeleton.nodes) + moreSigmoidMm;
+    double lo = 0.0, hi = 5.0, least = 1e9;
+    for (int round = 0; round < 7; ++round) {
+        const double extra = 0.5 * (lo + hi);
+        Skeleton candidate = layOut(best.vary, drawn, body, extra);
+        const double length = lengthOf(candidate.nodes);
+        (length < wantedMm ? lo : hi) = extra;
+        if (std::abs(length - wantedMm) >= least) continue;
+        least = std::abs(length - wantedMm);
+        best.skeleton = std::move(candidate);
+    }
+    return best;
+}
+
+/// The nodes' spline, smoothed over about the node distance, 1 mm apart; `place` has where the
+/// samples before the smoothing are, in eighths of nodes.
+Points evenSamples(const Points& nodes, std::vector<double>& place) {
+    Points fine;
+    for (int k = 0; k <= int(nodes.size() - 1) * 8; ++k)
+        fine.push_back(catmullRom(nodes, k / 8.0));
+    Points even = resample(fine, 1.0, &place);
+    for (int round = 0; round < 60; ++round) {
+        const Points old = even;
+        for (std::size_t n = 1; n + 1 < even.size(); ++n)
+            even[n] = 0.25 * old[n - 1] + 0.5 * old[n] + 0.25 * old[n + 1];
+    }
+    return resample(even, 1.0);
+}
+
+/// A path that has no width yet.
+struct Axis {
+    ColonPath path;               ///< samples' positions, step and sections alone
+    std::vector<double> control;  ///< of each sample, its place among the control points
+};
+
+Axis axisOf(const Skeleton& skeleton) {
+    std::vector<double> place;
+    const Points even = evenSamples(skeleton.nodes, place);
+    Axis axis;
+    ColonPath& path = axis.path;
+    path.stepMm = lengthOf(even) / double(even.size() - 1);
+    for (std::size_t n = 0; n < even.size(); ++n) {
+        path.samples.emplace_back().position = even[n];
+        const double u = place[std::min(n, place.size() - 1)] / 8.0;
+        const std::size_t k = std::min(std::size_t(u), skeleton.control.size() - 2);
+        axis.control.push_back(
+            glm::mix(skeleton.control[k], skeleton.control[k + 1], std::min(1.0, u - double(k))));
+    }
+    const auto arcOf = [&](double c) {
+        const auto& control = axis.control;
+        return path.stepMm *
+               double(std::lower_bound(control.begin(), control.end(), c) - control.begin());
+    };
+    path.rectumEndMm = arcOf(rectumEnd), path.sigmoidEndMm = arcOf(sigmoidEnd);
+    path.descendingEndMm = arcOf(descendingEnd), path.transverseEndMm = arcOf(transverseEnd);
+    return axis;
+}
+
+/// Radius and haustration of sample `n` of a colon that is `radiusMm` wide there.
+void setWidth(ColonPath& path, std::size_t n, double radiusMm, bool insufflated) {
+    PathSample& s = path.samples[n];
+    const double arc = path.stepMm * double(n), left = path.lengthMm() - arc;
+    s.radiusMm = radiusMm;
+    // The cecum ends as a ball: the axis runs on to near its pole.
+    if (left < radiusMm)
+        s.radiusMm = std::max(
+            5.0,
+            std::sqrt(std::max(0.0, radiusMm * radiusMm - (radiusMm - left) * (radiusMm - left))));
+    s.haustration =
+        0.25 + 0.75 * smoothstep(path.rectumEndMm - 20.0, path.sigmoidEndMm + 40.0, arc);
+    s.haustration *= smoothstep(0.0, 30.0, arc) * smoothstep(0.0, 25.0, left);
+    if (!insufflated) {
+        // What gas and stool hold open is narrower than what a pump does.
+        s.radiusMm *= arc < path.transverseEndMm ? 0.62 : 0.75;
+        s.haustration *= 0.5;
+    }
+    for (const ColonPath::Collapse& collapse : path.collapses) {
+        const double outside = std::max(collapse.beginMm - arc, arc - collapse.endMm);
+        s.radiusMm = taper(s.radiusMm, collapse.taperMm, outside);
+        s.haustration *= smoothstep(0.0, 25.0, outside);
+    }
+}
+
 }  // namespace
 
 bool ColonPath::collapsedWithin(double arcMm, double marginMm) const {
@@ -139,110 +257,26 @@ ColonPath makeColonPath(std::uint64_t seed, Preset preset, const BodyPlan& body,
     Random random(seed, 1);
     const double targetMm = random.uniform(1270.0, 1620.0);
     const double turns = random.uniform(-0.7, 0.7), phase = random.uniform(0.0, 6.28);
-    // Crowded loops may not reach every length; then another variation does.
-    Variation vary;
-    Skeleton skeleton;
-    double error = 1e9, drawn = 0.0;
-    for (int attempt = 0; attempt < 6 && error > 40.0; ++attempt) {
-        const Variation other = drawVariation(random);
-        double lo = -0.2, hi = 2.0;
-        for (int round = 0; round < 8; ++round) {
-            const double redundancy = 0.5 * (lo + hi);
-            Skeleton candidate = layOut(other, redundancy, body);
-            const double length = lengthOf(candidate.nodes);
-            (length < targetMm ? lo : hi) = redundancy;
-            if (std::abs(length - targetMm) >= error) continue;
-            error = std::abs(length - targetMm);
-            skeleton = std::move(candidate), vary = other, drawn = redundancy;
-        }
-    }
-    if (bowel.redundantSigmoidMm > 0.0) {
-        const double wantedMm = lengthOf(skeleton.nodes) + bowel.redundantSigmoidMm;
-        double lo = 0.0, hi = 5.0, best = 1e9;
-        for (int round = 0; round < 7; ++round) {
-            const double extra = 0.5 * (lo + hi);
-            Skeleton candidate = layOut(vary, drawn, body, extra);
-            const double length = lengthOf(candidate.nodes);
-            (length < wantedMm ? lo : hi) = extra;
-            if (std::abs(length - wantedMm) >= best) continue;
-            best = std::abs(length - wantedMm);
-            skeleton = std::move(candidate);
-        }
-    }
-
-    // Fine samples: the nodes' spline, smoothed over about the node distance, 1 mm apart.
-    Points fine;
-    for (int k = 0; k <= int(skeleton.nodes.size() - 1) * 8; ++k) {
-        fine.push_back(catmullRom(skeleton.nodes, k / 8.0));
-    }
-    std::vector<double> place;
-    Points even = resample(fine, 1.0, &place);
-    for (int round = 0; round < 60; ++round) {
-        const Points old = even;
-        for (std::size_t n = 1; n + 1 < even.size(); ++n) {
-            even[n] = 0.25 * old[n - 1] + 0.5 * old[n] + 0.25 * old[n + 1];
-        }
-    }
-    even = resample(even, 1.0);
-
-    ColonPath path;
-    path.samples.resize(even.size());
-    path.stepMm = lengthOf(even) / double(even.size() - 1);
-    std::vector<double> control(even.size());
-    for (std::size_t n = 0; n < even.size(); ++n) {
-        const double u = place[std::min(n, place.size() - 1)] / 8.0;
-        const std::size_t k = std::min(std::size_t(u), skeleton.control.size() - 2);
-        control[n] =
-            glm::mix(skeleton.control[k], skeleton.control[k + 1], std::min(1.0, u - double(k)));
-    }
-    auto arcOf = [&](double c) {
-        return path.stepMm *
-               double(std::lower_bound(control.begin(), control.end(), c) - control.begin());
+    const Layout layout = layoutOfLength(random, targetMm, body, bowel.redundantSigmoidMm);
+    Axis axis = axisOf(layout.skeleton);
+    ColonPath& path = axis.path;
+    const auto radiusAt = [&](std::size_t n) {
+        return layout.vary.scale * radiusAtControl(axis.control[n]);
     };
-    path.rectumEndMm = arcOf(rectumEnd), path.sigmoidEndMm = arcOf(sigmoidEnd);
-    path.descendingEndMm = arcOf(descendingEnd), path.transverseEndMm = arcOf(transverseEnd);
-
     if (!bowel.insufflated) {
         path.collapses = squeeze(seed, path);
     } else if (!bowel.collapsesMm.empty()) {
         path.collapses = drawCollapses(seed, path, bowel.collapsesMm, [&](double arc) {
-            const std::size_t n = std::min(std::size_t(arc / path.stepMm), control.size() - 1);
-            return vary.scale * radiusAtControl(control[n]);
+            return radiusAt(std::min(std::size_t(arc / path.stepMm), axis.control.size() - 1));
         });
     } else if (preset == Preset::hard) {
-        const double length = random.uniform(28.0, 50.0);
-        const bool sigmoid = random.chance(0.5);
-        const double from = sigmoid ? path.rectumEndMm + 60.0 : path.sigmoidEndMm + 20.0;
-        const double to = sigmoid ? path.sigmoidEndMm - 30.0 : path.descendingEndMm - 60.0;
-        const double begin = random.uniform(from, std::max(from, to - length));
-        path.collapses.push_back({begin, begin + length, 18.0});
+        path.collapses.push_back(drawSpasm(random, path));
     }
-
     const std::uint64_t widthNoise = mixBits(seed + 77);
-    for (std::size_t n = 0; n < even.size(); ++n) {
-        PathSample& s = path.samples[n];
-        const double arc = path.stepMm * double(n), left = path.lengthMm() - arc;
-        s.position = even[n];
-        s.radiusMm = vary.scale * radiusAtControl(control[n]) *
-                     (1.0 + 0.09 * valueNoise(widthNoise, {arc, 0, 0}, 70.0));
-        // The cecum ends as a ball: the axis runs on to near its pole.
-        const double ball = s.radiusMm;
-        if (left < ball)
-            s.radiusMm = std::max(
-                5.0, std::sqrt(std::max(0.0, ball * ball - (ball - left) * (ball - left))));
-        s.haustration =
-            0.25 + 0.75 * smoothstep(path.rectumEndMm - 20.0, path.sigmoidEndMm + 40.0, arc);
-        s.haustration *= smoothstep(0.0, 30.0, arc) * smoothstep(0.0, 25.0, left);
-        if (!bowel.insufflated) {
-            // What gas and stool hold open is narrower than what a pump does.
-            s.radiusMm *= arc < path.transverseEndMm ? 0.62 : 0.75;
-            s.haustration *= 0.5;
-        }
-        for (const ColonPath::Collapse& collapse : path.collapses) {
-            const double outside = std::max(collapse.beginMm - arc, arc - collapse.endMm);
-            s.radiusMm = taper(s.radiusMm, collapse.taperMm, outside);
-            s.haustration *= smoothstep(0.0, 25.0, outside);
-        }
+    for (std::size_t n = 0; n < path.samples.size(); ++n) {
+        const double arc = path.stepMm * double(n);
+        setWidth(path, n, radiusAt(n) * (1.0 + 0.09 * valueNoise(widthNoise, {arc, 0, 0}, 70.0)),
+                 bowel.insufflated);
     }
     addFrames(path, turns, phase);
     return path;

@@ -1,11 +1,13 @@
 #include "phantom/contacts.h"
 
+#include "core/voxel_sweep.h"
 #include "phantom/colon_skeleton.h"
 #include "phantom/phantom.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 namespace haustra::phantom {
@@ -14,78 +16,107 @@ namespace {
 constexpr double kBinMm = 15.0;
 constexpr double kLeastAreaMm2 = 10.0;
 
+/// The lumens of the colon and of the ileum in some slices.
+struct Lumens {
+    const Volume<std::uint8_t>&colon, &sites;
+
+    bool isColon(glm::ivec3 v) const { return colon.at(v) != 0; }
+    bool isLumen(glm::ivec3 v) const {
+        return colon.at(v) != 0 || sites.at(v) == std::uint8_t(Site::ileum);
+    }
+    /// The lumen that a voxel's faces along an axis, up to kContactMm away: beyond a wall, or the
+    /// other one side by side with it.
+    std::optional<glm::ivec3> facing(glm::ivec3 v, int axis) const {
+        const Grid& grid = colon.grid();
+        const double spacingMm = grid.spacingMm()[axis];
+        glm::ivec3 w = v;
+        if (++w[axis] >= grid.size[axis]) return std::nullopt;
+        // Side by side, they join or are two lumens a film apart.
+        if (isLumen(w) && isColon(v) == isColon(w)) return std::nullopt;
+        while (w[axis] < grid.size[axis] && !isLumen(w) &&
+               (w[axis] - v[axis]) * spacingMm <= kContactMm)
+            ++w[axis];
+        if (w[axis] >= grid.size[axis] || !isLumen(w)) return std::nullopt;
+        return w;
+    }
+};
+
 }  // namespace
 
 void ContactFinder::look(const Volume<std::uint8_t>& lumen, const Volume<std::uint8_t>& sites,
                          const ColonField& field, int fieldOffset, const Ileum* ileum, int begin,
                          int end, int threads) {
     const Grid& grid = lumen.grid();
-    const glm::dvec3 spacing = grid.spacingMm();
-    constexpr auto inIleum = std::uint8_t(Site::ileum);
-    const auto isLumen = [&](std::size_t v) { return lumen[v] || sites[v] == inIleum; };
+    const Lumens lumens{lumen, sites};
     std::vector<std::vector<Touch>> bySlice(std::size_t(end - begin));
-    parallelFor(bySlice.size(), 1, threads, [&](std::size_t from, std::size_t to) {
-        for (std::size_t n = from; n < to; ++n) {
-            const int k = begin + int(n);
-            for (int j = 0; j < grid.size.y; ++j) {
-                for (int i = 0; i < grid.size.x; ++i) {
-                    const glm::ivec3 v(i, j, k);
-                    const std::size_t at = grid.index(v);
-                    if (!isLumen(at)) continue;
-                    for (int axis = 0; axis < 3; ++axis) {
-                        glm::ivec3 w = v;
-                        if (++w[axis] >= grid.size[axis] || isLumen(grid.index(w))) {
-                            // Side by side, they join or are two lumens a film apart.
-                            if (w[axis] >= grid.size[axis]) continue;
-                            if (!lumen[at] == !lumen[grid.index(w)]) continue;
-                        }
-                        while (w[axis] < grid.size[axis] && !isLumen(grid.index(w)) &&
-                               (w[axis] - v[axis]) * spacing[axis] <= kContactMm)
-                            ++w[axis];
-                        if (w[axis] >= grid.size[axis] || !isLumen(grid.index(w))) continue;
-                        const bool here = lumen[at], there = lumen[grid.index(w)];
-                        if (!here && !there) continue;
-                        glm::ivec3 a = v, b = w;
-                        if (!here) std::swap(a, b);  // a is colon
-                        const auto& sa = field.at(a.x, a.y, a.z + fieldOffset);
-                        const glm::dvec3 pa = grid.patientFromVoxelPoint(a),
-                                         pb = grid.patientFromVoxelPoint(b);
-                        Touch touch;
-                        touch.arcMm = sa.arcMm;
-                        touch.ileum = here != there;
-                        double depth = -sa.lumenMm;
-                        if (touch.ileum) {
-                            // Colon and ileum do join at an open valve.
-                            if (glm::distance(pa, ileum->valve().at) < 20.0) continue;
-                            touch.otherArcMm = float(ileum->tube().at(pb).arcMm);
-                            depth -=
-                                ileum->lumenMm(pb, field.at(b.x, b.y, b.z + fieldOffset).lumenMm);
-                        } else {
-                            const auto& sb = field.at(b.x, b.y, b.z + fieldOffset);
-                            const auto& path = shape_.path();
-                            if (std::abs(sa.arcMm - sb.arcMm) <
-                                2.0 * loopSeparationMm(path.at(sa.arcMm).radiusMm,
-                                                       path.at(sb.arcMm).radiusMm))
-                                continue;
-                            touch.otherArcMm = sb.arcMm;
-                            depth -= sb.lumenMm;
-                            if (touch.arcMm > touch.otherArcMm)
-                                std::swap(touch.arcMm, touch.otherArcMm);
-                        }
-                        const double apart = std::max(0.0, glm::distance(pa, pb) - depth);
-                        if (apart >= kContactMm) continue;
-                        touch.apartMm = float(apart);
-                        // Each axis sees its share of an oblique face.
-                        touch.areaMm2 = float(grid.voxelVolumeMm3() / spacing[axis] / 1.5);
-                        touch.at = glm::vec3(0.5 * (pa + pb));
-                        bySlice[n].push_back(touch);
-                    }
-                }
-            }
+    const auto lookFrom = [&](glm::ivec3 v) {
+        if (!lumens.isLumen(v)) return;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto other = lumens.facing(v, axis);
+            if (!other || (!lumens.isColon(v) && !lumens.isColon(*other))) continue;
+            glm::ivec3 a = v, b = *other;
+            if (!lumens.isColon(a)) std::swap(a, b);
+            auto touch = lumens.isColon(b) ? touchOfLoops(a, b, grid, field, fieldOffset)
+                                           : touchOfIleum(a, b, grid, field, fieldOffset, *ileum);
+            if (!touch) continue;
+            // Each axis sees its share of an oblique face.
+            touch->areaMm2 = float(grid.voxelVolumeMm3() / grid.spacingMm()[axis] / 1.5);
+            bySlice[std::size_t(v.z - begin)].push_back(*touch);
         }
+    };
+    parallelFor(bySlice.size(), 1, threads, [&](std::size_t from, std::size_t to) {
+        visitBox({0, 0, begin + int(from)}, {grid.size.x - 1, grid.size.y - 1, begin + int(to) - 1},
+                 lookFrom);
     });
     for (const auto& slice : bySlice)
         touches_.insert(touches_.end(), slice.begin(), slice.end());
+}
+
+std::optional<ContactFinder::Touch> ContactFinder::touchAt(glm::dvec3 a, glm::dvec3 b,
+                                                           double depthMm) {
+    const double apart = std::max(0.0, glm::distance(a, b) - depthMm);
+    if (apart >= kContactMm) return std::nullopt;
+    Touch touch;
+    touch.apartMm = float(apart);
+    touch.at = glm::vec3(0.5 * (a + b));
+    return touch;
+}
+
+std::optional<ContactFinder::Touch> ContactFinder::touchOfLoops(glm::ivec3 a, glm::ivec3 b,
+                                                                const Grid& grid,
+                                                                const ColonField& field,
+                                                                int fieldOffset) const {
+    const auto& sa = field.at(a.x, a.y, a.z + fieldOffset);
+    const auto& sb = field.at(b.x, b.y, b.z + fieldOffset);
+    const auto& path = shape_.path();
+    if (std::abs(sa.arcMm - sb.arcMm) <
+        2.0 * loopSeparationMm(path.at(sa.arcMm).radiusMm, path.at(sb.arcMm).radiusMm))
+        return std::nullopt;
+    double depthMm = -sa.lumenMm;
+    depthMm -= sb.lumenMm;
+    auto touch = touchAt(grid.patientFromVoxelPoint(a), grid.patientFromVoxelPoint(b), depthMm);
+    if (touch) std::tie(touch->arcMm, touch->otherArcMm) = std::minmax(sa.arcMm, sb.arcMm);
+    return touch;
+}
+
+std::optional<ContactFinder::Touch> ContactFinder::touchOfIleum(glm::ivec3 a, glm::ivec3 b,
+                                                                const Grid& grid,
+                                                                const ColonField& field,
+                                                                int fieldOffset,
+                                                                const Ileum& ileum) const {
+    const glm::dvec3 pa = grid.patientFromVoxelPoint(a), pb = grid.patientFromVoxelPoint(b);
+    // Colon and ileum do join at an open valve.
+    if (glm::distance(pa, ileum.valve().at) < 20.0) return std::nullopt;
+    const auto& sa = field.at(a.x, a.y, a.z + fieldOffset);
+    double depthMm = -sa.lumenMm;
+    depthMm -= ileum.lumenMm(pb, field.at(b.x, b.y, b.z + fieldOffset).lumenMm);
+    auto touch = touchAt(pa, pb, depthMm);
+    if (touch) {
+        touch->ileum = true;
+        touch->arcMm = sa.arcMm;
+        touch->otherArcMm = float(ileum.tube().at(pb).arcMm);
+    }
+    return touch;
 }
 
 std::vector<Structure::Contact> ContactFinder::contacts() const {

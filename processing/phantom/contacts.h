@@ -5,6 +5,9 @@
 #include "phantom/ileum.h"
 #include "phantom/structure.h"
 
+#include <optional>
+#include <vector>
+
 namespace haustra::phantom {
 
 /// Gathers, slab by slab, the sites where the lumens of two loops of colon, or of colon and ileum,
@@ -28,6 +31,16 @@ private:
         float arcMm = 0.0f, otherArcMm = 0.0f, apartMm = 0.0f, areaMm2 = 0.0f;
         glm::vec3 at{0.0f};
     };
+    /// Where two lumens touch whose voxels lie at `a` and `b`, together `depthMm` inside them.
+    static std::optional<Touch> touchAt(glm::dvec3 a, glm::dvec3 b, double depthMm);
+    /// Of two voxels of the colon, unless one bend holds both.
+    std::optional<Touch> touchOfLoops(glm::ivec3 a, glm::ivec3 b, const Grid& grid,
+                                      const ColonField& field, int fieldOffset) const;
+    /// Of a voxel of the colon and one of the ileum, unless they lie at its valve.
+    std::optional<Touch> touchOfIleum(glm::ivec3 a, glm::ivec3 b, const Grid& grid,
+                                      const ColonField& field, int fieldOffset,
+                                      const Ileum& ileum) const;
+
     const ColonShape& shape_;
     std::vector<Touch> touches_;
 };

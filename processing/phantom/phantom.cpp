@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 namespace haustra::phantom {
 namespace {
@@ -323,6 +325,135 @@ Grid slicesOf(const Grid& grid, int begin, int end) {
 
 constexpr int kSlabSlices = 64;
 
+/// The slab of slices from…to − 1, empty.
+Slab slabOf(const Grid& grid, int from, int to, int halo) {
+    Slab slab;
+    slab.first = std::max(0, from - halo);
+    slab.begin = from - slab.first, slab.end = to - slab.first;
+    const Grid some = slicesOf(grid, slab.first, std::min(grid.size.z, to + halo));
+    slab.untagged = Volume<float>(some, -1000.0f);
+    slab.sites.assign(some.voxelCount(), std::uint8_t(Site::outsideBody));
+    slab.lumen.assign(some.voxelCount(), 0);
+    return slab;
+}
+
+/// What all of the body measures before a scanner blurs it.
+class Painter {
+public:
+    Painter(const PhantomOptions& options, const BodyPlan& body, const FilledColon& filled)
+        : filled_(filled),
+          colon_(filled.shape, filled.field, filled.fluid, options.seed),
+          solids_(makeAnatomy(options.seed, body)),
+          threads_(options.threads) {
+        if (options.scan.metalHip) add(makeMetalHip(options.seed));
+        add(makeOtherBowel(options.seed, options.preset, body));
+        if (filled.ileum) solids_.push_back(wallOf(*filled.ileum));
+        if (options.bowel.rectalTube) rectalTube_.emplace(filled.shape.path(), options.seed);
+    }
+
+    void paint(Slab& slab) const {
+        paintAnatomy(slab);
+        slab.tagged = slab.untagged.clone();
+        parallelFor(std::size_t(filled_.field.blockCount()), 64, threads_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t b = begin; b < end; ++b)
+                            colon_.paintBlock(int(b), slab.first, slab);
+                    });
+        if (filled_.ileum)
+            paintIleum(*filled_.ileum, filled_.fluid.up, filled_.field, slab.first, slab, threads_);
+        if (rectalTube_) paintRectalTube(*rectalTube_, filled_.field, slab.first, slab);
+    }
+
+private:
+    void add(std::vector<Solid> more) {
+        std::move(more.begin(), more.end(), std::back_inserter(solids_));
+    }
+
+    void paintAnatomy(Slab& slab) const {
+        const Grid& grid = filled_.field.grid();
+        const std::size_t slice = std::size_t(grid.size.x) * std::size_t(grid.size.y);
+        const auto untagged = slab.untagged.writable();
+        parallelFor(std::size_t(slab.untagged.grid().size.z), 1, threads_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t k = begin; k < end; ++k) {
+                            paintSlice(solids_, grid, filled_.field, slab.first + int(k),
+                                       slab.first + int(k), untagged.data() + k * slice,
+                                       slab.sites.data() + k * slice);
+                        }
+                    });
+    }
+
+    const FilledColon& filled_;
+    const ColonPainter colon_;
+    std::vector<Solid> solids_;
+    std::optional<RectalTube> rectalTube_;
+    const int threads_;
+};
+
+/// The slices that are wanted of a slab's labels, the first of them at `from`.
+void copyLabels(const Slab& slab, int from, Phantom& phantom) {
+    const std::size_t slice = slab.grid().index(0, 0, 1), at = std::size_t(from) * slice,
+                      skip = std::size_t(slab.begin) * slice,
+                      count = std::size_t(slab.end - slab.begin) * slice;
+    std::copy_n(slab.lumen.data() + skip, count, phantom.lumen.writable().data() + at);
+    std::copy_n(slab.sites.data() + skip, count, phantom.sites.writable().data() + at);
+}
+
+/// Blur, noise and artefacts.
+class Scanner {
+public:
+    Scanner(const PhantomOptions& options, const BodyPlan& body, const Grid& grid)
+        : options_(options.scan), threads_(options.threads) {
+        Random random(options.seed, 7);
+        const double inPlaneMm = random.uniform(0.85, 1.15);
+        fwhmMm_ = {inPlaneMm, inPlaneMm, 1.2};
+        for (int axis = 0; axis < 3; ++axis) {
+            if (options_.blurMm[axis] > 0.0) fwhmMm_[axis] = options_.blurMm[axis];
+        }
+        noise_.seed = mixBits(options.seed * 2 + (body.position == PatientPosition::prone));
+        noise_.sdHu = options.preset == Preset::easy       ? random.uniform(10.0, 13.0)
+                      : options.preset == Preset::standard ? random.uniform(14.0, 20.0)
+                                                           : random.uniform(26.0, 35.0);
+        if (options_.noiseSdHu > 0.0) noise_.sdHu = options_.noiseSdHu;
+        noise_.correlationMm = options_.grainMm;
+        streaks_ = {noise_.seed, options_.streakHu, options_.metalHip};
+        haloSlices_ = blurReachSlices(grid, fwhmMm_);
+    }
+
+    double noiseSdHu() const { return noise_.sdHu; }
+    int haloSlices() const { return haloSlices_; }
+
+    /// Scans the slices that are wanted of a slab, the first of them at `from`.
+    void expose(Slab& slab, int from, Phantom& phantom) const {
+        const int count = slab.end - slab.begin;
+        Volume<float> streaks;
+        if (streaks_.noiseHu > 0.0 || streaks_.hardening)
+            streaks = streaksOf(slab.untagged, slab.begin, count, from, streaks_, threads_);
+        const std::size_t slice = slab.grid().index(0, 0, 1);
+        const auto scanned = [&](Volume<float>& clean, Volume<std::int16_t>& hu) {
+            reconstruct(clean, fwhmMm_, options_.overshoot, threads_);
+            for (std::size_t n = 0; n < streaks.grid().voxelCount(); ++n)
+                clean.writable()[std::size_t(slab.begin) * slice + n] += streaks[n];
+            addNoise(clean, slab.begin, count, from, noise_, threads_,
+                     hu.writable().subspan(std::size_t(from) * slice, std::size_t(count) * slice));
+        };
+        if (options_.pseudoEnhancementHu > 0.0) {
+            enhanceBesideTagging(slab.tagged, slab.untagged, options_.pseudoEnhancementHu,
+                                 threads_);
+        }
+        scanned(slab.untagged, phantom.untaggedHu);
+        scanned(slab.tagged, phantom.scan.hu);
+    }
+
+private:
+    const ScanOptions options_;
+    const int threads_;
+    glm::dvec3 fwhmMm_{1.0};  ///< of the point spread
+    Noise noise_;
+    Streaks streaks_;
+    int haloSlices_ = 0;  ///< on either side of a slab, as its blur draws on them
+};
+
 }  // namespace
 
 Result<Phantom> makePhantom(const PhantomOptions& options) {
@@ -332,104 +463,34 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
     };
     const BodyPlan body = bodyOf(options);
     const FilledColon filled = makeFilledColon(options);
-    const auto& [shape, field, fluid, ileum] = filled;
-    const Grid& grid = field.grid();
+    const Grid& grid = filled.field.grid();
     report(0.3);
 
-    auto solids = makeAnatomy(options.seed, body);
-    if (options.scan.metalHip) {
-        for (Solid& solid : makeMetalHip(options.seed))
-            solids.push_back(std::move(solid));
-    }
-    for (Solid& solid : makeOtherBowel(options.seed, options.preset, body))
-        solids.push_back(std::move(solid));
-    if (ileum) solids.push_back(wallOf(*ileum));
-    std::optional<RectalTube> rectalTube;
-    if (options.bowel.rectalTube) rectalTube.emplace(shape.path(), options.seed);
-    const ColonPainter painter(shape, field, fluid, options.seed);
-
-    Random random(options.seed, 7);
-    const double inPlaneMm = random.uniform(0.85, 1.15);
-    glm::dvec3 fwhmMm{inPlaneMm, inPlaneMm, 1.2};
-    for (int axis = 0; axis < 3; ++axis) {
-        if (options.scan.blurMm[axis] > 0.0) fwhmMm[axis] = options.scan.blurMm[axis];
-    }
-    Noise noise;
-    noise.seed = mixBits(options.seed * 2 + (body.position == PatientPosition::prone));
-    noise.sdHu = options.preset == Preset::easy       ? random.uniform(10.0, 13.0)
-                 : options.preset == Preset::standard ? random.uniform(14.0, 20.0)
-                                                      : random.uniform(26.0, 35.0);
-    if (options.scan.noiseSdHu > 0.0) noise.sdHu = options.scan.noiseSdHu;
-    noise.correlationMm = options.scan.grainMm;
-    const Streaks streaking{noise.seed, options.scan.streakHu, options.scan.metalHip};
-    const bool streaked = streaking.noiseHu > 0.0 || streaking.hardening;
-
+    const Painter painter(options, body, filled);
+    const Scanner scanner(options, body, grid);
     Phantom phantom;
     phantom.lumen = Volume<std::uint8_t>(grid);
     phantom.sites = Volume<std::uint8_t>(grid);
     phantom.scan.hu = Volume<std::int16_t>(grid);
     phantom.untaggedHu = Volume<std::int16_t>(grid);
     phantom.scan.position = options.position;
-    const std::size_t slice = std::size_t(grid.size.x) * grid.size.y;
-    const int halo = blurReachSlices(grid, fwhmMm);
+    phantom.noiseSdHu = scanner.noiseSdHu();
     for (int from = 0; from < grid.size.z; from += kSlabSlices) {
         const int to = std::min(grid.size.z, from + kSlabSlices);
-        Slab slab;
-        slab.first = std::max(0, from - halo);
-        slab.begin = from - slab.first, slab.end = to - slab.first;
-        const Grid some = slicesOf(grid, slab.first, std::min(grid.size.z, to + halo));
-        slab.untagged = Volume<float>(some, -1000.0f);
-        slab.sites.assign(some.voxelCount(), std::uint8_t(Site::outsideBody));
-        slab.lumen.assign(some.voxelCount(), 0);
-        const auto untagged = slab.untagged.writable();
-        parallelFor(
-            std::size_t(some.size.z), 1, options.threads, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t k = begin; k < end; ++k) {
-                    paintSlice(solids, grid, field, slab.first + int(k), slab.first + int(k),
-                               untagged.data() + k * slice, slab.sites.data() + k * slice);
-                }
-            });
-        slab.tagged = slab.untagged.clone();
-        parallelFor(std::size_t(field.blockCount()), 64, options.threads,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t b = begin; b < end; ++b)
-                            painter.paintBlock(int(b), slab.first, slab);
-                    });
-        if (ileum) paintIleum(*ileum, fluid.up, field, slab.first, slab, options.threads);
-        if (rectalTube) paintRectalTube(*rectalTube, field, slab.first, slab);
-
-        const std::size_t at = std::size_t(from) * slice, skip = std::size_t(slab.begin) * slice,
-                          count = std::size_t(to - from) * slice;
-        std::copy_n(slab.lumen.data() + skip, count, phantom.lumen.writable().data() + at);
-        std::copy_n(slab.sites.data() + skip, count, phantom.sites.writable().data() + at);
-        Volume<float> streaks;
-        if (streaked)
-            streaks =
-                streaksOf(slab.untagged, slab.begin, to - from, from, streaking, options.threads);
-        const auto expose = [&](Volume<float>& clean, Volume<std::int16_t>& hu) {
-            reconstruct(clean, fwhmMm, options.scan.overshoot, options.threads);
-            for (std::size_t n = 0; n < streaks.grid().voxelCount(); ++n)
-                clean.writable()[skip + n] += streaks[n];
-            addNoise(clean, slab.begin, to - from, from, noise, options.threads,
-                     hu.writable().subspan(at, count));
-        };
-        if (options.scan.pseudoEnhancementHu > 0.0) {
-            enhanceBesideTagging(slab.tagged, slab.untagged, options.scan.pseudoEnhancementHu,
-                                 options.threads);
-        }
-        expose(slab.untagged, phantom.untaggedHu);
-        expose(slab.tagged, phantom.scan.hu);
+        Slab slab = slabOf(grid, from, to, scanner.haloSlices());
+        painter.paint(slab);
+        copyLabels(slab, from, phantom);
+        scanner.expose(slab, from, phantom);
         report(0.3 + 0.65 * double(to) / grid.size.z);
     }
 
-    phantom.centerline = trueCenterline(shape, phantom.lumen, options.threads);
-    phantom.polyps = polypsOf(shape);
-    phantom.polypVoxels = polypVoxels(shape, grid);
-    phantom.noiseSdHu = noise.sdHu;
+    phantom.centerline = trueCenterline(filled.shape, phantom.lumen, options.threads);
+    phantom.polyps = polypsOf(filled.shape);
+    phantom.polypVoxels = polypVoxels(filled.shape, grid);
     phantom.structure = structureOf(filled, phantom);
-    ContactFinder contacts(shape);
-    contacts.look(phantom.lumen, phantom.sites, field, 0, ileum ? &*ileum : nullptr, 0, grid.size.z,
-                  options.threads);
+    ContactFinder contacts(filled.shape);
+    contacts.look(phantom.lumen, phantom.sites, filled.field, 0,
+                  filled.ileum ? &*filled.ileum : nullptr, 0, grid.size.z, options.threads);
     phantom.structure.contacts = contacts.contacts();
     report(1.0);
     return phantom;

@@ -1,7 +1,7 @@
 #include "phantom/true_surface.h"
 
 #include "core/flood_fill.h"
-#include "core/parallel.h"
+#include "core/voxel_sweep.h"
 #include "phantom/filled_colon.h"
 
 #include <array>
@@ -47,40 +47,15 @@ const std::array<glm::dvec3, 14>& allAround() {
 TrueSurface::TrueSurface(Implicit implicit, const Volume<std::uint8_t>& inside, int threads)
     : implicit_(std::move(implicit)) {
     const Grid& grid = inside.grid();
-    const glm::dvec3 spacing = grid.spacingMm();
-    const glm::dmat3 patientFromVoxel(grid.patientFromVoxel);
-    // How many crossings of each axis's edges there are on a square millimetre square to it.
-    const glm::dvec3 density = spacing / grid.voxelVolumeMm3();
     std::vector<std::vector<SurfaceSample>> bySlice(std::size_t(grid.size.z));
-    parallelFor(bySlice.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
-        for (int k = int(begin); k < int(end); ++k) {
-            for (int j = 0; j < grid.size.y; ++j) {
-                for (int i = 0; i < grid.size.x; ++i) {
-                    const bool here = inside.at(i, j, k);
-                    for (int axis = 0; axis < 3; ++axis) {
-                        glm::ivec3 beside(i, j, k);
-                        if (++beside[axis] >= grid.size[axis]) continue;
-                        if (bool(inside.at(beside)) == here) continue;
-                        glm::dvec3 in = grid.patientFromVoxelPoint(glm::ivec3(i, j, k)),
-                                   out = grid.patientFromVoxelPoint(beside);
-                        if (!here) std::swap(in, out);
-                        SurfaceSample sample;
-                        sample.positionMm = bisect(implicit_.field, in, out);
-                        const glm::dvec3 g =
-                            gradient(sample.positionMm, implicit_.field(sample.positionMm));
-                        if (const double steep = glm::length(g); steep > 1e-6)
-                            sample.outward = g / steep;
-                        double crossings = 0.0;
-                        for (int a = 0; a < 3; ++a) {
-                            crossings += density[a] *
-                                         std::abs(glm::dot(sample.outward, patientFromVoxel[a])) /
-                                         spacing[a];
-                        }
-                        if (crossings > 0.0) sample.areaMm2 = 1.0 / crossings;
-                        bySlice[std::size_t(k)].push_back(sample);
-                    }
-                }
-            }
+    forVoxels(grid, threads, [&](std::size_t n, glm::ivec3 v) {
+        const bool here = inside[n];
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::ivec3 beside = v;
+            if (++beside[axis] >= grid.size[axis] || bool(inside.at(beside)) == here) continue;
+            const glm::dvec3 a = grid.patientFromVoxelPoint(v),
+                             b = grid.patientFromVoxelPoint(beside);
+            bySlice[std::size_t(v.z)].push_back(here ? crossing(a, b, grid) : crossing(b, a, grid));
         }
     });
     std::vector<Box> boxes;
@@ -91,6 +66,25 @@ TrueSurface::TrueSurface(Implicit implicit, const Volume<std::uint8_t>& inside, 
         }
     }
     near_ = CellGrid(boxes, kCellMm);
+}
+
+/// Where the surface crosses the edge from `in` to `out`.
+SurfaceSample TrueSurface::crossing(glm::dvec3 in, glm::dvec3 out, const Grid& grid) const {
+    const glm::dvec3 spacing = grid.spacingMm();
+    const glm::dmat3 patientFromVoxel(grid.patientFromVoxel);
+    // How many crossings of each axis's edges there are on a square millimetre square to it.
+    const glm::dvec3 density = spacing / grid.voxelVolumeMm3();
+    SurfaceSample sample;
+    sample.positionMm = bisect(implicit_.field, in, out);
+    const glm::dvec3 g = gradient(sample.positionMm, implicit_.field(sample.positionMm));
+    if (const double steep = glm::length(g); steep > 1e-6) sample.outward = g / steep;
+    double crossings = 0.0;
+    for (int a = 0; a < 3; ++a) {
+        crossings +=
+            density[a] * std::abs(glm::dot(sample.outward, patientFromVoxel[a])) / spacing[a];
+    }
+    if (crossings > 0.0) sample.areaMm2 = 1.0 / crossings;
+    return sample;
 }
 
 double TrueSurface::areaMm2() const {

@@ -51,6 +51,7 @@ public:
 private:
     CellGrid::Nearest nearestSample(glm::dvec3 p) const;
     glm::dvec3 gradient(glm::dvec3 p, double atP) const;
+    SurfaceSample crossing(glm::dvec3 in, glm::dvec3 out, const Grid& grid) const;
     glm::dvec3 slide(glm::dvec3 p, glm::dvec3 start) const;
     bool probe(glm::dvec3 p, bool inLumen, glm::dvec3 direction, glm::dvec3& foot) const;
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 namespace haustra::segmentation {
@@ -27,49 +28,55 @@ struct Cells {
     std::size_t count() const { return allAir.size(); }
 };
 
+/// Sums over the voxels of a row of cells along i.
+struct CellRow {
+    std::vector<double> sumHu;
+    std::vector<int> voxels, highHu;
+
+    explicit CellRow(std::size_t cells)
+        : sumHu(cells, 0.0), voxels(cells, 0), highHu(cells, -32768) {}
+
+    /// A row of voxels, `along` of which are one cell.
+    void add(std::span<const std::int16_t> hu, int along) {
+        const std::int16_t* at = hu.data();
+        const std::int16_t* const end = at + hu.size();
+        for (std::size_t x = 0; x < sumHu.size(); ++x) {
+            const std::int16_t* const next = std::min(at + along, end);
+            voxels[x] += int(next - at);
+            int sum = 0;
+            for (; at != next; ++at)
+                sum += *at, highHu[x] = std::max(highHu[x], int(*at));
+            sumHu[x] += sum;
+        }
+    }
+};
+
 Cells makeCells(const Volume<std::int16_t>& hu, double airBelowHu, int threads) {
     const Grid& grid = hu.grid();
     Cells cells;
     cells.block = glm::max(glm::ivec3(1), glm::ivec3(glm::round(cellMm / grid.spacingMm())));
     cells.grid.size = (grid.size + cells.block - 1) / cells.block;
-    const std::size_t count = cells.grid.voxelCount();
     cells.cellMl = grid.voxelVolumeMm3() * cells.block.x * cells.block.y * cells.block.z / 1000.0;
-    cells.allAir.assign(count, 0);
-    cells.meanHu.assign(count, 0.0f);
-    parallelFor(
-        std::size_t(cells.grid.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
-            std::vector<double> sum(std::size_t(cells.grid.size.x));
-            std::vector<int> voxels(sum.size()), high(sum.size());
-            for (std::size_t z = first; z < last; ++z) {
-                for (int y = 0; y < cells.grid.size.y; ++y) {
-                    std::fill(sum.begin(), sum.end(), 0.0);
-                    std::fill(voxels.begin(), voxels.end(), 0);
-                    std::fill(high.begin(), high.end(), -32768);
-                    const glm::ivec3 lo = glm::ivec3(0, y, int(z)) * cells.block;
-                    const glm::ivec3 hi = glm::min(lo + cells.block, grid.size);
-                    for (int k = lo.z; k < hi.z; ++k) {
-                        for (int j = lo.y; j < hi.y; ++j) {
-                            const std::int16_t* at = &hu.voxels()[grid.index(0, j, k)];
-                            const std::int16_t* const end = at + grid.size.x;
-                            for (std::size_t x = 0; x < sum.size(); ++x) {
-                                const std::int16_t* const next = std::min(at + cells.block.x, end);
-                                voxels[x] += int(next - at);
-                                int huSum = 0;
-                                for (; at != next; ++at)
-                                    huSum += *at, high[x] = std::max(high[x], int(*at));
-                                sum[x] += huSum;
-                            }
-                        }
-                    }
-                    for (int x = 0; x < cells.grid.size.x; ++x) {
-                        const std::size_t at = cells.grid.index({x, y, int(z)});
-                        cells.meanHu[at] =
-                            float(sum[std::size_t(x)] / std::max(1, voxels[std::size_t(x)]));
-                        cells.allAir[at] = high[std::size_t(x)] < airBelowHu;
-                    }
-                }
+    cells.allAir.assign(cells.grid.voxelCount(), 0);
+    cells.meanHu.assign(cells.grid.voxelCount(), 0.0f);
+    const std::size_t length = std::size_t(cells.grid.size.x),
+                      rows = cells.grid.voxelCount() / length;
+    parallelFor(rows, 16, threads, [&](std::size_t first, std::size_t last) {
+        for (std::size_t r = first; r < last; ++r) {
+            CellRow row(length);
+            const glm::ivec3 lo = cells.grid.voxelAt(r * length) * cells.block,
+                             hi = glm::min(lo + cells.block, grid.size);
+            for (int k = lo.z; k < hi.z; ++k) {
+                for (int j = lo.y; j < hi.y; ++j)
+                    row.add(hu.voxels().subspan(grid.index(0, j, k), std::size_t(grid.size.x)),
+                            cells.block.x);
             }
-        });
+            for (std::size_t x = 0; x < length; ++x) {
+                cells.meanHu[r * length + x] = float(row.sumHu[x] / std::max(1, row.voxels[x]));
+                cells.allAir[r * length + x] = row.highHu[x] < airBelowHu;
+            }
+        }
+    });
     return cells;
 }
 

@@ -108,169 +108,230 @@ double orificeLogOdds(const Orifice& orifice, const TubePieces& cut, double soft
         -8.0, 20.0);
 }
 
+constexpr double certain = 60.0;  ///< log odds of what a person said
+
+/// No fluid is brighter: from the fluids under the levels, by area; 3000 HU where there is no
+/// level.
+double brightestFluidHu(const std::vector<Level>& levels, double softHu) {
+    std::vector<std::pair<double, double>> fluids;  // HU, area
+    double area = 0.0;
+    for (const Level& level : levels)
+        fluids.emplace_back(level.fluidHu, level.areaMm2), area += level.areaMm2;
+    std::sort(fluids.begin(), fluids.end());
+    double sum = 0.0;
+    for (const auto& [fluidHu, mm2] : fluids) {
+        sum += mm2;
+        if (sum >= 0.95 * area) return softHu + 1.5 * (fluidHu - softHu) + 100.0;
+    }
+    return 3000.0;
+}
+
+/// What was said of each piece.
+enum class Said : char { nothing, bowel, notColon };
+
+std::vector<Said> saidOf(const GivenPieces& given, std::size_t pieces) {
+    std::vector<Said> said(pieces, Said::nothing);
+    for (const std::int32_t p : given.colon)
+        said[std::size_t(p)] = Said::bowel;
+    for (const GivenPieces::Join& join : given.joins)
+        said[std::size_t(join.a)] = said[std::size_t(join.b)] = Said::bowel;
+    for (const std::int32_t p : given.notColon)
+        said[std::size_t(p)] = Said::notColon;
+    return said;
+}
+
+/// By which the height of the abdomen is told.
+bool isWide(const TubePiece& piece) {
+    return piece.radiusMm > 8.0 && piece.volumeMl > 10.0;
+}
+
+/// Where the voxels of one node lie.
+struct NodePlaces {
+    std::vector<glm::dvec3> samplesMm;
+    glm::dvec3 lowestMm{0.0, 0.0, 1e9}, lowCornerMm{1e9}, highCornerMm{-1e9};
+};
+
+std::vector<NodePlaces> placesOf(const PieceGraph& graph, const TubePieces& cut, const Grid& grid) {
+    constexpr std::size_t sampleEvery = 61;
+    std::vector<NodePlaces> places(graph.pieceOf.size());
+    for (std::size_t n = 0; n < cut.pieceAt.voxels().size(); ++n) {
+        const std::int32_t p = cut.pieceAt[n];
+        if (p < 0 || graph.nodeOf[std::size_t(p)] < 0) continue;
+        NodePlaces& node = places[std::size_t(graph.nodeOf[std::size_t(p)])];
+        const glm::dvec3 at = grid.patientFromVoxelPoint(grid.voxelAt(n));
+        if (n % sampleEvery == 0) node.samplesMm.push_back(at);
+        if (at.z < node.lowestMm.z) node.lowestMm = at;
+        node.lowCornerMm = glm::min(node.lowCornerMm, at);
+        node.highCornerMm = glm::max(node.highCornerMm, at);
+    }
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        if (places[n].samplesMm.empty())
+            places[n].samplesMm.push_back(cut.pieces[std::size_t(graph.pieceOf[n])].centreMm);
+    }
+    return places;
+}
+
+/// The body's frame between the lowest and the highest wide piece.
+BodyFrame frameOf(const PieceGraph& graph, const TubePieces& cut,
+                  const std::vector<NodePlaces>& places, std::span<const glm::vec3> softTissueMm) {
+    double low = 1e9, high = -1e9;
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        const TubePiece& piece = cut.pieces[std::size_t(graph.pieceOf[n])];
+        if (!isWide(piece)) continue;
+        low = std::min({low, piece.centreMm.z - piece.radiusMm, places[n].lowestMm.z});
+        high = std::max(high, piece.centreMm.z + piece.radiusMm);
+    }
+    return findBodyFrame(softTissueMm, low, high);
+}
+
+/// A node but for its folds and what was said of it.
+ChainNode nodeOf(const TubePiece& piece, const NodePlaces& places, const BodyFrame& frame) {
+    ChainNode node;
+    node.radiusMm = piece.radiusMm;
+    node.volumeMl = piece.volumeMl;
+    // As a tube of that calibre, but no longer than it reaches: bone is plates.
+    node.lengthMm = std::min(1000.0 * piece.volumeMl / (M_PI * piece.radiusMm * piece.radiusMm),
+                             1.5 * glm::distance(places.lowCornerMm, places.highCornerMm));
+    node.centreMm = piece.centreMm;
+    for (std::size_t part = 0; part < colonParts; ++part) {
+        for (const glm::dvec3& at : places.samplesMm) {
+            node.placeLogOdds[part] +=
+                std::clamp(logDensity(regions()[part], frame.place(at)) - std::log(background),
+                           -4.0, 1.2) /
+                double(places.samplesMm.size());
+        }
+    }
+    const Region anus{{0.0, 0.3, 0.02}, {0.15, 0.3, 0.06}};
+    const glm::dvec3 z = (frame.place(places.lowestMm) - anus.mean) / anus.sd;
+    node.rectumLogOdds = -std::min(15.0, 0.5 * glm::dot(z, z));
+    return node;
+}
+
+void addFolds(PieceGraph& graph, std::span<const double> foldMm) {
+    std::vector<double> nodeFoldMm;
+    for (const std::int32_t p : graph.pieceOf)
+        nodeFoldMm.push_back(foldMm[std::size_t(p)]);
+    const double seen = foldsSeen(graph.graph.nodes, nodeFoldMm);
+    for (std::size_t n = 0; n < nodeFoldMm.size(); ++n) {
+        for (int part = 0; part < colonParts && nodeFoldMm[n] >= 0.0; ++part)
+            graph.graph.nodes[n].foldLogOdds[std::size_t(part)] =
+                seen * foldLogOddsOf(nodeFoldMm[n], part);
+    }
+}
+
+void addOrifices(PieceGraph& graph, const TubePieces& cut, const std::vector<Said>& said,
+                 double softHu) {
+    for (std::size_t o = 0; o < cut.orifices.size(); ++o) {
+        const Orifice& orifice = cut.orifices[o];
+        const int a = graph.nodeOf[std::size_t(orifice.a)],
+                  b = graph.nodeOf[std::size_t(orifice.b)];
+        if (a < 0 || b < 0) continue;
+        const bool barred = said[std::size_t(orifice.a)] == Said::notColon ||
+                            said[std::size_t(orifice.b)] == Said::notColon;
+        ChainJunction junction;
+        junction.path = int(o);
+        junction.mismatch = fluidMismatch(orifice, cut, softHu);
+        junction.a = a, junction.b = b;
+        junction.logOdds = barred ? -certain : orificeLogOdds(orifice, cut, softHu);
+        junction.kind = junction.logOdds < 0.0 ? JunctionKind::thinWall : JunctionKind::openLumen;
+        junction.radiusMm = orifice.radiusMm, junction.openMm2 = orifice.openMm2,
+        junction.wallMm2 = orifice.wallMm2;
+        junction.placeMm = orifice.placeMm;
+        graph.graph.junctions.push_back(junction);
+    }
+}
+
+/// The orifices of each node that are open for sure enough.
+std::vector<std::vector<glm::ivec3>> doorsOf(const PieceGraph& graph, const TubePieces& cut,
+                                             double softHu) {
+    std::vector<std::vector<glm::ivec3>> doors(graph.pieceOf.size());
+    for (const Orifice& orifice : cut.orifices) {
+        const int a = graph.nodeOf[std::size_t(orifice.a)],
+                  b = graph.nodeOf[std::size_t(orifice.b)];
+        if (a < 0 || b < 0 || orificeLogOdds(orifice, cut, softHu) < 1.0) continue;
+        doors[std::size_t(a)].push_back(orifice.place);
+        doors[std::size_t(b)].push_back(orifice.place);
+    }
+    return doors;
+}
+
+/// What is crossed where the colon is collapsed.
+void addCollapses(PieceGraph& graph, std::vector<CollapsePath> paths) {
+    graph.collapses = std::move(paths);
+    for (std::size_t n = 0; n < graph.collapses.size(); ++n) {
+        const CollapsePath& path = graph.collapses[n];
+        ChainJunction junction;
+        junction.a = graph.nodeOf[std::size_t(path.from)],
+        junction.b = graph.nodeOf[std::size_t(path.to)];
+        junction.kind = JunctionKind::collapse;
+        junction.logOdds = -3.0 - 0.04 * path.costMm - path.turn - (path.toTip ? 0.0 : 3.0);
+        junction.lengthMm = path.lengthMm;
+        junction.placeMm = path.pointsMm[path.pointsMm.size() / 2];
+        junction.path = int(n);
+        graph.graph.junctions.push_back(junction);
+    }
+}
+
+void addGivenJoins(PieceGraph& graph, const std::vector<GivenPieces::Join>& joins) {
+    for (const GivenPieces::Join& join : joins) {
+        ChainJunction junction;
+        junction.a = graph.nodeOf[std::size_t(join.a)],
+        junction.b = graph.nodeOf[std::size_t(join.b)];
+        if (junction.a == junction.b) continue;
+        junction.kind = JunctionKind::collapse;
+        junction.logOdds = certain;
+        junction.lengthMm = glm::distance(join.aMm, join.bMm);
+        junction.placeMm = 0.5 * (join.aMm + join.bMm);
+        junction.path = int(graph.collapses.size());
+        graph.graph.junctions.push_back(junction);
+        graph.collapses.push_back({join.a,
+                                   join.b,
+                                   junction.lengthMm,
+                                   junction.lengthMm,
+                                   true,
+                                   0.0,
+                                   {join.aMm, join.bMm}});
+    }
+}
+
 }  // namespace
 
 PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& contents,
                           const TissueModel& tissue, const TubePieces& cut,
                           std::span<const double> foldMm, std::span<const glm::vec3> softTissueMm,
                           const GivenPieces& given, int threads) {
+    constexpr std::size_t mostNodes = 400;
     const double softHu = tissue.meanHu[int(Tissue::soft)];
-    double brightestHu = 3000.0;
-    {
-        std::vector<std::pair<double, double>> fluids;  // HU, area
-        double area = 0.0;
-        for (const Level& level : contents.levels)
-            fluids.emplace_back(level.fluidHu, level.areaMm2), area += level.areaMm2;
-        std::sort(fluids.begin(), fluids.end());
-        double sum = 0.0;
-        for (const auto& [fluidHu, mm2] : fluids) {
-            sum += mm2;
-            if (sum >= 0.95 * area) {
-                brightestHu = softHu + 1.5 * (fluidHu - softHu) + 100.0;
-                break;
-            }
-        }
-    }
+    const double brightestHu = brightestFluidHu(contents.levels, softHu);
+    const std::vector<Said> said = saidOf(given, cut.pieces.size());
     PieceGraph made;
     made.nodeOf.assign(cut.pieces.size(), -1);
-    double low = 1e9, high = -1e9;
-    std::vector<char> named(cut.pieces.size(), 0);
-    for (const std::int32_t p : given.colon)
-        named[std::size_t(p)] = 1;
-    for (const GivenPieces::Join& join : given.joins)
-        named[std::size_t(join.a)] = named[std::size_t(join.b)] = 1;
-    for (const std::int32_t p : given.notColon)
-        named[std::size_t(p)] = 2;
-    for (std::size_t p = 0; p < cut.pieces.size(); ++p) {
+    for (std::size_t p = 0; p < cut.pieces.size() && made.pieceOf.size() < mostNodes; ++p) {
         const TubePiece& piece = cut.pieces[p];
-        const bool bowel = named[p] != 0 || isGasBowel(piece) || isUntaggedBowel(piece) ||
+        const bool bowel = said[p] != Said::nothing || isGasBowel(piece) ||
+                           isUntaggedBowel(piece) ||
                            isTaggedBowel(piece, softHu, brightestHu, contents.gasSdHu);
         if (!bowel) continue;
-        if (made.pieceOf.size() >= 400) break;
         made.nodeOf[p] = std::int32_t(made.pieceOf.size());
         made.pieceOf.push_back(std::int32_t(p));
-        if (piece.radiusMm > 8.0 && piece.volumeMl > 10.0)
-            low = std::min(low, piece.centreMm.z - piece.radiusMm),
-            high = std::max(high, piece.centreMm.z + piece.radiusMm);
     }
-    // Samples of each piece: where its voxels lie, and its lowest end.
-    const Grid& grid = hu.grid();
-    std::vector<std::vector<glm::dvec3>> samples(made.pieceOf.size());
-    std::vector<glm::dvec3> lowest(made.pieceOf.size(), glm::dvec3(0.0, 0.0, 1e9));
-    std::vector<glm::dvec3> lowCorner(made.pieceOf.size(), glm::dvec3(1e9)),
-        highCorner(made.pieceOf.size(), glm::dvec3(-1e9));
-    for (std::size_t n = 0; n < cut.pieceAt.voxels().size(); ++n) {
-        const std::int32_t p = cut.pieceAt[n];
-        if (p < 0 || made.nodeOf[std::size_t(p)] < 0) continue;
-        const std::size_t node = std::size_t(made.nodeOf[std::size_t(p)]);
-        const glm::dvec3 at = grid.patientFromVoxelPoint(grid.voxelAt(n));
-        if (n % 61 == 0) samples[node].push_back(at);
-        if (at.z < lowest[node].z) lowest[node] = at;
-        lowCorner[node] = glm::min(lowCorner[node], at),
-        highCorner[node] = glm::max(highCorner[node], at);
+    const std::vector<NodePlaces> places = placesOf(made, cut, hu.grid());
+    made.frame = frameOf(made, cut, places, softTissueMm);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        const std::size_t p = std::size_t(made.pieceOf[n]);
+        made.lowestMm.push_back(places[n].lowestMm);
+        made.graph.nodes.push_back(nodeOf(cut.pieces[p], places[n], made.frame));
+        if (said[p] == Said::notColon) made.graph.nodes.back().given = -certain;
     }
-    for (std::size_t n = 0; n < made.pieceOf.size(); ++n) {
-        const TubePiece& piece = cut.pieces[std::size_t(made.pieceOf[n])];
-        if (piece.radiusMm > 8.0 && piece.volumeMl > 10.0) low = std::min(low, lowest[n].z);
-    }
-    made.frame = findBodyFrame(softTissueMm, low, high);
-    made.lowestMm = lowest;
-    for (std::size_t n = 0; n < made.pieceOf.size(); ++n) {
-        const TubePiece& piece = cut.pieces[std::size_t(made.pieceOf[n])];
-        ChainNode node;
-        node.radiusMm = piece.radiusMm;
-        node.volumeMl = piece.volumeMl;
-        // As a tube of that calibre, but no longer than it reaches: bone is plates.
-        node.lengthMm = std::min(1000.0 * piece.volumeMl / (M_PI * piece.radiusMm * piece.radiusMm),
-                                 1.5 * glm::distance(lowCorner[n], highCorner[n]));
-        node.centreMm = piece.centreMm;
-        if (samples[n].empty()) samples[n].push_back(piece.centreMm);
-        for (std::size_t part = 0; part < colonParts; ++part) {
-            for (const glm::dvec3& at : samples[n]) {
-                node.placeLogOdds[part] +=
-                    std::clamp(
-                        logDensity(regions()[part], made.frame.place(at)) - std::log(background),
-                        -4.0, 1.2) /
-                    double(samples[n].size());
-            }
-        }
-        const Region anus{{0.0, 0.3, 0.02}, {0.15, 0.3, 0.06}};
-        const glm::dvec3 z = (made.frame.place(lowest[n]) - anus.mean) / anus.sd;
-        node.rectumLogOdds = -std::min(15.0, 0.5 * glm::dot(z, z));
-        constexpr double certain = 60.0;
-        if (named[std::size_t(made.pieceOf[n])] == 2) node.given = -certain;
-        made.graph.nodes.push_back(node);
-    }
-    std::vector<double> nodeFoldMm;
-    for (const std::int32_t p : made.pieceOf)
-        nodeFoldMm.push_back(foldMm[std::size_t(p)]);
-    const double seen = foldsSeen(made.graph.nodes, nodeFoldMm);
-    for (std::size_t n = 0; n < nodeFoldMm.size(); ++n) {
-        for (int part = 0; part < colonParts && nodeFoldMm[n] >= 0.0; ++part)
-            made.graph.nodes[n].foldLogOdds[std::size_t(part)] =
-                seen * foldLogOddsOf(nodeFoldMm[n], part);
-    }
+    addFolds(made, foldMm);
     for (const std::int32_t p : given.colon)
-        made.graph.nodes[std::size_t(made.nodeOf[std::size_t(p)])].given = 60.0;
-    for (std::size_t o = 0; o < cut.orifices.size(); ++o) {
-        const Orifice& orifice = cut.orifices[o];
-        const int a = made.nodeOf[std::size_t(orifice.a)], b = made.nodeOf[std::size_t(orifice.b)];
-        if (a < 0 || b < 0) continue;
-        ChainJunction junction;
-        junction.path = int(o);
-        junction.mismatch = fluidMismatch(orifice, cut, softHu);
-        junction.a = a, junction.b = b;
-        junction.logOdds = named[std::size_t(orifice.a)] == 2 || named[std::size_t(orifice.b)] == 2
-                               ? -60.0
-                               : orificeLogOdds(orifice, cut, softHu);
-        junction.kind = junction.logOdds < 0.0 ? JunctionKind::thinWall : JunctionKind::openLumen;
-        junction.radiusMm = orifice.radiusMm, junction.openMm2 = orifice.openMm2,
-        junction.wallMm2 = orifice.wallMm2;
-        junction.placeMm = orifice.placeMm;
-        made.graph.junctions.push_back(junction);
-    }
-    // What is crossed where the colon is collapsed.
-    std::vector<std::vector<glm::ivec3>> doors(made.pieceOf.size());
-    for (const Orifice& orifice : cut.orifices) {
-        const int a = made.nodeOf[std::size_t(orifice.a)], b = made.nodeOf[std::size_t(orifice.b)];
-        if (a < 0 || b < 0 || orificeLogOdds(orifice, cut, softHu) < 1.0) continue;
-        doors[std::size_t(a)].push_back(orifice.place);
-        doors[std::size_t(b)].push_back(orifice.place);
-    }
+        made.graph.nodes[std::size_t(made.nodeOf[std::size_t(p)])].given = certain;
+    addOrifices(made, cut, said, softHu);
     CollapseOptions collapse;
     collapse.threads = threads;
-    made.collapses = findCollapsePaths(hu, contents, cut, made.pieceOf, doors, collapse);
-    for (std::size_t n = 0; n < made.collapses.size(); ++n) {
-        const CollapsePath& path = made.collapses[n];
-        ChainJunction junction;
-        junction.a = made.nodeOf[std::size_t(path.from)],
-        junction.b = made.nodeOf[std::size_t(path.to)];
-        junction.kind = JunctionKind::collapse;
-        junction.logOdds = -3.0 - 0.04 * path.costMm - path.turn - (path.toTip ? 0.0 : 3.0);
-        junction.lengthMm = path.lengthMm;
-        junction.placeMm = path.pointsMm[path.pointsMm.size() / 2];
-        junction.path = int(n);
-        made.graph.junctions.push_back(junction);
-    }
-    for (const GivenPieces::Join& join : given.joins) {
-        ChainJunction junction;
-        junction.a = made.nodeOf[std::size_t(join.a)],
-        junction.b = made.nodeOf[std::size_t(join.b)];
-        if (junction.a == junction.b) continue;
-        junction.kind = JunctionKind::collapse;
-        junction.logOdds = 60.0;
-        junction.lengthMm = glm::distance(join.aMm, join.bMm);
-        junction.placeMm = 0.5 * (join.aMm + join.bMm);
-        junction.path = int(made.collapses.size());
-        made.graph.junctions.push_back(junction);
-        made.collapses.push_back({join.a,
-                                  join.b,
-                                  junction.lengthMm,
-                                  junction.lengthMm,
-                                  true,
-                                  0.0,
-                                  {join.aMm, join.bMm}});
-    }
+    addCollapses(made, findCollapsePaths(hu, contents, cut, made.pieceOf,
+                                         doorsOf(made, cut, softHu), collapse));
+    addGivenJoins(made, given.joins);
     return made;
 }
 

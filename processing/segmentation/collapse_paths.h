@@ -18,12 +18,6 @@ struct CollapsePath {
     std::vector<glm::dvec3> pointsMm;  ///< from a voxel of `from` to one of `to`
 };
 
-/// An end of a piece: nothing goes on from there.
-struct BlindEnd {
-    std::int32_t piece = 0;
-    glm::dvec3 tipMm{0.0};
-};
-
 struct CollapseOptions {
     double mostCostMm = 90.0;
     int threads = 0;

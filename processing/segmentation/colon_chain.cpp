@@ -164,25 +164,27 @@ private:
             Tube tube{{int(n)}, {}};
             tubeOf_[n] = int(tubes_.size());
             if (sure[n].size() <= 2 && !sac[n]) {
-                for (const bool forward : {true, false}) {
-                    for (;;) {
-                        const int last = forward ? tube.nodes.back() : tube.nodes.front();
-                        int next = -1, link = -1;
-                        for (const auto& [other, j] : sure[std::size_t(last)]) {
-                            if (tubeOf_[std::size_t(other)] < 0 &&
-                                sure[std::size_t(other)].size() <= 2) {
-                                next = other, link = j;
-                                break;
-                            }
-                        }
-                        if (next < 0) break;
-                        tubeOf_[std::size_t(next)] = int(tubes_.size());
-                        tube.nodes.insert(forward ? tube.nodes.end() : tube.nodes.begin(), next);
-                        tube.links.insert(forward ? tube.links.end() : tube.links.begin(), link);
-                    }
-                }
+                lengthen(tube, sure, true);
+                lengthen(tube, sure, false);
             }
             tubes_.push_back(std::move(tube));
+        }
+    }
+
+    /// Adds, at its end or at its beginning, what a new tube goes on to without a branch.
+    void lengthen(Tube& tube, const std::vector<std::map<int, int>>& sure, bool atEnd) {
+        const auto goesOn = [&](const std::pair<const int, int>& door) {
+            const std::size_t other = std::size_t(door.first);
+            return tubeOf_[other] < 0 && sure[other].size() <= 2;
+        };
+        for (;;) {
+            const auto& doors = sure[std::size_t(atEnd ? tube.nodes.back() : tube.nodes.front())];
+            const auto found = std::find_if(doors.begin(), doors.end(), goesOn);
+            if (found == doors.end()) return;
+            const auto& [next, link] = *found;
+            tubeOf_[std::size_t(next)] = int(tubes_.size());
+            tube.nodes.insert(atEnd ? tube.nodes.end() : tube.nodes.begin(), next);
+            tube.links.insert(atEnd ? tube.links.end() : tube.links.begin(), link);
         }
     }
 

@@ -283,57 +283,67 @@ private:
         };
         const int rimAside = voxels(rimMm, side), rimAlong = voxels(rimMm, 2),
                   near = voxels(nearMm, down.axis) + 1;
-        std::vector<std::size_t> between;
-        std::unordered_map<std::size_t, std::int32_t> filled;  // the gas over each
-        const auto facesOther = [&](std::size_t n, std::int32_t gas, std::int32_t fluid) {
-            bool other = false;
-            visitFaces(grid_, n, [&](std::size_t m, int) {
-                if (labels_[m] == outside) return;
-                const auto over = filled.find(m);
-                const std::int32_t piece = over != filled.end() ? over->second : cut_.pieceAt[m];
-                other = other || !(areJoined(gas, piece) || areJoined(fluid, piece));
-            });
-            return other;
+        std::unordered_map<std::size_t, std::int32_t> gasOver;  // of each voxel filled
+        const auto fillAround = [&](const LevelColumn& column) {
+            for (int dz = -rimAlong; dz <= rimAlong; ++dz) {
+                for (int dn = -rimAside; dn <= rimAside; ++dn) {
+                    glm::ivec3 v = column.below;
+                    v[side] += dn, v.z += dz, v[down.axis] -= near * down.sign;
+                    fillGap(gapBelow(v, near), gasOver);
+                }
+            }
         };
         for (const Level& level : contents_.levels) {
             for (const LevelColumn& column : level.columns) {
-                if (labels_[grid_.index(column.below)] == outside &&
-                    labels_[grid_.index(column.above)] == outside)
-                    continue;
-                for (int dz = -rimAlong; dz <= rimAlong; ++dz) {
-                    for (int dn = -rimAside; dn <= rimAside; ++dn) {
-                        glm::ivec3 v = column.below;
-                        v[side] += dn, v.z += dz, v[down.axis] -= near * down.sign;
-                        between.clear();
-                        bool underAir = false;
-                        std::int32_t gas = -1;
-                        for (int step = 0; step < 2 * near; ++step, v[down.axis] += down.sign) {
-                            if (!grid_.contains(v)) break;
-                            const std::size_t n = grid_.index(v);
-                            if (labels_[n] == air) {
-                                underAir = true, between.clear();
-                                gas = cut_.pieceAt[n];
-                            } else if (labels_[n] == tagged) {
-                                const std::int32_t fluid = cut_.pieceAt[n];
-                                if (underAir && int(between.size()) < near &&
-                                    areJoined(gas, fluid)) {
-                                    for (const std::size_t gap : between) {
-                                        if (facesOther(gap, gas, fluid)) continue;
-                                        labels_[gap] = tagged, filled.emplace(gap, gas);
-                                    }
-                                }
-                                break;
-                            } else if (barred_[n] ||
-                                       (cut_.pieceAt[n] >= 0 &&
-                                        graph_.nodeOf[std::size_t(cut_.pieceAt[n])] >= 0)) {
-                                break;
-                            } else if (underAir) {
-                                between.push_back(n);
-                            }
-                        }
-                    }
-                }
+                if (labels_[grid_.index(column.below)] != outside ||
+                    labels_[grid_.index(column.above)] != outside)
+                    fillAround(column);
             }
+        }
+    }
+    // What lies between the gas of one piece and the fluid of another below it.
+    struct Gap {
+        std::int32_t gas = -1, fluid = -1;  // pieces
+        std::vector<std::size_t> voxels;
+    };
+    // The last gap in the `2 near` voxels from `v` down, of fewer than `near`; empty: none.
+    Gap gapBelow(glm::ivec3 v, int near) const {
+        const GravityAxis down = contents_.down;
+        Gap gap;
+        bool underAir = false;
+        for (int step = 0; step < 2 * near && grid_.contains(v);
+             ++step, v[down.axis] += down.sign) {
+            const std::size_t n = grid_.index(v);
+            const std::int32_t piece = cut_.pieceAt[n];
+            if (labels_[n] == air) {
+                underAir = true, gap.voxels.clear();
+                gap.gas = piece;
+            } else if (labels_[n] == tagged) {
+                gap.fluid = piece;
+                const bool oneLumen = underAir && areJoined(gap.gas, piece);
+                return oneLumen && int(gap.voxels.size()) < near ? gap : Gap{};
+            } else if (barred_[n] || (piece >= 0 && graph_.nodeOf[std::size_t(piece)] >= 0)) {
+                break;
+            } else if (underAir) {
+                gap.voxels.push_back(n);
+            }
+        }
+        return {};
+    }
+    void fillGap(const Gap& gap, std::unordered_map<std::size_t, std::int32_t>& gasOver) {
+        const auto facesOther = [&](std::size_t n) {
+            bool other = false;
+            visitFaces(grid_, n, [&](std::size_t m, int) {
+                if (labels_[m] == outside) return;
+                const auto over = gasOver.find(m);
+                const std::int32_t piece = over != gasOver.end() ? over->second : cut_.pieceAt[m];
+                other = other || !(areJoined(gap.gas, piece) || areJoined(gap.fluid, piece));
+            });
+            return other;
+        };
+        for (const std::size_t n : gap.voxels) {
+            if (facesOther(n)) continue;
+            labels_[n] = tagged, gasOver.emplace(n, gap.gas);
         }
     }
 

@@ -129,56 +129,35 @@ class BrightestTagged {
 public:
     BrightestTagged(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& content,
                     glm::ivec3 reach, int threads)
-        : block_(reach), size_((hu.grid().size + reach - 1) / reach) {
+        : block_(reach) {
         const Grid& grid = hu.grid();
-        std::vector<std::int16_t> own(count(), std::int16_t(-32768));
-        near_.assign(count(), std::int16_t(-32768));
-        parallelFor(std::size_t(size_.z), 1, threads, [&](std::size_t first, std::size_t last) {
-            for (int k = int(first) * block_.z; k < std::min(int(last) * block_.z, grid.size.z);
-                 ++k) {
-                for (int j = 0; j < grid.size.y; ++j) {
-                    const std::size_t row = grid.index(0, j, k);
-                    std::int16_t* const blocks = &own[at(glm::ivec3(0, j, k) / block_)];
-                    for (int i = 0; i < grid.size.x; ++i) {
-                        if (Content(content[row + std::size_t(i)]) != Content::tagged) continue;
-                        std::int16_t& most = blocks[i / block_.x];
-                        most = std::max(most, hu[row + std::size_t(i)]);
-                    }
-                }
-            }
-        });
-        parallelFor(std::size_t(size_.z), 1, threads, [&](std::size_t first, std::size_t last) {
-            for (std::size_t z = first; z < last; ++z) {
-                for (int y = 0; y < size_.y; ++y) {
-                    for (int x = 0; x < size_.x; ++x) {
-                        const glm::ivec3 c(x, y, int(z)), lo = glm::max(c - 1, glm::ivec3(0)),
-                                                          hi = glm::min(c + 1, size_ - 1);
-                        std::int16_t most = -32768;
-                        for (int k = lo.z; k <= hi.z; ++k) {
-                            for (int j = lo.y; j <= hi.y; ++j) {
-                                for (int i = lo.x; i <= hi.x; ++i)
-                                    most = std::max(most, own[at({i, j, k})]);
-                            }
-                        }
-                        near_[at(c)] = most;
-                    }
-                }
-            }
+        Grid blocks;
+        blocks.size = (grid.size + reach - 1) / reach;
+        Volume<std::int16_t> own(blocks, std::int16_t(-32768));
+        const auto most = own.writable();
+        parallelFor(
+            std::size_t(blocks.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
+                const std::size_t depth = std::size_t(reach.z);
+                visitSlices(grid, first * depth, std::min(last * depth, std::size_t(grid.size.z)),
+                            [&](std::size_t n, glm::ivec3 v) {
+                                if (Content(content[n]) != Content::tagged) return;
+                                std::int16_t& here = most[blocks.index(v / reach)];
+                                here = std::max(here, hu[n]);
+                            });
+            });
+        near_ = Volume<std::int16_t>(blocks);
+        const auto near = near_.writable();
+        forVoxels(blocks, threads, [&](std::size_t n, glm::ivec3 block) {
+            near[n] = own[n];
+            visitBox(glm::max(block - 1, glm::ivec3(0)), glm::min(block + 1, blocks.size - 1),
+                     [&](glm::ivec3 beside) { near[n] = std::max(near[n], own.at(beside)); });
         });
     }
-    double near(glm::ivec3 v) const { return near_[at(v / block_)]; }
+    double near(glm::ivec3 v) const { return near_.at(v / block_); }
 
 private:
-    std::size_t count() const {
-        return std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z);
-    }
-    std::size_t at(glm::ivec3 c) const {
-        return std::size_t(c.x) +
-               std::size_t(size_.x) * (std::size_t(c.y) + std::size_t(size_.y) * std::size_t(c.z));
-    }
-
-    const glm::ivec3 block_, size_;
-    std::vector<std::int16_t> near_;
+    const glm::ivec3 block_;
+    Volume<std::int16_t> near_;  ///< on the blocks
 };
 
 class Search {

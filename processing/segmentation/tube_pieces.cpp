@@ -1,5 +1,6 @@
 #include "segmentation/tube_pieces.h"
 
+#include "core/flood_fill.h"
 #include "core/voxel_sweep.h"
 #include "segmentation/bowel_contents.h"
 #include "topology/distance_field.h"
@@ -274,96 +275,131 @@ std::vector<Extent> extentsOf(std::span<const std::int32_t> label, std::size_t p
                                });
 }
 
-/// Cuts pieces that reach farther than a part of the colon does, into lengths of about `bandMm` by
-/// the way, face to face, from their far end. Returns how many pieces there are then; what was cut
-/// has no voxels left.
-std::size_t splitLong(std::span<std::int32_t> label, std::size_t pieces, double bandMm,
-                      const Grid& grid, int threads) {
-    if (!(bandMm > 0.0)) return pieces;
-    const std::vector<Extent> extents = extentsOf(label, pieces, grid, threads);
-    const glm::dvec3 spacing = grid.spacingMm();
-    const std::size_t least =
-        std::size_t(bandMm * 30.0 / grid.voxelVolumeMm3());  // thinner is no colon
-    const auto isLarge = [&](std::int32_t p) { return extents[std::size_t(p)].voxels > least; };
-    std::vector<std::int32_t> large;
-    for (std::size_t p = 0; p < pieces; ++p) {
-        if (isLarge(std::int32_t(p))) large.push_back(std::int32_t(p));
+/// Cuts pieces that reach farther than a part of the colon does into lengths of about `bandMm`, by
+/// the way from their far end, face to face.
+class LongPieces {
+public:
+    LongPieces(std::span<std::int32_t> label, std::size_t pieces, double bandMm, const Grid& grid,
+               int threads)
+        : label_(label),
+          grid_(grid),
+          bandMm_(bandMm),
+          leastVoxels_(std::size_t(bandMm * 30.0 / grid.voxelVolumeMm3())),
+          threads_(threads),
+          extents_(extentsOf(label, pieces, grid, threads)) {}
+
+    /// Returns how many pieces there are then; what was cut has no voxels left.
+    std::size_t split() {
+        std::size_t pieces = extents_.size();
+        const std::vector<std::int32_t> large = largeOnes();
+        if (large.empty()) return pieces;
+        ways_ = Volume<float>(grid_);  // of large pieces alone
+        way_ = ways_.writable();
+        forVoxels(grid_, threads_, [&](std::size_t n, glm::ivec3) {
+            if (label_[n] >= 0 && isLarge(label_[n])) way_[n] = -1.0f;
+        });
+        // Labels stay as they are until all pieces are cut.
+        std::vector<Parts> cuts(large.size());
+        parallelFor(large.size(), 1, threads_, [&](std::size_t first, std::size_t last) {
+            for (std::size_t n = first; n < last; ++n)
+                cuts[n] = cut(large[n]);
+        });
+        std::vector<std::size_t> byPiece(large.size());
+        std::iota(byPiece.begin(), byPiece.end(), 0);
+        std::sort(byPiece.begin(), byPiece.end(),
+                  [&](std::size_t a, std::size_t b) { return large[a] < large[b]; });
+        for (const std::size_t c : byPiece) {
+            const Parts& parts = cuts[c];
+            for (std::size_t part = 0; part + 1 < parts.begin.size(); ++part, ++pieces) {
+                for (std::size_t n = parts.begin[part]; n < parts.begin[part + 1]; ++n)
+                    label_[parts.voxels[n]] = std::int32_t(pieces);
+            }
+        }
+        return pieces;
     }
-    if (large.empty()) return pieces;
-    Volume<float> ways(grid);  // of large pieces alone
-    const auto way = ways.writable();
-    forVoxels(grid, threads, [&](std::size_t n, glm::ivec3) {
-        if (label[n] >= 0 && isLarge(label[n])) way[n] = -1.0f;
-    });
-    // Labels stay as they are until all pieces are cut.
+
+private:
     struct Parts {
         std::vector<std::uint32_t> voxels;
-        std::vector<std::size_t> begin;  ///< of each part among the voxels
+        std::vector<std::size_t> begin;  ///< of each part among the voxels, and the end
     };
-    const auto cut = [&](std::int32_t piece) {
-        // Ways by steps of equal count are long enough here: rounds of breadth-first search, in mm.
-        const auto waysFrom = [&](std::uint32_t seed, std::vector<std::uint32_t>& reached) {
-            for (const std::uint32_t n : reached)
-                way[n] = -1.0f;
-            reached.assign(1, seed);
-            way[seed] = 0.0f;
-            for (std::size_t head = 0; head < reached.size(); ++head) {
-                visitFaces(grid, reached[head], [&](std::size_t m, int axis) {
-                    if (label[m] != piece || way[m] >= 0.0f) return;
-                    way[m] = way[reached[head]] + float(spacing[axis]);
-                    reached.push_back(std::uint32_t(m));
-                });
-            }
+
+    bool isLarge(std::int32_t piece) const {
+        return extents_[std::size_t(piece)].voxels > leastVoxels_;
+    }
+
+    /// By falling volume, so that threads end at about the same time.
+    std::vector<std::int32_t> largeOnes() const {
+        std::vector<std::int32_t> large;
+        for (std::size_t p = 0; p < extents_.size(); ++p) {
+            if (isLarge(std::int32_t(p))) large.push_back(std::int32_t(p));
+        }
+        std::stable_sort(large.begin(), large.end(), [&](std::int32_t a, std::int32_t b) {
+            return extents_[std::size_t(a)].voxels > extents_[std::size_t(b)].voxels;
+        });
+        return large;
+    }
+
+    /// Sets the ways of a piece's voxels from one of them, and returns the voxels as they are met.
+    /// Ways by steps of equal count are long enough here: rounds of breadth-first search, in mm.
+    std::vector<std::uint32_t> waysFrom(std::uint32_t seed, std::int32_t piece) {
+        std::vector<std::uint32_t> reached{seed};
+        way_[seed] = 0.0f;
+        const glm::vec3 stepMm(grid_.spacingMm());
+        const auto steps = [&](std::uint32_t n, const auto& visit) {
+            visitFaces(grid_, n,
+                       [&](std::size_t m, int axis) { visit(m, way_[n] + stepMm[axis]); });
         };
-        std::vector<std::uint32_t> reached;
-        waysFrom(extents[std::size_t(piece)].first, reached);
-        waysFrom(reached.back(), reached);
-        const double reachMm = way[reached.back()];
+        floodFill(reached, steps, [&](std::size_t m, float wayMm) {
+            if (label_[m] != piece || way_[m] >= 0.0f) return false;
+            way_[m] = wayMm;
+            return true;
+        });
+        return reached;
+    }
+
+    /// The connected parts of a piece's bands; none where it is short.
+    Parts cut(std::int32_t piece) {
+        std::vector<std::uint32_t> reached = waysFrom(extents_[std::size_t(piece)].first, piece);
+        const std::uint32_t farEnd = reached.back();
+        for (const std::uint32_t n : reached)
+            way_[n] = -1.0f;
+        reached = waysFrom(farEnd, piece);
+        const double reachMm = way_[reached.back()];
         Parts parts;
-        if (reachMm < 1.6 * bandMm) return parts;
-        const int bands = int(std::lround(reachMm / bandMm));
-        const auto bandOf = [&](std::uint32_t n) {
-            return std::min(bands - 1, int(double(way[n]) / reachMm * bands));
+        if (reachMm < 1.6 * bandMm_) return parts;
+        const int bands = int(std::lround(reachMm / bandMm_));
+        const auto bandOf = [&](std::size_t n) {
+            return std::min(bands - 1, int(double(way_[n]) / reachMm * bands));
         };
-        // Each connected part of a band is a piece.
         parts.voxels.reserve(reached.size());
+        std::vector<std::uint32_t> part;
         for (const std::uint32_t seed : reached) {
-            if (way[seed] < 0.0f) continue;  // in a part already
+            if (way_[seed] < 0.0f) continue;  // in a part already
             const int band = bandOf(seed);
-            std::size_t head = parts.voxels.size();
-            parts.begin.push_back(head);
-            parts.voxels.push_back(seed);
-            way[seed] = -1.0f;
-            for (; head < parts.voxels.size(); ++head) {
-                visitFaces(grid, parts.voxels[head], [&](std::size_t m, int) {
-                    if (label[m] != piece || way[m] < 0.0f || bandOf(std::uint32_t(m)) != band)
-                        return;
-                    way[m] = -1.0f;
-                    parts.voxels.push_back(std::uint32_t(m));
-                });
-            }
+            part.assign(1, seed);
+            way_[seed] = -1.0f;
+            floodFill(part, faceNeighbours(grid_), [&](std::size_t m) {
+                if (label_[m] != piece || way_[m] < 0.0f || bandOf(m) != band) return false;
+                way_[m] = -1.0f;
+                return true;
+            });
+            parts.begin.push_back(parts.voxels.size());
+            parts.voxels.insert(parts.voxels.end(), part.begin(), part.end());
         }
         parts.begin.push_back(parts.voxels.size());
         return parts;
-    };
-    std::vector<std::size_t> byVolume(large.size());
-    std::iota(byVolume.begin(), byVolume.end(), 0);
-    std::stable_sort(byVolume.begin(), byVolume.end(), [&](std::size_t a, std::size_t b) {
-        return extents[std::size_t(large[a])].voxels > extents[std::size_t(large[b])].voxels;
-    });
-    std::vector<Parts> cuts(large.size());
-    parallelFor(large.size(), 1, threads, [&](std::size_t first, std::size_t last) {
-        for (std::size_t n = first; n < last; ++n)
-            cuts[byVolume[n]] = cut(large[byVolume[n]]);
-    });
-    for (const Parts& parts : cuts) {
-        for (std::size_t part = 0; part + 1 < parts.begin.size(); ++part, ++pieces) {
-            for (std::size_t n = parts.begin[part]; n < parts.begin[part + 1]; ++n)
-                label[parts.voxels[n]] = std::int32_t(pieces);
-        }
     }
-    return pieces;
-}
+
+    const std::span<std::int32_t> label_;
+    const Grid& grid_;
+    const double bandMm_;
+    const std::size_t leastVoxels_;  ///< what is thinner is no colon
+    const int threads_;
+    const std::vector<Extent> extents_;
+    Volume<float> ways_;
+    std::span<float> way_;  ///< mm; −1 where none is known
+};
 
 /// Numbers the pieces that stand for themselves in `pieceOf` by falling volume, each with all that
 /// is its own; returns how many there are.
@@ -742,7 +778,8 @@ TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8
     cut.pieceAt = Volume<std::int32_t>(grid);
     const auto label = cut.pieceAt.writable();
     std::size_t pieces = Basins(cut.distanceMm, label, threads).flood(options.neck);
-    pieces = splitLong(label, pieces, options.lengthMm, grid, threads);
+    if (options.lengthMm > 0.0)
+        pieces = LongPieces(label, pieces, options.lengthMm, grid, threads).split();
     std::vector<std::int32_t> own(pieces);
     std::iota(own.begin(), own.end(), 0);
     numberByVolume(label, own, grid, threads);

@@ -16,7 +16,9 @@ constexpr auto outside = std::uint8_t(LumenLabel::outside), air = std::uint8_t(L
                tagged = std::uint8_t(LumenLabel::tagged),
                untagged = std::uint8_t(LumenLabel::untagged);
 
-Grid binnedGrid(const Grid& grid, glm::ivec3 by) {
+}  // namespace
+
+Grid binned(const Grid& grid, glm::ivec3 by) {
     Grid made = grid;
     made.size = (grid.size + by - 1) / by;
     for (int axis = 0; axis < 3; ++axis)
@@ -26,8 +28,6 @@ Grid binnedGrid(const Grid& grid, glm::ivec3 by) {
     return made;
 }
 
-}  // namespace
-
 glm::ivec3 binningOf(const Grid& grid) {
     return glm::max(glm::ivec3(1), glm::ivec3(glm::floor(coarsestMm / grid.spacingMm() + 1e-6)));
 }
@@ -35,7 +35,7 @@ glm::ivec3 binningOf(const Grid& grid) {
 Volume<std::int16_t> binned(const Volume<std::int16_t>& hu, glm::ivec3 by, int threads) {
     if (by == glm::ivec3(1)) return hu.share();
     const Grid& fine = hu.grid();
-    Volume<std::int16_t> made(binnedGrid(fine, by));
+    Volume<std::int16_t> made(binned(fine, by));
     const Grid& grid = made.grid();
     const auto out = made.writable();
     parallelFor(std::size_t(grid.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
@@ -149,7 +149,8 @@ Volume<std::uint8_t> atFullResolution(const Volume<std::uint8_t>& labels,
         visitFaces(grid, n, [&](std::size_t m, int) { any = any || holds(out[m]); });
         return any;
     };
-    // Voxels on the wrong side of the border, slice by slice; then what each move lays bare.
+    // Voxels on the wrong side of the border, slice by slice; then what each move
+    // lays bare.
     std::vector<std::vector<std::uint32_t>> slices(std::size_t(grid.size.z));
     parallelFor(slices.size(), 4, threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {

@@ -14,6 +14,9 @@ namespace haustra::segmentation {
 /// (thin_walls.h).
 glm::ivec3 binningOf(const Grid& grid);
 
+/// The grid of blocks of `by` voxels; the last of a row may be cut off.
+Grid binned(const Grid& grid, glm::ivec3 by);
+
 /// Means of blocks of `by` voxels; of what there is of a block at the grid's end.
 Volume<std::int16_t> binned(const Volume<std::int16_t>& hu, glm::ivec3 by, int threads);
 
