@@ -14,7 +14,7 @@ glm::ivec3 blurReachVoxels(const Grid& grid) {
 }
 
 Ball::Ball(const Grid& grid, glm::dvec3 radiusMm) : grid_(grid) {
-    const glm::ivec3 look = lookStep(grid);
+    const glm::ivec3 look = neighbourStep(grid);
     const glm::dvec3 lookMm = glm::dvec3(look) * grid.spacingMm();
     const glm::ivec3 reach = glm::max(glm::ivec3(glm::floor(radiusMm / lookMm)), glm::ivec3(1));
     const std::ptrdiff_t row = grid.size.x, slice = row * grid.size.y;

@@ -1,4 +1,4 @@
-// How far one looks around a voxel: in millimetres, whatever its size.
+// The surroundings of a voxel in millimetres, whatever its size.
 #pragma once
 
 #include "core/grid.h"
@@ -14,17 +14,17 @@ inline constexpr double blurReachMm = 1.6;
 /// Voxels along each axis that are nearest to `mm`, at least 1.
 glm::ivec3 voxelsIn(const Grid& grid, double mm);
 
-/// Voxels along each axis to a step of 0.7 mm, at least 1: what looks at a voxel's neighbours looks
-/// this far. Looks over a wider place go by such steps too, so that smaller voxels make no look
-/// dearer.
-inline glm::ivec3 lookStep(const Grid& grid) {
+/// How many voxels along each axis make a step of 0.7 mm, at least 1. The "neighbours" of a voxel,
+/// for differences and averages, are those one such step away, and wider surroundings are sampled
+/// by such steps too: results and cost hardly depend on the size of the voxels.
+inline glm::ivec3 neighbourStep(const Grid& grid) {
     return voxelsIn(grid, 0.7);
 }
 
 /// Voxels along each axis that the blur reaches from within a border's own voxel.
 glm::ivec3 blurReachVoxels(const Grid& grid);
 
-/// What lies around a voxel of a grid, by look steps.
+/// The surroundings of a voxel of a grid, sampled by neighbour steps.
 class Ball {
 public:
     /// An ellipsoid of these radii but the centre, always with the six along the axes.

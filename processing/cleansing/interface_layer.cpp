@@ -54,7 +54,7 @@ InterfaceLayer::InterfaceLayer(const CtScan& scan, const Volume<std::uint8_t>& s
 InterfaceLayer::Step InterfaceLayer::stepThrough(glm::ivec3 voxel, double taggedHu,
                                                  double softHu) const {
     const Grid& grid = hu_.grid();
-    const glm::ivec3 look = lookStep(grid);
+    const glm::ivec3 look = neighbourStep(grid);
     if (!grid.contains(voxel - look) || !grid.contains(voxel + look)) return {};
     const double airHu = means_.airHu.at(voxel.x, voxel.y, voxel.z);
     const double contrast = taggedHu - airHu;

@@ -25,7 +25,7 @@ public:
           level_(level),
           halfHeightMm_(halfHeightMm),
           spacingMm_(cleansed.grid().spacingMm()),
-          look_(lookStep(cleansed.grid())) {
+          look_(neighbourStep(cleansed.grid())) {
         for (int axis = 0; axis < 3; ++axis) {
             if (level.down()[axis] != 0) vertical_ = axis;
         }
@@ -93,7 +93,7 @@ private:
         const bool inside = glm::all(glm::greaterThanEqual(v, reach)) &&
                             glm::all(glm::lessThan(v, grid.size - reach));
         const std::int16_t* const here = &hu_.voxels()[grid.index(v)];
-        // Across, and along the vertical: to the voxels a look off, and mm between them.
+        // Across, and along the vertical: to the neighbours, and mm between them.
         const std::array<int, 3> axes{across_[0], across_[1], vertical_};
         std::array<std::ptrdiff_t, 3> step{};
         std::array<double, 3> apartMm{};
@@ -171,10 +171,10 @@ bool betweenAirAndFluid(const Volume<std::uint8_t>& segmentation, glm::ivec3 v) 
     return false;
 }
 
-/// The third lowest HU one look away along the axes: a sheet as thin has but two that are open, a
-/// ridge or speck has three and more.
+/// The third lowest HU of the neighbours along the axes: a sheet as thin has but two that are open,
+/// a ridge or speck has three and more.
 double thirdLowestAround(const Volume<std::int16_t>& hu, glm::ivec3 v) {
-    const glm::ivec3 look = lookStep(hu.grid());
+    const glm::ivec3 look = neighbourStep(hu.grid());
     std::array<std::int16_t, 6> values;
     std::size_t count = 0;
     for (int axis = 0; axis < 3; ++axis) {

@@ -81,7 +81,7 @@ public:
           grid_(scan.hu.grid()),
           cells_(cells),
           ball_(blurBall(grid_)),
-          look_(lookStep(grid_)),
+          look_(neighbourStep(grid_)),
           unit_(float(grid_.voxelVolumeMm3() / voxelMm3)),
           threads_(threads) {}
 

@@ -25,7 +25,7 @@ public:
           denseAboveHu_(denseAboveHu),
           noiseSd_(means.noise.tagged),
           ball_(blurBall(grid_)),
-          look_(lookStep(grid_)),
+          look_(neighbourStep(grid_)),
           averaged_(voxelsIn(grid_, evenMm)),
           window_(blurReachVoxels(grid_)) {}
 
@@ -88,7 +88,7 @@ private:
         return hu_[n] > soft + 0.5 * (coarseHu(v) - soft);
     }
 
-    /// Mean of a voxel and those a look to either side along the axes that are dense.
+    /// Mean of a voxel and those one step to either side along the axes that are dense.
     double crossMean(glm::ivec3 v) const {
         double sum = hu_[grid_.index(v)];
         int count = 1;

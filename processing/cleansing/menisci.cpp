@@ -30,7 +30,7 @@ bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v, glm::ivec3 reach)
 
 /// Densest HU of the pool around one of its voxels.
 int rimHu(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels, glm::ivec3 v) {
-    const glm::ivec3 look = lookStep(labels.grid());
+    const glm::ivec3 look = neighbourStep(labels.grid());
     const glm::ivec3 lo = glm::max(v - look, glm::ivec3(0)),
                      hi = glm::min(v + look, labels.grid().size - 1);
     int most = hu.at(v);

@@ -29,7 +29,7 @@ public:
           means_(means),
           interfaces_(interfaces),
           level_(level),
-          look_(lookStep(scan.hu.grid())),
+          look_(neighbourStep(scan.hu.grid())),
           levelMm_(glm::dot(glm::abs(glm::dvec3(level.down())), scan.hu.grid().spacingMm())),
           levelBlurMm_(interfaces.spread().acrossMm(glm::dvec3(level.down()))) {}
 
@@ -120,7 +120,7 @@ private:
         return roundedFractions(rest - std::min(std::max(wall, 0.0), rest), tagged);
     }
 
-    /// Whether fluid that this voxel can hold the top of lies below it or one look aside of that.
+    /// Whether fluid, whose top this voxel can hold, lies below it or beside the voxel below.
     bool aboveFluid(glm::ivec3 v, double softHu, double taggedHu) const {
         const glm::ivec3 down = level_.down();
         if (down == glm::ivec3(0)) return false;

@@ -14,7 +14,7 @@ namespace haustra::cleansing {
 namespace {
 
 constexpr std::array<double, 5> widthsMm = {8.0, 12.0, 16.0, 24.0, 32.0};
-constexpr double cellMm = 3.0;                // in the slice
+constexpr double excessCellMm = 3.0;          // in the slice
 constexpr double enhancementSampleMm3 = 4.0;  // one voxel of so much is looked at
 constexpr double leastEdgeHu = 4.0;
 constexpr double fewestSamples = 500.0;
@@ -23,7 +23,7 @@ constexpr double fewestSamples = 500.0;
 SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentation, double airHu,
                      const Grid& whole, glm::ivec3 from, int threads) {
     const Grid& grid = scan.hu.grid();
-    glm::ivec3 perCell = voxelsIn(grid, cellMm);
+    glm::ivec3 perCell = voxelsIn(grid, excessCellMm);
     perCell.z = 1;
     SmoothField excess(whole, perCell);
     std::vector<float>& values = excess.values();

@@ -1,7 +1,7 @@
 // How much brighter beam hardening and scatter make what lies beside tagging.
 #pragma once
 
-#include "cleansing/local_means.h"
+#include "cleansing/smooth_field.h"
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 

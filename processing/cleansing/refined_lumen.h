@@ -1,7 +1,7 @@
 // The lumen as the cleansed scan shows it.
 #pragma once
 
-#include "cleansing/local_means.h"
+#include "cleansing/smooth_field.h"
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 #include "core/volume.h"

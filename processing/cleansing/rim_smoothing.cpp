@@ -21,7 +21,7 @@ constexpr double besideWallHu = 150.0;  // how far from the wall's HU its blur i
 
 using Neighbourhood = std::array<std::uint32_t, 27>;
 
-/// The wall passes a voxel or those one look around it.
+/// The wall passes a voxel or its neighbours.
 bool besideWall(const Volume<std::int16_t>& hu, glm::ivec3 v, glm::ivec3 look, double wallHu) {
     const glm::ivec3 last = hu.grid().size - 1;
     int least = 32767, most = -32768;
@@ -89,7 +89,7 @@ std::vector<std::uint32_t> bandOf(const Volume<std::int16_t>& hu,
                                   const Volume<std::uint8_t>& labels, double wallHu,
                                   const TaggedSurroundings& around, int threads) {
     const Grid& grid = hu.grid();
-    const glm::ivec3 look = lookStep(grid);
+    const glm::ivec3 look = neighbourStep(grid);
     const Ball reach(grid, glm::dvec3(airReachMm));
     const auto isAir = [&](std::size_t n) { return LumenLabel(labels[n]) == LumenLabel::air; };
     std::vector<std::uint32_t> band;

@@ -26,7 +26,7 @@ double largestEigenvalue(const glm::dmat3& m) {
 
 double structureSignature(const Volume<std::int16_t>& hu, glm::ivec3 voxel, double noiseSd) {
     const Grid& grid = hu.grid();
-    const glm::ivec3 look = lookStep(grid);
+    const glm::ivec3 look = neighbourStep(grid);
     if (!grid.contains(voxel - look) || !grid.contains(voxel + look)) return 0.0;
     // In standard deviations of a second difference, so that each axis counts by its own noise.
     glm::dmat3 hessian;

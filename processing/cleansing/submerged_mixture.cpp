@@ -25,7 +25,7 @@ struct Place {
     float coupling;
 };
 
-/// HU at a voxel as those a look around it have it: of the quadratic fitted to the 27, and by
+/// HU at a voxel by its neighbours: of the quadratic fitted to the 27, and by
 /// binomial weights.
 struct Filtered {
     double quadratic = 0.0, binomial = 0.0;
@@ -58,7 +58,7 @@ void settleSubmerged(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
     const glm::dvec3 apart = grid.spacingMm() / spread.sdMm;
     const glm::dvec3 near = glm::exp(-0.5 * apart * apart);
     const double sd = std::max(means.noise.soft, means.noise.tagged);
-    const glm::ivec3 look = lookStep(grid);
+    const glm::ivec3 look = neighbourStep(grid);
     const auto isNoGas = [&](std::size_t n) {
         return LumenLabel(segmentation[n]) != LumenLabel::air;
     };

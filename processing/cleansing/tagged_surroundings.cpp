@@ -2,7 +2,7 @@
 
 #include "cleansing/ball.h"
 #include "core/ct_scan.h"
-#include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 
@@ -44,16 +44,12 @@ TaggedSurroundings taggedSurroundings(const Volume<std::uint8_t>& segmentation, 
             const glm::ivec3 v = grid.voxelAt(n);
             const glm::ivec3 lo = glm::max(v - side, glm::ivec3(0)),
                              hi = glm::min(v + side, grid.size - 1);
-            for (int k = lo.z; k <= hi.z; ++k) {
-                for (int j = lo.y; j <= hi.y; ++j) {
-                    for (int i = lo.x; i <= hi.x; ++i) {
-                        const std::size_t m = grid.index(i, j, k);
-                        if (seen[m]) continue;
-                        seen[m] = 1;
-                        out.push_back(std::uint32_t(m));
-                    }
-                }
-            }
+            visitBox(lo, hi, [&](glm::ivec3 beside) {
+                const std::size_t m = grid.index(beside);
+                if (seen[m]) return;
+                seen[m] = 1;
+                out.push_back(std::uint32_t(m));
+            });
         }
         std::sort(out.begin(), out.end());
     }

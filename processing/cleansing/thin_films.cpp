@@ -32,7 +32,7 @@ public:
           means_(means),
           spread_(spread),
           spacingMm_(scan.hu.grid().spacingMm()),
-          look_(lookStep(scan.hu.grid())) {}
+          look_(neighbourStep(scan.hu.grid())) {}
 
     std::optional<Crest> crestAt(glm::ivec3 v) const {
         const Grid& grid = hu_.grid();

@@ -27,7 +27,7 @@ public:
           interfaces_(interfaces),
           down_(down),
           stepMm_(stepMm),
-          look_(lookStep(grid_)),
+          look_(neighbourStep(grid_)),
           spacingMm_(grid_.spacingMm()) {}
 
     /// 0 where it does not cross, else 1 + 254 f where it does f of the way.
@@ -114,7 +114,7 @@ void WaterLevel::findAxes(glm::dvec3 gravity) {
         vertical_ = axis;
     }
     across_ = {vertical_ == 0 ? 1 : 0, vertical_ == 2 ? 1 : 2};
-    acrossStep_ = glm::max(lookStep(grid_) * (glm::ivec3(1) - glm::abs(down_)), glm::ivec3(1));
+    acrossStep_ = glm::max(neighbourStep(grid_) * (glm::ivec3(1) - glm::abs(down_)), glm::ivec3(1));
     fewestColumns_ = smallestMm2 * stepMm_ / grid_.voxelVolumeMm3() /
                      (acrossStep_.x * acrossStep_.y * acrossStep_.z);
     blockVoxels_ = voxelsIn(grid_, heightMm);

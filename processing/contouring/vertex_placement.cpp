@@ -1,9 +1,10 @@
 #include "contouring/vertex_placement.h"
 
-#include "contouring/loop_quadric.h"
 #include "core/parallel.h"
 
 #include <array>
+#include <utility>
+#include <vector>
 
 namespace haustra::contouring {
 namespace {
@@ -13,6 +14,46 @@ constexpr double cellMargin = 0.05;
 // λ; a crossing's plane weighs 1. Draws a ball of 3 mm radius in by 0.01 mm.
 constexpr double smoothness = 0.3;
 constexpr int steps = 10;
+
+/// Σ w (n · (x − p))² over the crossings p of one loop, normals n in mm: the quadric of dual
+/// contouring (Ju et al., SIGGRAPH 2002). All in mm from voxel (0, 0, 0).
+struct LoopQuadric {
+    glm::dmat3 normals{0.0};  ///< Σ w n nᵀ
+    glm::dvec3 planes{0.0};   ///< Σ w n (n · p)
+    glm::dvec3 mean{0.0};     ///< of the crossings on their edges: inside the loop's hull
+};
+
+/// One for each loop, in the order of the vertices. w is 1 where the HU show the wall between the
+/// two centres, falls to 0 half an edge beyond them, and is 0 where they show none.
+std::vector<LoopQuadric> loopQuadrics(const BoundaryCells& cells,
+                                      const BoundaryCrossings& crossings, int threads) {
+    std::vector<LoopQuadric> quadrics(cells.vertexCount());
+    const glm::dmat3 mmFromVoxel = crossings.mmFromVoxel();
+    auto addCell = [&](const BoundaryCell& cell, int k) {
+        const CellLoops& loops = cellLoops(cell.inside);
+        const glm::ivec3 origin(cell.i, cell.j, k);
+        LoopQuadric* const quadric = quadrics.data() + cell.firstVertex;
+        std::array<int, 4> count{};
+        for (int edge = 0; edge < cellEdges; ++edge) {
+            const int loop = loops.loopOfEdge[edge];
+            if (loop < 0) continue;
+            int in = lowerCorner(edge), out = upperCorner(edge);
+            if (!(cell.inside >> in & 1)) std::swap(in, out);
+            const Crossing crossing =
+                crossings.between(origin + cornerOffset(in), origin + cornerOffset(out));
+            const glm::dvec3 weighted = crossing.weight * crossing.normal;
+            quadric[loop].normals += glm::outerProduct(weighted, crossing.normal);
+            quadric[loop].planes +=
+                weighted * glm::dot(crossing.normal, mmFromVoxel * crossing.point);
+            quadric[loop].mean += mmFromVoxel * crossing.onEdge;
+            ++count[std::size_t(loop)];
+        }
+        for (int loop = 0; loop < loops.count; ++loop)
+            quadric[loop].mean /= double(count[std::size_t(loop)]);
+    };
+    cells.forEach(threads, addCell);
+    return quadrics;
+}
 
 /// The vertex across each of a cell's six faces (low x, high x, low y …); −1: none.
 using Neighbours = std::array<std::int32_t, 6>;

@@ -11,7 +11,8 @@ namespace haustra::contouring {
 /// One position for each loop of each cell, in voxel coordinates, strictly within the cell; where
 /// a cell has several loops, each is the mean of its own crossings, so that the sheets keep apart.
 ///
-/// The positions x minimise the sum of their cells' quadrics (loop_quadric.h) and of
+/// The positions x minimise the sum of their cells' quadrics, Σ w (n · (x − p))² over the crossings
+/// p of the loop with normals n (Ju et al., SIGGRAPH 2002), and of
 /// λ |x − mean of the neighbours' x|² in mm: the HU decide across the wall, and along the wall the
 /// vertices spread evenly. Where the HU show no wall (cuts, bridges) that leaves the smoothest
 /// sheet within the cells, not a staircase of voxels (Gibson's constrained elastic surface nets,

@@ -1,5 +1,7 @@
 #include "core/connected_labels.h"
 
+#include "core/disjoint_sets.h"
+
 #include <algorithm>
 #include <iterator>
 #include <span>
@@ -85,12 +87,8 @@ private:
 
     /// The first of the runs that are known to be one body.
     std::int32_t rootOf(std::int32_t run) {
-        while (runs_[std::size_t(run)].body != run) {
-            std::int32_t& next = runs_[std::size_t(run)].body;
-            next = runs_[std::size_t(next)].body;
-            run = next;
-        }
-        return run;
+        return haustra::rootOf(
+            [&](std::int32_t n) -> std::int32_t& { return runs_[std::size_t(n)].body; }, run);
     }
 
     void uniteRows(std::size_t row, std::size_t before) {

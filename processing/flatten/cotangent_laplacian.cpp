@@ -72,11 +72,16 @@ SymmetricMatrix cotangentLaplacian(const IntrinsicMesh& mesh, const std::vector<
     return matrix;
 }
 
-std::vector<double> pullOfFixed(const IntrinsicMesh& mesh, const std::vector<int>& unknownOf,
-                                int size, const std::vector<double>& fixed) {
+namespace {
+
+/// Σ ½ cot · step over the half-edges (i, j) for i, and −that for j; step(i, j, half-edge) is how
+/// far the function is known to rise along it.
+template <class Step>
+std::vector<double> pullOf(const IntrinsicMesh& mesh, const std::vector<int>& unknownOf, int size,
+                           const Step& stepOf) {
     std::vector<double> pull(std::size_t(size), 0.0);
     forHalfedges(mesh, [&](int i, int j, int h) {
-        const double step = fixed[std::size_t(j)] - fixed[std::size_t(i)];
+        const double step = stepOf(i, j, h);
         if (step == 0.0) return;
         const double weight = 0.5 * cotangent(mesh, h);
         const int a = unknownOf[std::size_t(i)], b = unknownOf[std::size_t(j)];
@@ -86,18 +91,18 @@ std::vector<double> pullOfFixed(const IntrinsicMesh& mesh, const std::vector<int
     return pull;
 }
 
+}  // namespace
+
+std::vector<double> pullOfFixed(const IntrinsicMesh& mesh, const std::vector<int>& unknownOf,
+                                int size, const std::vector<double>& fixed) {
+    return pullOf(mesh, unknownOf, size,
+                  [&](int i, int j, int) { return fixed[std::size_t(j)] - fixed[std::size_t(i)]; });
+}
+
 std::vector<double> pullOfTurns(const IntrinsicMesh& mesh, const std::vector<int>& unknownOf,
                                 int size) {
-    std::vector<double> pull(std::size_t(size), 0.0);
-    forHalfedges(mesh, [&](int i, int j, int h) {
-        const int turns = mesh.turns[std::size_t(h)];
-        if (turns == 0) return;
-        const double weight = 0.5 * cotangent(mesh, h);
-        const int a = unknownOf[std::size_t(i)], b = unknownOf[std::size_t(j)];
-        if (a >= 0) pull[std::size_t(a)] += weight * turns;
-        if (b >= 0) pull[std::size_t(b)] -= weight * turns;
-    });
-    return pull;
+    return pullOf(mesh, unknownOf, size,
+                  [&](int, int, int h) { return double(mesh.turns[std::size_t(h)]); });
 }
 
 double dirichletEnergy(const IntrinsicMesh& mesh, const std::vector<double>& x, bool around) {

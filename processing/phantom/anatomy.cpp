@@ -37,7 +37,6 @@ private:
     std::uint64_t next() { return mixBits(seed_ + ++counter_); }
 
     void addTable();
-    void addTableBeside();
     void addBodyWall();
     void addMuscles();
     void addLungs();
@@ -52,38 +51,22 @@ private:
 };
 
 void Builder::addTable() {
-    const bool lateral = body_.position == PatientPosition::leftDecubitus ||
-                         body_.position == PatientPosition::rightDecubitus;
-    if (lateral) return addTableBeside();
-    const double side = body_.position == PatientPosition::prone ? -1.0 : 1.0;
+    // Along y under the patient's back or belly, along x beside one who lies on the side.
+    const glm::dvec3 down = gravityDirection(body_.position);
+    const int axis = down.x != 0.0 ? 0 : 1, across = 1 - axis;
+    const double side = down[axis], top = axis == 0 ? 176.0 * body_.widthScale : 112.0;
     // A shallow trough of carbon fibre over foam, touching the body at its lowest line.
     constexpr double radius = 420.0;
-    auto depth = [side](glm::dvec3 p) {
-        return std::hypot(p.x, side * p.y - (112.0 - radius)) - radius;
+    const auto depth = [=](glm::dvec3 p) {
+        return std::hypot(p[across], side * p[axis] - (top - radius)) - radius;
     };
+    glm::dvec3 half(0.0, 0.0, kTop);
+    half[axis] = 400.0, half[across] = 210.0;
     add(
-        {-210, -400, -kTop}, {210, 400, kTop},
+        -half, half,
         [=](glm::dvec3 p) {
-            return side * p.y > 0.0
-                       ? std::max(std::abs(depth(p) - 11.0) - 11.0, std::abs(p.x) - 205.0)
-                       : 99.0;
-        },
-        [=](glm::dvec3, double d) { return d > -2.2 ? -180.0 : -880.0; }, Site::outsideBody);
-}
-
-/// The same table under a patient who lies on the side.
-void Builder::addTableBeside() {
-    const double side = gravityDirection(body_.position).x;
-    const double top = 176.0 * body_.widthScale;
-    constexpr double radius = 420.0;
-    auto depth = [=](glm::dvec3 p) {
-        return std::hypot(p.y, side * p.x - (top - radius)) - radius;
-    };
-    add(
-        {-400, -210, -kTop}, {400, 210, kTop},
-        [=](glm::dvec3 p) {
-            return side * p.x > 0.0
-                       ? std::max(std::abs(depth(p) - 11.0) - 11.0, std::abs(p.y) - 205.0)
+            return side * p[axis] > 0.0
+                       ? std::max(std::abs(depth(p) - 11.0) - 11.0, std::abs(p[across]) - 205.0)
                        : 99.0;
         },
         [=](glm::dvec3, double d) { return d > -2.2 ? -180.0 : -880.0; }, Site::outsideBody);

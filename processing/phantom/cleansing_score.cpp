@@ -1,5 +1,7 @@
 #include "phantom/cleansing_score.h"
 
+#include "core/voxel_sweep.h"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -107,13 +109,9 @@ std::vector<std::uint32_t> lumenAround(const Volume<std::uint8_t>& labels,
         const glm::ivec3 v = grid.voxelAt(at);
         const glm::ivec3 lo = glm::max(v - kReach, glm::ivec3(0)),
                          hi = glm::min(v + kReach, grid.size - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    if (labels.at(i, j, k)) around.push_back(std::uint32_t(grid.index(i, j, k)));
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 n) {
+            if (labels.at(n)) around.push_back(std::uint32_t(grid.index(n)));
+        });
     }
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());

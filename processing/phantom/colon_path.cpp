@@ -2,6 +2,7 @@
 
 #include "phantom/colon_skeleton.h"
 #include "phantom/implicit.h"
+#include "phantom/polyline.h"
 #include "phantom/random.h"
 
 #include <algorithm>

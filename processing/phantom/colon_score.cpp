@@ -1,5 +1,7 @@
 #include "phantom/colon_score.h"
 
+#include "core/disjoint_sets.h"
+#include "core/flood_fill.h"
 #include "phantom/score.h"
 
 #include <algorithm>
@@ -69,12 +71,7 @@ public:
     }
 
 private:
-    int part(int sample) {
-        while (partOf_[std::size_t(sample)] != sample)
-            sample = partOf_[std::size_t(sample)] =
-                partOf_[std::size_t(partOf_[std::size_t(sample)])];
-        return sample;
-    }
+    int part(int sample) { return rootOf(partOf_, sample); }
 
     void fill() {
         const auto samples = sampleAt_.writable();
@@ -90,23 +87,21 @@ private:
             samples[at] = std::int16_t(n);
             front.push_back(at);
         }
-        for (std::size_t next = 0; next < front.size(); ++next) {
-            const glm::ivec3 v = grid_.voxelAt(front[next]);
-            const int mine = samples[front[next]];
-            ++voxels_[std::size_t(mine)];
-            for (int n = 0; n < 6; ++n) {
-                glm::ivec3 w = v;
-                w[n / 2] += n % 2 ? 1 : -1;
-                if (!grid_.contains(w) || truth_.lumen.at(w) == 0) continue;
-                const std::size_t at = grid_.index(w);
-                if (samples[at] < 0) {
-                    samples[at] = std::int16_t(mine);
-                    front.push_back(at);
-                } else if (part(samples[at]) != part(mine)) {
-                    partOf_[std::size_t(part(samples[at]))] = part(mine);
-                }
+        const auto neighbours = [&](std::size_t at, const auto& visit) {
+            visitFaces(grid_, at, [&](std::size_t next, int) { visit(next, int(samples[at])); });
+        };
+        floodFill(front, neighbours, [&](std::size_t at, int from) {
+            if (truth_.lumen[at] == 0) return false;
+            if (samples[at] < 0) {
+                samples[at] = std::int16_t(from);
+                return true;
             }
-        }
+            if (part(samples[at]) != part(from))
+                partOf_[std::size_t(part(samples[at]))] = part(from);
+            return false;
+        });
+        for (const std::size_t at : front)
+            ++voxels_[std::size_t(samples[at])];
     }
 
     void findClosures() {

@@ -13,7 +13,6 @@ constexpr double kNoFloor = 1e9;
 /// Over which a meniscus falls off: the capillary length of water.
 constexpr double kMeniscusMm = 2.7;
 /// Bowel fluid without tagging.
-constexpr double kWaterHu = 12.0;
 
 /// Lowest and highest lumen voxel at each sample of the axis.
 void floorAndCeiling(const ColonShape& shape, const ColonField& field, const Fluid& fluid,

@@ -7,6 +7,8 @@
 
 namespace haustra::phantom {
 
+inline constexpr double kWaterHu = 12.0;
+
 /// One stretch of the colon between two high points of its floor, filled up to a level below both.
 struct Pool {
     double beginMm = 0.0, endMm = 0.0;  ///< arcs

@@ -22,7 +22,6 @@ namespace {
 
 constexpr double kLumenAirHu = -990.0;
 constexpr double kWallHu = 42.0;
-constexpr double kWaterHu = 12.0;
 constexpr double kBowelGasHu = -985.0;
 constexpr double kCecumMm = 60.0;  ///< of a colon whose valve nobody drew
 

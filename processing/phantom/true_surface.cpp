@@ -11,9 +11,9 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kStepMm = 0.01;       // of differences
-constexpr double kOnSurfaceMm = 2e-4;  // of the field
-constexpr double kNearMm = 0.01;       // nearer than this is near enough
+constexpr double kDifferenceMm = 0.01;  // of differences
+constexpr double kOnSurfaceMm = 2e-4;   // of the field
+constexpr double kNearMm = 0.01;        // nearer than this is near enough
 constexpr double kCellMm = 2.0;
 /// A collapsed stretch is left out with this much of the lumen's tapered ends.
 constexpr double kCollapseMarginMm = 6.0;
@@ -98,8 +98,8 @@ glm::dvec3 TrueSurface::gradient(glm::dvec3 p, double atP) const {
     glm::dvec3 g;
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 q = p;
-        q[axis] += kStepMm;
-        g[axis] = (implicit_.field(q) - atP) / kStepMm;
+        q[axis] += kDifferenceMm;
+        g[axis] = (implicit_.field(q) - atP) / kDifferenceMm;
     }
     return g;
 }

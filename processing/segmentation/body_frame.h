@@ -1,4 +1,4 @@
-// Where in the body a point lies, whoever's body it is.
+// Coordinates in the trunk that can be compared between patients.
 #pragma once
 
 #include "segmentation/bowel_contents.h"

@@ -273,23 +273,17 @@ void measureGas(const Volume<std::int16_t>& hu, BowelContents& contents, int thr
     std::vector<std::array<double, 3>> sums(std::size_t(grid.size.z), {0.0, 0.0, 0.0});
     const std::size_t strides[3] = {1, std::size_t(grid.size.x),
                                     std::size_t(grid.size.x) * std::size_t(grid.size.y)};
-    parallelFor(sums.size(), 1, threads, [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = std::max<std::size_t>(2, first);
-             k < std::min(last, std::size_t(std::max(2, grid.size.z - 2))); ++k) {
-            for (int j = 2; j < grid.size.y - 2; ++j) {
-                for (int i = 2; i < grid.size.x - 2; ++i) {
-                    const std::size_t n = grid.index(i, j, int(k));
-                    bool deep = Content(contents.content[n]) == Content::gas;
-                    for (int axis = 0; axis < 3 && deep; ++axis) {
-                        deep = Content(contents.content[n - 2 * strides[axis]]) == Content::gas &&
-                               Content(contents.content[n + 2 * strides[axis]]) == Content::gas;
-                    }
-                    if (!deep) continue;
-                    const double value = hu[n];
-                    sums[k][0] += 1.0, sums[k][1] += value, sums[k][2] += value * value;
-                }
-            }
+    const auto isGas = [&](std::size_t n) { return Content(contents.content[n]) == Content::gas; };
+    forVoxels(grid, threads, [&](std::size_t n, glm::ivec3 v) {
+        if (!isGas(n)) return;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (v[axis] < 2 || v[axis] + 2 >= grid.size[axis] || !isGas(n - 2 * strides[axis]) ||
+                !isGas(n + 2 * strides[axis]))
+                return;
         }
+        const double value = hu[n];
+        std::array<double, 3>& sum = sums[std::size_t(v.z)];
+        sum[0] += 1.0, sum[1] += value, sum[2] += value * value;
     });
     std::array<double, 3> all{};
     for (const auto& sum : sums) {
@@ -313,26 +307,13 @@ BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition posit
     BowelContents contents;
     contents.content = Volume<std::uint8_t>(grid);
     const auto voxels = contents.content.writable();
-    parallelFor(std::size_t(grid.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
-        for (std::size_t k = first; k < last; ++k) {
-            for (int j = 0; j < grid.size.y; ++j) {
-                const std::size_t row = grid.index(0, j, int(k));
-                for (int i = 0; i < grid.size.x; ++i) {
-                    const int value = hu[row + std::size_t(i)];
-                    Content content = Content::tissue;
-                    if (value < tissue.airBelowHu) {
-                        const std::size_t cell =
-                            cells.grid.index(glm::ivec3(i, j, int(k)) / cells.block);
-                        content = outside[cell] ? Content::outside
-                                  : lung[cell]  ? Content::lung
-                                                : Content::gas;
-                    } else if (value > tissue.taggedAboveHu) {
-                        content = Content::tagged;
-                    }
-                    voxels[row + std::size_t(i)] = std::uint8_t(content);
-                }
-            }
+    forVoxels(grid, threads, [&](std::size_t n, glm::ivec3 v) {
+        Content content = hu[n] > tissue.taggedAboveHu ? Content::tagged : Content::tissue;
+        if (hu[n] < tissue.airBelowHu) {
+            const std::size_t cell = cells.grid.index(v / cells.block);
+            content = outside[cell] ? Content::outside : lung[cell] ? Content::lung : Content::gas;
         }
+        voxels[n] = std::uint8_t(content);
     });
     reachIn(contents.content, cells, outside, threads);
     measureGas(hu, contents, threads);

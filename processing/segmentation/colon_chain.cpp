@@ -127,17 +127,18 @@ private:
     }
 
     /// How far a haustrum, or the colon's blind end, may reach beyond a door.
-    double sacReachMm(int home) const { return 1.5 * node(home).radiusMm + 12.0; }
+    double sacReachMm(int base) const { return 1.5 * node(base).radiusMm + 12.0; }
     double reachBehindMm(int j, int side) const {
         return glm::distance(node(side).centreMm, junction(j).placeMm) + node(side).radiusMm;
     }
     /// Not fluids that one lumen would have mixed: opacified ileum beside the colon's fluid.
     bool holdsTheSame(int j) const { return junction(j).mismatch < 0.5; }
-    /// A small piece that reaches little farther out than the wall that it hangs on.
-    bool isSac(int j, int home) const {
-        const int side = otherEnd(j, home);
-        return holdsTheSame(j) && reachBehindMm(j, side) < sacReachMm(home) &&
-               node(side).volumeMl < 0.5 * node(home).volumeMl + 5.0;
+    /// Whether the piece at the other end of junction `j` is a side sac of `base`: small, and
+    /// reaching little farther out than the wall of that.
+    bool isSac(int j, int base) const {
+        const int side = otherEnd(j, base);
+        return holdsTheSame(j) && reachBehindMm(j, side) < sacReachMm(base) &&
+               node(side).volumeMl < 0.5 * node(base).volumeMl + 5.0;
     }
 
     void makeTubes() {
@@ -152,10 +153,10 @@ private:
         std::vector<bool> sac(count, false);
         for (std::size_t n = 0; n < count; ++n) {
             if (sure[n].size() != 1) continue;
-            const auto [home, door] = *sure[n].begin();
-            if (sure[std::size_t(home)].size() < 3 || !isSac(door, home)) continue;
+            const auto [base, door] = *sure[n].begin();
+            if (sure[std::size_t(base)].size() < 3 || !isSac(door, base)) continue;
             sac[n] = true;
-            sure[std::size_t(home)].erase(int(n));
+            sure[std::size_t(base)].erase(int(n));
             sure[n].clear();
         }
         tubeOf_.assign(count, -1);
@@ -299,16 +300,16 @@ private:
         double cost = 0.0;
         for (const int n : nodes) {
             for (const int j : around_[std::size_t(n)]) {
-                const int home = otherEnd(j, n);
-                if (from.visited.test(std::size_t(home)) && tubeOf_[std::size_t(home)] != from.tube)
-                    cost += passing(j, home);
+                const int base = otherEnd(j, n);
+                if (from.visited.test(std::size_t(base)) && tubeOf_[std::size_t(base)] != from.tube)
+                    cost += passing(j, base);
             }
         }
         return cost;
     }
-    double passing(int j, int home) const {
+    double passing(int j, int base) const {
         const ChainJunction& door = junction(j);
-        if (door.kind == JunctionKind::collapse || door.logOdds < 0.0 || isSac(j, home)) return 0.0;
+        if (door.kind == JunctionKind::collapse || door.logOdds < 0.0 || isSac(j, base)) return 0.0;
         return closing_[std::size_t(j)];
     }
 
@@ -445,9 +446,9 @@ private:
         for (const int n : chain.nodes)
             arcOf[n] = arc + 0.5 * graph_.nodes[std::size_t(n)].lengthMm,
             arc += graph_.nodes[std::size_t(n)].lengthMm;
-        for (const int home : chain.nodes) {
-            for (const int j : around_[std::size_t(home)]) {
-                const int side = otherEnd(j, home);
+        for (const int base : chain.nodes) {
+            for (const int j : around_[std::size_t(base)]) {
+                const int side = otherEnd(j, base);
                 const ChainJunction& door = graph_.junctions[std::size_t(j)];
                 if (seen.test(std::size_t(side)) || door.kind == JunctionKind::collapse ||
                     door.logOdds < 0.0)
@@ -479,15 +480,15 @@ private:
                 }
                 const bool named = std::any_of(body.begin(), body.end(),
                                                [&](int n) { return node(n).given > 0.0; });
-                const bool sac = named || (holdsTheSame(j) && farthestMm < sacReachMm(home) &&
-                                           volumeMl < 0.5 * node(home).volumeMl + 5.0 &&
+                const bool sac = named || (holdsTheSame(j) && farthestMm < sacReachMm(base) &&
+                                           volumeMl < 0.5 * node(base).volumeMl + 5.0 &&
                                            opensToOnePlace(chain, doors, visited));
                 if (sac) {
                     chain.sacs.insert(chain.sacs.end(), body.begin(), body.end());
                     continue;
                 }
                 // The ileum: one narrow door near the chain's end.
-                const bool valve = doors.size() == 1 && total - arcOf[home] < 250.0 &&
+                const bool valve = doors.size() == 1 && total - arcOf[base] < 250.0 &&
                                    door.radiusMm < 8.0 && !valveUsed(chain);
                 for (const int d : doors) {
                     chain.cuts.push_back(d);
@@ -501,22 +502,22 @@ private:
     /// else there is a way through what was left out.
     bool opensToOnePlace(const ColonChain& chain, const std::vector<int>& doors,
                          const Visited& visited) const {
-        std::set<int> homes;
+        std::set<int> bases;
         for (const int d : doors) {
             const ChainJunction& door = graph_.junctions[std::size_t(d)];
-            homes.insert(visited.test(std::size_t(door.a)) ? door.a : door.b);
+            bases.insert(visited.test(std::size_t(door.a)) ? door.a : door.b);
         }
         for (std::size_t n = 0; n + 1 < chain.nodes.size(); ++n) {
-            if (!homes.count(chain.nodes[n])) continue;
-            // All homes from here on must follow at once.
+            if (!bases.count(chain.nodes[n])) continue;
+            // All bases from here on must follow at once.
             std::size_t found = 1;
-            while (n + found < chain.nodes.size() && homes.count(chain.nodes[n + found]) &&
+            while (n + found < chain.nodes.size() && bases.count(chain.nodes[n + found]) &&
                    graph_.junctions[std::size_t(chain.junctions[n + found - 1])].kind ==
                        JunctionKind::openLumen)
                 ++found;
-            return found == homes.size();
+            return found == bases.size();
         }
-        return homes.size() == 1;
+        return bases.size() == 1;
     }
     static bool valveUsed(const ColonChain& chain) { return !chain.cuts.empty(); }
 

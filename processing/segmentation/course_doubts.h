@@ -1,5 +1,5 @@
-// What speaks against the course that was found, though nothing that was weighed explains the scan
-// better.
+// Reasons to doubt the course that was found which the search itself cannot see: it compares only
+// the courses that it has generated.
 #pragma once
 
 #include "core/colon_record.h"
@@ -8,7 +8,7 @@
 
 namespace haustra::segmentation {
 
-/// One doubt for each thing by which a course is known to go wrong: that it is, as a probability.
+/// The ways in which courses are known to be wrong, each with the probability that this one is.
 ///
 /// The weights of chains tell how sure one is among those that were weighed. They cannot tell that
 /// the true one was not among them, as where a loop shows neither gas nor tagging. What gives it

@@ -1,6 +1,7 @@
 #include "segmentation/find_colon.h"
 
 #include "core/printed_text.h"
+#include "segmentation/body_frame.h"
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"

@@ -128,13 +128,13 @@ private:
     void addSacsFluid() {
         for (const int sac : chain_.sacs) {
             const TubePiece& piece = pieceOf(sac);
-            const auto home =
+            const auto nearest =
                 std::min_element(made_.pieces.begin(), made_.pieces.end(),
                                  [&](const ColonPiece& a, const ColonPiece& b) {
                                      return glm::distance(a.centreMm, piece.centreMm) - a.radiusMm <
                                             glm::distance(b.centreMm, piece.centreMm) - b.radiusMm;
                                  });
-            home->untaggedMl +=
+            nearest->untaggedMl +=
                 piece.volumeMl * double(piece.untaggedVoxels) / double(piece.voxels);
         }
     }
@@ -186,9 +186,9 @@ private:
                              opened.count(int(n)) > 0,
                              pieceOf(int(n)).mostlyUntagged()};
             for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
-                const ChainNode& home = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
+                const ChainNode& kept = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
                 const double mm =
-                    glm::distance(home.centreMm, node.centreMm) - home.radiusMm - node.radiusMm;
+                    glm::distance(kept.centreMm, node.centreMm) - kept.radiusMm - node.radiusMm;
                 if (mm < body.distanceMm)
                     body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
             }

@@ -1,5 +1,6 @@
 #include "segmentation/tube_pieces.h"
 
+#include "core/disjoint_sets.h"
 #include "core/flood_fill.h"
 #include "core/voxel_sweep.h"
 #include "segmentation/bowel_contents.h"
@@ -24,12 +25,6 @@ constexpr std::int32_t none = -1;
 bool isContent(std::uint8_t content) {
     return Content(content) == Content::gas || Content(content) == Content::tagged ||
            Content(content) == Content::interface || Content(content) == Content::untagged;
-}
-
-std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t n) {
-    while (parent[std::size_t(n)] != n)
-        n = parent[std::size_t(n)] = parent[std::size_t(parent[std::size_t(n)])];
-    return n;
 }
 
 /// A tally of each piece: tell(tally, index, voxel) of all its voxels. Each slab of the grid has
@@ -500,10 +495,6 @@ using FacesOfPair = std::span<const Face>;
 std::vector<std::int32_t> unitePatches(FacesOfPair faces, const Grid& grid) {
     std::vector<std::int32_t> parent(faces.size());
     std::iota(parent.begin(), parent.end(), 0);
-    const auto unite = [&](std::size_t x, std::size_t y) {
-        const std::int32_t a = rootOf(parent, std::int32_t(x)), b = rootOf(parent, std::int32_t(y));
-        parent[std::size_t(std::max(a, b))] = std::min(a, b);
-    };
     // Three voxels in each of the four rows before a voxel's own, which the faces pass in order.
     constexpr std::array<glm::ivec2, 4> rows{{{-1, -1}, {0, -1}, {1, -1}, {-1, 0}}};
     std::array<std::size_t, 4> from{};
@@ -511,7 +502,7 @@ std::vector<std::int32_t> unitePatches(FacesOfPair faces, const Grid& grid) {
         const glm::ivec3 v = grid.voxelAt(faces[f].n);
         if (f > 0 &&
             (faces[f - 1].n == faces[f].n || (v.x > 0 && faces[f - 1].n + 1 == faces[f].n)))
-            unite(f, f - 1);
+            unite(parent, std::int32_t(f), std::int32_t(f - 1));
         if (f > 0 && faces[f - 1].n == faces[f].n) continue;
         for (std::size_t row = 0; row < rows.size(); ++row) {
             const int j = v.y + rows[row].x, k = v.z + rows[row].y;
@@ -522,7 +513,7 @@ std::vector<std::int32_t> unitePatches(FacesOfPair faces, const Grid& grid) {
             while (faces[at].n < lo)
                 ++at;
             for (std::size_t g = at; faces[g].n <= hi; ++g)
-                unite(f, g);
+                unite(parent, std::int32_t(f), std::int32_t(g));
         }
     }
     for (std::size_t f = 0; f < parent.size(); ++f)
@@ -745,14 +736,10 @@ std::vector<std::int32_t> sideBySide(const TubePieces& cut) {
     std::vector<std::int32_t> parent(cut.pieces.size());
     std::iota(parent.begin(), parent.end(), 0);
     bool any = false;
-    const auto unite = [&](std::int32_t a, std::int32_t b) {
-        a = rootOf(parent, a), b = rootOf(parent, b);
-        parent[std::size_t(std::max(a, b))] = std::min(a, b);
-        any = true;
-    };
     for (const auto& [a, b, c] : triangles) {
-        if (trianglesAt[{a, b}] > 1 || trianglesAt[{b, c}] > 1 || trianglesAt[{a, c}] > 1)
-            unite(a, b), unite(b, c);
+        if (trianglesAt[{a, b}] < 2 && trianglesAt[{b, c}] < 2 && trianglesAt[{a, c}] < 2) continue;
+        unite(parent, a, b), unite(parent, b, c);
+        any = true;
     }
     if (!any) return {};
     for (std::size_t p = 0; p < parent.size(); ++p)

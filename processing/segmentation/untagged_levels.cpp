@@ -194,6 +194,95 @@ std::vector<Floor> takeLevel(std::vector<Floor>& patch, glm::dvec2 stepMm) {
     return level;
 }
 
+/// All floors, and those of each column by its place in the horizontal plane.
+class FloorMap {
+public:
+    FloorMap(const Grid& grid, GravityAxis down, const std::vector<std::vector<Floor>>& slices)
+        : width_(grid.size[1 - down.axis]),
+          stepMm_(grid.spacingMm()[1 - down.axis], grid.spacingMm().z) {
+        for (const auto& slice : slices) {
+            for (const Floor& floor : slice) {
+                atPlace_[placeOf(floor.across, floor.z)].push_back(std::uint32_t(floors_.size()));
+                floors_.push_back(floor);
+            }
+        }
+    }
+
+    glm::dvec2 stepMm() const { return stepMm_; }
+
+    /// Floors that go on from one another gently, each in one patch.
+    std::vector<std::vector<Floor>> patches() const {
+        std::vector<bool> seen(floors_.size(), false);
+        const auto take = [&](std::uint32_t floor) {
+            if (seen[floor]) return false;
+            seen[floor] = true;
+            return true;
+        };
+        const auto beside = [&](std::uint32_t floor, const auto& visit) {
+            visitBeside(floors_[floor], visit);
+        };
+        std::vector<std::vector<Floor>> patches;
+        for (std::uint32_t seed = 0; seed < floors_.size(); ++seed) {
+            if (!take(seed)) continue;
+            std::vector<std::uint32_t> members{seed};
+            floodFill(members, beside, take);
+            patches.emplace_back();
+            for (const std::uint32_t n : members)
+                patches.back().push_back(floors_[n]);
+        }
+        return patches;
+    }
+
+private:
+    std::size_t placeOf(int across, int z) const {
+        return std::size_t(across) + std::size_t(width_) * std::size_t(z);
+    }
+
+    /// visit(floor) of the eight columns around one that go on from it gently.
+    template <class Visit>
+    void visitBeside(const Floor& from, const Visit& visit) const {
+        for (int d = 0; d < 9; ++d) {
+            const int dn = d % 3 - 1, dz = d / 3 - 1, n = from.across + dn, z = from.z + dz;
+            if (n < 0 || z < 0 || n >= width_ || d == 4) continue;
+            const auto near = atPlace_.find(placeOf(n, z));
+            if (near == atPlace_.end()) continue;
+            const double mm = std::hypot(dn * stepMm_.x, dz * stepMm_.y);
+            for (const std::uint32_t other : near->second) {
+                const double rise = std::abs(floors_[other].heightMm - from.heightMm);
+                if (rise <= std::max(flatMm, gentleSlope * mm)) visit(other);
+            }
+        }
+    }
+
+    const int width_;
+    const glm::dvec2 stepMm_;  ///< across, and along z
+    std::vector<Floor> floors_;
+    std::unordered_map<std::size_t, std::vector<std::uint32_t>> atPlace_;
+};
+
+/// A surface as a level; none where what is beneath it is like soft tissue or fat.
+std::optional<UntaggedLevel> levelOf(const std::vector<Floor>& surface, const Grid& grid,
+                                     GravityAxis down, glm::dvec2 stepMm,
+                                     const TissueModel& tissue) {
+    UntaggedLevel level;
+    std::vector<double> beneath, heights;
+    glm::dvec3 middle(0.0);
+    for (const Floor& floor : surface) {
+        glm::ivec3 at(0);
+        at[down.axis] = floor.voxel, at[1 - down.axis] = floor.across, at.z = floor.z;
+        middle += glm::dvec3(at);
+        level.columns.push_back(at);
+        beneath.push_back(floor.huBeneath), heights.push_back(floor.heightMm);
+    }
+    const double softHu = tissue.meanHu[int(Tissue::soft)], fatHu = tissue.meanHu[int(Tissue::fat)];
+    level.fluidHu = median(std::move(beneath)), level.heightMm = median(std::move(heights));
+    if (level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp) return {};
+    if (level.fluidHu < 0.5 * (softHu + fatHu)) return {};
+    level.areaMm2 = double(surface.size()) * stepMm.x * stepMm.y;
+    level.placeMm = grid.patientFromVoxelPoint(middle / double(surface.size()));
+    return level;
+}
+
 }  // namespace
 
 std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
@@ -207,70 +296,12 @@ std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
         for (std::size_t k = first; k < last; ++k)
             slices[k] = columns.ofSlice(int(k));
     });
-    std::vector<Floor> floors;
-    std::unordered_map<std::size_t, std::vector<std::uint32_t>> atPlace;
-    const int across = 1 - down.axis;
-    const std::size_t width = std::size_t(grid.size[across]);
-    for (const auto& slice : slices) {
-        for (const Floor& floor : slice) {
-            atPlace[std::size_t(floor.across) + width * std::size_t(floor.z)].push_back(
-                std::uint32_t(floors.size()));
-            floors.push_back(floor);
-        }
-    }
-    const glm::dvec2 stepMm(grid.spacingMm()[across], grid.spacingMm().z);
-    const double softHu = tissue.meanHu[int(Tissue::soft)];
-    // The floors of the eight columns around one that go on from it gently.
-    const auto visitAround = [&](std::uint32_t at, const auto& visit) {
-        const Floor& from = floors[at];
-        for (int dz = -1; dz <= 1; ++dz) {
-            for (int dn = -1; dn <= 1; ++dn) {
-                const int n = from.across + dn, z = from.z + dz;
-                if (n < 0 || z < 0 || n >= int(width) || (dz == 0 && dn == 0)) continue;
-                const auto near = atPlace.find(std::size_t(n) + width * std::size_t(z));
-                if (near == atPlace.end()) continue;
-                const double mm = std::hypot(dn * stepMm.x, dz * stepMm.y);
-                for (const std::uint32_t other : near->second) {
-                    const double rise = std::abs(floors[other].heightMm - from.heightMm);
-                    if (rise <= std::max(flatMm, gentleSlope * mm)) visit(other);
-                }
-            }
-        }
-    };
-    const auto describe = [&](const std::vector<Floor>& surface) -> std::optional<UntaggedLevel> {
-        UntaggedLevel level;
-        std::vector<double> beneath, heights;
-        glm::dvec3 middle(0.0);
-        for (const Floor& floor : surface) {
-            glm::ivec3 at(0);
-            at[down.axis] = floor.voxel, at[across] = floor.across, at.z = floor.z;
-            middle += glm::dvec3(at);
-            level.columns.push_back(at);
-            beneath.push_back(floor.huBeneath), heights.push_back(floor.heightMm);
-        }
-        level.fluidHu = median(std::move(beneath)), level.heightMm = median(std::move(heights));
-        if (level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp) return {};
-        if (level.fluidHu < 0.5 * (softHu + tissue.meanHu[int(Tissue::fat)])) return {};
-        level.areaMm2 = double(surface.size()) * stepMm.x * stepMm.y;
-        level.placeMm = grid.patientFromVoxelPoint(middle / double(surface.size()));
-        return level;
-    };
-    std::vector<bool> seen(floors.size(), false);
+    const FloorMap floors(grid, down, slices);
     std::vector<UntaggedLevel> levels;
-    for (std::size_t seed = 0; seed < floors.size(); ++seed) {
-        if (seen[seed]) continue;
-        std::vector<std::uint32_t> members{std::uint32_t(seed)};
-        seen[seed] = true;
-        floodFill(members, visitAround, [&](std::uint32_t other) {
-            if (seen[other]) return false;
-            seen[other] = true;
-            return true;
-        });
-        std::vector<Floor> patch;
-        for (const std::uint32_t n : members)
-            patch.push_back(floors[n]);
-        for (std::vector<Floor> level; !(level = takeLevel(patch, stepMm)).empty();) {
-            if (const auto told = describe(level)) levels.push_back(*told);
+    for (std::vector<Floor>& patch : floors.patches()) {
+        for (std::vector<Floor> level; !(level = takeLevel(patch, floors.stepMm())).empty();) {
+            if (const auto told = levelOf(level, grid, down, floors.stepMm(), tissue))
+                levels.push_back(*told);
         }
     }
     std::stable_sort(

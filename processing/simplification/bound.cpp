@@ -64,7 +64,7 @@ bool ErrorBound::nearTrianglesOf(int sample, const glm::vec3& p) const {
     return false;
 }
 
-HungSamples::HungSamples(const ErrorBound& bound, std::span<const int> slots)
+AttachedSamples::AttachedSamples(const ErrorBound& bound, std::span<const int> slots)
     : bound_(bound), first_(slots.size(), -1) {
     for (std::size_t t = 0; t < slots.size(); ++t) {
         if (slots[t] < 0) continue;
@@ -79,7 +79,7 @@ HungSamples::HungSamples(const ErrorBound& bound, std::span<const int> slots)
     }
 }
 
-void HungSamples::gather(std::span<const int> oldTriangles, Patch& patch) const {
+void AttachedSamples::gather(std::span<const int> oldTriangles, Patch& patch) const {
     patch.samples.clear();
     patch.points.clear();
     // The triangles' lists side by side: the processor waits for several links at once.
@@ -103,7 +103,7 @@ void HungSamples::gather(std::span<const int> oldTriangles, Patch& patch) const 
     patch.points.fill();
 }
 
-bool HungSamples::nearInput(const glm::vec3& p, const Patch& patch) const {
+bool AttachedSamples::nearInput(const glm::vec3& p, const Patch& patch) const {
     if (patch.samples.empty()) return false;
     const std::size_t nearest = nearestPoint(patch.points, p);
     const glm::vec3 away = patch.points.at(nearest) - p;
@@ -111,23 +111,23 @@ bool HungSamples::nearInput(const glm::vec3& p, const Patch& patch) const {
            bound_.nearTrianglesOf(number_[patch.samples[nearest]], p);
 }
 
-bool HungSamples::findHomes(Patch& patch) const {
-    return findNear(patch.points, patch.triangles, bound_.errorSquared_, patch.home,
+bool AttachedSamples::findTriangles(Patch& patch) const {
+    return findNear(patch.points, patch.triangles, bound_.errorSquared_, patch.triangleOf,
                     patch.heightSquared);
 }
 
-void HungSamples::rehang(std::span<const int> oldTriangles, std::span<const int> newTriangles,
-                         const Patch& patch) {
+void AttachedSamples::reattach(std::span<const int> oldTriangles, std::span<const int> newTriangles,
+                               const Patch& patch) {
     for (const int triangle : oldTriangles)
         first_[triangle] = -1;
     for (std::size_t i = 0; i < patch.samples.size(); ++i) {
-        int& first = first_[newTriangles[patch.home[i]]];
+        int& first = first_[newTriangles[patch.triangleOf[i]]];
         sample_[patch.samples[i]].next = first;
         first = patch.samples[i];
     }
 }
 
-void HungSamples::writeTo(ErrorBound& bound, std::span<const int> slots) const {
+void AttachedSamples::writeTo(ErrorBound& bound, std::span<const int> slots) const {
     const auto numberOf = [&](int sample) { return sample < 0 ? -1 : number_[sample]; };
     for (std::size_t t = 0; t < slots.size(); ++t) {
         if (slots[t] >= 0) bound.first_[slots[t]] = numberOf(first_[t]);

@@ -10,16 +10,16 @@
 namespace haustra::simplification {
 
 /// The input's surface, held by samples: its vertices, the midpoints of its edges and the centres
-/// of its triangles. Each sample hangs on one triangle of the working mesh that is within the bound
-/// of it; a patch of triangles may take the place of another only if the samples of the old find
-/// such a triangle in the new, and the new patch's own samples lie within the bound of the input's
-/// triangles.
+/// of its triangles. Each sample is attached to one triangle of the working mesh that is within the
+/// bound of it; a patch of triangles may take the place of another only if the samples of the old
+/// find such a triangle in the new, and the new patch's own samples lie within the bound of the
+/// input's triangles.
 class ErrorBound {
 public:
     ErrorBound(const CornerMesh& input, double errorMm);
 
 private:
-    friend class HungSamples;
+    friend class AttachedSamples;
 
     enum class On : char { vertex, edge, triangle };
 
@@ -36,8 +36,8 @@ private:
     std::vector<int> next_;    ///< of a sample: the next on the same working triangle, or −1
 };
 
-/// The samples that hang on one region's triangles, copied for one thread to work on.
-class HungSamples {
+/// The samples attached to one region's triangles, copied for one thread to work on.
+class AttachedSamples {
 public:
     /// Room for one thread's questions.
     struct Patch {
@@ -45,25 +45,25 @@ public:
         std::vector<int> ends;  ///< of the lists of samples that are being gathered
         PointArrays points;     ///< the samples' places
         std::vector<NearTriangle> triangles;
-        std::vector<int> home;  ///< of each sample: its place in `triangles`
+        std::vector<int> triangleOf;  ///< of each sample: its place in `triangles`
         std::vector<float> heightSquared;
     };
 
     /// Of the working triangles `slots`, here numbered in that order; those numbered −1 are left
     /// out.
-    HungSamples(const ErrorBound& bound, std::span<const int> slots);
+    AttachedSamples(const ErrorBound& bound, std::span<const int> slots);
 
-    /// Takes the samples that hang on `oldTriangles` into the patch.
+    /// Takes the samples attached to `oldTriangles` into the patch.
     void gather(std::span<const int> oldTriangles, Patch& patch) const;
     /// Whether `p` is within the bound of an input triangle beside the patch's nearest sample.
     bool nearInput(const glm::vec3& p, const Patch& patch) const;
-    /// Whether each of the patch's samples is within the bound of one of patch.triangles; finds
-    /// their homes.
-    bool findHomes(Patch& patch) const;
-    /// Hangs the patch's samples on the triangles `newTriangles` (parallel to patch.triangles).
-    void rehang(std::span<const int> oldTriangles, std::span<const int> newTriangles,
-                const Patch& patch);
-    /// Hangs the samples on the same triangles there, numbered by `slots` as at first.
+    /// Whether each of the patch's samples is within the bound of one of patch.triangles;
+    /// finds which, triangleOf.
+    bool findTriangles(Patch& patch) const;
+    /// Attaches the patch's samples to the triangles `newTriangles` (parallel to patch.triangles).
+    void reattach(std::span<const int> oldTriangles, std::span<const int> newTriangles,
+                  const Patch& patch);
+    /// Attaches the samples to the same triangles there, numbered by `slots` as at first.
     void writeTo(ErrorBound& bound, std::span<const int> slots) const;
 
 private:

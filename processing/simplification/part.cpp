@@ -39,7 +39,7 @@ RegionPart::RegionPart(Simplification& whole, const Region& region)
       innerSlots_(innerSlots(whole, region)),
       samples(whole.bound, innerSlots_),
       version(region.vertices.size(), 0),
-      stirred(region.vertices.size(), 0),
+      disturbed(region.vertices.size(), 0),
       movable(region.vertices.size(), 1),
       changed(region.triangles.size(), 0) {
     const CornerMesh& from = whole.mesh;

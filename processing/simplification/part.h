@@ -45,11 +45,11 @@ public:
     int insideCount() const { return int(region_.vertices.size()); }
 
     CornerMesh mesh;
-    HungSamples samples;
+    AttachedSamples samples;
     std::vector<Quadric> quadric;
     std::vector<std::uint32_t> version;  ///< of a vertex: counts its changes
     std::vector<char> settled;           ///< of a vertex: nothing more to gain at it
-    std::vector<char> stirred;           ///< of a vertex: a triangle at it changed of late
+    std::vector<char> disturbed;         ///< of a vertex: a triangle at it changed recently
     std::vector<char> movable;           ///< of a vertex: all its triangles lie in the box
     std::vector<char> changed;           ///< of a triangle
 };

@@ -180,7 +180,7 @@ bool RegionSimplification::withinBound(const Replacement& r) {
         patch_.triangles.emplace_back(glm::vec3(place(r, v[0])), glm::vec3(place(r, v[1])),
                                       glm::vec3(place(r, v[2])));
     }
-    if (!part_.samples.findHomes(patch_)) return false;
+    if (!part_.samples.findTriangles(patch_)) return false;
     for (const NearTriangle& t : patch_.triangles) {
         // Corner 0 moves, or ends the new edge 0–1; each spoke is the edge from it in one triangle.
         const glm::vec3 centre = (t.corner[0] + t.corner[1] + t.corner[2]) * (1.0f / 3.0f);
@@ -196,24 +196,25 @@ void RegionSimplification::commit(const Replacement& r) {
     if (r.moved >= 0) ++part_.version[r.moved];
     for (const auto& corners : r.corners) {
         for (const int v : corners)
-            part_.stirred[v] = 1;
+            part_.disturbed[v] = 1;
     }
     for (const int triangle : r.newTriangles)
         part_.changed[triangle] = 1;
     guard_.insert(r);
-    part_.samples.rehang(r.oldTriangles, r.newTriangles, patch_);
+    part_.samples.reattach(r.oldTriangles, r.newTriangles, patch_);
 }
 
 // ---------------------------------------------------------------------------------- sharp corners
 
 void RegionSimplification::betterCorners() {
     for (int v = 0; v < part_.insideCount(); ++v)
-        part_.stirred[v] = movable(v) && (!part_.settled[v] || sharpestAround(v) > sharpestCosine_);
+        part_.disturbed[v] =
+            movable(v) && (!part_.settled[v] || sharpestAround(v) > sharpestCosine_);
     for (int round = 0; round < 3; ++round) {
         for (int v = 0; v < part_.insideCount(); ++v) {
             // What could not be bettered cannot be now, unless something changed beside it.
-            if (!movable(v) || !part_.stirred[v]) continue;
-            part_.stirred[v] = 0;
+            if (!movable(v) || !part_.disturbed[v]) continue;
+            part_.disturbed[v] = 0;
             betterVertex(v);
         }
     }

@@ -60,7 +60,7 @@ private:
     CornerMesh& mesh_;
     ContactGuard guard_;
     std::vector<Candidate> heap_;
-    HungSamples::Patch patch_;
+    AttachedSamples::Patch patch_;
     Replacement replacement_;
     double sharpestCosine_;
 };

@@ -1,5 +1,6 @@
 #include "topology/digital_topology.h"
 
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -59,13 +60,9 @@ void appendRuns(const Word* row, std::size_t words, Word flip, int j, int k, int
     if (inside) runs.back().end = size + 1;
 }
 
-std::int32_t rootOf(std::vector<MaskRun>& runs, std::int32_t run) {
-    const auto parent = [&](std::int32_t n) -> std::int32_t& {
-        return runs[std::size_t(n)].component;
-    };
-    while (parent(run) != run)
-        run = parent(run) = parent(parent(run));
-    return run;
+std::int32_t firstRunOf(std::vector<MaskRun>& runs, std::int32_t run) {
+    return haustra::rootOf(
+        [&](std::int32_t n) -> std::int32_t& { return runs[std::size_t(n)].component; }, run);
 }
 
 /// Finds a mask's runs and joins them; until they are numbered, a run's component is a run of the
@@ -102,7 +99,7 @@ public:
         // A root is its component's first run, so its number is set before the others need it.
         std::vector<std::int32_t> number(runs_.size());
         for (std::size_t n = 0; n < runs_.size(); ++n) {
-            const auto root = std::size_t(rootOf(runs_, std::int32_t(n)));
+            const auto root = std::size_t(firstRunOf(runs_, std::int32_t(n)));
             if (root == n) {
                 number[n] = std::int32_t(result.voxels.size());
                 result.voxels.push_back(0);
@@ -132,7 +129,7 @@ private:
     }
     // The lower number wins, so that a component is named by its first run.
     void unite(std::int32_t a, std::int32_t b) {
-        a = rootOf(runs_, a), b = rootOf(runs_, b);
+        a = firstRunOf(runs_, a), b = firstRunOf(runs_, b);
         if (a != b) runs_[std::size_t(std::max(a, b))].component = std::min(a, b);
     }
 

@@ -1,26 +1,12 @@
 #include "topology/run_components.h"
 
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
 
 #include <algorithm>
 #include <numeric>
 
 namespace haustra::topology {
-namespace {
-
-std::int32_t rootOf(std::vector<std::int32_t>& parent, std::int32_t run) {
-    while (parent[run] != run)
-        run = parent[run] = parent[parent[run]];
-    return run;
-}
-
-// The lower number wins, so that a component is named by its first run.
-void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
-    a = rootOf(parent, a), b = rootOf(parent, b);
-    if (a != b) parent[std::max(a, b)] = std::min(a, b);
-}
-
-}  // namespace
 
 RunComponents::RunComponents(const Volume<std::int16_t>& volume, double below, int threads)
     : size_(volume.grid().size) {
@@ -59,6 +45,7 @@ RunComponents::RunComponents(const Volume<std::int16_t>& volume, double below, i
         std::size_t a = rowBegin_[rowA], b = rowBegin_[rowB];
         while (a < rowBegin_[rowA + 1] && b < rowBegin_[rowB + 1]) {
             if (runs_[a].begin < runs_[b].end && runs_[b].begin < runs_[a].end) {
+                // A component is named by its first run.
                 unite(parent, std::int32_t(a), std::int32_t(b));
             }
             runs_[a].end < runs_[b].end ? ++a : ++b;

@@ -346,7 +346,7 @@ void addBowelOptions(CLI::App& command, PhantomArguments& arguments) {
         ->group(group);
 }
 
-/// How the patient is scanned; phantom/scan_options.h tells more.
+/// How the patient is scanned; phantom/phantom.h tells more.
 void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
     constexpr const char* group = "Scanner (in place of what the preset draws)";
     const auto add = [&](const char* name, std::optional<double>& value, const char* help,

@@ -1,5 +1,6 @@
 #include "flatten/general/homology_basis.h"
 
+#include "core/flood_fill.h"
 #include "mesh/cut_graph.h"
 
 #include <algorithm>
@@ -18,21 +19,18 @@ int firstUsedVertex(const HalfedgeMesh& mesh) {
 
 bool connected(const HalfedgeMesh& mesh) {
     std::vector<char> seen(std::size_t(mesh.halfedgeCount() / 3), 0);
-    std::vector<int> open{0};
+    std::vector<int> reached{0};
     seen[0] = 1;
-    std::size_t count = 1;
-    while (!open.empty()) {
-        const int t = open.back();
-        open.pop_back();
-        for (int h = 3 * t; h < 3 * t + 3; ++h) {
-            const int other = mesh.opposite(h) / 3;
-            if (seen[other]) continue;
-            seen[other] = 1;
-            ++count;
-            open.push_back(other);
-        }
-    }
-    return count == seen.size();
+    const auto beside = [&](int t, const auto& visit) {
+        for (int h = 3 * t; h < 3 * t + 3; ++h)
+            visit(mesh.opposite(h) / 3);
+    };
+    floodFill(reached, beside, [&](int t) {
+        if (seen[t]) return false;
+        seen[t] = 1;
+        return true;
+    });
+    return reached.size() == seen.size();
 }
 
 /// Breadth first over the vertices of the cut graph: the half-edge by which each is reached, −1 for
@@ -42,18 +40,19 @@ std::vector<int> treeOfCutGraph(const HalfedgeMesh& mesh, const std::vector<char
     const auto first = std::find(cut.begin(), cut.end(), 1);
     if (first == cut.end()) return into;
     const int root = mesh.origin(int(first - cut.begin()));
-    std::vector<int> queue{root};
-    for (std::size_t n = 0; n < queue.size(); ++n) {
-        int h = mesh.outgoing(queue[n]);
+    std::vector<int> reached{root};
+    const auto cutEdges = [&](int v, const auto& visit) {
+        int h = mesh.outgoing(v);
         do {
-            const int w = mesh.target(h);
-            if (cut[h] && w != root && into[w] < 0) {
-                into[w] = h;
-                queue.push_back(w);
-            }
+            if (cut[h]) visit(mesh.target(h), h);
             h = mesh.turnLeft(h);
-        } while (h != mesh.outgoing(queue[n]));
-    }
+        } while (h != mesh.outgoing(v));
+    };
+    floodFill(reached, cutEdges, [&](int w, int h) {
+        if (w == root || into[w] >= 0) return false;
+        into[w] = h;
+        return true;
+    });
     return into;
 }
 
@@ -83,15 +82,17 @@ mesh::Loop loopThrough(const HalfedgeMesh& mesh, const std::vector<int>& into, i
 /// Breadth first over the triangles of the disc: the half-edge by which each is left towards the
 /// first, −1 there.
 std::vector<int> treeOfDisc(const HalfedgeMesh& mesh, const std::vector<char>& cut) {
-    std::vector<int> leaves(std::size_t(mesh.halfedgeCount() / 3), -1), queue{0};
-    for (std::size_t n = 0; n < queue.size(); ++n) {
-        for (int h = 3 * queue[n]; h < 3 * queue[n] + 3; ++h) {
-            const int other = mesh.opposite(h) / 3;
-            if (cut[h] || other == 0 || leaves[other] >= 0) continue;
-            leaves[other] = mesh.opposite(h);
-            queue.push_back(other);
+    std::vector<int> leaves(std::size_t(mesh.halfedgeCount() / 3), -1), reached{0};
+    const auto beside = [&](int t, const auto& visit) {
+        for (int h = 3 * t; h < 3 * t + 3; ++h) {
+            if (!cut[h]) visit(mesh.opposite(h) / 3, mesh.opposite(h));
         }
-    }
+    };
+    floodFill(reached, beside, [&](int t, int back) {
+        if (t == 0 || leaves[t] >= 0) return false;
+        leaves[t] = back;
+        return true;
+    });
     return leaves;
 }
 

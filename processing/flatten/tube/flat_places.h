@@ -1,6 +1,7 @@
 // Where vertices and triangles lie in a tube's map.
 #pragma once
 
+#include "core/flood_fill.h"
 #include "flatten/periodic_map.h"
 #include "flatten/tube/vertex_stars.h"
 
@@ -40,16 +41,17 @@ inline std::vector<std::vector<int>> clustersOf(const TriMesh& tube, const Verte
         if (!waiting[std::size_t(seed)]) continue;
         std::vector<int>& cluster = clusters.emplace_back(1, seed);
         waiting[std::size_t(seed)] = 0;
-        for (std::size_t n = 0; n < cluster.size(); ++n) {
+        const auto sharingVertices = [&](int t, const auto& visit) {
             for (int c = 0; c < 3; ++c) {
-                for (const int corner : stars.of(tube.triangles[std::size_t(cluster[n])][c])) {
-                    const auto t = std::size_t(corner / 3);
-                    if (!waiting[t]) continue;
-                    waiting[t] = 0;
-                    cluster.push_back(int(t));
-                }
+                for (const int corner : stars.of(tube.triangles[std::size_t(t)][c]))
+                    visit(corner / 3);
             }
-        }
+        };
+        floodFill(cluster, sharingVertices, [&](int t) {
+            if (!waiting[std::size_t(t)]) return false;
+            waiting[std::size_t(t)] = 0;
+            return true;
+        });
     }
     return clusters;
 }

@@ -1,28 +1,16 @@
 #include "flatten/tube/pouches.h"
 
 #include "core/flat_map.h"
-#include "flatten/tube/conformal_tube.h"
-#include "flatten/tube/disc_embedding.h"
+#include "flatten/tube/cut_pouch.h"
 #include "flatten/tube/flat_discs.h"
 #include "flatten/tube/flat_places.h"
-#include "flatten/tube/flip_repair.h"
-#include "flatten/tube/grid_drawing.h"
-#include "flatten/tube/polygon_roll.h"
-#include "flatten/tube/shape_relaxation.h"
 #include "flatten/tube/spreading.h"
-#include "flatten/tube/vertex_stars.h"
-#include "mesh/halfedge_mesh.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
-#include <tuple>
-#include <unordered_map>
 #include <utility>
 
 namespace haustra::flatten {
@@ -30,948 +18,14 @@ namespace {
 
 using mesh::HalfedgeMesh;
 
-/// A triangle whose longest side is shorter than this may lose its shape to rounding.
-constexpr double crowdedUnits = 16.0;
-/// The same on a pouch, which is shrunk once more when it is set in; and how many of these may sit
-/// on each other.
-constexpr double fingerUnits = 4096.0;
-constexpr int mostDepth = 3;
-/// Borders that are less round than this leave a pouch too little of the hole.
-constexpr double leastRoundness = 0.4;
-/// What lies deepest in a pouch is shrunk by no more than the exponential of this.
-constexpr double mostFall = 7.0;
-/// A pouch of more triangles than this is not embedded where one in a hundred is folded in the
-/// target; one of more than the other, whose system would cost more than all else, not at all.
-constexpr std::size_t mostFolded = 2000, mostEmbedded = 8000;
-/// A grid of more triangles' vertices is finer than any hole's share of the lattice.
-constexpr std::size_t mostDrawn = 8000;
-/// A cluster of so many triangles is cut off before others, and these may lie in its pouch.
-constexpr std::size_t largeSpot = 1000;
-/// So many triangles that are too thin, and one in fifty, are widened one by one.
-constexpr std::size_t fewThin = 30;
+/// A cluster of no more triangles gets room from its neighbours, where they have it.
+constexpr std::size_t mostSpread = 30;
 /// A pouch may be set in with so many of its triangles too thin, to be mended where they lie.
 constexpr double mostThin = 0.1;
 /// Beyond a disc of so many triangles, and a hundred for each folded one, none is tried.
 constexpr std::size_t mostAround = 5000;
 /// A disc is worth trying where its triangles, spread evenly, would have sides of so many units.
 constexpr double roomUnits = 64.0;
-/// Radii of necks and discs in the plane, in circumferences. The least leaves a pouch of a hundred
-/// thousand triangles some hundred units of the lattice for each; beyond the largest a circle would
-/// meet itself around the strip.
-constexpr double leastRadius = 0x1p-9, largestRadius = 0.25, radiusStep = 1.1892071150027210667;
-/// So near may a circle come to a rim, of the way there.
-constexpr double towardsRim = 0.8;
-
-double areaMm2(const TriMesh& tube, const glm::ivec3& t) {
-    const glm::dvec3 a = tube.vertices[std::size_t(t.x)];
-    return 0.5 * glm::length(glm::cross(tube.vertices[std::size_t(t.y)] - a,
-                                        tube.vertices[std::size_t(t.z)] - a));
-}
-
-/// Where a cluster lies in the plane, and how far it reaches from there.
-struct Spot {
-    std::vector<int> triangles;
-    glm::dvec2 middle{0.0};
-    double reach = 0.0;
-};
-
-Spot spotOf(const TriMesh& tube, const PeriodicMap& map, std::vector<int> triangles) {
-    Spot spot;
-    const glm::dvec2 first = map.corner(tube, std::size_t(triangles.front()), 0);
-    for (const int t : triangles) {
-        for (int c = 0; c < 3; ++c)
-            spot.middle += placeNear(map, tube.triangles[std::size_t(t)][c], first) - first;
-    }
-    spot.middle = first + spot.middle / (3.0 * double(triangles.size()));
-    for (const int t : triangles) {
-        for (int c = 0; c < 3; ++c) {
-            spot.reach = std::max(
-                spot.reach,
-                glm::distance(placeNear(map, tube.triangles[std::size_t(t)][c], spot.middle),
-                              spot.middle));
-        }
-    }
-    spot.triangles = std::move(triangles);
-    return spot;
-}
-
-/// Spots that are nearer to each other than two of the least circles become one.
-std::vector<Spot> merged(const TriMesh& tube, const PeriodicMap& map, std::vector<Spot> spots) {
-    for (bool again = true; again;) {
-        again = false;
-        for (std::size_t a = 0; a < spots.size() && !again; ++a) {
-            for (std::size_t b = a + 1; b < spots.size() && !again; ++b) {
-                glm::dvec2 away = spots[b].middle - spots[a].middle;
-                away.x -= std::round(away.x);
-                if (glm::length(away) > 2.0 * leastRadius) continue;
-                std::vector<int> both = std::move(spots[a].triangles);
-                both.insert(both.end(), spots[b].triangles.begin(), spots[b].triangles.end());
-                spots[a] = spotOf(tube, map, std::move(both));
-                spots.erase(spots.begin() + std::ptrdiff_t(b));
-                again = true;
-            }
-        }
-    }
-    return spots;
-}
-
-/// The radii from the least on that circles around `middle` may have, largest last.
-std::vector<double> radiiFor(const PeriodicMap& map, const std::vector<Spot>& spots,
-                             std::size_t spot) {
-    const glm::dvec2 middle = spots[spot].middle;
-    double most =
-        std::min({largestRadius, towardsRim * middle.y, towardsRim * (map.height - middle.y)});
-    for (std::size_t other = 0; other < spots.size(); ++other) {
-        if (other == spot || (spots[spot].triangles.size() >= largeSpot &&
-                              spots[other].triangles.size() < spots[spot].triangles.size()))
-            continue;
-        glm::dvec2 away = spots[other].middle - middle;
-        away.x -= std::round(away.x);
-        most = std::min(most, 0.5 * glm::length(away));
-    }
-    std::vector<double> radii;
-    for (double radius = leastRadius; radius < most; radius *= radiusStep)
-        radii.push_back(radius);
-    return radii;
-}
-
-/// Radii by how well their circle cuts a finger off: by its length squared over the area within.
-std::vector<double> neckFirst(const TriMesh& tube, const PeriodicMap& map, glm::dvec2 middle,
-                              std::vector<double> radii) {
-    std::vector<double> lengthMm(radii.size(), 0.0), within(radii.size(), 0.0);
-    for (const glm::ivec3& t : tube.triangles) {
-        double away[3];
-        for (int c = 0; c < 3; ++c)
-            away[c] = glm::distance(placeNear(map, t[c], middle), middle);
-        const auto [least, most] = std::minmax({away[0], away[1], away[2]});
-        if (radii.empty() || !(least < radii.back())) continue;
-        for (std::size_t r = 0; r < radii.size(); ++r) {
-            if (least >= radii[r]) continue;
-            if (most < radii[r]) {
-                within[r] += areaMm2(tube, t);
-                continue;
-            }
-            glm::dvec3 ends[2];
-            int found = 0;
-            for (int c = 0; c < 3 && found < 2; ++c) {
-                const double from = away[c], to = away[(c + 1) % 3];
-                if ((from < radii[r]) == (to < radii[r])) continue;
-                ends[found++] = glm::mix(tube.vertices[std::size_t(t[c])],
-                                         tube.vertices[std::size_t(t[(c + 1) % 3])],
-                                         (radii[r] - from) / (to - from));
-            }
-            if (found == 2) lengthMm[r] += glm::distance(ends[0], ends[1]);
-        }
-    }
-    std::vector<std::size_t> order(radii.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    const auto ratio = [&](std::size_t r) {
-        return within[r] > 0.0 ? lengthMm[r] * lengthMm[r] / within[r]
-                               : std::numeric_limits<double>::infinity();
-    };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return ratio(a) < ratio(b); });
-    std::vector<double> sorted;
-    for (const std::size_t r : order)
-        sorted.push_back(radii[r]);
-    return sorted;
-}
-
-std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units);
-SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-              int depth, PouchWork& work);
-
-/// How far a place is to the left of the nearest side of a polygon; negative beyond one.
-double clearance(const std::vector<glm::dvec2>& polygon, glm::dvec2 at) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t n = 0; n < polygon.size(); ++n) {
-        const glm::dvec2 from = polygon[n], to = polygon[(n + 1) % polygon.size()];
-        const double length = glm::distance(from, to);
-        if (length > 0.0) least = std::min(least, cross(to - from, at - from) / length);
-    }
-    return least;
-}
-
-/// A place from which all of the polygon is seen, as far from its sides as descent finds.
-std::optional<glm::dvec2> centreOf(const std::vector<glm::dvec2>& polygon, glm::dvec2 middle,
-                                   double radius) {
-    glm::dvec2 mean(0.0);
-    for (const glm::dvec2& p : polygon)
-        mean += p / double(polygon.size());
-    glm::dvec2 best = clearance(polygon, mean) > clearance(polygon, middle) ? mean : middle;
-    double most = clearance(polygon, best);
-    double step = 0.5 * radius;
-    for (int n = 0; n < 60 && step > 1e-4 * radius; ++n) {
-        glm::dvec2 next = best;
-        double there = most;
-        for (int d = 0; d < 8; ++d) {
-            const double angle = 0.25 * std::numbers::pi * d;
-            const glm::dvec2 tried = best + step * glm::dvec2(std::cos(angle), std::sin(angle));
-            if (const double clear = clearance(polygon, tried); clear > there)
-                there = clear, next = tried;
-        }
-        if (!(there > most)) step *= 0.5;
-        best = next;
-        most = there;
-    }
-    if (!(most > 0.0)) return std::nullopt;
-    return best;
-}
-
-/// A pouch cut along its ring, with all that belongs to it numbered: the border's vertices, the
-/// ring's, and the others.
-class CutPouch {
-public:
-    CutPouch(const TriMesh& tube, const HalfedgeMesh& halfedges, const std::vector<char>& inside,
-             const Pouch& pouch, int depth, PouchWork* work = nullptr)
-        : tube_(tube),
-          halfedges_(halfedges),
-          inside_(inside),
-          pouch_(pouch),
-          depth_(depth),
-          work_(work) {}
-
-    /// The radius of a circle within the border, from whose middle all of that is seen, as a share
-    /// of the pouch's; 0 where there is none. First of all.
-    double roundness(const PeriodicMap& map) {
-        if (!findBorder()) return 0.0;
-        for (const int v : border_)
-            borderFlat_.push_back(placeNear(map, v, pouch_.middle));
-        centre_ = centreOf(borderFlat_, pouch_.middle, pouch_.radius);
-        return centre_ ? clearance(borderFlat_, *centre_) / pouch_.radius : 0.0;
-    }
-
-    /// Embeds what is within the ring as its own conformal map would have it. False where that
-    /// cannot be made, or has triangles too thin for the lattice (thin()).
-    bool place(double units) {
-        if (!work_->take(pouch_.triangles.size()) || !cutAlong(1)) return false;
-        shape();
-        embed(units);
-        return thin_ == 0;
-    }
-
-    /// In place of place: rolls up what is within two rings, of which no edge joins two of the
-    /// outer one's vertices, as one that does would be a line on the strip. False as place is.
-    bool placeApart(double units) {
-        if (!work_->take(pouch_.triangles.size()) || !cutAlong(2) || ringsMeet()) return false;
-        shape();
-        return placeRolled(units);
-    }
-
-    /// After place: rolls the same up as a polygon, and keeps the better.
-    bool placeRolled(double units) {
-        if (thin_ > 0 && strip_) roll(units);
-        return thin_ == 0;
-    }
-
-    /// After place: how many of its triangles the lattice may turn over; more than all where there
-    /// is no map.
-    std::size_t thin() const { return thin_; }
-    const std::vector<int>& triangles() const { return pouch_.triangles; }
-    std::size_t innerCount() const { return inner_.size(); }
-
-    /// The ring becomes a triangle with round corners, which lets a second one within it, and all
-    /// that this encloses, be drawn in the triangle of these corners. False where the grid is too
-    /// fine for the lattice.
-    bool placeOnGrid(double units) {
-        if (!work_->take(pouch_.triangles.size()) || !cutAlong(2)) return false;
-        if (ringsMeet()) return false;
-        const std::vector<double> angles = ringAngles(*centre_);
-        const auto corners = cornersFor(angles);
-        if (!corners) return false;
-        std::vector<int> number(placesMm_.size());
-        for (std::size_t n = 0; n < number.size(); ++n)
-            number[n] = n < ring_ ? corners->of[n] : int(n - ring_) + 3;
-        std::vector<glm::ivec3> triangles;
-        for (const Piece& piece : inner_) {
-            const glm::ivec3 t(number[std::size_t(piece.corners.x)],
-                               number[std::size_t(piece.corners.y)],
-                               number[std::size_t(piece.corners.z)]);
-            if (t.x != t.y && t.y != t.z && t.z != t.x) triangles.push_back(t);
-        }
-        const int count = int(placesMm_.size() - ring_) + 3;
-        const auto drawn = drawOnGrid(triangles, count);
-        if (!drawn) return false;
-        // In which corners 0, 1 and 2 have their own weights.
-        const glm::dmat3 weights = glm::inverse(
-            glm::dmat3(glm::dvec3((*drawn)[0]), glm::dvec3((*drawn)[1]), glm::dvec3((*drawn)[2])));
-        const double clear = clearance(borderFlat_, *centre_);
-        for (const double share : {0.9, 0.75, 0.5, 0.25}) {
-            for (const double round : {0.125, 0.03125, 0.0078125}) {
-                places_.clear();
-                for (std::size_t n = 0; n < ring_; ++n) {
-                    const glm::dvec2 outward(std::cos(angles[n]), std::sin(angles[n]));
-                    places_.push_back((1.0 - round) * corners->at[std::size_t(corners->of[n])] +
-                                      round * outward);
-                }
-                for (std::size_t n = ring_; n < placesMm_.size(); ++n) {
-                    const glm::dvec3 w = weights * glm::dvec3((*drawn)[std::size_t(number[n])]);
-                    places_.push_back((1.0 - round) * (w.x * corners->at[0] + w.y * corners->at[1] +
-                                                       w.z * corners->at[2]));
-                }
-                for (glm::dvec2& at : places_)
-                    at = *centre_ + share * clear * at;
-                if (fillCollar(units) && allUpright(innerTriangles(), units)) return true;
-            }
-        }
-        return false;
-    }
-
-    /// Puts the pouch's pieces in the place of its triangles.
-    void takeInto(SetIn& made, std::vector<char>& gone, std::vector<glm::ivec3>& triangles,
-                  std::vector<int>& sources, std::vector<std::array<std::int8_t, 3>>& turns) const {
-        for (const int t : pouch_.triangles)
-            gone[std::size_t(t)] = 1;
-        std::vector<int> vertex;  // of the inner ones
-        for (std::size_t n = 0; n < placesMm_.size(); ++n) {
-            const bool isNew = n >= innerVertex_.size() || innerVertex_[n] < 0;
-            vertex.push_back(isNew ? int(made.tube.vertices.size()) : innerVertex_[n]);
-            if (isNew) {
-                made.tube.vertices.push_back(placesMm_[n]);
-                made.map.flat.push_back(places_[n]);
-            } else {
-                made.map.flat[std::size_t(vertex[n])] = places_[n];
-            }
-        }
-        const auto turnOf = [&](int v) {
-            const auto on = borderIndex_.find(v);
-            if (on == borderIndex_.end()) return std::int8_t(0);
-            const double x = made.map.flat[std::size_t(v)].x;
-            return std::int8_t(std::lround(borderFlat_[std::size_t(on->second)].x - x));
-        };
-        for (const Piece& piece : collarTriangles_) {
-            auto& turn = turns.emplace_back();
-            glm::ivec3& corners = triangles.emplace_back();
-            for (int c = 0; c < 3; ++c) {
-                const int key = piece.corners[c];
-                if (key >= 0) turn[std::size_t(c)] = turnOf(key);
-                corners[c] = key >= 0 ? key : vertex[std::size_t(-1 - key)];
-            }
-            sources.push_back(piece.source);
-        }
-        for (const Piece& piece : inner_) {
-            triangles.push_back({vertex[std::size_t(piece.corners.x)],
-                                 vertex[std::size_t(piece.corners.y)],
-                                 vertex[std::size_t(piece.corners.z)]});
-            sources.push_back(piece.source);
-            turns.emplace_back();
-        }
-    }
-
-private:
-    /// A part of a source triangle. A corner of one within the ring is an inner vertex; of one
-    /// outside a border vertex of the tube, or −1 − n for the ring's vertex n.
-    struct Piece {
-        glm::ivec3 corners;
-        int source;
-    };
-    struct Polygon {
-        std::vector<int> corners;
-        int source;
-    };
-
-    bool isBorder(int h) const { return !inside_[std::size_t(halfedges_.opposite(h) / 3)]; }
-
-    bool findBorder() {
-        std::unordered_map<int, int> leaves;
-        int start = -1;
-        for (const int t : pouch_.triangles) {
-            for (int h = 3 * t; h < 3 * t + 3; ++h) {
-                if (!isBorder(h)) continue;
-                leaves[halfedges_.origin(h)] = h;
-                if (start < 0) start = h;
-            }
-        }
-        if (start < 0) return false;
-        int h = start;
-        do {
-            borderIndex_.emplace(halfedges_.origin(h), int(border_.size()));
-            border_.push_back(halfedges_.origin(h));
-            leaving_.push_back(h);
-            const auto next = leaves.find(halfedges_.target(h));
-            if (next == leaves.end() || border_.size() > leaves.size()) return false;
-            h = next->second;
-        } while (h != start);
-        return border_.size() == leaves.size() && border_.size() >= 3;
-    }
-
-    static std::uint64_t keyOf(int from, int to) {
-        return std::uint64_t(std::uint32_t(from)) << 32 | std::uint32_t(to);
-    }
-
-    /// Whether both rings run along one edge.
-    bool ringsMeet() const {
-        return std::ranges::any_of(collar_, [](const Polygon& p) { return p.corners.size() == 5; });
-    }
-
-    /// Numbers and cuts what is within the border, along one ring or two; false where that is
-    /// none.
-    bool cutAlong(int rings) {
-        if (!centre_) return false;
-        rings_ = rings;
-        splitInwards();
-        if (ring_ < 3) return false;
-        number();
-        cut();
-        return true;
-    }
-
-    /// Cuts each edge that leads from the border inwards, in order around the rings.
-    void splitInwards() {
-        std::vector<glm::dvec3> second;
-        for (std::size_t n = 0; n < border_.size(); ++n) {
-            const int q = border_[n];
-            std::vector<int> inwards;
-            for (int h = leaving_[n];;) {
-                const int previous = HalfedgeMesh::previous(h);
-                if (isBorder(previous)) break;
-                h = halfedges_.opposite(previous);
-                inwards.push_back(halfedges_.target(h));
-            }
-            std::reverse(inwards.begin(), inwards.end());
-            for (std::size_t k = 0; k < inwards.size(); ++k) {
-                const int to = inwards[k];
-                // An edge from border to border is cut from both ends.
-                const double share = 1.0 / ((borderIndex_.contains(to) ? 2 : 1) * rings_ + 1);
-                const glm::dvec3 from = tube_.vertices[std::size_t(q)],
-                                 towards = tube_.vertices[std::size_t(to)];
-                split_.emplace(keyOf(q, to), int(ring_++));
-                placesMm_.push_back(glm::mix(from, towards, share));
-                if (rings_ > 1) second.push_back(glm::mix(from, towards, 2.0 * share));
-                slot_.push_back({int(n), (double(k) + 0.5) / double(inwards.size())});
-            }
-        }
-        placesMm_.insert(placesMm_.end(), second.begin(), second.end());
-    }
-
-    void number() {
-        innerVertex_.assign(placesMm_.size(), -1);
-        for (const int t : pouch_.triangles) {
-            for (int c = 0; c < 3; ++c) {
-                const int v = tube_.triangles[std::size_t(t)][c];
-                if (borderIndex_.contains(v)) continue;
-                if (!innerNumber_.emplace(v, int(innerVertex_.size())).second) continue;
-                innerVertex_.push_back(v);
-                placesMm_.push_back(tube_.vertices[std::size_t(v)]);
-            }
-        }
-    }
-
-    /// Each triangle's part within the last ring, as a fan, its parts between two, and its parts
-    /// outside, as polygons.
-    void cut() {
-        const int lastRing = (rings_ - 1) * int(ring_);
-        for (const int t : pouch_.triangles) {
-            int corner[3];
-            bool on[3], side[3];  // the side from a corner to the next is one of the border
-            for (int c = 0; c < 3; ++c) {
-                corner[c] = halfedges_.origin(3 * t + c);
-                on[c] = borderIndex_.contains(corner[c]);
-                side[c] = isBorder(3 * t + c);
-            }
-            const auto splitAt = [&](int from, int to) {
-                return split_.at(keyOf(corner[from], corner[to]));
-            };
-            std::vector<int> within;
-            for (int c = 0; c < 3; ++c) {
-                const int next = (c + 1) % 3, last = (c + 2) % 3;
-                if (!on[c]) {
-                    within.push_back(innerNumber_.at(corner[c]));
-                    continue;
-                }
-                if (!side[last]) within.push_back(lastRing + splitAt(c, last));
-                if (!side[c]) within.push_back(lastRing + splitAt(c, next));
-            }
-            for (std::size_t n = 1; n + 1 < within.size(); ++n)
-                inner_.push_back({{within[0], within[n], within[n + 1]}, t});
-            // Corners along the border hang together.
-            for (int c = 0; c < 3; ++c) {
-                if (!on[c] || side[(c + 2) % 3]) continue;
-                const int first = splitAt(c, (c + 2) % 3);
-                Polygon polygon{{-1 - first}, t};
-                int at = c;
-                polygon.corners.push_back(corner[at]);
-                while (side[at]) {
-                    at = (at + 1) % 3;
-                    polygon.corners.push_back(corner[at]);
-                }
-                const int second = splitAt(at, (at + 1) % 3);
-                polygon.corners.push_back(-1 - second);
-                collar_.push_back(std::move(polygon));
-                if (rings_ == 1) continue;
-                inner_.push_back({{first, second, lastRing + second}, t});
-                inner_.push_back({{first, lastRing + second, lastRing + first}, t});
-            }
-        }
-    }
-
-    std::vector<glm::ivec3> innerTriangles() const {
-        std::vector<glm::ivec3> triangles;
-        for (const Piece& piece : inner_)
-            triangles.push_back(piece.corners);
-        return triangles;
-    }
-
-    /// The inner vertex that is most edges away from the ring; −1 where its triangles reach that.
-    int farthest() const {
-        TriMesh disc{placesMm_, innerTriangles()};
-        const VertexStars stars(disc);
-        std::vector<int> edges(placesMm_.size(), -1), front;
-        for (std::size_t n = 0; n < ring_; ++n) {
-            edges[n] = 0;
-            front.push_back(int(n));
-        }
-        for (std::size_t n = 0; n < front.size(); ++n) {
-            for (const int corner : stars.of(front[n])) {
-                for (int c = 0; c < 3; ++c) {
-                    const int w = disc.triangles[std::size_t(corner / 3)][c];
-                    if (edges[std::size_t(w)] >= 0) continue;
-                    edges[std::size_t(w)] = edges[std::size_t(front[n])] + 1;
-                    front.push_back(w);
-                }
-            }
-        }
-        return edges[std::size_t(front.back())] >= 3 ? front.back() : -1;
-    }
-
-    /// Finds strip_: what is within the ring without its tip is a tube, which a conformal map
-    /// gives room all along; fingers on it are pouches of their own. None where there are too few
-    /// vertices for that.
-    void shape() {
-        const int end = farthest();
-        if (end < 0) return;
-        TriMesh tube{placesMm_, {}};
-        std::vector<Piece> rest, atTip;
-        for (const Piece& piece : inner_) {
-            const glm::ivec3 t = piece.corners;
-            const bool touches = t.x == end || t.y == end || t.z == end;
-            (touches ? atTip : rest).push_back(piece);
-            if (!touches) tube.triangles.push_back(t);
-        }
-        ConformalTubeOptions options;
-        options.threads = 1;
-        options.repairFlips = false;
-        auto flat = conformalTube(tube, 0, options);
-        if (!flat) return;
-        PeriodicMap map = std::move(flat->map);
-        std::vector<Pouch> fingers;
-        if (depth_ < mostDepth) fingers = findPouches(tube, map, fingerUnits);
-        std::vector<char> apart;
-        if (!fingers.empty()) apart.assign(tube.triangles.size(), 0);
-        for (const Pouch& finger : fingers) {
-            for (const int t : finger.triangles)
-                apart[std::size_t(t)] = 1;
-        }
-        repairMap(map, tube, apart);
-        if (!fingers.empty()) {
-            SetIn made = setInAt(tube, map, fingers, depth_ + 1, *work_);
-            std::vector<Piece> pieces;
-            for (std::size_t t = 0; t < made.tube.triangles.size(); ++t) {
-                const auto source = std::size_t(made.sourceTriangle[t]);
-                pieces.push_back({made.tube.triangles[t], rest[source].source});
-            }
-            rest = std::move(pieces);
-            placesMm_ = std::move(made.tube.vertices);
-            map = std::move(made.map);
-        }
-        inner_ = std::move(rest);
-        inner_.insert(inner_.end(), atTip.begin(), atTip.end());
-        strip_ = std::move(map);
-        tip_ = end;
-    }
-
-    /// The strip rolled up to a disc, as what is to be aimed at. A conformal map would have radii
-    /// of exp(−2π y); they fall more gently where that leaves the tip no room. Without a strip all
-    /// vertices count alike.
-    void rollUp() {
-        target_.assign(placesMm_.size(), glm::dvec2(0.0));
-        if (!strip_) return;
-        const double fall = std::min(2.0 * std::numbers::pi, mostFall / strip_->height);
-        for (std::size_t v = 0; v < target_.size(); ++v) {
-            if (int(v) == tip_) continue;
-            const glm::dvec2 at = strip_->flat[v];
-            const double angle = 2.0 * std::numbers::pi * at.x;
-            target_[v] = std::exp(-fall * at.y) * glm::dvec2(std::cos(angle), std::sin(angle));
-        }
-    }
-
-    std::size_t foldsOfTarget() const {
-        return std::size_t(std::ranges::count_if(inner_, [&](const Piece& piece) {
-            const glm::dvec2 a = target_[std::size_t(piece.corners.x)];
-            return !(cross(target_[std::size_t(piece.corners.y)] - a,
-                           target_[std::size_t(piece.corners.z)] - a) > 0.0);
-        }));
-    }
-
-    /// The directions from `centre` in which the ring's vertices may lie, in order.
-    std::vector<double> ringAngles(glm::dvec2 centre) const {
-        std::vector<double> angle;
-        for (std::size_t n = 0; n < borderFlat_.size(); ++n) {
-            const glm::dvec2 away = borderFlat_[n] - centre;
-            double at = std::atan2(away.y, away.x);
-            if (n > 0)
-                at += 2.0 * std::numbers::pi *
-                      std::ceil((angle.back() - at) / (2.0 * std::numbers::pi));
-            angle.push_back(at);
-        }
-        const auto count = int(angle.size());
-        const auto angleAt = [&](int n) {
-            if (n < 0) return angle.back() - 2.0 * std::numbers::pi;
-            if (n >= count) return angle.front() + 2.0 * std::numbers::pi;
-            return angle[std::size_t(n)];
-        };
-        std::vector<double> ring;
-        for (const auto& [n, share] : slot_) {
-            const double low = 0.5 * (angleAt(n - 1) + angleAt(n)),
-                         high = 0.5 * (angleAt(n) + angleAt(n + 1));
-            ring.push_back(low + share * (high - low));
-        }
-        return ring;
-    }
-
-    /// A triangle within the unit circle, and for each of the ring's vertices the corner whose
-    /// supporting directions its own is among.
-    struct Corners {
-        glm::dvec2 at[3];
-        std::vector<int> of;
-    };
-
-    /// As regular as the ring's directions, in ascending order, allow; nothing where one is without
-    /// any near enough.
-    static std::optional<Corners> cornersFor(const std::vector<double>& angles) {
-        constexpr double turn = 2.0 * std::numbers::pi, third = turn / 3.0, widest = 0.47 * turn;
-        const std::size_t count = angles.size();
-        // A side of the triangle looks in the middle between two vertices.
-        const auto between = [&](std::size_t n) {
-            return 0.5 * (angles[n] + (n + 1 < count ? angles[n + 1] : angles[0] + turn));
-        };
-        double best = widest;
-        std::array<std::size_t, 3> sides{};
-        for (std::size_t a = 0; a < count; ++a) {
-            const auto nearest = [&](double away) {
-                std::size_t found = a;
-                double least = turn;
-                for (std::size_t n = 0; n < count; ++n) {
-                    const double there = between(n) - between(a) + (n < a ? turn : 0.0);
-                    if (n == a || !(std::abs(there - away) < least)) continue;
-                    least = std::abs(there - away);
-                    found = n;
-                }
-                return found;
-            };
-            std::array<std::size_t, 3> tried{a, nearest(third), nearest(2.0 * third)};
-            if (tried[0] == tried[1] || tried[1] == tried[2] || tried[2] == tried[0]) continue;
-            std::sort(tried.begin(), tried.end());
-            const double gap = std::max({between(tried[1]) - between(tried[0]),
-                                         between(tried[2]) - between(tried[1]),
-                                         between(tried[0]) + turn - between(tried[2])});
-            if (gap < best) best = gap, sides = tried;
-        }
-        if (!(best < widest)) return std::nullopt;
-        Corners corners;
-        double farthest = 0.0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            // Between the sides c and c + 1, both of which touch the unit circle.
-            const double low = between(sides[c]),
-                         high = c < 2 ? between(sides[c + 1]) : between(sides[0]) + turn;
-            const double middle = 0.5 * (low + high), away = 1.0 / std::cos(0.5 * (high - low));
-            corners.at[c] = away * glm::dvec2(std::cos(middle), std::sin(middle));
-            farthest = std::max(farthest, away);
-        }
-        for (glm::dvec2& at : corners.at)
-            at /= farthest;
-        for (std::size_t n = 0; n < count; ++n)
-            corners.of.push_back(n > sides[0] && n <= sides[1]   ? 0
-                                 : n > sides[1] && n <= sides[2] ? 1
-                                                                 : 2);
-        return corners;
-    }
-
-    /// Triangulates what is between the border and the ring in its places; false where it cannot.
-    bool fillCollar(double units) {
-        const auto placeOf = [&](int key) {
-            return key >= 0 ? borderFlat_[std::size_t(borderIndex_.at(key))]
-                            : places_[std::size_t(-1 - key)];
-        };
-        collarTriangles_.clear();
-        for (const Polygon& polygon : collar_) {
-            const std::size_t corners = polygon.corners.size();
-            bool done = false;
-            for (std::size_t first = 0; first < corners && !done; ++first) {
-                // Of five corners four are on one edge: only from the fifth no piece is a line.
-                if (corners == 5 && first != 2) continue;
-                const auto at = [&](std::size_t n) {
-                    return polygon.corners[(first + n) % corners];
-                };
-                done = true;
-                for (std::size_t n = 1; n + 1 < corners && done; ++n)
-                    done = upright(placeOf(at(0)), placeOf(at(n)), placeOf(at(n + 1)), units);
-                if (!done) continue;
-                for (std::size_t n = 1; n + 1 < corners; ++n)
-                    collarTriangles_.push_back({{at(0), at(n), at(n + 1)}, polygon.source});
-            }
-            if (!done) return false;
-        }
-        return true;
-    }
-
-    bool allUpright(const std::vector<glm::ivec3>& triangles, double units) const {
-        return std::ranges::all_of(triangles, [&](const glm::ivec3& t) {
-            return upright(places_[std::size_t(t.x)], places_[std::size_t(t.y)],
-                           places_[std::size_t(t.z)], units);
-        });
-    }
-
-    /// The largest circle for the ring, of these directions and distances in it, that leaves the
-    /// collar room; what is within only shrinks with it.
-    std::optional<double> collarRadius(const std::vector<glm::dvec2>& ring, double units) {
-        for (const double share : {0.9, 0.75, 0.5, 0.25}) {
-            const double radius = share * clearance(borderFlat_, *centre_);
-            places_.clear();
-            for (const glm::dvec2& at : ring)
-                places_.push_back(*centre_ + radius * at);
-            if (fillCollar(units)) return radius;
-        }
-        return std::nullopt;
-    }
-
-    std::size_t thinTriangles(double units) const {
-        std::size_t count = 0;
-        for (const Piece& piece : inner_) {
-            const glm::ivec3 t = piece.corners;
-            count += !upright(places_[std::size_t(t.x)], places_[std::size_t(t.y)],
-                              places_[std::size_t(t.z)], units);
-        }
-        return count;
-    }
-
-    /// Embeds what is within the ring, which becomes a circle.
-    void embed(double units) {
-        std::vector<glm::dvec2> ring;
-        for (const double angle : ringAngles(*centre_))
-            ring.push_back({std::cos(angle), std::sin(angle)});
-        if (!collarRadius(ring, units)) return;
-        rollUp();
-        // Around folds of the target all neighbours weigh the same, and rows of those shrink by a
-        // factor each.
-        if (inner_.size() > mostEmbedded ||
-            (inner_.size() > mostFolded && foldsOfTarget() > inner_.size() / 100))
-            return;
-        if (!work_->take(inner_.size())) return;
-        const std::vector<glm::ivec3> triangles = innerTriangles();
-        auto places = embedDisc(triangles, places_, target_);
-        if (!places) return;
-        places_ = std::move(*places);
-        settle(units);
-    }
-
-    /// Rolls up what is within the ring, which becomes a polygon; keeps that where it is better.
-    void roll(double units) {
-        if (!work_->take(inner_.size())) return;
-        auto rolled =
-            rollAsPolygon({placesMm_, innerTriangles()}, *strip_, tip_, ringAngles(*centre_));
-        if (!rolled) return;
-        const auto before = std::tuple(places_, placesMm_, inner_, collarTriangles_, thin_);
-        const std::vector<glm::dvec2> ring(rolled->places.begin(),
-                                           rolled->places.begin() + std::ptrdiff_t(ring_));
-        thin_ = std::numeric_limits<std::size_t>::max();
-        if (const auto radius = collarRadius(ring, units)) {
-            for (glm::dvec2& at : rolled->places)
-                at = *centre_ + *radius * at;
-            places_ = std::move(rolled->places);
-            placesMm_ = std::move(rolled->disc.vertices);
-            std::vector<Piece> pieces;
-            for (std::size_t t = 0; t < rolled->disc.triangles.size(); ++t) {
-                const auto source = std::size_t(rolled->sourceTriangle[t]);
-                pieces.push_back({rolled->disc.triangles[t], inner_[source].source});
-            }
-            inner_ = std::move(pieces);
-            settle(units);
-        }
-        if (thin_ >= std::get<std::size_t>(before))
-            std::tie(places_, placesMm_, inner_, collarTriangles_, thin_) = before;
-    }
-
-    /// Widens what is thin, unless that is too much, and counts what remains of it.
-    void settle(double units) {
-        thin_ = thinTriangles(units);
-        if (thin_ == 0 || thin_ > fewThin + inner_.size() / 50) return;
-        widen(innerTriangles(), units);
-        thin_ = thinTriangles(units);
-    }
-
-    /// What is thin gets its shape back where it can; the border stays.
-    void widen(const std::vector<glm::ivec3>& triangles, double units) {
-        const TriMesh disc{placesMm_, triangles};
-        std::vector<char> held(placesMm_.size(), 0);
-        std::fill(held.begin(), held.begin() + std::ptrdiff_t(ring_), char(1));
-        PeriodicMap map{std::move(places_),
-                        std::vector<std::array<std::int8_t, 3>>(triangles.size()), 0.0};
-        const VertexStars stars(disc);
-        unfold(map, disc, stars, held);
-        std::vector<int> thin;
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            if (upright(map.corner(disc, t, 0), map.corner(disc, t, 1), map.corner(disc, t, 2),
-                        units))
-                continue;
-            for (int c = 0; c < 3; ++c) {
-                for (const int corner : stars.of(triangles[t][c])) {
-                    for (int n = 0; n < 3; ++n)
-                        thin.push_back(triangles[std::size_t(corner / 3)][n]);
-                }
-            }
-        }
-        std::sort(thin.begin(), thin.end());
-        thin.erase(std::unique(thin.begin(), thin.end()), thin.end());
-        std::erase_if(thin, [&](int v) { return held[std::size_t(v)] != 0; });
-        constexpr int sweeps = 20;
-        relaxShapes(map, disc, stars, thin, sweeps);
-        spread(map, disc, stars, held, units);
-        places_ = std::move(map.flat);
-    }
-
-    /// What is thin still takes room from its neighbours.
-    static void spread(PeriodicMap& map, const TriMesh& disc, const VertexStars& stars,
-                       const std::vector<char>& held, double units) {
-        std::vector<int> thin;
-        for (int t = 0; t < int(disc.triangles.size()); ++t) {
-            const auto at = [&](int c) { return map.corner(disc, std::size_t(t), c); };
-            if (!upright(at(0), at(1), at(2), units)) thin.push_back(t);
-        }
-        Spreading spreading(map, disc, stars, held, units);
-        for (const std::vector<int>& cluster : clustersOf(disc, stars, thin))
-            spreading.run(cluster);
-    }
-
-    const TriMesh& tube_;
-    const HalfedgeMesh& halfedges_;
-    const std::vector<char>& inside_;
-    const Pouch pouch_;
-    std::vector<int> border_, leaving_;  ///< vertices in order, and the half-edges that leave them
-    std::unordered_map<int, int> borderIndex_;
-    std::vector<glm::dvec2> borderFlat_;
-    std::optional<glm::dvec2> centre_;
-    std::unordered_map<std::uint64_t, int> split_;  ///< the ring's vertices, by the edge's ends
-    int rings_ = 1;
-    std::size_t ring_ = 0;                      ///< vertices of a ring
-    std::vector<std::pair<int, double>> slot_;  ///< of the ring's vertices: which border vertex's,
-                                                ///< and where in its share of the circle
-    /// The rings' vertices, the pouch's others, and those that its own fingers' rings add.
-    std::vector<glm::dvec3> placesMm_;
-    std::vector<int> innerVertex_;  ///< the tube's, −1 on the ring
-    std::unordered_map<int, int> innerNumber_;
-    std::vector<Piece> inner_, collarTriangles_;
-    std::vector<Polygon> collar_;
-    std::optional<PeriodicMap> strip_;
-    int tip_ = -1;  ///< the vertex that is not on it
-    std::vector<glm::dvec2> target_, places_;
-    std::size_t thin_ = std::numeric_limits<std::size_t>::max();
-    int depth_;  ///< of pouches that this is on
-    PouchWork* work_;
-};
-
-/// Leaves out the triangles that have two sides on the border and lie well where they are.
-void trim(const TriMesh& tube, const HalfedgeMesh& halfedges, const PeriodicMap& map,
-          std::vector<char>& inside, Pouch& pouch) {
-    const double units = flatUnitsPerCircumference(map.height);
-    for (bool again = true; again;) {
-        again = false;
-        for (const int t : pouch.triangles) {
-            if (!inside[std::size_t(t)]) continue;
-            int sides = 0;
-            for (int h = 3 * t; h < 3 * t + 3; ++h)
-                sides += !inside[std::size_t(halfedges.opposite(h) / 3)];
-            const auto at = [&](int c) { return map.corner(tube, std::size_t(t), c); };
-            if (sides != 2 || !upright(at(0), at(1), at(2), units)) continue;
-            inside[std::size_t(t)] = 0;
-            again = true;
-        }
-    }
-    std::erase_if(pouch.triangles, [&](int t) { return !inside[std::size_t(t)]; });
-}
-
-/// The pouch, whose triangles `inside` marks, in its place: in its own shape, or else, trimmed, on
-/// a grid, or else rolled up with at most `most` of its triangles too thin for the lattice. Nothing
-/// where its border is not rounder than `roundness`, or none of this is possible.
-std::optional<CutPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfedges,
-                               const PeriodicMap& map, const std::vector<char>& inside,
-                               const Pouch& pouch, int depth, double roundness, std::size_t most,
-                               PouchWork& work) {
-    const double units = flatUnitsPerCircumference(map.height);
-    std::optional<CutPouch> shaped(std::in_place, tube, halfedges, inside, pouch, depth, &work);
-    if (!(shaped->roundness(map) > roundness)) return std::nullopt;
-    if (shaped->place(units)) return shaped;
-    Pouch trimmed = pouch;
-    std::vector<char> within = inside;
-    trim(tube, halfedges, map, within, trimmed);
-    std::optional<CutPouch> drawn(std::in_place, tube, halfedges, within, trimmed, depth, &work);
-    if (trimmed.triangles.size() <= mostDrawn && drawn->roundness(map) > 0.0 &&
-        drawn->placeOnGrid(units)) {
-        return drawn;
-    }
-    if (shaped->placeRolled(units) || shaped->thin() <= most) return shaped;
-    std::optional<CutPouch> apart(std::in_place, tube, halfedges, within, trimmed, depth, &work);
-    if (apart->roundness(map) > 0.0) apart->placeApart(units);
-    if (apart->thin() <= most) return apart;
-    return std::nullopt;
-}
-
-std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map, double units) {
-    const double least = units / flatUnitsPerCircumference(map.height);
-    std::vector<int> crowded;
-    for (std::size_t t = 0; t < tube.triangles.size(); ++t) {
-        double longest = 0.0;
-        for (int c = 0; c < 3; ++c) {
-            longest = std::max(
-                longest, glm::distance(map.corner(tube, t, c), map.corner(tube, t, (c + 1) % 3)));
-        }
-        if (!(longest >= least)) crowded.push_back(int(t));
-    }
-    if (crowded.empty()) return {};
-    const auto halfedges = HalfedgeMesh::of(tube);
-    if (!halfedges) return {};
-    const VertexStars stars(tube);
-    std::vector<Spot> spots;
-    for (std::vector<int>& cluster : clustersOf(tube, stars, crowded))
-        spots.push_back(spotOf(tube, map, std::move(cluster)));
-    spots = merged(tube, map, std::move(spots));
-    std::vector<Pouch> pouches;
-    std::vector<char> taken(tube.triangles.size(), 0);
-    Discs discs(tube, *halfedges, stars);
-    std::vector<std::size_t> order(spots.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t n) {
-        const std::size_t size = spots[n].triangles.size();
-        return size < largeSpot ? 0 : size;
-    });
-    for (const std::size_t n : order) {
-        const Spot& spot = spots[n];
-        if (std::ranges::any_of(spot.triangles, [&](int t) { return taken[std::size_t(t)] != 0; }))
-            continue;
-        for (const double radius : neckFirst(tube, map, spot.middle, radiiFor(map, spots, n))) {
-            auto pouch = discs.within(map, spot.triangles, spot.middle, radius, taken);
-            if (!pouch) continue;
-            std::vector<char> inside(tube.triangles.size(), 0);
-            for (const int t : pouch->triangles)
-                inside[std::size_t(t)] = 1;
-            if (!(CutPouch(tube, *halfedges, inside, *pouch, 0).roundness(map) > leastRoundness))
-                continue;
-            for (const int t : pouch->triangles)
-                taken[std::size_t(t)] = 1;
-            pouches.push_back(std::move(*pouch));
-            break;
-        }
-    }
-    return pouches;
-}
-
-}  // namespace
-
-std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map) {
-    return findPouches(tube, map, crowdedUnits);
-}
-
-namespace {
 
 /// A map into which pouches are being set.
 class Setting {
@@ -979,9 +33,33 @@ public:
     Setting(const TriMesh& tube, const PeriodicMap& map)
         : tube_(tube), map_(map), made_{tube, map, {}, {}, 0}, gone_(tube.triangles.size(), 0) {}
 
-    void take(const CutPouch& cut) {
-        cut.takeInto(made_, gone_, triangles_, sources_, turns_);
+    void take(const PlacedPouch& pouch) {
         ++made_.pouches;
+        for (const int t : pouch.triangles)
+            gone_[std::size_t(t)] = 1;
+        const std::vector<int> vertex = placeVertices(pouch);
+        const auto turnOf = [&](int v) {
+            const auto on = pouch.borderPlaces.find(v);
+            if (on == pouch.borderPlaces.end()) return std::int8_t(0);
+            return std::int8_t(std::lround(on->second.x - made_.map.flat[std::size_t(v)].x));
+        };
+        for (const PlacedPouch::Piece& piece : pouch.collar) {
+            auto& turn = turns_.emplace_back();
+            glm::ivec3& corners = triangles_.emplace_back();
+            for (int c = 0; c < 3; ++c) {
+                const int key = piece.corners[c];
+                if (key >= 0) turn[std::size_t(c)] = turnOf(key);
+                corners[c] = key >= 0 ? key : vertex[std::size_t(-1 - key)];
+            }
+            sources_.push_back(piece.source);
+        }
+        for (const PlacedPouch::Piece& piece : pouch.inner) {
+            triangles_.push_back({vertex[std::size_t(piece.corners.x)],
+                                  vertex[std::size_t(piece.corners.y)],
+                                  vertex[std::size_t(piece.corners.z)]});
+            sources_.push_back(piece.source);
+            turns_.emplace_back();
+        }
     }
 
     void count(std::size_t mended) { made_.pouches += mended; }
@@ -1006,6 +84,21 @@ public:
     }
 
 private:
+    /// Puts the pouch's vertices in their places, and returns their numbers.
+    std::vector<int> placeVertices(const PlacedPouch& pouch) {
+        std::vector<int> vertex = pouch.tubeVertex;
+        for (std::size_t n = 0; n < vertex.size(); ++n) {
+            if (vertex[n] < 0) {
+                vertex[n] = int(made_.tube.vertices.size());
+                made_.tube.vertices.push_back(pouch.verticesMm[n]);
+                made_.map.flat.push_back(pouch.places[n]);
+            } else {
+                made_.map.flat[std::size_t(vertex[n])] = pouch.places[n];
+            }
+        }
+        return vertex;
+    }
+
     const TriMesh& tube_;
     const PeriodicMap& map_;
     SetIn made_;
@@ -1015,8 +108,38 @@ private:
     std::vector<std::array<std::int8_t, 3>> turns_;
 };
 
-SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-              int depth, PouchWork& work) {
+/// The least disc around a spot that can be mapped apart with fewer folds than the spot has.
+std::optional<PlacedPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfedges,
+                                     const PeriodicMap& map, const Spot& spot,
+                                     const std::vector<char>& taken, Discs& discs,
+                                     double radiusFactor, PouchWork& work) {
+    const double units = flatUnitsPerCircumference(map.height);
+    const double most = largestRadiusAround(map, spot.middle);
+    std::vector<char> inside(tube.triangles.size(), 0);
+    for (double radius = std::max(1.5 * spot.reach, crowdedUnits / units); radius < most;
+         radius *= radiusFactor) {
+        const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
+        if (!disc) continue;
+        if (disc->triangles.size() > mostAround + 100 * spot.triangles.size()) break;
+        for (const int t : disc->triangles)
+            inside[std::size_t(t)] = 1;
+        const double clear = radius * units * roundness(tube, halfedges, map, inside, *disc);
+        if (std::numbers::pi * clear * clear >
+            roomUnits * roomUnits * double(disc->triangles.size())) {
+            auto cut = placed(tube, halfedges, map, inside, *disc, 0, 0.0,
+                              spot.triangles.size() / 2, work);
+            if (cut) return cut;
+        }
+        for (const int t : disc->triangles)
+            inside[std::size_t(t)] = 0;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
+            PouchWork& work, int depth) {
     Setting setting(tube, map);
     const auto halfedges = HalfedgeMesh::of(tube);
     std::vector<char> inside(tube.triangles.size(), 0);
@@ -1033,38 +156,6 @@ SetIn setInAt(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pou
     return setting.finish();
 }
 
-/// The least disc around a spot that can be mapped apart with fewer folds than the spot has.
-std::optional<CutPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfedges,
-                                  const PeriodicMap& map, const Spot& spot,
-                                  const std::vector<char>& taken, Discs& discs, double radiusFactor,
-                                  PouchWork& work) {
-    const double units = flatUnitsPerCircumference(map.height);
-    const double most = std::min(
-        {largestRadius, towardsRim * spot.middle.y, towardsRim * (map.height - spot.middle.y)});
-    std::vector<char> inside(tube.triangles.size(), 0);
-    for (double radius = std::max(1.5 * spot.reach, crowdedUnits / units); radius < most;
-         radius *= radiusFactor) {
-        const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
-        if (!disc) continue;
-        if (disc->triangles.size() > mostAround + 100 * spot.triangles.size()) break;
-        for (const int t : disc->triangles)
-            inside[std::size_t(t)] = 1;
-        const double clear =
-            radius * units * CutPouch(tube, halfedges, inside, *disc, 0).roundness(map);
-        if (std::numbers::pi * clear * clear >
-            roomUnits * roomUnits * double(disc->triangles.size())) {
-            auto cut = placed(tube, halfedges, map, inside, *disc, 0, 0.0,
-                              spot.triangles.size() / 2, work);
-            if (cut) return cut;
-        }
-        for (const int t : disc->triangles)
-            inside[std::size_t(t)] = 0;
-    }
-    return std::nullopt;
-}
-
-}  // namespace
-
 SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
                 double radiusFactor, PouchWork& work) {
     PeriodicMap spread = map;
@@ -1075,7 +166,7 @@ SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<i
     std::vector<Spot> spots;
     std::size_t mended = 0;
     for (std::vector<int>& cluster : clustersOf(tube, stars, folded)) {
-        if (cluster.size() <= fewThin && spreading.run(cluster)) {
+        if (cluster.size() <= mostSpread && spreading.run(cluster)) {
             ++mended;
         } else {
             spots.push_back(spotOf(tube, map, std::move(cluster)));
@@ -1093,16 +184,11 @@ SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<i
         const auto cut =
             leastDisc(tube, *halfedges, spread, spot, taken, discs, radiusFactor, work);
         if (!cut) continue;
-        for (const int t : cut->triangles())
+        for (const int t : cut->triangles)
             taken[std::size_t(t)] = 1;
         setting.take(*cut);
     }
     return setting.finish();
-}
-
-SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-            PouchWork& work) {
-    return setInAt(tube, map, pouches, 0, work);
 }
 
 }  // namespace haustra::flatten

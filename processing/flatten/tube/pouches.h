@@ -15,17 +15,21 @@ struct Pouch {
     double radius = 0.0;     ///< in the plane, of the round hole in the map that its neck leaves
 };
 
+/// A triangle whose longest side is shorter than this may lose its shape to rounding.
+inline constexpr double crowdedUnits = 16.0;
+
 /// Along a blind finger of radius r a conformal map shrinks as exp(−depth / r), until the corners
 /// of triangles fall together on the lattice that flat maps are drawn on (core/flat_map.h). Finds
-/// the triangles whose sides are shorter than 16 units of it, and around each of their clusters
-/// cuts the finger off at its neck: of the circles around that place in the plane, which are loops
-/// around the finger on the surface, the one whose square is least against the area that it
-/// encloses (after Cheeger), none being so small that it leaves no room itself. In ascending order
-/// of their lowest triangles, but clusters of a thousand or more first, the largest of all before
-/// the others, in whose pouches smaller ones may lie. Nothing of a tube that has room everywhere; a
-/// cluster without such a circle, as beside a rim, is left out. `map` need not be without flips.
-/// O(n) for each cluster.
-std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map);
+/// the triangles whose sides are all shorter than `sideUnits` of it, and around each of their
+/// clusters cuts the finger off at its neck: of the circles around that place in the plane, which
+/// are loops around the finger on the surface, the one whose square is least against the area that
+/// it encloses (after Cheeger), none being so small that it leaves no room itself. In ascending
+/// order of their lowest triangles, but clusters of a thousand or more first, the largest of all
+/// before the others, in whose pouches smaller ones may lie. Nothing of a tube that has room
+/// everywhere; a cluster without such a circle, as beside a rim, is left out. `map` need not be
+/// without flips. O(n) for each cluster.
+std::vector<Pouch> findPouches(const TriMesh& tube, const PeriodicMap& map,
+                               double sideUnits = crowdedUnits);
 
 /// How much may still be mapped apart, so that a surface that cannot be mapped costs no more than a
 /// few times one that can.
@@ -66,9 +70,9 @@ struct SetIn {
 /// that (some hundreds to thousands, as its hole is wide) is rolled up by rollAsPolygon, which
 /// folds nothing however many they are. It is set in with up to a tenth of its triangles thin, for
 /// mendFolds, or left as it was. O(n) while there is work left, beside the systems of those of up
-/// to 8,000 triangles.
+/// to 8,000 triangles. `depth` counts the pouches on which these lie: the third's own fingers stay.
 SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-            PouchWork& work);
+            PouchWork& work, int depth = 0);
 
 /// Unfolds single places. Vertices around a cluster of at most 30 of `folded` (triangles of `tube`)
 /// move to the middles of their stars, up to six rings of them, and stay there where all of their
