@@ -1,45 +1,59 @@
 #include "handles/loop_coarsening.h"
 
 #include <algorithm>
+#include <numeric>
 #include <queue>
 #include <tuple>
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
 namespace haustra::handles {
 namespace {
 
+struct CollapsibleTraits : OpenMesh::DefaultTraits {
+    using Point = OpenMesh::Vec3d;
+    using Normal = OpenMesh::Vec3d;
+    VertexAttributes(OpenMesh::Attributes::Status);
+    HalfedgeAttributes(OpenMesh::Attributes::None);
+    EdgeAttributes(OpenMesh::Attributes::Status);
+    FaceAttributes(OpenMesh::Attributes::Status);
+};
+
+/// Vertices and faces keep the fine mesh's numbers: what is deleted is never collected.
 class Coarsening {
 public:
-    Coarsening(const TriMesh& fine) : mesh_(fine), around_(fine.vertices.size()) {
-        mark_.assign(fine.vertices.size(), 0);
-        std::vector<int> valence(fine.vertices.size(), 0);
-        for (const glm::ivec3& t : mesh_.triangles) {
-            for (int corner = 0; corner < 3; ++corner)
-                ++valence[t[corner]];
-        }
-        for (std::size_t v = 0; v < valence.size(); ++v) {
-            around_[v].reserve(std::size_t(valence[v]));
-            used_ += valence[v] > 0;
-        }
-        for (int t = 0; t < int(mesh_.triangles.size()); ++t) {
-            for (int corner = 0; corner < 3; ++corner)
-                around_[mesh_.triangles[t][corner]].push_back(t);
-        }
+    explicit Coarsening(const TriMesh& fine) : fine_(fine), becomes_(fine.vertices.size()) {
+        std::iota(becomes_.begin(), becomes_.end(), 0);
+        mesh_.reserve(fine.vertices.size(), fine.triangles.size() * 3 / 2, fine.triangles.size());
+        for (const glm::dvec3& p : fine.vertices)
+            mesh_.add_vertex({p.x, p.y, p.z});
+        for (const glm::ivec3& t : fine.triangles)
+            mesh_.add_face(Vertex(t.x), Vertex(t.y), Vertex(t.z));
+        for (const Vertex v : mesh_.vertices())
+            used_ += !mesh_.is_isolated(v);
     }
 
     /// One pass over all edges and those that collapses make; true where something collapsed.
     bool pass(int target, bool keepShape) {
         const int before = used_;
-        for (const glm::ivec3& t : mesh_.triangles) {
-            for (int corner = 0; corner < 3 && t.x >= 0; ++corner) {
-                if (t[corner] < t[(corner + 1) % 3]) push(t[corner], t[(corner + 1) % 3]);
-            }
-        }
+        for (const auto edge : mesh_.edges())
+            push(edge.v0(), edge.v1());
         while (used_ > target && !queue_.empty()) {
             const auto [length, a, b] = queue_.top();
             queue_.pop();
-            const bool aIsSmaller = around_[a].size() <= around_[b].size();
-            const int gone = aIsSmaller ? a : b, kept = aIsSmaller ? b : a;
-            if (!collapse(gone, kept, keepShape)) collapse(kept, gone, keepShape);
+            const Halfedge along = mesh_.find_halfedge(Vertex(a), Vertex(b));
+            if (!along.is_valid()) continue;  // another collapse has taken the edge away
+            const unsigned aroundA = mesh_.valence(Vertex(a)), aroundB = mesh_.valence(Vertex(b));
+            if (keepShape && aroundA + aroundB - 4 > mostTriangles_) continue;
+            // The link condition; OpenMesh alone would let a tetrahedron fall in.
+            if (aroundA + aroundB <= 6 || !mesh_.is_collapse_ok(along)) continue;
+            const Halfedge back = mesh_.opposite_halfedge_handle(along);
+            for (const Halfedge h :
+                 {aroundA <= aroundB ? along : back, aroundA <= aroundB ? back : along}) {
+                if (keepShape && foldsOver(h)) continue;
+                collapse(h);
+                break;
+            }
         }
         queue_ = {};
         return used_ < before;
@@ -49,113 +63,70 @@ public:
 
     CoarseMesh result() const {
         CoarseMesh coarse;
-        std::vector<int> number(mesh_.vertices.size(), -1);
-        for (int v = 0; v < int(mesh_.vertices.size()); ++v) {
-            if (around_[v].empty()) continue;
-            number[v] = int(coarse.fineVertex.size());
-            coarse.fineVertex.push_back(v);
-            coarse.mesh.vertices.push_back(mesh_.vertices[v]);
+        std::vector<int> number(fine_.vertices.size(), -1);
+        for (const Vertex v : mesh_.vertices()) {
+            if (mesh_.is_isolated(v)) continue;
+            number[std::size_t(v.idx())] = int(coarse.fineVertex.size());
+            coarse.fineVertex.push_back(v.idx());
+            coarse.mesh.vertices.push_back(fine_.vertices[std::size_t(v.idx())]);
         }
-        for (const glm::ivec3& t : mesh_.triangles) {
-            if (t.x >= 0) coarse.mesh.triangles.push_back({number[t.x], number[t.y], number[t.z]});
+        const auto numberOf = [&](int v) {
+            while (becomes_[std::size_t(v)] != v)
+                v = becomes_[std::size_t(v)];
+            return number[std::size_t(v)];
+        };
+        for (const auto face : mesh_.faces()) {
+            const glm::ivec3& t = fine_.triangles[std::size_t(face.idx())];
+            coarse.mesh.triangles.push_back({numberOf(t.x), numberOf(t.y), numberOf(t.z)});
         }
         return coarse;
     }
 
 private:
-    static constexpr std::size_t mostTriangles_ =
-        16;  // around a vertex, so that collapses stay local
+    using Mesh = OpenMesh::TriMesh_ArrayKernelT<CollapsibleTraits>;
+    using Vertex = OpenMesh::VertexHandle;
+    using Halfedge = OpenMesh::HalfedgeHandle;
+    using Point = OpenMesh::Vec3d;
+    using Entry = std::tuple<double, int, int>;  // squared length, ends
 
-    void push(int a, int b) {
-        const glm::dvec3 along = mesh_.vertices[b] - mesh_.vertices[a];
-        queue_.push({glm::dot(along, along), std::min(a, b), std::max(a, b)});
+    static constexpr unsigned mostTriangles_ = 16;  // around a vertex, so that collapses stay local
+
+    void push(Vertex a, Vertex b) {
+        queue_.push({(mesh_.point(b) - mesh_.point(a)).sqrnorm(), std::min(a.idx(), b.idx()),
+                     std::max(a.idx(), b.idx())});
     }
 
-    glm::dvec3 normal(const glm::ivec3& t) const {
-        const glm::dvec3 &a = mesh_.vertices[t.x], &b = mesh_.vertices[t.y],
-                         &c = mesh_.vertices[t.z];
-        return glm::cross(b - a, c - a);
-    }
-
-    bool has(const glm::ivec3& t, int v) const { return t.x == v || t.y == v || t.z == v; }
-
-    /// Exactly the two vertices opposite the edge are joined to both ends, and it is not the edge
-    /// of a tetrahedron.
-    bool linkCondition(int gone, int kept) {
-        ++stamp_;
-        int shared = 0, common = 0;
-        for (const int t : around_[gone]) {
-            shared += has(mesh_.triangles[t], kept);
-            for (int corner = 0; corner < 3; ++corner)
-                mark_[mesh_.triangles[t][corner]] = stamp_;
+    /// Whether taking the half-edge's origin into its end turns a triangle by over 78°.
+    bool foldsOver(Halfedge h) const {
+        const Vertex gone = mesh_.from_vertex_handle(h), kept = mesh_.to_vertex_handle(h);
+        for (const auto leaving : mesh_.voh_range(gone)) {
+            const Vertex b = leaving.to(), c = leaving.next().to();
+            if (b == kept || c == kept) continue;
+            const Point p = mesh_.point(b), q = mesh_.point(c);
+            const auto normalAt = [&](Vertex a) {
+                return (p - mesh_.point(a)) % (q - mesh_.point(a));
+            };
+            const Point before = normalAt(gone), after = normalAt(kept);
+            if ((before | after) <= 0.2 * before.norm() * after.norm()) return true;
         }
-        if (shared != 2) return false;
-        mark_[gone] = mark_[kept] = 0;
-        for (const int t : around_[kept]) {
-            for (int corner = 0; corner < 3; ++corner) {
-                int& mark = mark_[mesh_.triangles[t][corner]];
-                if (mark == stamp_) {
-                    ++common;
-                    mark = 0;
-                }
-            }
-        }
-        return common == 2 && around_[gone].size() + around_[kept].size() > 6;
+        return false;
     }
 
-    bool keepsShape(int gone, int kept) const {
-        if (around_[gone].size() + around_[kept].size() - 4 > mostTriangles_) return false;
-        for (const int t : around_[gone]) {
-            glm::ivec3 moved = mesh_.triangles[t];
-            if (has(moved, kept)) continue;
-            const glm::dvec3 before = normal(moved);
-            for (int corner = 0; corner < 3; ++corner) {
-                if (moved[corner] == gone) moved[corner] = kept;
-            }
-            const glm::dvec3 after = normal(moved);
-            if (glm::dot(before, after) <= 0.2 * glm::length(before) * glm::length(after))
-                return false;
-        }
-        return true;
-    }
-
-    void forget(int v, int t) {
-        auto& list = around_[v];
-        list.erase(std::find(list.begin(), list.end(), t));
-    }
-
-    bool collapse(int gone, int kept, bool keepShape) {
-        if (around_[gone].empty() || around_[kept].empty() || !linkCondition(gone, kept))
-            return false;
-        if (keepShape && !keepsShape(gone, kept)) return false;
-        for (const int t : around_[gone]) {
-            glm::ivec3& triangle = mesh_.triangles[t];
-            if (has(triangle, kept)) {
-                for (int corner = 0; corner < 3; ++corner) {
-                    if (triangle[corner] != gone) forget(triangle[corner], t);
-                }
-                triangle = glm::ivec3(-1);
-                continue;
-            }
-            for (int corner = 0; corner < 3; ++corner) {
-                if (triangle[corner] == gone) triangle[corner] = kept;
-            }
-            around_[kept].push_back(t);
-            for (int corner = 0; corner < 3; ++corner) {
-                if (triangle[corner] != kept) push(triangle[corner], kept);
-            }
-        }
-        around_[gone].clear();
+    /// Takes the half-edge's origin into its end.
+    void collapse(Halfedge h) {
+        const Vertex gone = mesh_.from_vertex_handle(h), kept = mesh_.to_vertex_handle(h);
+        for (const Vertex v : mesh_.vv_range(gone))
+            if (v != kept) push(kept, v);
+        mesh_.collapse(h);
+        becomes_[std::size_t(gone.idx())] = kept.idx();
         --used_;
-        return true;
     }
 
-    using Entry = std::tuple<double, int, int>;
-    TriMesh mesh_;
-    std::vector<std::vector<int>> around_;
-    std::vector<int> mark_;
+    const TriMesh& fine_;
+    Mesh mesh_;
+    std::vector<int> becomes_;  ///< the vertex that each has been taken into, or itself
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
-    int stamp_ = 0, used_ = 0;
+    int used_ = 0;
 };
 
 }  // namespace

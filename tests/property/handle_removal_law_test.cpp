@@ -9,7 +9,9 @@
 #include "handles/loop_search.h"
 #include "mesh/mesh_file.h"
 
+#include <algorithm>
 #include <limits>
+#include <random>
 #include <set>
 
 #include <CGAL/Curves_on_surface_topology.h>
@@ -182,6 +184,18 @@ TEST(HandleRemovalLaw, CoarseningKeepsTheTopologyAndThePlaces) {
         EXPECT_LE(coarse.mesh.vertices.size(), 300u);
         for (std::size_t v = 0; v < coarse.fineVertex.size(); ++v)
             EXPECT_EQ(coarse.mesh.vertices[v], mesh.vertices[std::size_t(coarse.fineVertex[v])]);
+    }
+}
+
+TEST(HandleRemovalLaw, CoarseningEndsAtATetrahedronWhateverTheTrianglesOrder) {
+    for (unsigned seed = 0; seed < 5; ++seed) {
+        TriMesh mesh = handled(0);
+        std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), std::mt19937(seed));
+        mesh.vertices.emplace_back(0.0);  // which no triangle uses
+        const CoarseMesh coarse = coarsen(mesh, 1);
+        EXPECT_EQ(coarse.mesh.vertices.size(), 4u);
+        EXPECT_EQ(coarse.mesh.triangles.size(), 4u);
+        EXPECT_TRUE(mesh::HalfedgeMesh::ofClosed(coarse.mesh));
     }
 }
 

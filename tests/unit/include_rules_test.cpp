@@ -107,7 +107,7 @@ const std::vector<Foreign>& foreignHeaders() {
             of("^(Eigen|suitesparse|cholmod).*",
                {"processing/flatten", "processing/flatten/tube", "processing/flatten/general",
                 "processing/cleansing", "processing/handles"}),
-            of("^(CGAL|OpenMesh)/.*", {"processing/mesh", "processing/handles"}),
+            of("^(CGAL|OpenMesh)/.*", {"processing/handles"}),
             of("^opencv2/.*", {"processing/cad", "processing/coverage"}),
             of("^sqlite3.h$", {"server/records"}),
             of("^turbojpeg.h$", {"server/encode", "client/tiles"}),
@@ -284,11 +284,13 @@ std::string told(const std::string& command, const char* program) {
 }
 
 // A hostile DICOM file, or an abort in a mesh library, must cost one preparation, never a session.
-TEST(IncludeRules, TheServerLinksNoImageOrMeshLibrary) {
-    const std::string linked = told("ldd", "haustra-server");
-    EXPECT_NE(linked.find("libssl"), std::string::npos) << linked;
-    for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti"}) {
-        EXPECT_EQ(linked.find(library), std::string::npos) << "haustra-server links " << library;
+TEST(IncludeRules, TheServerAndTheClientLinkNoImageOrMeshLibrary) {
+    for (const char* program : {"haustra-server", "haustra-client"}) {
+        const std::string linked = told("ldd", program);
+        EXPECT_NE(linked.find("libssl"), std::string::npos) << linked;
+        for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti"}) {
+            EXPECT_EQ(linked.find(library), std::string::npos) << program << " links " << library;
+        }
     }
 }
 
