@@ -14,8 +14,9 @@ namespace haustra::mesh {
 /// comes as it is. Fails, naming the file, where it cannot be read or ends early, holds no
 /// triangle, an index out of range or a coordinate that is not finite. Thread-safe.
 ///
-/// The formats are read here because OpenMesh drops the faces that its half-edges cannot hold and
-/// rounds to float, and CGAL's readers take as much memory as a hostile header claims.
+/// The formats are read here because OpenMesh's readers round to float, take broken files for sound
+/// ones and do not end on some (measured in processing/METHODS.md), and CGAL's take as much memory
+/// as a hostile header claims.
 Result<TriMesh> readMesh(const std::filesystem::path& file);
 
 /// Writes PLY (binary, double), OBJ or OFF (text that reads back exactly) or STL (binary, float by

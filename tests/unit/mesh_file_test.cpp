@@ -128,6 +128,16 @@ TEST_F(MeshFile, ReadsTextPlyWithOtherProperties) {
     EXPECT_EQ(mesh->triangles, (std::vector<glm::ivec3>{{0, 1, 2}, {0, 2, 3}}));
 }
 
+TEST_F(MeshFile, ReadsPlyWhoseListsAreCountedByAnyInteger) {
+    for (const char* type : {"char", "uchar", "short", "ushort", "int", "uint", "uint32"}) {
+        std::string bytes = textPly;
+        bytes.replace(bytes.find("uchar int"), 5, type);
+        const auto mesh = readMesh(write("a.ply", bytes));
+        ASSERT_TRUE(mesh) << type << ": " << describe(mesh.error());
+        EXPECT_EQ(mesh->triangles, (std::vector<glm::ivec3>{{0, 1, 2}, {0, 2, 3}}));
+    }
+}
+
 TEST_F(MeshFile, ReadsBigEndianPly) {
     std::string bytes =
         "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -221,6 +231,11 @@ TEST_F(MeshFile, RefusesWhatIsBrokenNamingTheFile) {
          "ELF nothing of the kind"},
         {"noise.off", "COFF\n1 1 0\n"},
         {"huge.ply", plyStart + "element vertex 999999999999\n" + xyz + "end_header\n1234"},
+        {"billions.ply", plyStart + "element vertex 4000000000\n" + xyz +
+                             "element face 4000000000\n"
+                             "property list uchar int vertex_indices\nend_header\n1234"},
+        {"billions.off", "OFF\n4000000000 4000000000 0\n0 0 0\n"},
+        {"billions.stl", std::string(80, ' ') + std::string("\x00\x28\x6b\xee", 4)},
         {"huge.off", "OFF\n9999999999 9999999999 0\n0 0 0\n"},
         {"list.ply", plyStart + "element face 1\nproperty list uint int vertex_indices\n"
                                 "end_header\n\xff\xff\xff\xff"},
