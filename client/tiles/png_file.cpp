@@ -1,6 +1,10 @@
 #include "tiles/png_file.h"
 
-#include <png.h>
+#include <fstream>
+#include <system_error>
+
+#include <stb/stb_image_write.h>
+#include <unistd.h>
 
 namespace haustra::tiles {
 
@@ -8,15 +12,22 @@ Result<void> writePng(const std::filesystem::path& file, std::span<const std::ui
                       int width, int height) {
     if (width <= 0 || height <= 0 || rgb.size() != std::size_t(width) * std::size_t(height) * 3)
         return fail(ErrorKind::badInput, "the picture's size and its bytes differ", file.string());
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = png_uint_32(width);
-    image.height = png_uint_32(height);
-    image.format = PNG_FORMAT_RGB;
-    if (!png_image_write_to_file(&image, file.c_str(), 0, rgb.data(), width * 3, nullptr))
-        return fail(ErrorKind::io, std::string("cannot write the PNG file: ") + image.message,
-                    file.string());
-    return {};
+    if (rgb.size() > maxPngBytes)  // stb counts in int
+        return fail(ErrorKind::badInput, "the picture is too large for a PNG file", file.string());
+    const std::string temporary = file.string() + "." + std::to_string(::getpid()) + ".tmp";
+    std::ofstream out(temporary, std::ios::binary);
+    const auto write = [](void* stream, void* bytes, int count) {
+        static_cast<std::ofstream*>(stream)->write(static_cast<const char*>(bytes), count);
+    };
+    const bool encoded =
+        out && stbi_write_png_to_func(write, &out, width, height, 3, rgb.data(), width * 3) != 0;
+    out.close();
+    std::error_code error;
+    if (encoded && out) std::filesystem::rename(temporary, file, error);
+    if (encoded && out && !error) return {};
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    return fail(ErrorKind::io, "cannot write the PNG file", file.string());
 }
 
 }  // namespace haustra::tiles

@@ -7,6 +7,7 @@
 #include "mesh/flat_map_file.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
+#include "pictures/picture_file.h"
 #include "store/case_store.h"
 #include "store/products.h"
 
@@ -114,7 +115,7 @@ Command addExport(CLI::App& program) {
     addFlatImageOptions(*command, arguments->flatImage);
     command->callback([arguments, command] {
         for (const char* option :
-             {"--width", "--seam-margin", "--transfer-function", "--threads"}) {
+             {"--width", "--seam-margin", "--caption", "--transfer-function", "--threads"}) {
             if (arguments->product != product::flatImage && command->count(option) > 0)
                 throw CLI::ValidationError(option,
                                            std::string("is an option of ") + product::flatImage);

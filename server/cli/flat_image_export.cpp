@@ -1,12 +1,13 @@
 #include "cli/flat_image_export.h"
 
 #include "cli/arguments.h"
-#include "cli/bridge_paint.h"
+#include "cli/caption.h"
 #include "cli/case_scans.h"
 #include "cli/interruption.h"
 #include "cli/progress_bar.h"
+#include "cli/provenance.h"
+#include "cli/wall_paint.h"
 #include "gpu/context.h"
-#include "render/png_file.h"
 #include "render/strip_picture.h"
 
 #include <algorithm>
@@ -33,6 +34,8 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
     group->add_option("--transfer-function", options.transferFunction, "Colours")
         ->check(CLI::IsMember(render::opticsPresets()))
         ->capture_default_str();
+    group->add_flag("--caption", options.caption,
+                    "Draw the strip's ends and a scale of millimetres along the centerline");
     addThreadsOption(*group, options.threads);
 }
 
@@ -54,6 +57,16 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     const auto size = TRY(render::stripPictureSize(picture, height));
 
     const auto scans = TRY(readCaseScans(source, false));
+    pictures::Provenance provenance = ownProvenance();
+    provenance.facts = {{"case", source.name()}, {"view", "flat-image"}};
+    addProduct(provenance, source, scans.cleansed.voxels().empty() ? "ct" : "cleansed");
+    addProduct(provenance, source, "flatmap");
+    provenance.facts.insert(provenance.facts.end(),
+                            {{"pixels_per_circumference", std::to_string(options.width)},
+                             {"seam_margin", fmt::format("{}", options.seamMargin)},
+                             {"raycaster", toString(render::RendererOptions{}.raycaster)},
+                             {"transfer_function", options.transferFunction}});
+    const auto marks = options.caption ? stripCaption(map, size) : pictures::Marks{};
     auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, options.threads));
     prepared.flatMap = std::make_shared<const FlatMap>(std::move(map));
     auto paint = TRY(paintBridges(source, prepared.flatMap, nullptr));
@@ -63,7 +76,7 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
         render::CaseRenderer::upload(*context, std::move(prepared), {.threads = options.threads}));
 
     const Interruption interruption;  // outlives the picture, which then takes back what it wrote
-    auto png = TRY(render::PngFile::create(file, size.x, size.y));
+    const auto output = TRY(pictures::createPicture(file, size.x, size.y, provenance));
     ProgressBar bar;
     int rows = 0;
     return render::drawStrip(*renderer, picture, height,
@@ -72,9 +85,12 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
                                  bar.show("flat image", double(rows) / size.y);
                                  if (interruption.came())
                                      return fail(ErrorKind::io, "interrupted", file.string());
-                                 return png.append(band);
+                                 if (!options.caption) return output->append(band);
+                                 render::Image marked = band;
+                                 TRY(pictures::draw(marks, marked, rows - band.height));
+                                 return output->append(marked);
                              })
-        .and_then([&] { return png.finish(); });
+        .and_then([&] { return output->finish(); });
 }
 
 }  // namespace haustra::cli

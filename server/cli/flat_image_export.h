@@ -16,11 +16,12 @@ namespace haustra::cli {
 struct FlatImageOptions {
     int width = 400;  ///< pixels of the circumference
     double seamMargin = 0.0;
+    bool caption = false;
     std::string transferFunction;
     int threads = 0;
 };
 
-/// --width, --seam-margin, --transfer-function and --threads.
+/// --width, --seam-margin, --caption, --transfer-function and --threads.
 void addFlatImageOptions(CLI::App& command, FlatImageOptions& options);
 
 /// Draws products `flatmap` and `cleansed` (or `ct`) of the case, with a progress bar, and replaces

@@ -2,89 +2,19 @@
 
 #include "dicom/import_series.h"
 #include "nifti/nifti_file.h"
+#include "pictures/picture_file.h"
 
 #include <algorithm>
 #include <cctype>
-#include <csetjmp>
-#include <cstdio>
 #include <new>
 #include <string>
 #include <vector>
-
-#include <png.h>
 
 namespace haustra::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Slice {
-    glm::ivec2 size{0};
-    std::vector<std::int16_t> values;
-};
-
-constexpr unsigned maxSliceSide = 1 << 14;
-
-// libpng leaves by longjmp: in the functions that call it nothing has a destructor.
-struct PngReader {
-    std::FILE* in = nullptr;
-    png_structp png = nullptr;
-    png_infop info = nullptr;
-    unsigned width = 0, height = 0;
-    bool grey = false, wide = false;  // of 16 bits
-
-    ~PngReader() {
-        png_destroy_read_struct(&png, &info, nullptr);
-        if (in) std::fclose(in);
-    }
-    bool readHeader() {
-        png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr,
-                                     [](png_structp, png_const_charp) {});
-        info = png ? png_create_info_struct(png) : nullptr;
-        if (!info || setjmp(png_jmpbuf(png))) return false;
-        png_init_io(png, in);
-        png_read_info(png, info);
-        width = png_get_image_width(png, info);
-        height = png_get_image_height(png, info);
-        grey = png_get_color_type(png, info) == PNG_COLOR_TYPE_GRAY;
-        wide = png_get_bit_depth(png, info) == 16;
-        return true;
-    }
-    std::size_t rowBytes() const { return std::size_t(width) * (wide ? 2 : 1); }
-    bool read(png_bytep pixels) {
-        if (setjmp(png_jmpbuf(png))) return false;
-        png_set_expand_gray_1_2_4_to_8(png);
-        const int passes = png_set_interlace_handling(png);
-        for (int pass = 0; pass < passes; ++pass)
-            for (unsigned y = 0; y < height; ++y)
-                png_read_row(png, pixels + rowBytes() * y, nullptr);
-        png_read_end(png, nullptr);
-        return true;
-    }
-};
-
-Result<Slice> readGreyPng(const fs::path& path) {
-    const auto refuse = [&](const char* why) {
-        return fail(ErrorKind::badInput, why, path.string());
-    };
-    PngReader reader;
-    reader.in = std::fopen(path.c_str(), "rb");
-    if (!reader.in) return fail(ErrorKind::io, "the file cannot be read", path.string());
-    if (!reader.readHeader()) return refuse("this is no PNG picture");
-    if (reader.width > maxSliceSide || reader.height > maxSliceSide)
-        return refuse("the picture is too large");
-    if (!reader.grey) return refuse("the picture is not grey");
-    std::vector<std::uint8_t> bytes(reader.rowBytes() * reader.height);
-    if (!reader.read(bytes.data())) return refuse("the picture is damaged");
-    Slice slice{{int(reader.width), int(reader.height)},
-                std::vector<std::int16_t>(std::size_t(reader.width) * reader.height)};
-    for (std::size_t i = 0; i < slice.values.size(); ++i) {
-        const int value = reader.wide ? bytes[2 * i] << 8 | bytes[2 * i + 1] : bytes[i];
-        slice.values[i] = std::int16_t(std::min(value, INT16_MAX));
-    }
-    return slice;
-}
 
 /// Names in which numbers count by their values: slice9 before slice10.
 bool comesBefore(const std::string& a, const std::string& b) {
@@ -111,12 +41,17 @@ bool comesBefore(const std::string& a, const std::string& b) {
     return a.size() - i < b.size() - j;
 }
 
+/// The folder's PNG files; or, where there is none, its TIFF files.
 Result<std::vector<fs::path>> slicesIn(const fs::path& folder) {
-    std::vector<fs::path> slices;
+    std::vector<fs::path> slices, tiffs;
     std::error_code error;
-    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-        if (at->path().extension() == ".png") slices.push_back(at->path());
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+        const std::string ending = at->path().extension().string();
+        if (ending == ".png") slices.push_back(at->path());
+        if (ending == ".tif" || ending == ".tiff") tiffs.push_back(at->path());
+    }
     if (error) return fail(ErrorKind::io, "the folder cannot be read", folder.string());
+    if (slices.empty()) slices = std::move(tiffs);
     std::sort(slices.begin(), slices.end(), [](const fs::path& a, const fs::path& b) {
         return comesBefore(a.filename().string(), b.filename().string());
     });
@@ -126,7 +61,7 @@ Result<std::vector<fs::path>> slicesIn(const fs::path& folder) {
 Result<Volume<std::int16_t>> stacked(const std::vector<fs::path>& slices, glm::dvec3 spacingMm) {
     Volume<std::int16_t> volume;
     for (std::size_t z = 0; z < slices.size(); ++z) {
-        const auto slice = TRY(readGreyPng(slices[z]));
+        const auto slice = TRY(pictures::readGreyPicture(slices[z]));
         if (z == 0) {
             const Grid grid =
                 axisAlignedGrid({slice.size, int(slices.size())}, spacingMm, glm::dvec3(0.0));

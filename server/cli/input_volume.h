@@ -9,11 +9,12 @@
 
 namespace haustra::cli {
 
-/// A NIfTI file; a folder of DICOM files with one CT series; or a folder of PNG slices, grey with
-/// 8 or 16 bits, all of one size, in the order of the numbers in their names: columns towards the
-/// patient's left, rows towards the back, slices towards the head (towards the feet where
-/// `spacingMm`, which is for PNG slices alone, has a negative z). Values stay as they are; 16-bit
-/// pixels over 32767 become that. Fails naming the file. `threads` ≤ 0: all cores.
+/// A NIfTI file; a folder of DICOM files with one CT series; or a folder of slices in
+/// PNG or, where it has none, TIFF files (pictures::readGreyPicture), all of one size, in the order
+/// of the numbers in their names: columns towards the patient's left, rows towards the back, slices
+/// towards the head (towards the feet where `spacingMm`, which is for such slices alone, has a
+/// negative z). Values stay as they are; 16-bit pixels over 32767 become that. Fails naming the
+/// file. `threads` ≤ 0: all cores.
 Result<Volume<std::int16_t>> readInputVolume(const std::filesystem::path& path,
                                              glm::dvec3 spacingMm, int threads);
 

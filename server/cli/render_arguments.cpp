@@ -1,6 +1,7 @@
 #include "cli/render_arguments.h"
 
 #include "cli/arguments.h"
+#include "pictures/picture_file.h"
 #include "render/optics/optics_presets.h"
 
 #include <algorithm>
@@ -175,7 +176,7 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         .add_option("--paint", my.paint,
                     "A picture of the whole strip, as flat-image is without a seam margin, that "
                     "colours the endoscopic view's wall")
-        ->type_name("FILE.png");
+        ->type_name("FILE.png|.tif");
     addPointsOption(command, "--mark", my.marksMm,
                     "A ball in the overview (LPS, mm); may be given again and again");
     command.add_flag_callback(
@@ -209,11 +210,21 @@ void addPictureOptions(CLI::App& command, RenderArguments& my) {
                 return true;
             })
         ->default_str("512x512");
-    command.add_option("--out", my.out, "The picture; replaced in one step")
-        ->type_name("FILE.png")
+    command.add_flag("--caption", my.caption,
+                     "Write into the picture what it shows and where; onto parallel views, the "
+                     "patient's directions at the edges and a bar of millimetres; onto a "
+                     "comparison, titles and the tissues' colours");
+    command
+        .add_option(
+            "--out", my.out,
+            "The picture, with a note of what it shows and how in its metadata; replaced in one "
+            "step. JPEG loses some of the pixels; EXR holds linear light")
+        ->type_name("FILE.png|.tif|.exr|.jpg")
         ->check([](const std::string& name) {
-            return fs::path(name).extension() == ".png" ? std::string()
-                                                        : "\"" + name + "\" does not end in .png";
+            return pictures::isPictureFile(name)
+                       ? std::string()
+                       : "\"" + name + "\" does not end in " +
+                             CLI::detail::join(pictures::fileEndings(), ", ");
         })
         ->required();
 }
@@ -279,7 +290,7 @@ void addRenderOptions(CLI::App& command, RenderArguments& my) {
     command
         .add_option("INPUT", my.input,
                     "A case's name; or a scan: FILE.nii, FILE.nii.gz, or a FOLDER/ of DICOM files "
-                    "or of PNG slices (its name with a slash)")
+                    "or of PNG or TIFF slices (its name with a slash)")
         ->required();
     addStoreOption(command, my.store)->required(false);
     command
@@ -304,7 +315,8 @@ void addRenderOptions(CLI::App& command, RenderArguments& my) {
     addCameraOptions(command, my);
     addDrawingOptions(command, my);
     addText(command, "--spacing", "X,Y,Z",
-            "Millimetres between pixels and between slices of a folder of PNG slices. The first "
+            "Millimetres between pixels and between slices of a folder of PNG or TIFF slices. The "
+            "first "
             "slice, by the numbers in the names, is the lowest; with a negative Z, the highest",
             [&my](const std::string& text) {
                 const auto numbers = parseNumbers(text, ',', 3);

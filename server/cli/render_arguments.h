@@ -51,6 +51,7 @@ struct RenderArguments {
     std::optional<render::WindowLevel> window;
     double zoom = 1.0;
     glm::ivec2 size{512, 512};
+    bool caption = false;
     glm::dvec3 spacingMm{1.0};  ///< of a scan in pictures
     int threads = 0;
 

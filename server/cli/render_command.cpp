@@ -1,23 +1,26 @@
 // haustra render: one picture of a case, as the server draws it, or of a scan from a file.
 #include "cli/arguments.h"
-#include "cli/bridge_paint.h"
+#include "cli/caption.h"
 #include "cli/case_scans.h"
 #include "cli/commands.h"
 #include "cli/input_volume.h"
 #include "cli/labelled_input.h"
+#include "cli/provenance.h"
 #include "cli/render_arguments.h"
 #include "cli/render_camera.h"
 #include "cli/render_parts.h"
 #include "cli/text_files.h"
+#include "cli/wall_paint.h"
 #include "core/centerline.h"
 #include "core/flat_lookup.h"
 #include "core/orbit.h"
 #include "core/wall_camera.h"
 #include "gpu/context.h"
+#include "pictures/drawing.h"
+#include "pictures/picture_file.h"
 #include "render/case_renderer.h"
 #include "render/comparison.h"
 #include "render/object_order/labelled_raycaster.h"
-#include "render/png_file.h"
 #include "render/wall/wall_paint.h"
 #include "store/case_store.h"
 
@@ -33,7 +36,14 @@ namespace haustra::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using render::Lens, render::View;
+
+using pictures::Provenance;
+
+/// What the file will say of the picture, and how the picture lies: its drawing adds to it.
+struct Notes {
+    Provenance provenance;
+    std::optional<PictureFrame> frame;
+};
 
 /// What the case has, as far as the picture needs it.
 struct Products {
@@ -76,9 +86,15 @@ Result<CenterlineCamera> cameraOnPath(const RenderArguments& arguments,
     });
 }
 
-Result<render::Image> drawCamera(const RenderArguments& arguments, const render::Camera& camera,
+void addCamera(Notes& notes, const Camera& camera, int pictureHeight) {
+    cli::addCamera(notes.provenance, camera);
+    notes.frame = frameOf(camera, pictureHeight);
+}
+
+Result<render::Image> drawCamera(const RenderArguments& arguments, const Camera& camera,
                                  std::shared_ptr<const render::WallPaint> paint,
-                                 render::CaseRenderer& renderer) {
+                                 render::CaseRenderer& renderer, Notes& notes) {
+    addCamera(notes, camera, arguments.size.y);
     auto optics = TRY(opticsOf(arguments, "mucosa"));
     render::CameraView view{camera, std::move(optics), marchOf(arguments)};
     view.paint = std::move(paint);
@@ -86,16 +102,16 @@ Result<render::Image> drawCamera(const RenderArguments& arguments, const render:
 }
 
 Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Products& products,
-                                     render::CaseRenderer& renderer) {
+                                     render::CaseRenderer& renderer, Notes& notes) {
     const auto from = TRY(cameraOnPath(arguments, products.centerline, products.flatMap));
-    render::Camera camera{from.positionMm, from.forward, from.up,
-                          fovOf(arguments, render::Camera{}.fovDegrees), arguments.lens};
+    Camera camera{from.positionMm, from.forward, from.up,
+                          fovOf(arguments, Camera{}.fovDegrees), arguments.lens};
     if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
-    return drawCamera(arguments, camera, products.paint, renderer);
+    return drawCamera(arguments, camera, products.paint, renderer, notes);
 }
 
 Result<render::Image> drawFlattened(const RenderArguments& arguments, const Products& products,
-                                    render::CaseRenderer& renderer) {
+                                    render::CaseRenderer& renderer, Notes& notes) {
     auto optics = TRY(opticsOf(arguments, "mucosa"));
     const auto [width, height] = std::pair(arguments.size.x, arguments.size.y);
     if (arguments.shown() == View::flattened)
@@ -105,13 +121,16 @@ Result<render::Image> drawFlattened(const RenderArguments& arguments, const Prod
     const auto center =
         TRY(wallPlace(arguments, products.centerline, FlatLookup(products.flatMap)));
     const FlatWindow window{center.flat, arguments.pixelsPerCircumference};
+    notes.provenance.facts.emplace_back("flat.center", toText(center.flat));
+    notes.provenance.facts.emplace_back("flat.pixels_per_circumference",
+                                        fmt::format("{}", window.pixelsPerUnit));
     return renderer.render(
         render::FlatView{window, std::move(optics), marchOf(arguments), products.paint}, width,
         height);
 }
 
 Result<render::Image> drawOverview(const RenderArguments& arguments, const Products& products,
-                                   render::CaseRenderer& renderer) {
+                                   render::CaseRenderer& renderer, Notes& notes) {
     auto optics = TRY(opticsOf(arguments, "body"));
     glm::dvec3 low(INFINITY), high(-INFINITY);
     for (const glm::dvec3 vertex : products.wall->vertices) {
@@ -124,6 +143,7 @@ Result<render::Image> drawOverview(const RenderArguments& arguments, const Produ
     if (arguments.heightMm) orbit.heightMm = *arguments.heightMm;
     render::OverviewView view;
     view.camera = cameraOf(orbit);
+    addCamera(notes, view.camera, arguments.size.y);
     view.bookmarksMm = arguments.marksMm;
     view.paint = products.paint;
     view.body = arguments.body;
@@ -131,15 +151,20 @@ Result<render::Image> drawOverview(const RenderArguments& arguments, const Produ
     view.march = marchOf(arguments, view.march);
     if (arguments.arcMm) {
         const auto reader = TRY(cameraOnPath(arguments, products.centerline, {}));
-        view.reader = render::Camera{reader.positionMm, reader.forward, reader.up};
+        view.reader = Camera{reader.positionMm, reader.forward, reader.up};
     }
     return renderer.render(view, arguments.size.x, arguments.size.y);
 }
 
+void addWindow(Notes& notes, const WindowLevel& window) {
+    notes.provenance.facts.emplace_back("window_hu",
+                                        toText(glm::dvec2(window.centerHu, window.widthHu)));
+}
+
 Result<render::Image> drawOblique(const RenderArguments& arguments, const Centerline& centerline,
-                                  const render::WindowLevel& window, render::Scan scan,
-                                  render::CaseRenderer& renderer) {
-    render::ObliqueView view;
+                                  const WindowLevel& window, Scan scan,
+                                  render::CaseRenderer& renderer, Notes& notes) {
+    ObliqueView view;
     view.window = window;
     view.scan = scan;
     view.heightMm = arguments.heightMm.value_or(view.heightMm);
@@ -154,28 +179,41 @@ Result<render::Image> drawOblique(const RenderArguments& arguments, const Center
         view.up = uprightFor(view.forward);
     }
     if (!arguments.up.empty()) view.up = arguments.up.front();
+    addCamera(notes,
+              {.positionMm = view.positionMm,
+               .forward = view.forward,
+               .up = view.up,
+               .lens = Lens::orthographic,
+               .heightMm = view.heightMm},
+              arguments.size.y);
+    addWindow(notes, window);
     return renderer.render(view, arguments.size.x, arguments.size.y);
 }
 
 /// Before, classification and after, each as a slice of its own would be.
 Result<render::Image> compare(render::CaseRenderer& renderer,
-                              const Volume<TissueFractions>& mixture, render::SliceView slice,
+                              const Volume<TissueFractions>& mixture, SliceView slice,
                               glm::ivec2 size) {
     auto before = TRY(renderer.render(slice, size.x, size.y));
     auto tissues = TRY(render::tissuePicture(mixture, slice, size.x, size.y));
-    slice.scan = render::Scan::cleansed;
+    slice.scan = Scan::cleansed;
     auto after = TRY(renderer.render(slice, size.x, size.y));
-    return render::sideBySide({std::move(before), std::move(tissues), std::move(after)});
+    return pictures::sideBySide({std::move(before), std::move(tissues), std::move(after)});
 }
 
 Result<render::Image> drawSlice(const RenderArguments& arguments, const Products& products,
-                                const render::WindowLevel& window, render::CaseRenderer& renderer) {
-    render::SliceView slice{arguments.shown(), {}, arguments.zoom, window};
+                                const Grid& grid, const WindowLevel& window,
+                                render::CaseRenderer& renderer, Notes& notes) {
+    SliceView slice{arguments.shown(), {}, arguments.zoom, window};
     slice.positionMm = arguments.positionMm.empty()
                            ? poseAtArc(products.centerline, *arguments.arcMm).point.positionMm
                            : arguments.positionMm.front();
+    notes.provenance.facts.emplace_back("slice.position_mm", toText(slice.positionMm));
+    notes.provenance.facts.emplace_back("slice.zoom", fmt::format("{}", slice.zoom));
+    addWindow(notes, window);
+    notes.frame = frameOf(TRY(render::placeSlice(slice, grid, arguments.size.x, arguments.size.y)));
     if (arguments.compare) return compare(renderer, products.mixture, slice, arguments.size);
-    if (arguments.product == "cleansed") slice.scan = render::Scan::cleansed;
+    if (arguments.product == "cleansed") slice.scan = Scan::cleansed;
     return renderer.render(slice, arguments.size.x, arguments.size.y);
 }
 
@@ -226,7 +264,7 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
         TRY(keep(source.readFlatMap(), products.flatMap));
     }
     if (!arguments.paint.empty())
-        TRY(keep(render::readWallPaint(arguments.paint, products.flatMap->height), products.paint));
+        TRY(keep(readWallPaint(arguments.paint, products.flatMap->height), products.paint));
     if (bridged) TRY(keep(paintBridges(source, products.flatMap, products.paint), products.paint));
     if (view == View::overview ||
         (arguments.castsRays() && raycasterEntry(arguments.raycaster).needsWallMesh))
@@ -247,12 +285,47 @@ Result<render::Image> drawWith(
     return draw(*renderer);
 }
 
-Result<render::Image> drawCase(const RenderArguments& arguments) {
+/// What is known before anything is drawn. Of a scan from a file its name is not told.
+Provenance provenanceOf(const RenderArguments& arguments) {
+    Provenance provenance = ownProvenance();
+    const auto add = [&](const char* name, std::string value) {
+        provenance.facts.emplace_back(name, std::move(value));
+    };
+    add(arguments.isScan() ? "scan" : "case", arguments.isScan() ? "a file" : arguments.input);
+    if (arguments.view.empty())
+        add("view", arguments.isScan() ? "camera" : toString(arguments.shown()));
+    else
+        add("view", arguments.view);
+    if (!arguments.castsRays()) return provenance;
+    add("raycaster", arguments.labels.empty() ? toString(arguments.raycaster) : "labelled");
+    if (fs::path(arguments.optics).extension() == ".json")
+        add("transfer_function", "a file");
+    else if (arguments.labels.empty())
+        add("transfer_function", !arguments.optics.empty()             ? arguments.optics
+                                 : arguments.shown() == View::overview ? "body"
+                                                                       : "mucosa");
+    return provenance;
+}
+
+void addProducts(Provenance& provenance, const RenderArguments& arguments, const Products& products,
+                 const store::Case& source) {
+    const bool showsCleansed = arguments.compare || arguments.product == "cleansed" ||
+                               (arguments.castsRays() && !products.scans.cleansed.empty());
+    if (arguments.compare || !showsCleansed) addProduct(provenance, source, "ct");
+    if (arguments.compare) addProduct(provenance, source, "mixture");
+    if (showsCleansed) addProduct(provenance, source, "cleansed");
+    if (!products.centerline.points.empty()) addProduct(provenance, source, "centerline");
+    if (products.flatMap) addProduct(provenance, source, "flatmap");
+    if (products.wall) addProduct(provenance, source, "surface");
+}
+
+Result<render::Image> drawCase(const RenderArguments& arguments, Notes& notes) {
     const auto source =
         TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
             return s.openCase(arguments.input);
         }));
     const auto products = TRY(readProducts(arguments, source));
+    addProducts(notes.provenance, arguments, products, source);
     const CaseScans& scans = products.scans;
     auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, arguments.threads));
     prepared.flatMap = products.flatMap;
@@ -261,24 +334,27 @@ Result<render::Image> drawCase(const RenderArguments& arguments) {
         prepared.path = std::make_shared<const Centerline>(products.centerline);
     const Grid grid = scans.ct.grid();
     return drawWith(arguments, std::move(prepared), [&](render::CaseRenderer& renderer) {
-        const auto window = arguments.window.value_or(render::WindowLevel{});
+        const auto window = arguments.window.value_or(WindowLevel{});
         const auto scan =
-            arguments.product == "cleansed" ? render::Scan::cleansed : render::Scan::original;
-        if (arguments.isFlattened()) return drawFlattened(arguments, products, renderer);
-        if (arguments.shown() == View::overview) return drawOverview(arguments, products, renderer);
+            arguments.product == "cleansed" ? Scan::cleansed : Scan::original;
+        if (arguments.isFlattened()) return drawFlattened(arguments, products, renderer, notes);
+        if (arguments.shown() == View::overview)
+            return drawOverview(arguments, products, renderer, notes);
         if (arguments.shown() == View::oblique)
-            return drawOblique(arguments, products.centerline, window, scan, renderer);
-        if (arguments.isSlice()) return drawSlice(arguments, products, window, renderer);
+            return drawOblique(arguments, products.centerline, window, scan, renderer, notes);
+        if (arguments.isSlice())
+            return drawSlice(arguments, products, grid, window, renderer, notes);
         if (arguments.view == "camera")
-            return drawCamera(arguments, freeCamera(arguments, grid), products.paint, renderer);
-        return drawEndoscopic(arguments, products, renderer);
+            return drawCamera(arguments, freeCamera(arguments, grid), products.paint, renderer,
+                              notes);
+        return drawEndoscopic(arguments, products, renderer, notes);
     });
 }
 
-Result<render::Image> drawScan(const RenderArguments& arguments) {
+Result<render::Image> drawScan(const RenderArguments& arguments, Notes& notes) {
     auto volume = TRY(readInputVolume(arguments.input, arguments.spacingMm, arguments.threads));
     const Grid grid = volume.grid();
-    render::WindowLevel window;
+    WindowLevel window;
     if (arguments.window) {
         window = *arguments.window;
     } else {
@@ -287,14 +363,14 @@ Result<render::Image> drawScan(const RenderArguments& arguments) {
     }
     auto prepared = TRY(render::prepareCase(volume, {}, arguments.threads));
     return drawWith(arguments, std::move(prepared), [&](render::CaseRenderer& renderer) {
-        if (arguments.isSlice()) return drawSlice(arguments, {}, window, renderer);
+        if (arguments.isSlice()) return drawSlice(arguments, {}, grid, window, renderer, notes);
         if (arguments.shown() == View::oblique)
-            return drawOblique(arguments, {}, window, render::Scan::original, renderer);
-        return drawCamera(arguments, freeCamera(arguments, grid), nullptr, renderer);
+            return drawOblique(arguments, {}, window, Scan::original, renderer, notes);
+        return drawCamera(arguments, freeCamera(arguments, grid), nullptr, renderer, notes);
     });
 }
 
-Result<render::Image> drawLabelled(const RenderArguments& arguments) {
+Result<render::Image> drawLabelled(const RenderArguments& arguments, Notes& notes) {
     auto volume = TRY(readLabelledColor(arguments.input, arguments.labels, arguments.threads));
     auto context = TRY(gpu::Context::create());
     auto raycaster = TRY(render::LabelledRaycaster::create(
@@ -303,20 +379,37 @@ Result<render::Image> drawLabelled(const RenderArguments& arguments) {
          .threads = arguments.threads}));
     TRY(raycaster->choose({arguments.shownLabels.begin(), arguments.shownLabels.end()}));
     render::CameraView view{freeCamera(arguments, volume->grid()), {}, marchOf(arguments)};
+    addCamera(notes, view.camera, arguments.size.y);
     view.optics.light.halfDepthMm = 1e6;  // the camera's distance darkens nothing
     const glm::ivec2 size = arguments.size;
-    render::Image image{size.x, size.y,
-                        std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
+    render::Image image = render::blankImage(size);
     TRY(raycaster->render(view, render::Band::whole(size.x, size.y), image));
     return image;
 }
 
+/// What it is of, which view, and where, in a line.
+pictures::Marks captionOf(const RenderArguments& arguments, const Notes& notes) {
+    const auto fact = [&](const char* name) -> std::string {
+        for (const auto& [known, value] : notes.provenance.facts)
+            if (known == name) return value;
+        return {};
+    };
+    std::string line = fact("case");
+    for (const std::string& word :
+         {fact("view"), arguments.arcMm ? fmt::format("{:g} mm", *arguments.arcMm) : std::string()})
+        if (!word.empty()) line += (line.empty() ? "" : "  ") + word;
+    return arguments.compare ? comparisonCaption(line, *notes.frame, arguments.size)
+                             : caption(line, notes.frame, arguments.size);
+}
+
 Result<void> runRender(const RenderArguments& arguments) {
     TRY(checkOutputFile(arguments.out));
-    const auto image = TRY(!arguments.labels.empty() ? drawLabelled(arguments)
-                           : arguments.isScan()      ? drawScan(arguments)
-                                                     : drawCase(arguments));
-    return render::writePng(arguments.out, image);
+    Notes notes{provenanceOf(arguments), {}};
+    auto image = TRY(!arguments.labels.empty() ? drawLabelled(arguments, notes)
+                     : arguments.isScan()      ? drawScan(arguments, notes)
+                                               : drawCase(arguments, notes));
+    if (arguments.caption) TRY(pictures::draw(captionOf(arguments, notes), image));
+    return pictures::writePicture(arguments.out, image, notes.provenance);
 }
 
 }  // namespace

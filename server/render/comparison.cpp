@@ -51,23 +51,4 @@ Result<Image> tissuePicture(const Volume<TissueFractions>& mixture, const SliceV
     return image;
 }
 
-Image sideBySide(const std::vector<Image>& panels) {
-    Image joined;
-    for (const Image& panel : panels) {
-        joined.height = panel.height;
-        joined.width += panel.width + (joined.width > 0 ? separatorPixels : 0);
-    }
-    joined.rgb.reserve(3 * std::size_t(joined.width) * std::size_t(joined.height));
-    for (int y = 0; y < joined.height; ++y) {
-        for (std::size_t n = 0; n < panels.size(); ++n) {
-            for (int x = 0; n > 0 && x < separatorPixels; ++x)
-                append(joined.rgb, separatorColor);
-            const std::ptrdiff_t stride = 3 * std::ptrdiff_t(panels[n].width);
-            const auto row = panels[n].rgb.begin() + stride * y;
-            joined.rgb.insert(joined.rgb.end(), row, row + stride);
-        }
-    }
-    return joined;
-}
-
 }  // namespace haustra::render

@@ -1,20 +1,15 @@
-// The review picture of digital cleansing: before, classification and after, side by side.
+// The classification as a picture: what reviewers of digital cleansing compare the scans with.
 #pragma once
 
 #include "core/tissue.h"
 #include "core/volume.h"
 #include "render/picture.h"
 
-#include <vector>
-
 namespace haustra::render {
 
 /// Colours of Figure 3.1 of the dissertation, sRGB.
 inline constexpr glm::u8vec3 airColor{255, 0, 0}, softColor{0, 255, 0}, taggedColor{0, 0, 255},
     interfaceColor{255, 105, 180};
-/// Between the panels of a comparison.
-inline constexpr glm::u8vec3 separatorColor{255, 255, 255};
-inline constexpr int separatorPixels = 2;
 
 /// The colour of a voxel by what it holds (dissertation §3.2). Shares of 5 % and less count as
 /// none, so that a voxel with over 95 % of one tissue has that tissue's pure colour. Otherwise the
@@ -26,8 +21,5 @@ glm::u8vec3 tissueColor(TissueFractions fractions);
 /// of the voxel that it lies in; black outside. Fails as placeSlice does. O(pixels). Any thread.
 Result<Image> tissuePicture(const Volume<TissueFractions>& mixture, const SliceView& view,
                             int width, int height);
-
-/// The panels from left to right with a separator between any two. They are of one height.
-Image sideBySide(const std::vector<Image>& panels);
 
 }  // namespace haustra::render

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/grid.h"
+#include "core/image.h"
 #include "core/result.h"
 #include "core/view.h"
 #include "render/optics/optics.h"
@@ -17,16 +18,8 @@
 
 namespace haustra::render {
 
-/// Rows from the top, 3 bytes a pixel.
-struct Image {
-    int width = 0, height = 0;
-    std::vector<std::uint8_t> rgb;
-};
-/// A black one.
-inline Image blankImage(glm::ivec2 size) {
-    return {size.x, size.y,
-            std::vector<std::uint8_t>(3 * std::size_t(size.x) * std::size_t(size.y))};
-}
+using haustra::blankImage;
+using haustra::Image;
 
 // The values that a picture shows, among the renderer's names.
 using haustra::Camera;

@@ -1,9 +1,9 @@
 // The object-order raycaster's figures: cell sides and skipping on a prepared case; a tall scan in
 // a bounded pool along a flight; a volume larger than main memory.
 #include "mapped_volume.h"
+#include "pictures/picture_file.h"
 #include "render/gl/single_pass_raycaster.h"
 #include "render/object_order/object_order_raycaster.h"
-#include "render/png_file.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 
@@ -82,7 +82,8 @@ CameraView fromOutside(const Grid& grid, const Optics& optics) {
 
 void save(const std::string& folder, const std::string& name, const Image& image) {
     if (folder.empty()) return;
-    if (const auto written = writePng(folder + "/" + name + ".png", image); !written)
+    if (const auto written = pictures::writePicture(folder + "/" + name + ".png", image, {});
+        !written)
         fmt::print(stderr, "{}\n", describe(written.error()));
 }
 

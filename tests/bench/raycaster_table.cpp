@@ -1,9 +1,9 @@
 // Every raycaster that can be made on a case's endoscopic view, beside VTK's where it is there; one
 // interleaved run. VTK needs a display: xvfb-run raycaster_table …
 #include "core/centerline.h"
+#include "pictures/picture_file.h"
 #include "render/case_renderer.h"
 #include "render/comparison.h"
-#include "render/png_file.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 #ifdef HAUSTRA_BENCH_VTK_VOLUME
@@ -129,9 +129,9 @@ Result<void> table(const Arguments& given) {
                 one.psnr.push_back(psnr(*image, first));
                 if (given.pictures.empty()) continue;
                 const auto written =
-                    render::writePng(fmt::format("{}/{}-{}-{}-{}.png", given.pictures, given.preset,
-                                                 size, place, one.name),
-                                     *image);
+                    pictures::writePicture(fmt::format("{}/{}-{}-{}-{}.png", given.pictures,
+                                                       given.preset, size, place, one.name),
+                                           *image, {});
                 if (!written) return written;
             }
         }

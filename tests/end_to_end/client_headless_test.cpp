@@ -2,6 +2,7 @@
 // pinning, refusals, lost links.
 #include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
+#include "picture_files.h"
 #include "reader/overview_map.h"
 #include "script/script_player.h"
 
@@ -10,7 +11,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <png.h>
 #include <unistd.h>
 
 namespace haustra::reader {
@@ -49,15 +49,10 @@ protected:
         return reader::play(session, *actions, options);
     }
     std::vector<std::uint8_t> readPng(const std::string& name, int& width, int& height) const {
-        png_image image{};
-        image.version = PNG_IMAGE_VERSION;
-        EXPECT_TRUE(png_image_begin_read_from_file(&image, (folder_ / name).c_str()));
-        image.format = PNG_FORMAT_RGB;
-        std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(image));
-        EXPECT_TRUE(png_image_finish_read(&image, nullptr, rgb.data(), 0, nullptr));
-        width = int(image.width);
-        height = int(image.height);
-        return rgb;
+        Image image = tests::readPicture(folder_ / name);
+        width = image.width;
+        height = image.height;
+        return std::move(image.rgb);
     }
 
     std::filesystem::path folder_;

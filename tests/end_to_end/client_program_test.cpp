@@ -1,5 +1,6 @@
 // haustra-client as a program: exit codes, what it prints and writes, and its window.
 #include "end_to_end/fake_server.h"
+#include "picture_files.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -9,7 +10,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <png.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -132,13 +132,8 @@ TEST_F(ClientProgram, TheWindowShowsTheServersPictures) {
         "xvfb-run -a -s '-screen 0 1400x900x24' " + at(server) +
         " --case phantom --size 1200x800 --scale 1 --screenshot-after-ms 3000 --screenshot " + png);
     ASSERT_EQ(outcome.exitCode, 0) << outcome.text;
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    ASSERT_TRUE(png_image_begin_read_from_file(&image, png.c_str()));
-    image.format = PNG_FORMAT_RGB;
-    std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(image));
-    ASSERT_TRUE(png_image_finish_read(&image, nullptr, rgb.data(), 0, nullptr));
-    ASSERT_EQ(image.width, 1200u);
+    const auto [width, height, rgb] = tests::readPicture(png);
+    ASSERT_EQ(width, 1200);
     // The controls are nearly grey, the synthetic pictures are not.
     std::size_t colourful = 0;
     for (std::size_t n = 0; n < rgb.size(); n += 3) {

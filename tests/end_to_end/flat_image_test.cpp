@@ -2,7 +2,7 @@
 #include "core/wall_camera.h"
 #include "end_to_end/flat_store.h"
 #include "end_to_end/run_program.h"
-#include "read_png.h"
+#include "picture_files.h"
 #include "render/strip_picture.h"
 
 #include <algorithm>
@@ -54,14 +54,14 @@ protected:
     static Image rendered(const std::vector<std::string>& more) {
         const Outcome outcome = render(more);
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-        return readPng(picture());
+        return readPicture(picture());
     }
     static Image exported(const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"export", smallCaseName, "flat-image", picture()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-        return readPng(picture());
+        return readPicture(picture());
     }
     static std::string picture() { return folder_->path() / "picture.png"; }
     static FlatView view(glm::dvec2 center, double pixels, const char* preset = "mucosa") {
@@ -139,6 +139,25 @@ TEST_F(FlatImage, AMarginRepeatsWhatLiesBeyondTheSeam) {
     EXPECT_EQ(part(wide, {220, 0}, {20, rows.y}), part(plain, {0, 0}, {20, rows.y}));
 }
 
+TEST_F(FlatImage, IsOfTheSamePixelsInEveryFormatThatKeepsThem) {
+    const std::string tiff = folder_->path() / "picture.tif";
+    exported({"--width", "200"});
+    const Outcome outcome = run({"export", smallCaseName, "flat-image", tiff, "--width", "200"});
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_TRUE(samePicture(picture(), tiff));
+}
+
+TEST_F(FlatImage, ACaptionIsDrawnOntoTheSamePicture) {
+    const Image plain = exported({"--width", "400"}),
+                marked = exported({"--width", "400", "--caption"});
+    ASSERT_EQ(marked.rgb.size(), plain.rgb.size());
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < plain.rgb.size(); ++i)
+        changed += plain.rgb[i] != marked.rgb[i];
+    EXPECT_GT(changed, 300u);
+    EXPECT_LT(changed, plain.rgb.size() / 10);
+}
+
 TEST_F(FlatImage, SaysWhatIsWrong) {
     const auto says = [](const Outcome& outcome, int exitCode, const char* words) {
         EXPECT_EQ(outcome.exitCode, exitCode) << words;
@@ -156,7 +175,7 @@ TEST_F(FlatImage, SaysWhatIsWrong) {
     says(render({"--position=1,2,3", "--arc-mm", "3"}), 2, "two ways");
     says(render({"--flat", "0.5,99"}), 1, "circumferences");
     says(run({"render", "scan", "--position=1,2,3", "--out", picture()}), 1, "flatmap");
-    says(run({"export", smallCaseName, "flat-image", folder_->path() / "picture.jpg"}), 2, ".png");
+    says(run({"export", smallCaseName, "flat-image", folder_->path() / "picture.gif"}), 2, ".png");
     says(run({"export", smallCaseName, "ct", folder_->path() / "ct.nii", "--width", "9"}), 2,
          "flat-image");
 }

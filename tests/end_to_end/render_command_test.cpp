@@ -1,7 +1,8 @@
 // haustra render on a small store: which scan a picture shows, and the comparison.
 #include "end_to_end/run_program.h"
 #include "end_to_end/server_process.h"
-#include "read_png.h"
+#include "picture_files.h"
+#include "pictures/drawing.h"
 #include "render/comparison.h"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ protected:
         const Outcome outcome = run(name, more);
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");
-        return readPng(picture());
+        return readPicture(picture());
     }
     static std::string picture() { return folder_->path() / "picture.png"; }
 
@@ -54,9 +55,9 @@ std::unique_ptr<TemporaryFolder> RenderCommand::folder_;
 TEST_F(RenderCommand, AComparisonIsItsThreePicturesSideBySide) {
     for (const char* plane : {"axial", "coronal", "sagittal"}) {
         const Image all = drawn(smallCaseName, {"--view", plane, "--compare", "--zoom", "1.5"});
-        ASSERT_EQ(all.width, 3 * 80 + 2 * render::separatorPixels) << plane;
+        ASSERT_EQ(all.width, 3 * 80 + 2 * pictures::separatorPixels) << plane;
         ASSERT_EQ(all.height, 60);
-        const int step = 80 + render::separatorPixels;
+        const int step = 80 + pictures::separatorPixels;
         const Image before = drawn(smallCaseName, {"--view", plane, "--zoom", "1.5"}),
                     after = drawn(smallCaseName,
                                   {"--view", plane, "--zoom", "1.5", "--product", "cleansed"});
@@ -94,7 +95,7 @@ TEST_F(RenderCommand, ACaseThatIsNotCleansedIsDrawnAsScannedAndSaysSo) {
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("no cleansed scan"), std::string::npos) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-    const Image asScanned = readPng(picture());
+    const Image asScanned = readPicture(picture());
     EXPECT_EQ(asScanned.rgb, drawn(smallCaseName, {"--arc-mm", "20", "--product", "ct"}).rgb);
     drawn("old", {"--view", "axial"});  // a slice shows the scan: nothing to note
 }
@@ -108,6 +109,72 @@ TEST_F(RenderCommand, WhatACaseLacksIsNamed) {
     };
     fails({"--view", "axial", "--compare"}, "no product cleansed");
     fails({"--view", "coronal", "--product", "cleansed"}, "no product cleansed");
+}
+
+/// What OpenImageIO's own program tells of a picture.
+std::string told(const std::string& file) {
+    std::string text;
+    FILE* pipe = ::popen(("oiiotool --info -v '" + file + "'").c_str(), "r");
+    for (char buffer[512]; pipe && std::fgets(buffer, sizeof buffer, pipe);)
+        text += buffer;
+    EXPECT_TRUE(pipe && ::pclose(pipe) == 0);
+    return text;
+}
+
+TEST_F(RenderCommand, APictureOfAnyFormatSaysWhereItComesFrom) {
+    const auto source =
+        store::CaseStore::open(folder_->path() / "store", false)->openCase(smallCaseName);
+    ASSERT_TRUE(source);
+    const auto key = [&](const char* product) {
+        return std::string(product) + ".key=" + source->find(product)->key.hex;
+    };
+    const auto says = [&](const std::string& file, std::vector<std::string> arguments,
+                          std::vector<std::string> facts) {
+        arguments.insert(arguments.begin(),
+                         {"render", smallCaseName, "--store", folder_->path() / "store", "--size",
+                          "80x60", "--out", file});
+        const Outcome outcome = runProgram("haustra", arguments);
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        const std::string text = told(file);
+        facts.insert(facts.end(), {std::string("case=") + smallCaseName, "Software: \"Haustra "});
+        for (const std::string& fact : facts)
+            EXPECT_NE(text.find(fact), std::string::npos) << fact << " in\n" << text;
+        // No path: it may hold a patient's name. (oiiotool begins with the file's.)
+        std::string rest = text;
+        for (std::size_t at; (at = rest.find(file)) != std::string::npos;)
+            rest.erase(at, file.size());
+        EXPECT_EQ(rest.find(folder_->path().filename()), std::string::npos) << rest;
+    };
+    const auto file = [](const std::string& ending) { return folder_->path() / ("said" + ending); };
+    for (const char* ending : {".png", ".tif", ".exr", ".jpg"})
+        says(file(ending), {"--arc-mm", "20", "--fov", "75", "--raycaster", "native"},
+             {"view=endoscopic", "raycaster=native", "transfer_function=mucosa", key("cleansed"),
+              key("centerline"), "camera.position_mm=", "camera.forward=", "camera.up=",
+              "camera.lens=perspective", "camera.fov_degrees=75"});
+    EXPECT_TRUE(samePicture(file(".png"), file(".tif")));
+    says(file(".png"), {"--position=-1.2,9.8,112", "--view", "axial", "--compare"},
+         {"view=axial", key("ct"), key("mixture"), key("cleansed"),
+          "slice.position_mm=-1.2,9.8,112", "slice.zoom=1", "window_hu=0,2000"});
+    says(file(".png"), {"--arc-mm", "20", "--view", "oblique"},
+         {"view=oblique", key("ct"), "camera.lens=orthographic", "camera.height_mm=60"});
+    const Outcome refused = run(smallCaseName, {"--view", "axial", "--out", file(".gif")});
+    EXPECT_EQ(refused.exitCode, 2) << refused.err;
+}
+
+TEST_F(RenderCommand, ACaptionIsDrawnOnlyWhereItIsAskedFor) {
+    for (const std::vector<std::string>& view : {std::vector<std::string>{"--arc-mm", "20"},
+                                                 {"--view", "axial", "--compare"},
+                                                 {"--view", "oblique", "--arc-mm", "20"}}) {
+        std::vector<std::string> captioned = view;
+        captioned.push_back("--caption");
+        const Image plain = drawn(smallCaseName, view), marked = drawn(smallCaseName, captioned);
+        ASSERT_EQ(marked.rgb.size(), plain.rgb.size());
+        std::size_t changed = 0;
+        for (std::size_t i = 0; i < plain.rgb.size(); ++i)
+            changed += plain.rgb[i] != marked.rgb[i];
+        EXPECT_GT(changed, 100u);
+        EXPECT_LT(changed, plain.rgb.size() / 2);
+    }
 }
 
 TEST_F(RenderCommand, ComparisonsAreOfSlices) {

@@ -1,8 +1,9 @@
 // haustra render on scans from files, and on a case from outside and across the path.
 #include "end_to_end/run_program.h"
 #include "end_to_end/server_process.h"
+#include "grey_picture_file.h"
 #include "nifti/nifti_file.h"
-#include "read_png.h"
+#include "picture_files.h"
 
 #include <algorithm>
 #include <fstream>
@@ -12,7 +13,6 @@
 namespace haustra::tests {
 namespace {
 
-using render::Image;
 namespace fs = std::filesystem;
 
 /// A ball at the patient's left of the middle, in 8 bits.
@@ -26,15 +26,6 @@ Volume<std::uint8_t> ball() {
         volume.writable()[n] = std::uint8_t(std::clamp(128.0 + 60.0 * inside, 0.0, 255.0));
     }
     return volume;
-}
-
-void writeGreyPng(const fs::path& file, const std::uint8_t* pixels, glm::ivec2 size) {
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    png.width = unsigned(size.x);
-    png.height = unsigned(size.y);
-    png.format = PNG_FORMAT_GRAY;
-    ASSERT_TRUE(png_image_write_to_file(&png, file.c_str(), 0, pixels, 0, nullptr));
 }
 
 /// Where the picture is bright, from its middle in its heights.
@@ -60,10 +51,12 @@ protected:
         ASSERT_TRUE(nifti::writeNifti(at("ball.nii.gz"), volume));
         const glm::ivec3 size = volume.grid().size;
         fs::create_directory(at("slices"));
+        fs::create_directory(at("tiffs"));
         // Not zero-padded: only numbers in the names tell the order.
         for (int z = 0; z < size.z; ++z)
-            writeGreyPng(at("slices/slice-" + std::to_string(z) + ".png"),
-                         &volume.voxels()[volume.grid().index(0, 0, z)], size);
+            for (const char* name : {"slices/slice-", "tiffs/a"})
+                writePixels(at(name + std::to_string(z) + (name[0] == 's' ? ".png" : ".tif")),
+                            &volume.voxels()[volume.grid().index(0, 0, z)], size);
         std::ofstream(at("white.json"))
             << R"({"name":"white","shading":false,"points":[{"hu":100,"color":[1,1,1],"opacity":0},
                    {"hu":150,"color":[1,1,1],"opacity":1},{"hu":255,"color":[1,1,1],"opacity":1}]})";
@@ -84,7 +77,7 @@ protected:
         const Outcome outcome = run(input, more);
         EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");
-        return outcome.exitCode == 0 ? readPng(at("picture.png")) : Image{};
+        return outcome.exitCode == 0 ? readPicture(at("picture.png")) : Image{};
     }
     static void expectFails(const std::string& input, const std::vector<std::string>& more,
                             int exitCode, const std::string& what) {
@@ -135,6 +128,7 @@ TEST_F(RenderScan, AFolderOfSlicesIsTheSameScan) {
     std::vector<std::string> spaced = turned;
     spaced.insert(spaced.end(), {"--spacing", "1,1.5,1.25"});
     EXPECT_EQ(drawn(at("slices"), spaced).rgb, file.rgb);
+    EXPECT_EQ(drawn(at("tiffs"), spaced).rgb, file.rgb);
     // With a negative distance the first slice is the uppermost: the third has the others below.
     const auto slice = [&](const std::string& spacing, const std::string& place) {
         return drawn(at("slices"), {"--view", "axial", "--spacing", spacing, "--position", place},
@@ -219,8 +213,8 @@ TEST_F(RenderScan, WhatIsWrongIsNamed) {
     expectFails(at("white.json"), {"--tf", white}, 1, "white.json");
     fs::create_directory(at("mixed"));
     const std::uint8_t pixels[12] = {};
-    writeGreyPng(at("mixed/1.png"), pixels, {4, 3});
-    writeGreyPng(at("mixed/2.png"), pixels, {3, 4});
+    writePixels(at("mixed/1.png"), pixels, {4, 3});
+    writePixels(at("mixed/2.png"), pixels, {3, 4});
     expectFails(at("mixed"), {"--tf", white}, 1, "2.png");
 
     expectFails(scan, {}, 2, "--tf");

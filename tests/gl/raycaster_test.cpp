@@ -1,6 +1,5 @@
 // The ray caster against closed forms and against a plain one on the CPU.
 #include "reference_marcher.h"
-#include "render/png_file.h"
 #include "render_scene.h"
 
 #include <numbers>

@@ -1,5 +1,7 @@
 // The wall's places in a picture, and its paint.
-#include "render/png_file.h"
+#include "cli/wall_paint.h"
+
+#include "pictures/picture_file.h"
 #include "wall_scene.h"
 
 #include <filesystem>
@@ -203,10 +205,10 @@ TEST(WallPaintFile, IsAPictureOfTheStripWithTheCecumUp) {
     Image picture{4, 2, std::vector<std::uint8_t>(24, 0)};
     picture.rgb[0] = 255;          // the top left pixel is red
     picture.rgb[3 * 7 + 1] = 255;  // the bottom right one green
-    ASSERT_TRUE(writePng(file, picture));
-    const auto paint = readWallPaint(file, 3.0);
+    ASSERT_TRUE(pictures::writePicture(file, picture, {}));
+    const auto paint = cli::readWallPaint(file, 3.0);
     std::filesystem::resize_file(file, 40);
-    const auto broken = readWallPaint(file, 3.0);
+    const auto broken = cli::readWallPaint(file, 3.0);
     std::filesystem::remove(file);
     ASSERT_TRUE(paint);
     EXPECT_EQ((*paint)->at({0.99, 2.9}), glm::u8vec4(255, 0, 0, 255));

@@ -1,14 +1,16 @@
 // Tiles: decoding, assembly in any order, hostile bytes, PNG files.
+#include "picture_files.h"
 #include "tiles/picture_assembler.h"
 #include "tiles/png_file.h"
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <random>
 
 #include <gtest/gtest.h>
-#include <png.h>
+#include <sys/resource.h>
 #include <turbojpeg.h>
 #include <unistd.h>
 
@@ -228,16 +230,24 @@ TEST(PngFile, ReadsBackThePixelsAndRefusesAFolderThatIsNotThere) {
     const auto file = std::filesystem::temp_directory_path() /
                       ("haustra-png-" + std::to_string(::getpid()) + ".png");
     ASSERT_TRUE(writePng(file, rgb, 37, 21));
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    ASSERT_TRUE(png_image_begin_read_from_file(&image, file.c_str()));
-    image.format = PNG_FORMAT_RGB;
-    Bytes read(PNG_IMAGE_SIZE(image));
-    ASSERT_TRUE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr));
-    EXPECT_EQ(read, rgb);
-    std::filesystem::remove(file);
+    const Image read = tests::readPicture(file);
+    EXPECT_EQ(read.width, 37);
+    EXPECT_EQ(read.height, 21);
+    EXPECT_EQ(read.rgb, rgb);
     EXPECT_FALSE(writePng(file / "no" / "folder.png", rgb, 37, 21));
     EXPECT_FALSE(writePng(file, rgb, 38, 21));
+    EXPECT_EQ(tests::readPicture(file).rgb, rgb);  // what was there stays
+    // A disk that is full.
+    ::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    rlimit small = before;
+    small.rlim_cur = std::filesystem::file_size(file) - 1;
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    EXPECT_FALSE(writePng(file, rgb, 37, 21));
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+    EXPECT_EQ(tests::readPicture(file).rgb, rgb);
+    std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ const std::map<std::string, Names>& allowed() {
         {"processing/topology", {"centerline"}},    // in which order pieces are joined
         {"processing/segmentation", {"topology"}},  // distances to the boundary
         {"processing/mesh", {}},
+        {"processing/pictures", {}},
         {"processing/contouring", {}},
         {"processing/simplification", {}},
         {"processing/handles", {"mesh"}},
@@ -69,7 +70,7 @@ const std::map<std::string, Names>& allowed() {
          {"gpu", "render/gl", "render/optics", "render/scene", "shaders"}},
         {"server/render/hybrid",
          {"gpu", "render/gl", "render/native", "render/optics", "render/scene", "shaders"}},
-        {"server/encode", {"protocol"}},
+        {"server/encode", {"render/scene", "protocol"}},
         {"server/records", {"protocol"}},
         {"server/session",
          {"gpu", "render", "render/optics", "render/scene", "render/wall", "encode", "records",
@@ -77,7 +78,7 @@ const std::map<std::string, Names>& allowed() {
         {"server/net",
          {"gpu", "render", "render/optics", "encode", "records", "session", "store", "protocol"}},
         {"server/cli",
-         {"dicom", "nifti", "phantom", "mesh", "simplification", "handles", "flatten",
+         {"dicom", "nifti", "pictures", "phantom", "mesh", "simplification", "handles", "flatten",
           "flatten/tube", "flatten/general", "store", "pipeline", "gpu", "render",
           "render/object_order", "render/optics", "render/scene", "render/wall"}},
         {"client", {"protocol", "link", "tiles", "reader", "script", "window"}},
@@ -108,7 +109,10 @@ const std::vector<Foreign>& foreignHeaders() {
                {"processing/flatten", "processing/flatten/tube", "processing/flatten/general",
                 "processing/cleansing", "processing/handles"}),
             of("^(CGAL|OpenMesh)/.*", {"processing/handles"}),
-            of("^opencv2/.*", {"processing/cad", "processing/coverage"}),
+            of("^OpenImageIO/.*", {"processing/pictures"}),
+            of("^opencv2/.*", {"processing/pictures", "processing/cad", "processing/coverage"}),
+            of("^png.h$", {}),
+            of("^stb/.*", {"client/tiles"}),
             of("^sqlite3.h$", {"server/records"}),
             of("^turbojpeg.h$", {"server/encode", "client/tiles"}),
             of("^(EGL|GL|GLES.?|epoxy)/.*", {"server/gpu", "server/render", "client/window"}),
@@ -235,7 +239,8 @@ TEST(IncludeRules, NoFolderIsInACycle) {
             graph[include.folder][target] = include.file.string() + " includes " + include.header;
     }
     EXPECT_GT(graph.size(), 30u);
-    for (const Names& cycle : Cycles(graph).found()) {
+    const Cycles cycles(graph);
+    for (const Names& cycle : cycles.found()) {
         std::string includes;
         for (const std::string& folder : cycle)
             for (const auto& [target, line] : graph[folder])
@@ -288,9 +293,21 @@ TEST(IncludeRules, TheServerAndTheClientLinkNoImageOrMeshLibrary) {
     for (const char* program : {"haustra-server", "haustra-client"}) {
         const std::string linked = told("ldd", program);
         EXPECT_NE(linked.find("libssl"), std::string::npos) << linked;
-        for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti"}) {
+        for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti",
+                                    "libOpenImageIO", "libopencv"}) {
             EXPECT_EQ(linked.find(library), std::string::npos) << program << " links " << library;
         }
+    }
+    EXPECT_EQ(told("ldd", "haustra-server").find("libpng"), std::string::npos);
+}
+
+// They cost every start a quarter of a second: haustra loads them with its first picture.
+TEST(IncludeRules, OnlyTheModuleOfPicturesLinksTheImageLibraries) {
+    const std::string module = told("ldd", "../lib/haustra/haustra-pictures.so");
+    const std::string program = told("ldd", "haustra");
+    for (const char* library : {"libOpenImageIO", "libopencv_imgproc"}) {
+        EXPECT_NE(module.find(library), std::string::npos) << library;
+        EXPECT_EQ(program.find(library), std::string::npos) << library;
     }
 }
 

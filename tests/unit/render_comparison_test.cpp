@@ -1,4 +1,4 @@
-// The classification's colours and places, and panels side by side.
+// The classification's colours and places.
 #include "render/comparison.h"
 
 #include <algorithm>
@@ -89,30 +89,6 @@ TEST(TissuePicture, FailsWhereASliceWould) {
     const Image away =
         *tissuePicture(mixture, SliceView{View::axial, {0, 0, 1e300}, 1.0, {}}, 8, 8);
     EXPECT_EQ(away.rgb, std::vector<std::uint8_t>(3 * 64, 0));
-}
-
-TEST(SideBySide, KeepsEveryPanelWhole) {
-    std::mt19937 random(2);
-    std::vector<Image> panels;
-    for (const int width : {5, 1, 8}) {
-        panels.push_back({width, 4, std::vector<std::uint8_t>(3u * 4 * std::size_t(width))});
-        for (auto& value : panels.back().rgb)
-            value = std::uint8_t(random() % 255);  // no white, which separates
-    }
-    const Image joined = sideBySide(panels);
-    EXPECT_EQ(joined.width, 14 + 2 * separatorPixels);
-    EXPECT_EQ(joined.height, 4);
-    ASSERT_EQ(joined.rgb.size(), 3u * 4 * std::size_t(joined.width));
-    for (int y = 0; y < 4; ++y) {
-        auto pixel = joined.rgb.begin() + 3 * std::ptrdiff_t(joined.width) * y;
-        for (std::size_t n = 0; n < panels.size(); ++n) {
-            for (int value = 0; n > 0 && value < 3 * separatorPixels; ++value)
-                EXPECT_EQ(*pixel++, 255);
-            for (int value = 0; value < 3 * panels[n].width; ++value)
-                EXPECT_EQ(*pixel++, panels[n].rgb[std::size_t(3 * panels[n].width * y + value)]);
-        }
-    }
-    EXPECT_EQ(sideBySide({panels[0]}).rgb, panels[0].rgb);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Cameras, transfer functions and slices, where no GL is needed.
 #include "render/optics/transfer_table.h"
 #include "render/picture.h"
-#include "render/png_file.h"
 
 #include <cmath>
 
@@ -128,12 +127,6 @@ TEST(Window, EndsAreBlackAndWhite) {
     EXPECT_EQ(windowed(-251.0, window), 0.0);
     EXPECT_EQ(windowed(151.0, window), 255.0);
     EXPECT_NEAR(windowed(-50.0, window), 127.5, 1e-9);
-}
-
-TEST(Png, RefusesWhatItCannotWrite) {
-    EXPECT_FALSE(writePng("/nonexistent/folder/a.png", {1, 1, {1, 2, 3}}));
-    EXPECT_FALSE(writePng(testing::TempDir() + "a.png", {2, 2, {1, 2, 3}}));
-    EXPECT_TRUE(writePng(testing::TempDir() + "a.png", {1, 1, {1, 2, 3}}));
 }
 
 }  // namespace

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <string>
 
-#include <png.h>
-
 namespace haustra::render {
 
 namespace {
@@ -90,28 +88,6 @@ Result<void> checkWallPaint(const WallPaint& paint) {
     if (!(paint.height > 0.0 && paint.height <= maxFlatHeight))
         return fail(ErrorKind::badInput, "the strip has no height or is too long", "wall paint");
     return {};
-}
-
-Result<std::shared_ptr<const WallPaint>> readWallPaint(const std::filesystem::path& file,
-                                                       double height) {
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    const auto refuse = [&](const std::string& why) {
-        png_image_free(&png);
-        return fail(ErrorKind::badInput, why, file.filename().string());
-    };
-    if (!png_image_begin_read_from_file(&png, file.c_str()))
-        return refuse(std::string("is no PNG picture: ") + png.message);
-    png.format = PNG_FORMAT_RGBA;
-    auto paint = std::make_shared<WallPaint>();
-    if (auto sound = checkSize(png.width, png.height); !sound) return refuse(sound.error().message);
-    paint->size = {int(png.width), int(png.height)};
-    paint->height = height;
-    paint->pixels.resize(std::size_t(png.width) * png.height);
-    if (!png_image_finish_read(&png, nullptr, paint->pixels.data(), 0, nullptr))
-        return refuse(std::string("cannot be read: ") + png.message);
-    TRY(checkWallPaint(*paint));
-    return std::shared_ptr<const WallPaint>(std::move(paint));
 }
 
 void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band,

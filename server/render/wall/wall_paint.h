@@ -5,7 +5,6 @@
 #include "render/scene/picture.h"
 #include "render/scene/raycaster.h"
 
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
@@ -35,11 +34,6 @@ inline constexpr int maxPaintSide = 1 << 15;
 /// Fails (badInput) where there are no pixels, or not as many as its size says, a side is over
 /// maxPaintSide, or the height is none of a strip.
 Result<void> checkWallPaint(const WallPaint& paint);
-
-/// A PNG file, of any kind of pixel: without an alpha channel it covers all of the wall. `height`
-/// is the strip's. Fails (badInput) where the file is no PNG or too large.
-Result<std::shared_ptr<const WallPaint>> readWallPaint(const std::filesystem::path& file,
-                                                       double height);
 
 /// Which place of the wall a pixel sees first.
 struct WallPixel {

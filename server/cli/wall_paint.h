@@ -1,4 +1,4 @@
-// Bridges as pictures of a case show them.
+// Colours of the wall in pictures of a case: a given picture, and its bridges.
 #pragma once
 
 #include "core/flat_map.h"
@@ -6,9 +6,14 @@
 #include "render/wall/wall_paint.h"
 #include "store/case_store.h"
 
+#include <filesystem>
 #include <memory>
 
 namespace haustra::cli {
+
+/// A picture of the strip, `height` circumferences long (pictures::readColorPicture).
+Result<std::shared_ptr<const render::WallPaint>> readWallPaint(const std::filesystem::path& file,
+                                                               double height);
 
 /// Whether the case's lumen has a bridge, on its path or off it. False where it has no lumen.
 Result<bool> hasBridges(const store::Case& source);

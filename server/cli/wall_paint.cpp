@@ -1,12 +1,24 @@
-#include "cli/bridge_paint.h"
+#include "cli/wall_paint.h"
 
 #include "core/bridges.h"
 #include "core/ct_scan.h"
+#include "pictures/picture_file.h"
 #include "render/wall/strip_painter.h"
 
 #include <cstring>
 
 namespace haustra::cli {
+
+Result<std::shared_ptr<const render::WallPaint>> readWallPaint(const std::filesystem::path& file,
+                                                               double height) {
+    auto picture = TRY(pictures::readColorPicture(file, render::maxPaintSide));
+    auto paint = std::make_shared<render::WallPaint>();
+    paint->size = picture.size;
+    paint->pixels = std::move(picture.pixels);
+    paint->height = height;
+    TRY(render::checkWallPaint(*paint));
+    return paint;
+}
 
 Result<bool> hasBridges(const store::Case& source) {
     if (!source.find("lumen")) return false;

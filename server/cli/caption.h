@@ -1,0 +1,43 @@
+// The words and marks that --caption draws onto a picture: what it shows, and which way and how
+// large it lies in the patient.
+#pragma once
+
+#include "core/flat_map.h"
+#include "pictures/drawing.h"
+#include "render/view.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra::cli {
+
+/// How a picture of parallel rays lies in the patient.
+struct PictureFrame {
+    glm::dvec3 right{1.0, 0.0, 0.0}, down{0.0, 1.0, 0.0};  ///< LPS, of length one
+    double mmPerPixel = 1.0;
+};
+PictureFrame frameOf(const render::SlicePlacement& placement);
+/// Of an orthographic camera's picture; none of the other lenses, which have no one scale.
+std::optional<PictureFrame> frameOf(const render::Camera& camera, int pictureHeight);
+
+/// Where a direction of the patient points: one or two of L, R, A, P, H and F, the nearer first.
+std::string orientation(glm::dvec3 direction);
+
+/// `line` at the bottom; with a frame, the letters of the directions at the edges, and a bar of a
+/// round number of millimetres.
+pictures::Marks caption(const std::string& line, const std::optional<PictureFrame>& frame,
+                        glm::ivec2 size);
+
+/// The same for a comparison of three panels of `size`, each with its title, the middle one with
+/// the tissues' colours.
+pictures::Marks comparisonCaption(const std::string& line, const PictureFrame& frame,
+                                  glm::ivec2 size);
+
+/// Of the whole strip in a picture of `size`: its ends, and a scale of millimetres along the
+/// centerline, from the rectum, where the wall's cameras stand.
+pictures::Marks stripCaption(const FlatMap& map, glm::ivec2 size);
+
+}  // namespace haustra::cli

@@ -1,0 +1,48 @@
+#include "cli/provenance.h"
+
+#include <fmt/format.h>
+
+namespace haustra::cli {
+
+pictures::Provenance ownProvenance() {
+    return {"Haustra " HAUSTRA_VERSION, {}};
+}
+
+std::string toText(glm::dvec2 point) {
+    return fmt::format("{},{}", point.x, point.y);
+}
+std::string toText(glm::dvec3 point) {
+    return fmt::format("{},{},{}", point.x, point.y, point.z);
+}
+
+void addProduct(pictures::Provenance& provenance, const store::Case& source,
+                const std::string& product) {
+    if (const auto found = source.find(product))
+        provenance.facts.emplace_back(product + ".key", found->key.hex);
+}
+
+void addCamera(pictures::Provenance& provenance, const render::Camera& camera) {
+    const auto add = [&](const char* name, std::string value) {
+        provenance.facts.emplace_back(std::string("camera.") + name, std::move(value));
+    };
+    add("position_mm", toText(camera.positionMm));
+    add("forward", toText(camera.forward));
+    add("up", toText(camera.up));
+    switch (camera.lens) {
+        case render::Lens::perspective:
+            add("lens", "perspective");
+            break;
+        case render::Lens::fisheye:
+            add("lens", "fisheye");
+            break;
+        case render::Lens::orthographic:
+            add("lens", "orthographic");
+            break;
+    }
+    if (camera.lens == render::Lens::orthographic)
+        add("height_mm", fmt::format("{}", camera.heightMm));
+    else
+        add("fov_degrees", fmt::format("{}", camera.fovDegrees));
+}
+
+}  // namespace haustra::cli

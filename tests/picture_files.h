@@ -1,0 +1,35 @@
+// Pictures that programs wrote, read back and compared.
+#pragma once
+
+#include "core/image.h"
+#include "pictures/picture_file.h"
+
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace haustra::tests {
+
+/// The file's pixels; a failure of the test, and no pixels, where it is no PNG or TIFF picture.
+inline Image readPicture(const std::string& file) {
+    const auto read = pictures::readColorPicture(file, 1 << 20);
+    if (!read) {
+        ADD_FAILURE() << describe(read.error());
+        return {};
+    }
+    Image image = blankImage(read->size);
+    for (std::size_t i = 0; i < read->pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            image.rgb[3 * i + std::size_t(c)] = read->pixels[i][c];
+    return image;
+}
+
+/// By OpenImageIO's idiff: no pixel of one differs from the other's, whatever the files' formats.
+inline testing::AssertionResult samePicture(const std::string& a, const std::string& b) {
+    const std::string command = "idiff -fail 0 '" + a + "' '" + b + "'";
+    if (std::system(command.c_str()) == 0) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << command << " tells a difference";
+}
+
+}  // namespace haustra::tests
