@@ -67,7 +67,7 @@ void appendTileHeader(std::vector<std::uint8_t>& out, const TileHeader& header);
 Result<TileHeader> parseTileHeader(std::span<const std::uint8_t> bytes);
 
 /// Lossless pictures: the MED (LOCO-I) prediction residual of a reversible colour transform,
-/// zstd-compressed (METHODS §3). `rgb` is width·height·3 bytes.
+/// zstd-compressed (METHODS §21 "Pictures on the wire"). `rgb` is width·height·3 bytes.
 std::vector<std::uint8_t> encodeLossless(std::span<const std::uint8_t> rgb, int width, int height);
 Result<std::vector<std::uint8_t>> decodeLossless(std::span<const std::uint8_t> bytes, int width,
                                                  int height);

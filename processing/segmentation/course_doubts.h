@@ -18,9 +18,9 @@ namespace haustra::segmentation {
 /// likelier; a wall looked open or had to be set up; untagged fluid hides what lies beneath.
 /// Counted on wild phantoms, at 1.4 to 2 mm (seeds 1, 2 and 7 to 14: of 24 ways under 60 mm 7
 /// passed a loop by, 4 of them between unlike calibres) and at full size (seeds 1 to 8: of ways of
-/// 40 to 65 mm none, of four over 70 mm two): METHODS. The odds of two walls (15 %) and of the end
-/// (40 %) are judged, not counted. The parts' least lengths are a third of the usual ones (Gray's
-/// Anatomy: sigmoid 40 cm, descending 25, transverse 50, ascending 20).
+/// 40 to 65 mm none, of four over 70 mm two): METHODS §3 "Segmentation". The odds of two
+/// walls (15 %) and of the end (40 %) are judged, not counted. The parts' least lengths are a third
+/// of the usual ones (Gray's Anatomy: sigmoid 40 cm, descending 25, transverse 50, ascending 20).
 std::vector<Doubt> doubtsOf(const ColonRecord& record);
 
 /// That the course is right, given that the chain is with `chainConfidence`: doubts are

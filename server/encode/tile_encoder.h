@@ -9,7 +9,7 @@
 
 namespace haustra::encode {
 
-/// JPEG while moving: 42 dB at 25 to 69 kB for 512² (METHODS §3).
+/// JPEG while moving: 42 dB at 25 kB for 512² (METHODS §21 "Pictures on the wire").
 inline constexpr int jpegQuality = 80;
 
 /// Codes pictures. Belongs to one thread (libjpeg-turbo keeps state between pictures).

@@ -9,8 +9,8 @@ struct TileRectangle {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Longest side of a tile. Small tiles waste bytes (METHODS §3); one of this size is coded in a
-/// few milliseconds.
+/// Longest side of a tile. Small tiles waste bytes (METHODS §21 "Pictures on the wire"); one of
+/// this size is coded in a few milliseconds.
 inline constexpr int maxTileSide = 512;
 
 /// Rows of tiles from the top, each from the left, that cover the picture once. Every side of the

@@ -1,4 +1,4 @@
-// An OpenGL 4.5 context without a display (METHODS §1).
+// An OpenGL 4.5 context without a display (METHODS §15 "GL without a display").
 #pragma once
 
 #include "core/result.h"

@@ -28,7 +28,7 @@ class WallEntry {
 public:
     /// What a transfer function shows begins up to the width of the scanner's blur before the mesh,
     /// and the blocks that the moved mesh touches should be empty. Of the margins tried on a real
-    /// colon (METHODS.md) this leaves the fewest blocks before it.
+    /// colon (METHODS §16.3 "Rays that begin at the mesh") this leaves the fewest blocks before it.
     static constexpr double defaultMarginMm = 4.0;
 
     /// The scene must have a closed mesh with its indices in range. O(blocks + triangles); a byte
