@@ -49,16 +49,16 @@ std::string peerFingerprint(Stream& stream) {
     return fingerprint;
 }
 
-// How one link ended.
-struct Ending {
-    Error error;
-    bool worthRetrying = true;
-    bool wasUp = false;
-};
-
 }  // namespace
 
 struct Connection::Impl {
+    // How one link ended.
+    struct Ending {
+        Error error;
+        bool worthRetrying = true;
+        bool wasUp = false;
+    };
+
     explicit Impl(ConnectionOptions given)
         : options(std::move(given)), name(toString(options.address)) {
         tls.set_verify_mode(asio::ssl::verify_none);  // the pin decides, right after the handshake

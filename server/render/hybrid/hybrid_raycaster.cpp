@@ -46,14 +46,6 @@ double cpuTimeMs() {
     return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
 }
 
-/// The octree as one view's colours show it.
-struct Classified {
-    Optics optics;
-    double stepMm;
-    ClassifiedOctree octree;
-    bool anyOpaque;
-};
-
 double diagonalMm(const Grid& grid) {
     return glm::distance(grid.patientFromVoxelPoint(glm::dvec3(0.0)),
                          grid.patientFromVoxelPoint(glm::dvec3(grid.size - 1)));
@@ -71,6 +63,14 @@ bool anyOpaqueLeaf(const ClassifiedOctree& octree) {
 }  // namespace
 
 struct HybridRaycaster::Impl {
+    /// The octree as one view's colours show it.
+    struct Classified {
+        Optics optics;
+        double stepMm;
+        ClassifiedOctree octree;
+        bool anyOpaque;
+    };
+
     std::shared_ptr<GlScene> scene;
     HybridOptions options;
     TileWorkers workers;
@@ -218,7 +218,7 @@ Result<void> HybridRaycaster::render(const CameraView& view, const Band& band, I
     const Scene& scene = my.scene->scene();
     const TransferTable& table = onGpu->table();
     const double step = stepMm(view.march, scene.grid());
-    const Classified& classified = my.classify(view.optics, step, table);
+    const Impl::Classified& classified = my.classify(view.optics, step, table);
     const MarchVariant variant = MarchVariant::of(view.optics, my.scene->hasGradients(view.optics),
                                                   view.backdrop != nullptr);
     const auto slab = TRY(my.slabs.program(variant));

@@ -17,8 +17,18 @@ namespace haustra::render {
 
 namespace {
 
+/// What the leap map is made with: every opacity above zero shows.
+Optics opacityRamp(Optics optics) {
+    optics.transferFunction = {{{0.0, glm::dvec3(1.0), 0.0}, {255.0, glm::dvec3(1.0), 1.0}}, {}};
+    optics.composition = Composition::emissionAbsorption;
+    optics.preIntegrated = false;
+    return optics;
+}
+
+}  // namespace
+
 /// Colours, with the opacity of voxels that are not shown taken away.
-class ColorCells final : public CellSource {
+class LabelledRaycaster::ColorCells final : public CellSource {
 public:
     explicit ColorCells(std::shared_ptr<const LabelledColorVolume> volume)
         : volume_(std::move(volume)) {}
@@ -55,16 +65,6 @@ private:
     std::shared_ptr<const LabelledColorVolume> volume_;
     std::vector<std::int16_t> labels_;  // sorted; empty: all
 };
-
-/// What the leap map is made with: every opacity above zero shows.
-Optics opacityRamp(Optics optics) {
-    optics.transferFunction = {{{0.0, glm::dvec3(1.0), 0.0}, {255.0, glm::dvec3(1.0), 1.0}}, {}};
-    optics.composition = Composition::emissionAbsorption;
-    optics.preIntegrated = false;
-    return optics;
-}
-
-}  // namespace
 
 struct LabelledRaycaster::Impl {
     std::shared_ptr<const LabelledColorVolume> volume;

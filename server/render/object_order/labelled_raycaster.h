@@ -36,6 +36,7 @@ public:
     const ResidencyStats& residency() const;  ///< of the last band
 
 private:
+    class ColorCells;
     struct Impl;
     explicit LabelledRaycaster(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
