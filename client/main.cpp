@@ -1,4 +1,5 @@
 // haustra-client: reads a case that a Haustra server streams, in a window or from a script.
+#include "core/version.h"
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
 #include "script/script_player.h"
@@ -15,7 +16,7 @@ namespace {
 using namespace haustra;
 
 constexpr int exitDone = 0, exitFailed = 1, exitUsage = 2;
-const std::string software = std::string("haustra-client ") + HAUSTRA_VERSION;
+const std::string software = std::string("haustra-client ") + softwareVersion;
 
 struct Arguments {
     std::string server, caseName, script, out, size, fingerprint, knownServers, screenshot;

@@ -1,5 +1,6 @@
 // haustra: everything offline, from a phantom to pictures.
 #include "cli/commands.h"
+#include "core/version.h"
 #include "store/lost_pages.h"
 
 #include <cstdio>
@@ -20,7 +21,7 @@ int failed(const std::string& what) {
 
 int runProgram(int argc, char** argv) {
     CLI::App program("Haustra: virtual colonoscopy on the command line.", "haustra");
-    program.set_version_flag("--version", HAUSTRA_VERSION);
+    program.set_version_flag("--version", haustra::softwareVersion);
     program.require_subcommand(1);
     program.set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
     program.failure_message([](const CLI::App* app, const CLI::Error& error) {

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "core/version.h"
 #include "dicom/write_series.h"
 #include "nifti/nifti_file.h"
 #include "phantom/wild.h"
@@ -201,7 +202,7 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
                                        {"centerline_mm", made.centerline.lengthMm()},
                                        {"polyps", made.polyps.findings.size()},
                                        {"noise_sd_hu", made.noiseSdHu},
-                                       {"haustra", HAUSTRA_VERSION}};
+                                       {"haustra", softwareVersion}};
     const fs::path truth = folder / "truth";
     return dicom::writeSeries(folder / "series", made.scan, writing)
         .and_then([&] { return nifti::writeNifti(truth / "lumen.nii.gz", made.lumen); })

@@ -1,5 +1,6 @@
 // haustra-server: streams the store's cases to clients.
 #include "core/raycasters.h"
+#include "core/version.h"
 #include "net/server.h"
 #include "store/durable_file.h"
 #include "store/lost_pages.h"
@@ -119,10 +120,10 @@ Result<void> serve(const Arguments& arguments) {
 
 int runProgram(int argc, char** argv) {
     Arguments arguments;
-    arguments.server.software = "haustra-server " HAUSTRA_VERSION;
+    arguments.server.software = std::string("haustra-server ") + haustra::softwareVersion;
     CLI::App program("Haustra's server: renders the cases of a store and streams them to clients.",
                      "haustra-server");
-    program.set_version_flag("--version", HAUSTRA_VERSION);
+    program.set_version_flag("--version", haustra::softwareVersion);
     program.failure_message([](const CLI::App*, const CLI::Error& error) {
         return "haustra-server: " + std::string(error.what()) + " (see haustra-server --help)\n";
     });
