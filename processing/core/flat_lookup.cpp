@@ -252,7 +252,8 @@ double FlatLookup::areaMm2(const std::vector<glm::dvec2>& polygon) const {
         corner.x -= turns;
     double sum = 0.0;
     for (const Trapezoid& piece : evenOddTrapezoids(near)) {
-        const auto [left, right] = std::minmax({piece[0].x, piece[1].x, piece[2].x, piece[3].x});
+        const auto ends = std::minmax({piece[0].x, piece[1].x, piece[2].x, piece[3].x});
+        const double left = ends.first, right = ends.second;
         index_->forEachTurn(left, right, [&](double shift) {
             Trapezoid moved = piece;
             for (glm::dvec2& corner : moved)

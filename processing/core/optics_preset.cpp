@@ -31,9 +31,11 @@ struct BadPreset {
 /// Refuses what is no object, and keys that are not among `known`.
 void expectKeys(const Json& json, const char* what, std::initializer_list<const char*> known) {
     if (!json.is_object()) throw BadPreset{std::string(what) + " is no object"};
-    for (const auto& [key, value] : json.items())
+    for (const auto& item : json.items()) {
+        const std::string& key = item.key();
         if (std::none_of(known.begin(), known.end(), [&](const char* k) { return key == k; }))
             throw BadPreset{std::string(what) + " has an unknown key \"" + key + "\""};
+    }
 }
 
 double numberIn(const Json& json, const char* key) {
