@@ -3,6 +3,9 @@
 
 #include "end_to_end/server_process.h"
 #include "flat_tube.h"
+#include "store/case_store.h"
+
+#include <stdexcept>
 
 namespace haustra::tests {
 

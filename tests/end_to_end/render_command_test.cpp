@@ -4,6 +4,7 @@
 #include "picture_files.h"
 #include "pictures/drawing.h"
 #include "render/comparison.h"
+#include "store/case_store.h"
 
 #include <algorithm>
 

@@ -4,6 +4,7 @@
 #include "grey_picture_file.h"
 #include "nifti/nifti_file.h"
 #include "picture_files.h"
+#include "store/case_store.h"
 
 #include <algorithm>
 #include <fstream>

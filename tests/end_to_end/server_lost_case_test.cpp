@@ -1,6 +1,7 @@
 // A product that is cut short while readers look at it ends its case, not the server.
 #include "end_to_end/server_process.h"
 #include "end_to_end/server_test_client.h"
+#include "store/case_store.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,7 @@
 // How the real haustra-server opens cases: beside the pictures of others, and each but once.
 #include "end_to_end/server_process.h"
 #include "end_to_end/server_test_client.h"
+#include "store/case_store.h"
 
 #include <thread>
 

@@ -4,6 +4,7 @@
 #include "end_to_end/server_test_client.h"
 #include "gpu/context.h"
 #include "render/case_renderer.h"
+#include "store/case_store.h"
 
 #include <map>
 #include <random>
