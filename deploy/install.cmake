@@ -15,8 +15,11 @@ function(haustra_install component program)
     endforeach()
 endfunction()
 
+# haustra loads it with its first picture; it looks for it beside its own folder.
+install(TARGETS haustra-pictures LIBRARY DESTINATION lib/haustra COMPONENT tools)
 haustra_install(tools haustra README.md processing/METHODS.md processing/organs/README.md)
-haustra_install(server haustra-server deploy/OPERATIONS.md protocol/PROTOCOL.md server/THREADS.md)
+haustra_install(server haustra-server deploy/OPERATIONS.md protocol/PROTOCOL.md protocol/ADDING.md
+    server/THREADS.md)
 if(HAUSTRA_BUILD_CLIENT)
     haustra_install(client haustra-client client/SCRIPT.md)
 endif()

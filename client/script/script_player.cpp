@@ -1,5 +1,6 @@
 #include "script/script_player.h"
 
+#include "core/raycasters.h"
 #include "protocol/limits.h"
 #include "reader/overview_map.h"
 #include "reader/strip_tour.h"
@@ -29,7 +30,7 @@ void count(ActionReport& report, const Arrival& arrival, Clock::time_point asked
     report.renderMicroseconds.push_back(picture.renderMicroseconds);
     report.encodeMicroseconds.push_back(picture.encodeMicroseconds);
     report.queueMicroseconds.push_back(picture.queueMicroseconds);
-    report.raycaster = protocol::raycasterName(picture.raycaster);
+    report.raycaster = raycasterName(picture.raycaster);
     report.coarse += picture.coarse;
     report.bytes += picture.wireBytes;
 }

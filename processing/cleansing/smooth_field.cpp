@@ -63,19 +63,23 @@ void convolveAxis(std::vector<float>& cells, glm::ivec3 size, int axis,
     const std::size_t count = cells.size() / std::size_t(length);
     parallelFor(count, 256, threads, [&](std::size_t first, std::size_t last) {
         std::vector<float> line(static_cast<std::size_t>(length));
+        // Pointers: a bound that is checked for each product costs half as much again.
+        const float* const weights = kernel.data() + reach;
+        float* const values = line.data();
         for (std::size_t l = first; l < last; ++l) {
-            const std::size_t begin = l % stride + l / stride * stride * std::size_t(length);
+            float* const out =
+                cells.data() + l % stride + l / stride * stride * std::size_t(length);
             bool any = false;
             for (int n = 0; n < length; ++n) {
-                line[std::size_t(n)] = cells[begin + std::size_t(n) * stride];
-                any |= line[std::size_t(n)] != 0.0f;
+                values[n] = out[std::size_t(n) * stride];
+                any |= values[n] != 0.0f;
             }
             if (!any) continue;
             for (int n = 0; n < length; ++n) {
                 float sum = 0.0f;
                 for (int m = std::max(0, n - reach); m <= std::min(length - 1, n + reach); ++m)
-                    sum += kernel[std::size_t(m - n + reach)] * line[std::size_t(m)];
-                cells[begin + std::size_t(n) * stride] = sum;
+                    sum += weights[m - n] * values[m];
+                out[std::size_t(n) * stride] = sum;
             }
         }
     });

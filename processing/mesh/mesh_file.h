@@ -15,8 +15,8 @@ namespace haustra::mesh {
 /// triangle, an index out of range or a coordinate that is not finite. Thread-safe.
 ///
 /// The formats are read here because OpenMesh's readers round to float, take broken files for sound
-/// ones and do not end on some (measured in processing/METHODS.md), and CGAL's take as much memory
-/// as a hostile header claims.
+/// ones and do not end on some (measured in METHODS §7.1 "Half-edges and mesh files"), and CGAL's
+/// take as much memory as a hostile header claims.
 Result<TriMesh> readMesh(const std::filesystem::path& file);
 
 /// Writes PLY (binary, double), OBJ or OFF (text that reads back exactly) or STL (binary, float by

@@ -119,7 +119,7 @@ inline const Catalogue& catalogue() {
          .help = "what a person said of a colon: seeds, excludes, cuts and joins"},
         {.name = flatImage,
          .parents = {ct, cleansed, lumen, flatMap},
-         .endings = {".png"},
+         .endings = {".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg"},
          .help = "the whole flattened wall seen from within, the rectum at the bottom, black where "
                  "the surface crosses air and hatched along bridges"},
     });

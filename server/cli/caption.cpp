@@ -50,8 +50,8 @@ PictureFrame frameOf(const render::SlicePlacement& placement) {
             glm::length(placement.rightMm)};
 }
 
-std::optional<PictureFrame> frameOf(const render::Camera& camera, int pictureHeight) {
-    if (camera.lens != render::Lens::orthographic) return {};
+std::optional<PictureFrame> frameOf(const Camera& camera, int pictureHeight) {
+    if (camera.lens != Lens::orthographic) return {};
     const glm::dvec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
     return PictureFrame{right, glm::normalize(glm::cross(camera.forward, right)),
                         camera.heightMm / pictureHeight};

@@ -4,7 +4,7 @@
 
 #include "core/flat_map.h"
 #include "pictures/drawing.h"
-#include "render/view.h"
+#include "render/scene/picture.h"
 
 #include <optional>
 #include <string>
@@ -21,7 +21,7 @@ struct PictureFrame {
 };
 PictureFrame frameOf(const render::SlicePlacement& placement);
 /// Of an orthographic camera's picture; none of the other lenses, which have no one scale.
-std::optional<PictureFrame> frameOf(const render::Camera& camera, int pictureHeight);
+std::optional<PictureFrame> frameOf(const Camera& camera, int pictureHeight);
 
 /// Where a direction of the patient points: one or two of L, R, A, P, H and F, the nearer first.
 std::string orientation(glm::dvec3 direction);

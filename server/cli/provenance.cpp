@@ -1,11 +1,13 @@
 #include "cli/provenance.h"
 
+#include "core/version.h"
+
 #include <fmt/format.h>
 
 namespace haustra::cli {
 
 pictures::Provenance ownProvenance() {
-    return {"Haustra " HAUSTRA_VERSION, {}};
+    return {std::string("Haustra ") + softwareVersion, {}};
 }
 
 std::string toText(glm::dvec2 point) {
@@ -21,7 +23,7 @@ void addProduct(pictures::Provenance& provenance, const store::Case& source,
         provenance.facts.emplace_back(product + ".key", found->key.hex);
 }
 
-void addCamera(pictures::Provenance& provenance, const render::Camera& camera) {
+void addCamera(pictures::Provenance& provenance, const Camera& camera) {
     const auto add = [&](const char* name, std::string value) {
         provenance.facts.emplace_back(std::string("camera.") + name, std::move(value));
     };
@@ -29,17 +31,17 @@ void addCamera(pictures::Provenance& provenance, const render::Camera& camera) {
     add("forward", toText(camera.forward));
     add("up", toText(camera.up));
     switch (camera.lens) {
-        case render::Lens::perspective:
+        case Lens::perspective:
             add("lens", "perspective");
             break;
-        case render::Lens::fisheye:
+        case Lens::fisheye:
             add("lens", "fisheye");
             break;
-        case render::Lens::orthographic:
+        case Lens::orthographic:
             add("lens", "orthographic");
             break;
     }
-    if (camera.lens == render::Lens::orthographic)
+    if (camera.lens == Lens::orthographic)
         add("height_mm", fmt::format("{}", camera.heightMm));
     else
         add("fov_degrees", fmt::format("{}", camera.fovDegrees));

@@ -2,8 +2,8 @@
 // given: those may hold a patient's.
 #pragma once
 
+#include "core/camera.h"
 #include "pictures/picture_file.h"
-#include "render/view.h"
 #include "store/case_store.h"
 
 #include <string>
@@ -24,6 +24,6 @@ void addProduct(pictures::Provenance& provenance, const store::Case& source,
                 const std::string& product);
 
 /// "camera.…": place and directions (LPS, mm), lens, and its angle or height.
-void addCamera(pictures::Provenance& provenance, const render::Camera& camera);
+void addCamera(pictures::Provenance& provenance, const Camera& camera);
 
 }  // namespace haustra::cli

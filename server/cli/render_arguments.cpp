@@ -14,7 +14,6 @@ namespace haustra::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using render::Lens, render::View;
 
 const std::string camera = "camera";  // of View::endoscopic, placed by --eye
 

@@ -34,7 +34,7 @@ struct RenderArguments {
 
     std::vector<glm::dvec3> eyeMm, lookMm, up;  ///< at most one each
     double azimuthDegrees = 0.0, elevationDegrees = 0.0;
-    render::Lens lens = render::Lens::perspective;
+    Lens lens = Lens::perspective;
     std::optional<double> fovDegrees, heightMm;
 
     std::vector<glm::dvec3> marksMm;
@@ -48,7 +48,7 @@ struct RenderArguments {
     std::vector<int> shownLabels;      ///< empty: all
     std::optional<double> stepVoxels;  ///< empty: the view's own
 
-    std::optional<render::WindowLevel> window;
+    std::optional<WindowLevel> window;
     double zoom = 1.0;
     glm::ivec2 size{512, 512};
     bool caption = false;
@@ -58,7 +58,7 @@ struct RenderArguments {
     /// The input is a file or folder: it has a slash, or ends in .nii or .nii.gz.
     bool isScan() const;
     /// The view, with its default.
-    render::View shown() const;
+    View shown() const;
     bool isSlice() const;  ///< axial, coronal or sagittal
     bool isFlattened() const;
     bool castsRays() const;  ///< the raycaster draws at least a part of it

@@ -14,8 +14,8 @@ constexpr double marginShare = 1.04;
 
 }  // namespace
 
-render::Camera cameraOutside(const Grid& grid, Direction from, render::Lens lens, double fovDegrees,
-                             double aspect) {
+Camera cameraOutside(const Grid& grid, Direction from, Lens lens, double fovDegrees,
+                     double aspect) {
     const Camera pose = cameraOf({{}, 1.0, from.azimuthDegrees, from.elevationDegrees, 1.0});
     const glm::dvec3 right = glm::cross(pose.forward, pose.up);
     const glm::dvec3 faces(grid.size);
@@ -30,11 +30,10 @@ render::Camera cameraOutside(const Grid& grid, Direction from, render::Lens lens
                                                     std::abs(glm::dot(mm, right)) / aspect);
         halfHeight = std::max(halfHeight, aside);
         const double depth = glm::dot(mm, pose.forward);
-        distance = std::max(
-            distance, lens == render::Lens::orthographic ? 1.0 - depth : aside / slope - depth);
+        distance =
+            std::max(distance, lens == Lens::orthographic ? 1.0 - depth : aside / slope - depth);
     }
-    render::Camera camera{middle - distance * pose.forward, pose.forward, pose.up, fovDegrees,
-                          lens};
+    Camera camera{middle - distance * pose.forward, pose.forward, pose.up, fovDegrees, lens};
     camera.heightMm = 2.0 * halfHeight;
     return camera;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/grid.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 namespace haustra::cli {
 
@@ -14,8 +14,7 @@ struct Direction {
 /// Looks at the grid's middle with all of the grid, from face to face, in a picture that is
 /// `aspect` times as wide as high, as near as that allows. Of a perspective or fisheye lens the
 /// field of view is `fovDegrees`; an orthographic picture is as high as need be.
-render::Camera cameraOutside(const Grid& grid, Direction from, render::Lens lens, double fovDegrees,
-                             double aspect);
+Camera cameraOutside(const Grid& grid, Direction from, Lens lens, double fovDegrees, double aspect);
 
 /// The head's direction, or the front's where a camera looks along the patient.
 glm::dvec3 uprightFor(glm::dvec3 forward);

@@ -104,8 +104,8 @@ Result<render::Image> drawCamera(const RenderArguments& arguments, const Camera&
 Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Products& products,
                                      render::CaseRenderer& renderer, Notes& notes) {
     const auto from = TRY(cameraOnPath(arguments, products.centerline, products.flatMap));
-    Camera camera{from.positionMm, from.forward, from.up,
-                          fovOf(arguments, Camera{}.fovDegrees), arguments.lens};
+    Camera camera{from.positionMm, from.forward, from.up, fovOf(arguments, Camera{}.fovDegrees),
+                  arguments.lens};
     if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
     return drawCamera(arguments, camera, products.paint, renderer, notes);
 }
@@ -335,8 +335,7 @@ Result<render::Image> drawCase(const RenderArguments& arguments, Notes& notes) {
     const Grid grid = scans.ct.grid();
     return drawWith(arguments, std::move(prepared), [&](render::CaseRenderer& renderer) {
         const auto window = arguments.window.value_or(WindowLevel{});
-        const auto scan =
-            arguments.product == "cleansed" ? Scan::cleansed : Scan::original;
+        const auto scan = arguments.product == "cleansed" ? Scan::cleansed : Scan::original;
         if (arguments.isFlattened()) return drawFlattened(arguments, products, renderer, notes);
         if (arguments.shown() == View::overview)
             return drawOverview(arguments, products, renderer, notes);

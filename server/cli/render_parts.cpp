@@ -7,8 +7,6 @@
 
 namespace haustra::cli {
 
-using render::Lens;
-
 Result<Optics> opticsOf(const RenderArguments& arguments, const char* otherwise) {
     const std::string name = arguments.optics.empty() ? otherwise : arguments.optics;
     if (std::filesystem::path(name).extension() != ".json") return render::opticsPreset(name);
@@ -29,11 +27,11 @@ double aspectOf(const RenderArguments& arguments) {
     return double(arguments.size.x) / arguments.size.y;
 }
 
-render::Camera freeCamera(const RenderArguments& arguments, const Grid& grid) {
+Camera freeCamera(const RenderArguments& arguments, const Grid& grid) {
     const auto& [eye, look, up] = std::tie(arguments.eyeMm, arguments.lookMm, arguments.up);
-    render::Camera camera = cameraOutside(
+    Camera camera = cameraOutside(
         grid, {arguments.azimuthDegrees, arguments.elevationDegrees}, arguments.lens,
-        fovOf(arguments, eye.empty() ? 30.0 : render::Camera{}.fovDegrees), aspectOf(arguments));
+        fovOf(arguments, eye.empty() ? 30.0 : Camera{}.fovDegrees), aspectOf(arguments));
     if (!eye.empty()) {
         const glm::dvec3 target = look.empty()
                                       ? grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size - 1))

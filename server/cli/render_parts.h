@@ -5,7 +5,7 @@
 #include "core/grid.h"
 #include "core/optics.h"
 #include "core/result.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 namespace haustra::cli {
 
@@ -21,6 +21,6 @@ double fovOf(const RenderArguments& arguments, double ofPerspective);
 double aspectOf(const RenderArguments& arguments);
 
 /// The camera of --view camera: placed by --eye, or outside.
-render::Camera freeCamera(const RenderArguments& arguments, const Grid& grid);
+Camera freeCamera(const RenderArguments& arguments, const Grid& grid);
 
 }  // namespace haustra::cli

@@ -3,7 +3,7 @@
 
 #include "core/result.h"
 #include "protocol/framing.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 #include <memory>
 

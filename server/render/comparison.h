@@ -3,7 +3,7 @@
 
 #include "core/tissue.h"
 #include "core/volume.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 namespace haustra::render {
 

@@ -3,7 +3,7 @@
 
 #include "core/result.h"
 #include "records/bookmarks.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 #include "session/open_case.h"
 #include "session/paint_thread.h"
 

@@ -1,6 +1,6 @@
 // OpenMesh beside what this project keeps of its own: the readers of mesh files and the half-edges
-// that solvers walk on. What processing/METHODS.md says of either is printed here.
-// Arguments: readers FILE… | hostile | halfedges
+// that solvers walk on. What METHODS §7.1 "Half-edges and mesh files" says of either is printed
+// here. Arguments: readers FILE… | hostile | halfedges
 #include "mesh/halfedge_mesh.h"
 #include "mesh/mesh_file.h"
 #include "process_cost.h"

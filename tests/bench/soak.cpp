@@ -41,18 +41,17 @@ public:
     session::AnyView next() {
         switch (below(10)) {
             case 0:
-                return render::SliceView{
-                    render::View(int(render::View::axial) + below(3)),
-                    place(),
-                    within(1.0, 8.0),
-                    {within(-500, 500), within(1, 3000)},
-                    facts_.cleansed && below(2) ? render::Scan::cleansed : render::Scan::original};
+                return SliceView{View(int(View::axial) + below(3)),
+                                 place(),
+                                 within(1.0, 8.0),
+                                 {within(-500, 500), within(1, 3000)},
+                                 facts_.cleansed && below(2) ? Scan::cleansed : Scan::original};
             case 1:
-                return render::ObliqueView{place(), direction(), direction(), within(5, 300), {}};
+                return ObliqueView{place(), direction(), direction(), within(5, 300), {}};
             case 2: {
                 render::OverviewView view;
                 view.camera = camera();
-                if (view.camera.lens == render::Lens::fisheye)
+                if (view.camera.lens == Lens::fisheye)
                     view.camera = {place(), direction(), direction()};
                 if (below(2)) view.reader = camera();
                 for (int n = below(4); n > 0; --n)
@@ -86,10 +85,10 @@ private:
         return facts_.grid.patientFromVoxelPoint(voxel * glm::dvec3(facts_.grid.size));
     }
     glm::dvec3 direction() { return {within(-1, 1), within(-1, 1), within(-1, 1)}; }
-    render::Camera camera() {
-        render::Camera made{place(), direction(), direction(), within(5, 160)};
-        made.lens = render::Lens(below(3));
-        if (made.lens == render::Lens::fisheye) made.fovDegrees = within(30, 360);
+    Camera camera() {
+        Camera made{place(), direction(), direction(), within(5, 160)};
+        made.lens = Lens(below(3));
+        if (made.lens == Lens::fisheye) made.fovDegrees = within(30, 360);
         made.heightMm = within(5, 500);
         return made;
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/volume.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 #include <memory>
 

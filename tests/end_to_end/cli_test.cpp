@@ -126,7 +126,7 @@ TEST(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeTheWork) {
     const auto phantom = haustra({"phantom", folder.path() / "p", "--seed", "-1"});
     EXPECT_EQ(phantom.exitCode, 2) << phantom.err;
     const auto picture = haustra({"render", "case", "--store", folder.path(), "--arc-mm", "1",
-                                  "--out", folder.path() / "picture.jpg"});
+                                  "--out", folder.path() / "picture.gif"});
     EXPECT_EQ(picture.exitCode, 2) << picture.err;
     const auto table = haustra({"export", "case", "centerline", folder.path() / "no" / "line.csv",
                                 "--store", folder.path()});

@@ -64,8 +64,8 @@ TEST_F(RenderCommand, AComparisonIsItsThreePicturesSideBySide) {
                                   {"--view", plane, "--zoom", "1.5", "--product", "cleansed"});
         EXPECT_EQ(columns(all, 0, 80).rgb, before.rgb) << plane;
         EXPECT_EQ(columns(all, 2 * step, 80).rgb, after.rgb) << plane;
-        const render::SliceView view{
-            *render::viewFromString(plane), {-1.2, 9.8, 112.0}, 1.5, render::WindowLevel{}};
+        const SliceView view{
+            *render::viewFromString(plane), {-1.2, 9.8, 112.0}, 1.5, WindowLevel{}};
         const Image tissues = *render::tissuePicture(makeSmallCase().mixture, view, 80, 60);
         EXPECT_EQ(columns(all, step, 80).rgb, tissues.rgb) << plane;
         EXPECT_NE(before.rgb, after.rgb) << plane;

@@ -389,8 +389,8 @@ TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     client->send(window);
     client->slice(7, 1, inTheTube, 2.0, false);
     picture = client->picture();
-    image = (*renderer)->render(
-        render::SliceView{render::View::axial, {-1.2, 2.2, 112.0}, 2.0, {40.0, 400.0}}, 100, 90);
+    image = (*renderer)->render(SliceView{View::axial, {-1.2, 2.2, 112.0}, 2.0, {40.0, 400.0}}, 100,
+                                90);
     ASSERT_TRUE(picture && image);
     EXPECT_EQ(picture->header.viewport, 1);
     EXPECT_EQ(picture->rgb, image->rgb);

@@ -104,8 +104,7 @@ TEST_F(ServerViews, ObliqueSlicesAreTheRenderersOwn) {
     body->set_height_mm(45);
     body->set_cleansed(true);
     client_->send(message);
-    render::ObliqueView view{{-1.2, 2.2, 112.0},    {0.2, 0.1, 1}, {0, -1, 0}, 45.0, {},
-                             render::Scan::cleansed};
+    ObliqueView view{{-1.2, 2.2, 112.0}, {0.2, 0.1, 1}, {0, -1, 0}, 45.0, {}, Scan::cleansed};
     expectPicture(view);
 
     protocol::ClientMessage window;
@@ -143,7 +142,7 @@ TEST_F(ServerViews, TheOverviewIsTheRenderersOwn) {
     client_->send(message);
     render::OverviewView view;
     view.camera = {{0, -150, 130}, {0, 1, 0.05}, {0, 0, 1}, 60.0};
-    view.reader = render::Camera{{-1.2, 2.2, 112.0}, {0, 0, 1}, {0, -1, 0}, 60.0};
+    view.reader = Camera{{-1.2, 2.2, 112.0}, {0, 0, 1}, {0, -1, 0}, 60.0};
     view.bookmarksMm = {{0, 0, 120}};
     view.optics = render::opticsPreset("body").value();
     expectPicture(view);
@@ -178,7 +177,7 @@ TEST_F(ServerViews, LensesAndOpticsReachTheRaycaster) {
     body->set_lens(protocol::FISHEYE);
     client_->send(look);
     render::CameraView view;
-    view.camera = {{-1.2, 2.2, 112.0}, {0, 0, 1}, {0, -1, 0}, 240.0, render::Lens::fisheye};
+    view.camera = {{-1.2, 2.2, 112.0}, {0, 0, 1}, {0, -1, 0}, 240.0, Lens::fisheye};
     view.optics = render::opticsPreset("mucosa").value();
     expectPicture(view);
 
@@ -186,8 +185,7 @@ TEST_F(ServerViews, LensesAndOpticsReachTheRaycaster) {
     body->set_lens(protocol::ORTHOGRAPHIC);
     body->set_height_mm(30);
     client_->send(look);
-    view.camera = {{-1.2, 2.2, 112.0},         {0, 0, 1}, {0, -1, 0}, 90.0,
-                   render::Lens::orthographic, 30.0};
+    view.camera = {{-1.2, 2.2, 112.0}, {0, 0, 1}, {0, -1, 0}, 90.0, Lens::orthographic, 30.0};
     expectPicture(view);
 
     protocol::ClientMessage optics;

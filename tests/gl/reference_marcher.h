@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/volume.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 #include "render_scene.h"
 
 #include <algorithm>
@@ -205,22 +205,22 @@ inline void append(render::Image& image, glm::dvec3 color) {
 struct LensRay {
     glm::dvec3 originMm, direction;
 };
-inline std::optional<LensRay> lensRay(const render::Camera& camera, double x, double y) {
+inline std::optional<LensRay> lensRay(const Camera& camera, double x, double y) {
     const glm::dvec3 forward = glm::normalize(camera.forward);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
     const glm::dvec3 up = glm::cross(right, forward), aside = x * right + y * up;
     const double half = 0.5 * glm::radians(camera.fovDegrees);
     switch (camera.lens) {
-        case render::Lens::perspective:
+        case Lens::perspective:
             return LensRay{camera.positionMm, glm::normalize(forward + std::tan(half) * aside)};
-        case render::Lens::fisheye: {
+        case Lens::fisheye: {
             const double angle = half * std::hypot(x, y);
             if (angle > glm::radians(180.0)) return std::nullopt;
             if (angle == 0.0) return LensRay{camera.positionMm, forward};
             return LensRay{camera.positionMm,
                            std::cos(angle) * forward + std::sin(angle) * glm::normalize(aside)};
         }
-        case render::Lens::orthographic:
+        case Lens::orthographic:
             return LensRay{camera.positionMm + 0.5 * camera.heightMm * aside, forward};
     }
     return std::nullopt;

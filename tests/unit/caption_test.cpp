@@ -32,16 +32,15 @@ TEST(Caption, LettersSayWhereDirectionsPoint) {
 // The radiological convention: the patient's left on an axial slice's right, the front above.
 TEST(Caption, SlicesAreSeenAsRadiologistsDo) {
     const Grid grid = axisAlignedGrid({50, 40, 60}, {0.8, 0.8, 1.5});
-    const auto marksOf = [&](render::View plane) {
-        const render::SliceView view{plane, grid.patientFromVoxelPoint({25, 20, 30}), 1.0, {}};
+    const auto marksOf = [&](View plane) {
+        const SliceView view{plane, grid.patientFromVoxelPoint({25, 20, 30}), 1.0, {}};
         const PictureFrame frame = frameOf(*render::placeSlice(view, grid, 200, 200));
         EXPECT_NEAR(glm::length(frame.right), 1.0, 1e-12);
         return caption("p", frame, {200, 200});
     };
     const glm::dvec2 left(0.0, 0.5), right(1.0, 0.5), top(0.5, 0.0), bottom(0.5, 1.0);
-    const pictures::Marks axial = marksOf(render::View::axial),
-                          coronal = marksOf(render::View::coronal),
-                          sagittal = marksOf(render::View::sagittal);
+    const pictures::Marks axial = marksOf(View::axial), coronal = marksOf(View::coronal),
+                          sagittal = marksOf(View::sagittal);
     EXPECT_EQ(wordsAt(axial, left) + wordsAt(axial, right), "RL");
     EXPECT_EQ(wordsAt(axial, top) + wordsAt(axial, bottom), "AP");
     EXPECT_EQ(wordsAt(coronal, left) + wordsAt(coronal, right), "RL");
@@ -67,9 +66,9 @@ TEST(Caption, TheBarIsAsLongAsItSays) {
 }
 
 TEST(Caption, OnlyParallelRaysHaveAScale) {
-    render::Camera camera;
+    Camera camera;
     EXPECT_FALSE(frameOf(camera, 100));
-    camera.lens = render::Lens::orthographic;
+    camera.lens = Lens::orthographic;
     camera.heightMm = 50.0;
     const auto frame = frameOf(camera, 100);
     ASSERT_TRUE(frame);

@@ -1,7 +1,7 @@
 // The client's map of a slice against the server's: a crosshair must lie where the server drew the
 // voxel.
 #include "reader/slice_map.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 #include <cmath>
 #include <random>

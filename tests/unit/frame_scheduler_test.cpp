@@ -366,9 +366,9 @@ TEST_F(OneSession, BandsCoverThePictureOnce) {
 }
 
 TEST_F(OneSession, AllViewsAreDrawnInBands) {
-    for (const AnyView& view : {AnyView(render::SliceView{}), AnyView(render::ObliqueView{}),
-                                AnyView(render::OverviewView{}), AnyView(render::FlatView{}),
-                                AnyView(render::FlatOverview{})}) {
+    for (const AnyView& view :
+         {AnyView(SliceView{}), AnyView(ObliqueView{}), AnyView(render::OverviewView{}),
+          AnyView(render::FlatView{}), AnyView(render::FlatOverview{})}) {
         PictureJob job = someJob(1, 2);
         job.view = view;
         add(std::move(job));

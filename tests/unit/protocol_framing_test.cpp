@@ -1,4 +1,5 @@
 // Frames and tile headers: what is written is read back, and nothing else is believed.
+#include "core/raycasters.h"
 #include "protocol/framing.h"
 #include "protocol/haustra.pb.h"
 

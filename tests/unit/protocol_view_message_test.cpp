@@ -90,8 +90,9 @@ TEST(ViewMessage, EveryStateComesBackAsItWasSent) {
                 // Slices share a message, and so do both views of the strip.
                 const bool takes =
                     (isSlice(view) && isSlice(other)) || (isFlat(view) && isFlat(other));
-                if (other != view && !takes)
+                if (other != view && !takes) {
                     EXPECT_FALSE(stateFrom(message, other)) << toString(view) << toString(other);
+                }
             }
         }
     }

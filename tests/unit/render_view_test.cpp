@@ -1,6 +1,6 @@
 // Cameras, transfer functions and slices, where no GL is needed.
 #include "render/optics/transfer_table.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 #include <cmath>
 

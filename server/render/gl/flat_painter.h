@@ -6,7 +6,7 @@
 #include "gpu/texture.h"
 #include "render/gl/flat_surface.h"
 #include "render/gl/march_variant.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 #include "shaders/uniforms.h"
 
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "gpu/context.h"
 #include "gpu/texture.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 namespace haustra::render {
 

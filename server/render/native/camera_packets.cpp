@@ -1,5 +1,5 @@
 #include "render/native/packet_scene.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 // This text is compiled once for each vector unit, by an include that must come before others.
 // clang-format off

@@ -8,7 +8,7 @@
 
 #include "render/native/march-inl.h"
 #include "render/native/packet_scene.h"
-#include "render/view.h"
+#include "render/scene/picture.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace haustra::render {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/grid.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 #include <cstdlib>
 

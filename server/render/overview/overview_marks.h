@@ -3,7 +3,7 @@
 
 #include "core/centerline.h"
 #include "core/tri_mesh.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 #include "shaders/overview_uniforms.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // native/lens-inl.h for packets of rays.
 #pragma once
 
-#include "render/view.h"
+#include "core/camera.h"
 
 #include <optional>
 

@@ -3,7 +3,7 @@
 
 #include "core/grid.h"
 #include "render/optics/transfer_table.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 #include "shaders/uniforms.h"
 
 namespace haustra::render {

@@ -5,7 +5,7 @@
 
 #include "core/raycasters.h"
 #include "core/result.h"
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 #include <cstddef>
 #include <string>

@@ -1,7 +1,7 @@
 // Which of the wall has been shown to a reader (dissertation §2.4).
 #pragma once
 
-#include "render/picture.h"
+#include "render/scene/picture.h"
 #include "render/wall/wall_sight.h"
 
 #include <array>

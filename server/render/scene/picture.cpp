@@ -1,4 +1,4 @@
-#include "render/picture.h"
+#include "render/scene/picture.h"
 
 #include "core/flat_map.h"
 
