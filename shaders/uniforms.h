@@ -44,7 +44,7 @@ struct MarchUniforms {
                                   ///<   coordinate
     float ambient, diffuse, specular, shininess;
     ivec2 pictureSize;   ///< pixels
-    int lens;            ///< render::Lens in order
+    int lens;            ///< Lens in order
     int firstRow;        ///< of the band
     ivec3 lastBlock;     ///< highest block index
     int coneTileSide;    ///< pixels along a tile of the cone pass

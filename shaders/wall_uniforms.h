@@ -17,7 +17,7 @@ struct WallUniforms {
     vec3 right;                   ///< gl_Position.x of a vector from the eye
     int isCubeSide;               ///< 1 where the pass is one
     vec3 down;                    ///< likewise y, in the whole picture
-    int lens;                     ///< render::Lens in order
+    int lens;                     ///< Lens in order
     vec3 lensRight;               ///< to the picture's right edge, as rightMm of MarchUniforms
     float unitsPerCircumference;  ///< of flat coordinates
     vec3 lensDown;                ///< likewise to its bottom edge

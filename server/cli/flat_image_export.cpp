@@ -80,13 +80,13 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     ProgressBar bar;
     int rows = 0;
     return render::drawStrip(*renderer, picture, height,
-                             [&](const render::Image& band) -> Result<void> {
+                             [&](const Image& band) -> Result<void> {
                                  rows += band.height;
                                  bar.show("flat image", double(rows) / size.y);
                                  if (interruption.came())
                                      return fail(ErrorKind::io, "interrupted", file.string());
                                  if (!options.caption) return output->append(band);
-                                 render::Image marked = band;
+                                 Image marked = band;
                                  TRY(pictures::draw(marks, marked, rows - band.height));
                                  return output->append(marked);
                              })

@@ -114,7 +114,7 @@ void addCameraOptions(CLI::App& command, RenderArguments& my) {
                     "How much an orthographic camera (all of the scan), oblique (60) or the "
                     "overview (all of the colon) shows from top to bottom")
         ->type_name("H")
-        ->check(CLI::Range(render::minObliqueMm, render::maxObliqueMm));
+        ->check(CLI::Range(minObliqueMm, maxObliqueMm));
 }
 
 std::string presetNames() {
@@ -269,7 +269,7 @@ bool RenderArguments::isScan() const {
 
 View RenderArguments::shown() const {
     if (view.empty() || view == camera) return View::endoscopic;
-    return *render::viewFromString(view);
+    return *viewFromString(view);
 }
 
 bool RenderArguments::isSlice() const {

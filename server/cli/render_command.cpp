@@ -91,9 +91,9 @@ void addCamera(Notes& notes, const Camera& camera, int pictureHeight) {
     notes.frame = frameOf(camera, pictureHeight);
 }
 
-Result<render::Image> drawCamera(const RenderArguments& arguments, const Camera& camera,
-                                 std::shared_ptr<const render::WallPaint> paint,
-                                 render::CaseRenderer& renderer, Notes& notes) {
+Result<Image> drawCamera(const RenderArguments& arguments, const Camera& camera,
+                         std::shared_ptr<const render::WallPaint> paint,
+                         render::CaseRenderer& renderer, Notes& notes) {
     addCamera(notes, camera, arguments.size.y);
     auto optics = TRY(opticsOf(arguments, "mucosa"));
     render::CameraView view{camera, std::move(optics), marchOf(arguments)};
@@ -101,8 +101,8 @@ Result<render::Image> drawCamera(const RenderArguments& arguments, const Camera&
     return renderer.render(view, arguments.size.x, arguments.size.y);
 }
 
-Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Products& products,
-                                     render::CaseRenderer& renderer, Notes& notes) {
+Result<Image> drawEndoscopic(const RenderArguments& arguments, const Products& products,
+                             render::CaseRenderer& renderer, Notes& notes) {
     const auto from = TRY(cameraOnPath(arguments, products.centerline, products.flatMap));
     Camera camera{from.positionMm, from.forward, from.up, fovOf(arguments, Camera{}.fovDegrees),
                   arguments.lens};
@@ -110,8 +110,8 @@ Result<render::Image> drawEndoscopic(const RenderArguments& arguments, const Pro
     return drawCamera(arguments, camera, products.paint, renderer, notes);
 }
 
-Result<render::Image> drawFlattened(const RenderArguments& arguments, const Products& products,
-                                    render::CaseRenderer& renderer, Notes& notes) {
+Result<Image> drawFlattened(const RenderArguments& arguments, const Products& products,
+                            render::CaseRenderer& renderer, Notes& notes) {
     auto optics = TRY(opticsOf(arguments, "mucosa"));
     const auto [width, height] = std::pair(arguments.size.x, arguments.size.y);
     if (arguments.shown() == View::flattened)
@@ -129,8 +129,8 @@ Result<render::Image> drawFlattened(const RenderArguments& arguments, const Prod
         height);
 }
 
-Result<render::Image> drawOverview(const RenderArguments& arguments, const Products& products,
-                                   render::CaseRenderer& renderer, Notes& notes) {
+Result<Image> drawOverview(const RenderArguments& arguments, const Products& products,
+                           render::CaseRenderer& renderer, Notes& notes) {
     auto optics = TRY(opticsOf(arguments, "body"));
     glm::dvec3 low(INFINITY), high(-INFINITY);
     for (const glm::dvec3 vertex : products.wall->vertices) {
@@ -161,9 +161,9 @@ void addWindow(Notes& notes, const WindowLevel& window) {
                                         toText(glm::dvec2(window.centerHu, window.widthHu)));
 }
 
-Result<render::Image> drawOblique(const RenderArguments& arguments, const Centerline& centerline,
-                                  const WindowLevel& window, Scan scan,
-                                  render::CaseRenderer& renderer, Notes& notes) {
+Result<Image> drawOblique(const RenderArguments& arguments, const Centerline& centerline,
+                          const WindowLevel& window, Scan scan, render::CaseRenderer& renderer,
+                          Notes& notes) {
     ObliqueView view;
     view.window = window;
     view.scan = scan;
@@ -191,9 +191,8 @@ Result<render::Image> drawOblique(const RenderArguments& arguments, const Center
 }
 
 /// Before, classification and after, each as a slice of its own would be.
-Result<render::Image> compare(render::CaseRenderer& renderer,
-                              const Volume<TissueFractions>& mixture, SliceView slice,
-                              glm::ivec2 size) {
+Result<Image> compare(render::CaseRenderer& renderer, const Volume<TissueFractions>& mixture,
+                      SliceView slice, glm::ivec2 size) {
     auto before = TRY(renderer.render(slice, size.x, size.y));
     auto tissues = TRY(render::tissuePicture(mixture, slice, size.x, size.y));
     slice.scan = Scan::cleansed;
@@ -201,9 +200,9 @@ Result<render::Image> compare(render::CaseRenderer& renderer,
     return pictures::sideBySide({std::move(before), std::move(tissues), std::move(after)});
 }
 
-Result<render::Image> drawSlice(const RenderArguments& arguments, const Products& products,
-                                const Grid& grid, const WindowLevel& window,
-                                render::CaseRenderer& renderer, Notes& notes) {
+Result<Image> drawSlice(const RenderArguments& arguments, const Products& products,
+                        const Grid& grid, const WindowLevel& window, render::CaseRenderer& renderer,
+                        Notes& notes) {
     SliceView slice{arguments.shown(), {}, arguments.zoom, window};
     slice.positionMm = arguments.positionMm.empty()
                            ? poseAtArc(products.centerline, *arguments.arcMm).point.positionMm
@@ -273,9 +272,8 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
 }
 
 /// Makes a renderer for `prepared` and has `draw` use it.
-Result<render::Image> drawWith(
-    const RenderArguments& arguments, render::PreparedCase prepared,
-    const std::function<Result<render::Image>(render::CaseRenderer&)>& draw) {
+Result<Image> drawWith(const RenderArguments& arguments, render::PreparedCase prepared,
+                       const std::function<Result<Image>(render::CaseRenderer&)>& draw) {
     auto context = TRY(gpu::Context::create());
     render::RendererOptions options;
     if (arguments.castsRays()) options.raycaster = arguments.raycaster;
@@ -319,7 +317,7 @@ void addProducts(Provenance& provenance, const RenderArguments& arguments, const
     if (products.wall) addProduct(provenance, source, "surface");
 }
 
-Result<render::Image> drawCase(const RenderArguments& arguments, Notes& notes) {
+Result<Image> drawCase(const RenderArguments& arguments, Notes& notes) {
     const auto source =
         TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
             return s.openCase(arguments.input);
@@ -350,7 +348,7 @@ Result<render::Image> drawCase(const RenderArguments& arguments, Notes& notes) {
     });
 }
 
-Result<render::Image> drawScan(const RenderArguments& arguments, Notes& notes) {
+Result<Image> drawScan(const RenderArguments& arguments, Notes& notes) {
     auto volume = TRY(readInputVolume(arguments.input, arguments.spacingMm, arguments.threads));
     const Grid grid = volume.grid();
     WindowLevel window;
@@ -369,7 +367,7 @@ Result<render::Image> drawScan(const RenderArguments& arguments, Notes& notes) {
     });
 }
 
-Result<render::Image> drawLabelled(const RenderArguments& arguments, Notes& notes) {
+Result<Image> drawLabelled(const RenderArguments& arguments, Notes& notes) {
     auto volume = TRY(readLabelledColor(arguments.input, arguments.labels, arguments.threads));
     auto context = TRY(gpu::Context::create());
     auto raycaster = TRY(render::LabelledRaycaster::create(
@@ -381,7 +379,7 @@ Result<render::Image> drawLabelled(const RenderArguments& arguments, Notes& note
     addCamera(notes, view.camera, arguments.size.y);
     view.optics.light.halfDepthMm = 1e6;  // the camera's distance darkens nothing
     const glm::ivec2 size = arguments.size;
-    render::Image image = render::blankImage(size);
+    Image image = blankImage(size);
     TRY(raycaster->render(view, render::Band::whole(size.x, size.y), image));
     return image;
 }

@@ -29,7 +29,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-Result<Bytes> encodeJpeg(tjhandle handle, const render::Image& image, const TileRectangle& tile) {
+Result<Bytes> encodeJpeg(tjhandle handle, const Image& image, const TileRectangle& tile) {
     Bytes bytes(tjBufSize(tile.width, tile.height, TJSAMP_420));
     unsigned char* out = bytes.data();
     unsigned long size = bytes.size();
@@ -44,7 +44,7 @@ Result<Bytes> encodeJpeg(tjhandle handle, const render::Image& image, const Tile
     return bytes;
 }
 
-Result<Bytes> encodeExact(const render::Image& image, const TileRectangle& tile) {
+Result<Bytes> encodeExact(const Image& image, const TileRectangle& tile) {
     Bytes rows;
     std::span<const std::uint8_t> rgb = image.rgb;
     if (tile.width != image.width || tile.height != image.height) {
@@ -62,7 +62,7 @@ Result<Bytes> encodeExact(const render::Image& image, const TileRectangle& tile)
 
 }  // namespace
 
-Result<Bytes> TileEncoder::encode(const render::Image& image, protocol::TileHeader header) {
+Result<Bytes> TileEncoder::encode(const Image& image, protocol::TileHeader header) {
     const int limit = int(protocol::maxViewportPixels);
     if (image.width < 1 || image.height < 1 || image.width > limit || image.height > limit ||
         image.rgb.size() != std::size_t(image.width) * std::size_t(image.height) * 3)

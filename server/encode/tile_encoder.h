@@ -22,8 +22,7 @@ public:
     /// and queueMicroseconds; the rest is filled in here. Fails (badInput) where the image's size
     /// is out of the protocol's bounds, or where libjpeg-turbo refuses it. Some 1 ms (JPEG) or
     /// 3 ms (lossless) for 512².
-    Result<std::vector<std::uint8_t>> encode(const render::Image& image,
-                                             protocol::TileHeader header);
+    Result<std::vector<std::uint8_t>> encode(const Image& image, protocol::TileHeader header);
 
 private:
     struct Jpeg;

@@ -12,7 +12,7 @@
 namespace haustra::session {
 
 struct EncodeJob {
-    render::Image image;
+    Image image;
     protocol::TileHeader header;  ///< as TileEncoder::encode takes it
     /// Called on an encoder thread with the picture's frames.
     std::function<void(Result<std::vector<std::uint8_t>>)> done;

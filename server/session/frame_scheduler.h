@@ -28,7 +28,7 @@ inline constexpr std::chrono::milliseconds usageWindow{500};
 struct Frame {
     PictureJob job;
     glm::ivec2 size{0};  ///< smaller than the job's where it is drawn coarse
-    render::Image picture;
+    Image picture;
     int rowsDrawn = 0;
     double spentMs = 0.0;
     Clock::time_point begunAt;

@@ -227,7 +227,7 @@ bool GpuCases::tryRaycaster() {
     const auto next = my.choice->next();
     if (!next) return false;
     const auto start = Clock::now();
-    auto drawn = guarded([&]() -> Result<render::Image> {
+    auto drawn = guarded([&]() -> Result<Image> {
         TRY(my.entry.renderer->use(next->kind));
         const auto& view = my.views[std::size_t(next->round) % my.views.size()];
         return my.entry.renderer->render(view, trialSide, trialSide);

@@ -16,8 +16,8 @@ namespace haustra::session {
 using Clock = std::chrono::steady_clock;
 using SessionId = std::uint64_t;
 
-using AnyView = std::variant<render::CameraView, render::SliceView, render::ObliqueView,
-                             render::OverviewView, render::FlatView, render::FlatOverview>;
+using AnyView = std::variant<render::CameraView, SliceView, ObliqueView, render::OverviewView,
+                             render::FlatView, render::FlatOverview>;
 
 /// One picture to draw. Immutable once it waits.
 struct PictureJob {
@@ -31,7 +31,7 @@ struct PictureJob {
     protocol::TileHeader header;
     Clock::time_point inputAt;  ///< when its newest input arrived
     /// Called on the render thread with the job's own header, filled in.
-    std::function<void(const protocol::TileHeader&, Result<render::Image>)> done;
+    std::function<void(const protocol::TileHeader&, Result<Image>)> done;
 };
 
 /// Whether a smaller picture of this view shows the same, coarser, and saves time: slices are drawn

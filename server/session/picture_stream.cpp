@@ -177,7 +177,7 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.view = slot.viewport.view(presets_);
     slot.paint = reading_ ? reading_->paint() : nullptr;
     setPaint(job.view, slot.paint);
-    std::optional<render::Camera> camera;
+    std::optional<Camera> camera;
     if (const auto* endoscopic = std::get_if<render::CameraView>(&job.view))
         camera = endoscopic->camera;
     job.width = slot.viewport.width();
@@ -193,7 +193,7 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.header.viewportWidth = std::uint16_t(job.width);
     job.header.viewportHeight = std::uint16_t(job.height);
     job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_, camera](
-                   const protocol::TileHeader& header, Result<render::Image> image) {
+                   const protocol::TileHeader& header, Result<Image> image) {
         postTo(io, weak,
                [ofCase, header, camera, image = std::move(image)](PictureStream& self) mutable {
                    self.rendered(ofCase, header, camera, std::move(image));
@@ -203,8 +203,7 @@ PictureJob PictureStream::makeJob(std::size_t id) {
 }
 
 void PictureStream::rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
-                             const std::optional<render::Camera>& camera,
-                             Result<render::Image> image) {
+                             const std::optional<Camera>& camera, Result<Image> image) {
     if (ofCase != caseNumber_ || stopped_) return;  // rendering_ speaks of a newer picture
     rendering_.reset();
     if (!image) {

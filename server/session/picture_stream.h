@@ -81,7 +81,7 @@ private:
     void overtake();
     PictureJob makeJob(std::size_t id);
     void rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
-                  const std::optional<render::Camera>& camera, Result<render::Image> image);
+                  const std::optional<Camera>& camera, Result<Image> image);
     void encode(EncodeJob job, std::uint64_t ofCase);
     void encoded(std::uint64_t ofCase, const protocol::TileHeader& header,
                  Result<std::vector<std::uint8_t>> frames);

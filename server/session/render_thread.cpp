@@ -28,7 +28,7 @@ Result<void> draw(render::CaseRenderer& renderer, Frame& frame, const render::Ba
     const AnyView view = size.x == frame.job.width
                              ? frame.job.view
                              : scaledView(frame.job.view, frame.job.width, size.x);
-    if (frame.picture.rgb.empty()) frame.picture = render::blankImage(size);
+    if (frame.picture.rgb.empty()) frame.picture = blankImage(size);
     return std::visit([&](const auto& any) { return renderer.render(any, band, frame.picture); },
                       view);
 }

@@ -29,7 +29,7 @@ std::optional<render::WallMark> markOf(const Wall& wall, glm::dvec3 positionMm,
     return render::WallMark{met->flat, met->positionMm};
 }
 
-bool nearlySame(const render::Camera& a, const render::Camera& b) {
+bool nearlySame(const Camera& a, const Camera& b) {
     const double cosine = glm::dot(glm::normalize(a.forward), glm::normalize(b.forward));
     return a.lens == b.lens && a.fovDegrees == b.fovDegrees && a.heightMm == b.heightMm &&
            glm::distance(a.positionMm, b.positionMm) < sameCameraMm &&
@@ -175,7 +175,7 @@ void WallReading::painted(std::uint64_t number, Result<Paint> paint) {
 
 // ---- what has been seen -------------------------------------------------------------------------
 
-void WallReading::shown(const render::Camera& camera, glm::ivec2 size, bool moving) {
+void WallReading::shown(const Camera& camera, glm::ivec2 size, bool moving) {
     if (moving && lastCamera_ && nearlySame(camera, *lastCamera_)) return;
     if (looks_ < maxLooks)
         look(camera, size);
@@ -183,7 +183,7 @@ void WallReading::shown(const render::Camera& camera, glm::ivec2 size, bool movi
         still_ = Still{camera, size};
 }
 
-void WallReading::look(const render::Camera& camera, glm::ivec2 size) {
+void WallReading::look(const Camera& camera, glm::ivec2 size) {
     lastCamera_ = camera;
     ++looks_;
     struct Saw {

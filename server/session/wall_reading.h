@@ -57,7 +57,7 @@ public:
     /// An endoscopic picture of `size` pixels has been drawn for the client. Where there are more
     /// than the paint thread can look at, some are passed over, but not the newest that is at rest:
     /// what is told as seen has been.
-    void shown(const render::Camera& camera, glm::ivec2 size, bool moving);
+    void shown(const Camera& camera, glm::ivec2 size, bool moving);
     /// `told` is called on the io thread with the share that pictures drawn before this have shown;
     /// with `forget`, nothing has been. Fails (device) where there is not enough memory.
     void ask(bool forget, std::function<void(Result<double> share)> told);
@@ -78,7 +78,7 @@ private:
     void repaint(bool soon);
     void startPainting();
     void painted(std::uint64_t number, Result<Paint> paint);
-    void look(const render::Camera& camera, glm::ivec2 size);
+    void look(const Camera& camera, glm::ivec2 size);
     void lookAtStill();
     void sawMore(double share, bool more);
 
@@ -100,10 +100,10 @@ private:
     asio::steady_timer later_;
 
     struct Still {
-        render::Camera camera;
+        Camera camera;
         glm::ivec2 size;
     };
-    std::optional<render::Camera> lastCamera_;
+    std::optional<Camera> lastCamera_;
     std::optional<Still> still_;  // the newest that could not be looked at yet
     int looks_ = 0;               // that wait for the paint thread
     double told_ = 0.0;

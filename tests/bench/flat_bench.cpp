@@ -33,7 +33,7 @@ struct Timed {
         cpuMs += cpuEnd - cpuStart;
         // As the server's scheduler cuts them.
         const int rows = std::max(1, int(8.0 / wholeMs.back() * side / 16)) * 16;
-        render::Image picture = render::blankImage({side, side});
+        Image picture = blankImage({side, side});
         for (int row = 0; row < side; ++bands) {
             const int left = side - row, here = left < rows + rows / 2 ? left : rows;
             const double bandStart = milliseconds();
@@ -93,11 +93,10 @@ Result<void> timeStrips(render::CaseRenderer& renderer, const FlatMap& map,
         const render::StripPicture picture{width, 0.0, function, {}};
         const double start = milliseconds(), processor = cpuMilliseconds();
         int rows = 0;
-        const auto drawn =
-            render::drawStrip(renderer, picture, map.height, [&](const render::Image& band) {
-                rows += band.height;
-                return Result<void>();
-            });
+        const auto drawn = render::drawStrip(renderer, picture, map.height, [&](const Image& band) {
+            rows += band.height;
+            return Result<void>();
+        });
         if (!drawn) return drawn;
         std::printf("strip %d x %d: %.2f s; processor time %.2f s\n", width, rows,
                     (milliseconds() - start) / 1000.0, (cpuMilliseconds() - processor) / 1000.0);

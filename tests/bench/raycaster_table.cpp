@@ -23,7 +23,6 @@ namespace {
 
 using namespace haustra;
 using bench::cpuMilliseconds, bench::median, bench::milliseconds;
-using render::Image;
 
 struct Arguments {
     std::string store, name, preset = "mucosa", pictures;

@@ -123,13 +123,12 @@ private:
     std::mt19937 random_;
 };
 
-Result<render::Image> draw(render::CaseRenderer& renderer, const session::AnyView& view, int side,
-                           int bandRows) {
+Result<Image> draw(render::CaseRenderer& renderer, const session::AnyView& view, int side,
+                   int bandRows) {
     const auto* camera = std::get_if<render::CameraView>(&view);
     if (!camera)
         return std::visit([&](const auto& any) { return renderer.render(any, side, side); }, view);
-    render::Image picture{side, side,
-                          std::vector<std::uint8_t>(3 * std::size_t(side) * std::size_t(side))};
+    Image picture{side, side, std::vector<std::uint8_t>(3 * std::size_t(side) * std::size_t(side))};
     for (int row = 0; row < side; row += bandRows) {
         const render::Band band{{side, side}, row, std::min(bandRows, side - row)};
         if (auto drawn = renderer.render(*camera, band, picture); !drawn)
@@ -148,7 +147,7 @@ struct Kept {
     RaycasterKind kind;
     session::AnyView view;
     int bandRows;
-    render::Image picture;
+    Image picture;
 };
 
 int soak(int argc, char** argv) {

@@ -35,7 +35,7 @@ struct VtkRaycaster::Impl {
     vtkNew<vtkRenderer> renderer;
     vtkNew<vtkRenderWindow> window;
 
-    void draw(const render::CameraView& view, render::Image& picture);
+    void draw(const render::CameraView& view, Image& picture);
 };
 
 VtkRaycaster::VtkRaycaster(VtkMapper kind, const Volume<std::int16_t>& volume, int threads)
@@ -79,15 +79,15 @@ VtkRaycaster::~VtkRaycaster() {
     std::thread([this] { impl_.reset(); }).join();
 }
 
-render::Image VtkRaycaster::render(const render::CameraView& view, int width, int height) {
-    render::Image image{width, height,
-                        std::vector<std::uint8_t>(3 * std::size_t(width) * std::size_t(height))};
+Image VtkRaycaster::render(const render::CameraView& view, int width, int height) {
+    Image image{width, height,
+                std::vector<std::uint8_t>(3 * std::size_t(width) * std::size_t(height))};
     // A thread has one current context, and the caller's may be another window system's.
     std::thread([&] { impl_->draw(view, image); }).join();
     return image;
 }
 
-void VtkRaycaster::Impl::draw(const render::CameraView& view, render::Image& picture) {
+void VtkRaycaster::Impl::draw(const render::CameraView& view, Image& picture) {
     Impl& my = *this;
     const int width = picture.width, height = picture.height;
     vtkNew<vtkPiecewiseFunction> opacity;

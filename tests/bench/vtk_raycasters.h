@@ -21,7 +21,7 @@ public:
 
     /// Draws until the pixels are in main memory. Perspective lenses, 1-D transfer functions,
     /// emission and absorption.
-    render::Image render(const render::CameraView& view, int width, int height);
+    Image render(const render::CameraView& view, int width, int height);
 
 private:
     struct Impl;

@@ -13,8 +13,6 @@
 namespace haustra::tests {
 namespace {
 
-using render::Image;
-
 /// The columns from `left` on.
 Image columns(const Image& image, int left, int width) {
     Image part{width, image.height, {}};
@@ -64,8 +62,7 @@ TEST_F(RenderCommand, AComparisonIsItsThreePicturesSideBySide) {
                                   {"--view", plane, "--zoom", "1.5", "--product", "cleansed"});
         EXPECT_EQ(columns(all, 0, 80).rgb, before.rgb) << plane;
         EXPECT_EQ(columns(all, 2 * step, 80).rgb, after.rgb) << plane;
-        const SliceView view{
-            *render::viewFromString(plane), {-1.2, 9.8, 112.0}, 1.5, WindowLevel{}};
+        const SliceView view{*viewFromString(plane), {-1.2, 9.8, 112.0}, 1.5, WindowLevel{}};
         const Image tissues = *render::tissuePicture(makeSmallCase().mixture, view, 80, 60);
         EXPECT_EQ(columns(all, step, 80).rgb, tissues.rgb) << plane;
         EXPECT_NE(before.rgb, after.rgb) << plane;

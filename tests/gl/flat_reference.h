@@ -99,13 +99,12 @@ inline std::optional<ReferencePlace> referencePlace(const ReferenceWall& referen
     return place;
 }
 
-inline render::Image referenceFlat(const ReferenceWall& reference,
-                                   const Volume<std::int16_t>& volume, const render::FlatView& view,
-                                   glm::ivec2 size) {
+inline Image referenceFlat(const ReferenceWall& reference, const Volume<std::int16_t>& volume,
+                           const render::FlatView& view, glm::ivec2 size) {
     const glm::dvec3 spacing = volume.grid().spacingMm();
     const double stepMm = view.march.stepVoxels * std::min({spacing.x, spacing.y, spacing.z});
     const glm::dmat3 linear(volume.grid().voxelFromPatient());
-    render::Image image{size.x, size.y, {}};
+    Image image{size.x, size.y, {}};
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
             const glm::dvec2 flat = view.window.flatFromPixel(glm::dvec2(x, y) + 0.5, size);

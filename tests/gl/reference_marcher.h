@@ -195,7 +195,7 @@ private:
     glm::dmat3 linear_;
 };
 
-inline void append(render::Image& image, glm::dvec3 color) {
+inline void append(Image& image, glm::dvec3 color) {
     for (int c = 0; c < 3; ++c)
         image.rgb.push_back(std::uint8_t(std::lround(255.0 * color[c])));
 }
@@ -227,8 +227,8 @@ inline std::optional<LensRay> lensRay(const Camera& camera, double x, double y) 
 }
 
 /// What a camera sees.
-inline render::Image referenceEndoscopic(const Volume<std::int16_t>& volume,
-                                         const render::CameraView& view, int width, int height) {
+inline Image referenceEndoscopic(const Volume<std::int16_t>& volume, const render::CameraView& view,
+                                 int width, int height) {
     const Grid& grid = volume.grid();
     const glm::dmat3 linear(grid.voxelFromPatient());
     const glm::dvec3 spacing = grid.spacingMm();
@@ -241,7 +241,7 @@ inline render::Image referenceEndoscopic(const Volume<std::int16_t>& volume,
                      glm::distance(view.camera.positionMm,
                                    grid.patientFromVoxelPoint(side * glm::dvec3(grid.size) - 0.5)));
     }
-    render::Image image{width, height, {}};
+    Image image{width, height, {}};
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const auto ray = lensRay(view.camera, (2.0 * (x + 0.5) - width) / height,
@@ -269,7 +269,7 @@ inline render::Image referenceEndoscopic(const Volume<std::int16_t>& volume,
     return image;
 }
 
-inline double psnr(const render::Image& a, const render::Image& b) {
+inline double psnr(const Image& a, const Image& b) {
     double squares = 0.0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i)
         squares += std::pow(double(a.rgb[i]) - double(b.rgb[i]), 2.0);

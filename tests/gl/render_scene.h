@@ -63,7 +63,7 @@ inline double linearOf(double displayed) {
     return displayed <= 0.04045 ? displayed / 12.92 : std::pow((displayed + 0.055) / 1.055, 2.4);
 }
 
-inline int pixel(const render::Image& image, int x, int y, int channel = 0) {
+inline int pixel(const Image& image, int x, int y, int channel = 0) {
     return image.rgb[3 * (std::size_t(y) * std::size_t(image.width) + std::size_t(x)) +
                      std::size_t(channel)];
 }
@@ -82,10 +82,9 @@ protected:
         }
     }
     /// The picture, in bands of so many rows.
-    static render::Image drawn(render::Raycaster& raycaster, const render::CameraView& view,
-                               glm::ivec2 size, int bandRows = 1 << 20) {
-        render::Image picture{size.x, size.y,
-                              std::vector<std::uint8_t>(3u * unsigned(size.x * size.y))};
+    static Image drawn(render::Raycaster& raycaster, const render::CameraView& view,
+                       glm::ivec2 size, int bandRows = 1 << 20) {
+        Image picture{size.x, size.y, std::vector<std::uint8_t>(3u * unsigned(size.x * size.y))};
         for (int row = 0; row < size.y; row += bandRows) {
             const auto done =
                 raycaster.render(view, {size, row, std::min(bandRows, size.y - row)}, picture);
@@ -104,12 +103,11 @@ protected:
         return std::move(*made);
     }
     template <class View>
-    static render::Image draw(render::CaseRenderer& renderer, const View& view, int width,
-                              int height) {
+    static Image draw(render::CaseRenderer& renderer, const View& view, int width, int height) {
         auto made = renderer.render(view, width, height);
         if (!made) ADD_FAILURE() << describe(made.error());
         return made ? std::move(*made)
-                    : render::Image{width, height, std::vector<std::uint8_t>(3u * width * height)};
+                    : Image{width, height, std::vector<std::uint8_t>(3u * width * height)};
     }
 
     std::unique_ptr<gpu::Context> context;

@@ -18,24 +18,6 @@
 
 namespace haustra::render {
 
-using haustra::blankImage;
-using haustra::Image;
-
-// The values that a picture shows, among the renderer's names.
-using haustra::Camera;
-using haustra::checkCamera;
-using haustra::checkOverview;
-using haustra::Lens;
-using haustra::maxObliqueMm;
-using haustra::maxOverviewBookmarks;
-using haustra::minObliqueMm;
-using haustra::ObliqueView;
-using haustra::Scan;
-using haustra::SliceView;
-using haustra::View;
-using haustra::viewFromString;
-using haustra::WindowLevel;
-
 /// How rays are sampled. The defaults are what readers see; the rest serves measurements.
 struct MarchOptions {
     double stepVoxels = 0.5;        ///< sampling distance, in the smallest voxel spacing; 0.05…4
