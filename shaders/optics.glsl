@@ -31,11 +31,11 @@ layout(binding = 2) uniform sampler1D transferTable;
 layout(binding = 5) uniform sampler1D integralTable;
 #endif
 
-// Colour and opacity of a sample. `slope` is the length of its normal.
-vec4 classify(float stored, float slope) {
+// Colour and opacity of a sample. `gradientMagnitude` is the length of its normal.
+vec4 classify(float stored, float gradientMagnitude) {
     float entry = stored * u.entryScale + u.entryBias;
 #if GRADIENT_ROWS
-    return textureLod(transferTable, vec2(entry, slope * u.rowScale + u.rowBias), 0.0);
+    return textureLod(transferTable, vec2(entry, gradientMagnitude * u.rowScale + u.rowBias), 0.0);
 #else
     return textureLod(transferTable, entry, 0.0);
 #endif
@@ -71,7 +71,7 @@ bool mayShow(float front, float back) {
 }
 
 // A gradient, differences over two voxels as gradientAt gives it, in the patient: it transforms by
-// the inverse transpose of patientFromTexture. Twice as long as the slope in stored value per mm.
+// the inverse transpose of patientFromTexture. Twice as long as the gradient, stored value per mm.
 vec3 normalOf(vec3 gradientTexture) {
     return gradientTexture.x * u.textureRowX + gradientTexture.y * u.textureRowY +
            gradientTexture.z * u.textureRowZ;
@@ -79,14 +79,14 @@ vec3 normalOf(vec3 gradientTexture) {
 
 // A lamp, seen from where it hangs, `n` steps away; colours are linear light, `lightMm` is unit.
 vec3 shade(vec3 color, vec3 normal, vec3 lightMm, float n) {
-    float slope = dot(normal, normal);
+    float squared = dot(normal, normal);
     // Light comes along the line of sight, so N·L = N·V = R·V's half angle; both faces are lit. Where
     // the volume is flat there is no surface, and nothing to shade.
-    float facing = slope > 1e-20 ? abs(dot(normal, lightMm)) * inversesqrt(slope) : 1.0;
+    float facing = squared > 1e-20 ? abs(dot(normal, lightMm)) * inversesqrt(squared) : 1.0;
     float depth = n * u.stepMm / u.lightHalvesMm;
     float falloff = 1.0 / (1.0 + depth * depth);
     float mirror = max(2.0 * facing * facing - 1.0, 0.0);
-    float highlight = slope > 1e-20 ? u.specular * pow(mirror, u.shininess) : 0.0;
+    float highlight = squared > 1e-20 ? u.specular * pow(mirror, u.shininess) : 0.0;
     return falloff * (color * (u.ambient + u.diffuse * facing) + highlight);
 }
 

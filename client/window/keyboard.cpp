@@ -2,6 +2,8 @@
 #include "window/ui.h"
 
 #include <algorithm>
+#include <span>
+#include <string_view>
 
 #include <SDL_scancode.h>
 
@@ -37,110 +39,70 @@ void togglePaint(Ui& ui, bool WallPaintChoice::*which) {
         ui.tell("this case has not been flattened: its wall cannot be coloured");
 }
 
+void turnRound(Flight& flight) {
+    flight.setDirection(flight.direction() == FlightDirection::antegrade
+                            ? FlightDirection::retrograde
+                            : FlightDirection::antegrade);
+}
+
+void toggleFlyingOver(Ui& ui) {
+    reader::FlatReading& flat = ui.reader.flat();
+    if (!flat.hasStrip()) return ui.tell("this case has not been flattened");
+    flat.setFlyingOver(!flat.tour().flyingOver());
+}
+
+void toggleCleansed(Ui& ui) {
+    if (!ui.reader.session().caseInfo()->cleansed) return ui.tell("this case has no cleansed scan");
+    ui.reader.slices().setCleansed(!ui.reader.slices().cleansed());
+}
+
 // Letters as the layout of the keyboard gives them.
-void handleLetter(Ui& ui, ImWchar letter) {
-    reader::Reader& reader = ui.reader;
-    Flight& flight = reader.flight();
-    switch (letter) {
-        case '?':
-            ui.showHelp = !ui.showHelp;
-            return;
-        case 'm':
-        case 'M':
-            ui.showBookmarks = !ui.showBookmarks;
-            return;
-        default:
-            break;
-    }
-    if (!reader.isOpen()) return;
-    switch (letter) {
-        case '+':
-        case '=':
-            flight.setSpeed(flight.speedMmPerS() * 1.25);
-            break;
-        case '-':
-        case '_':
-            flight.setSpeed(flight.speedMmPerS() / 1.25);
-            break;
-        case 'r':
-        case 'R':
-            flight.setDirection(flight.direction() == FlightDirection::antegrade
-                                    ? FlightDirection::retrograde
-                                    : FlightDirection::antegrade);
-            break;
-        case 'c':
-        case 'C':
-            flight.returnToCenterline(), flight.resetLook();
-            break;
-        case 'f':
-        case 'F':
-            flight.isFree() ? flight.returnToCenterline() : flight.flyFreely();
-            break;
-        case 'b':
-            reader.addBookmark("");
-            break;
-        case 'B':
-            ui.showBookmarks = ui.focusNote = true;
-            break;
-        case 'n':
-        case 'N':
-            reader.goToBookmark(+1);
-            break;
-        case 'p':
-        case 'P':
-            reader.goToBookmark(-1);
-            break;
-        case 't':
-        case 'T':
-            nextTransferFunction(reader.optics());
-            break;
-        case 'g':
-        case 'G':
-            ui.showTransfer = !ui.showTransfer;
-            break;
-        case 'i':
-        case 'I':
-            flight.setFisheye(!flight.isFisheye());
-            break;
-        case 'y':
-        case 'Y':
-            reader.outside().setShowsBody(!reader.outside().showsBody());
-            break;
-        case 'k':
-        case 'K':
-            togglePaint(ui, &WallPaintChoice::marks);
-            break;
-        case 'u':
-            togglePaint(ui, &WallPaintChoice::unseen);
-            break;
-        case 'U':
-            reader.flat().forgetSeen();
-            break;
-        case 'v':
-        case 'V':
-            if (reader.flat().hasStrip())
-                reader.flat().setFlyingOver(!reader.flat().tour().flyingOver());
-            else
-                ui.tell("this case has not been flattened");
-            break;
-        case 'l':
-        case 'L':
-            toggle(ui, DrawingTool::line);
-            break;
-        case 'o':
-        case 'O':
-            toggle(ui, DrawingTool::outline);
-            break;
-        case 'x':
-        case 'X':
-            if (reader.session().caseInfo()->cleansed)
-                reader.slices().setCleansed(!reader.slices().cleansed());
-            else
-                ui.tell("this case has no cleansed scan");
-            break;
-        default:
-            break;
-    }
+struct LetterKey {
+    std::string_view letters;
+    void (*press)(Ui& ui);
+};
+
+constexpr LetterKey alwaysKeys[] = {
+    {"?", [](Ui& ui) { ui.showHelp = !ui.showHelp; }},
+    {"mM", [](Ui& ui) { ui.showBookmarks = !ui.showBookmarks; }},
+};
+
+Flight& flightOf(Ui& ui) {
+    return ui.reader.flight();
+}
+
+// With a case open.
+constexpr LetterKey caseKeys[] = {
+    {"+=", [](Ui& ui) { flightOf(ui).setSpeed(flightOf(ui).speedMmPerS() * 1.25); }},
+    {"-_", [](Ui& ui) { flightOf(ui).setSpeed(flightOf(ui).speedMmPerS() / 1.25); }},
+    {"rR", [](Ui& ui) { turnRound(flightOf(ui)); }},
+    {"cC", [](Ui& ui) { flightOf(ui).returnToCenterline(), flightOf(ui).resetLook(); }},
+    {"fF",
+     [](Ui& ui) {
+         Flight& flight = flightOf(ui);
+         flight.isFree() ? flight.returnToCenterline() : flight.flyFreely();
+     }},
+    {"b", [](Ui& ui) { ui.reader.addBookmark(""); }},
+    {"B", [](Ui& ui) { ui.showBookmarks = ui.focusNote = true; }},
+    {"nN", [](Ui& ui) { ui.reader.goToBookmark(+1); }},
+    {"pP", [](Ui& ui) { ui.reader.goToBookmark(-1); }},
+    {"tT", [](Ui& ui) { nextTransferFunction(ui.reader.optics()); }},
+    {"gG", [](Ui& ui) { ui.showTransfer = !ui.showTransfer; }},
+    {"iI", [](Ui& ui) { flightOf(ui).setFisheye(!flightOf(ui).isFisheye()); }},
+    {"yY", [](Ui& ui) { ui.reader.outside().setShowsBody(!ui.reader.outside().showsBody()); }},
+    {"kK", [](Ui& ui) { togglePaint(ui, &WallPaintChoice::marks); }},
+    {"u", [](Ui& ui) { togglePaint(ui, &WallPaintChoice::unseen); }},
+    {"U", [](Ui& ui) { ui.reader.flat().forgetSeen(); }},
+    {"vV", toggleFlyingOver},
+    {"lL", [](Ui& ui) { toggle(ui, DrawingTool::line); }},
+    {"oO", [](Ui& ui) { toggle(ui, DrawingTool::outline); }},
+    {"xX", toggleCleansed},
+};
+
+void pressLetter(Ui& ui, std::span<const LetterKey> keys, ImWchar letter) {
+    for (const LetterKey& key : keys)
+        for (const char one : key.letters)
+            if (letter == ImWchar(one)) key.press(ui);
 }
 
 void moveFreely(Flight& flight, double seconds, bool fast) {
@@ -196,8 +158,10 @@ bool handleKeys(Ui& ui, const std::vector<KeyPress>& presses, double seconds) {
         }
     }
     if (io.WantTextInput) return true;
-    for (const ImWchar letter : io.InputQueueCharacters)
-        handleLetter(ui, letter);
+    for (const ImWchar letter : io.InputQueueCharacters) {
+        pressLetter(ui, alwaysKeys, letter);
+        if (ui.reader.isOpen()) pressLetter(ui, caseKeys, letter);
+    }
     if (!ui.reader.isOpen()) return true;
     Flight& flight = ui.reader.flight();
     if (flight.isFree()) moveFreely(flight, seconds, io.KeyShift);

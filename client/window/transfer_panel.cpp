@@ -54,7 +54,7 @@ void choosePreset(Ui& ui) {
 void chooseRow(Ui& ui) {
     OpticsEditor& optics = ui.reader.optics();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("steepness");
+    ImGui::TextDisabled("gradient magnitude");
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     for (std::size_t row = 0; row < optics.rows(); ++row) {
         sameRow(ui, 6);
@@ -146,7 +146,7 @@ void chooseComposition(Ui& ui) {
     ImGui::BeginDisabled(!absorbs || optics.rows() > 1);
     if (ImGui::Checkbox("pre-integrated", &integrated)) optics.setPreIntegrated(integrated);
     ImGui::EndDisabled();
-    tooltip("Smooth where opacity changes quickly; not with rows by steepness");
+    tooltip("Smooth where opacity changes quickly; not with rows by gradient magnitude");
     sameRow(ui, 14);
     bool lit = optics.optics().shading;
     ImGui::BeginDisabled(optics.optics().composition == Composition::maximumIntensity);

@@ -61,9 +61,9 @@ InterfaceLayer::Step InterfaceLayer::stepThrough(glm::ivec3 voxel, double tagged
     const double low = airHu + 0.2 * contrast;
     const double high = std::max(airHu + 0.8 * contrast, 0.5 * (softHu + taggedHu));
     const glm::dvec3 g = gradient(hu_, voxel, look, spacingMm_);
-    const double steepness = glm::length(g);
-    if (steepness < 0.05 * contrast) return {};
-    const glm::dvec3 direction = g / steepness;  // per mm
+    const double gradientMagnitude = glm::length(g);
+    if (gradientMagnitude < 0.05 * contrast) return {};
+    const glm::dvec3 direction = g / gradientMagnitude;  // per mm
     const glm::dvec3 stride = direction / spacingMm_;
     const double here = hu_.at(voxel);
     auto crossing = [&](double sign, double target) {

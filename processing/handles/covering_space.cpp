@@ -51,9 +51,9 @@ FundamentalDomain slice(const mesh::HalfedgeMesh& mesh, const mesh::CutGraph& gr
 CoveringSpace::CoveringSpace(const mesh::HalfedgeMesh& mesh, const FundamentalDomain& domain)
     : mesh_(mesh), domain_(domain), turning_(std::size_t(mesh.halfedgeCount())) {
     for (int v = 0; v < mesh.vertexCount(); ++v) {
-        const int home = mesh.outgoing(v);
-        if (home < 0) continue;
-        for (int h = home; mesh.turnLeft(h) != home; h = mesh.turnLeft(h)) {
+        const int first = mesh.outgoing(v);
+        if (first < 0) continue;
+        for (int h = first; mesh.turnLeft(h) != first; h = mesh.turnLeft(h)) {
             const int left = mesh.turnLeft(h),
                       side = domain.sideOf[mesh::HalfedgeMesh::previous(h)];
             turning_[left] = turning_[h];

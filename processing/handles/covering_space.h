@@ -51,8 +51,9 @@ private:
     const mesh::HalfedgeMesh& mesh_;
     const FundamentalDomain& domain_;
     std::vector<int> neighbours_;  // per copy and side
-    std::vector<std::vector<int>>
-        turning_;  // per half-edge: the sides crossed from the home triangle
+    // Per half-edge: the sides crossed on the way to it around its vertex, from outgoing(vertex)
+    // on.
+    std::vector<std::vector<int>> turning_;
 };
 
 }  // namespace haustra::handles

@@ -53,7 +53,7 @@ std::vector<std::uint64_t> homologyMarks(const mesh::HalfedgeMesh& mesh) {
         }
     }
 
-    // Curve i crosses generator i and runs home on the dual tree from both of its faces.
+    // Curve i crosses generator i and runs to the dual tree's root from both of its faces.
     std::vector<std::uint64_t> below(faces, 0);
     for (std::size_t i = 0; i < generators.size(); ++i) {
         const int h = generators[i];

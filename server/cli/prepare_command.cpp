@@ -116,90 +116,96 @@ Result<void> runPrepare(PrepareArguments arguments) {
     return writeTextFile(arguments.report, reportJson(report, quality));
 }
 
+void addSource(CLI::App& command, PrepareArguments& arguments) {
+    pipeline::PrepareOptions& options = arguments.options;
+    command
+        .add_option("SERIES", options.series,
+                    "DICOM folder (files in any order and depth) or file, or one NIfTI file")
+        ->type_name("PATH");
+    addStoreOption(command, arguments.store);
+    CLI::Option* name =
+        command
+            .add_option("--case", arguments.caseName,
+                        "The case's name: letters, digits, '.', '_', '-' (default: one made from "
+                        "the study's and the series' UIDs, or from a NIfTI file's content). A case "
+                        "is of one scan: another one is refused")
+            ->type_name("NAME")
+            ->check(checkCaseName);
+    command
+        .add_option("--scan", options.scan,
+                    "One of several scans of CASE, such as supine and prone of one study: it is "
+                    "kept beside them, as CASE.SCAN; a series of another study is refused")
+        ->type_name("SCAN")
+        ->check(checkCaseName)
+        ->needs(name);
+    command.add_flag("--replace", options.replace,
+                     "Let this scan take the place of another one that the case is of. Its "
+                     "products go; bookmarks stay with their scan, and are there again when it is");
+    command
+        .add_option("--organ", options.organ,
+                    "How the organ is found, shaped and ended: colon (default), bladder, vessel, "
+                    "or a profile of your own (processing/organs/README.md has the format)")
+        ->type_name("NAME|FILE.json");
+    command.add_option("--until", options.until, "The last stage to run")
+        ->type_name("STAGE")
+        ->check(CLI::IsMember(pipeline::stageNames()));
+}
+
+// What the reader knows of where the organ is.
+void addEdits(CLI::App& command, pipeline::PrepareOptions& options) {
+    CLI::Option* lumen =
+        command
+            .add_option("--lumen", options.lumenMask,
+                        "A segmentation of the lumen made elsewhere, on the series' grid: 0 "
+                        "outside, 2 tagged, else air; it takes the place of the segmentation "
+                        "stage. Without SERIES it is the case's own scan's, or stands alone: then "
+                        "nothing is cleansed, and the surface is the mask's")
+            ->type_name("MASK.nii.gz");
+    command.add_option("--series", options.seriesUid, "Which series of the folder, by its UID")
+        ->type_name("UID");
+    addPointsOption(command, "--seed", options.seedsMm,
+                    "The air or fluid at this point (LPS, mm) is the organ; may be repeated")
+        ->excludes(lumen);
+    addPointsOption(command, "--exclude", options.excludesMm,
+                    "The air or fluid at this point (LPS, mm) is not the organ; may be repeated")
+        ->excludes(lumen);
+    addBallsOption(command, "--cut", options.cuts,
+                   "There is no lumen in the ball at this point (LPS, mm; 3 mm where no radius is "
+                   "given): a wall that the scan does not show; may be repeated")
+        ->excludes(lumen);
+    addPairsOption(
+        command, "--join", options.joins,
+        "The colon goes on from the first point to the second (LPS, mm); may be repeated")
+        ->excludes(lumen);
+    command.add_flag("--forget-edits", options.forgetEdits,
+                     "Forget the points that earlier calls gave; without it they stand where this "
+                     "call gives none");
+}
+
+void addSurface(CLI::App& command, pipeline::PrepareOptions& options) {
+    command
+        .add_option("--surface-error-mm", options.surfaceErrorMm,
+                    "How far the simplified surface may be from the finest one, mm, at the samples "
+                    "where it is held to it: corners, middles of edges and triangles; between "
+                    "them it may be farther at a few places")
+        ->type_name("MM")
+        ->check(checkSurfaceError, "FLOAT in [0.001 - 10]")
+        ->capture_default_str();
+    addAreaWeightOption(command, options.areaWeight);
+}
+
 }  // namespace
 
 Command addPrepare(CLI::App& program) {
     auto arguments = std::make_shared<PrepareArguments>();
-    pipeline::PrepareOptions& options = arguments->options;
     CLI::App* command = program.add_subcommand(
         "prepare",
         "Make a case's products from a CT series. Work that the store holds already is not done "
         "again.");
     command->footer(store::catalogue().stageHelp());
-    command
-        ->add_option("SERIES", options.series,
-                     "DICOM folder (files in any order and depth) or file, or one NIfTI file")
-        ->type_name("PATH");
-    addStoreOption(*command, arguments->store);
-    CLI::Option* name =
-        command
-            ->add_option(
-                "--case", arguments->caseName,
-                "The case's name: letters, digits, '.', '_', '-' (default: one made from the "
-                "study's and the series' UIDs, or from a NIfTI file's content). A case is of "
-                "one scan: another one is refused")
-            ->type_name("NAME")
-            ->check(checkCaseName);
-    CLI::Option* scan =
-        command
-            ->add_option("--scan", options.scan,
-                         "One of several scans of CASE, such as supine and prone of one study: it "
-                         "is kept beside them, as CASE.SCAN; a series of another study is refused")
-            ->type_name("SCAN")
-            ->check(checkCaseName);
-    scan->needs(name);
-    command->add_flag("--replace", options.replace,
-                      "Let this scan take the place of another one that the case is of. Its "
-                      "products go; bookmarks stay with their scan, and are there again when it "
-                      "is");
-    command
-        ->add_option("--organ", options.organ,
-                     "How the organ is found, shaped and ended: colon (default), bladder, vessel, "
-                     "or a profile of your own (processing/organs/README.md has the format)")
-        ->type_name("NAME|FILE.json");
-    command->add_option("--until", options.until, "The last stage to run")
-        ->type_name("STAGE")
-        ->check(CLI::IsMember(pipeline::stageNames()));
-    CLI::Option* lumen =
-        command
-            ->add_option(
-                "--lumen", options.lumenMask,
-                "A segmentation of the lumen made elsewhere, on the series' grid: 0 outside, 2 "
-                "tagged, else air; it takes the place of the segmentation stage. Without SERIES it "
-                "is "
-                "the case's own scan's, or stands alone: then nothing is cleansed, and the surface "
-                "is "
-                "the mask's")
-            ->type_name("MASK.nii.gz");
-    command->add_option("--series", options.seriesUid, "Which series of the folder, by its UID")
-        ->type_name("UID");
-    addPointsOption(*command, "--seed", options.seedsMm,
-                    "The air or fluid at this point (LPS, mm) is the organ; may be repeated")
-        ->excludes(lumen);
-    addPointsOption(*command, "--exclude", options.excludesMm,
-                    "The air or fluid at this point (LPS, mm) is not the organ; may be repeated")
-        ->excludes(lumen);
-    addBallsOption(*command, "--cut", options.cuts,
-                   "There is no lumen in the ball at this point (LPS, mm; 3 mm where no radius is "
-                   "given): a wall that the scan does not show; may be repeated")
-        ->excludes(lumen);
-    addPairsOption(
-        *command, "--join", options.joins,
-        "The colon goes on from the first point to the second (LPS, mm); may be repeated")
-        ->excludes(lumen);
-    command->add_flag("--forget-edits", options.forgetEdits,
-                      "Forget the points that earlier calls gave; without it they stand where this "
-                      "call gives none");
-    command
-        ->add_option(
-            "--surface-error-mm", options.surfaceErrorMm,
-            "How far the simplified surface may be from the finest one, mm, at the samples "
-            "where it is held to it: corners, middles of edges and triangles; between "
-            "them it may be farther at a few places")
-        ->type_name("MM")
-        ->check(checkSurfaceError, "FLOAT in [0.001 - 10]")
-        ->capture_default_str();
-    addAreaWeightOption(*command, options.areaWeight);
+    addSource(*command, *arguments);
+    addEdits(*command, arguments->options);
+    addSurface(*command, arguments->options);
     command
         ->add_option("--report", arguments->report,
                      "Write wall seconds of each stage (beside_seconds of them passed beside "
@@ -207,7 +213,7 @@ Command addPrepare(CLI::App& program) {
                      "segments with their lengths, notes, and how sure the colon is, as "
                      "JSON")
         ->type_name("FILE.json");
-    addThreadsOption(*command, options.threads);
+    addThreadsOption(*command, arguments->options.threads);
     command->callback([arguments] {
         if (arguments->options.series.empty() && arguments->options.lumenMask.empty()) {
             throw CLI::RequiredError("SERIES or --lumen");

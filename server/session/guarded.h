@@ -48,8 +48,8 @@ void serveQueue(WorkQueue<T>& queue, std::size_t most, const char* thread, const
 
 void post(const asio::any_io_executor& io, std::function<void()> work);
 
-/// Runs `work`(*owner) on the io thread, where the owner still lives. What it throws is the
-/// owner's, for whom broken(what) ends its session.
+/// Runs `work`(*owner) on the io thread, where the owner still lives. What it throws goes to
+/// owner->broken(what), which ends the owner's session alone.
 template <class Owner, class Work>
 void postTo(const asio::any_io_executor& io, std::weak_ptr<Owner> owner, Work work) {
     post(io, [owner = std::move(owner), work = std::move(work)]() mutable {

@@ -134,7 +134,7 @@ struct Sizes {
 Column measure(gpu::Context& context, const std::string& name, Volume<std::int16_t> volume,
                const std::vector<Setup>& setups, const Sizes& sizes) {
     Scene made;
-    made.ranges = blockRanges(volume, 0);
+    made.ranges = blockRanges(volume, blockSide, 0);
     made.volume = std::move(volume);
     const auto scene = std::shared_ptr<GlScene>(
         orEnd(GlScene::upload(context, std::make_shared<const Scene>(std::move(made)), 0)));
@@ -219,7 +219,7 @@ void polygonTable(gpu::Context& context, const store::Case& source, const std::s
         std::any_of(products.begin(), products.end(),
                     [](const store::ProductEntry& entry) { return entry.product == "cleansed"; });
     made.volume = orEnd(source.readVolume<std::int16_t>(cleansed ? "cleansed" : "ct"));
-    made.ranges = blockRanges(made.volume, 0);
+    made.ranges = blockRanges(made.volume, blockSide, 0);
     made.wall = std::make_shared<const TriMesh>(orEnd(source.readMesh()));
     const Centerline path = orEnd(source.readCenterline());
     const auto scene = std::shared_ptr<GlScene>(

@@ -49,7 +49,7 @@ Drawn draw(Raycaster& raycaster, const CameraView& view, glm::ivec2 size) {
 
 std::shared_ptr<const Scene> sceneOf(Volume<std::int16_t> volume, bool ranges) {
     Scene scene;
-    if (ranges) scene.ranges = blockRanges(volume, 0);
+    if (ranges) scene.ranges = blockRanges(volume, blockSide, 0);
     scene.volume = std::move(volume);
     return std::make_shared<const Scene>(std::move(scene));
 }

@@ -84,11 +84,7 @@ TEST_P(EachRaycaster, DrawsASmallScene) {
 
 INSTANTIATE_TEST_SUITE_P(All, EachRaycaster,
                          testing::ValuesIn(raycasters().begin(), raycasters().end()),
-                         [](const auto& entry) {
-                             std::string name = entry.param.name;
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         nameOfRaycaster);
 
 }  // namespace
 }  // namespace haustra::tests

@@ -115,11 +115,7 @@ TEST_P(GpuMemory, IsAllCounted) {
 
 INSTANTIATE_TEST_SUITE_P(All, GpuMemory,
                          testing::ValuesIn(raycasters().begin(), raycasters().end()),
-                         [](const auto& entry) {
-                             std::string name = entry.param.name;
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         nameOfRaycaster);
 
 }  // namespace
 }  // namespace haustra::tests

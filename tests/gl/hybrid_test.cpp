@@ -14,11 +14,11 @@ class Hybrid : public Drawing {
 protected:
     std::shared_ptr<GlScene> scene(double (*field)(glm::dvec3)) {
         const Volume<std::int16_t> volume = sampled(grid, field);
-        auto made =
-            GlScene::upload(*context,
-                            std::make_shared<const Scene>(Scene{
-                                volume.share(), blockRanges(volume, 0), nullptr, nullptr, nullptr}),
-                            0);
+        auto made = GlScene::upload(
+            *context,
+            std::make_shared<const Scene>(Scene{volume.share(), blockRanges(volume, blockSide, 0),
+                                                nullptr, nullptr, nullptr}),
+            0);
         if (!made) ADD_FAILURE() << describe(made.error());
         return std::move(*made);
     }

@@ -14,7 +14,7 @@ using namespace render;
 class ObjectOrder : public Drawing {
 protected:
     std::shared_ptr<const Scene> sceneOf(Volume<std::int16_t> volume) {
-        BlockRanges ranges = blockRanges(volume, 2);
+        BlockRanges ranges = blockRanges(volume, blockSide, 2);
         Scene scene;
         scene.volume = std::move(volume);
         scene.ranges = std::move(ranges);

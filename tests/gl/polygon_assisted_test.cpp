@@ -19,7 +19,7 @@ protected:
     std::shared_ptr<GlScene> scene(const Volume<std::int16_t>& volume, const TriMesh& wall) {
         auto made = GlScene::upload(*context,
                                     std::make_shared<const Scene>(Scene{
-                                        volume.share(), blockRanges(volume, 0),
+                                        volume.share(), blockRanges(volume, blockSide, 0),
                                         std::make_shared<const TriMesh>(wall), nullptr, nullptr}),
                                     0);
         if (!made) ADD_FAILURE() << describe(made.error());
@@ -146,10 +146,11 @@ TEST_F(PolygonAssisted, RefusesWhatIsNoClosedMesh) {
     wrong.triangles.back().y = int(wrong.vertices.size());
     refuses(wrong, "vertices");
     const auto none = PolygonAssistedRaycaster::create(
-        *GlScene::upload(*context,
-                         std::make_shared<const Scene>(Scene{volume.share(), blockRanges(volume, 0),
-                                                             nullptr, nullptr, nullptr}),
-                         0),
+        *GlScene::upload(
+            *context,
+            std::make_shared<const Scene>(Scene{volume.share(), blockRanges(volume, blockSide, 0),
+                                                nullptr, nullptr, nullptr}),
+            0),
         0);
     EXPECT_FALSE(none);
 }

@@ -15,7 +15,7 @@ using namespace render;
 
 std::shared_ptr<const Scene> sceneOf(const Volume<std::int16_t>& volume) {
     return std::make_shared<const Scene>(
-        Scene{volume.share(), blockRanges(volume, 1), nullptr, nullptr, nullptr});
+        Scene{volume.share(), blockRanges(volume, blockSide, 1), nullptr, nullptr, nullptr});
 }
 
 Image drawn(Raycaster& raycaster, const CameraView& view, int width, int height) {

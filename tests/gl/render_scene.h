@@ -15,6 +15,13 @@
 
 namespace haustra::tests {
 
+/// What a test of each raycaster is called by.
+inline std::string nameOfRaycaster(const testing::TestParamInfo<render::RaycasterEntry>& entry) {
+    std::string name(entry.param.name);
+    std::erase(name, '-');
+    return name;
+}
+
 /// A volume of value(patient point in mm), rounded to whole HU.
 inline Volume<std::int16_t> sampled(const Grid& grid,
                                     const std::function<double(glm::dvec3)>& value) {

@@ -103,7 +103,7 @@ struct Small {
         const Volume<std::int16_t> volume =
             sampled(obliqueGrid({20, 24, 28}, {0.7, 0.8, 1.1}), foldedTube);
         scene = std::make_shared<const Scene>(
-            Scene{volume.share(), blockRanges(volume, 1), nullptr, nullptr, nullptr});
+            Scene{volume.share(), blockRanges(volume, blockSide, 1), nullptr, nullptr, nullptr});
         native = std::make_unique<NativeScene>(scene, 1);
     }
     PacketScene packetScene(const CameraView& view, glm::ivec2 size) {

@@ -25,13 +25,18 @@ TransferTable stepTable(double fromHu, double stepMm = 0.5) {
     return makeTransferTable({step}, stepMm);
 }
 
+MinMaxOctree octreeOf(const Volume<std::int16_t>& volume, int leafSide, int threads) {
+    return MinMaxOctree::fromLeaves(blockRanges(volume, leafSide, threads), leafSide,
+                                    volume.grid().size);
+}
+
 const glm::ivec3 sizes[] = {{33, 20, 17}, {1, 1, 1}, {2, 9, 70}, {64, 65, 66}, {129, 3, 5}};
 
 TEST(MinMaxOctree, NodesHoldTheRangeOfWhatInterpolationsInsideRead) {
     for (const glm::ivec3 size : sizes) {
         const Volume<std::int16_t> volume = randomVolume(size, 3, 0.2);
         for (const int leafSide : {1, 2, 5, 16, 128}) {
-            const MinMaxOctree octree = MinMaxOctree::build(volume, leafSide, 2);
+            const MinMaxOctree octree = octreeOf(volume, leafSide, 2);
             const glm::ivec3 root = octree.level(octree.levels() - 1).size;
             EXPECT_EQ(root, glm::ivec3(1));
             for (int level = 0; level < octree.levels(); ++level) {
@@ -59,22 +64,18 @@ TEST(MinMaxOctree, NodesHoldTheRangeOfWhatInterpolationsInsideRead) {
     }
 }
 
-TEST(MinMaxOctree, IsTheSameForAnyNumberOfThreadsAndFromBlockRanges) {
+TEST(MinMaxOctree, IsTheSameForAnyNumberOfThreads) {
     const Volume<std::int16_t> volume = randomVolume({90, 77, 53}, 5, 0.1);
-    const MinMaxOctree one = MinMaxOctree::build(volume, blockSide, 1);
-    const MinMaxOctree four = MinMaxOctree::build(volume, blockSide, 4);
-    const MinMaxOctree known =
-        MinMaxOctree::fromLeaves(blockRanges(volume, 2), blockSide, volume.grid().size);
-    for (int level = 0; level < one.levels(); ++level)
-        for (const MinMaxOctree* other : {&four, &known}) {
-            EXPECT_EQ(one.level(level).lowHu, other->level(level).lowHu);
-            EXPECT_EQ(one.level(level).highHu, other->level(level).highHu);
-        }
+    const MinMaxOctree one = octreeOf(volume, blockSide, 1), four = octreeOf(volume, blockSide, 4);
+    for (int level = 0; level < one.levels(); ++level) {
+        EXPECT_EQ(one.level(level).lowHu, four.level(level).lowHu);
+        EXPECT_EQ(one.level(level).highHu, four.level(level).highHu);
+    }
 }
 
 TEST(ClassifiedOctree, SaysWhatItsLeavesShow) {
     const Volume<std::int16_t> volume = randomVolume({61, 58, 47}, 7, 0.9);
-    const MinMaxOctree octree = MinMaxOctree::build(volume, 2, 2);
+    const MinMaxOctree octree = octreeOf(volume, 2, 2);
     const TransferTable tables[] = {stepTable(90.0), stepTable(-2000.0), stepTable(5.0),
                                     stepTable(-900.0)};
     for (const TransferTable& table : tables) {
@@ -138,7 +139,7 @@ Leaf leafAt(glm::dvec3 p, int side, glm::ivec3 leaves) {
 TEST(ClassifiedOctree, RaysPierceEveryLeafTheyPassInOrder) {
     for (const glm::ivec3 size : {glm::ivec3(61, 58, 47), {1, 30, 9}, {40, 2, 2}}) {
         const Volume<std::int16_t> volume = randomVolume(size, 13, 0.05);
-        const MinMaxOctree octree = MinMaxOctree::build(volume, 4, 2);
+        const MinMaxOctree octree = octreeOf(volume, 4, 2);
         const ClassifiedOctree classified(octree, stepTable(50.0), 2);
         RandomRays rays;
         for (int repeat = 0; repeat < 400; ++repeat) {
@@ -179,7 +180,7 @@ TEST(ClassifiedOctree, RaysPierceEveryLeafTheyPassInOrder) {
 TEST(ClassifiedOctree, TheFirstNonEmptyNodeIsWhatWalkingLeafByLeafFinds) {
     const glm::ivec3 size(61, 58, 47);
     const Volume<std::int16_t> volume = randomVolume(size, 17, 0.0005);
-    const MinMaxOctree octree = MinMaxOctree::build(volume, 2, 2);
+    const MinMaxOctree octree = octreeOf(volume, 2, 2);
     const ClassifiedOctree classified(octree, stepTable(5.0), 2);
     RandomRays rays;
     int found = 0;

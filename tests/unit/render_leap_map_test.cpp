@@ -19,7 +19,7 @@ const TransferTable& mucosa() {
 TEST(BlockRanges, HoldEveryVoxelThatAnInterpolationInsideReads) {
     for (const glm::ivec3 size : {glm::ivec3(9, 8, 7), {1, 1, 1}, {2, 3, 4}, {30, 1, 5}}) {
         const Volume<std::int16_t> volume = randomVolume(size, 1, 0.3);
-        const BlockRanges ranges = blockRanges(volume, 2);
+        const BlockRanges ranges = blockRanges(volume, blockSide, 2);
         for (int k = 0; k < size.z; ++k) {
             for (int j = 0; j < size.y; ++j) {
                 for (int i = 0; i < size.x; ++i) {
@@ -45,7 +45,7 @@ TEST(BlockRanges, HoldEveryVoxelThatAnInterpolationInsideReads) {
 TEST(LeapDistances, AreTheChebyshevDistancesToVisibleBlocks) {
     for (const unsigned seed : {1u, 2u, 3u}) {
         const Volume<std::int16_t> volume = randomVolume({41, 34, 27}, seed, 0.0003);
-        const BlockRanges ranges = blockRanges(volume, 2);
+        const BlockRanges ranges = blockRanges(volume, blockSide, 2);
         const std::vector<std::uint8_t> distances = leapDistances(ranges, mucosa(), 2);
         const auto blockOf = [&](std::size_t i) {
             const int row = int(i) / ranges.size.x;
@@ -69,10 +69,10 @@ TEST(LeapDistances, AreTheChebyshevDistancesToVisibleBlocks) {
 
 TEST(LeapDistances, AreTheSameForAnyNumberOfThreadsAndFarWhereNothingShows) {
     const Volume<std::int16_t> volume = randomVolume({64, 50, 40}, 9, 0.01);
-    EXPECT_EQ(leapDistances(blockRanges(volume, 1), mucosa(), 1),
-              leapDistances(blockRanges(volume, 4), mucosa(), 4));
+    EXPECT_EQ(leapDistances(blockRanges(volume, blockSide, 1), mucosa(), 1),
+              leapDistances(blockRanges(volume, blockSide, 4), mucosa(), 4));
     const Volume<std::int16_t> air(axisAlignedGrid({20, 20, 20}, glm::dvec3(1.0)), -1000);
-    for (const std::uint8_t distance : leapDistances(blockRanges(air, 1), mucosa(), 1))
+    for (const std::uint8_t distance : leapDistances(blockRanges(air, blockSide, 1), mucosa(), 1))
         EXPECT_EQ(distance, 255);
 }
 

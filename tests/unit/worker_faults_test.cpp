@@ -1,6 +1,6 @@
 // One fault costs one piece of work, never a thread.
+#include "core/thread_pool.h"
 #include "protocol/view_message.h"
-#include "render/native/tile_workers.h"
 #include "session/guarded.h"
 #include "session/picture_stream.h"
 
@@ -40,18 +40,18 @@ TEST(WorkerFaults, GuardedWorkFailsWithWhatWasThrown) {
 
 TEST(WorkerFaults, ATileThatThrowsFailsThePictureAndTheNextIsDrawn) {
     for (const int threads : {1, 3}) {
-        render::TileWorkers workers(threads);
+        ThreadPool pool(threads);
         for (int round = 0; round < 50; ++round) {
             std::atomic<int> drawn{0};
-            EXPECT_THROW(workers.run(100,
-                                     [&](int tile) {
-                                         ++drawn;
-                                         if (tile % 10 == 3) throw std::runtime_error("a tile");
-                                     }),
+            EXPECT_THROW(pool.run(100,
+                                  [&](int tile) {
+                                      ++drawn;
+                                      if (tile % 10 == 3) throw std::runtime_error("a tile");
+                                  }),
                          std::runtime_error);
             EXPECT_EQ(drawn, 100);
             drawn = 0;
-            EXPECT_NO_THROW(workers.run(100, [&](int) { ++drawn; }));
+            EXPECT_NO_THROW(pool.run(100, [&](int) { ++drawn; }));
             EXPECT_EQ(drawn, 100);
         }
     }

@@ -1,5 +1,6 @@
 #include "render/hybrid/hybrid_raycaster.h"
 
+#include "core/thread_pool.h"
 #include "gpu/streaming.h"
 #include "gpu/timestamps.h"
 #include "render/gl/march_variant.h"
@@ -8,7 +9,6 @@
 #include "render/hybrid/quad_list.h"
 #include "render/hybrid/ray_tiles.h"
 #include "render/hybrid/reader_balances.h"
-#include "render/native/tile_workers.h"
 #include "render/scene/lru_cache.h"
 #include "render/scene/ray_setup.h"
 
@@ -73,7 +73,7 @@ struct HybridRaycaster::Impl {
 
     std::shared_ptr<GlScene> scene;
     HybridOptions options;
-    TileWorkers workers;
+    ThreadPool pool;
     MinMaxOctree octree;
     MarchPrograms slabs{"hybrid_slab.comp"}, finish{"cell_picture.comp"};
     ReaderBalances balances;
@@ -88,7 +88,7 @@ struct HybridRaycaster::Impl {
     Impl(std::shared_ptr<GlScene> made, HybridOptions chosen)
         : scene(std::move(made)),
           options(chosen),
-          workers(chosen.threads),
+          pool(chosen.threads),
           octree(MinMaxOctree::fromLeaves(scene->scene().ranges, blockSide,
                                           scene->scene().grid().size)),
           balances(nearShare * diagonalMm(scene->scene().grid())) {}
@@ -162,7 +162,7 @@ void HybridRaycaster::Impl::castAll(const gpu::ComputeProgram& program, RayTiles
         list = lists->begin();
         listed = 0;
         timed([&] {
-            workers.run(count, [&](int i) { tiles.determine(first + i); });
+            pool.run(count, [&](int i) { tiles.determine(first + i); });
             for (int tile = first; tile < first + count; ++tile) {
                 if (tiles.liveQuads(tile) == 0) continue;
                 append(tile, QuadState::live);
@@ -177,8 +177,8 @@ void HybridRaycaster::Impl::castAll(const gpu::ComputeProgram& program, RayTiles
         list = lists->begin();
         listed = 0;
         timed([&] {
-            workers.run(int(active.size()),
-                        [&](int i) { tiles.follow(active[std::size_t(i)], slab); });
+            pool.run(int(active.size()),
+                     [&](int i) { tiles.follow(active[std::size_t(i)], slab); });
             std::erase_if(active, [&](int tile) { return tiles.liveQuads(tile) == 0; });
             for (const int tile : active)
                 append(tile, QuadState::live);

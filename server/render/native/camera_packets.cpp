@@ -85,7 +85,7 @@ HWY_INLINE Color backdropOf(const PacketScene& scene, const PacketPicture& pictu
 }
 
 template <class AnyVoxels>
-HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+HWY_INLINE void castPacket(const PacketScene& scene, const VolumeSampler<AnyVoxels>& sampler,
                            const PacketPicture& picture, float start, int left, int top) {
     const VF half = set(0.5f);
     const V3 aside = asideMm(scene, hn::Add(laneX(), hn::Add(set(float(left)), half)),
@@ -94,7 +94,7 @@ HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<AnyVoxels>& l
     const Range inside = insideRange(scene, rays);
     const Color backdrop = backdropOf(scene, picture, left, top);
     const VF end = hn::Floor(hn::Min(inside.last, hn::Div(backdrop.a, set(scene.u.stepMm))));
-    const Color sum = march(scene, lattice, rays, hn::Max(hn::Ceil(inside.first), set(start)),
+    const Color sum = march(scene, sampler, rays, hn::Max(hn::Ceil(inside.first), set(start)),
                             hn::IfThenElse(isInPicture(scene, aside), end, set(-1.0f)));
     Bytes bytes;
     pixelColors(scene, sum, backdrop, bytes);
@@ -104,7 +104,7 @@ HWY_INLINE void castPacket(const PacketScene& scene, const Lattice<AnyVoxels>& l
 
 template <class AnyVoxels>
 void castTile(const PacketScene& scene, const PacketPicture& picture, int x, int y) {
-    const Lattice<AnyVoxels> lattice(scene);
+    const VolumeSampler<AnyVoxels> sampler(scene);
     const int left = x * packetWidth * coneSide, top = y * packetHeight * coneSide;
     float starts[lanes];
     hn::StoreU(coneStart(scene, hn::MulAdd(laneX(), set(coneSide), set(float(left))),
@@ -117,7 +117,7 @@ void castTile(const PacketScene& scene, const PacketPicture& picture, int x, int
             if (py >= picture.endRow || py + packetHeight <= picture.firstRow) continue;
             for (int px = coneLeft; px < coneLeft + coneSide; px += packetWidth)
                 if (px < scene.u.pictureSize.x)
-                    castPacket(scene, lattice, picture, starts[cone], px, py);
+                    castPacket(scene, sampler, picture, starts[cone], px, py);
         }
     }
 }

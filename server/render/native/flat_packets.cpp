@@ -25,13 +25,13 @@ struct Start {
 /// again ends the way: something stands before the wall.
 template <class AnyVoxels>
 HWY_INLINE Start startOf(const PacketScene& scene, const PacketWall& wall,
-                         const Lattice<AnyVoxels>& lattice, V3 place, V3 step, MF wanted) {
+                         const VolumeSampler<AnyVoxels>& sampler, V3 place, V3 step, MF wanted) {
     const VF zero = hn::Zero(f), one = set(1.0f);
-    VF least = lattice.value(onlyWhere(wanted, place));
+    VF least = sampler.value(onlyWhere(wanted, place));
     VF back = zero, visible = zero, before = least;
     MF open = wanted;
     for (float n = 1.0f; n <= wall.u.mostStepsBack && any(open); n += 1.0f) {
-        const VF hu = lattice.value(onlyWhere(open, along(place, set(-n), step)));
+        const VF hu = sampler.value(onlyWhere(open, along(place, set(-n), step)));
         const MF darker = hn::And(open, hn::Lt(hu, least));
         const MF shows = hn::And(open, mayShow(scene, before, hu));
         const MF goesOn = hn::And(open, hn::Lt(hu, hn::Add(least, set(wall.u.riseThatEnds))));
@@ -47,8 +47,8 @@ HWY_INLINE Start startOf(const PacketScene& scene, const PacketWall& wall,
 
 template <class AnyVoxels>
 HWY_INLINE void castPacket(const PacketScene& scene, const PacketWall& wall,
-                           const Lattice<AnyVoxels>& lattice, const PacketRows& rows, int left,
-                           int top) {
+                           const VolumeSampler<AnyVoxels>& sampler, const PacketRows& rows,
+                           int left, int top) {
     const int width = wall.u.pictureSize.x, endRow = rows.firstRow + rows.rows;
     std::int32_t triangle[lanes], x[lanes], y[lanes];
     bool covered = false;
@@ -79,12 +79,12 @@ HWY_INLINE void castPacket(const PacketScene& scene, const PacketWall& wall,
         const auto middle = [&](int axis)
                                 HWY_ATTR { return set(0.5f * float(scene.size[axis]) - 0.5f); };
         const V3 place = sum({middle(0), middle(1), middle(2)}, voxelVector(scene, places.placeMm));
-        const Start start = startOf(scene, wall, lattice, place, rays.step, wanted);
+        const Start start = startOf(scene, wall, sampler, place, rays.step, wanted);
         rays.origin = along(place, hn::Neg(start.back), rays.step);
         const Range inside = insideRange(scene, rays);
         const VF last =
             hn::Min(hn::Floor(inside.last), hn::Add(start.back, set(wall.u.mostStepsOn)));
-        total = march(scene, lattice, rays, hn::Max(hn::Ceil(inside.first), start.visible),
+        total = march(scene, sampler, rays, hn::Max(hn::Ceil(inside.first), start.visible),
                       hn::IfThenElse(wanted, last, set(-1.0f)));
     }
     Bytes bytes;
@@ -94,10 +94,10 @@ HWY_INLINE void castPacket(const PacketScene& scene, const PacketWall& wall,
 
 template <class AnyVoxels>
 void castRows(const PacketScene& scene, const PacketWall& wall, const PacketRows& rows) {
-    const Lattice<AnyVoxels> lattice(scene);
+    const VolumeSampler<AnyVoxels> sampler(scene);
     for (int top = rows.firstRow; top < rows.firstRow + rows.rows; top += packetHeight)
         for (int left = 0; left < wall.u.pictureSize.x; left += packetWidth)
-            castPacket(scene, wall, lattice, rows, left, top);
+            castPacket(scene, wall, sampler, rows, left, top);
 }
 
 void castFlat(const PacketScene& scene, const PacketWall& wall, const PacketRows& rows) {

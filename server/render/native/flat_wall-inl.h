@@ -7,7 +7,7 @@
 #endif
 
 #include "render/native/flat_packets.h"
-#include "render/native/lattice-inl.h"
+#include "render/native/volume_sampler-inl.h"
 
 #include <cmath>
 #include <cstddef>

@@ -115,7 +115,7 @@ struct Search {
     MF found;
 };
 template <class AnyVoxels>
-HWY_INLINE Search searched(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+HWY_INLINE Search searched(const PacketScene& scene, const VolumeSampler<AnyVoxels>& sampler,
                            const Rays& rays, VF n, VF last, MF searching, bool lookFirst) {
     const VF zero = hn::Zero(f), one = set(1.0f);
     const MF none = hn::Lt(one, zero);
@@ -125,7 +125,7 @@ HWY_INLINE Search searched(const PacketScene& scene, const Lattice<AnyVoxels>& l
         if (leap) leapt(scene, rays, last, none, search.n, searching, known);
         if (!any(searching)) break;
         const V3 place = along(rays.origin, search.n, rays.step);
-        const VF value = lattice.value(onlyWhere(searching, place));
+        const VF value = sampler.value(onlyWhere(searching, place));
         const MF visible = hn::And(searching, mayShow(scene, value));
         search.hu = hn::IfThenElse(visible, value, search.hu);
         search.found = hn::Or(search.found, visible);
@@ -139,24 +139,24 @@ HWY_INLINE Search searched(const PacketScene& scene, const Lattice<AnyVoxels>& l
 /// Emission and absorption by samples. As the other marches: colour (linear, multiplied by opacity)
 /// and opacity along rays from n = `first` to `last`.
 template <bool byGradient, class AnyVoxels>
-HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+HWY_NOINLINE Color marchSamples(const PacketScene& scene, const VolumeSampler<AnyVoxels>& sampler,
                                 const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f);
     Color sum{zero, zero, zero, zero};
     VF n = first;
     MF active = hn::Le(n, last);
     for (bool again = false; any(active); again = true) {
-        const Search at = searched(scene, lattice, rays, n, last, active, again);
+        const Search at = searched(scene, sampler, rays, n, last, active, again);
         if (!any(at.found)) break;
         n = at.n;
         const V3 place = along(rays.origin, n, rays.step);
         V3 normal{zero, zero, zero};
-        if (byGradient) normal = normalOf(scene, lattice.gradient(place, at.found));
+        if (byGradient) normal = normalOf(scene, sampler.gradient(place, at.found));
         Color here = byGradient ? classified(scene, at.hu, hn::Sqrt(dot(normal, normal)))
                                 : classified(scene, at.hu);
         // Values may lie between two ranges that have opacity: their light is not seen.
         if (scene.shading && any(hn::And(at.found, hn::Gt(here.a, zero)))) {
-            if (!byGradient) normal = normalOf(scene, lattice.gradient(place, at.found));
+            if (!byGradient) normal = normalOf(scene, sampler.gradient(place, at.found));
             here = shaded(scene, here, normal, rays.lightMm, n);
         }
         sum = behind(sum, here, at.found);
@@ -170,7 +170,7 @@ HWY_NOINLINE Color marchSamples(const PacketScene& scene, const Lattice<AnyVoxel
 /// Emission and absorption by pre-integrated segments. A segment is worth a look where one of its
 /// ends lies in a block that may be visible: others have no opacity, looked at or not.
 template <class AnyVoxels>
-HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+HWY_NOINLINE Color marchSegments(const PacketScene& scene, const VolumeSampler<AnyVoxels>& sampler,
                                  const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
     const MF none = hn::Lt(one, zero);
@@ -191,11 +191,11 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxe
                 // The first sample stands for the way before it.
                 const VF before = hn::Max(hn::Sub(n, one), first);
                 const VF value =
-                    lattice.value(onlyWhere(asking, along(rays.origin, before, rays.step)));
+                    sampler.value(onlyWhere(asking, along(rays.origin, before, rays.step)));
                 front = hn::IfThenElse(asking, value, front);
                 known = hn::Or(known, asking);
             }
-            const VF value = lattice.value(onlyWhere(searching, along(rays.origin, n, rays.step)));
+            const VF value = sampler.value(onlyWhere(searching, along(rays.origin, n, rays.step)));
             const MF visible = hn::And(searching, mayShow(scene, front, value));
             back = hn::IfThenElse(visible, value, back);
             found = hn::Or(found, visible);
@@ -210,7 +210,7 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxe
         if (scene.shading) {
             const VF middle = hn::Sub(n, half);
             const V3 place = along(rays.origin, middle, rays.step);
-            here = shaded(scene, here, normalOf(scene, lattice.gradient(place, found)),
+            here = shaded(scene, here, normalOf(scene, sampler.gradient(place, found)),
                           rays.lightMm, middle);
         }
         sum = behind(sum, here, found);
@@ -224,7 +224,7 @@ HWY_NOINLINE Color marchSegments(const PacketScene& scene, const Lattice<AnyVoxe
 
 /// The greatest value. The leap map lets rays leap over what lies below the first visible one.
 template <class AnyVoxels>
-HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const VolumeSampler<AnyVoxels>& sampler,
                                 const Rays& rays, VF first, VF last) {
     const VF one = set(1.0f), zero = hn::Zero(f);
     VF greatest = set(-32768.0f), n = first;
@@ -240,7 +240,7 @@ HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<AnyVoxel
         if (any(looking))
             greatest = hn::Max(
                 greatest,
-                hn::IfThenElse(looking, lattice.value(onlyWhere(looking, place)), greatest));
+                hn::IfThenElse(looking, sampler.value(onlyWhere(looking, place)), greatest));
         n = hn::Add(n, hn::IfThenElseZero(active, advance));
         active =
             hn::And(active, hn::And(hn::Le(n, last), hn::Lt(greatest, set(scene.lastVisibleHu))));
@@ -252,7 +252,7 @@ HWY_NOINLINE Color marchMaximum(const PacketScene& scene, const Lattice<AnyVoxel
 
 /// The place where opacity first is enough, found between samples by bisection.
 template <class AnyVoxels>
-HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const VolumeSampler<AnyVoxels>& sampler,
                                  const Rays& rays, VF first, VF last) {
     constexpr int bisections = 8;
     const VF one = set(1.0f), zero = hn::Zero(f), half = set(0.5f);
@@ -260,7 +260,7 @@ HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<AnyVoxe
     VF n = first, hit = first;
     MF active = hn::Le(n, last), ended = hn::Lt(one, zero);
     for (bool again = false; any(active); again = true) {
-        const Search at = searched(scene, lattice, rays, n, last, active, again);
+        const Search at = searched(scene, sampler, rays, n, last, active, again);
         if (!any(at.found)) break;
         const MF opaque = hn::And(at.found, hn::Ge(classified(scene, at.hu).a, enough));
         hit = hn::IfThenElse(opaque, at.n, hit);
@@ -276,14 +276,14 @@ HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<AnyVoxe
     };
     for (int count = 0; count < bisections; ++count) {
         const VF middle = hn::Mul(half, hn::Add(before, hit));
-        const MF beyond = hn::Ge(classified(scene, lattice.value(placeAt(middle))).a, enough);
+        const MF beyond = hn::Ge(classified(scene, sampler.value(placeAt(middle))).a, enough);
         hit = hn::IfThenElse(beyond, middle, hit);
         before = hn::IfThenElse(beyond, before, middle);
     }
     const V3 place = placeAt(hit);
-    Color color = classified(scene, lattice.value(place));
+    Color color = classified(scene, sampler.value(place));
     if (scene.shading)
-        color = shaded(scene, color, normalOf(scene, lattice.gradient(place, ended)), rays.lightMm,
+        color = shaded(scene, color, normalOf(scene, sampler.gradient(place, ended)), rays.lightMm,
                        hit);
     return {hn::IfThenElseZero(ended, color.r), hn::IfThenElseZero(ended, color.g),
             hn::IfThenElseZero(ended, color.b), hn::IfThenElseZero(ended, one)};
@@ -291,17 +291,17 @@ HWY_NOINLINE Color marchFirstHit(const PacketScene& scene, const Lattice<AnyVoxe
 
 /// By the scene's composition.
 template <class AnyVoxels>
-HWY_INLINE Color march(const PacketScene& scene, const Lattice<AnyVoxels>& lattice,
+HWY_INLINE Color march(const PacketScene& scene, const VolumeSampler<AnyVoxels>& sampler,
                        const Rays& rays, VF first, VF last) {
     switch (scene.composition) {
         case Composition::maximumIntensity:
-            return marchMaximum(scene, lattice, rays, first, last);
+            return marchMaximum(scene, sampler, rays, first, last);
         case Composition::firstHit:
-            return marchFirstHit(scene, lattice, rays, first, last);
+            return marchFirstHit(scene, sampler, rays, first, last);
         default:
-            if (scene.integrals) return marchSegments(scene, lattice, rays, first, last);
-            return scene.rows > 1 ? marchSamples<true>(scene, lattice, rays, first, last)
-                                  : marchSamples<false>(scene, lattice, rays, first, last);
+            if (scene.integrals) return marchSegments(scene, sampler, rays, first, last);
+            return scene.rows > 1 ? marchSamples<true>(scene, sampler, rays, first, last)
+                                  : marchSamples<false>(scene, sampler, rays, first, last);
     }
 }
 

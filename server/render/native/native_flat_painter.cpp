@@ -44,7 +44,7 @@ Result<Image> NativeFlatPainter::draw(const FlatView& view, const Band& band) {
     wall.u.riseThatEnds = float(flatRay.riseHu);
     wall.u.mostStepsOn = float(std::ceil(flatRay.depthMm / step));
     Image image = blankImage(size);
-    scene_->workers().run((size.y + flatStripeRows - 1) / flatStripeRows, [&](int stripe) {
+    scene_->pool().run((size.y + flatStripeRows - 1) / flatStripeRows, [&](int stripe) {
         const int first = stripe * flatStripeRows, rows = std::min(flatStripeRows, size.y - first);
         std::vector<FlatPixel> pixels;
         coverRows(*geometry_, lattice, first, rows, pixels);

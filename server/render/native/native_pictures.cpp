@@ -39,7 +39,7 @@ Result<Image> NativePictures::slice(const SlicePlacement& placement, const Windo
                             size.x,
                             band.firstRow};
     Image image = blankImage(size);
-    scene_->workers().run((size.y + stripeRows - 1) / stripeRows, [&](int stripe) {
+    scene_->pool().run((size.y + stripeRows - 1) / stripeRows, [&](int stripe) {
         const int first = stripe * stripeRows;
         drawSlice_(packets, slice, first, std::min(first + stripeRows, size.y), image.rgb.data());
     });

@@ -31,7 +31,7 @@ Result<void> NativeRaycaster::render(const CameraView& view, const Band& band, I
     const int columns = (band.pictureSize.x + packets_.tileWidth - 1) / packets_.tileWidth;
     const int firstRow = target.firstRow / packets_.tileHeight;
     const int rows = (target.endRow - 1) / packets_.tileHeight - firstRow + 1;
-    scene_->workers().run(columns * rows, [&](int tile) {
+    scene_->pool().run(columns * rows, [&](int tile) {
         packets_.cast(packets, target, tile % columns, firstRow + tile / columns);
     });
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;

@@ -38,7 +38,7 @@ void PacketVolume::describe(PacketScene& scene) const {
 NativeScene::NativeScene(std::shared_ptr<const Scene> scene, int threads)
     : scene_(std::move(scene)),
       volume_(scene_->volume.share()),
-      workers_(threads),
+      pool_(threads),
       recent_(classificationsKept) {}
 
 Result<const NativeScene::Classified*> NativeScene::classification(const Optics& optics,
@@ -55,7 +55,7 @@ Result<const NativeScene::Classified*> NativeScene::classification(const Optics&
     const BlockRanges& ranges = scene_->ranges;
     Classified made{optics, step, leaping, makeTransferTable(optics, step), {}};
     if (leaping)
-        made.leap = leapDistances(ranges, made.table, workers_.threads());
+        made.leap = leapDistances(ranges, made.table, pool_.threads());
     else
         made.leap.assign(ranges.lowHu.size(), 0);
     made.leap.insert(made.leap.end(), 3, 0);
@@ -83,8 +83,9 @@ PacketScene NativeScene::packetScene(const shaders::MarchUniforms& uniforms,
     if (!table.integrals.empty()) packet.integrals = &table.integrals[0].x;
     packet.entriesPerHu = float(table.entryOf(1.0) - table.entryOf(0.0));
     packet.firstEntry = float(table.entryOf(0.0));
-    // A normal is twice as long as the slope.
-    if (table.rows > 1) packet.rowsPerSlope = float(0.5 * (table.rows - 1) / table.lastRowHuPerMm);
+    // A normal is twice as long as the gradient.
+    if (table.rows > 1)
+        packet.rowsPerGradient = float(0.5 * (table.rows - 1) / table.lastRowHuPerMm);
     packet.lastVisibleHu = float(std::min(table.lastHu, 32767.0));
     packet.visibleAboveHu = float(table.visibleAboveHu);
     packet.visibleBelowHu = float(table.visibleBelowHu);

@@ -1,8 +1,8 @@
 // A scene as the CPU's raycasters read it.
 #pragma once
 
+#include "core/thread_pool.h"
 #include "render/native/packet_scene.h"
-#include "render/native/tile_workers.h"
 #include "render/optics/transfer_table.h"
 #include "render/scene/lru_cache.h"
 #include "render/scene/picture.h"
@@ -35,7 +35,7 @@ public:
 
     const Scene& scene() const { return *scene_; }
     const PacketVolume& volume() const { return volume_; }
-    TileWorkers& workers() { return workers_; }
+    ThreadPool& pool() { return pool_; }
 
     /// The transfer function's table for one step length, and the leap map that follows from it.
     struct Classified {
@@ -55,7 +55,7 @@ public:
 private:
     std::shared_ptr<const Scene> scene_;
     PacketVolume volume_;
-    TileWorkers workers_;
+    ThreadPool pool_;
     LruCache<Classified> recent_;
 };
 

@@ -54,10 +54,10 @@ HWY_INLINE VF entryOf(const PacketScene& scene, VF hu) {
 HWY_INLINE Color classified(const PacketScene& scene, VF hu) {
     return lookedUp(scene.table, entryAt(entryOf(scene, hu)));
 }
-/// By a 2-D one; `slope` is the length of the normal.
-HWY_INLINE Color classified(const PacketScene& scene, VF hu, VF slope) {
+/// By a 2-D one; its row by the gradient magnitude, as long as the normal.
+HWY_INLINE Color classified(const PacketScene& scene, VF hu, VF gradientMagnitude) {
     const float last = float(scene.rows - 1);
-    const VF row = clamped(hn::Mul(slope, set(scene.rowsPerSlope)), 0.0f, last);
+    const VF row = clamped(hn::Mul(gradientMagnitude, set(scene.rowsPerGradient)), 0.0f, last);
     const VF low = hn::Min(hn::Floor(row), set(last - 1.0f));
     const VI rowEntries = hn::Set(i, TransferTable::entries);
     const Entry entry = entryAt(entryOf(scene, hu));
@@ -105,7 +105,7 @@ HWY_INLINE MF mayShow(const PacketScene& scene, VF front, VF back) {
 }
 
 /// Differences over two voxels, in the patient: a gradient transforms by the inverse transpose of
-/// patientFromVoxel. Twice as long as the slope in HU a millimetre.
+/// patientFromVoxel. Twice as long as the gradient, HU a millimetre.
 HWY_INLINE V3 normalOf(const PacketScene& scene, V3 gradient) {
     const auto component = [&](int axis) HWY_ATTR {
         return hn::MulAdd(gradient.x, set(scene.voxelFromMm[0][axis]),
@@ -129,12 +129,12 @@ HWY_INLINE VF glossOf(VF mirror, float shininess) {
 
 /// A lamp, seen from where it hangs, `n` steps away; colours are linear light, `lightMm` is unit.
 HWY_INLINE Color shaded(const PacketScene& scene, const Color& color, V3 normal, V3 lightMm, VF n) {
-    const VF slope = dot(normal, normal), one = set(1.0f);
+    const VF squared = dot(normal, normal), one = set(1.0f);
     // Both faces are lit. Where the volume is flat there is no surface, and nothing to shade.
     const VF least = set(4e-11f);
-    const MF steep = hn::Gt(slope, least);
+    const MF steep = hn::Gt(squared, least);
     const VF facing = hn::IfThenElse(
-        steep, hn::Div(hn::Abs(dot(normal, lightMm)), hn::Sqrt(hn::Max(slope, least))), one);
+        steep, hn::Div(hn::Abs(dot(normal, lightMm)), hn::Sqrt(hn::Max(squared, least))), one);
     const shaders::MarchUniforms& u = scene.u;
     const VF depth = hn::Mul(n, set(u.stepMm / u.lightHalvesMm));
     const VF falloff = hn::Div(one, hn::MulAdd(depth, depth, one));

@@ -22,7 +22,7 @@ struct PacketScene {
     int rows = 1;
     const float* integrals = nullptr;  ///< of pre-integrated optics, TransferTable::entries
     float entriesPerHu = 1.0f, firstEntry = 0.0f;  ///< HU -> entry
-    float rowsPerSlope = 0.0f;                     ///< length of a normal (optics-inl.h) -> row
+    float rowsPerGradient = 0.0f;                  ///< length of a normal (optics-inl.h) -> row
     float visibleAboveHu = 0.0f, visibleBelowHu = 0.0f;
     float lastVisibleHu = 0.0f;  ///< from here on the table goes on unchanged
     float voxelFromMm[3][3];     ///< rows: a patient vector becomes voxels

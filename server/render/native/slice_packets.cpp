@@ -18,7 +18,7 @@ namespace {
 template <class AnyVoxels>
 void drawRows(const PacketScene& scene, const PacketSlice& slice, int firstRow, int endRow,
               std::uint8_t* rgb) {
-    const Lattice<AnyVoxels> lattice(scene);
+    const VolumeSampler<AnyVoxels> sampler(scene);
     const auto vector = [&](glm::vec3 v) HWY_ATTR { return V3{set(v.x), set(v.y), set(v.z)}; };
     const V3 origin = vector(slice.origin), right = vector(slice.right), down = vector(slice.down);
     for (int top = firstRow; top < endRow; top += packetHeight) {
@@ -33,7 +33,7 @@ void drawRows(const PacketScene& scene, const PacketSlice& slice, int firstRow, 
                 hn::And(within(place.x, 0), hn::And(within(place.y, 1), within(place.z, 2)));
             Bytes bytes{};
             if (any(inside)) {
-                const VF hu = lattice.value(onlyWhere(inside, place));
+                const VF hu = sampler.value(onlyWhere(inside, place));
                 const VF grey =
                     clamped(hn::MulAdd(hu, set(slice.perHu), set(slice.atZero)), 0.0f, 1.0f);
                 hn::StoreU(hn::NearestInt(hn::IfThenElseZero(inside, hn::Mul(grey, set(255.0f)))),

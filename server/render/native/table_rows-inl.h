@@ -7,7 +7,7 @@
 #define HAUSTRA_TABLE_ROWS_INL_H
 #endif
 
-#include "render/native/lattice-inl.h"
+#include "render/native/volume_sampler-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace haustra::render {

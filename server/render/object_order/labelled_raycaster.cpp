@@ -97,8 +97,9 @@ struct LabelledRaycaster::Impl {
             for (std::size_t x = 0; x < values.size(); ++x)
                 values[x] = source->opacityAt(from + x);
         };
-        octree =
-            MinMaxOctree::build(grid.size, row, leafSideOf(options, grid.size), options.threads);
+        const int leafSide = leafSideOf(options, grid.size);
+        octree = MinMaxOctree::fromLeaves(blockRanges(grid.size, row, leafSide, options.threads),
+                                          leafSide, grid.size);
         return {};
     }
 

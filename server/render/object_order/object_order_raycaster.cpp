@@ -121,7 +121,8 @@ Result<std::unique_ptr<ObjectOrderRaycaster>> ObjectOrderRaycaster::create(
     TRY(checkObjectOrder(options));
     const Grid& grid = scene->grid();
     const int leafSide = leafSideOf(options, grid.size);
-    auto octree = MinMaxOctree::build(scene->volume, leafSide, options.threads);
+    auto octree = MinMaxOctree::fromLeaves(blockRanges(scene->volume, leafSide, options.threads),
+                                           leafSide, scene->volume.grid().size);
     auto cells =
         TRY(CellRaycaster::create(context, grid, std::make_shared<ScanCells>(scene->volume.share()),
                                   options, octree.level(0).size, leafSide));

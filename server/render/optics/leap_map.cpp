@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace haustra::render {
 
@@ -27,40 +28,46 @@ void lowerByRow(std::uint8_t* row, const std::uint8_t* known, int count) {
 
 }  // namespace
 
-BlockRanges blockRanges(const Volume<std::int16_t>& volume, int threads) {
-    const glm::ivec3 voxels = volume.grid().size;
+BlockRanges blockRanges(const Volume<std::int16_t>& volume, int side, int threads) {
+    const Grid& grid = volume.grid();
+    const std::int16_t* voxels = volume.voxels().data();
+    const auto row = [&](int y, int z, std::span<std::int16_t> values) {
+        std::copy_n(voxels + grid.index(0, y, z), values.size(), values.data());
+    };
+    return blockRanges(grid.size, row, side, threads);
+}
+
+BlockRanges blockRanges(glm::ivec3 voxels, const VoxelRow& row, int side, int threads) {
     BlockRanges ranges;
-    ranges.size = glm::max((voxels - 1 + blockSide - 1) / blockSide, glm::ivec3(1));
-    const std::size_t rowBlocks = std::size_t(ranges.size.x);
-    const std::size_t slice = rowBlocks * std::size_t(ranges.size.y);
-    ranges.lowHu.resize(slice * std::size_t(ranges.size.z));
+    ranges.size = glm::max((voxels - 1 + side - 1) / side, glm::ivec3(1));
+    const std::size_t blockRows = std::size_t(ranges.size.y) * std::size_t(ranges.size.z);
+    ranges.lowHu.resize(std::size_t(ranges.size.x) * blockRows);
     ranges.highHu.resize(ranges.lowHu.size());
-    parallelFor(std::size_t(ranges.size.z), 1, threads, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::int16_t> low(std::size_t(voxels.x)), high(std::size_t(voxels.x));
-        for (int bz = int(begin); bz < int(end); ++bz) {
-            for (int by = 0; by < ranges.size.y; ++by) {
-                // First across the block's rows, which runs along memory, then along them.
-                std::fill(low.begin(), low.end(), std::int16_t(32767));
-                std::fill(high.begin(), high.end(), std::int16_t(-32768));
-                for (int z = bz * blockSide;
-                     z <= std::min(bz * blockSide + blockSide, voxels.z - 1); ++z) {
-                    for (int y = by * blockSide;
-                         y <= std::min(by * blockSide + blockSide, voxels.y - 1); ++y) {
-                        const std::int16_t* row = &volume.voxels()[volume.grid().index(0, y, z)];
-                        for (int x = 0; x < voxels.x; ++x) {
-                            low[std::size_t(x)] = std::min(low[std::size_t(x)], row[x]);
-                            high[std::size_t(x)] = std::max(high[std::size_t(x)], row[x]);
-                        }
+    parallelFor(blockRows, 1, threads, [&](std::size_t begin, std::size_t end) {
+        const std::size_t along = std::size_t(voxels.x);
+        std::vector<std::int16_t> values(along), lows(along), highs(along);
+        std::int16_t *low = lows.data(), *high = highs.data();
+        for (std::size_t blockRow = begin; blockRow < end; ++blockRow) {
+            const int firstY = side * int(blockRow % std::size_t(ranges.size.y));
+            const int firstZ = side * int(blockRow / std::size_t(ranges.size.y));
+            // First across the blocks' rows of voxels, which runs along memory, then along them.
+            std::fill_n(low, along, std::numeric_limits<std::int16_t>::max());
+            std::fill_n(high, along, std::numeric_limits<std::int16_t>::min());
+            for (int z = firstZ; z <= std::min(firstZ + side, voxels.z - 1); ++z) {
+                for (int y = firstY; y <= std::min(firstY + side, voxels.y - 1); ++y) {
+                    row(y, z, values);
+                    const std::int16_t* value = values.data();
+                    for (std::size_t x = 0; x < along; ++x) {
+                        low[x] = std::min(low[x], value[x]);
+                        high[x] = std::max(high[x], value[x]);
                     }
                 }
-                const std::size_t at = std::size_t(bz) * slice + std::size_t(by) * rowBlocks;
-                for (int bx = 0; bx < ranges.size.x; ++bx) {
-                    const auto from = bx * blockSide, to = std::min(from + blockSide + 1, voxels.x);
-                    ranges.lowHu[at + std::size_t(bx)] =
-                        *std::min_element(low.begin() + from, low.begin() + to);
-                    ranges.highHu[at + std::size_t(bx)] =
-                        *std::max_element(high.begin() + from, high.begin() + to);
-                }
+            }
+            const std::size_t at = blockRow * std::size_t(ranges.size.x);
+            for (int block = 0; block < ranges.size.x; ++block) {
+                const int from = block * side, to = std::min(from + side + 1, voxels.x);
+                ranges.lowHu[at + std::size_t(block)] = *std::min_element(low + from, low + to);
+                ranges.highHu[at + std::size_t(block)] = *std::max_element(high + from, high + to);
             }
         }
     });

@@ -68,51 +68,6 @@ private:
 
 }  // namespace
 
-MinMaxOctree MinMaxOctree::build(const Volume<std::int16_t>& volume, int leafSide, int threads) {
-    const Grid& grid = volume.grid();
-    const auto row = [&](int y, int z, std::span<std::int16_t> values) {
-        std::copy_n(&volume.voxels()[grid.index(0, y, z)], values.size(), values.data());
-    };
-    return build(grid.size, row, leafSide, threads);
-}
-
-MinMaxOctree MinMaxOctree::build(glm::ivec3 voxels, const Row& row, int leafSide, int threads) {
-    BlockRanges leaves;
-    leaves.size = glm::max((voxels - 1 + leafSide - 1) / leafSide, glm::ivec3(1));
-    leaves.lowHu.resize(countOf(leaves.size));
-    leaves.highHu.resize(countOf(leaves.size));
-    const std::size_t rows = std::size_t(leaves.size.y) * std::size_t(leaves.size.z);
-    parallelFor(rows, 1, threads, [&](std::size_t begin, std::size_t end) {
-        const std::size_t along = std::size_t(voxels.x);
-        std::vector<std::int16_t> low(along), high(along), values(along);
-        for (std::size_t leafRow = begin; leafRow < end; ++leafRow) {
-            const int firstY = leafSide * int(leafRow % std::size_t(leaves.size.y));
-            const int firstZ = leafSide * int(leafRow / std::size_t(leaves.size.y));
-            // First across the leaves' rows of voxels, which runs along memory, then along them.
-            std::fill(low.begin(), low.end(), std::numeric_limits<std::int16_t>::max());
-            std::fill(high.begin(), high.end(), std::numeric_limits<std::int16_t>::min());
-            for (int z = firstZ; z <= std::min(firstZ + leafSide, voxels.z - 1); ++z) {
-                for (int y = firstY; y <= std::min(firstY + leafSide, voxels.y - 1); ++y) {
-                    row(y, z, values);
-                    for (std::size_t x = 0; x < along; ++x) {
-                        low[x] = std::min(low[x], values[x]);
-                        high[x] = std::max(high[x], values[x]);
-                    }
-                }
-            }
-            const std::size_t at = leafRow * std::size_t(leaves.size.x);
-            for (int leaf = 0; leaf < leaves.size.x; ++leaf) {
-                const auto from = leaf * leafSide, to = std::min(from + leafSide + 1, voxels.x);
-                leaves.lowHu[at + std::size_t(leaf)] =
-                    *std::min_element(low.begin() + from, low.begin() + to);
-                leaves.highHu[at + std::size_t(leaf)] =
-                    *std::max_element(high.begin() + from, high.begin() + to);
-            }
-        }
-    });
-    return fromLeaves(std::move(leaves), leafSide, voxels);
-}
-
 MinMaxOctree MinMaxOctree::fromLeaves(BlockRanges leaves, int leafSide, glm::ivec3 voxels) {
     MinMaxOctree octree;
     octree.leafSide_ = leafSide;

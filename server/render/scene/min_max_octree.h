@@ -8,9 +8,7 @@
 #include "render/optics/transfer_table.h"
 
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -27,15 +25,8 @@ inline constexpr int minLeafSide = 1, maxLeafSide = 128;
 /// their faces. Immutable.
 class MinMaxOctree {
 public:
-    /// Reads the volume once, in order: a memory-mapped one streams through memory. O(voxels), the
-    /// same for any number of threads (≤ 0: all cores); holds 5 / leafSide³ bytes a voxel. leafSide
-    /// is minLeafSide…maxLeafSide, and the volume has at least one voxel.
-    static MinMaxOctree build(const Volume<std::int16_t>& volume, int leafSide, int threads);
-    /// The same of values that are made when they are asked for: row(y, z, values) fills a row of
-    /// voxels; from any thread, some rows more than once.
-    using Row = std::function<void(int y, int z, std::span<std::int16_t> values)>;
-    static MinMaxOctree build(glm::ivec3 voxels, const Row& row, int leafSide, int threads);
-    /// The same from leaves that are known already: `leaves` as `build` makes them.
+    /// `leaves` are blockRanges of a grid of so many voxels with a side of leafSide,
+    /// minLeafSide…maxLeafSide. O(leaves); holds 5 / leafSide³ bytes a voxel.
     static MinMaxOctree fromLeaves(BlockRanges leaves, int leafSide, glm::ivec3 voxels);
 
     int leafSide() const { return leafSide_; }

@@ -29,7 +29,7 @@ Result<PreparedCase> prepareCase(const Volume<std::int16_t>& ct,
         prepared.cleansed = (unchanged ? ct : cleansed).share();
     }
     if (grid.voxelCount() <= maxRangedVoxels)
-        prepared.ranges = blockRanges(prepared.endoscopic(), threads);
+        prepared.ranges = blockRanges(prepared.endoscopic(), blockSide, threads);
     return prepared;
 }
 

@@ -55,10 +55,10 @@ shaders::MarchUniforms marchUniforms(const Optics& optics, const MarchOptions& m
     u.pictureSize = size;
     u.lastBlock = blocks - 1;
     u.coneTileSide = coneTile;
-    // A normal as long as the slope over two voxels, in stored fractions a millimetre.
-    const double rowsPerSlope =
+    // A normal is as long as the gradient over two voxels, in stored fractions a millimetre.
+    const double rowsPerGradient =
         table.rows > 1 ? 0.5 * storedRange * (table.rows - 1) / table.lastRowHuPerMm : 0.0;
-    u.rowScale = float(rowsPerSlope / table.rows);
+    u.rowScale = float(rowsPerGradient / table.rows);
     u.rowBias = float(0.5 / table.rows);
     u.integralBelow = table.integralBelow;
     u.integralAbove = table.integralAbove;

@@ -1,4 +1,4 @@
-// Threads that draw the tiles of one picture after another.
+// Threads that wait for work.
 #pragma once
 
 #include <atomic>
@@ -11,26 +11,28 @@
 #include <thread>
 #include <vector>
 
-namespace haustra::render {
+namespace haustra {
 
-/// Threads that wait between pictures. Each begins with its own stretch of the tiles, so that
-/// neighbouring tiles share a core's cache, and takes half of somebody's rest when it has done.
-class TileWorkers {
+/// Threads that stay between one run of tasks and the next. Each begins with its own stretch of the
+/// tasks, so that neighbouring tasks (tiles of a picture) share a core's cache, and takes half of
+/// another's rest when it has done. parallelFor (parallel.h) starts threads of its own instead: for
+/// work of many milliseconds.
+class ThreadPool {
 public:
     /// `threads` in all, with the one that calls run(); ≤ 0: all cores.
-    explicit TileWorkers(int threads);
-    ~TileWorkers();
-    TileWorkers(const TileWorkers&) = delete;
-    TileWorkers& operator=(const TileWorkers&) = delete;
+    explicit ThreadPool(int threads);
+    ~ThreadPool();
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
 
     int threads() const { return int(rests_.size()); }
-    /// Calls body(tile) once for each of 0 … tiles − 1, and returns when all have returned; then
+    /// Calls body(task) once for each of 0 … tasks − 1, and returns when all have returned; then
     /// the first exception of a body is thrown here. The body must not depend on order or thread.
     /// One thread calls run at a time.
-    void run(int tiles, const std::function<void(int tile)>& body);
+    void run(int tasks, const std::function<void(int task)>& body);
 
 private:
-    /// Tiles not begun yet: the first in the upper half, the end in the lower.
+    /// Tasks not begun yet: the first in the upper half, the end in the lower.
     struct alignas(64) Rest {
         std::atomic<std::uint64_t> range{0};
     };
@@ -49,4 +51,4 @@ private:
     std::vector<std::thread> threads_;  // last: they use the rest
 };
 
-}  // namespace haustra::render
+}  // namespace haustra

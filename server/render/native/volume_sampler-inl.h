@@ -1,10 +1,10 @@
 // Vectors of one value for each ray of a packet, and the volume as they sample it. Included once
 // for each vector unit that is compiled for (Highway's dynamic dispatch).
-#if defined(HAUSTRA_LATTICE_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef HAUSTRA_LATTICE_INL_H
-#undef HAUSTRA_LATTICE_INL_H
+#if defined(HAUSTRA_VOLUME_SAMPLER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HAUSTRA_VOLUME_SAMPLER_INL_H
+#undef HAUSTRA_VOLUME_SAMPLER_INL_H
 #else
-#define HAUSTRA_LATTICE_INL_H
+#define HAUSTRA_VOLUME_SAMPLER_INL_H
 #endif
 
 #include "render/native/packet_scene.h"
@@ -146,15 +146,15 @@ struct FarVoxels {
     }
 };
 
-/// Interpolation in the volume; outside the outermost voxel centres their value goes on.
+/// Trilinear interpolation in the volume; outside the outermost voxel centres their value goes on.
 template <class AnyVoxels>
-struct Lattice {
+struct VolumeSampler {
     AnyVoxels voxels;
     std::int64_t row, slice;  // 0 across a volume that is one voxel thick
     float last[3];            // centres
     float lastLow[3];         // highest lower corner of a cell
 
-    explicit HWY_INLINE Lattice(const PacketScene& scene)
+    explicit HWY_INLINE VolumeSampler(const PacketScene& scene)
         : voxels(scene),
           row(scene.size[1] > 1 ? scene.rowStride : 0),
           slice(scene.size[2] > 1 ? scene.sliceStride : 0) {

@@ -1,10 +1,10 @@
-#include "render/native/tile_workers.h"
+#include "core/thread_pool.h"
 
 #include "core/parallel.h"
 
 #include <utility>
 
-namespace haustra::render {
+namespace haustra {
 
 namespace {
 
@@ -20,12 +20,12 @@ std::uint32_t endOf(std::uint64_t range) {
 
 }  // namespace
 
-TileWorkers::TileWorkers(int threads) : rests_(std::size_t(threadCount(threads))) {
+ThreadPool::ThreadPool(int threads) : rests_(std::size_t(threadCount(threads))) {
     for (std::size_t self = 1; self < rests_.size(); ++self)
         threads_.emplace_back([this, self] { serve(self); });
 }
 
-TileWorkers::~TileWorkers() {
+ThreadPool::~ThreadPool() {
     {
         const std::lock_guard lock(mutex_);
         ending_ = true;
@@ -35,15 +35,15 @@ TileWorkers::~TileWorkers() {
         thread.join();
 }
 
-void TileWorkers::run(int tiles, const std::function<void(int)>& body) {
-    const std::uint64_t count = std::uint64_t(tiles), workers = rests_.size();
-    for (std::size_t i = 0; i < workers; ++i)
+void ThreadPool::run(int tasks, const std::function<void(int)>& body) {
+    const std::uint64_t count = std::uint64_t(tasks), threads = rests_.size();
+    for (std::size_t i = 0; i < threads; ++i)
         rests_[i].range =
-            packed(std::uint32_t(count * i / workers), std::uint32_t(count * (i + 1) / workers));
+            packed(std::uint32_t(count * i / threads), std::uint32_t(count * (i + 1) / threads));
     {
         const std::lock_guard lock(mutex_);
         body_ = &body;
-        working_ = workers - 1;
+        working_ = threads - 1;
         ++round_;
     }
     begin_.notify_all();
@@ -54,7 +54,7 @@ void TileWorkers::run(int tiles, const std::function<void(int)>& body) {
     if (const auto failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
 }
 
-void TileWorkers::serve(std::size_t self) {
+void ThreadPool::serve(std::size_t self) {
     std::uint64_t served = 0;
     std::unique_lock lock(mutex_);
     while (true) {
@@ -68,7 +68,7 @@ void TileWorkers::serve(std::size_t self) {
     }
 }
 
-void TileWorkers::work(std::size_t self) {
+void ThreadPool::work(std::size_t self) {
     std::atomic<std::uint64_t>& mine = rests_[self].range;
     do {
         std::uint64_t range = mine.load();
@@ -87,13 +87,13 @@ void TileWorkers::work(std::size_t self) {
     } while (steal(self));
 }
 
-bool TileWorkers::steal(std::size_t self) {
+bool ThreadPool::steal(std::size_t self) {
     for (std::size_t i = 1; i < rests_.size(); ++i) {
         std::atomic<std::uint64_t>& other = rests_[(self + i) % rests_.size()].range;
         std::uint64_t range = other.load();
         while (firstOf(range) < endOf(range)) {
             const std::uint32_t middle =
-                firstOf(range) + (endOf(range) - firstOf(range)) / 2;  // all of a single tile
+                firstOf(range) + (endOf(range) - firstOf(range)) / 2;  // all of a single task
             if (!other.compare_exchange_weak(range, packed(firstOf(range), middle))) continue;
             rests_[self].range = packed(middle, endOf(range));
             return true;
@@ -102,4 +102,4 @@ bool TileWorkers::steal(std::size_t self) {
     return false;
 }
 
-}  // namespace haustra::render
+}  // namespace haustra
