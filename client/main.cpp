@@ -2,6 +2,7 @@
 #include "core/version.h"
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
+#include "script/script.h"
 #include "script/script_player.h"
 #include "window/reader_window.h"
 
@@ -25,6 +26,17 @@ struct Arguments {
     int screenshotAfterMs = 3000;
 };
 
+// In lines of a help page.
+std::string actionNames() {
+    std::string names = "  " + reader::scriptActionNames();
+    for (std::size_t line = 0; names.size() - line > 78;) {
+        const std::size_t space = names.rfind(' ', line + 78);
+        names.replace(space, 1, "\n  ");
+        line = space + 1;
+    }
+    return names;
+}
+
 void declare(CLI::App& app, Arguments& a) {
     app.description(
         "Reads a case that a Haustra server streams: in a window, or by a script with --headless.\n"
@@ -33,10 +45,9 @@ void declare(CLI::App& app, Arguments& a) {
         "when it changes. For a physician's judgement; not a certified medical device.");
     app.footer(
         "In the window, ? or F1 shows the keys.\n"
-        "Scripts have one JSON object a line: view, go, fly, still, slice, oblique, overview, "
-        "flat,\n"
-        "strip, flyover, locate, measure, paint, seen, window, transfer, bookmark, bookmarks, "
-        "wait.\n"
+        "Scripts have one JSON object a line; \"do\" names its action, one of\n" +
+        actionNames() +
+        "\n"
         "For example:\n"
         "  {\"do\":\"go\",\"arc_mm\":120,\"direction\":\"antegrade\"}\n"
         "  {\"do\":\"still\",\"png\":\"rectum.png\"}\n"

@@ -1,5 +1,7 @@
 #include "protocol/framing.h"
 
+#include <google/protobuf/message_lite.h>
+
 namespace haustra::protocol {
 namespace {
 
@@ -38,6 +40,16 @@ constexpr std::size_t reservedBytes = 10;
 void appendFrameHeader(std::vector<std::uint8_t>& out, FrameHeader header) {
     append(out, header.payloadBytes);
     append(out, std::uint8_t(header.type));
+}
+
+std::vector<std::uint8_t> controlFrame(const google::protobuf::MessageLite& message) {
+    const std::size_t bytes = message.ByteSizeLong();
+    std::vector<std::uint8_t> frame;
+    frame.reserve(frameHeaderBytes + bytes);
+    appendFrameHeader(frame, {std::uint32_t(bytes), FrameType::control});
+    frame.resize(frame.size() + bytes);
+    message.SerializeToArray(frame.data() + frameHeaderBytes, int(bytes));
+    return frame;
 }
 
 Result<FrameHeader> parseFrameHeader(std::span<const std::uint8_t> bytes, FrameLimits limits) {

@@ -11,6 +11,10 @@
 #include <string>
 #include <vector>
 
+namespace google::protobuf {
+class MessageLite;
+}
+
 namespace haustra::protocol {
 
 inline constexpr std::uint32_t protocolVersion = 1;
@@ -33,6 +37,8 @@ inline constexpr FrameLimits serverReceives{maxClientControlBytes, 0};
 inline constexpr FrameLimits clientReceives{maxServerControlBytes, maxTileBytes};
 
 void appendFrameHeader(std::vector<std::uint8_t>& out, FrameHeader header);
+/// A whole frame with this message.
+std::vector<std::uint8_t> controlFrame(const google::protobuf::MessageLite& message);
 /// `bytes` holds frameHeaderBytes. Fails on an unknown type or a length past its bound.
 Result<FrameHeader> parseFrameHeader(std::span<const std::uint8_t> bytes, FrameLimits limits);
 

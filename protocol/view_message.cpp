@@ -16,16 +16,13 @@ struct ViewCode {
     haustra::View view;
     View code;
 };
-constexpr std::array<ViewCode, viewCount> viewCodes = {{
-    {haustra::View::endoscopic, ENDOSCOPIC},
-    {haustra::View::axial, AXIAL},
-    {haustra::View::coronal, CORONAL},
-    {haustra::View::sagittal, SAGITTAL},
-    {haustra::View::flattened, FLATTENED},
-    {haustra::View::flattenedZoom, FLATTENED_ZOOM},
-    {haustra::View::oblique, OBLIQUE},
-    {haustra::View::overview, OVERVIEW},
-}};
+constexpr ViewCode viewCodes[] = {
+    {haustra::View::endoscopic, ENDOSCOPIC}, {haustra::View::axial, AXIAL},
+    {haustra::View::coronal, CORONAL},       {haustra::View::sagittal, SAGITTAL},
+    {haustra::View::flattened, FLATTENED},   {haustra::View::flattenedZoom, FLATTENED_ZOOM},
+    {haustra::View::oblique, OBLIQUE},       {haustra::View::overview, OVERVIEW},
+};
+static_assert(std::size(viewCodes) == viewCount);
 
 View codeOf(haustra::View view) {
     for (const ViewCode& one : viewCodes)

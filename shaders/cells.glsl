@@ -55,7 +55,7 @@ vec4 texelInSlot(vec3 place) {
 float valueInSlot(vec3 place) { return texelInSlot(place).a; }
 SAMPLE sampleAt(vec3 position) { return texelInSlot(inSlot(position)); }
 bool mayShow(SAMPLE texel) { return texel.a > 0.0; }
-vec4 classify(SAMPLE texel, float) {
+vec4 classify(SAMPLE texel, float gradientMagnitude) {
     return vec4(linearOf(texel.rgb), 1.0 - pow(max(1.0 - texel.a, 0.0), u.stepMm));
 }
 #else

@@ -4,6 +4,7 @@
 #include "core/image.h"
 #include "pictures/picture_file.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -23,6 +24,15 @@ inline Image readPicture(const std::string& file) {
         for (int c = 0; c < 3; ++c)
             image.rgb[3 * i + std::size_t(c)] = read->pixels[i][c];
     return image;
+}
+
+/// Bytes that differ between pictures of one size.
+inline std::size_t differingBytes(const Image& a, const Image& b) {
+    EXPECT_EQ(a.rgb.size(), b.rgb.size());
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < std::min(a.rgb.size(), b.rgb.size()); ++i)
+        differing += a.rgb[i] != b.rgb[i];
+    return differing;
 }
 
 /// By OpenImageIO's idiff: no pixel of one differs from the other's, whatever the files' formats.

@@ -4,6 +4,7 @@
 #include "nifti/nifti_file.h"
 #include "pipeline/prepare.h"
 #include "store/products.h"
+#include "temporary_folder.h"
 
 #include <cmath>
 #include <fstream>
@@ -45,15 +46,9 @@ inline Volume<std::uint8_t> tubeMask(double radiusMm, std::uint8_t label = 1) {
 class Prepare : public testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  ("haustra-prepare-" + std::to_string(::getpid()) + "-" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
         ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(6.0)));
         writeScan(6.0);
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     void writeScan(double radiusMm) const {
         const auto mask = tubeMask(radiusMm);
@@ -110,7 +105,8 @@ protected:
     static std::string stageOf(const std::string& product) {
         return store::catalogue().find(product)->stage;
     }
-    fs::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const fs::path folder_ = temporary_.path();
 };
 
 }  // namespace haustra::pipeline

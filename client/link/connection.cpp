@@ -27,16 +27,6 @@ using protocol::ServerMessage;
 constexpr std::size_t maxQueuedBytes = 64u << 20;
 constexpr std::chrono::seconds pingInterval{1};
 
-std::vector<std::uint8_t> frameOf(const ClientMessage& message) {
-    const std::size_t bytes = message.ByteSizeLong();
-    std::vector<std::uint8_t> frame;
-    frame.reserve(protocol::frameHeaderBytes + bytes);
-    protocol::appendFrameHeader(frame, {std::uint32_t(bytes), protocol::FrameType::control});
-    frame.resize(frame.size() + bytes);
-    message.SerializeToArray(frame.data() + frame.size() - bytes, int(bytes));
-    return frame;
-}
-
 std::string peerFingerprint(Stream& stream) {
     const std::unique_ptr<X509, decltype(&X509_free)> certificate(
         SSL_get1_peer_certificate(stream.native_handle()), X509_free);
@@ -178,7 +168,8 @@ struct Connection::Impl {
         hello.mutable_hello()->add_capabilities("lossless");
         hello.mutable_hello()->add_capabilities("coarse");
         hello.mutable_hello()->set_software(options.software);
-        co_await asio::async_write(*stream, asio::buffer(frameOf(hello)), asio::use_awaitable);
+        co_await asio::async_write(*stream, asio::buffer(protocol::controlFrame(hello)),
+                                   asio::use_awaitable);
         ServerMessage answer;
         if (auto read = co_await readFrame(&answer); !read) co_return read;
         if (answer.has_error()) {
@@ -241,7 +232,7 @@ struct Connection::Impl {
             ClientMessage message;
             message.mutable_ping()->set_request(++pingRequest);
             pingSentAt = Clock::now();
-            queueOut(frameOf(message));
+            queueOut(protocol::controlFrame(message));
             asio::steady_timer timer(io, pingInterval);
             co_await timer.async_wait(asio::use_awaitable);
         }
@@ -330,10 +321,10 @@ Connection::Connection(ConnectionOptions options)
 Connection::~Connection() = default;
 
 void Connection::send(const protocol::ClientMessage& message) {
-    asio::post(impl_->io,
-               [impl = impl_.get(), frame = frameOf(message), ofLink = impl_->seenLink.load()] {
-                   if (impl->open && impl->link == ofLink) impl->queueOut(frame);
-               });
+    asio::post(impl_->io, [impl = impl_.get(), frame = protocol::controlFrame(message),
+                           ofLink = impl_->seenLink.load()] {
+        if (impl->open && impl->link == ofLink) impl->queueOut(frame);
+    });
 }
 
 std::optional<Event> Connection::next(std::chrono::milliseconds patience) {

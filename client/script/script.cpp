@@ -5,6 +5,8 @@
 #include "reader/flight.h"
 #include "script/fields.h"
 
+#include <algorithm>
+
 namespace haustra::reader {
 namespace {
 
@@ -232,58 +234,53 @@ WaitAction readWait(Fields& in) {
     return {in.number("ms", 0.0, 3'600'000.0)};
 }
 
+struct ActionKind {
+    const char* name;
+    ActionBody (*read)(Fields& in);
+};
+
+// Any of the readers above, as one that reads whatever action.
+template <auto read>
+ActionBody bodyBy(Fields& in) {
+    return read(in);
+}
+
+constexpr ActionKind actionKinds[] = {
+    {"view", bodyBy<readView>},         {"go", bodyBy<readGo>},
+    {"fly", bodyBy<readFly>},           {"still", bodyBy<readStill>},
+    {"slice", bodyBy<readSlice>},       {"oblique", bodyBy<readOblique>},
+    {"overview", bodyBy<readOverview>}, {"flat", bodyBy<readFlat>},
+    {"strip", bodyBy<readStrip>},       {"flyover", bodyBy<readFlyOver>},
+    {"locate", bodyBy<readLocate>},     {"measure", bodyBy<readMeasure>},
+    {"paint", bodyBy<readPaint>},       {"seen", bodyBy<readSeen>},
+    {"window", bodyBy<readWindow>},     {"transfer", bodyBy<readTransfer>},
+    {"bookmark", bodyBy<readBookmark>}, {"bookmarks", bodyBy<readBookmarks>},
+    {"wait", bodyBy<readWait>},
+};
+
 Action readAction(const std::string& line) {
     const json object = json::parse(line, nullptr, false);
-    if (object.is_discarded()) throw ScriptRefusal{"not a JSON object"};
     if (!object.is_object()) throw ScriptRefusal{"not a JSON object"};
     Fields in(object);
     Action action;
     action.name = in.text("do");
-    if (action.name == "view")
-        action.body = readView(in);
-    else if (action.name == "go")
-        action.body = readGo(in);
-    else if (action.name == "fly")
-        action.body = readFly(in);
-    else if (action.name == "still")
-        action.body = readStill(in);
-    else if (action.name == "slice")
-        action.body = readSlice(in);
-    else if (action.name == "oblique")
-        action.body = readOblique(in);
-    else if (action.name == "overview")
-        action.body = readOverview(in);
-    else if (action.name == "flat")
-        action.body = readFlat(in);
-    else if (action.name == "strip")
-        action.body = readStrip(in);
-    else if (action.name == "flyover")
-        action.body = readFlyOver(in);
-    else if (action.name == "locate")
-        action.body = readLocate(in);
-    else if (action.name == "measure")
-        action.body = readMeasure(in);
-    else if (action.name == "paint")
-        action.body = readPaint(in);
-    else if (action.name == "seen")
-        action.body = readSeen(in);
-    else if (action.name == "window")
-        action.body = readWindow(in);
-    else if (action.name == "transfer")
-        action.body = readTransfer(in);
-    else if (action.name == "bookmark")
-        action.body = readBookmark(in);
-    else if (action.name == "bookmarks")
-        action.body = readBookmarks(in);
-    else if (action.name == "wait")
-        action.body = readWait(in);
-    else
-        throw ScriptRefusal{"no such action: \"" + action.name + "\""};
+    const auto kind = std::ranges::find(actionKinds, action.name, &ActionKind::name);
+    if (kind == std::end(actionKinds))
+        throw ScriptRefusal{"no such action: \"" + action.name + "\" (" + scriptActionNames() +
+                            ")"};
+    action.body = kind->read(in);
     in.allMustBeKnown();
     return action;
 }
 
 }  // namespace
+
+std::string scriptActionNames() {
+    std::string all;
+    for (const ActionKind& kind : actionKinds)
+        all += (all.empty() ? "" : ", ") + std::string(kind.name);
+    return all;
+}
 
 Result<std::vector<Action>> parseScript(std::istream& in, const std::string& name) {
     std::vector<Action> actions;

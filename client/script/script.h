@@ -116,15 +116,20 @@ struct WaitAction {
     double ms = 0.0;
 };
 
-struct Action {
-    int line = 0;
-    std::string name;  ///< the value of "do"
+using ActionBody =
     std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, ObliqueAction,
                  OverviewAction, FlatAction, StripAction, FlyOverAction, LocateAction,
                  MeasureAction, PaintAction, SeenAction, WindowAction, TransferAction,
-                 BookmarkAction, BookmarksAction, WaitAction>
-        body;
+                 BookmarkAction, BookmarksAction, WaitAction>;
+
+struct Action {
+    int line = 0;
+    std::string name;  ///< the value of "do"
+    ActionBody body;
 };
+
+/// "view, go, …": what "do" can be.
+std::string scriptActionNames();
 
 /// Reads a whole script. Blank lines and lines that start with '#' are skipped. Fails on the first
 /// line that is not understood: the place is `name` and the line's number, the message names the

@@ -74,8 +74,10 @@ bool readyForScreenshot(const reader::Reader& reader, const WindowOptions& optio
     bool waiting = phase == reader::Phase::connecting;
     if (phase == reader::Phase::open && reader.motion() == reader::Motion::paused)
         for (const View view : allViews)
-            waiting = waiting || (!reader.panes().picture(view).exact &&
-                                  (reader.flat().hasStrip() || !isFlat(view)));
+            // Views without a pane are never asked for, nor flat ones of a case without a strip.
+            waiting = waiting ||
+                      (reader.panes().size(view).x > 0 && !reader.panes().picture(view).exact &&
+                       (reader.flat().hasStrip() || !isFlat(view)));
     return !waiting || elapsed > due + std::chrono::seconds(20);
 }
 

@@ -6,9 +6,9 @@
 namespace haustra {
 namespace {
 
-constexpr std::array<const char*, viewCount> names = {"endoscopic", "axial",     "coronal",
-                                                      "sagittal",   "flattened", "flattened-zoom",
-                                                      "oblique",    "overview"};
+constexpr std::array names = {"endoscopic", "axial",          "coronal", "sagittal",
+                              "flattened",  "flattened-zoom", "oblique", "overview"};
+static_assert(names.size() == viewCount);
 
 View kindOf(const Camera&) {
     return View::endoscopic;

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <map>
-#include <string>
 #include <string_view>
 
 namespace haustra::organs {
 
 /// The text of each profile by its organ's name ("colon"). Any thread.
-const std::map<std::string, std::string_view>& builtInProfiles();
+const std::map<std::string_view, std::string_view>& builtInProfiles();
 
 }  // namespace haustra::organs

@@ -237,7 +237,7 @@ Result<OrganProfile> parseProfile(std::string_view text, const std::string& plac
 
 Result<OrganProfile> readProfile(const std::string& nameOrFile) {
     const auto builtIn = builtInProfiles().find(nameOrFile);
-    if (builtIn != builtInProfiles().end()) return parseProfile(builtIn->second, builtIn->first);
+    if (builtIn != builtInProfiles().end()) return parseProfile(builtIn->second, nameOrFile);
     std::error_code ignored;
     if (std::filesystem::is_directory(nameOrFile, ignored))
         return fail(ErrorKind::badInput, "this is a folder, not an organ's profile", nameOrFile);
@@ -247,7 +247,7 @@ Result<OrganProfile> readProfile(const std::string& nameOrFile) {
             return fail(ErrorKind::io, "cannot open", nameOrFile);
         std::string names;
         for (const auto& [name, profile] : builtInProfiles())
-            names += (names.empty() ? "" : ", ") + name;
+            names += (names.empty() ? "" : ", ") + std::string(name);
         return fail(ErrorKind::notFound,
                     "there is no such organ's profile: neither a file nor one of " + names,
                     nameOrFile);

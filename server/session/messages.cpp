@@ -36,16 +36,10 @@ void fill(protocol::ColonTrust& message, const ColonTrust& trust) {
 }  // namespace
 
 std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message) {
-    const std::size_t bytes = message.ByteSizeLong();
-    if (bytes > protocol::maxServerControlBytes)
+    if (message.ByteSizeLong() > protocol::maxServerControlBytes)
         return frameOf(errorMessage(protocol::ErrorReport::INTERNAL,
                                     "the answer is too long for one message", false));
-    std::vector<std::uint8_t> frame;
-    frame.reserve(protocol::frameHeaderBytes + bytes);
-    protocol::appendFrameHeader(frame, {std::uint32_t(bytes), protocol::FrameType::control});
-    frame.resize(frame.size() + bytes);
-    message.SerializeToArray(frame.data() + frame.size() - bytes, int(bytes));
-    return frame;
+    return protocol::controlFrame(message);
 }
 
 protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std::string& message,

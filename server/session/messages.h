@@ -12,7 +12,7 @@
 
 namespace haustra::session {
 
-/// The message with its frame header. One over the protocol's bound becomes an INTERNAL error.
+/// The message as a frame. One over the protocol's bound becomes an INTERNAL error.
 std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message);
 
 protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std::string& message,

@@ -22,29 +22,23 @@ const std::map<std::string, phantom::Preset> presets{{"easy", phantom::Preset::e
                                                      {"hard", phantom::Preset::hard}};
 
 Result<std::string> rowOf(const phantom::PhantomOptions& options) {
-    const auto truth = phantom::makePhantom(options);
-    if (!truth) return tl::make_unexpected(truth.error());
-    const auto tissue = cleansing::fitTissueModel(truth->scan);
-    if (!tissue) return tl::make_unexpected(tissue.error());
-    const auto colon = segmentation::findColon(truth->scan, *tissue);
-    if (!colon) return tl::make_unexpected(colon.error());
+    const auto truth = TRY(phantom::makePhantom(options));
+    const auto tissue = TRY(cleansing::fitTissueModel(truth.scan));
+    const auto colon = TRY(segmentation::findColon(truth.scan, tissue));
     const auto mixture =
-        cleansing::estimateMixture(truth->scan, *tissue, colon->labels, colon->gravity);
-    if (!mixture) return tl::make_unexpected(mixture.error());
-    const auto cleansed = cleansing::cleanse(truth->scan, *tissue, *mixture, colon->labels);
-    if (!cleansed) return tl::make_unexpected(cleansed.error());
-    const auto score = phantom::scoreCleansing(*truth, cleansed->hu);
-    if (!score) return tl::make_unexpected(score.error());
+        TRY(cleansing::estimateMixture(truth.scan, tissue, colon.labels, colon.gravity));
+    const auto cleansed = TRY(cleansing::cleanse(truth.scan, tissue, mixture, colon.labels));
+    const auto score = TRY(phantom::scoreCleansing(truth, cleansed.hu));
     double voxels = 0.0, kept = 0.0;
-    for (const phantom::SubmergedPolyp& polyp : score->polyps)
+    for (const phantom::SubmergedPolyp& polyp : score.polyps)
         voxels += double(polyp.voxels), kept += polyp.volumeShare * double(polyp.voxels);
     const auto region = [](const phantom::RegionError& error) {
         return fmt::format("{:.1f}, {:+.1f}", error.rmseHu, error.biasHu);
     };
     return fmt::format("{:.2f} | {:.1f} | {} | {} | {} | {} | {}, {:.1f}",
-                       truth->scan.hu.grid().spacingMm().x, truth->noiseSdHu, region(score->fluid),
-                       region(score->interface), region(score->wall), region(score->rim),
-                       score->polyps.size(), voxels > 0.0 ? 100.0 * kept / voxels : 0.0);
+                       truth.scan.hu.grid().spacingMm().x, truth.noiseSdHu, region(score.fluid),
+                       region(score.interface), region(score.wall), region(score.rim),
+                       score.polyps.size(), voxels > 0.0 ? 100.0 * kept / voxels : 0.0);
 }
 
 }  // namespace

@@ -26,8 +26,7 @@ struct Timed {
     template <class View>
     Result<void> time(render::CaseRenderer& renderer, const View& view, int side) {
         const double start = milliseconds(), cpuStart = cpuMilliseconds();
-        const auto whole = renderer.render(view, side, side);
-        if (!whole) return tl::make_unexpected(whole.error());
+        const auto whole = TRY(renderer.render(view, side, side));
         const double cpuEnd = cpuMilliseconds();
         wholeMs.push_back(milliseconds() - start);
         cpuMs += cpuEnd - cpuStart;
@@ -43,7 +42,7 @@ struct Timed {
             row += here;
         }
         cpuMsInBands += cpuMilliseconds() - cpuEnd;
-        if (picture.rgb != whole->rgb)
+        if (picture.rgb != whole.rgb)
             return fail(ErrorKind::device, "bands show another picture than the whole");
         return {};
     }
@@ -139,14 +138,12 @@ Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
     }
     std::printf("%zu triangles, %zu not of positive area; areas sum to the strip's to %.1e\n",
                 count, flipped, std::abs(area / map.height - 1.0));
-    auto painter = render::FlatPainter::create(map, grid);
-    if (!painter) return tl::make_unexpected(painter.error());
+    auto painter = TRY(render::FlatPainter::create(map, grid));
     std::vector<bool> seen(count, false);
     const auto look = [&](const FlatWindow& window, glm::ivec2 size) -> Result<void> {
-        if (auto found = painter->findTriangles(window, render::Band::whole(size.x, size.y));
-            !found)
+        if (auto found = painter.findTriangles(window, render::Band::whole(size.x, size.y)); !found)
             return found;
-        for (const int triangle : painter->triangleOfPixel())
+        for (const int triangle : painter.triangleOfPixel())
             if (triangle >= 0) seen[std::size_t(triangle)] = true;
         return {};
     };
@@ -173,36 +170,27 @@ Result<void> countTriangles(const FlatMap& map, const Grid& grid) {
 
 Result<void> timeCase(const std::string& store, const std::string& name, const std::string& preset,
                       const std::string& raycaster) {
-    const auto kind = raycasterFromString(raycaster);
-    if (!kind) return tl::make_unexpected(kind.error());
-    const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
+    const auto kind = TRY(raycasterFromString(raycaster));
+    const auto source = TRY(store::CaseStore::open(store, false).and_then([&](const auto& s) {
         return s.openCase(name);
-    });
-    if (!source) return tl::make_unexpected(source.error());
-    const auto ct = source->readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    const auto cleansed = source->readVolume<std::int16_t>("cleansed");
-    if (!cleansed) return tl::make_unexpected(cleansed.error());
-    auto map = source->readFlatMap();
-    if (!map) return tl::make_unexpected(map.error());
-    const auto shared = std::make_shared<const FlatMap>(std::move(*map));
-    const auto function = render::opticsPreset(preset);
-    if (!function) return tl::make_unexpected(function.error());
-    auto prepared = render::prepareCase(*ct, *cleansed);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    prepared->flatMap = shared;
+    }));
+    const auto ct = TRY(source.readVolume<std::int16_t>("ct"));
+    const auto cleansed = TRY(source.readVolume<std::int16_t>("cleansed"));
+    auto map = TRY(source.readFlatMap());
+    const auto shared = std::make_shared<const FlatMap>(std::move(map));
+    const auto function = TRY(render::opticsPreset(preset));
+    auto prepared = TRY(render::prepareCase(ct, cleansed));
+    prepared.flatMap = shared;
 
-    const auto context = gpu::Context::create();
-    if (!context) return tl::make_unexpected(context.error());
+    const auto context = TRY(gpu::Context::create());
     const auto renderer =
-        render::CaseRenderer::upload(**context, std::move(*prepared), {.raycaster = *kind});
-    if (!renderer) return tl::make_unexpected(renderer.error());
+        TRY(render::CaseRenderer::upload(*context, std::move(prepared), {.raycaster = kind}));
     std::printf("%s (%s); strip of %.2f circumferences; %zu MiB on the GPU\n",
-                (*context)->renderer().c_str(), (*context)->platform().c_str(), shared->height,
-                (*renderer)->gpuBytes() >> 20);
-    return timeWindows(**renderer, *shared, *function)
-        .and_then([&] { return timeStrips(**renderer, *shared, *function); })
-        .and_then([&] { return countTriangles(*shared, ct->grid()); });
+                context->renderer().c_str(), context->platform().c_str(), shared->height,
+                renderer->gpuBytes() >> 20);
+    return timeWindows(*renderer, *shared, function)
+        .and_then([&] { return timeStrips(*renderer, *shared, function); })
+        .and_then([&] { return countTriangles(*shared, ct.grid()); });
 }
 
 }  // namespace

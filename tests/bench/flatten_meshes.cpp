@@ -49,9 +49,8 @@ double outsideCoil(const glm::dvec3& at) {
 
 Result<Tube> punched(std::string name, const TriMesh& closed, const glm::dvec3 ends[2],
                      const glm::dvec3 outwards[2]) {
-    auto made = flatten::punchEnds(closed, ends, outwards);
-    if (!made) return tl::make_unexpected(made.error());
-    return Tube{std::move(name), std::move(made->tube)};
+    auto made = TRY(flatten::punchEnds(closed, ends, outwards));
+    return Tube{std::move(name), std::move(made.tube)};
 }
 
 /// The vertex farthest from `start` along the edges.
@@ -171,46 +170,41 @@ Result<Tube> generatedTube(double voxelMm, bool pouched) {
 }
 
 Result<Tube> tubeOfFile(const std::string& file) {
-    auto read = mesh::readMesh(file);
-    if (!read) return tl::make_unexpected(read.error());
-    const auto edges = mesh::HalfedgeMesh::of(*read);
-    if (!edges) return tl::make_unexpected(edges.error());
+    auto read = TRY(mesh::readMesh(file));
+    const auto edges = TRY(mesh::HalfedgeMesh::of(read));
     const std::string name = std::filesystem::path(file).stem().string();
-    if (!edges->closed()) return Tube{name, std::move(*read)};
-    const int first = farthestFrom(*read, *edges, read->triangles[0].x);
-    const int second = farthestFrom(*read, *edges, first);
-    const glm::dvec3 ends[2] = {read->vertices[std::size_t(first)],
-                                read->vertices[std::size_t(second)]};
+    if (!edges.closed()) return Tube{name, std::move(read)};
+    const int first = farthestFrom(read, edges, read.triangles[0].x);
+    const int second = farthestFrom(read, edges, first);
+    const glm::dvec3 ends[2] = {read.vertices[std::size_t(first)],
+                                read.vertices[std::size_t(second)]};
     const glm::dvec3 outwards[2] = {glm::dvec3(0.0), glm::dvec3(0.0)};
-    return punched(name, *read, ends, outwards);
+    return punched(name, read, ends, outwards);
 }
 
 Result<Tube> tubeOfCase(const std::string& storeFolder, const std::string& caseName,
                         const SurfaceChoice& choice) {
-    const auto opened = store::CaseStore::open(storeFolder, false).and_then([&](const auto& store) {
-        return store.openCase(caseName);
-    });
-    if (!opened) return tl::make_unexpected(opened.error());
-    const auto centerline = opened->readCenterline();
-    if (!centerline) return tl::make_unexpected(centerline.error());
+    const auto opened =
+        TRY(store::CaseStore::open(storeFolder, false).and_then([&](const auto& store) {
+            return store.openCase(caseName);
+        }));
+    const auto centerline = TRY(opened.readCenterline());
     Result<TriMesh> closed;
     if (choice.product) {
-        closed = opened->readMesh("surface");
+        closed = opened.readMesh("surface");
     } else {
-        const auto lumen = opened->readVolume<std::uint8_t>("lumen");
-        if (!lumen) return tl::make_unexpected(lumen.error());
-        const std::string scan = opened->find("cleansed") ? "cleansed" : "ct";
+        const auto lumen = TRY(opened.readVolume<std::uint8_t>("lumen"));
+        const std::string scan = opened.find("cleansed") ? "cleansed" : "ct";
         // A mask alone is contoured as the smoothest sheet that it allows.
-        const auto hu = opened->find(scan) ? opened->readVolume<std::int16_t>(scan)
-                                           : Volume<std::int16_t>(lumen->grid(), 0);
-        if (!hu) return tl::make_unexpected(hu.error());
-        closed = contouring::contourLumen(*hu, *lumen, -400.0);
+        const auto hu = TRY(opened.find(scan) ? opened.readVolume<std::int16_t>(scan)
+                                              : Volume<std::int16_t>(lumen.grid(), 0));
+        closed = contouring::contourLumen(hu, lumen, -400.0);
         if (closed && choice.errorMm > 0.0)
             closed = simplification::simplify(*closed, {choice.errorMm});
     }
     if (!closed) return tl::make_unexpected(closed.error());
-    const CenterlinePose first = poseAtArc(*centerline, 0.0, 6.0),
-                         last = poseAtArc(*centerline, choice.until * centerline->lengthMm(), 6.0);
+    const CenterlinePose first = poseAtArc(centerline, 0.0, 6.0),
+                         last = poseAtArc(centerline, choice.until * centerline.lengthMm(), 6.0);
     const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm};
     const glm::dvec3 aside =
         glm::cross(last.tangent, std::abs(last.tangent.z) < 0.7 ? glm::dvec3(0.0, 0.0, 1.0)

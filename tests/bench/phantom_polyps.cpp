@@ -41,10 +41,9 @@ Result<phantom::PhantomOptions> optionsIn(const std::string& file) {
 }  // namespace
 
 Result<std::vector<PhantomPolyp>> polypsOfPhantom(const std::string& file) {
-    const auto options = optionsIn(file);
-    if (!options) return tl::make_unexpected(options.error());
+    const auto options = TRY(optionsIn(file));
     const auto shape =
-        std::make_shared<const phantom::ColonShape>(phantom::makeFilledColon(*options).shape);
+        std::make_shared<const phantom::ColonShape>(phantom::makeFilledColon(options).shape);
     const Findings findings = phantom::polypsOf(*shape);
     std::vector<PhantomPolyp> polyps;
     for (const phantom::Growth& growth : shape->growths()) {

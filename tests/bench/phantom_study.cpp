@@ -102,10 +102,9 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
     const auto add = [&](const std::string& what, const TriMesh& mesh,
                          double seconds) -> Result<void> {
         options.log("score of surface " + what);
-        auto scored = studySurface(what, mesh, surface, threads);
-        if (!scored) return tl::make_unexpected(scored.error());
-        scored->seconds = seconds;
-        study.surfaces.push_back(std::move(*scored));
+        auto scored = TRY(studySurface(what, mesh, surface, threads));
+        scored.seconds = seconds;
+        study.surfaces.push_back(std::move(scored));
         if (options.out.empty()) return {};
         return mesh::writeMesh(options.out / ("surface " + what + ".ply"), mesh);
     };
@@ -113,18 +112,15 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
     // What contouring alone does, on a scan that needed no cleansing, in a lumen that is the truth.
     topology::HandleCuttingOptions cutting;
     cutting.threads = threads;
-    const auto trueBall = topology::cutHandles(truth.lumen, cutting);
-    if (!trueBall) return tl::make_unexpected(trueBall.error());
+    const auto trueBall = TRY(topology::cutHandles(truth.lumen, cutting));
     watch.lap();
-    const auto ideal =
-        contouring::contourLumen(truth.untaggedHu, trueBall->labels, study.airBelowHu, {threads});
-    if (!ideal) return tl::make_unexpected(ideal.error());
-    if (auto added = add("truth", *ideal, watch.lap()); !added) return added;
+    const auto ideal = TRY(
+        contouring::contourLumen(truth.untaggedHu, trueBall.labels, study.airBelowHu, {threads}));
+    if (auto added = add("truth", ideal, watch.lap()); !added) return added;
 
     watch.lap();
-    const auto fine = contouring::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
-    if (!fine) return tl::make_unexpected(fine.error());
-    if (auto added = add("fine", *fine, watch.lap()); !added) return added;
+    const auto fine = TRY(contouring::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads}));
+    if (auto added = add("fine", fine, watch.lap()); !added) return added;
     for (const double errorMm : options.errorBoundsMm) {
         char what[32];
         std::snprintf(what, sizeof what, "%.2f mm", errorMm);
@@ -132,9 +128,8 @@ Result<void> studySurfaces(const phantom::Phantom& truth, const Volume<std::int1
         watch.lap();
         simplification::SimplificationOptions simplification;
         simplification.errorMm = errorMm, simplification.threads = threads;
-        const auto simple = simplification::simplify(*fine, simplification);
-        if (!simple) return tl::make_unexpected(simple.error());
-        if (auto added = add(what, *simple, watch.lap()); !added) return added;
+        const auto simple = TRY(simplification::simplify(fine, simplification));
+        if (auto added = add(what, simple, watch.lap()); !added) return added;
     }
     return {};
 }
@@ -146,22 +141,19 @@ Result<std::size_t> flattenLumen(const Volume<std::int16_t>& cleansedHu,
     constexpr double endWindowMm = 6.0;
     const int threads = options.phantom.threads;
     Stopwatch watch;
-    const auto fine = contouring::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads});
-    if (!fine) return tl::make_unexpected(fine.error());
+    const auto fine = TRY(contouring::contourLumen(cleansedHu, lumen, study.airBelowHu, {threads}));
     simplification::SimplificationOptions simplification;
     simplification.errorMm = options.prepareErrorMm, simplification.threads = threads;
-    const auto simple = simplification::simplify(*fine, simplification);
-    if (!simple) return tl::make_unexpected(simple.error());
+    const auto simple = TRY(simplification::simplify(fine, simplification));
     study.colon.surfaceSeconds = watch.lap();
     const CenterlinePose first = poseAtArc(path, 0.0, endWindowMm),
                          last = poseAtArc(path, path.lengthMm(), endWindowMm);
     const glm::dvec3 ends[2] = {first.point.positionMm, last.point.positionMm},
                      outwards[2] = {-first.tangent, last.tangent};
-    const auto punched = flatten::punchEnds(*simple, ends, outwards);
-    if (!punched) return tl::make_unexpected(punched.error());
+    const auto punched = TRY(flatten::punchEnds(simple, ends, outwards));
     flatten::FlatteningOptions flattening;
     flattening.threads = threads;
-    const auto flat = flatten::flattenTube(punched->tube, punched->firstLoop, flattening);
+    const auto flat = flatten::flattenTube(punched.tube, punched.firstLoop, flattening);
     study.colon.flatteningSeconds = watch.lap();
     if (!flat) return tl::make_unexpected(flat.error());
     return flatten::foldedTriangles(flat->map).size();
@@ -190,62 +182,57 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     PhantomStudy study;
     Stopwatch watch;
     options.log("phantom");
-    const auto truth = phantom::makePhantom(options.phantom);
-    if (!truth) return tl::make_unexpected(truth.error());
+    const auto truth = TRY(phantom::makePhantom(options.phantom));
     study.phantomSeconds = watch.lap();
     const Keeper keeper(options.out);
-    if (auto kept = keeper.keep("ct", truth->scan.hu)
-                        .and_then([&] { return keeper.keep("truth", truth->lumen); })
-                        .and_then([&] { return keeper.keep("sites", truth->sites); })
-                        .and_then([&] { return keeper.keep("true line", truth->centerline); });
+    if (auto kept = keeper.keep("ct", truth.scan.hu)
+                        .and_then([&] { return keeper.keep("truth", truth.lumen); })
+                        .and_then([&] { return keeper.keep("sites", truth.sites); })
+                        .and_then([&] { return keeper.keep("true line", truth.centerline); });
         !kept)
         return tl::make_unexpected(kept.error());
-    study.noiseSdHu = truth->noiseSdHu;
-    study.lengthMm = truth->centerline.lengthMm();
-    const auto voxels = truth->lumen.voxels();
+    study.noiseSdHu = truth.noiseSdHu;
+    study.lengthMm = truth.centerline.lengthMm();
+    const auto voxels = truth.lumen.voxels();
     study.lumenMl =
         double(voxels.size() - std::size_t(std::count(voxels.begin(), voxels.end(), 0))) *
-        truth->lumen.grid().voxelVolumeMm3() * 1e-3;
+        truth.lumen.grid().voxelVolumeMm3() * 1e-3;
 
     options.log("segmentation");
     watch.lap();
-    const auto tissue = cleansing::fitTissueModel(truth->scan, threads);
-    if (!tissue) return tl::make_unexpected(tissue.error());
-    study.airBelowHu = tissue->airBelowHu;
+    const auto tissue = TRY(cleansing::fitTissueModel(truth.scan, threads));
+    study.airBelowHu = tissue.airBelowHu;
     segmentation::ColonOptions finding;
     finding.threads = threads;
-    const auto segmentation = segmentation::findColon(truth->scan, *tissue, finding);
-    if (!segmentation) return tl::make_unexpected(segmentation.error());
+    const auto segmentation = TRY(segmentation::findColon(truth.scan, tissue, finding));
     study.segmentationSeconds = watch.lap();
-    if (auto kept = keeper.keep("segmentation", segmentation->labels).and_then([&] {
-            return keeper.keepText("quality.json", qualityJson(segmentation->record));
+    if (auto kept = keeper.keep("segmentation", segmentation.labels).and_then([&] {
+            return keeper.keepText("quality.json", qualityJson(segmentation.record));
         });
         !kept)
         return tl::make_unexpected(kept.error());
 
     Result<cleansing::Cleansed> cleansed =
-        cleansing::Cleansed{truth->scan.hu.share(), segmentation->labels.share()};
+        cleansing::Cleansed{truth.scan.hu.share(), segmentation.labels.share()};
     if (!options.onlySegmentation) {
         options.log("mixture");
         watch.lap();
-        const auto mixture = cleansing::estimateMixture(truth->scan, *tissue, segmentation->labels,
-                                                        segmentation->gravity, {threads, {}});
+        const auto mixture = cleansing::estimateMixture(truth.scan, tissue, segmentation.labels,
+                                                        segmentation.gravity, {threads, {}});
         if (!mixture) return tl::make_unexpected(mixture.error());
         study.mixtureSeconds = watch.lap();
         options.log("cleansing");
-        cleansed =
-            cleansing::cleanse(truth->scan, *tissue, *mixture, segmentation->labels, threads);
+        cleansed = cleansing::cleanse(truth.scan, tissue, *mixture, segmentation.labels, threads);
         if (!cleansed) return tl::make_unexpected(cleansed.error());
         study.cleansingSeconds = watch.lap();
     }
     options.log("denoising");
     topology::HandleCuttingOptions cutting;
     cutting.threads = threads;
-    auto cut = topology::cutHandles(cleansed->lumen, cutting);
-    if (!cut) return tl::make_unexpected(cut.error());
+    auto cut = TRY(topology::cutHandles(cleansed->lumen, cutting));
     study.denoisingSeconds = watch.lap();
-    const Volume<std::uint8_t> lumen = std::move(cut->labels);
-    study.cut = std::move(*cut);
+    const Volume<std::uint8_t> lumen = std::move(cut.labels);
+    study.cut = std::move(cut);
     options.log("centerline");
     centerline::CenterlineOptions tracing;
     tracing.threads = threads;
@@ -265,23 +252,20 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     study.before = topology::digitalTopology(cleansed->lumen, threads);
     study.after = topology::digitalTopology(lumen, threads);
     const auto rough =
-        phantom::scoreLumen(truth->lumen, truth->centerline, segmentation->labels, found);
-    if (!rough) return tl::make_unexpected(rough.error());
-    study.segmentation = *rough;
-    const auto fine = phantom::scoreLumen(truth->lumen, truth->centerline, lumen, found);
-    if (!fine) return tl::make_unexpected(fine.error());
-    study.lumen = *fine;
+        TRY(phantom::scoreLumen(truth.lumen, truth.centerline, segmentation.labels, found));
+    study.segmentation = rough;
+    const auto fine = TRY(phantom::scoreLumen(truth.lumen, truth.centerline, lumen, found));
+    study.lumen = fine;
     if (options.cleansing) {
-        auto clean = phantom::scoreCleansing(*truth, cleansed->hu);
-        if (!clean) return tl::make_unexpected(clean.error());
-        study.cleansing = std::move(*clean);
+        auto clean = TRY(phantom::scoreCleansing(truth, cleansed->hu));
+        study.cleansing = std::move(clean);
     }
     if (options.colon) {
-        const ColonRecord& record = segmentation->record;
+        const ColonRecord& record = segmentation.record;
         std::vector<std::string> warnings = record.warnings;
         for (std::string& line : piecesPassedBy(found, record.pieces))
             warnings.push_back(std::move(line));
-        study.colon.score = phantom::scoreColon(*truth, lumen, found, record, warnings);
+        study.colon.score = phantom::scoreColon(truth, lumen, found, record, warnings);
         study.colon.confidence = record.confidence;
         study.colon.warnings = warnings.size();
         for (const std::string& line : warnings)
@@ -300,7 +284,7 @@ Result<PhantomStudy> studyPhantom(const StudyOptions& options) {
     }
 
     if (options.surface) {
-        if (auto done = studySurfaces(*truth, cleansed->hu, lumen, options, study); !done)
+        if (auto done = studySurfaces(truth, cleansed->hu, lumen, options, study); !done)
             return tl::make_unexpected(done.error());
     }
     return study;

@@ -350,14 +350,11 @@ Row studyApart(const Row& row, const StudyOptions& options, const std::vector<Ta
 
 /// Scores a mesh of elsewhere against the phantom.
 Result<void> scoreMesh(const std::string& file, const phantom::PhantomOptions& options) {
-    const auto mesh = mesh::readMesh(file);
-    if (!mesh) return tl::make_unexpected(mesh.error());
-    const auto truth = phantom::makePhantom(options);
-    if (!truth) return tl::make_unexpected(truth.error());
-    const auto study = studySurface(file, *mesh, phantom::trueLumenSurface(options, truth->lumen),
-                                    options.threads);
-    if (!study) return tl::make_unexpected(study.error());
-    fmt::print("{}\n{}\n", kSurfaceColumns, surfaceLine(*study));
+    const auto mesh = TRY(mesh::readMesh(file));
+    const auto truth = TRY(phantom::makePhantom(options));
+    const auto study = TRY(
+        studySurface(file, mesh, phantom::trueLumenSurface(options, truth.lumen), options.threads));
+    fmt::print("{}\n{}\n", kSurfaceColumns, surfaceLine(study));
     return {};
 }
 

@@ -75,62 +75,52 @@ std::vector<Contestant> contestants(render::CaseRenderer& renderer,
 }
 
 Result<void> table(const Arguments& given) {
-    const auto source = store::CaseStore::open(given.store, false).and_then([&](const auto& s) {
+    const auto source = TRY(store::CaseStore::open(given.store, false).and_then([&](const auto& s) {
         return s.openCase(given.name);
-    });
-    if (!source) return tl::make_unexpected(source.error());
-    const auto ct = source->readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    const auto cleansed = source->readVolume<std::int16_t>("cleansed");
-    if (!cleansed) return tl::make_unexpected(cleansed.error());
-    const auto path = source->readCenterline();
-    if (!path) return tl::make_unexpected(path.error());
-    auto surface = source->readMesh("surface");
-    if (!surface) return tl::make_unexpected(surface.error());
-    const auto optics = render::opticsPreset(given.preset);
-    if (!optics) return tl::make_unexpected(optics.error());
-    auto prepared = render::prepareCase(*ct, *cleansed);
-    if (!prepared) return tl::make_unexpected(prepared.error());
-    prepared->wall = std::make_shared<const TriMesh>(std::move(*surface));
-    const Volume<std::int16_t> shown = prepared->endoscopic().share();
+    }));
+    const auto ct = TRY(source.readVolume<std::int16_t>("ct"));
+    const auto cleansed = TRY(source.readVolume<std::int16_t>("cleansed"));
+    const auto path = TRY(source.readCenterline());
+    auto surface = TRY(source.readMesh("surface"));
+    const auto optics = TRY(render::opticsPreset(given.preset));
+    auto prepared = TRY(render::prepareCase(ct, cleansed));
+    prepared.wall = std::make_shared<const TriMesh>(std::move(surface));
+    const Volume<std::int16_t> shown = prepared.endoscopic().share();
 
-    const auto context = gpu::Context::create();
-    if (!context) return tl::make_unexpected(context.error());
-    const auto renderer = render::CaseRenderer::upload(
-        **context, std::move(*prepared),
-        {.raycaster = RaycasterKind::native, .threads = given.threads});
-    if (!renderer) return tl::make_unexpected(renderer.error());
-    fmt::print("{} ({}), {}, {} places\n", (*context)->renderer(), (*context)->platform(),
-               given.preset, given.places);
-    std::vector<Contestant> all = contestants(**renderer, shown, given);
-    const auto ups = rotationMinimizingUps(*path, flightPreferredUp);
+    const auto context = TRY(gpu::Context::create());
+    const auto renderer = TRY(render::CaseRenderer::upload(
+        *context, std::move(prepared),
+        {.raycaster = RaycasterKind::native, .threads = given.threads}));
+    fmt::print("{} ({}), {}, {} places\n", context->renderer(), context->platform(), given.preset,
+               given.places);
+    std::vector<Contestant> all = contestants(*renderer, shown, given);
+    const auto ups = rotationMinimizingUps(path, flightPreferredUp);
     for (const int size : given.sizes) {
         for (Contestant& one : all)
             one.wallMs.clear(), one.cpuMs.clear(), one.psnr.clear();
         // The first round loads transfer functions and the driver's code: it is not counted.
         for (int place = -1; place < given.places; ++place) {
-            const double arcMm = path->lengthMm() * (std::max(place, 0) + 0.5) / given.places;
-            const CenterlineCamera at = cameraAtArc(*path, ups, arcMm, FlightDirection::antegrade);
+            const double arcMm = path.lengthMm() * (std::max(place, 0) + 0.5) / given.places;
+            const CenterlineCamera at = cameraAtArc(path, ups, arcMm, FlightDirection::antegrade);
             render::CameraView view;
             view.camera.positionMm = at.positionMm;
             view.camera.forward = at.forward;
             view.camera.up = at.up;
-            view.optics = *optics;
+            view.optics = optics;
             Image first;
             for (Contestant& one : all) {
                 const double wall = milliseconds(), cpu = cpuMilliseconds();
-                const auto image = one.draw(view, size);
-                if (!image) return tl::make_unexpected(image.error());
+                const auto image = TRY(one.draw(view, size));
                 if (place < 0) continue;
                 one.wallMs.push_back(milliseconds() - wall);
                 one.cpuMs.push_back(cpuMilliseconds() - cpu);
-                if (first.rgb.empty()) first = *image;
-                one.psnr.push_back(psnr(*image, first));
+                if (first.rgb.empty()) first = image;
+                one.psnr.push_back(psnr(image, first));
                 if (given.pictures.empty()) continue;
                 const auto written =
                     pictures::writePicture(fmt::format("{}/{}-{}-{}-{}.png", given.pictures,
                                                        given.preset, size, place, one.name),
-                                           *image, {});
+                                           image, {});
                 if (!written) return written;
             }
         }

@@ -19,42 +19,33 @@ constexpr int places = 25;
 
 Result<void> timePictures(const std::string& store, const std::string& name,
                           const std::string& preset) {
-    const auto source = store::CaseStore::open(store, false).and_then([&](const auto& s) {
+    const auto source = TRY(store::CaseStore::open(store, false).and_then([&](const auto& s) {
         return s.openCase(name);
-    });
-    if (!source) return tl::make_unexpected(source.error());
-    const auto ct = source->readVolume<std::int16_t>("ct");
-    if (!ct) return tl::make_unexpected(ct.error());
-    const auto cleansed = source->readVolume<std::int16_t>("cleansed");
-    if (!cleansed) return tl::make_unexpected(cleansed.error());
-    const auto centerline = source->readCenterline();
-    if (!centerline) return tl::make_unexpected(centerline.error());
-    const auto function = render::opticsPreset(preset);
-    if (!function) return tl::make_unexpected(function.error());
+    }));
+    const auto ct = TRY(source.readVolume<std::int16_t>("ct"));
+    const auto cleansed = TRY(source.readVolume<std::int16_t>("cleansed"));
+    const auto centerline = TRY(source.readCenterline());
+    const auto function = TRY(render::opticsPreset(preset));
 
-    const auto context = gpu::Context::create();
-    if (!context) return tl::make_unexpected(context.error());
+    const auto context = TRY(gpu::Context::create());
     const double before = milliseconds();
-    const auto renderer = render::CaseRenderer::create(**context, *ct, *cleansed);
-    if (!renderer) return tl::make_unexpected(renderer.error());
-    std::printf("%s (%s); case on the GPU in %.0f ms, %zu MiB\n", (*context)->renderer().c_str(),
-                (*context)->platform().c_str(), milliseconds() - before,
-                (*renderer)->gpuBytes() >> 20);
+    const auto renderer = TRY(render::CaseRenderer::create(*context, ct, cleansed));
+    std::printf("%s (%s); case on the GPU in %.0f ms, %zu MiB\n", context->renderer().c_str(),
+                context->platform().c_str(), milliseconds() - before, renderer->gpuBytes() >> 20);
 
-    const auto ups = rotationMinimizingUps(*centerline, flightPreferredUp);
+    const auto ups = rotationMinimizingUps(centerline, flightPreferredUp);
     for (const int size : {256, 512, 1024}) {
         std::vector<double> times;
         // The first picture loads the transfer function and the driver's code: it is not counted.
         for (int i = -1; i < places; ++i) {
-            const double arcMm = centerline->lengthMm() * (std::max(i, 0) + 0.5) / places;
+            const double arcMm = centerline.lengthMm() * (std::max(i, 0) + 0.5) / places;
             const CenterlineCamera at =
-                cameraAtArc(*centerline, ups, arcMm, FlightDirection::antegrade);
+                cameraAtArc(centerline, ups, arcMm, FlightDirection::antegrade);
             render::CameraView view;
             view.camera = {at.positionMm, at.forward, at.up, 90.0};
-            view.optics = *function;
+            view.optics = function;
             const double start = milliseconds();
-            if (const auto image = (*renderer)->render(view, size, size); !image)
-                return tl::make_unexpected(image.error());
+            TRY(renderer->render(view, size, size));
             if (i >= 0) times.push_back(milliseconds() - start);
         }
         std::sort(times.begin(), times.end());

@@ -18,14 +18,11 @@ namespace haustra {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::lineCount;
 using Arguments = std::vector<std::string>;
 
 tests::Outcome haustra(const Arguments& arguments) {
     return tests::runProgram("haustra", arguments);
-}
-
-std::size_t lineCount(const std::string& text) {
-    return std::size_t(std::count(text.begin(), text.end(), '\n'));
 }
 
 TEST(CommandLine, AnUnknownCommandIsNamed) {

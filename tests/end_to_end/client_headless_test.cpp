@@ -5,6 +5,7 @@
 #include "picture_files.h"
 #include "reader/overview_map.h"
 #include "script/script_player.h"
+#include "temporary_folder.h"
 
 #include <fstream>
 #include <sstream>
@@ -21,14 +22,6 @@ using tests::Misbehaviour;
 
 class ClientHeadless : public ::testing::Test {
 protected:
-    void SetUp() override {
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("haustra-client-" + std::string(info->name()) + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     link::ConnectionOptions optionsFor(const FakeServer& server) const {
         link::ConnectionOptions options;
         options.address = {"127.0.0.1", server.port()};
@@ -55,7 +48,8 @@ protected:
         return std::move(image.rgb);
     }
 
-    std::filesystem::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const std::filesystem::path folder_ = temporary_.path();
 };
 
 TEST_F(ClientHeadless, StillsAreTheServersPixels) {

@@ -1,6 +1,7 @@
 // haustra-client as a program: exit codes, what it prints and writes, and its window.
 #include "end_to_end/fake_server.h"
 #include "picture_files.h"
+#include "temporary_folder.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -38,14 +39,9 @@ Outcome run(const std::string& command) {
 class ClientProgram : public ::testing::Test {
 protected:
     void SetUp() override {
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("haustra-program-" + std::string(info->name()) + std::to_string(::getpid()));
-        std::filesystem::create_directories(folder_);
         const char* bin = std::getenv("HAUSTRA_BIN");
         program_ = std::string(bin ? bin : "bin") + "/haustra-client";
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
 
     std::string at(const FakeServer& server) const {
         return program_ + " 127.0.0.1:" + std::to_string(server.port()) + " --known-servers " +
@@ -59,7 +55,8 @@ protected:
         return " --headless --script " + script + " --out " + (folder_ / "out").string();
     }
 
-    std::filesystem::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const std::filesystem::path folder_ = temporary_.path();
     std::string program_;
 };
 

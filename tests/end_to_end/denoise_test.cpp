@@ -13,14 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
+using tests::lineCount;
 
 tests::Outcome denoise(Arguments arguments) {
     arguments.insert(arguments.begin(), "denoise");
     return tests::runProgram("haustra", arguments);
-}
-
-std::size_t lineCount(const std::string& text) {
-    return std::size_t(std::count(text.begin(), text.end(), '\n'));
 }
 
 TriMesh twoHandles() {

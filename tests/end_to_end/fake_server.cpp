@@ -139,12 +139,7 @@ struct FakeServer::Impl {
         return message;
     }
     static void write(Stream& stream, const ServerMessage& message) {
-        const std::string body = message.SerializeAsString();
-        std::vector<std::uint8_t> frame;
-        protocol::appendFrameHeader(frame,
-                                    {std::uint32_t(body.size()), protocol::FrameType::control});
-        frame.insert(frame.end(), body.begin(), body.end());
-        asio::write(stream, asio::buffer(frame));
+        asio::write(stream, asio::buffer(protocol::controlFrame(message)));
     }
 
     template <class Input>

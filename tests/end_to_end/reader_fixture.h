@@ -3,6 +3,7 @@
 
 #include "end_to_end/fake_server.h"
 #include "reader/reader.h"
+#include "temporary_folder.h"
 
 #include <filesystem>
 #include <memory>
@@ -20,20 +21,13 @@ protected:
 
     /// The reader opens the server's case; no pane has a size yet.
     void SetUp() override {
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("haustra-" + std::string(info->test_suite_name()) + info->name() +
-                   std::to_string(::getpid()));
         link::ConnectionOptions options;
         options.address = {"127.0.0.1", server_.port()};
         options.pinning.knownServersFile = folder_ / "known_servers";
         options.reconnect = true;
         reader_ = std::make_unique<reader::Reader>(options, "phantom");
     }
-    void TearDown() override {
-        reader_.reset();
-        std::filesystem::remove_all(folder_);
-    }
+    void TearDown() override { reader_.reset(); }
 
     /// Steps the reader, as a window does, until `done`; false when it takes absurdly long.
     template <class Done>
@@ -48,7 +42,8 @@ protected:
     }
 
     FakeServer server_;
-    std::filesystem::path folder_;
+    const TemporaryFolder temporary_;
+    const std::filesystem::path folder_ = temporary_.path();
     std::unique_ptr<reader::Reader> reader_;
 };
 

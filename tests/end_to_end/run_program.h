@@ -1,6 +1,9 @@
 // Runs one of the project's programs as a user does, and looks at what comes out.
 #pragma once
 
+#include "temporary_folder.h"
+
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -35,26 +38,6 @@ inline std::filesystem::path programPath(const std::string& program) {
     return std::filesystem::path(bin ? bin : ".") / program;
 }
 
-/// A new empty folder, removed with its content at the end.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string name =
-            (std::filesystem::temp_directory_path() / "haustra-test-XXXXXX").string();
-        if (::mkdtemp(name.data())) path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
-
 /// Runs a program to its end; `meanwhile` is called with its process once it has started.
 inline Outcome runProgram(const std::string& program, const std::vector<std::string>& arguments,
                           const std::function<void(pid_t)>& meanwhile) {
@@ -88,6 +71,10 @@ inline Outcome runProgram(const std::string& program, const std::vector<std::str
         std::this_thread::sleep_for(*killAfter);
         ::kill(child, SIGKILL);
     });
+}
+
+inline std::size_t lineCount(const std::string& text) {
+    return std::size_t(std::count(text.begin(), text.end(), '\n'));
 }
 
 /// The small phantom that CTest makes before the tests that ask for it (FIXTURES phantom).

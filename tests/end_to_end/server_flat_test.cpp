@@ -18,27 +18,13 @@ using protocol::ClientMessage;
 using protocol::ErrorReport;
 using protocol::ServerMessage;
 
-class ServerFlatTest : public ::testing::Test {
+class ServerFlatTest : public FlatServer {
 protected:
-    static void SetUpTestSuite() {
-        folder_ = std::make_unique<TemporaryFolder>();
-        makeFlatStore(folder_->path(), tube());
-        server_ = std::make_unique<ServerProcess>(folder_->path());
-    }
-    static void TearDownTestSuite() {
-        server_.reset();
-        folder_.reset();
-    }
     void SetUp() override {
         client_ = std::make_unique<TestClient>(server_->port());
         ASSERT_TRUE(client_->hello());
     }
-    void TearDown() override { ASSERT_TRUE(server_->running()) << server_->log(); }
 
-    static const FlatTube& tube() {
-        static const FlatTube made;
-        return made;
-    }
     protocol::CaseOpened open(const std::string& name = smallCaseName) {
         const auto answer = client_->openCase(name);
         EXPECT_TRUE(answer && answer->has_case_opened());
@@ -95,11 +81,7 @@ protected:
     static glm::dvec3 vector(const protocol::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
     std::unique_ptr<TestClient> client_;
-    static std::unique_ptr<TemporaryFolder> folder_;
-    static std::unique_ptr<ServerProcess> server_;
 };
-std::unique_ptr<TemporaryFolder> ServerFlatTest::folder_;
-std::unique_ptr<ServerProcess> ServerFlatTest::server_;
 
 TEST_F(ServerFlatTest, TellsTheStripAndWhereEachCamerasWallLies) {
     const auto opened = open();

@@ -17,23 +17,8 @@ using protocol::ServerMessage;
 
 constexpr int side = 96;
 
-class ServerPaintTest : public ::testing::Test {
+class ServerPaintTest : public FlatServer {
 protected:
-    static void SetUpTestSuite() {
-        folder_ = std::make_unique<TemporaryFolder>();
-        makeFlatStore(folder_->path(), tube());
-        server_ = std::make_unique<ServerProcess>(folder_->path());
-    }
-    static void TearDownTestSuite() {
-        server_.reset();
-        folder_.reset();
-    }
-    void TearDown() override { ASSERT_TRUE(server_->running()) << server_->log(); }
-
-    static const FlatTube& tube() {
-        static const FlatTube made;
-        return made;
-    }
     std::unique_ptr<TestClient> reader(const std::string& name = smallCaseName) {
         auto client = std::make_unique<TestClient>(server_->port());
         EXPECT_TRUE(client->hello());
@@ -119,12 +104,7 @@ protected:
         EXPECT_EQ(answer->error().code(), code) << answer->error().message();
         EXPECT_FALSE(answer->error().fatal());
     }
-
-    static std::unique_ptr<TemporaryFolder> folder_;
-    static std::unique_ptr<ServerProcess> server_;
 };
-std::unique_ptr<TemporaryFolder> ServerPaintTest::folder_;
-std::unique_ptr<ServerProcess> ServerPaintTest::server_;
 
 TEST_F(ServerPaintTest, BookmarksAreDiscsOnTheWallForWhoeverWantsThem) {
     const auto mine = reader(), others = reader();

@@ -65,11 +65,7 @@ void TestClient::sendBytes(const Bytes& bytes) {
 }
 
 TestClient::Bytes TestClient::frameOf(const protocol::ClientMessage& message) {
-    const std::string body = message.SerializeAsString();
-    Bytes frame;
-    protocol::appendFrameHeader(frame, {std::uint32_t(body.size()), protocol::FrameType::control});
-    frame.insert(frame.end(), body.begin(), body.end());
-    return frame;
+    return protocol::controlFrame(message);
 }
 
 void TestClient::vanish() {

@@ -115,12 +115,6 @@ protected:
         EXPECT_TRUE(made) << describe(made.error());
         return std::move(*made);
     }
-    static Image cast(Raycaster& raycaster, const CameraView& view, int width, int height) {
-        Image image{width, height, std::vector<std::uint8_t>(3u * unsigned(width * height))};
-        const auto drawn = raycaster.render(view, Band::whole(width, height), image);
-        EXPECT_TRUE(drawn) << describe(drawn.error());
-        return image;
-    }
     /// Cells with a voxel of these labels, border included.
     int cellsHolding(const std::set<int>& labels) const {
         const CellGrid grid{volume->grid().size, 16};
@@ -145,7 +139,8 @@ TEST_F(LabelledColor, ShowsColoursAsAPlainMarcherDoes) {
     const CameraView view = across(Lens::perspective);
     for (const std::set<int>& labels : {std::set<int>{}, {300}, {2, 300}}) {
         ASSERT_TRUE(cells->choose({labels.begin(), labels.end()}));
-        EXPECT_GE(psnr(cast(*cells, view, 60, 50), reference(*volume, labels, view, 60, 50)), 45.0);
+        EXPECT_GE(psnr(drawn(*cells, view, {60, 50}), reference(*volume, labels, view, 60, 50)),
+                  45.0);
     }
 }
 
@@ -154,7 +149,7 @@ TEST_F(LabelledColor, AChosenLabelLoadsItsCellsAlone) {
     const CameraView view = across(Lens::orthographic);
     for (const std::set<int>& labels : {std::set<int>{1}, {2}, {300}, {2, 300}}) {
         ASSERT_TRUE(cells->choose({labels.begin(), labels.end()}));
-        cast(*cells, view, 80, 80);
+        drawn(*cells, view, {80, 80});
         const ResidencyStats& stats = cells->residency();
         const int holding = cellsHolding(labels);
         EXPECT_EQ(stats.nonEmpty, holding);
@@ -176,7 +171,7 @@ TEST_F(LabelledColor, NoPixelDependsOnTheBudget) {
     const auto tight = cellsOf({.cellSide = 16, .budgetBytes = 64 * 64 * 32 * 4});
     CameraView view = across(Lens::fisheye);
     view.optics.shading = true;
-    EXPECT_EQ(cast(*cells, view, 61, 47).rgb, cast(*tight, view, 61, 47).rgb);
+    EXPECT_EQ(drawn(*cells, view, {61, 47}).rgb, drawn(*tight, view, {61, 47}).rgb);
     EXPECT_GT(tight->residency().uploaded, tight->residency().resident);
 }
 

@@ -33,12 +33,6 @@ protected:
         EXPECT_TRUE(made) << describe(made.error());
         return std::move(*made);
     }
-    static Image cast(Raycaster& raycaster, const CameraView& view, int width, int height) {
-        Image image{width, height, std::vector<std::uint8_t>(3u * unsigned(width * height))};
-        const auto drawn = raycaster.render(view, Band::whole(width, height), image);
-        EXPECT_TRUE(drawn) << describe(drawn.error());
-        return image;
-    }
 };
 
 Grid tubeGrid() {
@@ -95,9 +89,9 @@ TEST_F(ObjectOrder, ShowsWhatTheSinglePassShows) {
         int number = 0;
         for (const Camera& camera : cameras()) {
             const CameraView view{camera, optics, {}};
-            const Image expected = cast(*whole, view, 72, 53);
+            const Image expected = drawn(*whole, view, {72, 53});
             for (ObjectOrderRaycaster* cells : {small.get(), large.get()})
-                EXPECT_GE(psnr(cast(*cells, view, 72, 53), expected), 45.0)
+                EXPECT_GE(psnr(drawn(*cells, view, {72, 53}), expected), 45.0)
                     << name << ", camera " << number;
             ++number;
         }
@@ -122,17 +116,17 @@ TEST_F(ObjectOrder, NoPixelDependsOnTheBudgetOnWhatWasDrawnBeforeOrOnBands) {
     EXPECT_EQ(tight->gpuBytes() - single->gpuBytes(), std::size_t(64 * 64 * 32 - 32 * 32 * 32) * 2);
     std::vector<Image> first;
     for (const Camera& camera : cameras()) {
-        first.push_back(cast(*roomy, misty(camera), 72, 53));
-        EXPECT_EQ(first.back().rgb, cast(*tight, misty(camera), 72, 53).rgb);
+        first.push_back(drawn(*roomy, misty(camera), {72, 53}));
+        EXPECT_EQ(first.back().rgb, drawn(*tight, misty(camera), {72, 53}).rgb);
         EXPECT_GT(tight->residency().uploaded, tight->residency().resident);
         EXPECT_EQ(tight->residency().bytesMoved,
                   std::size_t(tight->residency().uploaded) * 23 * 23 * 23 * 2);
     }
-    EXPECT_EQ(first[0].rgb, cast(*single, misty(cameras()[0]), 72, 53).rgb);
+    EXPECT_EQ(first[0].rgb, drawn(*single, misty(cameras()[0]), {72, 53}).rgb);
     // Again, the other way round; then in bands.
     const auto all = cameras();
     for (std::size_t i = all.size(); i-- > 0;)
-        EXPECT_EQ(first[i].rgb, cast(*roomy, misty(all[i]), 72, 53).rgb);
+        EXPECT_EQ(first[i].rgb, drawn(*roomy, misty(all[i]), {72, 53}).rgb);
     for (const std::size_t i : {0, 6, 8}) {
         Image banded{72, 53, std::vector<std::uint8_t>(3u * 72 * 53)};
         for (int row = 0; row < 53; row += 13)
@@ -151,8 +145,8 @@ TEST_F(ObjectOrder, WhatDoesNotFitIntoABatchIsNotOverwritten) {
                                                    .budgetBytes = slots * 32 * 32 * 32 * 2,
                                                    .batchCells = batchCells});
             for (const Camera& camera : {cameras()[0], cameras()[6]})
-                EXPECT_EQ(cast(*roomy, misty(camera), 40, 30).rgb,
-                          cast(*tight, misty(camera), 40, 30).rgb)
+                EXPECT_EQ(drawn(*roomy, misty(camera), {40, 30}).rgb,
+                          drawn(*tight, misty(camera), {40, 30}).rgb)
                     << batchCells << " cells a batch, " << slots << " slots";
         }
 }
@@ -167,11 +161,11 @@ TEST_F(ObjectOrder, ReadersOfDifferentFunctionsShareTheCells) {
     views.back().optics.preIntegrated = false;
     std::vector<Image> alone;
     for (const CameraView& view : views)
-        alone.push_back(cast(*objectOrder(scene, {.cellSide = 16}), view, 64, 64));
+        alone.push_back(drawn(*objectOrder(scene, {.cellSide = 16}), view, {64, 64}));
     const auto shared = objectOrder(scene, {.cellSide = 16});
     for (int round = 0; round < 3; ++round)
         for (std::size_t i = 0; i < views.size(); ++i) {
-            EXPECT_EQ(cast(*shared, views[i], 64, 64).rgb, alone[i].rgb) << i;
+            EXPECT_EQ(drawn(*shared, views[i], {64, 64}).rgb, alone[i].rgb) << i;
             if (round == 2) {
                 EXPECT_EQ(shared->residency().uploaded, 0) << i;
             }
@@ -182,7 +176,7 @@ TEST_F(ObjectOrder, CellsStayAndOnlyWhatIsSeenIsBrought) {
     const auto scene = sceneOf(sampled(tubeGrid(), foldedTube));
     const auto cells = objectOrder(scene, {.cellSide = 16});
     const CameraView inside{cameras()[0], *opticsPreset("mucosa"), {}};
-    cast(*cells, inside, 64, 64);
+    drawn(*cells, inside, {64, 64});
     const ResidencyStats first = cells->residency();
     EXPECT_GT(first.uploaded, 0);
     EXPECT_EQ(first.uploaded, first.visited);
@@ -190,14 +184,14 @@ TEST_F(ObjectOrder, CellsStayAndOnlyWhatIsSeenIsBrought) {
     EXPECT_LT(first.inView, first.nonEmpty);
     EXPECT_LT(first.nonEmpty, first.cells);
     EXPECT_EQ(first.cells, 8 * 7 * 6);
-    cast(*cells, inside, 64, 64);
+    drawn(*cells, inside, {64, 64});
     EXPECT_EQ(cells->residency().uploaded, 0);
     EXPECT_EQ(cells->residency().visited, first.visited);
     // Air alone: nothing to show.
     CameraView nothing = inside;
     nothing.optics.transferFunction = {
         {{3000.0, glm::dvec3(1.0), 0.0}, {3001.0, glm::dvec3(1.0), 1.0}}};
-    for (const std::uint8_t value : cast(*cells, nothing, 16, 16).rgb)
+    for (const std::uint8_t value : drawn(*cells, nothing, {16, 16}).rgb)
         ASSERT_EQ(value, 0);
     EXPECT_EQ(cells->residency().nonEmpty, 0);
 }
@@ -212,10 +206,10 @@ TEST_F(ObjectOrder, EndsRaysAtTheBackdropAndShowsItBehind) {
         backdrop->pixels.push_back({0.1f, 0.3f, 0.05f, 8.0f + float(i % 60)});
     for (CameraView view : {misty(cameras()[0]), misty(cameras()[3]), misty(cameras()[8])}) {
         view.backdrop = backdrop;
-        const Image image = cast(*cells, view, 60, 44);
-        EXPECT_GE(psnr(image, cast(*whole, view, 60, 44)), 55.0);
+        const Image image = drawn(*cells, view, {60, 44});
+        EXPECT_GE(psnr(image, drawn(*whole, view, {60, 44})), 55.0);
         view.backdrop = nullptr;
-        EXPECT_NE(image.rgb, cast(*cells, view, 60, 44).rgb);
+        EXPECT_NE(image.rgb, drawn(*cells, view, {60, 44}).rgb);
     }
 }
 

@@ -16,7 +16,7 @@
 namespace haustra::tests {
 
 /// What a test of each raycaster is called by.
-inline std::string nameOfRaycaster(const testing::TestParamInfo<render::RaycasterEntry>& entry) {
+inline std::string nameOfRaycaster(const testing::TestParamInfo<RaycasterEntry>& entry) {
     std::string name(entry.param.name);
     std::erase(name, '-');
     return name;

@@ -2,6 +2,7 @@
 // reader astray is refused.
 #include "store/case_store.h"
 #include "store/product_file.h"
+#include "temporary_folder.h"
 
 #include <cmath>
 #include <cstring>
@@ -22,16 +23,10 @@ namespace fs = std::filesystem;
 
 class FlatMapStore : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  ("haustra-flat-store-" + std::to_string(::getpid()) + "-" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     Case writer() { return CaseStore::open(folder_, true).value().createCase("patient").value(); }
 
-    fs::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const fs::path folder_ = temporary_.path() / "store";
 };
 
 ProductKey keyOf(int n) {

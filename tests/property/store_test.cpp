@@ -2,6 +2,7 @@
 // damage is always seen.
 #include "store/case_store.h"
 #include "store/product_file.h"
+#include "temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,18 +24,11 @@ namespace fs = std::filesystem;
 
 class Store : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  ("haustra-store-" + std::to_string(::getpid()) + "-" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     CaseStore store() { return CaseStore::open(folder_, true).value(); }
     Case writer(const std::string& name = "patient-1") { return store().createCase(name).value(); }
 
-    fs::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const fs::path folder_ = temporary_.path() / "store";
 };
 
 ProductKey keyOf(int n) {

@@ -2,6 +2,7 @@
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
 #include "link/server_address.h"
+#include "temporary_folder.h"
 
 #include <fstream>
 #include <sstream>
@@ -16,12 +17,6 @@ const std::string one(64, '1'), two(64, '2');
 
 class KnownServersTest : public ::testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("haustra-known-" + std::to_string(::getpid()));
-        std::filesystem::remove_all(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
     std::filesystem::path file() const { return folder_ / "haustra" / "known_servers"; }
     std::string content() const {
         std::ifstream in(file());
@@ -33,7 +28,8 @@ protected:
         std::filesystem::create_directories(file().parent_path());
         std::ofstream(file()) << text;
     }
-    std::filesystem::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const std::filesystem::path folder_ = temporary_.path() / "none";
 };
 
 TEST(ServerAddress, ReadsWhatPeopleWrite) {

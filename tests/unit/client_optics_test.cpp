@@ -2,6 +2,7 @@
 // a preset's file there and back. And as messages there and back.
 #include "protocol/optics_message.h"
 #include "reader/optics_editor.h"
+#include "temporary_folder.h"
 
 #include <filesystem>
 #include <fstream>
@@ -163,9 +164,8 @@ TEST(OpticsEditor, ARowMoreIsOfTheRowBeforeUntilItIsChanged) {
 
 TEST(OpticsEditor, SavesAndOpensPresetsFiles) {
     namespace fs = std::filesystem;
-    const fs::path folder =
-        fs::temp_directory_path() / ("haustra-looks-" + std::to_string(::getpid()));
-    fs::create_directory(folder);
+    const tests::TemporaryFolder temporary;
+    const fs::path folder = temporary.path();
     OpticsEditor editor;
     editor.offer({wall(), borders()});
     ASSERT_TRUE(editor.choose("borders"));
@@ -198,7 +198,6 @@ TEST(OpticsEditor, SavesAndOpensPresetsFiles) {
     std::ofstream(folder / "broken.json") << "{";
     EXPECT_FALSE(editor.open(folder / "broken.json"));
     EXPECT_EQ(editor.optics(), made);
-    fs::remove_all(folder);
 }
 
 TEST(OpticsMessage, GoesThereAndBack) {

@@ -3,6 +3,7 @@
 
 #include "core/ct_scan.h"
 #include "dicom/write_series.h"
+#include "temporary_folder.h"
 
 #include <cmath>
 #include <filesystem>
@@ -12,27 +13,6 @@
 #include <unistd.h>
 
 namespace haustra::tests {
-
-/// A folder of its own for one test, removed at the end.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string pattern =
-            (std::filesystem::temp_directory_path() / "haustra-test-XXXXXX").string();
-        if (const char* made = mkdtemp(pattern.data())) path_ = made;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// Every voxel differs from its neighbours, and the whole range of HU occurs.
 inline CtScan patternScan(const Grid& grid, PatientPosition position = PatientPosition::supine) {

@@ -2,6 +2,7 @@
 #include "mesh/flat_map_file.h"
 
 #include "mesh/mesh_file.h"
+#include "temporary_folder.h"
 
 #include <cstring>
 #include <filesystem>
@@ -19,18 +20,13 @@ namespace fs = std::filesystem;
 
 class FlatMapFile : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() / ("haustra-flat-file-" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     std::string content(const fs::path& file) const {
         std::ifstream in(file, std::ios::binary);
         return {std::istreambuf_iterator<char>(in), {}};
     }
 
-    fs::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const fs::path folder_ = temporary_.path();
 };
 
 FlatMap twoTriangles() {

@@ -365,10 +365,14 @@ TEST_F(OneSession, BandsCoverThePictureOnce) {
     }
 }
 
+template <std::size_t... kind>
+std::vector<AnyView> oneOfEach(std::index_sequence<kind...>) {
+    return {AnyView(std::in_place_index<kind>)...};
+}
+
 TEST_F(OneSession, AllViewsAreDrawnInBands) {
     for (const AnyView& view :
-         {AnyView(SliceView{}), AnyView(ObliqueView{}), AnyView(render::OverviewView{}),
-          AnyView(render::FlatView{}), AnyView(render::FlatOverview{})}) {
+         oneOfEach(std::make_index_sequence<std::variant_size_v<AnyView>>())) {
         PictureJob job = someJob(1, 2);
         job.view = view;
         add(std::move(job));

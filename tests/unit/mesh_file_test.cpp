@@ -2,6 +2,7 @@
 #include "mesh/mesh_file.h"
 
 #include "data_folder.h"
+#include "temporary_folder.h"
 
 #include <cmath>
 #include <cstring>
@@ -20,13 +21,6 @@ namespace {
 
 class MeshFile : public testing::Test {
 protected:
-    MeshFile()
-        : folder_(std::filesystem::temp_directory_path() /
-                  ("mesh-file-" + std::to_string(::getpid()))) {
-        std::filesystem::create_directories(folder_);
-    }
-    ~MeshFile() override { std::filesystem::remove_all(folder_); }
-
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
@@ -37,7 +31,8 @@ protected:
         return {std::istreambuf_iterator<char>(stream), {}};
     }
 
-    std::filesystem::path folder_;
+    const haustra::tests::TemporaryFolder temporary_;
+    const std::filesystem::path folder_ = temporary_.path();
 };
 
 /// A torus whose coordinates use all digits of a double.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "nifti/nifti_file.h"
+#include "temporary_folder.h"
 
 #include <algorithm>
 #include <array>
@@ -21,13 +22,8 @@ namespace fs = std::filesystem;
 /// A folder of its own for every test.
 class Nifti : public testing::Test {
 protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "haustra-nifti-XXXXXX").string();
-        ASSERT_TRUE(mkdtemp(pattern.data()));
-        folder = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder); }
-    fs::path folder;
+    const tests::TemporaryFolder temporary;
+    const fs::path folder = temporary.path();
 };
 
 inline Grid obliqueGrid(glm::ivec3 size) {

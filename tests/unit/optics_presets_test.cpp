@@ -1,6 +1,8 @@
 // Presets: the built-in ones, files that are and are not presets, and a folder of them.
 #include "render/optics/optics_presets.h"
 
+#include "temporary_folder.h"
+
 #include <filesystem>
 #include <fstream>
 
@@ -96,20 +98,11 @@ TEST(OpticsPresets, SaysWhatIsWrongAndWhere) {
 
 class PresetFolder : public testing::Test {
 protected:
-    void SetUp() override {
-        folder = fs::temp_directory_path() /
-                 ("haustra-presets-" +
-                  std::to_string(testing::UnitTest::GetInstance()->random_seed()) + "-" +
-                  std::to_string(std::hash<std::string>()(
-                      testing::UnitTest::GetInstance()->current_test_info()->name())));
-        fs::remove_all(folder);
-        fs::create_directory(folder);
-    }
-    void TearDown() override { fs::remove_all(folder); }
     void write(const char* name, const std::string& text) const {
         std::ofstream(folder / name) << text;
     }
-    fs::path folder;
+    const tests::TemporaryFolder temporary;
+    const fs::path folder = temporary.path();
 };
 
 TEST_F(PresetFolder, AddsToTheBuiltInOnesAndReplacesThem) {

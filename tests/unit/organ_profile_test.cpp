@@ -24,7 +24,7 @@ json builtIn(const std::string& name) {
 TEST(OrganProfile, TheBuiltInOnesAreWhatTheirNamesSay) {
     ASSERT_EQ(builtInProfiles().size(), 3u);
     for (const auto& [name, text] : builtInProfiles()) {
-        const auto profile = readProfile(name);
+        const auto profile = readProfile(std::string(name));
         ASSERT_TRUE(profile) << describe(profile.error());
         EXPECT_EQ(profile->organ, name);
     }

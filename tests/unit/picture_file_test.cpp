@@ -4,6 +4,7 @@
 
 #include "grey_picture_file.h"
 #include "picture_files.h"
+#include "temporary_folder.h"
 
 #include <cmath>
 #include <csignal>
@@ -37,12 +38,6 @@ const Provenance provenance{"Haustra 9", {{"case", "p"}, {"place", "1,2"}, {"odd
 
 class PictureFiles : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() / ("haustra-pictures-" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     static Image noise(int width, int height) {
         Image image{width, height, {}};
         std::mt19937 random(3);
@@ -71,7 +66,8 @@ protected:
         EXPECT_NE(read.error().message.find(why), std::string::npos) << describe(read.error());
         EXPECT_EQ(describe(read.error()).find('\n'), std::string::npos);
     }
-    fs::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(PictureFiles, BandsChangeNoByte) {

@@ -3,6 +3,7 @@
 #include "nifti/nifti_file.h"
 #include "organs/built_in_profiles.h"
 #include "pipeline/prepare.h"
+#include "temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,15 +44,6 @@ double bladder(glm::dvec3 p) {
 
 class PrepareOrgans : public testing::Test {
 protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  ("haustra-organs-" + std::to_string(::getpid()) + "-" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     // A scan with edges as soft as a scanner's and noise of sd about 8 HU.
     void writeScan(const Signed& wall, double contentHu, double aroundHu) {
         const Grid grid = axisAlignedGrid({70, 60, 72}, {0.85, 0.85, 1.25}, origin);
@@ -111,7 +103,8 @@ protected:
         return six / 6.0;
     }
 
-    fs::path folder_;
+    const tests::TemporaryFolder temporary_;
+    const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(PrepareOrgans, AContrastFilledVesselWithItsBranch) {

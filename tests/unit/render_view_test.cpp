@@ -49,8 +49,7 @@ TEST(TransferTable, NothingOutsideTheVisibleRangeHasOpacity) {
 }
 
 TEST(View, NamesGoThereAndBack) {
-    for (const View view : {View::endoscopic, View::axial, View::coronal, View::sagittal,
-                            View::flattened, View::flattenedZoom, View::oblique, View::overview})
+    for (const View view : allViews)
         EXPECT_EQ(*viewFromString(toString(view)), view);
     EXPECT_FALSE(viewFromString("sideways"));
 }

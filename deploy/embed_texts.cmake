@@ -1,0 +1,23 @@
+# cmake -D OUTPUT=x.cpp -D NAMESPACE=a::b -D FUNCTION=f -D KEY=NAME -D "FILES=a;b" -P embed_texts.cmake: writes f(),
+# the files' texts by their names, with endings (KEY NAME_WE: without). haustra_embed of build.cmake calls it.
+set(entries "")
+foreach(file IN LISTS FILES)
+    get_filename_component(name ${file} ${KEY})
+    file(READ ${file} text)
+    string(APPEND entries "        {\"${name}\", R\"file(${text})file\"},\n")
+endforeach()
+file(WRITE ${OUTPUT} "// Made by embed_texts.cmake.
+#include <map>
+#include <string_view>
+
+namespace ${NAMESPACE} {
+
+const std::map<std::string_view, std::string_view>& ${FUNCTION}();
+const std::map<std::string_view, std::string_view>& ${FUNCTION}() {
+    static const std::map<std::string_view, std::string_view> texts{
+${entries}    };
+    return texts;
+}
+
+}  // namespace ${NAMESPACE}
+")
