@@ -1,7 +1,6 @@
 #include "encode/tile_encoder.h"
 
-#include "encode/tile_layout.h"
-
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 
@@ -28,6 +27,35 @@ Result<TileEncoder> TileEncoder::create() {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
+
+struct TileRectangle {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Longest side of a tile. Small tiles waste bytes (METHODS §21 "Pictures on the wire"); one of
+/// this size is coded in a few milliseconds.
+constexpr int maxTileSide = 512;
+
+constexpr int blockSide = 16;  // of JPEG with 4:2:0 chroma
+
+int partLength(int side) {
+    const int parts = (side + maxTileSide - 1) / maxTileSide;
+    const int length = (side + parts - 1) / parts;
+    return (length + blockSide - 1) / blockSide * blockSide;
+}
+
+/// Rows of tiles from the top, each from the left, that cover the picture once. Every side of the
+/// picture is cut into the fewest near-equal parts of at most maxTileSide, so that a tile is under
+/// 128 pixels only where the picture is. Cuts lie on multiples of 16, where JPEG's blocks end.
+std::vector<TileRectangle> layOutTiles(int width, int height) {
+    std::vector<TileRectangle> tiles;
+    const int tileWidth = partLength(width), tileHeight = partLength(height);
+    for (int y = 0; y < height; y += tileHeight)
+        for (int x = 0; x < width; x += tileWidth)
+            tiles.push_back(
+                {x, y, std::min(tileWidth, width - x), std::min(tileHeight, height - y)});
+    return tiles;
+}
 
 Result<Bytes> encodeJpeg(tjhandle handle, const Image& image, const TileRectangle& tile) {
     Bytes bytes(tjBufSize(tile.width, tile.height, TJSAMP_420));

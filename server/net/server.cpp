@@ -1,13 +1,15 @@
 #include "net/server.h"
 
 #include "net/connection.h"
-#include "session/guarded.h"
+#include "session/worker.h"
 
+#include <charconv>
 #include <csignal>
 #include <set>
 #include <utility>
 
 #include <asio/io_context.hpp>
+#include <asio/ip/address.hpp>
 #include <asio/ip/tcp.hpp>
 #include <asio/post.hpp>
 #include <asio/signal_set.hpp>
@@ -68,6 +70,35 @@ Result<void> listen(tcp::acceptor& acceptor, ListenAddress& address) {
 
 }  // namespace
 
+Result<ListenAddress> parseListenAddress(const std::string& text) {
+    const auto refuse = [&](const char* what) {
+        return fail(ErrorKind::badInput, "\"" + text + "\" " + what, "listen address");
+    };
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string::npos) return refuse("is not IP:PORT");
+    std::string ip = text.substr(0, colon);
+    if (ip.size() > 2 && ip.front() == '[' && ip.back() == ']')
+        ip = ip.substr(1, ip.size() - 2);
+    else if (ip.find(':') != std::string::npos)
+        return refuse("needs brackets around its IPv6 address");
+    if (ip == "localhost") ip = "127.0.0.1";
+    asio::error_code error;
+    asio::ip::make_address(ip, error);
+    if (error) return refuse("has no numeric IP address before its port");
+
+    ListenAddress address{ip, 0};
+    const char* const first = text.data() + colon + 1;
+    const char* const last = text.data() + text.size();
+    const auto [end, code] = std::from_chars(first, last, address.port);
+    if (code != std::errc{} || end != last) return refuse("has no port of 0 to 65535");
+    return address;
+}
+
+std::string toString(const ListenAddress& address) {
+    const bool v6 = address.ip.find(':') != std::string::npos;
+    return (v6 ? "[" + address.ip + "]" : address.ip) + ":" + std::to_string(address.port);
+}
+
 // The io_context comes first: what other threads post to it outlives them.
 struct Server::Impl {
     asio::io_context io{1};
@@ -125,12 +156,12 @@ Result<void> Server::Impl::start() {
     auto encoding = TRY(session::EncoderThreads::start(options.encoders));
     TRY(listen(acceptor, options.listen));
 
-    loader = session::CaseLoader::start(cases, *rendering);
-    records = session::RecordsThread::start(std::move(kept), std::move(cases));
+    loader = std::make_unique<session::CaseLoader>(cases, *rendering);
+    records = std::make_unique<session::RecordsThread>(std::move(kept), std::move(cases));
     renderer = std::move(rendering);
     encoders = std::move(encoding);
-    walls = session::WallThread::start();
-    painting = session::PaintThread::start();
+    walls = std::make_unique<session::WallThread>();
+    painting = std::make_unique<session::PaintThread>();
     services.emplace(session::Services{*renderer, *loader, *encoders, *records, *walls, *painting,
                                        bookmarks, lostCases, presets, options.software});
     signals.add(SIGTERM);

@@ -1,6 +1,6 @@
 #include "session/case_loader.h"
 
-#include "session/guarded.h"
+#include "session/worker.h"
 
 #include <utility>
 
@@ -44,26 +44,16 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
 
 }  // namespace
 
-std::unique_ptr<CaseLoader> CaseLoader::start(store::CaseStore store, RenderThread& renderer) {
-    std::unique_ptr<CaseLoader> self(new CaseLoader);
-    self->thread_ = std::thread([&my = *self, &renderer, store = std::move(store)] {
-        serveQueue(my.requests_, 1, "loader", [&](auto& taken) {
-            const Request& request = taken.front();
-            if (request.session.expired() || my.stopping_) return;
-            request.opened(guarded([&] { return load(store, renderer, request.name); }));
-        });
+CaseLoader::CaseLoader(store::CaseStore store, RenderThread& renderer) {
+    worker_.start("loader", 1, [this, &renderer, store = std::move(store)](auto& taken) {
+        const Request& request = taken.front();
+        if (request.session.expired() || stopping_) return;
+        request.opened(guarded([&] { return load(store, renderer, request.name); }));
     });
-    return self;
-}
-
-CaseLoader::~CaseLoader() {
-    stopping_ = true;
-    requests_.close();
-    if (thread_.joinable()) thread_.join();
 }
 
 void CaseLoader::openCase(std::string name, std::weak_ptr<const void> session, Opened opened) {
-    requests_.push({std::move(name), std::move(session), std::move(opened)});
+    worker_.push({std::move(name), std::move(session), std::move(opened)});
 }
 
 }  // namespace haustra::session

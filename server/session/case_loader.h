@@ -3,13 +3,12 @@
 
 #include "session/open_case.h"
 #include "session/render_thread.h"
-#include "session/work_queue.h"
+#include "session/worker.h"
 
 #include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 
 namespace haustra::session {
 
@@ -17,11 +16,9 @@ namespace haustra::session {
 class CaseLoader {
 public:
     /// The render thread must outlive the loader.
-    static std::unique_ptr<CaseLoader> start(store::CaseStore store, RenderThread& renderer);
+    CaseLoader(store::CaseStore store, RenderThread& renderer);
     /// Finishes the case under way, drops those that wait, and joins.
-    ~CaseLoader();
-    CaseLoader(const CaseLoader&) = delete;
-    CaseLoader& operator=(const CaseLoader&) = delete;
+    ~CaseLoader() { stopping_ = true; }
 
     using Opened = std::function<void(Result<std::shared_ptr<const OpenCase>>)>;
     /// Sessions on one case with the same products share one renderer. `opened` is called on the
@@ -35,11 +32,9 @@ private:
         std::weak_ptr<const void> session;
         Opened opened;
     };
-    CaseLoader() = default;
 
-    WorkQueue<Request> requests_;
     std::atomic<bool> stopping_{false};
-    std::thread thread_;
+    Worker<Request> worker_;  // last: it reads the rest
 };
 
 }  // namespace haustra::session

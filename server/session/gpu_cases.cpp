@@ -1,6 +1,6 @@
 #include "session/gpu_cases.h"
 
-#include "session/guarded.h"
+#include "session/worker.h"
 #include "store/lost_pages.h"
 
 #include <algorithm>

@@ -1,11 +1,28 @@
 #include "session/messages.h"
 
 #include "protocol/framing.h"
+#include "protocol/limits.h"
 #include "protocol/optics_message.h"
 #include "protocol/view_message.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace haustra::session {
 namespace {
+
+tl::unexpected<Error> refuse(std::string message, const char* place) {
+    return fail(ErrorKind::badInput, std::move(message), place);
+}
+
+bool isControl(char c) {
+    const auto code = static_cast<unsigned char>(c);
+    return (code < 0x20 && c != '\n' && c != '\t') || code == 0x7f;
+}
+
+bool isVisibleAscii(char c) {
+    return c > 0x20 && c < 0x7f;
+}
 
 // Of texts the first bytes that fit, not cut within a character.
 std::string shortened(const std::string& text, std::size_t most) {
@@ -34,6 +51,85 @@ void fill(protocol::ColonTrust& message, const ColonTrust& trust) {
 }
 
 }  // namespace
+
+// ---- from clients -----------------------------------------------------------------------------
+
+Result<Optics> opticsFrom(const protocol::SetTransferFunction& message,
+                          const render::PresetLibrary& presets) {
+    if (message.preset().empty() != message.has_optics())
+        return refuse("either a preset or optics are needed", "transfer function");
+    if (message.has_optics()) return protocol::opticsFrom(message.optics());
+    const OpticsPreset* preset = presets.find(message.preset());
+    if (!preset) return refuse("there is no such preset", "transfer function");
+    return preset->optics;
+}
+
+Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
+                                          const std::string& caseName, const std::string& scan) {
+    const auto position = TRY(protocol::positionFrom(message.position_mm()));
+    const Camera camera{position, protocol::vectorFrom(message.forward()),
+                        protocol::vectorFrom(message.up())};
+    TRY(checkCamera(camera));
+    if (!(std::abs(message.arc_mm()) <= protocol::maxCoordinateMm))
+        return refuse("the arc is not a number within a kilometre", "bookmark");
+    const std::string& note = message.note();
+    if (note.size() > protocol::maxNoteBytes)
+        return refuse("the note has more than " + std::to_string(protocol::maxNoteBytes) + " bytes",
+                      "bookmark");
+    if (std::any_of(note.begin(), note.end(), isControl))
+        return refuse("the note holds a control character", "bookmark");
+    const std::string& key = message.client_key();
+    if (key.empty() || key.size() > protocol::maxClientKeyBytes ||
+        !std::all_of(key.begin(), key.end(), isVisibleAscii))
+        return refuse("the client key is not 1 to " + std::to_string(protocol::maxClientKeyBytes) +
+                          " visible ASCII characters",
+                      "bookmark");
+    return records::NewBookmark{
+        caseName, scan, key, camera.positionMm, camera.forward, camera.up, message.arc_mm(), note};
+}
+
+Result<WallQuestion> questionFrom(const protocol::LocateFlat& message, const Wall& wall) {
+    const auto flat = TRY(protocol::flatPointFrom(message.flat()));
+    if (!(flat.y >= 0.0 && flat.y <= wall.map->height))
+        return fail(ErrorKind::badInput, "the place lies beyond the strip", "flat");
+    return LocateInStrip{flat};
+}
+
+Result<WallQuestion> questionFrom(const protocol::LocatePoint& message, const Wall&) {
+    const auto position = TRY(protocol::positionFrom(message.position_mm()));
+    return LocateInSpace{position};
+}
+
+Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wall& wall) {
+    Measure question;
+    question.closed = message.closed();
+    if (message.points_size() <
+            (question.closed ? protocol::minOutlinePoints : protocol::minLinePoints) ||
+        message.points_size() > protocol::maxMeasuredPoints)
+        return refuse("a line has 2, an outline 3, and both at most " +
+                          std::to_string(protocol::maxMeasuredPoints) + " points",
+                      "measurement");
+    for (const protocol::FlatPoint& corner : message.points()) {
+        const auto point = TRY(protocol::flatPointFrom(corner));
+        if (std::abs(point.x) > protocol::maxMeasuredTurns)
+            return refuse("a point lies more than 32 turns away", "measurement");
+        question.points.push_back({point.x, std::clamp(point.y, 0.0, wall.map->height)});
+    }
+    const auto& points = question.points;
+    double legs = question.closed ? glm::distance(points.front(), points.back()) : 0.0;
+    for (std::size_t n = 1; n < points.size(); ++n)
+        legs += glm::distance(points[n - 1], points[n]);
+    if (legs >
+        (question.closed ? protocol::maxOutlineCircumferences : protocol::maxLineCircumferences))
+        return refuse("what is measured is too long", "measurement");
+    const auto [left, right] = std::minmax_element(
+        points.begin(), points.end(), [](glm::dvec2 a, glm::dvec2 b) { return a.x < b.x; });
+    if (question.closed && right->x - left->x > 1.0)
+        return refuse("the outline is wider than the colon", "measurement");
+    return question;
+}
+
+// ---- to clients -------------------------------------------------------------------------------
 
 std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message) {
     if (message.ByteSizeLong() > protocol::maxServerControlBytes)
@@ -109,6 +205,29 @@ void fill(protocol::Bookmark& message, const records::Bookmark& bookmark) {
     message.set_note(bookmark.note);
     message.set_created_utc(bookmark.createdUtc);
     message.set_client_key(bookmark.clientKey);
+}
+
+protocol::ServerMessage messageOf(const WallAnswer& answer, std::uint64_t request) {
+    protocol::ServerMessage message;
+    if (const auto* place = std::get_if<WallPlace>(&answer)) {
+        auto* body = message.mutable_wall_place();
+        body->set_request(request);
+        body->mutable_flat()->set_x(place->flat.x);
+        body->mutable_flat()->set_y(place->flat.y);
+        protocol::fill(*body->mutable_position_mm(), place->positionMm);
+        body->set_triangle(std::uint32_t(place->sourceTriangle));
+        body->set_arc_mm(place->arcMm);
+        protocol::fill(*body->mutable_camera_mm(), place->cameraMm);
+        return message;
+    }
+    const auto& measure = std::get<WallMeasure>(answer);
+    auto* body = message.mutable_flat_measure();
+    body->set_request(request);
+    body->set_length_mm(measure.lengthMm);
+    body->set_straight_mm(measure.straightMm);
+    body->set_area_mm2(measure.areaMm2);
+    body->set_largest_diameter_mm(measure.largestDiameterMm);
+    return message;
 }
 
 }  // namespace haustra::session

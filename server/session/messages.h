@@ -1,16 +1,46 @@
-// What the server says, as messages and as frames.
+// What clients say, checked against PROTOCOL.md §4, and what the server answers: all but the views
+// themselves, which protocol/view_message.h has.
 #pragma once
 
+#include "core/result.h"
 #include "protocol/haustra.pb.h"
+#include "protocol/limits.h"
 #include "records/bookmarks.h"
 #include "render/optics/optics_presets.h"
 #include "session/open_case.h"
+#include "session/wall.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace haustra::session {
+
+// Each fails (badInput), naming the field and no patient, on a value out of its bounds.
+
+/// One of the presets by name, or optics of the client's own; not both.
+Result<Optics> opticsFrom(const protocol::SetTransferFunction& message,
+                          const render::PresetLibrary& presets);
+
+/// A camera's place with finite arc; the note is at most protocol::maxNoteBytes without control
+/// characters but line feed and tab; the key is 1 to protocol::maxClientKeyBytes of visible ASCII.
+Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
+                                          const std::string& caseName, const std::string& scan);
+
+Result<WallQuestion> questionFrom(const protocol::LocateFlat& message, const Wall& wall);
+Result<WallQuestion> questionFrom(const protocol::LocatePoint& message, const Wall& wall);
+Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wall& wall);
+
+/// How much of a session's share of unanswered requests a question takes.
+inline int weightOf(const protocol::LocateFlat&) {
+    return 1;
+}
+inline int weightOf(const protocol::LocatePoint&) {
+    return 1;
+}
+inline int weightOf(const protocol::MeasureFlat&) {
+    return protocol::measurementWeight;
+}
 
 /// The message as a frame. One over the protocol's bound becomes an INTERNAL error.
 std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message);
@@ -22,5 +52,7 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
                                           const render::PresetLibrary& presets);
 
 void fill(protocol::Bookmark& message, const records::Bookmark& bookmark);
+
+protocol::ServerMessage messageOf(const WallAnswer& answer, std::uint64_t request);
 
 }  // namespace haustra::session

@@ -1,13 +1,25 @@
 #include "session/picture_stream.h"
 
 #include "protocol/view_message.h"
-#include "session/guarded.h"
+#include "session/worker.h"
 
 #include <algorithm>
 
 #include <spdlog/spdlog.h>
 
 namespace haustra::session {
+
+Result<std::unique_ptr<EncoderThreads>> EncoderThreads::start(int threads) {
+    std::unique_ptr<EncoderThreads> self(new EncoderThreads);
+    for (int n = 0; n < threads; ++n) {
+        auto encoder = TRY(encode::TileEncoder::create());
+        self->Worker::start("encoder", 1, [encoder = std::move(encoder)](auto& taken) mutable {
+            EncodeJob& job = taken.front();
+            job.done(guarded([&] { return encoder.encode(job.image, job.header); }));
+        });
+    }
+    return self;
+}
 
 PictureStream::PictureStream(SessionId session, asio::any_io_executor io, RenderThread& renderer,
                              EncoderThreads& encoders, const render::PresetLibrary& presets,
@@ -229,7 +241,7 @@ void PictureStream::encode(EncodeJob job, std::uint64_t ofCase) {
             self.encoded(ofCase, header, std::move(frames));
         });
     };
-    encoders_.submit(std::move(job));
+    encoders_.push(std::move(job));
 }
 
 void PictureStream::encoded(std::uint64_t ofCase, const protocol::TileHeader& header,

@@ -1,11 +1,12 @@
-// Decides which picture of a session is drawn when.
+// Decides which picture of a session is drawn when, and has it encoded.
 #pragma once
 
-#include "session/encoder_threads.h"
+#include "encode/tile_encoder.h"
 #include "session/open_case.h"
 #include "session/render_thread.h"
 #include "session/viewport.h"
 #include "session/wall_reading.h"
+#include "session/worker.h"
 
 #include <array>
 #include <deque>
@@ -21,6 +22,23 @@ namespace haustra::session {
 /// A viewport that was moving gets its exact still when no input has come for this long after its
 /// picture had been sent.
 inline constexpr std::chrono::milliseconds restAfter{150};
+
+struct EncodeJob {
+    Image image;
+    protocol::TileHeader header;  ///< as TileEncoder::encode takes it
+    /// Called on an encoder thread with the picture's frames.
+    std::function<void(Result<std::vector<std::uint8_t>>)> done;
+};
+
+/// The threads that turn pictures into bytes, each with a TileEncoder. A session has one job here
+/// at a time, so its pictures stay in order.
+class EncoderThreads : public Worker<EncodeJob> {
+public:
+    static Result<std::unique_ptr<EncoderThreads>> start(int threads);
+
+private:
+    EncoderThreads() = default;
+};
 
 /// The viewports of one session, and at most one picture being drawn, one being encoded and one
 /// waiting between the two. Nothing is drawn while a picture waits to be sent: what the link

@@ -1,6 +1,6 @@
 #include "session/records_thread.h"
 
-#include "session/guarded.h"
+#include "session/worker.h"
 
 #include <utility>
 
@@ -50,33 +50,24 @@ struct RecordsThread::Keeping {
     }
 };
 
-std::unique_ptr<RecordsThread> RecordsThread::start(records::BookmarkStore bookmarks,
-                                                    store::CaseStore cases) {
-    std::unique_ptr<RecordsThread> self(new RecordsThread);
-    auto keeping = std::make_shared<Keeping>(Keeping{std::move(bookmarks), std::move(cases), {}});
-    self->thread_ = std::thread([&requests = self->requests_, keeping = std::move(keeping)] {
-        serveQueue(requests, maxSharedCommit, "records", [&](auto& taken) {
+RecordsThread::RecordsThread(records::BookmarkStore bookmarks, store::CaseStore cases) {
+    worker_.start(
+        "records", maxSharedCommit,
+        [keeping = Keeping{std::move(bookmarks), std::move(cases), {}}](auto& taken) mutable {
             for (Request& request : taken)
-                std::visit([&](auto& body) { keeping->serve(body); }, request);
-            keeping->commit();
+                std::visit([&](auto& body) { keeping.serve(body); }, request);
+            keeping.commit();
         });
-    });
-    return self;
-}
-
-RecordsThread::~RecordsThread() {
-    requests_.close();
-    if (thread_.joinable()) thread_.join();
 }
 
 void RecordsThread::add(records::NewBookmark bookmark, Added done) {
-    requests_.push(Add{std::move(bookmark), std::move(done)});
+    worker_.push(Add{std::move(bookmark), std::move(done)});
 }
 void RecordsThread::list(std::string caseName, std::string scan, Listed done) {
-    requests_.push(List{std::move(caseName), std::move(scan), std::move(done)});
+    worker_.push(List{std::move(caseName), std::move(scan), std::move(done)});
 }
 void RecordsThread::listCases(Cases done) {
-    requests_.push(ListCases{std::move(done)});
+    worker_.push(ListCases{std::move(done)});
 }
 
 }  // namespace haustra::session

@@ -2,13 +2,12 @@
 #pragma once
 
 #include "records/bookmarks.h"
-#include "session/work_queue.h"
+#include "session/worker.h"
 #include "store/case_store.h"
 
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
@@ -19,12 +18,7 @@ namespace haustra::session {
 /// records thread.
 class RecordsThread {
 public:
-    static std::unique_ptr<RecordsThread> start(records::BookmarkStore bookmarks,
-                                                store::CaseStore cases);
-    /// Serves what waits, and joins.
-    ~RecordsThread();
-    RecordsThread(const RecordsThread&) = delete;
-    RecordsThread& operator=(const RecordsThread&) = delete;
+    RecordsThread(records::BookmarkStore bookmarks, store::CaseStore cases);
 
     /// `done` is called after the commit.
     using Added = std::function<void(Result<records::Bookmark>)>;
@@ -49,10 +43,8 @@ private:
     };
     using Request = std::variant<Add, List, ListCases>;
     struct Keeping;
-    RecordsThread() = default;
 
-    WorkQueue<Request> requests_;
-    std::thread thread_;
+    Worker<Request> worker_;
 };
 
 }  // namespace haustra::session

@@ -1,7 +1,7 @@
 #include "session/render_thread.h"
 
 #include "gpu/context.h"
-#include "session/guarded.h"
+#include "session/worker.h"
 
 #include <algorithm>
 #include <condition_variable>

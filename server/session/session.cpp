@@ -1,10 +1,8 @@
 #include "session/session.h"
 
 #include "protocol/view_message.h"
-#include "session/guarded.h"
-#include "session/inputs.h"
 #include "session/messages.h"
-#include "session/wall_questions.h"
+#include "session/worker.h"
 
 #include <algorithm>
 
@@ -252,7 +250,7 @@ void Session::handleQuestion(const Question& message) {
         return refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
     auto question = questionFrom(message, *case_->wall);
     if (!question) return report(question.error(), request);
-    questions_.push_back({case_, std::move(*question),
+    questions_.push_back({case_->wall, std::move(*question),
                           answer(&Session::answeredAboutWall, request, weightOf(message))});
     if (!asking_) askNext();
 }
@@ -260,9 +258,8 @@ void Session::handleQuestion(const Question& message) {
 void Session::askNext() {
     asking_ = !questions_.empty();
     if (!asking_) return;
-    Waiting next = std::move(questions_.front());
+    services_.walls.push(std::move(questions_.front()));
     questions_.pop_front();
-    services_.walls.ask(std::move(next.of), std::move(next.question), std::move(next.done));
 }
 
 void Session::answeredAboutWall(std::uint64_t request, Result<WallAnswer> answer) {

@@ -3,11 +3,10 @@
 
 #include "protocol/haustra.pb.h"
 #include "session/case_loader.h"
-#include "session/news.h"
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
 #include "session/render_thread.h"
-#include "session/wall_thread.h"
+#include "session/wall.h"
 
 #include <cstdint>
 #include <deque>
@@ -15,11 +14,31 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <asio/any_io_executor.hpp>
 
 namespace haustra::session {
+
+/// What one thread or session tells all sessions. Belongs to the io thread.
+template <class T>
+class News {
+public:
+    using Heard = std::function<void(const T&)>;
+    /// `heard` is called for all that is told while `listener` lives.
+    void listen(std::weak_ptr<const void> listener, Heard heard) {
+        std::erase_if(listeners_, [](const auto& known) { return known.first.expired(); });
+        listeners_.emplace_back(std::move(listener), std::move(heard));
+    }
+    void tell(const T& news) const {
+        for (const auto& [listener, heard] : listeners_)
+            if (const auto alive = listener.lock()) heard(news);
+    }
+
+private:
+    std::vector<std::pair<std::weak_ptr<const void>, Heard>> listeners_;
+};
 
 /// What sessions use together. Outlives them all.
 struct Services {
@@ -112,12 +131,7 @@ private:
     std::uint64_t readings_ = 0;
     int unanswered_ = 0;
 
-    struct Waiting {
-        std::shared_ptr<const OpenCase> of;
-        WallQuestion question;
-        WallThread::Done done;
-    };
-    std::deque<Waiting> questions_;  // not yet asked
+    std::deque<WallRequest> questions_;  // not yet asked
     bool asking_ = false;
 };
 

@@ -2,14 +2,14 @@
 
 #include "protocol/limits.h"
 #include "protocol/view_message.h"
-#include "session/inputs.h"
+#include "session/messages.h"
 
 #include <algorithm>
 
 namespace haustra::session {
 namespace {
 
-tl::unexpected<Error> refuse(std::string message) {
+tl::unexpected<Error> refused(std::string message) {
     return fail(ErrorKind::badInput, std::move(message), "viewport");
 }
 
@@ -52,8 +52,8 @@ Result<void> Viewport::open(const protocol::SetViewport& message) {
     constexpr std::uint32_t low = protocol::minViewportPixels, high = protocol::maxViewportPixels;
     if (message.width() < low || message.height() < low || message.width() > high ||
         message.height() > high)
-        return refuse("a side is not within " + std::to_string(low) + " to " +
-                      std::to_string(high) + " pixels");
+        return refused("a side is not within " + std::to_string(low) + " to " +
+                       std::to_string(high) + " pixels");
     if (view != view_) *this = Viewport{};
     view_ = view;
     width_ = int(message.width());
@@ -67,11 +67,11 @@ Result<void> Viewport::apply(const protocol::ClientMessage& message,
         case protocol::ClientMessage::kSetViewport:
             return open(message.set_viewport());
         case protocol::ClientMessage::kSetWindowLevel:
-            if (!isGrey(view_)) return refuse("only slices take a window");
+            if (!isGrey(view_)) return refused("only slices take a window");
             window_ = TRY(protocol::windowFrom(message.set_window_level().window()));
             return {};
         case protocol::ClientMessage::kSetTransferFunction:
-            if (isGrey(view_)) return refuse("a slice takes no transfer function");
+            if (isGrey(view_)) return refused("a slice takes no transfer function");
             optics_ = TRY(opticsFrom(message.set_transfer_function(), presets));
             return {};
         default:

@@ -1,5 +1,8 @@
 #include "session/wall.h"
 
+#include "session/worker.h"
+#include "store/products.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -80,7 +83,8 @@ Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map,
                                              std::vector<std::uint8_t> bridged) {
     const double area = areaMm2(map->surface);
     if (!(area > 0.0) || !std::isfinite(area))
-        return fail(ErrorKind::badInput, "the flattened surface has no area", "flatmap");
+        return fail(ErrorKind::badInput, "the flattened surface has no area",
+                    store::product::flatMap);
     const double circumferenceMm = std::sqrt(area / map->height);
     std::vector<WallRow> rows = rowsOf(*map);
     FlatLookup lookup(map);
@@ -99,6 +103,13 @@ Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question) {
     if (const auto* inSpace = std::get_if<LocateInSpace>(&question))
         return wall.lookup.nearest(inSpace->positionMm);
     return measure(wall.lookup, std::get<Measure>(question));
+}
+
+WallThread::WallThread() {
+    start("wall", 1, [](auto& taken) {
+        const WallRequest& request = taken.front();
+        request.done(guarded([&] { return answer(*request.wall, request.question); }));
+    });
 }
 
 }  // namespace haustra::session

@@ -2,7 +2,7 @@
 
 #include "render/wall/strip_painter.h"
 #include "render/wall/wall_coverage.h"
-#include "session/guarded.h"
+#include "session/worker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,8 +145,8 @@ void WallReading::startPainting() {
     paintAgain_ = paintAgainSoon_ = false;
     std::optional<std::vector<Gaze>> gazes;
     if (choice_.marks && std::exchange(gazesAreNew_, false)) gazes = gazes_;
-    painting_.run([weak = weak_from_this(), io = io_, work = work_, choice = choice_,
-                   gazes = std::move(gazes), number = wanted_] {
+    painting_.push([weak = weak_from_this(), io = io_, work = work_, choice = choice_,
+                    gazes = std::move(gazes), number = wanted_] {
         auto paint = guarded([&]() -> Result<Paint> {
             if (gazes) work->mark(*gazes);
             return work->paint(choice);
@@ -190,7 +190,7 @@ void WallReading::look(const Camera& camera, glm::ivec2 size) {
         double share;
         bool more;
     };
-    painting_.run([weak = weak_from_this(), io = io_, work = work_, camera, size] {
+    painting_.push([weak = weak_from_this(), io = io_, work = work_, camera, size] {
         const auto saw = guarded([&]() -> Result<Saw> {
             render::WallCoverage& seen = work->seen();
             const bool more = seen.show(camera, size) > 0;
@@ -226,8 +226,8 @@ void WallReading::ask(bool forget, std::function<void(Result<double> share)> tol
         still_.reset();
     }
     lookAtStill();
-    painting_.run([weak = weak_from_this(), io = io_, work = work_, forget,
-                   told = std::move(told)]() mutable {
+    painting_.push([weak = weak_from_this(), io = io_, work = work_, forget,
+                    told = std::move(told)]() mutable {
         const auto share = guarded([&]() -> Result<double> {
             if (forget) work->seen().forget();
             return work->seen().share();

@@ -5,7 +5,7 @@
 #include "records/bookmarks.h"
 #include "render/scene/picture.h"
 #include "session/open_case.h"
-#include "session/paint_thread.h"
+#include "session/worker.h"
 
 #include <chrono>
 #include <cstdint>
@@ -26,6 +26,15 @@ inline constexpr std::chrono::milliseconds repaintAfter{1000};
 inline constexpr double toldShare = 0.005;
 /// While the hand moves, a camera that has moved and turned by less shows nothing new.
 inline constexpr double sameCameraMm = 1.0, sameCameraDegrees = 2.0;
+
+/// The thread that finds what pictures have shown of walls, and paints them: tasks, which must not
+/// throw, one after the other. WallReading bounds how many of a session's wait here.
+class PaintThread : public Worker<std::function<void()>> {
+public:
+    PaintThread() {
+        start("paint", 1, [](auto& taken) { taken.front()(); });
+    }
+};
 
 /// Belongs to the io thread; seeing and painting are done on the paint thread. The wall that has
 /// been seen is kept whether or not it is painted, so that whoever turns the paint on learns of all

@@ -1,8 +1,8 @@
 // One fault costs one piece of work, never a thread.
 #include "core/thread_pool.h"
 #include "protocol/view_message.h"
-#include "session/guarded.h"
 #include "session/picture_stream.h"
+#include "session/worker.h"
 
 #include <atomic>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "session/guarded.h"
+#include "session/worker.h"
 
 #include <asio/any_io_executor.hpp>
 #include <asio/post.hpp>
