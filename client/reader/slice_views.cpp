@@ -1,10 +1,19 @@
 #include "reader/slice_views.h"
 
-#include "reader/slice_map.h"
-
 #include <algorithm>
 
 namespace haustra::reader {
+
+glm::dvec3 sliceNormal(View view) {
+    switch (view) {
+        case View::coronal:
+            return {0, 1, 0};
+        case View::sagittal:
+            return {1, 0, 0};
+        default:
+            return {0, 0, 1};
+    }
+}
 
 void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm) {
     case_ = std::move(info);

@@ -7,6 +7,10 @@
 
 namespace haustra::reader {
 
+/// Unit normal of a slice: the direction in which scrolling goes (towards the head, the front's
+/// opposite, the patient's left).
+glm::dvec3 sliceNormal(View view);
+
 /// Belongs to one thread. Slices follow the camera; scrolling leaves it until it moves.
 class SliceViews {
 public:

@@ -1,7 +1,7 @@
 // The endoscopic view and the slices: pictures, what is written on them, the mouse.
 #include "core/bridges.h"
 #include "core/printed_text.h"
-#include "reader/slice_map.h"
+#include "core/slice_placement.h"
 #include "window/pane.h"
 #include "window/widgets.h"
 
@@ -23,8 +23,23 @@ void drawPicked(Ui& ui, const reader::WallPlace& place, Rect area, ImDrawList* l
     list->PopClipRect();
 }
 
+/// What the four edges of a slice picture are called: left, right, top, bottom.
+struct EdgeLetters {
+    const char *left, *right, *top, *bottom;
+};
+EdgeLetters edgeLetters(View view) {
+    switch (view) {
+        case View::coronal:
+            return {"R", "L", "H", "F"};
+        case View::sagittal:
+            return {"A", "P", "H", "F"};
+        default:
+            return {"R", "L", "A", "P"};
+    }
+}
+
 void drawEdgeLetters(Ui& ui, View view, Rect area, ImDrawList* list) {
-    const reader::EdgeLetters letters = reader::edgeLetters(view);
+    const EdgeLetters letters = edgeLetters(view);
     ImFont* font = ui.fonts.small;
     const float middleX = (area.min.x + area.max.x) / 2, middleY = (area.min.y + area.max.y) / 2;
     const float margin = ui.px(5), high = font->FontSize, wide = textSize(font, "R").x;
@@ -38,10 +53,10 @@ void drawEdgeLetters(Ui& ui, View view, Rect area, ImDrawList* list) {
 }
 
 // A cross with an open middle where the camera is, and an arrow along its gaze.
-void drawCrosshair(Ui& ui, const reader::SliceMap& map, double pixelsPerPicturePixel, Rect area,
+void drawCrosshair(Ui& ui, const SlicePlacement& slice, double pixelsPerPicturePixel, Rect area,
                    ImDrawList* list) {
     const Camera camera = ui.reader.flight().camera();
-    const glm::dvec2 pixel = map.pixelFromPatient(camera.positionMm);
+    const glm::dvec2 pixel = slice.pixelFromPatient(camera.positionMm);
     const ImVec2 p(area.min.x + float((pixel.x + 0.5) * pixelsPerPicturePixel),
                    area.min.y + float((pixel.y + 0.5) * pixelsPerPicturePixel));
     const float gap = ui.px(9);
@@ -51,7 +66,7 @@ void drawCrosshair(Ui& ui, const reader::SliceMap& map, double pixelsPerPictureP
     list->AddLine({p.x, area.min.y}, {p.x, p.y - gap}, line);
     list->AddLine({p.x, p.y + gap}, {p.x, area.max.y}, line);
     const glm::dvec2 ahead =
-        map.pixelFromPatient(camera.positionMm + camera.forward * map.pixelMm()) - pixel;
+        slice.pixelFromPatient(camera.positionMm + camera.forward * slice.pixelMm()) - pixel;
     const float length = float(glm::length(ahead));
     list->AddCircleFilled(p, ui.px(2.5f), color::accent);
     if (length < 0.15f) return;  // looking along the slice's normal
@@ -72,7 +87,7 @@ const char* title(View view) {
     return view == View::axial ? "Axial" : view == View::coronal ? "Coronal" : "Sagittal";
 }
 
-void handleSliceMouse(Ui& ui, View view, const reader::SliceMap& map, double pixelsPerPicturePixel,
+void handleSliceMouse(Ui& ui, View view, const SlicePlacement& slice, double pixelsPerPicturePixel,
                       Rect area, bool hovered) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActive() && ui.drag > ui.px(3)) dragWindow(ui.reader, io.MouseDelta);
@@ -80,7 +95,7 @@ void handleSliceMouse(Ui& ui, View view, const reader::SliceMap& map, double pix
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
         const glm::dvec2 pixel((io.MousePos.x - area.min.x) / pixelsPerPicturePixel - 0.5,
                                (io.MousePos.y - area.min.y) / pixelsPerPicturePixel - 0.5);
-        ui.reader.goNear(map.patientFromPixel(pixel));
+        ui.reader.goNear(slice.patientFromPixel(pixel));
     }
     if (io.MouseWheel == 0.0f) return;
     if (io.KeyCtrl) {
@@ -170,13 +185,14 @@ void drawSlicePane(Ui& ui, View view, Rect area) {
     const SliceView* pictured = reader.panes().shown<SliceView>(view);
     const SliceView shown = pictured ? *pictured : reader.slices().slice(view);
     const double pixels = area.size().x / size.x;
-    const reader::SliceMap map(shown, reader.session().caseInfo()->grid, size.x, size.y);
-    handleSliceMouse(ui, view, map, pixels, area, hovered);
+    const auto placed = placeSlice(shown, reader.session().caseInfo()->grid, size.x, size.y);
+    if (!placed) return;
+    handleSliceMouse(ui, view, *placed, pixels, area, hovered);
 
     list->PushClipRect(area.min, area.max, true);
-    drawCrosshair(ui, map, pixels, area, list);
+    drawCrosshair(ui, *placed, pixels, area, list);
     if (const auto& picked = reader.flat().picked()) {
-        const glm::dvec2 pixel = map.pixelFromPatient(picked->positionMm);
+        const glm::dvec2 pixel = placed->pixelFromPatient(picked->positionMm);
         drawPickedCross(ui, list,
                         {area.min.x + float((pixel.x + 0.5) * pixels),
                          area.min.y + float((pixel.y + 0.5) * pixels)});

@@ -45,7 +45,7 @@ void addBar(pictures::Marks& marks, double mmPerPixel, glm::ivec2 size) {
 
 }  // namespace
 
-PictureFrame frameOf(const render::SlicePlacement& placement) {
+PictureFrame frameOf(const SlicePlacement& placement) {
     return {glm::normalize(placement.rightMm), glm::normalize(placement.downMm),
             glm::length(placement.rightMm)};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/flat_map.h"
+#include "core/slice_placement.h"
 #include "pictures/drawing.h"
 #include "render/scene/picture.h"
 
@@ -19,7 +20,7 @@ struct PictureFrame {
     glm::dvec3 right{1.0, 0.0, 0.0}, down{0.0, 1.0, 0.0};  ///< LPS, of length one
     double mmPerPixel = 1.0;
 };
-PictureFrame frameOf(const render::SlicePlacement& placement);
+PictureFrame frameOf(const SlicePlacement& placement);
 /// Of an orthographic camera's picture; none of the other lenses, which have no one scale.
 std::optional<PictureFrame> frameOf(const Camera& camera, int pictureHeight);
 

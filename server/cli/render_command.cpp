@@ -210,7 +210,7 @@ Result<Image> drawSlice(const RenderArguments& arguments, const Products& produc
     notes.provenance.facts.emplace_back("slice.position_mm", toText(slice.positionMm));
     notes.provenance.facts.emplace_back("slice.zoom", fmt::format("{}", slice.zoom));
     addWindow(notes, window);
-    notes.frame = frameOf(TRY(render::placeSlice(slice, grid, arguments.size.x, arguments.size.y)));
+    notes.frame = frameOf(TRY(placeSlice(slice, grid, arguments.size.x, arguments.size.y)));
     if (arguments.compare) return compare(renderer, products.mixture, slice, arguments.size);
     if (arguments.product == "cleansed") slice.scan = Scan::cleansed;
     return renderer.render(slice, arguments.size.x, arguments.size.y);

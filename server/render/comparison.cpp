@@ -1,5 +1,7 @@
 #include "render/comparison.h"
 
+#include "core/slice_placement.h"
+
 #include <algorithm>
 #include <cmath>
 

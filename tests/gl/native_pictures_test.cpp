@@ -1,4 +1,5 @@
 // Slices and flattened views of the CPU against those of the GPU and against plain ones.
+#include "core/slice_placement.h"
 #include "flat_reference.h"
 #include "flat_tube.h"
 #include "render/flat/flat_coverage.h"

@@ -1,4 +1,5 @@
 // Slices: values, sides and places.
+#include "core/slice_placement.h"
 #include "render_scene.h"
 
 #include <random>

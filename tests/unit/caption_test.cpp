@@ -34,7 +34,7 @@ TEST(Caption, SlicesAreSeenAsRadiologistsDo) {
     const Grid grid = axisAlignedGrid({50, 40, 60}, {0.8, 0.8, 1.5});
     const auto marksOf = [&](View plane) {
         const SliceView view{plane, grid.patientFromVoxelPoint({25, 20, 30}), 1.0, {}};
-        const PictureFrame frame = frameOf(*render::placeSlice(view, grid, 200, 200));
+        const PictureFrame frame = frameOf(*placeSlice(view, grid, 200, 200));
         EXPECT_NEAR(glm::length(frame.right), 1.0, 1e-12);
         return caption("p", frame, {200, 200});
     };

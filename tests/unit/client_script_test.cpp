@@ -1,7 +1,6 @@
 // Scripts of the headless client, and the statistics it reports.
 #include "reader/latency.h"
 #include "reader/pacing.h"
-#include "reader/slice_map.h"
 #include "script/report.h"
 #include "script/script.h"
 
@@ -287,40 +286,6 @@ TEST(MovingDetail, GivesWayToASlowServerAndComesBack) {
     for (int n = 0; n < 1000; ++n)
         detail.add(10.0);
     EXPECT_EQ(detail.scale(), 1.0);
-}
-
-TEST(SliceMap, PixelsAndPatientPointsAreInverseAndThePositionLiesOnTheSlice) {
-    const Grid grid = axisAlignedGrid({512, 512, 430}, {0.7, 0.7, 0.8}, {-180, -160, -900});
-    for (const View view : {View::axial, View::coronal, View::sagittal}) {
-        const SliceView slice{view, {20, 30, -700}, 3.0};
-        const SliceMap map(slice, grid, 640, 480);
-        const glm::dvec2 pixel(123.25, 77.5);
-        const glm::dvec3 point = map.patientFromPixel(pixel);
-        EXPECT_LT(glm::distance(map.pixelFromPatient(point), pixel), 1e-9);
-        EXPECT_NEAR(glm::dot(point - slice.positionMm, map.normal()), 0.0, 1e-9);
-    }
-}
-
-TEST(SliceMap, TheWholeScanFitsAtZoomOneAndZoomingHoldsThePosition) {
-    const Grid grid = axisAlignedGrid({512, 512, 430}, {0.7, 0.7, 0.8}, {-180, -160, -900});
-    for (const View view : {View::axial, View::coronal, View::sagittal}) {
-        SliceView slice{view, {20, 30, -700}, 1.0};
-        const SliceMap whole(slice, grid, 640, 480);
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
-            const glm::dvec2 pixel = whole.pixelFromPatient(
-                grid.patientFromVoxelPoint(side * glm::dvec3(grid.size) - 0.5));
-            EXPECT_GE(pixel.x, -0.5 - 1e-9);
-            EXPECT_GE(pixel.y, -0.5 - 1e-9);
-            EXPECT_LE(pixel.x, 639.5 + 1e-9);
-            EXPECT_LE(pixel.y, 479.5 + 1e-9);
-        }
-        const glm::dvec2 before = whole.pixelFromPatient(slice.positionMm);
-        slice.zoom = 5.0;
-        const SliceMap near(slice, grid, 640, 480);
-        EXPECT_LT(glm::distance(near.pixelFromPatient(slice.positionMm), before), 1e-6);
-        EXPECT_NEAR(near.pixelMm() * 5.0, whole.pixelMm(), 1e-12);
-    }
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The classification's colours and places.
+#include "core/slice_placement.h"
 #include "render/comparison.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Cameras, transfer functions and slices, where no GL is needed.
+// Cameras, transfer functions and windows, where no GL is needed.
 #include "render/optics/transfer_table.h"
 #include "render/scene/picture.h"
 
@@ -79,46 +79,6 @@ TEST(Overview, ChecksWhatItShows) {
     EXPECT_FALSE(checkOverview(view));
     view.bookmarksMm.assign(maxOverviewBookmarks + 1, glm::dvec3(0.0));
     EXPECT_FALSE(checkOverview(view));
-}
-
-class Placement : public testing::Test {
-protected:
-    const Grid grid = axisAlignedGrid({100, 80, 60}, {0.5, 0.5, 2.0}, {-10.0, 30.0, -50.0});
-    static glm::dvec3 at(const SlicePlacement& placement, double x, double y) {
-        return placement.topLeftMm + x * placement.rightMm + y * placement.downMm;
-    }
-};
-
-TEST_F(Placement, ZoomOneFitsTheSliceCentredWithSquareMillimetres) {
-    SliceView view;
-    view.plane = View::coronal;
-    view.positionMm = {5.0, 40.0, 3.0};
-    const SlicePlacement placement = *placeSlice(view, grid, 300, 200);
-    EXPECT_NEAR(glm::length(placement.rightMm), glm::length(placement.downMm), 1e-12);
-    // 120 mm high by 50 wide into 300 by 200: the height decides.
-    EXPECT_NEAR(glm::length(placement.downMm), 120.0 / 200, 1e-12);
-    const glm::dvec3 middle = at(placement, 149.5, 99.5);
-    EXPECT_NEAR(middle.x, -10.0 + 49.5 * 0.5, 1e-9);
-    EXPECT_NEAR(middle.y, 40.0, 1e-9);
-    EXPECT_NEAR(middle.z, -50.0 + 29.5 * 2.0, 1e-9);
-}
-
-TEST_F(Placement, ZoomingHoldsThePositionInThePicture) {
-    for (const View plane : {View::axial, View::coronal, View::sagittal}) {
-        SliceView view;
-        view.plane = plane;
-        view.positionMm = {3.0, 44.0, 11.0};
-        const auto pixelOfPosition = [&] {
-            const SlicePlacement p = *placeSlice(view, grid, 256, 256);
-            const glm::dvec3 d = view.positionMm - p.topLeftMm;
-            const double perPixel = glm::dot(p.rightMm, p.rightMm);
-            EXPECT_NEAR(glm::dot(d, glm::cross(p.rightMm, p.downMm)), 0.0, 1e-9);
-            return glm::dvec2(glm::dot(d, p.rightMm), glm::dot(d, p.downMm)) / perPixel;
-        };
-        const glm::dvec2 before = pixelOfPosition();
-        view.zoom = 5.0;
-        EXPECT_NEAR(glm::distance(pixelOfPosition(), before), 0.0, 1e-9) << toString(plane);
-    }
 }
 
 TEST(Window, EndsAreBlackAndWhite) {

@@ -1,6 +1,7 @@
 // Slices and flattened views of a case, whoever draws them.
 #pragma once
 
+#include "core/slice_placement.h"
 #include "render/scene/raycaster.h"
 
 #include <cstddef>

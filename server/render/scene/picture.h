@@ -2,7 +2,6 @@
 // and paint that it is drawn by. No GL here.
 #pragma once
 
-#include "core/grid.h"
 #include "core/image.h"
 #include "core/result.h"
 #include "core/view.h"
@@ -52,21 +51,6 @@ Result<void> checkCameraView(const CameraView& view, glm::ivec2 pictureSize);
 /// Fails (badInput) where the sampling distance is out of range, for these optics too.
 Result<void> checkMarch(const MarchOptions& march);
 Result<void> checkMarch(const MarchOptions& march, const Optics& optics);
-
-/// Where a slice's pixels lie: the centre of pixel (x, y) is topLeftMm + x·rightMm + y·downMm.
-struct SlicePlacement {
-    glm::dvec3 topLeftMm{0.0};
-    glm::dvec3 rightMm{1.0, 0.0, 0.0};
-    glm::dvec3 downMm{0.0, 1.0, 0.0};
-};
-
-/// Fails unless the plane is a slice, zoom and window are in range, and width and height positive.
-/// Slices are planes of patient space also where the grid is oblique.
-Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height);
-
-/// Fails (badInput) on directions that span no plane, height or window out of range, or a picture
-/// without pixels.
-Result<SlicePlacement> placeSlice(const ObliqueView& view, int width, int height);
 
 /// The colon from outside: the wall's mesh, lit, and the body around it, ray-cast.
 struct OverviewView : Overview {
