@@ -5,6 +5,7 @@
 #include "phantom/score.h"
 #include "pipeline/read_inputs.h"
 #include "store/case_store.h"
+#include "store/products.h"
 
 #include <memory>
 
@@ -48,7 +49,7 @@ Result<void> runEvaluate(const EvaluateArguments& arguments) {
         TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
             return s.openCase(arguments.caseName);
         }));
-    const auto labels = TRY(found.readVolume<std::uint8_t>("lumen"));
+    const auto labels = TRY(found.readVolume<std::uint8_t>(store::product::lumen));
     const auto centerline = TRY(found.readCenterline());
     const Grid grid = labels.grid();
     const auto truth = TRY(pipeline::readLumenMask(arguments.truth / "lumen.nii.gz", &grid));

@@ -3,24 +3,77 @@
 #include "cli/arguments.h"
 #include "cli/caption.h"
 #include "cli/case_scans.h"
-#include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/wall_paint.h"
 #include "gpu/context.h"
 #include "render/strip_picture.h"
+#include "store/products.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <signal.h>
 
 namespace haustra::cli {
+namespace {
+
+namespace product = store::product;
+
+constexpr int signals[] = {SIGINT, SIGTERM};
+
+// What a signal's handler may write to is a variable of the whole program.
+volatile sig_atomic_t noted = 0;
+
+void note(int signal) {
+    noted = signal;
+}
+
+/// While it lives, SIGINT and SIGTERM are noted instead of ending the program, so that the work at
+/// hand can end by itself and clear up; at its end they take their usual course. One at a time.
+class Interruption {
+public:
+    Interruption();
+    ~Interruption();
+    Interruption(const Interruption&) = delete;
+    Interruption& operator=(const Interruption&) = delete;
+
+    bool came() const;
+
+private:
+    struct sigaction before_[2];
+};
+
+Interruption::Interruption() {
+    noted = 0;
+    struct sigaction noting {};
+    noting.sa_handler = note;
+    noting.sa_flags = SA_RESTART;
+    for (int n = 0; n < 2; ++n) {
+        sigaction(signals[n], nullptr, &before_[n]);
+        // Who ignores a signal, as behind nohup, goes on doing so.
+        if (before_[n].sa_handler != SIG_IGN) sigaction(signals[n], &noting, nullptr);
+    }
+}
+
+Interruption::~Interruption() {
+    for (int n = 0; n < 2; ++n)
+        sigaction(signals[n], &before_[n], nullptr);
+    if (came()) raise(noted);
+}
+
+bool Interruption::came() const {
+    return noted != 0;
+}
+
+}  // namespace
 
 void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
     options.transferFunction = render::opticsPresets().front();
-    const auto group = command.add_option_group("flat-image", "Of flat-image alone:");
+    const auto group = command.add_option_group(
+        product::flatImage, std::string("Of ") + product::flatImage + " alone:");
     group->add_option("--width", options.width, "Pixels of the colon's circumference")
         ->type_name("W")
         ->check(CLI::Range(1, render::maxPixelsPerUnit))
@@ -58,9 +111,10 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
 
     const auto scans = TRY(readCaseScans(source, false));
     pictures::Provenance provenance = ownProvenance();
-    provenance.facts = {{"case", source.name()}, {"view", "flat-image"}};
-    addProduct(provenance, source, scans.cleansed.voxels().empty() ? "ct" : "cleansed");
-    addProduct(provenance, source, "flatmap");
+    provenance.facts = {{"case", source.name()}, {"view", product::flatImage}};
+    addProduct(provenance, source,
+               scans.cleansed.voxels().empty() ? product::ct : product::cleansed);
+    addProduct(provenance, source, product::flatMap);
     provenance.facts.insert(provenance.facts.end(),
                             {{"pixels_per_circumference", std::to_string(options.width)},
                              {"seam_margin", fmt::format("{}", options.seamMargin)},

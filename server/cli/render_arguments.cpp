@@ -3,6 +3,7 @@
 #include "cli/arguments.h"
 #include "pictures/picture_file.h"
 #include "render/optics/optics_presets.h"
+#include "store/products.h"
 
 #include <algorithm>
 #include <functional>
@@ -303,7 +304,7 @@ void addRenderOptions(CLI::App& command, RenderArguments& my) {
             .add_option("--product", my.product,
                         "Which scan to draw; else a slice shows ct, the other views cleansed where "
                         "the case has it")
-            ->check(CLI::IsMember({"ct", "cleansed"}));
+            ->check(CLI::IsMember({store::product::ct, store::product::cleansed}));
     command
         .add_flag("--compare", my.compare,
                   "A slice three times, side by side: ct, the mixture by colours (air red, soft "

@@ -3,17 +3,22 @@
 #include "core/orbit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <tuple>
 
 namespace haustra::cli {
-
 namespace {
 
 constexpr double marginShare = 1.04;
 
-}  // namespace
+/// From where a camera looks: as core/orbit.h has it.
+struct Direction {
+    double azimuthDegrees = 0.0, elevationDegrees = 0.0;
+};
 
+/// Looks at the grid's middle with all of the grid, from face to face, in a picture that is
+/// `aspect` times as wide as high, as near as that allows. Of a perspective or fisheye lens the
+/// field of view is `fovDegrees`; an orthographic picture is as high as need be.
 Camera cameraOutside(const Grid& grid, Direction from, Lens lens, double fovDegrees,
                      double aspect) {
     const Camera pose = cameraOf({{}, 1.0, from.azimuthDegrees, from.elevationDegrees, 1.0});
@@ -35,6 +40,34 @@ Camera cameraOutside(const Grid& grid, Direction from, Lens lens, double fovDegr
     }
     Camera camera{middle - distance * pose.forward, pose.forward, pose.up, fovDegrees, lens};
     camera.heightMm = 2.0 * halfHeight;
+    return camera;
+}
+
+}  // namespace
+
+double fovOf(const RenderArguments& arguments, double ofPerspective) {
+    return arguments.fovDegrees.value_or(arguments.lens == Lens::fisheye ? 180.0 : ofPerspective);
+}
+
+double aspectOf(const RenderArguments& arguments) {
+    return double(arguments.size.x) / arguments.size.y;
+}
+
+Camera freeCamera(const RenderArguments& arguments, const Grid& grid) {
+    const auto& [eye, look, up] = std::tie(arguments.eyeMm, arguments.lookMm, arguments.up);
+    Camera camera = cameraOutside(
+        grid, {arguments.azimuthDegrees, arguments.elevationDegrees}, arguments.lens,
+        fovOf(arguments, eye.empty() ? 30.0 : Camera{}.fovDegrees), aspectOf(arguments));
+    if (!eye.empty()) {
+        const glm::dvec3 target = look.empty()
+                                      ? grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size - 1))
+                                      : look.front();
+        camera.positionMm = eye.front();
+        camera.forward = target - eye.front();
+        camera.up = uprightFor(camera.forward);
+    }
+    if (!up.empty()) camera.up = up.front();
+    if (arguments.heightMm) camera.heightMm = *arguments.heightMm;
     return camera;
 }
 

@@ -1,20 +1,19 @@
-// Cameras that look at a scan from outside.
+// The cameras that `haustra render` is told.
 #pragma once
 
+#include "cli/render_arguments.h"
+#include "core/camera.h"
 #include "core/grid.h"
-#include "render/scene/picture.h"
 
 namespace haustra::cli {
 
-/// From where a camera looks: as core/orbit.h has it.
-struct Direction {
-    double azimuthDegrees = 0.0, elevationDegrees = 0.0;
-};
+/// --fov, else the lens's own.
+double fovOf(const RenderArguments& arguments, double ofPerspective);
+/// The picture's width over its height.
+double aspectOf(const RenderArguments& arguments);
 
-/// Looks at the grid's middle with all of the grid, from face to face, in a picture that is
-/// `aspect` times as wide as high, as near as that allows. Of a perspective or fisheye lens the
-/// field of view is `fovDegrees`; an orthographic picture is as high as need be.
-Camera cameraOutside(const Grid& grid, Direction from, Lens lens, double fovDegrees, double aspect);
+/// The camera of --view camera: placed by --eye, or outside.
+Camera freeCamera(const RenderArguments& arguments, const Grid& grid);
 
 /// The head's direction, or the front's where a camera looks along the patient.
 glm::dvec3 uprightFor(glm::dvec3 forward);

@@ -4,11 +4,9 @@
 #include "cli/case_scans.h"
 #include "cli/commands.h"
 #include "cli/input_volume.h"
-#include "cli/labelled_input.h"
 #include "cli/provenance.h"
 #include "cli/render_arguments.h"
 #include "cli/render_camera.h"
-#include "cli/render_parts.h"
 #include "cli/text_files.h"
 #include "cli/wall_paint.h"
 #include "core/centerline.h"
@@ -16,13 +14,16 @@
 #include "core/orbit.h"
 #include "core/wall_camera.h"
 #include "gpu/context.h"
+#include "nifti/nifti_file.h"
 #include "pictures/drawing.h"
 #include "pictures/picture_file.h"
 #include "render/case_renderer.h"
 #include "render/comparison.h"
 #include "render/object_order/labelled_raycaster.h"
+#include "render/optics/optics_presets.h"
 #include "render/wall/wall_paint.h"
 #include "store/case_store.h"
+#include "store/products.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +37,8 @@ namespace haustra::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+namespace product = store::product;
 
 using pictures::Provenance;
 
@@ -54,6 +57,20 @@ struct Products {
     CaseScans scans;
     Volume<TissueFractions> mixture;
 };
+
+/// --tf, a preset's name or file; `otherwise` names the view's own. Fails naming the file.
+Result<Optics> opticsOf(const RenderArguments& arguments, const char* otherwise) {
+    const std::string name = arguments.optics.empty() ? otherwise : arguments.optics;
+    if (std::filesystem::path(name).extension() != ".json") return render::opticsPreset(name);
+    auto preset = TRY(readPresetFile(name));
+    return std::move(preset.optics);
+}
+
+/// --step, else as it is.
+render::MarchOptions marchOf(const RenderArguments& arguments, render::MarchOptions march = {}) {
+    march.stepVoxels = arguments.stepVoxels.value_or(march.stepVoxels);
+    return march;
+}
 
 /// The place of the wall that is given, or the nearest to the point that is.
 Result<WallPlace> wallPlace(const RenderArguments& arguments, const Centerline& centerline,
@@ -212,15 +229,15 @@ Result<Image> drawSlice(const RenderArguments& arguments, const Products& produc
     addWindow(notes, window);
     notes.frame = frameOf(TRY(placeSlice(slice, grid, arguments.size.x, arguments.size.y)));
     if (arguments.compare) return compare(renderer, products.mixture, slice, arguments.size);
-    if (arguments.product == "cleansed") slice.scan = Scan::cleansed;
+    if (arguments.product == product::cleansed) slice.scan = Scan::cleansed;
     return renderer.render(slice, arguments.size.x, arguments.size.y);
 }
 
 Result<CaseScans> readScans(const RenderArguments& arguments, const store::Case& source) {
-    const bool cleansedIsAsked = arguments.compare || arguments.product == "cleansed";
+    const bool cleansedIsAsked = arguments.compare || arguments.product == product::cleansed;
     if (cleansedIsAsked || (arguments.castsRays() && arguments.product.empty()))
         return readCaseScans(source, cleansedIsAsked);
-    auto ct = TRY(source.readVolume<std::int16_t>("ct"));
+    auto ct = TRY(source.readVolume<std::int16_t>(product::ct));
     return CaseScans{std::move(ct), {}};
 }
 
@@ -255,10 +272,11 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
     }
     TRY(keep(readScans(arguments, source), products.scans));
     if (arguments.compare)
-        TRY(keep(source.readVolume<TissueFractions>("mixture"), products.mixture));
+        TRY(keep(source.readVolume<TissueFractions>(product::mixture), products.mixture));
     const bool onWall = view == View::endoscopic && !isFree && !arguments.arcMm;
     const bool showsWall = arguments.castsRays() || arguments.isFlattened();
-    const auto bridged = TRY(showsWall && source.find("flatmap") ? hasBridges(source) : false);
+    const auto bridged =
+        TRY(showsWall && source.find(product::flatMap) ? hasBridges(source) : false);
     if (arguments.isFlattened() || onWall || !arguments.paint.empty() || bridged) {
         TRY(keep(source.readFlatMap(), products.flatMap));
     }
@@ -307,14 +325,14 @@ Provenance provenanceOf(const RenderArguments& arguments) {
 
 void addProducts(Provenance& provenance, const RenderArguments& arguments, const Products& products,
                  const store::Case& source) {
-    const bool showsCleansed = arguments.compare || arguments.product == "cleansed" ||
+    const bool showsCleansed = arguments.compare || arguments.product == product::cleansed ||
                                (arguments.castsRays() && !products.scans.cleansed.empty());
-    if (arguments.compare || !showsCleansed) addProduct(provenance, source, "ct");
-    if (arguments.compare) addProduct(provenance, source, "mixture");
-    if (showsCleansed) addProduct(provenance, source, "cleansed");
-    if (!products.centerline.points.empty()) addProduct(provenance, source, "centerline");
-    if (products.flatMap) addProduct(provenance, source, "flatmap");
-    if (products.wall) addProduct(provenance, source, "surface");
+    if (arguments.compare || !showsCleansed) addProduct(provenance, source, product::ct);
+    if (arguments.compare) addProduct(provenance, source, product::mixture);
+    if (showsCleansed) addProduct(provenance, source, product::cleansed);
+    if (!products.centerline.points.empty()) addProduct(provenance, source, product::centerline);
+    if (products.flatMap) addProduct(provenance, source, product::flatMap);
+    if (products.wall) addProduct(provenance, source, product::surface);
 }
 
 Result<Image> drawCase(const RenderArguments& arguments, Notes& notes) {
@@ -333,7 +351,7 @@ Result<Image> drawCase(const RenderArguments& arguments, Notes& notes) {
     const Grid grid = scans.ct.grid();
     return drawWith(arguments, std::move(prepared), [&](render::CaseRenderer& renderer) {
         const auto window = arguments.window.value_or(WindowLevel{});
-        const auto scan = arguments.product == "cleansed" ? Scan::cleansed : Scan::original;
+        const auto scan = arguments.product == product::cleansed ? Scan::cleansed : Scan::original;
         if (arguments.isFlattened()) return drawFlattened(arguments, products, renderer, notes);
         if (arguments.shown() == View::overview)
             return drawOverview(arguments, products, renderer, notes);
@@ -365,6 +383,20 @@ Result<Image> drawScan(const RenderArguments& arguments, Notes& notes) {
             return drawOblique(arguments, {}, window, Scan::original, renderer, notes);
         return drawCamera(arguments, freeCamera(arguments, grid), nullptr, renderer, notes);
     });
+}
+
+/// Colours from a NIfTI of RGB24 or RGBA32, labels from a NIfTI of whole numbers on the same grid.
+/// RGB24 has no opacity: it follows from how fast the colour changes (withColorOpacity), and what
+/// has a label is a little opaque throughout.
+Result<std::shared_ptr<const render::LabelledColorVolume>> readLabelledColor(
+    const std::filesystem::path& color, const std::filesystem::path& labels, int threads) {
+    auto image = TRY(nifti::readColorNifti(color));
+    auto organs = TRY(nifti::readNifti<std::int16_t>(labels));
+    auto volume = TRY(render::makeLabelledColor(std::move(image.voxels), std::move(organs)));
+    if (!image.hasOpacity)
+        volume.color =
+            render::withColorOpacity(volume.color, volume.labels, {.least = 0.1}, threads);
+    return std::make_shared<const render::LabelledColorVolume>(std::move(volume));
 }
 
 Result<Image> drawLabelled(const RenderArguments& arguments, Notes& notes) {

@@ -4,6 +4,7 @@
 #include "core/ct_scan.h"
 #include "pictures/picture_file.h"
 #include "render/wall/strip_painter.h"
+#include "store/products.h"
 
 #include <cstring>
 
@@ -21,11 +22,12 @@ Result<std::shared_ptr<const render::WallPaint>> readWallPaint(const std::filesy
 }
 
 Result<bool> hasBridges(const store::Case& source) {
-    if (!source.find("lumen")) return false;
-    return source.readVolume<std::uint8_t>("lumen").map([](const Volume<std::uint8_t>& lumen) {
-        const auto labels = lumen.voxels();
-        return std::memchr(labels.data(), int(LumenLabel::bridge), labels.size()) != nullptr;
-    });
+    if (!source.find(store::product::lumen)) return false;
+    return source.readVolume<std::uint8_t>(store::product::lumen)
+        .map([](const Volume<std::uint8_t>& lumen) {
+            const auto labels = lumen.voxels();
+            return std::memchr(labels.data(), int(LumenLabel::bridge), labels.size()) != nullptr;
+        });
 }
 
 Result<std::shared_ptr<const render::WallPaint>> paintBridges(
@@ -33,7 +35,7 @@ Result<std::shared_ptr<const render::WallPaint>> paintBridges(
     std::shared_ptr<const render::WallPaint> below) {
     const auto has = TRY(hasBridges(source));
     if (!has) return below;
-    const auto lumen = TRY(source.readVolume<std::uint8_t>("lumen"));
+    const auto lumen = TRY(source.readVolume<std::uint8_t>(store::product::lumen));
     auto bridged = bridgedTriangles(map->surface, lumen);
     auto sight = TRY(render::WallSight::of(std::move(map), std::move(bridged)));
     if (!sight->hasBridges()) return below;
