@@ -6,7 +6,6 @@
 #include "render/gl/march_variant.h"
 #include "render/gl/picture_readback.h"
 #include "render/hybrid/camera_rays.h"
-#include "render/hybrid/quad_list.h"
 #include "render/hybrid/ray_tiles.h"
 #include "render/hybrid/reader_balances.h"
 #include "render/scene/lru_cache.h"
@@ -14,7 +13,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <ctime>
+#include <span>
 #include <utility>
 
 namespace haustra::render {
@@ -28,8 +29,6 @@ constexpr int tileRowsAtOnce = 4;
 /// Quads of a work group, and as many groups to a row of them as any device takes.
 constexpr int quadsPerGroup = 16, groupsPerRow = 1024, groupThreads = 64;
 
-/// As many as the scene keeps: each holds a byte for eight voxels.
-constexpr std::size_t classificationsKept = 4;
 /// Cameras of one reader, picture after picture, in lengths of the volume's diagonal.
 constexpr double nearShare = 0.1;
 
@@ -62,6 +61,60 @@ bool anyOpaqueLeaf(const ClassifiedOctree& octree) {
 
 }  // namespace
 
+/// Memory that the GPU reads lists of quads from while the CPU writes the next ones. Belongs to the
+/// thread of the context. Move-only.
+class QuadLists {
+public:
+    /// For lists of up to `quads` quads each.
+    static Result<QuadLists> create(int quads);
+
+    /// Room for a list of up to the `quads` of create(): xy as the shader packs them. Waits where
+    /// the GPU still reads what was there.
+    std::span<glm::uvec2> begin();
+    /// Binds the list of the first `count` entries as shaders/hybrid_slab.comp reads it; `samples`
+    /// of a slab, or 0.
+    void bind(unsigned binding, int count, int samples);
+    /// The command that reads the list has been given: the next begin() is another list.
+    void given();
+    std::size_t bytes() const { return memory_.bytes(); }
+
+private:
+    static constexpr int lists = 4;
+    static constexpr std::size_t headerBytes = 16;
+    QuadLists(gpu::MappedBuffer memory, std::size_t stride, int quads)
+        : memory_(std::move(memory)), stride_(stride), quads_(quads) {}
+    std::byte* at() const { return memory_.data() + stride_ * std::size_t(next_); }
+    gpu::MappedBuffer memory_;
+    std::size_t stride_;
+    int quads_, next_ = 0;
+    gpu::Fence read_[lists];
+};
+
+Result<QuadLists> QuadLists::create(int quads) {
+    const std::size_t alignment = gpu::storageAlignment();
+    const std::size_t list = headerBytes + sizeof(glm::uvec2) * std::size_t(quads);
+    const std::size_t stride = (list + alignment - 1) / alignment * alignment;
+    auto memory = TRY(gpu::MappedBuffer::create(stride * lists, "lists of quads"));
+    return QuadLists(std::move(memory), stride, quads);
+}
+
+std::span<glm::uvec2> QuadLists::begin() {
+    read_[next_].wait();
+    return {reinterpret_cast<glm::uvec2*>(at() + headerBytes), std::size_t(quads_)};
+}
+
+void QuadLists::bind(unsigned binding, int count, int samples) {
+    const std::uint32_t header[4] = {std::uint32_t(count), std::uint32_t(samples), 0, 0};
+    std::memcpy(at(), header, sizeof header);
+    memory_.bind(binding, stride_ * std::size_t(next_),
+                 headerBytes + sizeof(glm::uvec2) * std::size_t(quads_));
+}
+
+void QuadLists::given() {
+    read_[next_] = gpu::Fence::place();
+    next_ = (next_ + 1) % lists;
+}
+
 struct HybridRaycaster::Impl {
     /// The octree as one view's colours show it.
     struct Classified {
@@ -77,7 +130,8 @@ struct HybridRaycaster::Impl {
     MinMaxOctree octree;
     MarchPrograms slabs{"hybrid_slab.comp"}, finish{"cell_picture.comp"};
     ReaderBalances balances;
-    LruCache<Classified> classified{classificationsKept};
+    // Each holds a byte for eight voxels.
+    LruCache<Classified> classified{GlScene::classificationsKept};
     int classifications = 0;
     std::optional<gpu::Texture> rays, target;
     std::optional<gpu::MappedBuffer> spans;

@@ -1,4 +1,4 @@
-#include "render/native/packet_scene.h"
+#include "render/native/packets.h"
 #include "render/scene/picture.h"
 
 // This text is compiled once for each vector unit, by an include that must come before others.

@@ -1,4 +1,5 @@
-#include "render/native/flat_packets.h"
+#include "render/flat/flat_coverage.h"
+#include "render/native/packets.h"
 
 // This text is compiled once for each vector unit, by an include that must come before others.
 // clang-format off

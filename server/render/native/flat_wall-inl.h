@@ -6,7 +6,7 @@
 #define HAUSTRA_FLAT_WALL_INL_H
 #endif
 
-#include "render/native/flat_packets.h"
+#include "render/native/packets.h"
 #include "render/native/volume_sampler-inl.h"
 
 #include <cmath>

@@ -7,7 +7,7 @@
 #endif
 
 #include "render/native/march-inl.h"
-#include "render/native/packet_scene.h"
+#include "render/native/packets.h"
 #include "render/scene/picture.h"
 
 HWY_BEFORE_NAMESPACE();

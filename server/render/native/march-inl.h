@@ -7,7 +7,7 @@
 #endif
 
 #include "render/native/optics-inl.h"
-#include "render/native/packet_scene.h"
+#include "render/native/packets.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace haustra::render {

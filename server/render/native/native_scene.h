@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/thread_pool.h"
-#include "render/native/packet_scene.h"
+#include "render/native/packets.h"
 #include "render/optics/transfer_table.h"
 #include "render/scene/lru_cache.h"
 #include "render/scene/picture.h"

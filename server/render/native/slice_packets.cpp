@@ -1,4 +1,4 @@
-#include "render/native/slice_packets.h"
+#include "render/native/packets.h"
 
 // This text is compiled once for each vector unit, by an include that must come before others.
 // clang-format off

@@ -7,7 +7,7 @@
 #define HAUSTRA_VOLUME_SAMPLER_INL_H
 #endif
 
-#include "render/native/packet_scene.h"
+#include "render/native/packets.h"
 
 #include <cstring>
 

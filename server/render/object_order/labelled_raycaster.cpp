@@ -2,6 +2,7 @@
 
 #include "render/gl/march_variant.h"
 #include "render/object_order/cell_raycaster.h"
+#include "render/object_order/cell_source.h"
 #include "render/scene/lru_cache.h"
 #include "render/scene/min_max_octree.h"
 #include "render/scene/ray_setup.h"

@@ -3,6 +3,7 @@
 #include "render/gl/march_variant.h"
 #include "render/object_order/cell_projector.h"
 #include "render/object_order/cell_raycaster.h"
+#include "render/object_order/cell_source.h"
 #include "render/optics/classification.h"
 #include "render/scene/lru_cache.h"
 #include "render/scene/min_max_octree.h"
@@ -17,7 +18,7 @@ namespace haustra::render {
 
 namespace {
 
-constexpr std::size_t classificationsKept = 4;
+constexpr std::size_t shownCellsKept = 4;
 
 /// Voxels beyond the cell's own that a sample in it may read, but for interpolation: up to the
 /// sample before, where that enters too; one more for gradients, which are read on the way; and one
@@ -58,7 +59,7 @@ struct ObjectOrderRaycaster::Impl {
     int threads;
     MinMaxOctree octree;
     CellRaycaster cells;
-    LruCache<ShownCells> shown{classificationsKept};
+    LruCache<ShownCells> shown{shownCellsKept};
     MarchPrograms cast{"cell_rays.comp", {"cell_uniforms.h", "cells.glsl"}};
     MarchPrograms resolve{"cell_picture.comp"};
 

@@ -1,4 +1,5 @@
-// What ray packets read: plain numbers and pointers, the same for every vector width.
+// Packets of rays: what they read, which is plain numbers and pointers, the same for every vector
+// width, and what they draw.
 #pragma once
 
 #include "render/optics/optics.h"
@@ -7,6 +8,8 @@
 #include <cstdint>
 
 namespace haustra::render {
+
+struct FlatPixel;
 
 /// A volume, its leap map and its transfer table. Voxel coordinates have their centres at integers.
 struct PacketScene {
@@ -48,5 +51,41 @@ struct CameraPackets {
 };
 /// The widest that this machine has; any thread.
 CameraPackets cameraPackets();
+
+/// A flat map and the window onto it, as packets read them.
+struct PacketWall {
+    const shaders::FlatVertex* vertices = nullptr;
+    const glm::ivec3* triangles = nullptr;
+    const shaders::FlatEye* cameras = nullptr;
+    shaders::FlatUniforms u{};  ///< but u.riseThatEnds: in HU
+};
+
+/// Some rows of a picture.
+struct PacketRows {
+    int firstRow = 0, rows = 0;
+    const FlatPixel* pixels = nullptr;  ///< of these rows
+    std::uint8_t* rgb = nullptr;        ///< the whole picture's
+};
+
+/// Casts the rays of these rows of the flattened wall, on the widest vectors that this machine has.
+/// Any thread.
+using CastFlat = void (*)(const PacketScene& scene, const PacketWall& wall, const PacketRows& rows);
+CastFlat flatPackets();
+
+/// One slice of a volume; voxel coordinates.
+struct PacketSlice {
+    glm::vec3 origin{0.0f};  ///< the centre of the picture's top left pixel
+    glm::vec3 right{0.0f}, down{0.0f};
+    float perHu = 1.0f, atZero = 0.0f;  ///< HU -> grey 0…1
+    int width = 0;
+    int firstRow = 0;  ///< of the picture: the band's row 0
+};
+
+/// Draws rows [firstRow, endRow) of a band into the whole of it, on the widest vectors that this
+/// machine has: linearly interpolated, black outside the volume. Of the scene, only the volume is
+/// read. Any thread.
+using DrawSlice = void (*)(const PacketScene& scene, const PacketSlice& slice, int firstRow,
+                           int endRow, std::uint8_t* rgb);
+DrawSlice slicePackets();
 
 }  // namespace haustra::render
