@@ -1,18 +1,12 @@
 #include "core/tri_mesh.h"
 
+#include "core/disjoint_sets.h"
+
 #include <algorithm>
 #include <numeric>
 
 namespace haustra {
-namespace {
-
-int findRoot(std::vector<int>& parent, int v) {
-    while (parent[v] != v)
-        v = parent[v] = parent[parent[v]];
-    return v;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 MeshTopology meshTopology(const TriMesh& mesh) {
     struct Edge {
@@ -29,7 +23,7 @@ MeshTopology meshTopology(const TriMesh& mesh) {
             const int a = t[corner], b = t[(corner + 1) % 3];
             edges.push_back({std::min(a, b), std::max(a, b), a < b});
             used[a] = 1;
-            parent[findRoot(parent, a)] = findRoot(parent, b);
+            unite(parent, a, b);
         }
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
@@ -54,7 +48,7 @@ MeshTopology meshTopology(const TriMesh& mesh) {
     for (std::size_t v = 0; v < used.size(); ++v) {
         if (!used[v]) continue;
         ++vertexCount;
-        if (findRoot(parent, int(v)) == int(v)) ++topology.components;
+        if (rootOf(parent, int(v)) == int(v)) ++topology.components;
     }
     topology.eulerCharacteristic = vertexCount - edgeCount + long(mesh.triangles.size());
     return topology;

@@ -1,5 +1,7 @@
 #include "handles/loop_homology.h"
 
+#include "core/disjoint_sets.h"
+
 #include <numeric>
 
 namespace haustra::handles {
@@ -10,12 +12,6 @@ std::uint64_t mixedBits(std::uint64_t x) {  // splitmix64
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
     return x ^ (x >> 31);
-}
-
-int findRoot(std::vector<int>& parent, int v) {
-    while (parent[v] != v)
-        v = parent[v] = parent[parent[v]];
-    return v;
 }
 
 }  // namespace
@@ -45,11 +41,11 @@ std::vector<std::uint64_t> homologyMarks(const mesh::HalfedgeMesh& mesh) {
     std::vector<int> generators;
     for (int h = 0; h < halfedges; ++h) {
         if (inDualTree[h] || h > mesh.opposite(h)) continue;
-        const int a = findRoot(parent, mesh.origin(h)), b = findRoot(parent, mesh.target(h));
-        if (a == b) {
+        const int a = mesh.origin(h), b = mesh.target(h);
+        if (rootOf(parent, a) == rootOf(parent, b)) {
             generators.push_back(h);
         } else {
-            parent[a] = b;
+            unite(parent, a, b);
         }
     }
 

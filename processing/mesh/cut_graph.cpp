@@ -1,5 +1,7 @@
 #include "mesh/cut_graph.h"
 
+#include "core/disjoint_sets.h"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -39,12 +41,6 @@ PathTree shortestPaths(const HalfedgeMesh& mesh, int root) {
         } while (h != mesh.outgoing(v));
     }
     return tree;
-}
-
-int findRoot(std::vector<int>& parent, int v) {
-    while (parent[v] != v)
-        v = parent[v] = parent[parent[v]];
-    return v;
 }
 
 /// From the root along the tree, over `closing`, and back along the tree.
@@ -104,9 +100,9 @@ CutGraph makeCutGraph(const HalfedgeMesh& mesh, int root) {
     std::vector<int> parent(mesh.halfedgeCount() / 3), closing;
     std::iota(parent.begin(), parent.end(), 0);
     for (const auto& [length, h] : others) {
-        const int a = findRoot(parent, h / 3), b = findRoot(parent, mesh.opposite(h) / 3);
-        if (a != b) {
-            parent[a] = b;
+        const int a = h / 3, b = mesh.opposite(h) / 3;
+        if (rootOf(parent, a) != rootOf(parent, b)) {
+            unite(parent, a, b);
         } else {
             closing.push_back(h);
         }
