@@ -1,15 +1,124 @@
 #include "contouring/dual_contouring.h"
 
+#include "contouring/boundary_cells.h"
+#include "contouring/boundary_crossing.h"
 #include "contouring/edge_polygon.h"
-#include "contouring/face_vertices.h"
 #include "contouring/vertex_placement.h"
 #include "core/parallel.h"
 
 #include <array>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace haustra::contouring {
 namespace {
+
+/// A vertex in the middle of each arc over an ambiguous face, and over a face of a cell with
+/// several loops. Two cells that an ambiguous face parts may both join its two arcs in one loop;
+/// straight from vertex to vertex both arcs would be one edge of four polygons, not manifold. And
+/// from a cell with several loops the straight way may leave the hull of its loop's crossings.
+class FaceVertices {
+public:
+    FaceVertices(const BoundaryCells& cells, const BoundaryCrossings& crossings, int threads);
+
+    /// In voxel coordinates.
+    const std::vector<glm::dvec3>& positions() const { return positions_; }
+
+    /// The vertex on the low face across `axis` of a cell (its place among all), on the arc that
+    /// goes round the face's corner `insideCorner` (corner number in that cell); −1: none.
+    std::int32_t find(std::int32_t cell, CellCase inside, int axis, int insideCorner) const {
+        const Entry& entry = entries_[std::size_t(cell)];
+        const unsigned bit = 1u << (2 * axis + arcOf(inside, axis, insideCorner));
+        if (!(entry.arcs & bit)) return -1;
+        return entry.first + __builtin_popcount(entry.arcs & (bit - 1));
+    }
+
+private:
+    struct Entry {
+        std::int32_t first = 0;
+        std::uint8_t arcs = 0;  ///< bit 2 · axis + arc
+    };
+    /// The one arc of a face is 0; of an ambiguous face's two, it is named by the inside corner.
+    static int arcOf(CellCase inside, int axis, int insideCorner) {
+        return ambiguousLowFace(inside, axis) ? insideCorner >> (axis == 2 ? 1 : 2) & 1 : 0;
+    }
+    static std::uint8_t arcsOf(const BoundaryCell& cell, glm::ivec3 place, const LayerPair& pair,
+                               const BoundaryCells& cells);
+
+    std::vector<Entry> entries_;  ///< by cell
+    std::vector<glm::dvec3> positions_;
+};
+
+bool hasArc(CellCase inside, int axis) {
+    // Corners of the low face: those without the axis's bit.
+    const unsigned face = axis == 0 ? 0x55 : axis == 1 ? 0x33 : 0x0f;
+    const unsigned there = inside & face;
+    return there != 0 && there != face;
+}
+
+std::uint8_t FaceVertices::arcsOf(const BoundaryCell& cell, glm::ivec3 place, const LayerPair& pair,
+                                  const BoundaryCells& cells) {
+    const bool severalHere = cellLoops(cell.inside).count > 1;
+    std::uint8_t arcs = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (ambiguousLowFace(cell.inside, axis)) {
+            arcs |= std::uint8_t(3u << 2 * axis);
+        } else if (hasArc(cell.inside, axis)) {
+            glm::ivec2 beside(place);
+            if (axis < 2) --beside[axis];
+            const std::int32_t other = pair.find(beside.x, beside.y, axis == 2);
+            if (severalHere || cellLoops(cells.cells()[std::size_t(other)].inside).count > 1)
+                arcs |= std::uint8_t(1u << 2 * axis);
+        }
+    }
+    return arcs;
+}
+
+FaceVertices::FaceVertices(const BoundaryCells& cells, const BoundaryCrossings& crossings,
+                           int threads)
+    : entries_(cells.cells().size()) {
+    const std::size_t layers = std::size_t(cells.layers());
+    parallelFor(layers, 16, threads, [&](std::size_t begin, std::size_t end) {
+        LayerPair pair(cells);
+        for (std::size_t n = begin; n < end; ++n) {
+            pair.moveTo(int(n));
+            std::size_t index = cells.layerBegin(int(n));
+            for (const BoundaryCell& cell : cells.layer(int(n))) {
+                const glm::ivec3 place(cell.i, cell.j, BoundaryCells::kOfLayer(int(n)));
+                entries_[index++].arcs = arcsOf(cell, place, pair, cells);
+            }
+        }
+    });
+    std::int32_t count = 0;
+    for (Entry& entry : entries_) {
+        entry.first = count;
+        count += __builtin_popcount(entry.arcs);
+    }
+    positions_.resize(std::size_t(count));
+    for (std::size_t n = 0; n < layers; ++n) {
+        std::size_t index = cells.layerBegin(int(n));
+        for (const BoundaryCell& cell : cells.layer(int(n))) {
+            const Entry& entry = entries_[index];
+            const glm::ivec3 origin(cell.i, cell.j, BoundaryCells::kOfLayer(int(n)));
+            for (int edge = 0; edge < cellEdges && entry.arcs != 0; ++edge) {
+                int in = lowerCorner(edge), out = upperCorner(edge);
+                if (!((cell.inside >> in ^ cell.inside >> out) & 1)) continue;
+                if (!(cell.inside >> in & 1)) std::swap(in, out);
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (axis == edge / 4 || (in >> axis & 1) != 0) continue;
+                    const std::int32_t vertex = find(std::int32_t(index), cell.inside, axis, in);
+                    if (vertex < 0) continue;
+                    positions_[std::size_t(vertex)] +=
+                        0.5 *
+                        crossings.between(origin + cornerOffset(in), origin + cornerOffset(out))
+                            .onEdge;
+                }
+            }
+            ++index;
+        }
+    }
+}
 
 /// Everything that the polygons are made from. Vertices are numbered: loops', faces', edges'.
 struct DualVertices {

@@ -70,6 +70,12 @@ struct PhantomOptions {
     Progress progress;
 };
 
+/// The options of the `wild` preset, a patient who has a bit of everything: of standard or hard,
+/// and of all that BowelOptions and ScanOptions can add, what the seed draws. Position, size and
+/// threads are the default ones; the draw does not depend on them, so a seed is one patient in
+/// every position.
+PhantomOptions wildOptions(std::uint64_t seed);
+
 /// What else is where, for telling what a wrong voxel was taken from.
 enum class Site : std::uint8_t {
     elsewhere = 0,   ///< the body, and the colon's lumen
@@ -105,9 +111,8 @@ struct Phantom {
     Structure structure;
 };
 
-/// Fails only for an unknown position and for options out of their range.
-/// Deterministic in the options, byte for
-/// byte, whatever the number of threads.
+/// Fails only for an unknown position and for options out of their range. Deterministic in the
+/// options, byte for byte, whatever the number of threads.
 Result<Phantom> makePhantom(const PhantomOptions& options);
 
 }  // namespace haustra::phantom

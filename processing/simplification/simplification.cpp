@@ -1,6 +1,6 @@
 #include "simplification/simplification.h"
 
-#include "simplification/region.h"
+#include "simplification/region_simplification.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -14,8 +14,6 @@ namespace haustra::simplification {
 namespace {
 
 constexpr double farthestMm = 1e6;
-constexpr float guardMm = 1.0f;     // about a contact
-constexpr int guardedAttempts = 4;  // then the guard is everywhere
 
 std::vector<Quadric> inputQuadrics(const CornerMesh& mesh) {
     std::vector<Quadric> quadric(mesh.position.size());
@@ -89,27 +87,6 @@ bool indicesValid(const TriMesh& mesh) {
         return glm::all(glm::greaterThanEqual(t, glm::ivec3(0))) &&
                glm::all(glm::lessThan(t, glm::ivec3(int(mesh.vertices.size()))));
     });
-}
-
-/// Contacts are so few that it is cheaper to look for them when all is done, and where there are
-/// some, to begin again with a guard about them.
-void simplifyRegion(Simplification& shared, const Region& region) {
-    std::vector<FloatBox> guarded;
-    for (int attempt = 0;; ++attempt) {
-        RegionPart part(shared, region);
-        if (attempt == guardedAttempts) {
-            guarded = {{glm::vec3(-2.0 * farthestMm), glm::vec3(2.0 * farthestMm)}};
-        }
-        RegionSimplification(part, shared.minAngleDegrees, guarded).run();
-        std::vector<FloatBox> found;
-        if (attempt < guardedAttempts) found = contacts(part.mesh, part.changed);
-        if (found.empty()) {
-            part.writeTo(shared);
-            return;
-        }
-        for (const FloatBox& box : found)
-            guarded.push_back({box.low - guardMm, box.high + guardMm});
-    }
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "core/version.h"
 #include "dicom/write_series.h"
 #include "nifti/nifti_file.h"
-#include "phantom/wild.h"
+#include "phantom/phantom.h"
 
 #include <map>
 #include <memory>

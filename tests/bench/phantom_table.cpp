@@ -3,7 +3,7 @@
 // alone. `--help` tells the options.
 #include "bench/phantom_study.h"
 #include "mesh/mesh_file.h"
-#include "phantom/wild.h"
+#include "phantom/phantom.h"
 
 #include <cstdio>
 #include <map>

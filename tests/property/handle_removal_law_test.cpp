@@ -1,7 +1,6 @@
 // Laws of the loops that handles are cut along: against CGAL's exact search, and of the cover.
 #include "data_folder.h"
 #include "handle_meshes.h"
-#include "handles/covering_loops.h"
 #include "handles/covering_space.h"
 #include "handles/handle_removal.h"
 #include "handles/loop_coarsening.h"

@@ -1,7 +1,7 @@
 // Laws of what can be added to a phantom's bowel, on small phantoms.
 #include "label_topology.h"
 #include "phantom/filled_colon.h"
-#include "phantom/wild.h"
+#include "phantom/phantom.h"
 
 #include <algorithm>
 #include <cmath>

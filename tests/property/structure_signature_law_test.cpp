@@ -1,5 +1,5 @@
 // Thin and small tissue in fluid is told from fluid, its borders and noise.
-#include "cleansing/structure_signature.h"
+#include "cleansing/submerged_mixture.h"
 #include "cleansing_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,12 +1,21 @@
-#include "simplification/region.h"
+#include "simplification/region_simplification.h"
+
+#include "simplification/contact.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace haustra::simplification {
 namespace {
 
+constexpr float guardMm = 1.0f;         // about a contact
+constexpr int guardedAttempts = 4;      // then the guard is everywhere
+constexpr float everywhereMm = 2.0e6f;  // from the middle, and beyond all that simplify() takes
 constexpr double wantedAngleDegrees = 20.0;  // sharper corners are bettered
 constexpr int maxValence = 12;
 constexpr double leastNormalCosine = 0.3;  // between a triangle and what takes its place
@@ -28,7 +37,59 @@ glm::dvec3 upright(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
     return glm::cross(b - a, c - a);
 }
 
-}  // namespace
+/// One attempt at a region. Of one thread.
+class RegionSimplification {
+public:
+    /// Contacts of the surface with itself are refused in the `guarded` boxes only.
+    RegionSimplification(RegionPart& part, double minAngleDegrees,
+                         std::span<const FloatBox> guarded);
+    void run();
+
+private:
+    struct Candidate {
+        float error;
+        int a, b;  ///< a < b
+        std::uint32_t version;
+        bool operator<(const Candidate& other) const {
+            // std::push_heap keeps the greatest on top; the least error is wanted there.
+            if (error != other.error) return error > other.error;
+            return a != other.a ? a > other.a : b > other.b;
+        }
+    };
+
+    enum class Quality { noSharper, better };
+
+    bool inBox(const glm::dvec3& p) const;
+    bool movable(int v) const { return part_.movable[v] && mesh_.cornerOf[v] >= 0; }
+    const glm::dvec3& place(const Replacement& replacement, int v) const {
+        return replacement.placeOf(mesh_, v);
+    }
+
+    void collapseEdges();
+    void push(int a, int b);
+    void pushEdgesAround(int v);
+    bool collapseEdge(int a, int b, const glm::dvec3& place, Quality quality);
+    bool linkCondition(int a, int b, int cornerAtA) const;
+
+    void betterCorners();
+    void betterVertex(int v);
+    bool relax(int v);
+    bool flip(int corner);
+    double sharpestAround(int v) const;
+
+    bool permitted(const Replacement& replacement, Quality quality);
+    bool shapesPermitted(const Replacement& replacement, Quality quality) const;
+    bool withinBound(const Replacement& replacement);
+    void commit(const Replacement& replacement);
+
+    RegionPart& part_;
+    CornerMesh& mesh_;
+    ContactGuard guard_;
+    std::vector<Candidate> heap_;
+    AttachedSamples::Patch patch_;
+    Replacement replacement_;
+    double sharpestCosine_;
+};
 
 RegionSimplification::RegionSimplification(RegionPart& part, double minAngleDegrees,
                                            std::span<const FloatBox> guarded)
@@ -309,6 +370,27 @@ bool RegionSimplification::flip(int corner) {
     mesh_.flip(corner);
     commit(r);
     return true;
+}
+
+}  // namespace
+
+void simplifyRegion(Simplification& shared, const Region& region) {
+    std::vector<FloatBox> guarded;
+    for (int attempt = 0;; ++attempt) {
+        RegionPart part(shared, region);
+        if (attempt == guardedAttempts) {
+            guarded = {{glm::vec3(-everywhereMm), glm::vec3(everywhereMm)}};
+        }
+        RegionSimplification(part, shared.minAngleDegrees, guarded).run();
+        std::vector<FloatBox> found;
+        if (attempt < guardedAttempts) found = contacts(part.mesh, part.changed);
+        if (found.empty()) {
+            part.writeTo(shared);
+            return;
+        }
+        for (const FloatBox& box : found)
+            guarded.push_back({box.low - guardMm, box.high + guardMm});
+    }
 }
 
 }  // namespace haustra::simplification
