@@ -14,9 +14,9 @@ public:
     void clear() { count_ = 0; }
     void add(const glm::vec3& p) {
         if (count_ + lanes > x_.size()) grow();
-        x_[count_] = p.x;
-        y_[count_] = p.y;
-        z_[count_] = p.z;
+        x_.data()[count_] = p.x;
+        y_.data()[count_] = p.y;
+        z_.data()[count_] = p.z;
         ++count_;
     }
     /// Repeats the first point up to whole vectors; to be called after the last add().
