@@ -55,20 +55,20 @@ private:
     std::vector<Step> steps_;  ///< the farthest first: they are the likeliest to fail
 };
 
-/// Where all of it holds one material no other's blur reaches, wherever the border lies within its
-/// voxel.
+/// Large enough that where all of it holds one material, no other material's blur reaches its
+/// centre: the blur's reach, and half a voxel, as a border may lie anywhere within its voxel.
 inline Ball blurBall(const Grid& grid) {
     return {grid, blurReachMm + 0.5 * grid.spacingMm()};
 }
 
-/// Of every `every`th voxel of a scan's row from `first` on, the first that is not before voxel
-/// `from`, counted from there.
+/// Of a scan's row each `every`th voxel is looked at, voxel `first` among them. The first of these
+/// in a box that begins at the row's voxel `from`, counted from there.
 inline int firstSample(int first, int from, int every) {
     return ((first - from) % every + every) % every;
 }
 
-/// Calls visit(voxel) for those of the grid within `reach` voxels of `v` along each axis, from it
-/// by `step`.
+/// Calls visit(v + n · step), n whole numbers for each axis, for those voxels that are in the grid
+/// and no farther from `v` than `reach` along each axis.
 template <class Visit>
 void eachStep(const Grid& grid, glm::ivec3 v, glm::ivec3 reach, glm::ivec3 step,
               const Visit& visit) {

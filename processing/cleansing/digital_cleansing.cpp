@@ -33,8 +33,9 @@ struct CleansedVoxel {
 
 constexpr double speckMm3 = 12.0;
 
-/// The 26-connected piece of wall around `seed`, or empty where it has more than `most` voxels:
-/// then those that were seen are `large` from now on, and what meets them is.
+/// The 26-connected piece of wall around `seed`; empty where it has more than `most` voxels. Then
+/// its voxels that were looked at are marked in `large`, and a piece that meets a marked voxel is
+/// known to be as large.
 std::vector<std::uint32_t> pieceOfWall(const Volume<std::uint8_t>& labels, std::uint32_t seed,
                                        std::size_t most, std::vector<bool>& large) {
     const Grid& grid = labels.grid();
@@ -64,11 +65,11 @@ bool touchesLumen(const Volume<std::uint8_t>& labels, std::size_t index) {
     return touches;
 }
 
-/// LumenLabel by the cleansed scan: what `segmentation` holds, less what is wall now, and more by
-/// those of `changed` (in memory order) that are air now and touch it, unless they join what is
-/// parted there: a thin wall that the blur of tagging hides stays. Specks of less than 12 mm³
-/// that float in the former residue are noise: they become air in `hu`, and lumen. Bridges and
-/// untagged fluid stay.
+/// LumenLabel by the cleansed scan. From `segmentation` goes what is wall now; to it come those of
+/// `changed` (in memory order) that are air now and touch the lumen, unless they would join two
+/// parts of it that `segmentation` keeps apart: a thin wall between them may be hidden by the
+/// tagging's blur. Specks of less than 12 mm³ that float in the former residue are noise: they
+/// become air in `hu`, and lumen. Bridges and untagged fluid stay.
 Volume<std::uint8_t> refineLumen(Volume<std::int16_t>& hu, const TissueModel& tissue,
                                  const SmoothField& airHu, const Volume<std::uint8_t>& segmentation,
                                  std::span<const CleansedVoxel> changed) {
@@ -211,7 +212,8 @@ CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
             out[voxel.index] = std::int16_t(std::clamp(std::lround(cleansed), -1024L, 3071L));
         }
     });
-    // What the smoothing moves beside them may be wall, or air, from now on as well.
+    // Smoothing moves voxels that were not cleansed, too: these may have become wall or air as
+    // well.
     const std::size_t cleansedVoxels = changed.size();
     for (const std::uint32_t n : smoothRim(hu, lumen.labels, tissue, around, threads)) {
         const CleansedVoxel voxel{n, 0, mixture(n).air};
@@ -222,7 +224,8 @@ CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
     std::inplace_merge(changed.begin(), changed.begin() + std::ptrdiff_t(cleansedVoxels),
                        changed.end(), byIndex);
     Volume<std::uint8_t> open = refineLumen(hu, tissue, means.airHu, lumen.labels, changed);
-    // The way on through a narrow place is no less there because its wall looks thicker now.
+    // A narrow passage that was open in the segmentation stays open, though the cleansed wall may
+    // look thick enough to close it.
     const auto segmented = [&](std::size_t n) {
         const bool isMeniscus =
             std::binary_search(lumen.menisci.begin(), lumen.menisci.end(), std::uint32_t(n));

@@ -10,10 +10,11 @@
 namespace haustra::cleansing {
 
 struct Cleansed {
-    /// Equals the scan everywhere but in and at the tagged lumen, and where that made it brighter.
+    /// Equals the scan but in and beside the tagged lumen, and where pseudo-enhancement was taken
+    /// off.
     Volume<std::int16_t> hu;
-    /// LumenLabel by the cleansed scan: HU below the model's airBelowHu, in and right around the
-    /// segmentation. tagged where the residue was more than the air.
+    /// LumenLabel by the cleansed scan: the voxels below the model's airBelowHu that are in the
+    /// segmentation or touch it. `tagged` where a voxel had held more residue than air.
     Volume<std::uint8_t> lumen;
 };
 

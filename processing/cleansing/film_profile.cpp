@@ -126,7 +126,7 @@ std::optional<FilmProfile> fitFilm(const LineSamples& samples, const FilmProfile
     p.outerHu = deepest < half ? p.airHu : std::min(deepest, p.softHu);
     p.outerMm = samples.mm(first);
     p.filmMm = samples.mm(open - 1);
-    // As thick as what rises above the wall makes it.
+    // The fit begins with the thickness d whose film adds the area d (μ_tagged − μ_soft).
     double excess = 0.0;
     for (int n = first; n < open; ++n)
         excess += std::max(0.0, hu[std::size_t(n)] - p.softHu) * samples.strideMm;

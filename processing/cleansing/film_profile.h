@@ -14,9 +14,9 @@ struct FilmProfile {
     double blurMm = 0.5;                               ///< standard deviation
     double misfitHu = 0.0;                             ///< root mean square, once fitted
 
-    /// HU at a place were the film air.
+    /// HU at a place on the line if there were air in the film's place.
     double withoutFilm(double mm) const;
-    /// HU that the film adds to that.
+    /// HU that the film adds to withoutFilm().
     double film(double mm) const;
     double thicknessMm() const { return filmMm - wallMm; }
 };
@@ -30,10 +30,11 @@ struct LineSamples {
     double mm(int n) const { return (n - middle()) * strideMm; }
 };
 
-/// Fits the three faces, and the tagging's HU near `start.taggedHu`, by least squares (Levenberg
-/// and Marquardt). `start` gives the HU and the blur; the faces are sought from the samples: past
-/// the crest they fall to air, before it to the wall or, through a thin one, beyond. Nothing where
-/// they do not within `thickestMm`, or no film explains them. About 10 µs.
+/// Fits the places of the three faces, and the tagging's HU near `start.taggedHu`, by least squares
+/// (Levenberg and Marquardt). `start` gives the HU and the blur. The fit begins with faces that are
+/// read off the samples: past the crest the HU fall to air, before it to the wall's, or, where the
+/// wall is thin, to those of what lies beyond it. Nothing where the HU do not fall so within
+/// `thickestMm` of the crest, or no film explains the samples. About 10 µs.
 std::optional<FilmProfile> fitFilm(const LineSamples& samples, const FilmProfile& start,
                                    double noiseSd, double thickestMm);
 

@@ -13,11 +13,11 @@ namespace haustra::cleansing {
 /// Settles the shares of residue in `mixture` within 2.5 standard deviations of the blur of the
 /// fluid's level, beside walls. One HU cannot tell the shares of three tissues, but the wall goes
 /// on straight past the level: above and below, beyond the reach of the level's blur, it is known.
-/// Along its direction (the one in which the cleansed scan changes least there) the cleansed HU is
-/// interpolated, and the residue is what explains the difference from the scan. Where the wall
-/// bends too much for that, a voxel that juts out of it where air and tagging meet becomes as its
-/// neighbours. `segmentation` is LumenLabel; voxels that are 1 in `settled` stay. The same for any
-/// number of threads.
+/// Along the wall's direction (the one in which the cleansed scan changes least there) the cleansed
+/// HU is interpolated, and the share of residue is the one that explains the difference between
+/// that HU and the scan's. Where the wall bends too much for that, a voxel that juts out of it
+/// where air and tagging meet is made like its neighbours. `segmentation` is LumenLabel; voxels
+/// that are 1 in `settled` stay. The same for any number of threads.
 void settleRim(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                const LocalMeans& means, const WaterLevel& level, const PointSpread& spread,
                const TaggedSurroundings& around, const Volume<std::uint8_t>& settled,

@@ -127,7 +127,8 @@ public:
 private:
     bool is(std::size_t n, LumenLabel label) const { return LumenLabel(label_[n]) == label; }
 
-    /// Where the pool is too thin to have an inside, its crest is the best.
+    /// 1 for a voxel that the blur of nothing else reaches; a little for the brightest voxels
+    /// across a pool that is too thin to have such.
     float taggedWeight(std::size_t n, glm::ivec3 v) const {
         const auto isTagged = [&](std::size_t m) { return is(m, LumenLabel::tagged); };
         if (ball_.everywhere(v, isTagged)) return 1.0f;

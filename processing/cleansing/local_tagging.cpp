@@ -29,7 +29,7 @@ public:
           averaged_(voxelsIn(grid_, evenMm)),
           window_(blurReachVoxels(grid_)) {}
 
-    /// Even contents: the blur of nothing else reaches in.
+    /// Whether contents are even at a voxel (refineTagging).
     bool isEven(std::size_t n) const {
         const glm::ivec3 v = grid_.voxelAt(n);
         const double soft = softHu(v), mean = crossMean(v);
@@ -49,7 +49,8 @@ public:
         return std::int16_t(std::lround(sum / count));
     }
 
-    /// Beside even contents, by `evenHu` of those that the blur reaches from.
+    /// The tagging's HU where contents are not even, by `evenHu` of the even voxels whose blur
+    /// reaches this one.
     std::int16_t between(std::size_t n, std::span<const std::uint8_t> even,
                          std::span<const std::int16_t> evenHu) const {
         const glm::ivec3 v = grid_.voxelAt(n);

@@ -7,12 +7,13 @@
 
 namespace haustra::cleansing {
 
-/// LocalMeans::taggedHu. Inside even contents it is the mean of the like voxels around; beside a
-/// border the distance-weighted mean of the even contents that the blur reaches from, else
-/// `coarse`. Between two unlike contents (stool in fluid) it is what the scan shows, smoothed: the
-/// blend of both. A thin fold in fluid is not taken for a blend: nothing even in it is as dark.
-/// What is denser than `denseAboveHu` counts as contents beside them. Uses `means.softHu` and
-/// `means.noise`.
+/// LocalMeans::taggedHu. Contents are even at a voxel that lies deeper in them than any blur
+/// reaches and whose surroundings measure the same but for noise. There the result is the mean of
+/// the even voxels around. Elsewhere it is the distance-weighted mean of the even contents whose
+/// blur reaches the voxel, and `coarse` where there are none. Between two unlike even contents
+/// (stool in fluid) it is the smoothed scan, which shows the blend of both; but not where that is
+/// darker than both, as in a thin fold. Beside the labelled contents, what is denser than
+/// `denseAboveHu` counts as contents too. Uses `means.softHu` and `means.noise`.
 Volume<std::int16_t> refineTagging(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                                    const TaggedSurroundings& around, const SmoothField& coarse,
                                    const LocalMeans& means, double denseAboveHu, int threads);

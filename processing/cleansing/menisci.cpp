@@ -10,7 +10,7 @@
 namespace haustra::cleansing {
 namespace {
 
-/// A segmentation falls short by whole voxels where they are large.
+/// `mm`, or so many voxels where they are longer: a segmentation falls short by whole voxels.
 double reachMm(const Grid& grid, double mm, double voxels) {
     return std::max(mm, voxels * std::cbrt(grid.voxelVolumeMm3()));
 }

@@ -10,17 +10,18 @@
 
 namespace haustra::cleansing {
 
-/// Labels (LumenLabel), and the voxels, in memory order, that were none before.
+/// Labels (LumenLabel), and in memory order the voxels that were outside before.
 struct LabelledMenisci {
     Volume<std::uint8_t> labels;
     std::vector<std::uint32_t> added;
 };
 
 /// `segmentation` (LumenLabel) with the menisci labelled as tagged: fluid climbs a wall by surface
-/// tension, past the flat level where a segmentation by levels ends. Added are unlabelled voxels at
-/// most 4.5 mm from a pool along the axes, with air of the lumen within 3 mm, along voxels that are
-/// more than half as dense, from soft tissue on, as the pool's rim where they begin; and within 1.5
-/// mm of any pool what the segmentation fell short of. Where voxels are large, 6, 4 and 2 of them.
+/// tension, past the flat level where a segmentation by levels ends. A pool grows by steps along
+/// the axes into unlabelled voxels that are denser than half-way between soft tissue and the pool's
+/// rim where the growth began: up to 4.5 mm far where air of the lumen lies within 3 mm of the
+/// voxel, and up to 1.5 mm anywhere, as the segmentation may fall short by that. It joins no two
+/// bodies of the lumen. Where voxels are large, the three lengths are 6, 4 and 2 of them.
 /// O(voxels).
 LabelledMenisci withMenisci(const CtScan& scan, const TissueModel& tissue,
                             const Volume<std::uint8_t>& segmentation);

@@ -89,7 +89,9 @@ private:
             const glm::ivec3 n = v + step * down;
             if (!hu_.grid().contains(n)) return;
             const double open = airHu + fluidAt(*depth + step * levelMm_) * (taggedHu - airHu);
-            // Of what the noise leaves sure; farther rows count only where this one says little.
+            // A row counts by the contrast of wall in it, squared, as the noise is the same in all;
+            // rows farther off count so little that they decide only where this one has no
+            // contrast.
             const double certainty = (softHu - open) / (softHu - airHu);
             const double w =
                 certainty * certainty * (step == 0 ? 1.0 : 0.015 / (std::abs(step) * levelMm_));
@@ -101,14 +103,14 @@ private:
         const int rows = std::max(1, int(std::lround(1.5 / levelMm_)));
         for (int step = -rows; step <= rows; ++step)
             add(step);
-        // A level that the voxel contradicts is that of another pool.
+        // Where the voxel's HU cannot come of this level, the level is that of another pool.
         const double open = airHu + fluidAt(*depth) * (taggedHu - airHu), y = hu_.at(v);
         const double slack = 4.0 * means_.noise.tagged +
                              0.3 * fluidAt(*depth) * (1.0 - fluidAt(*depth)) * (taggedHu - airHu);
         if (y < std::min(open, softHu) - slack || y > std::max(open, softHu) + slack)
             return std::nullopt;
         const double soft = sum / weight;
-        // No less than what the wall alone leaves unexplained, no more than the air alone does.
+        // At least what must be tagged if all the rest is wall, at most what may be if it is air.
         const double least = std::max(0.0, (y - softHu) / (taggedHu - softHu));
         const double most = std::max(0.0, (y - airHu) / (taggedHu - airHu));
         const double tagged =
@@ -222,7 +224,7 @@ BoxedVolume<TissueFractions> estimateMixture(const CtScan& scan, const PartialVo
     progress(0.0);
     BoxedVolume<TissueFractions> result;
     result.grid = scan.hu.grid();
-    // A function can be copied, which a volume is not.
+    // std::function wants what it holds to be copyable; a Volume is not, a pointer to one is.
     result.beyond = [model, hu = std::make_shared<const Volume<std::int16_t>>(scan.hu.share())](
                         glm::ivec3 first, std::span<TissueFractions> row) {
         const std::int16_t* from = &hu->voxels()[hu->grid().index(first)];
@@ -243,8 +245,8 @@ BoxedVolume<TissueFractions> estimateMixture(const CtScan& scan, const PartialVo
     progress(0.4);
     const WaterLevel level(seen, means, interfaces, around, gravity, threads);
     const ColonMixture colon(seen, labels, means, interfaces, level);
-    // Where no tagging is left fat, which the two-tissue model has not, is told from air as far
-    // off.
+    // The model of two tissues knows no fat and takes it for part air. Where it finds no tagging, a
+    // voxel therefore holds no more air than its HU alone would say, as far from the colon.
     std::vector<std::vector<std::uint8_t>> mostAir(around.shells.size());
     for (std::size_t s = 0; s < around.shells.size(); ++s) {
         const auto& shell = around.shells[s];

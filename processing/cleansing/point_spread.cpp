@@ -88,7 +88,8 @@ public:
         const double sdMm = spacingMm_[axis] * std::abs((*normal)[axis]) / (to - from);
         const int bin = int(sdMm / binMm);
         if (bin >= bins) return;
-        // The variance of the quantiles' difference for equal noise of both heights, inverse.
+        // Inverse variance of to − from, for equal noise of both heights: a quantile q's is in
+        // proportion to exp(q²).
         lines.weight[std::size_t(bin)] += 1.0 / (std::exp(from * from) + std::exp(to * to));
         lines.count += 1.0, lines.squares += *normal * *normal;
     }

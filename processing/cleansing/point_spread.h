@@ -22,12 +22,14 @@ struct PointSpread {
     }
 };
 
-/// Measured on the scan's own faces of gas, to contents and to wall, that a line along an axis
-/// crosses within 32° of their normal. Its two samples about the half height, as quantiles of the
-/// normal distribution, lie a sample's distance over the step's standard deviation apart: of each
-/// axis' lines the median counts, each line weighing as its noise lets it, turned to the normal.
-/// Three axes give three equations in the squares. An axis with fewer than 200 lines takes what the
-/// others have, and 0.5 mm where none has. O(voxels); the same for any number of threads.
+/// Measured on the scan's own faces between gas and contents or wall, where a line along an axis
+/// crosses them within 32° of their normal. A blurred step is the normal distribution function, so
+/// two samples a distance h apart, about the half height, whose heights (0…1) have the quantiles
+/// q₁ < q₂, give its standard deviation along the line, h / (q₂ − q₁), and along the normal n, h
+/// |n_axis| / (q₂ − q₁). The median over an axis' lines counts, each line weighted by the inverse
+/// of its variance. It is √Σ (n_a σ_a)² for a line's normal, so that the three axes give three
+/// equations in the squares σ_a². An axis with fewer than 200 lines takes the others' value, or
+/// 0.5 mm where none has enough. O(voxels); the same for any number of threads.
 PointSpread measurePointSpread(const CtScan& scan, const Volume<std::uint8_t>& segmentation,
                                const LocalMeans& means, int threads);
 

@@ -26,10 +26,12 @@ struct PseudoEnhancement {
     double edgeHu() const { return 750.0 * gain; }
 };
 
-/// Fits scale and one of five spreads, 8 to 32 mm wide, by least squares to the colon's gas, which
-/// is the same everywhere else, deeper inside than the blur reaches: soft tissue beside a pool is
-/// wall, and farther off another tissue. Where the lowest HU cuts gas' noise off, the share of it
-/// that is left shows the scale. None where the edge of a pool would gain less than 4 HU. `scan`
+/// Fits the scale and one of five spreads, 8 to 32 mm wide, by least squares to the HU of the
+/// colon's gas, deeper inside it than the blur reaches. Gas alone is the same material near tagging
+/// and far from it: soft tissue beside a pool is wall, and farther off another tissue. HU end at
+/// −1024, which cuts off part of the gas' noise and so lessens what enhancement adds to its mean;
+/// the fitted scale is corrected for that. None where the flat edge of a pool would gain less than
+/// 4 HU. `scan`
 /// and `segmentation` may be the part of a larger scan, on grid `whole`, that begins at its voxel
 /// `from` and holds what is within 20 mm of the labels. O(voxels); the same for any number of
 /// threads.

@@ -11,8 +11,8 @@
 namespace haustra::cleansing {
 namespace {
 
-// Around the labels: what a noise sample beside tagging looks at (a block of 6 mm, a difference, a
-// ball), and what a line through a face does where voxels are large.
+// How far measuring looks beyond the labels: in mm, a sample of noise beside tagging (a block of
+// 6 mm, the length of a second difference, a ball); in voxels, a line through a face.
 constexpr double marginMm = 20.0;
 constexpr int marginVoxels = 8;
 

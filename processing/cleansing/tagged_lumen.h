@@ -34,13 +34,14 @@ struct TaggedLumen {
     VoxelBox box;
     CtScan scan;                         ///< less pseudo-enhancement
     Volume<std::uint8_t> labels;         ///< with menisci (menisci.h)
-    std::vector<std::uint32_t> menisci;  ///< voxels that the segmentation has not, in memory order
+    std::vector<std::uint32_t> menisci;  ///< voxels that menisci added, in memory order
     PseudoEnhancement enhancement;       ///< on the scan's grid
     TaggedSurroundings around;
     LocalMeans means;
 };
 
-/// The same as of the whole scan. O(voxels of the box); the same for any number of threads.
+/// Measures of the box what measuring the whole scan would give there. O(voxels of the box); the
+/// same for any number of threads.
 TaggedLumen measureTaggedLumen(LumenPart part, const TissueModel& tissue, int threads);
 
 }  // namespace haustra::cleansing

@@ -275,7 +275,7 @@ Volume<std::uint8_t> settleFilms(const CtScan& scan, const Volume<std::uint8_t>&
             mark[n] = 0;
             continue;
         }
-        // The film's part of what is left over is its own error.
+        // Film and rest each take their part of what is unexplained.
         const double taken = film + unexplained * film / (film + rest + 1.0);
         const double tagged = std::clamp(taken / (taggedHu - air), 0.0, 1.0);
         const double hu = y - tagged * (taggedHu - air);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t untagged = std::uint8_t(LumenLabel::untagged);
 constexpr double besideMm = 2.5;  // of blur between fluid and sediment
 
-/// Of 64ths, the lumen's share around a voxel; 0 where no untagged fluid is near.
+/// The share of lumen around a voxel, in 64ths; 0 where none of the 27 voxels is untagged fluid.
 int share(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
     int sum = 0;
     bool near = false;
@@ -28,7 +28,7 @@ int share(const Volume<std::uint8_t>& labels, glm::ivec3 v) {
     return near ? sum : 0;
 }
 
-/// What was lumen within reach of untagged fluid is so still.
+/// Makes untagged fluid again of what was lumen in `before` within `reach` of untagged fluid.
 void restore(Volume<std::uint8_t>& labels, const Volume<std::uint8_t>& before, glm::ivec3 lo,
              glm::ivec3 hi, glm::ivec3 reach) {
     const Grid& grid = labels.grid();

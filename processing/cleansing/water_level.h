@@ -14,8 +14,9 @@ namespace haustra::cleansing {
 
 /// The height of the fluid's surface to a fraction of a voxel: where bare, flat air–fluid
 /// interfaces stand half-way between air and fluid (dissertation §3.2). It is known beside them
-/// too, as gravity levels it: at a wall, where air, fluid and soft tissue share a voxel, it tells
-/// how much of what is not wall is fluid. A meniscus moves it as far as the nearest columns show.
+/// too, since a fluid's surface is level: at a wall, where air, fluid and soft tissue share a
+/// voxel, the level tells how much of what is not wall is fluid. Near a meniscus, where the surface
+/// is not level, the nearest columns of voxels give its height.
 class WaterLevel {
 public:
     /// `gravity` (unit, LPS) must lie within 18° of a grid axis, else there is no level.

@@ -30,8 +30,8 @@ public:
     /// O(items · cells that each reaches + cells of their common box).
     CellGrid(std::span<const Box> boxes, double cellMm);
 
-    /// The item of least squaredDistance(item) to p, the lower number of equals. The function must
-    /// measure to the part of the item inside its box.
+    /// The item whose squaredDistance(item) to p is least; of several as near, the one with the
+    /// lowest number. The function must measure to the part of the item inside its box.
     template <class SquaredDistance>
     Nearest nearest(glm::dvec3 p, const SquaredDistance& squaredDistance) const;
 

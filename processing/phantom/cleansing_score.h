@@ -28,7 +28,7 @@ struct RegionError {
 /// What became of one polyp that tagged fluid surrounds.
 struct SubmergedPolyp {
     Finding polyp;
-    double submergedShare = 0.0;  ///< of the lumen within two voxels of it, how much is tagged
+    double submergedShare = 0.0;  ///< the tagged share of the lumen within two voxels of the polyp
     std::size_t voxels = 0;       ///< of its tissue inward of the wall or fold it grows from
     double rmseHu = 0.0, biasHu = 0.0;  ///< in those voxels
     /// Of its voxels that are denser than kPolypHu in the truth, the share that is so after

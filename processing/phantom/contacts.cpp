@@ -24,14 +24,14 @@ struct Lumens {
     bool isLumen(glm::ivec3 v) const {
         return colon.at(v) != 0 || sites.at(v) == std::uint8_t(Site::ileum);
     }
-    /// The lumen that a voxel's faces along an axis, up to kContactMm away: beyond a wall, or the
-    /// other one side by side with it.
+    /// The first voxel of another lumen that one meets from `v` on along an axis, up to kContactMm
+    /// away: beyond a wall; or right beside `v`, where one of the two is colon and the other ileum.
     std::optional<glm::ivec3> facing(glm::ivec3 v, int axis) const {
         const Grid& grid = colon.grid();
         const double spacingMm = grid.spacingMm()[axis];
         glm::ivec3 w = v;
         if (++w[axis] >= grid.size[axis]) return std::nullopt;
-        // Side by side, they join or are two lumens a film apart.
+        // Two voxels of the same organ side by side are one lumen.
         if (isLumen(w) && isColon(v) == isColon(w)) return std::nullopt;
         while (w[axis] < grid.size[axis] && !isLumen(w) &&
                (w[axis] - v[axis]) * spacingMm <= kContactMm)

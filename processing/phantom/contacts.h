@@ -31,7 +31,8 @@ private:
         float arcMm = 0.0f, otherArcMm = 0.0f, apartMm = 0.0f, areaMm2 = 0.0f;
         glm::vec3 at{0.0f};
     };
-    /// Where two lumens touch whose voxels lie at `a` and `b`, together `depthMm` inside them.
+    /// Where two lumens touch, by a voxel of each, `a` and `b`, mm; `depthMm` is the depth of `a`
+    /// inside its lumen and that of `b` inside the other, added.
     static std::optional<Touch> touchAt(glm::dvec3 a, glm::dvec3 b, double depthMm);
     /// Of two voxels of the colon, unless one bend holds both.
     std::optional<Touch> touchOfLoops(glm::ivec3 a, glm::ivec3 b, const Grid& grid,

@@ -1,4 +1,4 @@
-// One patient's colon with what lies in it, as everything drawn from the seed decides.
+// One patient's colon with its contents, all drawn from the seed.
 #pragma once
 
 #include "phantom/colon_field.h"
@@ -8,10 +8,10 @@
 
 namespace haustra::phantom {
 
-/// The grid of a phantom's volumes; the field of view is the size's where it is 0.
+/// The grid of a phantom's volumes. A field of view of 0 stands for the one that the size has.
 Grid gridOf(Size size, double fieldOfViewMm = 0.0);
 
-/// The body that the options' seed and position make.
+/// The body that the seed and the position of the options give.
 BodyPlan bodyOf(const PhantomOptions& options);
 
 struct FilledColon {

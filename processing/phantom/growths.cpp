@@ -97,7 +97,7 @@ void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const Body
     Placer placer(shape, random);
     const glm::dvec3 gravity = gravityDirection(body.position);
 
-    // One of each kind and size class, spread over the colon; positions are the seed's.
+    // One of each kind and size class, spread over the colon at places that the seed draws.
     using Kind = Growth::Kind;
     const std::array<std::pair<Kind, double>, 9> wanted = {
         {{Kind::sessile, random.uniform(4.0, 6.0)},

@@ -6,8 +6,9 @@
 
 namespace haustra::phantom {
 
-/// Adds them to the shape, polyps first. Every polyp's head touches the wall or a fold (or hangs
-/// on a stalk from it); polyps keep 25 mm apart and out of collapsed segments.
+/// Adds polyps, hyperplastic bumps and stool to the shape, polyps first. Every polyp's head touches
+/// the wall or a fold (or hangs on a stalk from it); polyps keep 25 mm apart and out of collapsed
+/// segments.
 void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const BodyPlan& body);
 
 /// Adds polyps that the tagged fluid covers, one of them cut by the surface; in `easy`, with its

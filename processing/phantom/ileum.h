@@ -9,7 +9,7 @@
 namespace haustra::phantom {
 
 /// The last part of the small bowel: a tube that begins behind the valve, runs mostly wall to wall
-/// with the colon, and ends blind, where it is full of what the phantom does not show.
+/// with the colon, and ends blind: the bowel beyond is not part of the phantom.
 class Ileum {
 public:
     static constexpr double wallMm = 1.5;

@@ -23,7 +23,7 @@ namespace {
 constexpr double kLumenAirHu = -990.0;
 constexpr double kWallHu = 42.0;
 constexpr double kBowelGasHu = -985.0;
-constexpr double kCecumMm = 60.0;  ///< of a colon whose valve nobody drew
+constexpr double kCecumMm = 60.0;  ///< its length where there is no ileocecal valve to begin it
 
 /// Some slices of a scan on its way through the scanner: those that are wanted, and as many on
 /// either side as their blur draws on.

@@ -29,7 +29,7 @@ enum class Preset { easy, standard, hard };
 /// photonCounting: 1024×1024×1000 of 0.35×0.35×0.4 mm, which takes some 10 GiB to make.
 enum class Size { small, full, photonCounting };
 
-/// How a phantom is scanned. Zero, or what is given here, leaves what the preset draws.
+/// How a phantom is scanned. A member that keeps its default leaves to the preset what it draws.
 struct ScanOptions {
     /// Width of the reconstructed field, mm, 250…500, in place of the size's 384: small fields cut
     /// the arms and sides off, large ones have large pixels.
@@ -76,7 +76,7 @@ struct PhantomOptions {
 /// every position.
 PhantomOptions wildOptions(std::uint64_t seed);
 
-/// What else is where, for telling what a wrong voxel was taken from.
+/// What a voxel holds beside the lumen's labels, to tell what was taken for colon by mistake.
 enum class Site : std::uint8_t {
     elsewhere = 0,   ///< the body, and the colon's lumen
     ileum = 1,       ///< contents of the ileum that joins the cecum

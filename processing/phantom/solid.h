@@ -16,7 +16,8 @@ struct Solid {
     std::function<double(glm::dvec3 p)> distance;  ///< signed, mm, first order
     std::function<double(glm::dvec3 p, double distance)> hu;
     double clearOfColonMm = -1e9;  ///< keeps this far from the colon's lumen
-    std::uint8_t site = 0;         ///< what its voxels are from `siteBelowMm` under its surface on
+    std::uint8_t site =
+        0;  ///< Site of its voxels that are at least `siteBelowMm` under its surface
     double siteBelowMm = 0.0;
 };
 

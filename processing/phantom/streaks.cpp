@@ -28,8 +28,8 @@ public:
             across_.push_back({std::cos(angle), std::sin(angle)});
         }
         key_ = mixBits(streaks.seed ^ 0x73747265616Bull);
-        // What unit noise in all rays comes to in a pixel: Σ h² = 1/12 of the filter, 0.464 of it
-        // left between two bins on an average.
+        // Noise of variance 1 in all rays gives a pixel the variance π²/angles · c · Σ h²: h is the
+        // filter, Σ h² = 1/12, and c = 0.464 what interpolation between two bins leaves on average.
         noiseGain_ = streaks.noiseHu /
                      std::sqrt(std::numbers::pi * std::numbers::pi / kAngles * 0.464 / 12.0);
     }
@@ -47,7 +47,7 @@ public:
             if (streaks_.noiseHu > 0.0) addNoise(slice, a);
             if (metal) {
                 project(metal_, a, metalRay_);
-                // To the noise's unit, the HU that a unit in each ray comes to.
+                // −ln cosh (0.4 m), the hardening, in the unit of the rays' noise: HU.
                 for (int b = 0; b < bins_; ++b)
                     ray_[std::size_t(b)] -=
                         std::log(std::cosh(kHardening * metalRay_[std::size_t(b)])) * 1e3 /

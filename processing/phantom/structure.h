@@ -1,4 +1,5 @@
-// What a chain of bowel is made of, in truth: so that junctions can be judged, not only voxels.
+// What the phantom's bowel is in truth as a chain of stretches: collapses, contacts between loops,
+// the valve. By it the junctions that a segmentation finds are judged, not its voxels alone.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ struct Structure {
         glm::dvec3 beginAtMm{0.0}, endAtMm{0.0};
         double lengthMm() const { return endMm - beginMm; }
     };
-    /// Where two lumens that do not join there are less than kContactMm apart.
+    /// A place where two loops that do not join there have their lumens less than kContactMm apart.
     struct Contact {
         bool ileum = false;  ///< of colon and ileum; or of two loops of colon
         double arcMm = 0.0;

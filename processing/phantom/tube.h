@@ -9,8 +9,8 @@
 
 namespace haustra::phantom {
 
-/// A chain of spheres' hulls: round in section, its radius linear between nodes. Immutable, so any
-/// thread may ask.
+/// The union, over each two nodes that follow one another, of the convex hull of their spheres:
+/// round in section, its radius linear between nodes. Immutable, so any thread may ask.
 class Tube {
 public:
     struct Node {
