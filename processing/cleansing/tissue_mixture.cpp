@@ -11,7 +11,7 @@
 namespace haustra::cleansing {
 namespace {
 
-constexpr int binCount = highestHu - lowestHu + 1;
+constexpr int huCount = highestHu - lowestHu + 1;
 using Histogram = std::vector<double>;
 
 double countIn(const Histogram& histogram, int fromHu, int toHu) {
@@ -41,12 +41,12 @@ void fit(const Histogram& histogram, const TissuePriors& priors, TissueModel& mo
     constexpr double smallestSd = 6.0;
     constexpr std::array<double, tissueCount> largestSd = {60.0, 60.0, 60.0, 250.0};
     double background = 0.1;
-    const double uniform = 1.0 / binCount;
+    const double uniform = 1.0 / huCount;
     std::array<double, tissueCount> previous{};
     for (int iteration = 0; iteration < 200; ++iteration) {
         std::array<double, tissueCount> mass{}, sum{}, square{};
         double total = 0.0, backgroundMass = 0.0;
-        for (int bin = 0; bin < binCount; ++bin) {
+        for (int bin = 0; bin < huCount; ++bin) {
             if (histogram[bin] == 0.0) continue;
             const double hu = lowestHu + bin;
             std::array<double, tissueCount> share;

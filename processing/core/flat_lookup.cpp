@@ -12,10 +12,6 @@
 namespace haustra {
 namespace {
 
-double cross(glm::dvec2 a, glm::dvec2 b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 /// x modulo 1, in [0, 1).
 double wrapped(double x) {
     const double inside = x - std::floor(x);

@@ -14,10 +14,6 @@ struct Rising {
     }
 };
 
-double cross(glm::dvec2 a, glm::dvec2 b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 void addCrossing(const Rising& a, const Rising& b, std::vector<double>& heights) {
     if (a.high.y <= b.low.y || b.high.y <= a.low.y) return;
     const glm::dvec2 along = a.high - a.low, other = b.high - b.low;

@@ -8,6 +8,11 @@
 
 namespace haustra {
 
+/// The area of the parallelogram of a and b; positive where b is to the left of a.
+inline double cross(glm::dvec2 a, glm::dvec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+
 /// Counter-clockwise; two corners may be at one place.
 using Trapezoid = std::array<glm::dvec2, 4>;
 

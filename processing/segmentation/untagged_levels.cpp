@@ -17,7 +17,7 @@ constexpr double flatMm = 0.3, flatShare = 0.6;
 constexpr double discMm = 9.0, discShare = 0.85;      // as no floor of a lumen is flat
 constexpr double gentleSlope = 0.6;                   // of a floor that goes on
 constexpr double edgeMm = 4.0;                        // of blur between gas and what is beneath
-constexpr double beneathMm = 1.5, deepMm = 6.0;       // where the fluid's own HU shows
+constexpr double beneathMm = 1.5, deepestMm = 6.0;    // where the fluid's own HU shows
 constexpr double unlikeDown = 10.0, unlikeUp = 25.0;  // HU off soft tissue's
 
 /// Where a column of gas ends.
@@ -79,7 +79,7 @@ private:
         floor.heightMm = down_.sign * stepMm_ * gas[down_.axis] + crossedMm;
         double sum = 0.0;
         for (int step = int(std::ceil((crossedMm + beneathMm) / stepMm_));
-             step * stepMm_ <= crossedMm + deepMm; ++step) {
+             step * stepMm_ <= crossedMm + deepestMm; ++step) {
             v = gas, v[down_.axis] += step * down_.sign;
             if (!grid.contains(v) || hu_.at(v) > taggedAboveHu_) break;
             sum += hu_.at(v), ++floor.samples;

@@ -12,9 +12,10 @@ namespace {
 constexpr double coarsestMm = 0.8;
 constexpr double aroundMm = 60.0, alongMm = 80.0;
 
-constexpr auto outside = std::uint8_t(LumenLabel::outside), air = std::uint8_t(LumenLabel::air),
-               tagged = std::uint8_t(LumenLabel::tagged),
-               untagged = std::uint8_t(LumenLabel::untagged);
+constexpr auto outsideCode = std::uint8_t(LumenLabel::outside),
+               airCode = std::uint8_t(LumenLabel::air),
+               taggedCode = std::uint8_t(LumenLabel::tagged),
+               untaggedCode = std::uint8_t(LumenLabel::untagged);
 
 }  // namespace
 
@@ -131,7 +132,8 @@ Volume<std::uint8_t> atFullResolution(const Volume<std::uint8_t>& labels,
     Volume<std::uint8_t> fine(grid);
     const auto out = fine.writable();
     const auto isWrong = [&](std::size_t n) {
-        return out[n] == air ? hu[n] >= airBelowHu : out[n] == outside && hu[n] < airBelowHu;
+        return out[n] == airCode ? hu[n] >= airBelowHu
+                                 : out[n] == outsideCode && hu[n] < airBelowHu;
     };
     parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
@@ -159,7 +161,9 @@ Volume<std::uint8_t> atFullResolution(const Volume<std::uint8_t>& labels,
             for (std::size_t n = begin; n < end; ++n) {
                 if (!isWrong(n)) continue;
                 const std::uint8_t label = out[n];
-                if (touches(n, [&](std::uint8_t l) { return label == air ? l != air : l == air; }))
+                if (touches(n, [&](std::uint8_t l) {
+                        return label == airCode ? l != airCode : l == airCode;
+                    }))
                     slices[k].push_back(std::uint32_t(n));
             }
         }
@@ -173,23 +177,23 @@ Volume<std::uint8_t> atFullResolution(const Volume<std::uint8_t>& labels,
         for (const std::uint32_t n : front) {
             const glm::ivec3 v = grid.voxelAt(n);
             const std::uint8_t was = out[n];
-            if (was != air && was != outside) continue;
-            if (was == air && touches(n, [](std::uint8_t l) { return l == tagged; })) {
-                out[n] = tagged;
+            if (was != airCode && was != outsideCode) continue;
+            if (was == airCode && touches(n, [](std::uint8_t l) { return l == taggedCode; })) {
+                out[n] = taggedCode;
                 continue;
             }
-            if (was == air && touches(n, [](std::uint8_t l) { return l == untagged; })) {
-                out[n] = untagged;
+            if (was == airCode && touches(n, [](std::uint8_t l) { return l == untaggedCode; })) {
+                out[n] = untaggedCode;
                 continue;
             }
-            if (was == outside && (isBarred(v) || touches(n, [](std::uint8_t l) {
-                                       return l != air && l != outside;
-                                   })))
+            if (was == outsideCode && (isBarred(v) || touches(n, [](std::uint8_t l) {
+                                           return l != airCode && l != outsideCode;
+                                       })))
                 continue;
             const bool interior = glm::all(glm::greaterThan(v, glm::ivec3(0))) &&
                                   glm::all(glm::lessThan(v, grid.size - 1));
             if (!interior || !isSimple(labelledAround(fine, v))) continue;
-            out[n] = was == air ? outside : air;
+            out[n] = was == airCode ? outsideCode : airCode;
             visitFaces(grid, n, [&](std::size_t m, int) {
                 if (out[m] == was && isWrong(m)) next.push_back(std::uint32_t(m));
             });
