@@ -9,6 +9,7 @@ void main() {
     vec2 low = vec2(tile) * side;
     Ray axis = rayThrough(low + 0.5 * side);
     vec2 inside = insideRange(axis);
+    Blocks blocks = blocksOf(axis);
     vec3 step = axis.step * u.blocksPerUnit;
     // How fast the rays at the tile's corners leave the axis, in blocks a step; of an orthographic
     // lens, how far they are from it. Directions between corners stay within this but for their
@@ -31,9 +32,9 @@ void main() {
     float margin = inside.x > 0.0 || leastCosine < 0.9 ? 0.0 : 1.0;
     while (margin > 0.0 && n < inside.y) {
         vec3 position = axis.origin + n * axis.step;
-        ivec3 block = blockAt(position);
+        ivec3 block = blockAt(blocks, position);
         float distance = float(texelFetch(leapDistance, block, 0).r);
-        vec3 inBlock = blockCoordinate(position) - vec3(block);
+        vec3 inBlock = blockCoordinate(blocks, position) - vec3(block);
         vec3 room = min(inBlock + (distance - 1.0), distance - inBlock);
         float steps = floor((min(room.x, min(room.y, room.z)) - apart - n * widening) / speed - 0.001);
         margin = distance > 0.0 ? steps : 0.0;

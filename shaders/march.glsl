@@ -9,17 +9,17 @@
 
 // Goes on from step n to the first at which something may show, whose value it returns, or beyond
 // `end`.
-SAMPLE searched(Ray ray, vec3 inverseBlockStep, inout float n, float end) {
+SAMPLE searched(Ray ray, Blocks blocks, inout float n, float end) {
     SAMPLE stored = SAMPLE(0.0);
     bool searching;
     do {
         vec3 position = ray.origin + n * ray.step;
-        ivec3 block = blockAt(position);
+        ivec3 block = blockAt(blocks, position);
         float distance = float(texelFetch(leapDistance, block, 0).r);
         float advance = 1.0;
         searching = n <= end;
         if (distance > 0.0) {
-            advance = stepsToLeave(position, block, distance, inverseBlockStep);
+            advance = stepsToLeave(blocks, position, block, distance);
         } else {
             stored = sampleAt(position);
             searching = searching && !mayShow(stored);
@@ -36,10 +36,10 @@ SAMPLE searched(Ray ray, vec3 inverseBlockStep, inout float n, float end) {
 // that is x, the greatest value, until finished() makes its colour.
 #if COMPOSITION == EMISSION_ABSORPTION && !PRE_INTEGRATED
 vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
-    vec3 inverseBlockStep = inverseBlockStepOf(ray);
+    Blocks blocks = blocksOf(ray);
     float n = begin;
     while (n <= end && sum.a < u.terminationOpacity) {
-        SAMPLE stored = searched(ray, inverseBlockStep, n, end);
+        SAMPLE stored = searched(ray, blocks, n, end);
 #if SHADING || GRADIENT_ROWS
         vec3 normal = normalOf(gradientAt(ray.origin + n * ray.step));
 #else
@@ -59,7 +59,7 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
 // nothing: blocks that touch share voxels, so that what lies in empty ones that touch is all of one
 // invisible range of values, and a step of at most a voxel joins no others.
 vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
-    vec3 inverseBlockStep = inverseBlockStepOf(ray);
+    Blocks blocks = blocksOf(ray);
     float n = begin;
     // Of the sample before n: its value, whether that is known, and whether its block may be visible,
     // as it may where another part has looked at it.
@@ -71,7 +71,7 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
         bool searching;
         do {
             vec3 position = ray.origin + n * ray.step;
-            ivec3 block = blockAt(position);
+            ivec3 block = blockAt(blocks, position);
             float distance = float(texelFetch(leapDistance, block, 0).r);
             bool open = distance == 0.0;
             bool leaping = !(open || near);
@@ -79,7 +79,7 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
             float at = known ? n : max(n - 1.0, first);
             stored = sampleAt(ray.origin + at * ray.step);
             searching = n <= end && !(known && !leaping && mayShow(front, stored));
-            float steps = stepsToLeave(position, block, distance, inverseBlockStep);
+            float steps = stepsToLeave(blocks, position, block, distance);
             float advance = leaping ? steps : known ? 1.0 : 0.0;
             n += searching ? advance : 0.0;
             front = searching ? stored : front;
@@ -105,15 +105,15 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
 #if COMPOSITION == MAXIMUM_INTENSITY
 // The leap map lets rays leap over what lies below the first visible value.
 vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
-    vec3 inverseBlockStep = inverseBlockStepOf(ray);
+    Blocks blocks = blocksOf(ray);
     float greatest = sum.x;
     float n = begin;
     while (n <= end && greatest < u.lastVisible) {
         vec3 position = ray.origin + n * ray.step;
-        ivec3 block = blockAt(position);
+        ivec3 block = blockAt(blocks, position);
         float distance = float(texelFetch(leapDistance, block, 0).r);
         greatest = max(greatest, distance > 0.0 ? 0.0 : sampleAt(position));
-        n += distance > 0.0 ? stepsToLeave(position, block, distance, inverseBlockStep) : 1.0;
+        n += distance > 0.0 ? stepsToLeave(blocks, position, block, distance) : 1.0;
     }
     return vec4(greatest, 0.0, 0.0, 0.0);
 }
@@ -123,11 +123,11 @@ vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
 const int bisections = 8;
 
 vec4 marchOn(Ray ray, vec4 sum, float first, float begin, float end) {
-    vec3 inverseBlockStep = inverseBlockStepOf(ray);
+    Blocks blocks = blocksOf(ray);
     vec4 here = vec4(0.0);
     float n = begin;
     while (n <= end && here.a < u.firstHitOpacity) {
-        SAMPLE stored = searched(ray, inverseBlockStep, n, end);
+        SAMPLE stored = searched(ray, blocks, n, end);
         here = n <= end ? classify(stored, 0.0) : vec4(0.0);
         n += 1.0;
     }

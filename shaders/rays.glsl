@@ -46,22 +46,32 @@ vec2 insideRange(Ray ray) {
 
 // Blocks begin at voxel centres: block b spans the centres of voxels b·side … (b + 1)·side, and
 // nothing outside of these enters an interpolation inside it.
-vec3 blockCoordinate(vec3 position) { return position * u.blocksPerUnit + u.firstBlock; }
+//
+// What a ray asks of them at every step. Of uniforms these are copies: where a loop names a uniform, a
+// software device reads and checks it again in each turn.
+struct Blocks {
+    vec3 perUnit;
+    float first;
+    ivec3 last;
+    vec3 inverseStep;  // of the ray, in blocks
+};
 
-ivec3 blockAt(vec3 position) {
-    return clamp(ivec3(floor(blockCoordinate(position))), ivec3(0), u.lastBlock);
+Blocks blocksOf(Ray ray) {
+    vec3 step = mix(ray.step, vec3(1e-12), equal(ray.step, vec3(0.0)));
+    return Blocks(u.blocksPerUnit, u.firstBlock, u.lastBlock, 1.0 / (step * u.blocksPerUnit));
 }
 
-// Of a ray, for stepsToLeave.
-vec3 inverseBlockStepOf(Ray ray) {
-    return 1.0 / (mix(ray.step, vec3(1e-12), equal(ray.step, vec3(0.0))) * u.blocksPerUnit);
+vec3 blockCoordinate(Blocks blocks, vec3 position) { return position * blocks.perUnit + blocks.first; }
+
+ivec3 blockAt(Blocks blocks, vec3 position) {
+    return clamp(ivec3(floor(blockCoordinate(blocks, position))), ivec3(0), blocks.last);
 }
 
 // Steps from `position` to the first that leaves the cube of empty blocks around its block.
-float stepsToLeave(vec3 position, ivec3 block, float distance, vec3 inverseBlockStep) {
-    vec3 inBlock = blockCoordinate(position) - vec3(block);
-    vec3 toLow = (vec3(1.0 - distance) - inBlock) * inverseBlockStep;
-    vec3 toHigh = (vec3(distance) - inBlock) * inverseBlockStep;
+float stepsToLeave(Blocks blocks, vec3 position, ivec3 block, float distance) {
+    vec3 inBlock = blockCoordinate(blocks, position) - vec3(block);
+    vec3 toLow = (vec3(1.0 - distance) - inBlock) * blocks.inverseStep;
+    vec3 toHigh = (vec3(distance) - inBlock) * blocks.inverseStep;
     vec3 leave = max(toLow, toHigh);
     // A hair less, so that rounding never jumps over a sample just outside.
     return max(1.0, ceil(min(leave.x, min(leave.y, leave.z)) - 0.001));

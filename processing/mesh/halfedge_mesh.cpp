@@ -42,30 +42,35 @@ Result<HalfedgeMesh> HalfedgeMesh::of(const TriMesh& mesh) {
     made.opposite_.assign(halfedges, -1);
     made.outgoing_.resize(mesh.vertices.size());
     made.lengthMm_.resize(halfedges);
-    std::vector<int> first(mesh.vertices.size() + 1, 0), leaving(halfedges);
-    for (std::size_t h = 0; h < halfedges; ++h) {
-        made.origin_[h] = mesh.triangles[h / 3][int(h % 3)];
-        ++first[made.origin_[h] + 1];
-    }
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<int> at(first.begin(), first.end() - 1);
+    std::vector<int> firsts(mesh.vertices.size() + 1, 0), leavings(halfedges);
+    int *origin = made.origin_.data(), *first = firsts.data(), *leaving = leavings.data();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int corner = 0; corner < 3; ++corner) {
+            origin[3 * t + std::size_t(corner)] = mesh.triangles.data()[t][corner];
+            ++first[mesh.triangles.data()[t][corner] + 1];
+        }
+    std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
+    std::vector<int> ends(firsts.begin(), firsts.end() - 1);
+    int* end = ends.data();
     for (std::size_t h = 0; h < halfedges; ++h)
-        leaving[at[made.origin_[h]]++] = int(h);
+        leaving[end[origin[h]]++] = int(h);
 
     // Of the half-edges that leave the vertex at hand, the one to each neighbour.
-    std::vector<int> leads(mesh.vertices.size(), -1);
+    std::vector<int> allLeads(mesh.vertices.size(), -1);
+    int *leads = allLeads.data(), *opposite = made.opposite_.data();
+    double* lengthMm = made.lengthMm_.data();
+    const glm::dvec3* vertices = mesh.vertices.data();
     for (int v = 0; v < made.vertexCount(); ++v) {
         for (int i = first[v]; i < first[v + 1]; ++i) {
             int& to = leads[made.target(leaving[i])];
-            if (to >= 0 && made.origin(to) == v) return tangledEdge();
+            if (to >= 0 && origin[to] == v) return tangledEdge();
             to = leaving[i];
         }
         for (int i = first[v]; i < first[v + 1]; ++i) {
-            const int arriving = previous(leaving[i]), from = made.origin(arriving);
-            if (leads[from] >= 0 && made.origin(leads[from]) == v)
-                made.opposite_[arriving] = leads[from];
-            made.lengthMm_[arriving] =
-                glm::distance(mesh.vertices[std::min(v, from)], mesh.vertices[std::max(v, from)]);
+            const int arriving = previous(leaving[i]), from = origin[arriving];
+            if (leads[from] >= 0 && origin[leads[from]] == v) opposite[arriving] = leads[from];
+            lengthMm[arriving] =
+                glm::distance(vertices[std::min(v, from)], vertices[std::max(v, from)]);
         }
     }
     if (!made.findOutgoing()) return severalFans();
@@ -97,20 +102,21 @@ Result<HalfedgeMesh> HalfedgeMesh::glued(int vertexCount, const std::vector<glm:
 
 bool HalfedgeMesh::findOutgoing() {
     outgoing_.assign(outgoing_.size(), -1);
-    std::vector<int> leaving(outgoing_.size(), 0);
+    std::vector<int> leavings(outgoing_.size(), 0);
+    int *outgoingOf = outgoing_.data(), *leaving = leavings.data();
     for (int h = 0; h < halfedgeCount(); ++h) {
-        int& start = outgoing_[origin_[h]];
-        ++leaving[origin_[h]];
+        int& start = outgoingOf[origin(h)];
+        ++leaving[origin(h)];
         // At the rim the fan is walked from its clockwise end, or some of it would be missed.
-        if (start < 0 || opposite_[h] < 0) start = h;
+        if (start < 0 || opposite(h) < 0) start = h;
     }
     for (int v = 0; v < vertexCount(); ++v) {
-        if (outgoing_[v] < 0) continue;
-        int fan = 0, h = outgoing_[v];
+        if (outgoing(v) < 0) continue;
+        int fan = 0, h = outgoing(v);
         do {
             ++fan;
             h = turnLeft(h);
-        } while (h >= 0 && h != outgoing_[v]);
+        } while (h >= 0 && h != outgoing(v));
         if (fan != leaving[v]) return false;
     }
     return true;

@@ -29,16 +29,18 @@ public:
 
     int vertexCount() const { return int(outgoing_.size()); }
     int halfedgeCount() const { return int(origin_.size()); }
-    int origin(int h) const { return origin_[h]; }
-    int target(int h) const { return origin_[next(h)]; }
+    // By pointers: walks around vertices are the innermost loops of solvers, and what they ask for
+    // lies in the mesh, which is checked when it is made.
+    int origin(int h) const { return origin_.data()[h]; }
+    int target(int h) const { return origin_.data()[next(h)]; }
     /// −1 at the rim of an open mesh.
-    int opposite(int h) const { return opposite_[h]; }
-    double lengthMm(int h) const { return lengthMm_[h]; }
+    int opposite(int h) const { return opposite_.data()[h]; }
+    double lengthMm(int h) const { return lengthMm_.data()[h]; }
     /// One half-edge that leaves `v`, at the rim the one from which turning left meets all others;
     /// −1 where no triangle uses it.
-    int outgoing(int v) const { return outgoing_[v]; }
+    int outgoing(int v) const { return outgoing_.data()[v]; }
     /// The next half-edge, counter-clockwise, that leaves the origin of `h`; −1 past the rim.
-    int turnLeft(int h) const { return opposite_[previous(h)]; }
+    int turnLeft(int h) const { return opposite_.data()[previous(h)]; }
     static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
     static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
 

@@ -137,7 +137,8 @@ bool TransferTable::anyVisible(double lowHu, double highHu) const {
     const double beside = integrals.empty() ? 0.0 : 0.51, lastEntry = entries - 1;
     const int low = int(std::clamp(std::floor(entryOf(lowHu) - beside), 0.0, lastEntry));
     const int high = int(std::clamp(std::ceil(entryOf(highHu) + beside), 0.0, lastEntry));
-    return visibleBefore[std::size_t(high) + 1] > visibleBefore[std::size_t(low)];
+    const auto* before = visibleBefore.data();
+    return before[high + 1] > before[low];
 }
 
 TransferTable makeTransferTable(const Optics& optics, double stepMm) {

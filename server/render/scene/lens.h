@@ -4,6 +4,9 @@
 
 #include "core/camera.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <glm/glm.hpp>
@@ -27,6 +30,20 @@ struct LensRay {
 };
 /// Through a place of the picture, −1…1 along both sides; none where a fisheye's shows nothing:
 /// more than half a turn from its axis.
-std::optional<LensRay> lensRay(const LensFrame& frame, glm::dvec2 place);
+inline std::optional<LensRay> lensRay(const LensFrame& frame, glm::dvec2 place) {
+    const glm::dvec3 aside = place.x * frame.right + place.y * frame.down;
+    switch (frame.lens) {
+        case Lens::perspective:
+            return LensRay{glm::dvec3(0.0), glm::normalize(frame.ahead + aside)};
+        case Lens::fisheye: {
+            const double angle = glm::length(aside);
+            if (angle > std::numbers::pi) return std::nullopt;
+            return LensRay{glm::dvec3(0.0), std::cos(angle) * frame.ahead +
+                                                std::sin(angle) / std::max(angle, 1e-9) * aside};
+        }
+        default:
+            return LensRay{aside, frame.ahead};
+    }
+}
 
 }  // namespace haustra::render
