@@ -31,6 +31,7 @@ std::string actionNames() {
     std::string names = "  " + reader::scriptActionNames();
     for (std::size_t line = 0; names.size() - line > 78;) {
         const std::size_t space = names.rfind(' ', line + 78);
+        if (space <= line + 2) break;  // a name longer than a line
         names.replace(space, 1, "\n  ");
         line = space + 1;
     }

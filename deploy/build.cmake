@@ -46,16 +46,16 @@ function(haustra_program name)
     target_link_libraries(${name} PRIVATE haustra_flags ${arg_LINK})
 endfunction()
 
-# haustra_embed(output namespace function NAME|NAME_WE files…): sets `output` to a source made of the
-# calling folder's files, whose function() gives their texts by their names, with or without endings: an
+# haustra_embed(output header namespace function NAME|NAME_WE files…): sets `output` to a source made of the
+# calling folder's files, whose function(), which the header declares, gives their texts by their names, with or without endings: an
 # installed program carries them.
-function(haustra_embed output namespace function key)
+function(haustra_embed output header namespace function key)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
     set(script ${PROJECT_SOURCE_DIR}/deploy/embed_texts.cmake)
     list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
     add_custom_command(OUTPUT ${source}
         COMMAND ${CMAKE_COMMAND} -D OUTPUT=${source} -D NAMESPACE=${namespace} -D FUNCTION=${function}
-            -D KEY=${key} -D "FILES=${files}" -P ${script}
+            -D KEY=${key} -D HEADER=${header} -D "FILES=${files}" -P ${script}
         DEPENDS ${files} ${script}
         VERBATIM)
     set(${output} ${source} PARENT_SCOPE)

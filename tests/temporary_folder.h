@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -14,7 +15,8 @@ public:
     TemporaryFolder() {
         std::string name =
             (std::filesystem::temp_directory_path() / "haustra-test-XXXXXX").string();
-        if (::mkdtemp(name.data())) path_ = name;
+        if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary folder " + name);
+        path_ = name;
     }
     ~TemporaryFolder() {
         std::error_code ignored;

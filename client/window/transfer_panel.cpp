@@ -74,7 +74,7 @@ void chooseRow(Ui& ui) {
     tooltip("HU per mm: how quickly the scan's values change there");
     sameRow(ui, 6);
     if (ImGui::Button("+") && !optics.addRow()) ui.tell("no room for another row", true);
-    tooltip("Other colours where the scan is steeper: a row more");
+    tooltip("Other colours where the gradient is greater: a row more");
     if (optics.row() == 0) return;
     sameRow(ui, 6);
     if (ImGui::Button("−")) {

@@ -14,7 +14,7 @@
 namespace haustra {
 namespace {
 
-using Json = nlohmann::json;
+using PresetJson = nlohmann::json;
 
 constexpr std::size_t mostDescriptionBytes = 1000;
 
@@ -29,7 +29,8 @@ struct BadPreset {
 };
 
 /// Refuses what is no object, and keys that are not among `known`.
-void expectKeys(const Json& json, const char* what, std::initializer_list<const char*> known) {
+void expectKeys(const PresetJson& json, const char* what,
+                std::initializer_list<const char*> known) {
     if (!json.is_object()) throw BadPreset{std::string(what) + " is no object"};
     for (const auto& item : json.items()) {
         const std::string& key = item.key();
@@ -38,14 +39,14 @@ void expectKeys(const Json& json, const char* what, std::initializer_list<const 
     }
 }
 
-double numberIn(const Json& json, const char* key) {
+double numberIn(const PresetJson& json, const char* key) {
     const auto found = json.find(key);
     if (found == json.end() || !found->is_number())
         throw BadPreset{std::string("\"") + key + "\" is missing or no number"};
     return found->get<double>();
 }
 
-bool flagIn(const Json& json, const char* key, bool otherwise) {
+bool flagIn(const PresetJson& json, const char* key, bool otherwise) {
     const auto found = json.find(key);
     if (found == json.end()) return otherwise;
     if (!found->is_boolean())
@@ -53,23 +54,24 @@ bool flagIn(const Json& json, const char* key, bool otherwise) {
     return found->get<bool>();
 }
 
-std::string textIn(const Json& json, const char* key) {
+std::string textIn(const PresetJson& json, const char* key) {
     const auto found = json.find(key);
     if (found == json.end()) return {};
     if (!found->is_string()) throw BadPreset{std::string("\"") + key + "\" is no text"};
     return found->get<std::string>();
 }
 
-std::vector<TransferFunctionPoint> pointsIn(const Json& json) {
+std::vector<TransferFunctionPoint> pointsIn(const PresetJson& json) {
     const auto found = json.find("points");
     if (found == json.end() || !found->is_array())
         throw BadPreset{"\"points\" is missing or no array"};
     std::vector<TransferFunctionPoint> points;
-    for (const Json& point : *found) {
+    for (const PresetJson& point : *found) {
         expectKeys(point, "a point", {"hu", "color", "opacity"});
         const auto color = point.find("color");
         if (color == point.end() || !color->is_array() || color->size() != 3 ||
-            !std::all_of(color->begin(), color->end(), [](const Json& c) { return c.is_number(); }))
+            !std::all_of(color->begin(), color->end(),
+                         [](const PresetJson& c) { return c.is_number(); }))
             throw BadPreset{"\"color\" of a point is not three numbers"};
         points.push_back(
             {numberIn(point, "hu"),
@@ -79,14 +81,14 @@ std::vector<TransferFunctionPoint> pointsIn(const Json& json) {
     return points;
 }
 
-Composition compositionIn(const Json& json) {
+Composition compositionIn(const PresetJson& json) {
     const std::string text = textIn(json, "composition");
     if (text.empty()) return Optics{}.composition;
     if (const auto composition = compositionFromString(text)) return *composition;
     throw BadPreset{"\"composition\" is none of emission-absorption, maximum-intensity, first-hit"};
 }
 
-OpticsPreset presetIn(const Json& json) {
+OpticsPreset presetIn(const PresetJson& json) {
     expectKeys(json, "the preset",
                {"name", "description", "composition", "preIntegrated", "shading", "light", "points",
                 "rows"});
@@ -109,7 +111,7 @@ OpticsPreset presetIn(const Json& json) {
     optics.transferFunction.points = pointsIn(json);
     if (const auto rows = json.find("rows"); rows != json.end()) {
         if (!rows->is_array()) throw BadPreset{"\"rows\" is no array"};
-        for (const Json& row : *rows) {
+        for (const PresetJson& row : *rows) {
             expectKeys(row, "a row", {"gradientHuPerMm", "points"});
             optics.transferFunction.rows.push_back(
                 {numberIn(row, "gradientHuPerMm"), pointsIn(row)});
@@ -118,8 +120,8 @@ OpticsPreset presetIn(const Json& json) {
     return preset;
 }
 
-Json pointsJson(const std::vector<TransferFunctionPoint>& points) {
-    Json json = Json::array();
+PresetJson pointsJson(const std::vector<TransferFunctionPoint>& points) {
+    PresetJson json = PresetJson::array();
     for (const TransferFunctionPoint& point : points)
         json.push_back({{"hu", point.hu},
                         {"color", {point.color.r, point.color.g, point.color.b}},
@@ -151,13 +153,13 @@ std::optional<Composition> compositionFromString(std::string_view text) {
 
 Result<OpticsPreset> parsePreset(std::string_view json, const std::string& place) {
     try {
-        OpticsPreset preset = presetIn(Json::parse(json));
+        OpticsPreset preset = presetIn(PresetJson::parse(json));
         if (auto sound = checkOptics(preset.optics); !sound)
             return fail(ErrorKind::badInput, describe(sound.error()), place);
         return preset;
     } catch (const BadPreset& bad) {
         return fail(ErrorKind::badInput, bad.what, place);
-    } catch (const Json::exception&) {
+    } catch (const PresetJson::exception&) {
         return fail(ErrorKind::badInput, "this is no sound JSON", place);
     }
 }
@@ -175,7 +177,7 @@ std::string presetText(const OpticsPreset& preset) {
                      {"shininess", optics.light.shininess}};
     json["points"] = pointsJson(optics.transferFunction.points);
     if (!optics.transferFunction.rows.empty()) {
-        Json rows = Json::array();
+        PresetJson rows = PresetJson::array();
         for (const GradientRow& row : optics.transferFunction.rows)
             rows.push_back(
                 {{"gradientHuPerMm", row.gradientHuPerMm}, {"points", pointsJson(row.points)}});

@@ -6,7 +6,6 @@
 #include <numeric>
 
 namespace haustra {
-namespace {}  // namespace
 
 MeshTopology meshTopology(const TriMesh& mesh) {
     struct Edge {

@@ -29,8 +29,9 @@ public:
 
     int vertexCount() const { return int(outgoing_.size()); }
     int halfedgeCount() const { return int(origin_.size()); }
-    // By pointers: walks around vertices are the innermost loops of solvers, and what they ask for
-    // lies in the mesh, which is checked when it is made.
+    // These take half-edges and vertices of the mesh alone, never the −1 that some of them return:
+    // loops around a vertex that know no rim are for closed meshes. By pointers, since such walks
+    // are the innermost loops of solvers.
     int origin(int h) const { return origin_.data()[h]; }
     int target(int h) const { return origin_.data()[next(h)]; }
     /// −1 at the rim of an open mesh.

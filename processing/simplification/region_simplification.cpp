@@ -13,10 +13,10 @@
 namespace haustra::simplification {
 namespace {
 
-constexpr float guardMm = 1.0f;         // about a contact
-constexpr int guardedAttempts = 4;      // then the guard is everywhere
-constexpr float everywhereMm = 2.0e6f;  // from the middle, and beyond all that simplify() takes
-constexpr double wantedAngleDegrees = 20.0;  // sharper corners are bettered
+constexpr float guardMm = 1.0f;                          // about a contact
+constexpr int guardedAttempts = 4;                       // then the guard is everywhere
+constexpr float everywhereMm = float(2.0 * farthestMm);  // from the middle
+constexpr double wantedAngleDegrees = 20.0;              // sharper corners are bettered
 constexpr int maxValence = 12;
 constexpr double leastNormalCosine = 0.3;  // between a triangle and what takes its place
 

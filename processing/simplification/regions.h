@@ -10,6 +10,9 @@
 
 namespace haustra::simplification {
 
+/// simplify() takes no vertex farther from the origin along any axis.
+inline constexpr double farthestMm = 1e6;
+
 struct Box {
     glm::dvec3 low, high;
 };

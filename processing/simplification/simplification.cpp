@@ -13,8 +13,6 @@
 namespace haustra::simplification {
 namespace {
 
-constexpr double farthestMm = 1e6;
-
 std::vector<Quadric> inputQuadrics(const CornerMesh& mesh) {
     std::vector<Quadric> quadric(mesh.position.size());
     for (int t = 0; t < mesh.triangleCount(); ++t) {

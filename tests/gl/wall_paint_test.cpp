@@ -2,6 +2,7 @@
 #include "cli/wall_paint.h"
 
 #include "pictures/picture_file.h"
+#include "temporary_folder.h"
 #include "wall_scene.h"
 
 #include <filesystem>
@@ -201,7 +202,8 @@ TEST_F(WallOfTube, RefusesPaintThatFitsNothing) {
 }
 
 TEST(WallPaintFile, IsAPictureOfTheStripWithTheCecumUp) {
-    const auto file = std::filesystem::temp_directory_path() / "haustra-wall-paint-test.png";
+    const tests::TemporaryFolder folder;
+    const auto file = folder / "paint.png";
     Image picture{4, 2, std::vector<std::uint8_t>(24, 0)};
     picture.rgb[0] = 255;          // the top left pixel is red
     picture.rgb[3 * 7 + 1] = 255;  // the bottom right one green
@@ -209,7 +211,6 @@ TEST(WallPaintFile, IsAPictureOfTheStripWithTheCecumUp) {
     const auto paint = cli::readWallPaint(file, 3.0);
     std::filesystem::resize_file(file, 40);
     const auto broken = cli::readWallPaint(file, 3.0);
-    std::filesystem::remove(file);
     ASSERT_TRUE(paint);
     EXPECT_EQ((*paint)->at({0.99, 2.9}), glm::u8vec4(255, 0, 0, 255));
     EXPECT_EQ((*paint)->at({-0.01, 1.6}), glm::u8vec4(255, 0, 0, 255));

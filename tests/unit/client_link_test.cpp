@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace haustra::link {
 namespace {

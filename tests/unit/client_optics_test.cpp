@@ -9,7 +9,6 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace haustra::reader {
 namespace {

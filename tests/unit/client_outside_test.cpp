@@ -2,6 +2,7 @@
 #include "reader/flight.h"
 #include "reader/overview_map.h"
 #include "script/script.h"
+#include "temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace haustra::reader {
 namespace {
@@ -128,8 +128,8 @@ TEST(Script, ReadsTheActionsOfTheViewsFromOutside) {
 }
 
 TEST(Script, OpticsAreGivenWholeOrByAPresetsFile) {
-    const auto file = std::filesystem::temp_directory_path() /
-                      ("haustra-look-" + std::to_string(::getpid()) + ".json");
+    const tests::TemporaryFolder folder;
+    const auto file = folder / "look.json";
     const std::string own = R"("composition":"first-hit","shading":false,
         "light":{"halfDepthMm":9,"ambient":0.1,"diffuse":1,"specular":0.3,"shininess":4},
         "points":[{"hu":-1,"color":[1,0,0],"opacity":0},{"hu":1,"color":[0,1,0],"opacity":1}],

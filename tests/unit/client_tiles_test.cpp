@@ -1,5 +1,6 @@
 // Tiles: decoding, assembly in any order, hostile bytes, PNG files.
 #include "picture_files.h"
+#include "temporary_folder.h"
 #include "tiles/picture_assembler.h"
 #include "tiles/png_file.h"
 
@@ -227,8 +228,8 @@ TEST(TileDecoder, SurvivesAnyBytes) {
 
 TEST(PngFile, ReadsBackThePixelsAndRefusesAFolderThatIsNotThere) {
     const Bytes rgb = smoothPicture(37, 21, 0.3);
-    const auto file = std::filesystem::temp_directory_path() /
-                      ("haustra-png-" + std::to_string(::getpid()) + ".png");
+    const tests::TemporaryFolder folder;
+    const auto file = folder / "picture.png";
     ASSERT_TRUE(writePng(file, rgb, 37, 21));
     const Image read = tests::readPicture(file);
     EXPECT_EQ(read.width, 37);
@@ -247,7 +248,6 @@ TEST(PngFile, ReadsBackThePixelsAndRefusesAFolderThatIsNotThere) {
     EXPECT_FALSE(writePng(file, rgb, 37, 21));
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
     EXPECT_EQ(tests::readPicture(file).rgb, rgb);
-    std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace haustra::mesh {
 namespace {

@@ -10,7 +10,6 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 using haustra::ErrorKind;
 using haustra::TriMesh;

@@ -2,6 +2,7 @@
 #include "organs/organ_profile.h"
 
 #include "organs/built_in_profiles.h"
+#include "temporary_folder.h"
 
 #include <filesystem>
 #include <fstream>
@@ -10,7 +11,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace haustra::organs {
 namespace {
@@ -124,11 +124,10 @@ TEST(OrganProfile, WhatIsNoProfileAtAllIsRefused) {
 }
 
 TEST(OrganProfile, AFileIsReadAsTheBuiltInTextIs) {
-    const std::filesystem::path file =
-        std::filesystem::temp_directory_path() / ("haustra-organ-" + std::to_string(::getpid()));
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "organ";
     std::ofstream(file) << builtInProfiles().at("bladder");
     const auto profile = readProfile(file);
-    std::filesystem::remove(file);
     ASSERT_TRUE(profile) << describe(profile.error());
     EXPECT_EQ(segmentationOptions(*profile), segmentationOptions(readProfile("bladder").value()));
 }

@@ -19,7 +19,8 @@
 
 #ifdef __SANITIZE_ADDRESS__
 // OpenImageIO's PNG reader leaks a string where libpng leaves it by longjmp, at a damaged file.
-// Whole stacks are needed to tell such a leak from one of ours.
+// Leaks are passed over that have the library on their stack, whole stacks being needed to see it
+// there.
 extern "C" const char* __asan_default_options() {
     return "fast_unwind_on_malloc=0";
 }

@@ -29,6 +29,22 @@ TEST(WorkerFaults, AQueueGoesOn) {
     EXPECT_EQ(served, (std::vector<int>{0, 2, 4}));
 }
 
+TEST(Worker, ServesAllThatWaitsBeforeItEnds) {
+    std::atomic<int> sum = 0;
+    {
+        Worker<int> worker;
+        for (int n = 1; n <= 1000; ++n)
+            worker.push(n);
+        for (int thread = 0; thread < 3; ++thread)
+            worker.start("test", 7, [&](auto& taken) {
+                for (const int n : taken)
+                    sum += n;
+            });
+        worker.push(1001);
+    }
+    EXPECT_EQ(sum, 1001 * 1002 / 2);
+}
+
 TEST(WorkerFaults, GuardedWorkFailsWithWhatWasThrown) {
     const auto thrown = guarded([]() -> Result<int> { throw std::runtime_error("it broke"); });
     ASSERT_FALSE(thrown);

@@ -21,7 +21,7 @@ struct BlockRanges {
     std::vector<std::int16_t> lowHu, highHu;
 };
 
-/// Of blocks of `side` voxels. O(voxels), each read about once and in order, so that a
+/// Of blocks of `side` voxels. O(voxels), each read (1 + 1/side)² times and in order, so that a
 /// memory-mapped volume streams through memory; the same for any number of threads (≤ 0: all
 /// cores). At least one voxel.
 BlockRanges blockRanges(const Volume<std::int16_t>& volume, int side, int threads);
