@@ -167,6 +167,43 @@ private:
         return order;
     }
 
+    /// Where basins meet at a voxel: another one than its own among its neighbours that come before
+    /// it (its own where there is none), and whether there is but one other.
+    struct Meeting {
+        std::int32_t other;
+        bool ofTwo;
+    };
+    Meeting meetingAt(std::size_t n, glm::ivec3 v) const {
+        Meeting meeting{label_[n], true};
+        visitFaces(grid_, n, v, [&](std::size_t m, int) {
+            if (label_[m] < 0 || label_[m] == label_[n] || label_[m] == meeting.other ||
+                !isBefore(m, n))
+                return;
+            meeting.ofTwo = meeting.ofTwo && meeting.other == label_[n];
+            meeting.other = label_[m];
+        });
+        return meeting;
+    }
+
+    /// saddles() of a slab of slices.
+    std::vector<std::uint32_t> saddlesOf(std::size_t firstSlice, std::size_t endSlice) const {
+        std::vector<std::uint32_t> found;
+        std::unordered_map<std::uint64_t, float> highestMm;  // by both basins
+        visitSlices(grid_, firstSlice, endSlice, [&](std::size_t n, glm::ivec3 v) {
+            if (label_[n] < 0 || uphill_[n] == peak) return;
+            const auto [other, ofTwo] = meetingAt(n, v);
+            if (other == label_[n]) return;
+            if (ofTwo) {
+                const auto [low, high] = std::minmax(label_[n], other);
+                float& most = highestMm[(std::uint64_t(low) << 32) | std::uint64_t(high)];
+                if (distanceMm_[n] <= most) return;
+                most = distanceMm_[n];
+            }
+            found.push_back(std::uint32_t(n));
+        });
+        return found;
+    }
+
     /// Voxels where basins meet, ascending. Of those between the same two only the ones that are
     /// higher than any before them in their slab: what two basins do not merge at they do not
     /// merge at further down either, as peaks only become higher.
@@ -175,31 +212,8 @@ private:
         const std::size_t depth = std::size_t(grid_.size.z);
         std::vector<std::vector<std::uint32_t>> slabs((depth + slabDepth - 1) / slabDepth);
         parallelFor(slabs.size(), 1, threads_, [&](std::size_t first, std::size_t last) {
-            for (std::size_t s = first; s < last; ++s) {
-                std::unordered_map<std::uint64_t, float> highestMm;  // by both basins
-                visitSlices(grid_, s * slabDepth, std::min(depth, (s + 1) * slabDepth),
-                            [&](std::size_t n, glm::ivec3 v) {
-                                if (label_[n] < 0 || uphill_[n] == peak) return;
-                                std::int32_t other = label_[n];
-                                bool ofTwo = true;
-                                visitFaces(grid_, n, v, [&](std::size_t m, int) {
-                                    if (label_[m] < 0 || label_[m] == label_[n] ||
-                                        label_[m] == other || !isBefore(m, n))
-                                        return;
-                                    ofTwo = ofTwo && other == label_[n];
-                                    other = label_[m];
-                                });
-                                if (other == label_[n]) return;
-                                if (ofTwo) {
-                                    const auto [low, high] = std::minmax(label_[n], other);
-                                    float& most =
-                                        highestMm[(std::uint64_t(low) << 32) | std::uint64_t(high)];
-                                    if (distanceMm_[n] <= most) return;
-                                    most = distanceMm_[n];
-                                }
-                                slabs[s].push_back(std::uint32_t(n));
-                            });
-            }
+            for (std::size_t s = first; s < last; ++s)
+                slabs[s] = saddlesOf(s * slabDepth, std::min(depth, (s + 1) * slabDepth));
         });
         std::vector<std::uint32_t> all;
         for (const auto& slab : slabs)
