@@ -10,7 +10,7 @@ namespace haustra::mesh {
 
 /// Half-edge h = 3·triangle + corner goes from that corner to the triangle's next one, and has the
 /// triangle on its left. Immutable; holds its own copy of the connectivity. OpenMesh is for meshes
-/// whose edges collapse; METHODS §7.1 "Half-edges and mesh files" sets the two side by side.
+/// whose topology changes; METHODS §7.1 "Half-edges and mesh files" sets the two side by side.
 class HalfedgeMesh {
 public:
     /// Open or closed. Fails (badInput) where an index is out of range, a triangle repeats a

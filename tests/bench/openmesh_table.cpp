@@ -1,17 +1,26 @@
-// OpenMesh beside what this project keeps of its own: the readers of mesh files and the half-edges
-// that solvers walk on. What METHODS §7.1 "Half-edges and mesh files" says of either is printed
-// here. Arguments: readers FILE… | hostile | halfedges
+// OpenMesh beside what this project keeps of its own: the readers of mesh files, the half-edges
+// that solvers walk on, and the arrays that cut handles open. What METHODS §7.1 "Half-edges and
+// mesh files" says of them is printed here. Arguments: readers FILE… | hostile | halfedges | cuts
+// FILE…
+#include "handles/covering_space.h"
+#include "handles/hole_fill.h"
+#include "handles/loop_coarsening.h"
+#include "handles/loop_cut.h"
+#include "handles/loop_homology.h"
+#include "handles/loop_search.h"
 #include "mesh/halfedge_mesh.h"
 #include "mesh/mesh_file.h"
 #include "process_cost.h"
 #include "stopwatch.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <numbers>
 #include <random>
 #include <span>
@@ -293,6 +302,18 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
 };
 using OpenTriMesh = OpenMesh::TriMesh_ArrayKernelT<DoubleTraits>;
 
+template <class Open>
+Open openMeshOf(const TriMesh& mesh) {
+    Open open;
+    open.reserve(mesh.vertices.size(), 3 * mesh.vertices.size(), mesh.triangles.size());
+    for (const glm::dvec3& p : mesh.vertices)
+        open.add_vertex({p.x, p.y, p.z});
+    for (const glm::ivec3& t : mesh.triangles)
+        open.add_face(OpenMesh::VertexHandle(t.x), OpenMesh::VertexHandle(t.y),
+                      OpenMesh::VertexHandle(t.z));
+    return open;
+}
+
 struct Walk {
     bench::Cost build;
     double aroundMs = 0.0, sumMm = 0.0, grewMiB = 0.0;
@@ -324,13 +345,7 @@ Walk walkOurs(const TriMesh& mesh) {
 Walk walkOpenMesh(const TriMesh& mesh) {
     Walk walk;
     const bench::Stopwatch watch;
-    OpenTriMesh open;
-    open.reserve(mesh.vertices.size(), 3 * mesh.vertices.size(), mesh.triangles.size());
-    for (const glm::dvec3& p : mesh.vertices)
-        open.add_vertex({p.x, p.y, p.z});
-    for (const glm::ivec3& t : mesh.triangles)
-        open.add_face(OpenMesh::VertexHandle(t.x), OpenMesh::VertexHandle(t.y),
-                      OpenMesh::VertexHandle(t.z));
+    const auto open = openMeshOf<OpenTriMesh>(mesh);
     walk.build = watch.read();
     const double before = bench::cpuMilliseconds();
     for (int round = 0; round < rounds; ++round) {
@@ -358,6 +373,237 @@ void tellHalfedges() {
     }
 }
 
+// -------------------------------------------------------------------------------------------
+// cuts
+
+struct DeletableTraits : OpenMesh::DefaultTraits {
+    using Point = OpenMesh::Vec3d;
+    using Normal = OpenMesh::Vec3d;
+    VertexAttributes(OpenMesh::Attributes::Status);
+    HalfedgeAttributes(OpenMesh::Attributes::Status);
+    EdgeAttributes(OpenMesh::Attributes::Status);
+    FaceAttributes(OpenMesh::Attributes::Status);
+};
+using DeletableMesh = OpenMesh::TriMesh_ArrayKernelT<DeletableTraits>;
+using Point = OpenMesh::Vec3d;
+using Vertex = OpenMesh::VertexHandle;
+using Halfedge = OpenMesh::HalfedgeHandle;
+using Face = OpenMesh::FaceHandle;
+
+Point pointOf(const glm::dvec3& p) {
+    return {p.x, p.y, p.z};
+}
+
+glm::dvec3 placeOf(const Point& p) {
+    return {p[0], p[1], p[2]};
+}
+
+/// What handles::cutAlong does, in place: the faces on the loop's right are taken out and put in
+/// again on vertices of their own, and both holes are spanned. How many faces OpenMesh did not
+/// take: 0 where all is well.
+int cutAlong(DeletableMesh& open, const mesh::HalfedgeMesh& halves, const mesh::Loop& loop) {
+    const std::size_t n = loop.halfedges.size();
+    constexpr double lipShare = 0.2;
+
+    // The half-edges round each vertex of the loop on one of its sides, counter-clockwise.
+    std::vector<Halfedge> along;
+    for (const int h : loop.halfedges)
+        along.push_back(open.find_halfedge(Vertex(halves.origin(h)), Vertex(halves.target(h))));
+    const auto fan = [&](std::size_t i, bool left) {
+        const Halfedge out = along[i], in = open.opposite_halfedge_handle(along[(i + n - 1) % n]);
+        std::vector<Halfedge> halfedges;
+        for (Halfedge h = left ? out : in; h != (left ? in : out);
+             h = open.ccw_rotated_halfedge_handle(h))
+            halfedges.push_back(h);
+        return halfedges;
+    };
+    const auto drawBack = [&](bool left) {
+        std::vector<Point> direction(n, Point(0.0)), moves(n);
+        std::vector<double> reach(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto halfedges = fan(i, left);
+            const Point here = open.point(open.from_vertex_handle(halfedges[0]));
+            Point towards(0.0);
+            double height = open.calc_edge_length(halfedges[0]);
+            for (const Halfedge h : halfedges) {
+                const Point b = open.point(open.to_vertex_handle(h)),
+                            c = open.point(open.to_vertex_handle(open.next_halfedge_handle(h)));
+                const Point normal = (b - here) % (c - here);
+                const double opposite = (b - c).norm();
+                towards += (0.5 * (b + c) - here).normalized() *
+                           std::atan2(normal.norm(), (b - here) | (c - here));
+                if (opposite > 0.0) height = std::min(height, normal.norm() / opposite);
+            }
+            if (towards.norm() > 0.0) direction[i] = towards.normalized();
+            reach[i] = lipShare * height;
+        }
+        for (std::size_t i = 0; i < n; ++i)
+            moves[i] =
+                direction[i] * std::min({reach[(i + n - 1) % n], reach[i], reach[(i + 1) % n]});
+        return moves;
+    };
+    const auto leftMoves = drawBack(true), rightMoves = drawBack(false);
+
+    std::vector<glm::dvec3> polygon;
+    std::vector<Vertex> leftRim, rightRim;
+    for (std::size_t i = 0; i < n; ++i) {
+        leftRim.push_back(open.from_vertex_handle(along[i]));
+        polygon.push_back(placeOf(open.point(leftRim[i])));
+    }
+    // Faces on the right, with their corners on vertices of their own.
+    std::map<Face, std::array<Vertex, 3>> rightFaces;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto halfedges = fan(i, false);
+        rightRim.push_back(open.add_vertex(pointOf(polygon[i]) + rightMoves[i]));
+        for (const Halfedge h : halfedges) {
+            const Face face = open.face_handle(h);
+            auto [held, isNew] = rightFaces.try_emplace(face);
+            if (isNew) {
+                const Halfedge first = open.halfedge_handle(face);
+                held->second = {open.from_vertex_handle(first), open.to_vertex_handle(first),
+                                open.to_vertex_handle(open.next_halfedge_handle(first))};
+            }
+            std::ranges::replace(held->second, leftRim[i], rightRim[i]);
+        }
+        open.set_point(leftRim[i], pointOf(polygon[i]) + leftMoves[i]);
+    }
+    int refused = 0;
+    const auto add = [&](Vertex a, Vertex b, Vertex c) {
+        refused += !open.add_face(a, b, c).is_valid();
+    };
+    for (const auto& [face, corners] : rightFaces)
+        open.delete_face(face, false);
+    for (const auto& [face, corners] : rightFaces)
+        add(corners[0], corners[1], corners[2]);
+
+    const handles::LoopDisc disc = handles::spanLoop(polygon);
+    const auto addDisc = [&](const std::vector<Vertex>& rim, const std::vector<Point>& moves,
+                             bool reversed) {
+        std::vector<glm::dvec3> corners;
+        for (const Point& move : moves)
+            corners.push_back(placeOf(move));
+        const auto inside = handles::extendInside(disc, corners);
+        std::vector<Vertex> vertices = rim;
+        for (std::size_t i = 0; i < inside.size(); ++i)
+            vertices.push_back(open.add_vertex(pointOf(disc.interior[i] + inside[i])));
+        for (glm::ivec3 t : disc.triangles) {
+            if (reversed) std::swap(t.y, t.z);
+            add(vertices[std::size_t(t.x)], vertices[std::size_t(t.y)], vertices[std::size_t(t.z)]);
+        }
+    };
+    addDisc(leftRim, leftMoves, true);
+    addDisc(rightRim, rightMoves, false);
+    return refused;
+}
+
+/// Closes the gaps that deletions left in the arrays, and reads the mesh out.
+TriMesh collected(DeletableMesh& open) {
+    open.garbage_collection();
+    TriMesh mesh;
+    mesh.vertices.reserve(open.n_vertices());
+    mesh.triangles.reserve(open.n_faces());
+    for (const auto v : open.vertices())
+        mesh.vertices.push_back(placeOf(open.point(v)));
+    for (const auto face : open.faces()) {
+        glm::ivec3 corners(0);
+        int c = 0;
+        for (const auto v : face.vertices())
+            corners[c++] = v.idx();
+        mesh.triangles.push_back(corners);
+    }
+    return mesh;
+}
+
+double millisecondsOf(const auto& work) {
+    const double before = bench::cpuMilliseconds();
+    work();
+    return bench::cpuMilliseconds() - before;
+}
+
+/// The places of its corners, the least first.
+using Placed = std::array<std::array<double, 3>, 3>;
+
+Placed placed(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    Placed corners{{{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}}};
+    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    return corners;
+}
+
+std::vector<Placed> placedTriangles(const TriMesh& mesh) {
+    std::vector<Placed> triangles;
+    for (const glm::ivec3& t : mesh.triangles)
+        triangles.push_back(placed(mesh.vertices[std::size_t(t.x)], mesh.vertices[std::size_t(t.y)],
+                                   mesh.vertices[std::size_t(t.z)]));
+    return triangles;
+}
+
+/// Of two lists of triangles, how many stand at the same place in both, and how far the corners of
+/// the sorted lists are apart at most: not a number where they are not equally long.
+std::pair<std::size_t, double> difference(std::vector<Placed> a, std::vector<Placed> b) {
+    std::size_t same = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        same += a[i] == b[i];
+    if (a.size() != b.size()) return {same, std::nan("")};
+    std::ranges::sort(a);
+    std::ranges::sort(b);
+    double most = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t k = 0; k < 3; ++k)
+                most = std::max(most, std::abs(a[i][c][k] - b[i][c][k]));
+    return {same, most};
+}
+
+/// The shortest loop round a handle; without half-edges on a sphere.
+mesh::Loop handleLoop(const TriMesh& mesh, const mesh::HalfedgeMesh& halves) {
+    const auto coarse = handles::coarsen(mesh, 3000);
+    const auto coarseHalves = mesh::HalfedgeMesh::ofClosed(coarse.mesh);
+    if (!coarseHalves) return {};
+    std::vector<int> near;
+    for (const mesh::Loop& loop :
+         handles::coveringLoops(*coarseHalves, handles::homologyMarks(*coarseHalves), 1.5))
+        near.push_back(
+            coarse.fineVertex[std::size_t(coarseHalves->origin(loop.halfedges.front()))]);
+    return handles::shortestLoop(halves, handles::homologyMarks(halves), near);
+}
+
+void tellLoopCut(const char* name, const TriMesh& mesh, const mesh::HalfedgeMesh& halves) {
+    const mesh::Loop loop = handleLoop(mesh, halves);
+    if (loop.halfedges.empty()) return;
+    constexpr int times = 9;
+    std::vector<double> ours, build, cut, collect;
+    TriMesh open;
+    int refused = 0;
+    for (int i = 0; i < times; ++i) {
+        ours.push_back(millisecondsOf([&] { handles::cutAlong(mesh, halves, loop); }));
+        DeletableMesh deletable;
+        build.push_back(millisecondsOf([&] { deletable = openMeshOf<DeletableMesh>(mesh); }));
+        cut.push_back(millisecondsOf([&] { refused = cutAlong(deletable, halves, loop); }));
+        collect.push_back(millisecondsOf([&] { open = collected(deletable); }));
+    }
+    const TriMesh array = handles::cutAlong(mesh, halves, loop).mesh;
+    const auto [same, mostMm] = difference(placedTriangles(array), placedTriangles(open));
+    std::printf(
+        "%-28s loop of %zu edges, %zu triangles: arrays %.2f ms; OpenMesh build %.2f, cut "
+        "%.2f, read out %.2f ms; %d faces refused, %zu of %zu at the same place in the "
+        "list, sorted off by %.3g mm; characteristic %ld and %ld\n",
+        name, loop.halfedges.size(), mesh.triangles.size(), bench::median(ours),
+        bench::median(build), bench::median(cut), bench::median(collect), refused, same,
+        array.triangles.size(), mostMm, meshTopology(array).eulerCharacteristic,
+        meshTopology(open).eulerCharacteristic);
+}
+
+void tellCuts(std::span<char*> files) {
+    const auto tell = [](const char* name, const TriMesh& mesh) {
+        const auto halves = mesh::HalfedgeMesh::ofClosed(mesh);
+        if (!halves) return void(std::printf("%-28s is not closed\n", name));
+        tellLoopCut(name, mesh, *halves);
+    };
+    tell("torus", torus(500, 1000));
+    for (const char* file : files)
+        tell(fs::path(file).filename().c_str(), readByOurs(file));
+}
+
 }  // namespace
 }  // namespace haustra
 
@@ -369,7 +615,11 @@ int main(int count, char** arguments) {
         haustra::tellHostile();
     else if (task == "halfedges")
         haustra::tellHalfedges();
+    else if (task == "cuts")
+        haustra::tellCuts({arguments + 2, arguments + count});
     else
-        return std::fprintf(stderr, "usage: openmesh_table readers FILE… | hostile | halfedges\n"),
+        return std::fprintf(stderr,
+                            "usage: openmesh_table readers FILE… | hostile | halfedges | "
+                            "cuts FILE…\n"),
                2;
 }

@@ -7,6 +7,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Core/Utils/PropertyManager.hh>
 
 namespace haustra::flatten {
 namespace {
@@ -27,6 +31,15 @@ double leastAngle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     return least;
 }
 
+struct DeletableTraits : OpenMesh::DefaultTraits {
+    VertexAttributes(OpenMesh::Attributes::Status);
+    HalfedgeAttributes(OpenMesh::Attributes::None);
+    EdgeAttributes(OpenMesh::Attributes::Status);
+    FaceAttributes(OpenMesh::Attributes::Status);
+};
+
+/// Clips triangle by triangle; what is left hangs together as half-edges, without places of their
+/// own: face n of `mesh_` is triangle n of `made_`.
 class Cutter {
 public:
     Cutter(const TriMesh& closed, const TipFunction& function, double level)
@@ -46,12 +59,17 @@ public:
         snap(snapShare);
         for (const int t : made_.replaced)
             cutTriangle(t);
+        if (!isManifold_) return std::nullopt;
         dropPockets();
         if (!measure() || !orderRim()) return std::nullopt;
         return std::move(made_);
     }
 
 private:
+    using Vertex = OpenMesh::VertexHandle;
+    using Halfedge = OpenMesh::HalfedgeHandle;
+    using Face = OpenMesh::FaceHandle;
+
     glm::dvec3 placeOf(int v) const {
         const int old = int(closed_.vertices.size());
         if (v >= old) return made_.added[std::size_t(v - old)];
@@ -119,7 +137,17 @@ private:
         if (isRim(a) && isRim(b) && isRim(c)) return;  // flattened, it would have no area
         made_.triangles.push_back({a, b, c});
         made_.source.push_back(source);
+        isManifold_ &= mesh_.add_face(vertex(a), vertex(b), vertex(c)).is_valid();
     }
+
+    Vertex vertex(int number) {
+        const auto [known, isNew] = vertexOf_.try_emplace(number);
+        if (isNew) number_[known->second = mesh_.add_vertex({})] = number;
+        return known->second;
+    }
+    int from(Halfedge h) const { return number_[mesh_.from_vertex_handle(h)]; }
+    int to(Halfedge h) const { return number_[mesh_.to_vertex_handle(h)]; }
+    bool alongRim(Halfedge h) const { return isRim(from(h)) && isRim(to(h)); }
 
     /// Keeps what is outside: the corners and crossings around it, in order.
     void cutTriangle(int t) {
@@ -156,39 +184,30 @@ private:
     /// What hangs together with the surface beyond the neighbourhood only across edges from rim to
     /// rim would all be flattened onto the rim.
     void dropPockets() {
-        std::map<std::pair<int, int>, std::vector<std::size_t>> byEdge;
-        for (std::size_t t = 0; t < made_.triangles.size(); ++t) {
-            for (int c = 0; c < 3; ++c) {
-                const int a = made_.triangles[t][c], b = made_.triangles[t][(c + 1) % 3];
-                if (!isRim(a) || !isRim(b)) byEdge[std::minmax(a, b)].push_back(t);
-            }
+        std::vector<char> held(mesh_.n_faces(), 0);
+        std::vector<Face> front;
+        for (const Face face : mesh_.faces()) {
+            for (const Vertex v : mesh_.fv_range(face))
+                held[std::size_t(face.idx())] |= isBeyond(number_[v]);
+            if (held[std::size_t(face.idx())]) front.push_back(face);
         }
-        std::vector<char> held(made_.triangles.size(), 0);
-        std::vector<std::size_t> front;
-        for (std::size_t t = 0; t < held.size(); ++t) {
-            for (int c = 0; c < 3 && !held[t]; ++c)
-                held[t] = isBeyond(made_.triangles[t][c]);
-            if (held[t]) front.push_back(t);
-        }
-        const auto across = [&](std::size_t t, const auto& visit) {
-            for (int c = 0; c < 3; ++c) {
-                const auto found = byEdge.find(
-                    std::minmax(made_.triangles[t][c], made_.triangles[t][(c + 1) % 3]));
-                if (found == byEdge.end()) continue;
-                for (const std::size_t other : found->second)
-                    visit(other);
+        const auto across = [&](Face face, const auto& visit) {
+            for (const Halfedge h : mesh_.fh_range(face)) {
+                const Face other = mesh_.opposite_face_handle(h);
+                if (other.is_valid() && !alongRim(h)) visit(other);
             }
         };
-        floodFill(front, across, [&](std::size_t other) {
-            if (held[other]) return false;
-            held[other] = 1;
-            return true;
+        floodFill(front, across, [&](Face other) {
+            return std::exchange(held[std::size_t(other.idx())], 1) == 0;
         });
         std::size_t kept = 0;
         for (std::size_t t = 0; t < held.size(); ++t) {
-            if (!held[t]) continue;
-            made_.triangles[kept] = made_.triangles[t];
-            made_.source[kept++] = made_.source[t];
+            if (held[t]) {
+                made_.triangles[kept] = made_.triangles[t];
+                made_.source[kept++] = made_.source[t];
+            } else {
+                mesh_.delete_face(Face(int(t)), false);
+            }
         }
         made_.triangles.resize(kept);
         made_.source.resize(kept);
@@ -227,33 +246,22 @@ private:
     /// False where the rim is not one loop: where sheets of the surface meet at a vertex of the
     /// rim, it goes on in two ways.
     bool orderRim() {
-        // Edges of one triangle from rim to rim, the hole on their right.
-        std::map<std::pair<int, int>, int> uses;
-        for (const glm::ivec3& t : made_.triangles) {
-            for (int c = 0; c < 3; ++c)
-                ++uses[std::minmax(t[c], t[(c + 1) % 3])];
+        std::vector<Halfedge> rim;  // the hole is on their left
+        for (const Halfedge h : mesh_.halfedges()) {
+            if (!mesh_.is_boundary(h) || !alongRim(h)) continue;
+            if (!mesh_.is_manifold(mesh_.to_vertex_handle(h))) return false;
+            rim.push_back(h);
         }
-        std::map<int, int> next;
-        for (const glm::ivec3& t : made_.triangles) {
-            for (int c = 0; c < 3; ++c) {
-                const int a = t[c], b = t[(c + 1) % 3];
-                if (isRim(a) && isRim(b) && uses[std::minmax(a, b)] == 1 &&
-                    !next.emplace(a, b).second) {
-                    return false;
-                }
-            }
-        }
-        if (next.size() < 3) return false;
-        const int start = next.begin()->first;
-        for (int v = start; made_.rim.size() <= next.size();) {
-            made_.rim.push_back(v);
-            const auto step = next.find(v);
-            if (step == next.end()) return false;
-            made_.rimLengthMm += glm::distance(placeOf(v), placeOf(step->second));
-            v = step->second;
-            if (v == start) break;
-        }
-        return made_.rim.size() == next.size();
+        if (rim.size() < 3) return false;
+        const Halfedge first =
+            *std::ranges::min_element(rim, {}, [&](Halfedge h) { return to(h); });
+        Halfedge h = first;
+        do {
+            made_.rim.push_back(to(h));
+            made_.rimLengthMm += glm::distance(placeOf(to(h)), placeOf(from(h)));
+            h = mesh_.prev_halfedge_handle(h);
+        } while (h != first && made_.rim.size() <= rim.size());
+        return made_.rim.size() == rim.size();
     }
 
     const TriMesh& closed_;
@@ -262,6 +270,10 @@ private:
     std::vector<Side> side_;
     std::map<int, glm::dvec3> moved_;
     std::map<std::pair<int, int>, int> crossings_;
+    OpenMesh::TriMesh_ArrayKernelT<DeletableTraits> mesh_;
+    OpenMesh::VProp<int> number_{mesh_};  ///< in the surface, or after it in made_.added
+    std::map<int, Vertex> vertexOf_;
+    bool isManifold_ = true;
     RimCut made_;
 };
 
