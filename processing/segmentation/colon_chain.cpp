@@ -361,8 +361,9 @@ private:
         if (here.size() < options_.labelsPerPlace) {
             here.push_back(int(labels_.size()));
         } else {
+            const Label* const labels = labels_.data();
             const auto worst = std::min_element(here.begin(), here.end(), [&](int a, int b) {
-                return labels_[std::size_t(a)].worth() < labels_[std::size_t(b)].worth();
+                return labels[a].worth() < labels[b].worth();
             });
             if (labels_[std::size_t(*worst)].worth() >= label.worth()) return;
             dropped_[std::size_t(*worst)] = true;

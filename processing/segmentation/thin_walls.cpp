@@ -55,8 +55,9 @@ Volume<std::int16_t> smoothed(const Volume<std::int16_t>& hu, const Volume<std::
             const std::int16_t* a = &hu.voxels()[below * slice];
             const std::int16_t* b = &hu.voxels()[k * slice];
             const std::int16_t* c = &hu.voxels()[above * slice];
+            float* const mixed = across.data();
             for (std::size_t n = 0; n < slice; ++n)
-                across[n] = side.z * float(a[n] + c[n]) + middle.z * float(b[n]);
+                mixed[n] = side.z * float(a[n] + c[n]) + middle.z * float(b[n]);
             for (std::size_t j = 0; j < std::size_t(grid.size.y); ++j) {
                 const std::uint8_t* const contents = &content.voxels()[k * slice + j * row];
                 if (std::none_of(contents, contents + row, [](std::uint8_t kind) {
@@ -66,13 +67,15 @@ Volume<std::int16_t> smoothed(const Volume<std::int16_t>& hu, const Volume<std::
                 const float* up = &across[(j > 0 ? j - 1 : j) * row];
                 const float* here = &across[j * row];
                 const float* down = &across[std::min(j + 1, std::size_t(grid.size.y) - 1) * row];
+                float* const line = lines.data();
+                std::int16_t* const made = &written[k * slice + j * row];
                 for (std::size_t i = 0; i < row; ++i)
-                    lines[i] = side.y * (up[i] + down[i]) + middle.y * here[i];
+                    line[i] = side.y * (up[i] + down[i]) + middle.y * here[i];
                 for (std::size_t i = 0; i < row; ++i) {
-                    const float left = lines[i > 0 ? i - 1 : i],
-                                right = lines[std::min(i + 1, row - 1)];
-                    written[k * slice + j * row + i] =
-                        std::int16_t(std::lround(side.x * (left + right) + middle.x * lines[i]));
+                    const float left = line[i > 0 ? i - 1 : i],
+                                right = line[std::min(i + 1, row - 1)];
+                    made[i] =
+                        std::int16_t(std::lround(side.x * (left + right) + middle.x * line[i]));
                 }
             }
         }

@@ -39,9 +39,11 @@ std::vector<Tally> tallyPieces(std::span<const std::int32_t> label, std::size_t 
     parallelFor(slabs.size(), 1, threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
             slabs[s].resize(pieces);
+            const std::int32_t* const pieceOf = label.data();
+            Tally* const tallies = slabs[s].data();
             visitSlices(grid, s * slabDepth, std::min(depth, (s + 1) * slabDepth),
                         [&](std::size_t n, glm::ivec3 v) {
-                            if (label[n] >= 0) tell(slabs[s][std::size_t(label[n])], n, v);
+                            if (pieceOf[n] >= 0) tell(tallies[pieceOf[n]], n, v);
                         });
         }
     });
@@ -55,9 +57,8 @@ std::vector<Tally> tallyPieces(std::span<const std::int32_t> label, std::size_t 
 void renumber(std::span<std::int32_t> label, const std::vector<std::int32_t>& number, int threads) {
     constexpr std::size_t grain = std::size_t(1) << 20;
     parallelFor(label.size(), grain, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-            if (label[n] >= 0) label[n] = number[std::size_t(label[n])];
-        }
+        for (std::int32_t& of : label.subspan(begin, end - begin))
+            if (of >= 0) of = number.data()[of];
     });
 }
 
@@ -68,7 +69,7 @@ public:
     Basins(const Volume<float>& distanceMm, std::span<std::int32_t> label, int threads)
         : distanceMm_(distanceMm),
           grid_(distanceMm.grid()),
-          label_(label),
+          label_(label.data()),
           uphill_(grid_, notInside),
           threads_(threads) {}
 
@@ -257,13 +258,13 @@ private:
         }
         for (std::size_t n = 0; n < parent_.size(); ++n)
             number[n] = number[std::size_t(rootOf(parent_, std::int32_t(n)))];
-        renumber(label_, number, threads_);
+        renumber({label_, grid_.voxelCount()}, number, threads_);
         return std::size_t(count);
     }
 
     const Volume<float>& distanceMm_;
     const Grid grid_;
-    const std::span<std::int32_t> label_;
+    std::int32_t* const label_;  // by pointer: of the innermost loops
     Volume<std::uint8_t> uphill_;
     const int threads_;
     std::vector<float> peakMm_;
@@ -290,7 +291,7 @@ class LongPieces {
 public:
     LongPieces(std::span<std::int32_t> label, std::size_t pieces, double bandMm, const Grid& grid,
                int threads)
-        : label_(label),
+        : label_(label.data()),
           grid_(grid),
           bandMm_(bandMm),
           leastVoxels_(std::size_t(bandMm * 30.0 / grid.voxelVolumeMm3())),
@@ -303,7 +304,7 @@ public:
         const std::vector<std::int32_t> large = largeOnes();
         if (large.empty()) return pieces;
         ways_ = Volume<float>(grid_);  // of large pieces alone
-        way_ = ways_.writable();
+        way_ = ways_.writable().data();
         forVoxels(grid_, threads_, [&](std::size_t n, glm::ivec3) {
             if (label_[n] >= 0 && isLarge(label_[n])) way_[n] = -1.0f;
         });
@@ -333,9 +334,7 @@ private:
         std::vector<std::size_t> begin;  ///< of each part among the voxels, and the end
     };
 
-    bool isLarge(std::int32_t piece) const {
-        return extents_[std::size_t(piece)].voxels > leastVoxels_;
-    }
+    bool isLarge(std::int32_t piece) const { return extents_.data()[piece].voxels > leastVoxels_; }
 
     /// By falling volume, so that threads end at about the same time.
     std::vector<std::int32_t> largeOnes() const {
@@ -400,14 +399,14 @@ private:
         return parts;
     }
 
-    const std::span<std::int32_t> label_;
+    std::int32_t* const label_;  // by pointer, as way_: of the innermost loops
     const Grid& grid_;
     const double bandMm_;
     const std::size_t leastVoxels_;  ///< what is thinner is no colon
     const int threads_;
     const std::vector<Extent> extents_;
     Volume<float> ways_;
-    std::span<float> way_;  ///< mm; −1 where none is known
+    float* way_ = nullptr;  ///< mm; −1 where none is known
 };
 
 /// Numbers the pieces that stand for themselves in `pieceOf` by falling volume, each with all that
@@ -659,12 +658,13 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
              const Volume<std::uint8_t>& content, const Volume<std::uint8_t>& thinWalls,
              int threads) {
     const Grid& grid = hu.grid();
-    const auto label = cut.pieceAt.voxels();
+    const std::int32_t* const label = cut.pieceAt.voxels().data();
     const double voxelMm3 = grid.voxelVolumeMm3();
     const glm::dvec3 faceMm2 = voxelMm3 / grid.spacingMm();
     std::vector<std::vector<Face>> faces(std::size_t(grid.size.z));
     const auto tallies = tallyPieces<PieceTally>(
-        label, count, grid, threads, [&](PieceTally& tally, std::size_t n, glm::ivec3 v) {
+        cut.pieceAt.voxels(), count, grid, threads,
+        [&](PieceTally& tally, std::size_t n, glm::ivec3 v) {
             const std::int32_t l = label[n];
             const Content own = Content(content[n]);
             ++tally.voxels;

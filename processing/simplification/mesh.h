@@ -27,8 +27,9 @@ struct CornerMesh {
 
     static int next(int corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
     static int previous(int corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
-    /// The corner at the same vertex, of the next triangle counter-clockwise.
-    int turned(int corner) const { return next(opposite[next(corner)]); }
+    /// The corner at the same vertex, of the next triangle counter-clockwise. By pointer: the
+    /// innermost step of all that simplification does.
+    int turned(int corner) const { return next(opposite.data()[next(corner)]); }
 
     /// Calls visit(corner) for the corners at `v`, counter-clockwise.
     template <class Visit>
