@@ -2,6 +2,7 @@
 
 #include "core/flood_fill.h"
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <bit>
@@ -265,17 +266,12 @@ void markAlong(const BlockGraph& graph, const std::vector<std::int32_t>& route, 
         const glm::ivec3 reach = glm::ivec3(radiusMm / (2.0 * spacing)) + 1;
         const glm::ivec3 lo = glm::max(centre / 2 - reach, glm::ivec3(0));
         const glm::ivec3 hi = glm::min(centre / 2 + reach, graph.blocks - 1);
-        for (int z = lo.z; z <= hi.z; ++z) {
-            for (int y = lo.y; y <= hi.y; ++y) {
-                for (int x = lo.x; x <= hi.x; ++x) {
-                    graph.visitNodesOf({x, y, z}, [&](std::int32_t other) {
-                        const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
-                        if (glm::dot(away, away) <= radiusMm * radiusMm)
-                            marked[std::size_t(other)] = true;
-                    });
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 block) {
+            graph.visitNodesOf(block, [&](std::int32_t other) {
+                const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
+                if (glm::dot(away, away) <= radiusMm * radiusMm) marked[std::size_t(other)] = true;
+            });
+        });
     }
 }
 

@@ -1,5 +1,7 @@
 #include "centerline/search.h"
 
+#include "core/voxel_sweep.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,12 +29,9 @@ public:
             const glm::ivec3 centre = graph.blockOf(node);
             const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0));
             const glm::ivec3 hi = glm::min(centre + reach, graph.blocks - 1);
-            for (int z = lo.z; z <= hi.z; ++z) {
-                for (int y = lo.y; y <= hi.y; ++y) {
-                    for (int x = lo.x; x <= hi.x; ++x)
-                        graph.visitNodesOf({x, y, z}, [&](std::int32_t near) { add(near); });
-                }
-            }
+            visitBox(lo, hi, [&](glm::ivec3 block) {
+                graph.visitNodesOf(block, [&](std::int32_t near) { add(near); });
+            });
         }
     }
     std::size_t size() const { return nodes_.size() * 8; }

@@ -2,6 +2,7 @@
 
 #include "cleansing/ball.h"
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
@@ -159,16 +160,11 @@ bool betweenAirAndFluid(const Volume<std::uint8_t>& segmentation, glm::ivec3 v) 
     const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
                      hi = glm::min(v + reach, segmentation.grid().size - 1);
     bool air = false, tagged = false;
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                const LumenLabel label{segmentation.at(i, j, k)};
-                air |= label == LumenLabel::air, tagged |= label == LumenLabel::tagged;
-                if (air && tagged) return true;
-            }
-        }
-    }
-    return false;
+    return anyInBox(lo, hi, [&](glm::ivec3 w) {
+        const LumenLabel label{segmentation.at(w)};
+        air |= label == LumenLabel::air, tagged |= label == LumenLabel::tagged;
+        return air && tagged;
+    });
 }
 
 /// The third lowest HU of the neighbours along the axes: a sheet as thin has but two that are open,

@@ -2,6 +2,7 @@
 
 #include "cleansing/ball.h"
 #include "core/connected_labels.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,14 +19,8 @@ double reachMm(const Grid& grid, double mm, double voxels) {
 bool airNear(const Volume<std::uint8_t>& labels, glm::ivec3 v, glm::ivec3 reach) {
     const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
                      hi = glm::min(v + reach, labels.grid().size - 1);
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                if (LumenLabel(labels.at(i, j, k)) == LumenLabel::air) return true;
-            }
-        }
-    }
-    return false;
+    return anyInBox(lo, hi,
+                    [&](glm::ivec3 w) { return LumenLabel(labels.at(w)) == LumenLabel::air; });
 }
 
 /// Densest HU of the pool around one of its voxels.
@@ -34,14 +29,9 @@ int rimHu(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels, gl
     const glm::ivec3 lo = glm::max(v - look, glm::ivec3(0)),
                      hi = glm::min(v + look, labels.grid().size - 1);
     int most = hu.at(v);
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                if (LumenLabel(labels.at(i, j, k)) == LumenLabel::tagged)
-                    most = std::max<int>(most, hu.at(i, j, k));
-            }
-        }
-    }
+    visitBox(lo, hi, [&](glm::ivec3 w) {
+        if (LumenLabel(labels.at(w)) == LumenLabel::tagged) most = std::max<int>(most, hu.at(w));
+    });
     return most;
 }
 

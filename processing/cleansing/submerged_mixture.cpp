@@ -134,23 +134,24 @@ void settleSubmerged(const CtScan& scan, const Volume<std::uint8_t>& segmentatio
     std::vector<float> next(places.size());
     for (const Place& place : places)
         out[place.voxel] = roundedFractions(0.0, place.share);
+    const auto meanWithNeighbours = [&](const Place& place) {
+        const glm::ivec3 v = grid.voxelAt(place.voxel);
+        double weight = place.certainty, sum = weight * place.share;
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int side = -1; side <= 1; side += 2) {
+                glm::ivec3 n = v;
+                n[axis] += side;
+                if (!grid.contains(n)) continue;
+                const double w = place.coupling * near[axis];
+                weight += w, sum += w * mixture.at(n).tagged / 255.0;
+            }
+        }
+        return float(sum / weight);
+    };
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         parallelFor(places.size(), 1 << 13, threads, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t m = begin; m < end; ++m) {
-                const Place& place = places[m];
-                const glm::ivec3 v = grid.voxelAt(place.voxel);
-                double weight = place.certainty, sum = weight * place.share;
-                for (int axis = 0; axis < 3; ++axis) {
-                    for (int side = -1; side <= 1; side += 2) {
-                        glm::ivec3 n = v;
-                        n[axis] += side;
-                        if (!grid.contains(n)) continue;
-                        const double w = place.coupling * near[axis];
-                        weight += w, sum += w * mixture.at(n).tagged / 255.0;
-                    }
-                }
-                next[m] = float(sum / weight);
-            }
+            for (std::size_t m = begin; m < end; ++m)
+                next[m] = meanWithNeighbours(places[m]);
         });
         for (std::size_t m = 0; m < places.size(); ++m)
             out[places[m].voxel] = roundedFractions(0.0, next[m]);

@@ -3,6 +3,7 @@
 #include "cleansing/ball.h"
 #include "cleansing/film_profile.h"
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -213,18 +214,14 @@ void eachAround(const Grid& grid, const Crest& crest, const Visit& visit) {
     const glm::ivec3 reach(glm::ceil((thickestMm + 2.5 * p.blurMm) / spacing)), v(crest.voxel);
     const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
                      hi = glm::min(v + reach, grid.size - 1);
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                const glm::dvec3 d = (glm::dvec3(i, j, k) - crest.voxel) * spacing;
-                const double mm = glm::dot(d, crest.across), along2 = glm::dot(d, d) - mm * mm;
-                if (mm < p.filmMm - 2.0 * p.blurMm || mm > p.filmMm + 2.5 * p.blurMm ||
-                    along2 > alongMm * alongMm)
-                    continue;
-                visit(grid.index(i, j, k), mm, along2);
-            }
-        }
-    }
+    visitBox(lo, hi, [&](glm::ivec3 w) {
+        const glm::dvec3 d = (glm::dvec3(w) - crest.voxel) * spacing;
+        const double mm = glm::dot(d, crest.across), along2 = glm::dot(d, d) - mm * mm;
+        if (mm < p.filmMm - 2.0 * p.blurMm || mm > p.filmMm + 2.5 * p.blurMm ||
+            along2 > alongMm * alongMm)
+            return;
+        visit(grid.index(w), mm, along2);
+    });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "cleansing/untagged_fluid.h"
 
 #include "core/crop.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,23 +34,19 @@ void restore(Volume<std::uint8_t>& labels, const Volume<std::uint8_t>& before, g
              glm::ivec3 hi, glm::ivec3 reach) {
     const Grid& grid = labels.grid();
     std::vector<std::size_t> fluid;
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                const std::size_t n = grid.index(i, j, k);
-                if (LumenLabel(labels[n]) != LumenLabel::outside || before[n] == 0) continue;
-                bool beside = false;
-                for (int axis = 0; axis < 3; ++axis) {
-                    for (int step = -reach[axis]; step <= reach[axis]; ++step) {
-                        glm::ivec3 v(i, j, k);
-                        v[axis] += step;
-                        beside = beside || (grid.contains(v) && before.at(v) == untagged);
-                    }
-                }
-                if (beside) fluid.push_back(n);
+    visitBox(lo, hi, [&](glm::ivec3 at) {
+        const std::size_t n = grid.index(at);
+        if (LumenLabel(labels[n]) != LumenLabel::outside || before[n] == 0) return;
+        bool beside = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int step = -reach[axis]; step <= reach[axis]; ++step) {
+                glm::ivec3 v = at;
+                v[axis] += step;
+                beside = beside || (grid.contains(v) && before.at(v) == untagged);
             }
         }
-    }
+        if (beside) fluid.push_back(n);
+    });
     for (const std::size_t n : fluid)
         labels.writable()[n] = untagged;
 }

@@ -72,7 +72,7 @@ BoundaryCells::BoundaryCells(const Volume<std::uint8_t>& lumen, int threads)
         CellRow row(size_.x);
         for (std::size_t n = begin; n < end; ++n) {
             for (int j = -1; j < size_.y; ++j) {
-                row.moveTo(lumen, j, kOfLayer(int(n)));
+                row.moveTo(lumen, j, ofLayer(int(n)));
                 findRow(row, j, size_.x, found[n]);
             }
         }

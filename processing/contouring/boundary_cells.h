@@ -30,7 +30,7 @@ public:
     glm::ivec3 gridSize() const { return size_; }
     /// Layers are numbered from 0 for k = −1.
     int layers() const { return size_.z + 1; }
-    static int kOfLayer(int layer) { return layer - 1; }
+    static int ofLayer(int layer) { return layer - 1; }
     std::span<const BoundaryCell> layer(int n) const {
         return {cells_.data() + begin_[std::size_t(n)],
                 begin_[std::size_t(n) + 1] - begin_[std::size_t(n)]};
@@ -42,7 +42,7 @@ public:
         parallelFor(std::size_t(layers()), 4, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) {
                 for (const BoundaryCell& cell : layer(int(n)))
-                    body(cell, kOfLayer(int(n)));
+                    body(cell, ofLayer(int(n)));
             }
         });
     }

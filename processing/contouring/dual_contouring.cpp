@@ -85,7 +85,7 @@ FaceVertices::FaceVertices(const BoundaryCells& cells, const BoundaryCrossings& 
             pair.moveTo(int(n));
             std::size_t index = cells.layerBegin(int(n));
             for (const BoundaryCell& cell : cells.layer(int(n))) {
-                const glm::ivec3 place(cell.i, cell.j, BoundaryCells::kOfLayer(int(n)));
+                const glm::ivec3 place(cell.i, cell.j, BoundaryCells::ofLayer(int(n)));
                 entries_[index++].arcs = arcsOf(cell, place, pair, cells);
             }
         }
@@ -100,7 +100,7 @@ FaceVertices::FaceVertices(const BoundaryCells& cells, const BoundaryCrossings& 
         std::size_t index = cells.layerBegin(int(n));
         for (const BoundaryCell& cell : cells.layer(int(n))) {
             const Entry& entry = entries_[index];
-            const glm::ivec3 origin(cell.i, cell.j, BoundaryCells::kOfLayer(int(n)));
+            const glm::ivec3 origin(cell.i, cell.j, BoundaryCells::ofLayer(int(n)));
             for (int edge = 0; edge < cellEdges && entry.arcs != 0; ++edge) {
                 int in = lowerCorner(edge), out = upperCorner(edge);
                 if (!((cell.inside >> in ^ cell.inside >> out) & 1)) continue;
@@ -153,7 +153,7 @@ public:
     LayerSurface contour(int layer) {
         LayerSurface surface;
         pair_.moveTo(layer);
-        const int k = BoundaryCells::kOfLayer(layer);
+        const int k = BoundaryCells::ofLayer(layer);
         for (const BoundaryCell& cell : dual_.cells.layer(layer)) {
             for (int axis = 0; axis < 3; ++axis) {
                 const bool insideHere = cell.inside & 1,

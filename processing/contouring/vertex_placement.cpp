@@ -63,29 +63,31 @@ std::vector<Neighbours> findNeighbours(const BoundaryCells& cells, int threads) 
     std::vector<Neighbours> neighbours(cells.vertexCount());
     for (Neighbours& around : neighbours)
         around.fill(-1);
+    const auto joinAcrossLowFaces = [&](const BoundaryCell& cell, int edge, LayerPair& pair) {
+        const int loop = cellLoops(cell.inside).loopOfEdge[edge];
+        if (loop < 0) return;
+        for (int axis = 0; axis < 3; ++axis) {
+            // The edge must lie on the low face across the axis.
+            if (axis == edge / 4 || (lowerCorner(edge) >> axis & 1)) continue;
+            glm::ivec2 beside(cell.i, cell.j);
+            if (axis < 2) --beside[axis];
+            const BoundaryCell& other =
+                cells.cells()[std::size_t(pair.find(beside.x, beside.y, axis == 2))];
+            const int there = cellEdge(edge / 4, lowerCorner(edge) | 1 << axis);
+            const std::int32_t here = cell.firstVertex + loop;
+            const std::int32_t across =
+                other.firstVertex + cellLoops(other.inside).loopOfEdge[there];
+            neighbours[std::size_t(here)][2 * axis] = across;
+            neighbours[std::size_t(across)][2 * axis + 1] = here;
+        }
+    };
     parallelFor(std::size_t(cells.layers()), 16, threads, [&](std::size_t begin, std::size_t end) {
         LayerPair pair(cells);
         for (std::size_t n = begin; n < end; ++n) {
             pair.moveTo(int(n));
             for (const BoundaryCell& cell : cells.layer(int(n))) {
-                for (int edge = 0; edge < cellEdges; ++edge) {
-                    const int loop = cellLoops(cell.inside).loopOfEdge[edge];
-                    if (loop < 0) continue;
-                    for (int axis = 0; axis < 3; ++axis) {
-                        // The edge must lie on the low face across the axis.
-                        if (axis == edge / 4 || (lowerCorner(edge) >> axis & 1)) continue;
-                        glm::ivec2 beside(cell.i, cell.j);
-                        if (axis < 2) --beside[axis];
-                        const BoundaryCell& other =
-                            cells.cells()[std::size_t(pair.find(beside.x, beside.y, axis == 2))];
-                        const int there = cellEdge(edge / 4, lowerCorner(edge) | 1 << axis);
-                        const std::int32_t here = cell.firstVertex + loop;
-                        const std::int32_t across =
-                            other.firstVertex + cellLoops(other.inside).loopOfEdge[there];
-                        neighbours[std::size_t(here)][2 * axis] = across;
-                        neighbours[std::size_t(across)][2 * axis + 1] = here;
-                    }
-                }
+                for (int edge = 0; edge < cellEdges; ++edge)
+                    joinAcrossLowFaces(cell, edge, pair);
             }
         }
     });

@@ -1,6 +1,7 @@
 #include "contouring/wall_field.h"
 
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
@@ -81,31 +82,26 @@ struct WallHistograms {
 // Of slices [begin, end): inner voxels have six neighbours in the lumen; around it are the voxels
 // two beyond a boundary voxel along an axis.
 WallHistograms histogramsOf(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& labels,
-                            int begin, int end) {
+                            std::size_t begin, std::size_t end) {
     const Grid& grid = labels.grid();
     WallHistograms histograms;
-    for (int k = begin; k < end; ++k) {
-        for (int j = 0; j < grid.size.y; ++j) {
-            for (int i = 0; i < grid.size.x; ++i) {
-                const glm::ivec3 v(i, j, k);
-                if (labels.at(v) == 0) continue;
-                ++histograms.all[binOf(hu.at(v))];
-                bool inner = true;
-                for (int axis = 0; axis < 3; ++axis) {
-                    for (const int sign : {-1, 1}) {
-                        glm::ivec3 step(0);
-                        step[axis] = sign;
-                        if (!grid.contains(v + step) || labels.at(v + step) != 0) continue;
-                        inner = false;
-                        const glm::ivec3 beyond = v + 3 * step;
-                        if (grid.contains(beyond) && labels.at(beyond) == 0)
-                            ++histograms.around[binOf(hu.at(beyond))];
-                    }
-                }
-                if (inner) ++histograms.inner[binOf(hu.at(v))];
+    visitSlices(grid, begin, end, [&](std::size_t n, glm::ivec3 v) {
+        if (labels[n] == 0) return;
+        ++histograms.all[binOf(hu[n])];
+        bool inner = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const int sign : {-1, 1}) {
+                glm::ivec3 step(0);
+                step[axis] = sign;
+                if (!grid.contains(v + step) || labels.at(v + step) != 0) continue;
+                inner = false;
+                const glm::ivec3 beyond = v + 3 * step;
+                if (grid.contains(beyond) && labels.at(beyond) == 0)
+                    ++histograms.around[binOf(hu.at(beyond))];
             }
         }
-    }
+        if (inner) ++histograms.inner[binOf(hu[n])];
+    });
     return histograms;
 }
 
@@ -153,7 +149,7 @@ Result<WallField> contentField(const Volume<std::int16_t>& hu, const Volume<std:
     std::mutex mutex;
     parallelFor(std::size_t(hu.grid().size.z), 32, threads,
                 [&](std::size_t begin, std::size_t end) {
-                    const auto part = histogramsOf(hu, labels, int(begin), int(end));
+                    const auto part = histogramsOf(hu, labels, begin, end);
                     const std::lock_guard lock(mutex);  // sums of integers: any order
                     histograms.add(part);
                 });

@@ -32,6 +32,20 @@ void visitBox(glm::ivec3 lo, glm::ivec3 hi, const Visit& visit) {
     }
 }
 
+/// Whether holds(voxel) for one of the voxels of the box from `lo` to `hi`, both inclusive; none is
+/// asked after it.
+template <class Holds>
+bool anyInBox(glm::ivec3 lo, glm::ivec3 hi, const Holds& holds) {
+    glm::ivec3 v;
+    for (v.z = lo.z; v.z <= hi.z; ++v.z) {
+        for (v.y = lo.y; v.y <= hi.y; ++v.y) {
+            for (v.x = lo.x; v.x <= hi.x; ++v.x)
+                if (holds(v)) return true;
+        }
+    }
+    return false;
+}
+
 /// Calls visit(index, voxel) for all voxels, slice by slice; what it writes must be the voxel's
 /// own.
 template <class Visit>

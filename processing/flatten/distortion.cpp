@@ -84,7 +84,7 @@ std::vector<char> rimVertices(const TriMesh& mesh) {
 
 Distortion measureDistortion(const TriMesh& mesh,
                              const std::function<glm::dvec2(std::size_t, int)>& cornerAt) {
-    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    constexpr double degrees = 180.0 / std::numbers::pi;
     Distortion found;
     std::vector<double> errors, dilatations;
     std::vector<WeightedLog> logs;
@@ -112,7 +112,7 @@ Distortion measureDistortion(const TriMesh& mesh,
         for (int c = 0; c < 3; ++c) {
             const double angle =
                 angleBetween(flat[(c + 1) % 3] - flat[c], flat[(c + 2) % 3] - flat[c]);
-            errors.push_back(kDegrees * std::abs(angle - angles[c]));
+            errors.push_back(degrees * std::abs(angle - angles[c]));
         }
         if (const double stretch = dilatation(a, b, p, q); std::isfinite(stretch))
             dilatations.push_back(stretch);
@@ -121,7 +121,7 @@ Distortion measureDistortion(const TriMesh& mesh,
     const std::vector<char> rim = rimVertices(mesh);
     for (std::size_t v = 0; v < rim.size(); ++v) {
         if (!rim[v] && angleSum[v] > 0.0)
-            found.angleFloorDegrees += kDegrees * std::abs(2.0 * std::numbers::pi - angleSum[v]);
+            found.angleFloorDegrees += degrees * std::abs(2.0 * std::numbers::pi - angleSum[v]);
     }
     if (!mesh.triangles.empty()) found.angleFloorDegrees /= 3.0 * double(mesh.triangles.size());
     found.angleErrorDegrees = spreadOf(std::move(errors));

@@ -11,8 +11,8 @@ namespace {
 
 using mesh::HalfedgeMesh;
 
-constexpr double kLeastSlack = 1e-12;  // of the mean length
-constexpr double kRounding = 1e-12;    // of the cotangents' magnitudes
+constexpr double leastSlack = 1e-12;     // of the mean length
+constexpr double roundingShare = 1e-12;  // of the cotangents' magnitudes
 
 /// Twice the area's square root is lost on slivers by Heron's own formula; this form is Kahan's.
 double areaOf(double a, double b, double c) {
@@ -46,7 +46,7 @@ bool isNegative(const IntrinsicMesh& mesh, int h) {
     const int other = mesh.opposite[std::size_t(h)];
     if (other < 0) return false;
     const double a = cotangent(mesh, h), b = cotangent(mesh, other);
-    return a + b < -kRounding * (std::abs(a) + std::abs(b));
+    return a + b < -roundingShare * (std::abs(a) + std::abs(b));
 }
 
 class Flipper {
@@ -153,7 +153,7 @@ IntrinsicMesh intrinsicMesh(const HalfedgeMesh& mesh, const std::vector<std::int
             std::int8_t(cornerTurns[std::size_t(HalfedgeMesh::next(h))] - cornerTurns[at]);
         sum += made.length[at];
     }
-    const double least = kLeastSlack * sum / double(count);
+    const double least = leastSlack * sum / double(count);
     double lack = 0.0;
     for (std::size_t h = 0; h < count; h += 3) {
         lack =

@@ -9,7 +9,7 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kTop = 1000.0;
+constexpr double topMm = 1000.0;
 
 class Builder {
 public:
@@ -60,7 +60,7 @@ void Builder::addTable() {
     const auto depth = [=](glm::dvec3 p) {
         return std::hypot(p[across], side * p[axis] - (top - radius)) - radius;
     };
-    glm::dvec3 half(0.0, 0.0, kTop);
+    glm::dvec3 half(0.0, 0.0, topMm);
     half[axis] = 400.0, half[across] = 210.0;
     add(
         -half, half,
@@ -77,7 +77,7 @@ void Builder::addBodyWall() {
     const std::uint64_t a = next(), b = next(), c = next();
     const double fat = body.fatMm;
     add(
-        {-200, -200, -kTop}, {200, 200, kTop}, [=](glm::dvec3 p) { return body.skin(p); },
+        {-200, -200, -topMm}, {200, 200, topMm}, [=](glm::dvec3 p) { return body.skin(p); },
         [=](glm::dvec3 p, double d) {
             if (d > -2.0) return 10.0;
             const double layer = fat + 3.0 * valueNoise(a, p, 60.0);
@@ -110,7 +110,7 @@ void Builder::addLungs() {
     const BodyPlan body = body_;
     const std::uint64_t seed = next();
     add(
-        {-150, -110, 285}, {150, 110, kTop},
+        {-150, -110, 285}, {150, 110, topMm},
         [=](glm::dvec3 p) {
             const double dome = 0.75 * (BodyPlan::diaphragmZ(p.x, p.y) - p.z);
             const double chest = body.skin(p) + body.fatMm + 12.0;
@@ -130,7 +130,7 @@ void Builder::addOrgans() {
     const std::uint64_t seed = next();
     // Liver: under the right dome, thin to the left.
     add(
-        {-150, -110, 240}, {60, 100, kTop},
+        {-150, -110, 240}, {60, 100, topMm},
         [=](glm::dvec3 p) {
             const double mass = std::min(ellipsoid(p, {-66, 2, 338}, {78, 82, 66}),
                                          ellipsoid(p, {-5, -30, 362}, {60, 45, 34}));
@@ -236,7 +236,7 @@ void Builder::addRibs() {
     const BodyPlan body = body_;
     const auto marrow = bone(1.6, 700, 200, next());
     add(
-        {-175, -90, 225}, {175, 110, kTop},
+        {-175, -90, 225}, {175, 110, topMm},
         [=](glm::dvec3 p) {
             // Ribs run down from back to front, under the fat and outside the pleura.
             const double depth = body.skin(p) + body.fatMm + 7.0;
@@ -262,7 +262,7 @@ std::vector<Solid> Builder::build() {
     return std::move(solids_);
 }
 
-constexpr double kTitaniumHu = 8000.0, kCobaltChromeHu = 20000.0, kPolyethyleneHu = -80.0;
+constexpr double titaniumHu = 8000.0, cobaltChromeHu = 20000.0, polyethyleneHu = -80.0;
 
 }  // namespace
 
@@ -281,12 +281,12 @@ std::vector<Solid> makeMetalHip(std::uint64_t seed) {
     const auto ball = [=](glm::dvec3 p, double radius) { return glm::distance(p, head) - radius; };
     const auto cap = [=](glm::dvec3 p) { return glm::dot(p - head, outward) - 2.0; };
     add(45.0, [=](glm::dvec3 p) { return ball(p, cupMm); });  // what was the joint
-    add(kTitaniumHu, [=](glm::dvec3 p) { return std::max(ball(p, cupMm), cap(p)); });
-    add(kPolyethyleneHu, [=](glm::dvec3 p) { return std::max(ball(p, linerMm), cap(p)); });
-    add(kTitaniumHu, [=](glm::dvec3 p) {
+    add(titaniumHu, [=](glm::dvec3 p) { return std::max(ball(p, cupMm), cap(p)); });
+    add(polyethyleneHu, [=](glm::dvec3 p) { return std::max(ball(p, linerMm), cap(p)); });
+    add(titaniumHu, [=](glm::dvec3 p) {
         return std::min(capsule(p, head, neck, 6.5), capsule(p, neck, stem, 7.0));
     });
-    add(kCobaltChromeHu, [=](glm::dvec3 p) { return ball(p, headMm); });
+    add(cobaltChromeHu, [=](glm::dvec3 p) { return ball(p, headMm); });
     return solids;
 }
 

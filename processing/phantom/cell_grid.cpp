@@ -1,5 +1,7 @@
 #include "phantom/cell_grid.h"
 
+#include "core/voxel_sweep.h"
+
 namespace haustra::phantom {
 
 CellGrid::CellGrid(std::span<const Box> boxes, double cellMm) : cellMm_(cellMm) {
@@ -12,14 +14,7 @@ CellGrid::CellGrid(std::span<const Box> boxes, double cellMm) : cellMm_(cellMm) 
     begin_.assign(std::size_t(cells_.x) * cells_.y * cells_.z + 1, 0);
     const auto eachCell = [&](const Box& box, const auto& body) {
         const glm::ivec3 lo = cellOf(box.low), hi = cellOf(box.high);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    body(std::size_t(i) +
-                         std::size_t(cells_.x) * (std::size_t(j) + std::size_t(cells_.y) * k));
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 cell) { body(indexOf(cell)); });
     };
     for (const Box& box : boxes)
         eachCell(box, [&](std::size_t cell) { ++begin_[cell + 1]; });

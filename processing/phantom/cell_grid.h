@@ -38,6 +38,11 @@ public:
 private:
     glm::ivec3 cellOf(glm::dvec3 p) const { return glm::ivec3(glm::floor((p - lowMm_) / cellMm_)); }
 
+    std::size_t indexOf(glm::ivec3 cell) const {
+        return std::size_t(cell.x) +
+               std::size_t(cells_.x) * (std::size_t(cell.y) + std::size_t(cells_.y) * cell.z);
+    }
+
     glm::dvec3 lowMm_{0.0};
     double cellMm_ = 1.0;
     glm::ivec3 cells_{0};
@@ -48,8 +53,7 @@ template <class SquaredDistance>
 CellGrid::Nearest CellGrid::nearest(glm::dvec3 p, const SquaredDistance& squaredDistance) const {
     Nearest best;
     const auto visit = [&](int i, int j, int k) {
-        const std::size_t cell =
-            std::size_t(i) + std::size_t(cells_.x) * (std::size_t(j) + std::size_t(cells_.y) * k);
+        const std::size_t cell = indexOf({i, j, k});
         for (std::uint32_t n = begin_[cell]; n < begin_[cell + 1]; ++n) {
             const double d = squaredDistance(items_[n]);
             if (d < best.squaredMm2 || (d == best.squaredMm2 && items_[n] < best.item))

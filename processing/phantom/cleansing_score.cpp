@@ -9,8 +9,8 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr int kReach = 2;  // voxels, along each axis
-constexpr double kCubeMm = 10.0;
+constexpr int reachVoxels = 2;  // voxels, along each axis
+constexpr double cubeMm = 10.0;
 
 constexpr std::uint8_t bit(LumenLabel label) {
     return std::uint8_t(1u << unsigned(label));
@@ -64,7 +64,7 @@ class Region {
 public:
     explicit Region(const Grid& grid)
         : grid_(grid),
-          cube_(glm::max(glm::ivec3(glm::round(kCubeMm / grid.spacingMm())), glm::ivec3(1))),
+          cube_(glm::max(glm::ivec3(glm::round(cubeMm / grid.spacingMm())), glm::ivec3(1))),
           cubes_((grid.size + cube_ - 1) / cube_) {}
 
     void add(std::size_t voxel, double error) {
@@ -85,7 +85,7 @@ public:
         std::sort(cubes.begin(), cubes.end(), [](const Sums* a, const Sums* b) {
             return a->squares != b->squares ? a->squares > b->squares : a->largestAt < b->largestAt;
         });
-        cubes.resize(std::min(cubes.size(), kWorstPlaces));
+        cubes.resize(std::min(cubes.size(), worstPlaces));
         for (const Sums* sums : cubes) {
             error.worst.push_back(
                 {grid_.voxelAt(sums->largestAt), sums->voxels, sums->rmse(), sums->bias()});
@@ -100,15 +100,15 @@ private:
     std::unordered_map<std::size_t, Sums> byCube_;
 };
 
-/// Lumen voxels within kReach of the given ones, ascending.
+/// Lumen voxels within reachVoxels of the given ones, ascending.
 std::vector<std::uint32_t> lumenAround(const Volume<std::uint8_t>& labels,
                                        const std::vector<std::uint32_t>& voxels) {
     const Grid& grid = labels.grid();
     std::vector<std::uint32_t> around;
     for (const std::uint32_t at : voxels) {
         const glm::ivec3 v = grid.voxelAt(at);
-        const glm::ivec3 lo = glm::max(v - kReach, glm::ivec3(0)),
-                         hi = glm::min(v + kReach, grid.size - 1);
+        const glm::ivec3 lo = glm::max(v - reachVoxels, glm::ivec3(0)),
+                         hi = glm::min(v + reachVoxels, grid.size - 1);
         visitBox(lo, hi, [&](glm::ivec3 n) {
             if (labels.at(n)) around.push_back(std::uint32_t(grid.index(n)));
         });
@@ -127,15 +127,15 @@ SubmergedPolyp scorePolyp(const Phantom& truth, const Volume<std::int16_t>& clea
     std::size_t tagged = 0, excess = 0;
     for (const std::uint32_t v : around) {
         tagged += truth.lumen[v] == std::uint8_t(LumenLabel::tagged);
-        excess += cleansed[v] > kPolypHu && truth.untaggedHu[v] <= kPolypHu;
+        excess += cleansed[v] > polypHu && truth.untaggedHu[v] <= polypHu;
     }
     score.submergedShare = around.empty() ? 0.0 : double(tagged) / double(around.size());
     Sums sums;
     std::size_t dense = 0, kept = 0;
     for (const std::uint32_t v : tissue) {
         sums.add(v, double(cleansed[v]) - double(truth.untaggedHu[v]));
-        if (truth.untaggedHu[v] <= kPolypHu) continue;
-        ++dense, kept += cleansed[v] > kPolypHu;
+        if (truth.untaggedHu[v] <= polypHu) continue;
+        ++dense, kept += cleansed[v] > polypHu;
     }
     score.voxels = sums.voxels, score.rmseHu = sums.rmse(), score.biasHu = sums.bias();
     score.volumeShare = dense ? double(kept) / double(dense) : 1.0;
@@ -166,7 +166,7 @@ Result<CleansingScore> scoreCleansing(const Phantom& truth,
     std::transform(
         truth.lumen.voxels().begin(), truth.lumen.voxels().end(), near.writable().begin(),
         [](std::uint8_t label) { return std::uint8_t(1u << std::min(label, std::uint8_t(3))); });
-    spread(near, kReach);
+    spread(near, reachVoxels);
 
     CleansingScore score;
     Region fluid(grid), interface(grid), wall(grid), rim(grid);
@@ -182,7 +182,7 @@ Result<CleansingScore> scoreCleansing(const Phantom& truth,
     score.fluid = fluid.finish(), score.interface = interface.finish();
     score.wall = wall.finish(), score.rim = rim.finish();
 
-    spread(near, kReach);
+    spread(near, reachVoxels);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         if ((near[n] & tagged) || cleansedHu[n] == truth.scan.hu[n]) continue;
         ++score.voxelsChangedBeyond;

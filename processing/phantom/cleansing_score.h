@@ -21,7 +21,7 @@ struct RegionError {
     double rmseHu = 0.0;
     double biasHu = 0.0;  ///< mean of cleansed − truth
     double maxHu = 0.0;   ///< of the absolute error
-    /// The cubes with the largest sums of squared errors, worst first; at most kWorstPlaces.
+    /// The cubes with the largest sums of squared errors, worst first; at most worstPlaces.
     std::vector<WorstPlace> worst;
 };
 
@@ -31,10 +31,10 @@ struct SubmergedPolyp {
     double submergedShare = 0.0;  ///< the tagged share of the lumen within two voxels of the polyp
     std::size_t voxels = 0;       ///< of its tissue inward of the wall or fold it grows from
     double rmseHu = 0.0, biasHu = 0.0;  ///< in those voxels
-    /// Of its voxels that are denser than kPolypHu in the truth, the share that is so after
+    /// Of its voxels that are denser than polypHu in the truth, the share that is so after
     /// cleansing.
     double volumeShare = 0.0;
-    /// Voxels of lumen around it that only after cleansing are denser than kPolypHu, as a share of
+    /// Voxels of lumen around it that only after cleansing are denser than polypHu, as a share of
     /// its own.
     double excessShare = 0.0;
 };
@@ -51,8 +51,8 @@ struct CleansingScore {
     std::vector<SubmergedPolyp> polyps;  ///< more than half submerged, in the phantom's order
 };
 
-inline constexpr double kPolypHu = -400.0;
-inline constexpr std::size_t kWorstPlaces = 8;
+inline constexpr double polypHu = -400.0;
+inline constexpr std::size_t worstPlaces = 8;
 
 /// Scores `cleansedHu` by truth.untaggedHu, which has the same noise. Regions are those of the true
 /// labels, wherever the cleansing sought the tagging. Fails where the grids differ, or the truth's

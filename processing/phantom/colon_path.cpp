@@ -13,12 +13,12 @@ namespace haustra::phantom {
 namespace {
 
 /// The least radius stands for a closed lumen.
-constexpr double kClosedMm = -3.0;
+constexpr double closedMm = -3.0;
 
 /// The axis's radius at a distance beyond a closed stretch of a colon that is `radiusMm` wide.
 double taper(double radiusMm, double taperMm, double outsideMm) {
     return glm::mix(
-        kClosedMm, radiusMm,
+        closedMm, radiusMm,
         smoothstep(-4.0 * (taperMm / ColonPath::Collapse{}.taperMm), taperMm, outsideMm));
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/flood_fill.h"
+#include "core/voxel_sweep.h"
 #include "phantom/score.h"
 
 #include <algorithm>
@@ -13,7 +14,7 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kLeapSlackMm = 20.0, kPathSlackMm = 30.0, kCordMm = 12.0;
+constexpr double leapSlackMm = 20.0, pathSlackMm = 30.0, cordMm = 12.0;
 
 struct Stretch {
     double beginMm = 0.0, endMm = 0.0;
@@ -48,22 +49,18 @@ public:
                                        grid_.size - 1);
         double nearest = reachMm;
         int sample = -1;
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    if (sampleAt_.at(i, j, k) < 0) continue;
-                    const double d = glm::length((glm::dvec3(i, j, k) - at) * spacing);
-                    if (d <= nearest) nearest = d, sample = sampleAt_.at(i, j, k);
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 v) {
+            if (sampleAt_.at(v) < 0) return;
+            const double d = glm::length((glm::dvec3(v) - at) * spacing);
+            if (d <= nearest) nearest = d, sample = sampleAt_.at(v);
+        });
         return sample;
     }
 
     /// Whether a point lies on a closed stretch of the colon, within its cord of muscle.
     bool onClosure(glm::dvec3 p) const {
         return std::any_of(axis_.begin(), axis_.end(), [&](const CenterlinePoint& point) {
-            return glm::distance(point.positionMm, p) <= kCordMm &&
+            return glm::distance(point.positionMm, p) <= cordMm &&
                    std::any_of(hidden_.begin(), hidden_.end(), [&](const Stretch& s) {
                        return point.arcMm >= s.beginMm - 3.0 && point.arcMm <= s.endMm + 3.0;
                    });
@@ -157,21 +154,15 @@ std::vector<glm::dvec3> placesOf(const std::vector<std::string>& lines) {
 void scoreFalse(const Phantom& truth, const Volume<std::uint8_t>& lumen, ColonScore& score) {
     const Grid& grid = lumen.grid();
     const glm::dvec3 spacing = grid.spacingMm();
-    const glm::ivec3 reach(glm::floor(kFalseBeyondMm / spacing));
+    const glm::ivec3 reach(glm::floor(falseBeyondMm / spacing));
     const double ml = grid.voxelVolumeMm3() * 1e-3;
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         if (!lumen[n] || truth.lumen[n]) continue;
         const glm::ivec3 v = grid.voxelAt(n), lo = glm::max(v - reach, 0),
                          hi = glm::min(v + reach, grid.size - 1);
-        bool near = false;
-        for (int k = lo.z; k <= hi.z && !near; ++k) {
-            for (int j = lo.y; j <= hi.y && !near; ++j) {
-                for (int i = lo.x; i <= hi.x && !near; ++i)
-                    near = truth.lumen.at(i, j, k) &&
-                           glm::length(glm::dvec3(glm::ivec3(i, j, k) - v) * spacing) <=
-                               kFalseBeyondMm;
-            }
-        }
+        const bool near = anyInBox(lo, hi, [&](glm::ivec3 w) {
+            return truth.lumen.at(w) && glm::length(glm::dvec3(w - v) * spacing) <= falseBeyondMm;
+        });
         if (near) continue;
         const Site site = Site(truth.sites[n]);
         (site == Site::ileum        ? score.falseIleumMl
@@ -260,7 +251,7 @@ private:
         if (from < 0 || to < 0) return wrong(Kind::foreign);
         const double wayMm = glm::distance(a.centreMm, junction.placeMm) +
                              glm::distance(junction.placeMm, b.centreMm);
-        if (std::abs(fromMm - toMm) > 2.0 * wayMm + kLeapSlackMm) return wrong(Kind::leap);
+        if (std::abs(fromMm - toMm) > 2.0 * wayMm + leapSlackMm) return wrong(Kind::leap);
         const double lo = std::min(fromMm, toMm), hi = std::max(fromMm, toMm);
         const auto& closures = course_.closures();
         for (std::size_t c = 0; c < closures.size(); ++c) {
@@ -283,10 +274,10 @@ private:
             if (sample < 0) continue;
             const double now = course_.arcMm(sample);
             const bool leaps = pathMm >= 0.0 &&
-                               std::abs(now - trueMm) > 2.0 * (point.arcMm - pathMm) + kPathSlackMm;
+                               std::abs(now - trueMm) > 2.0 * (point.arcMm - pathMm) + pathSlackMm;
             const bool told = std::any_of(
                 score.wrongSteps.begin(), score.wrongSteps.end(), [&](const WrongStep& s) {
-                    return glm::distance(s.placeMm, point.positionMm) <= kPathSlackMm;
+                    return glm::distance(s.placeMm, point.positionMm) <= pathSlackMm;
                 });
             if (leaps && !told)
                 score.wrongSteps.push_back(
@@ -320,7 +311,7 @@ ColonScore scoreColon(const Phantom& truth, const Volume<std::uint8_t>& lumen,
     const std::vector<glm::dvec3> places = placesOf(warnings);
     for (WrongStep& step : score.wrongSteps) {
         step.warned = std::any_of(places.begin(), places.end(), [&](glm::dvec3 p) {
-            return glm::distance(p, step.placeMm) <= kWarnedWithinMm;
+            return glm::distance(p, step.placeMm) <= warnedWithinMm;
         });
     }
     return score;

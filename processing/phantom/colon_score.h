@@ -24,13 +24,13 @@ struct WrongStep {
     Kind kind = Kind::leap;
     glm::dvec3 placeMm{0.0};
     double fromArcMm = 0.0, toArcMm = 0.0;  ///< true arcs on its two sides; −1 outside the colon
-    bool warned = false;                    ///< a warning names a place within kWarnedWithinMm
+    bool warned = false;                    ///< a warning names a place within warnedWithinMm
 };
 /// "foreign", "leap" …
 const char* toString(WrongStep::Kind kind);
 
 struct ColonScore {
-    /// Volume found more than kFalseBeyondMm from the true lumen (LumenScore::falseMl), by what it
+    /// Volume found more than falseBeyondMm from the true lumen (LumenScore::falseMl), by what it
     /// is in truth.
     double falseIleumMl = 0.0, falseOtherBowelMl = 0.0, falseElsewhereMl = 0.0;
     double trueMm = 0.0;  ///< length of the true axis
@@ -46,7 +46,7 @@ struct ColonScore {
     std::vector<WrongStep> wrongSteps;
 };
 
-inline constexpr double kWarnedWithinMm = 40.0;
+inline constexpr double warnedWithinMm = 40.0;
 
 /// A voxel of the true lumen has the arc of the sample of the axis that is nearest by a way inside
 /// the lumen, so that two loops that touch have different arcs. A collapse is where the axis passes

@@ -6,15 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace haustra::phantom {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Radius of the muscle of a collapsed segment, whose lumen is closed.
-constexpr double kCollapsedRadiusMm = 5.5;
+constexpr double collapsedRadiusMm = 5.5;
 /// Sacculations bulge at most this much beyond the mean radius.
-constexpr double kBulge = 1.1;
+constexpr double mostBulge = 1.1;
 
 PathSample between(const PathSample& a, const PathSample& b, double t) {
     PathSample s;
@@ -124,11 +124,11 @@ double ColonShape::tube(glm::dvec3 p, const PathSample& s, double arcMm) const {
     const glm::dvec3 v = p - s.position;
     const double x = glm::dot(v, s.normal), y = glm::dot(v, s.binormal);
     const double rho = glm::length(v);
-    const double turn = std::atan2(y, x) / (2.0 * kPi);
+    const double turn = std::atan2(y, x) / (2.0 * std::numbers::pi);
     const double u3 = (turn - std::floor(turn)) * 3.0;
     const int sector = std::min(2, int(u3));
     const double u = u3 - sector;
-    const double belly = std::sin(kPi * u);  // 0 at the taeniae, 1 midway
+    const double belly = std::sin(std::numbers::pi * u);  // 0 at the taeniae, 1 midway
 
     const auto& folds = folds_[sector];
     const std::size_t sample =
@@ -137,8 +137,9 @@ double ColonShape::tube(glm::dvec3 p, const PathSample& s, double arcMm) const {
     const bool hasBefore = after > 0, hasAfter = after < int(folds.size());
     const double before = hasBefore ? folds[after - 1].arcMm : arcMm - 15.0;
     const double beyond = hasAfter ? folds[after].arcMm : arcMm + 15.0;
-    const double bag = std::sqrt(
-        std::max(0.0, std::sin(kPi * std::clamp((arcMm - before) / (beyond - before), 0.0, 1.0))));
+    const double bag = std::sqrt(std::max(
+        0.0,
+        std::sin(std::numbers::pi * std::clamp((arcMm - before) / (beyond - before), 0.0, 1.0))));
 
     const double shape =
         0.90 + 0.07 * belly + 0.13 * belly * bag * std::min(1.0, (beyond - before) / 25.0);
@@ -170,7 +171,7 @@ void ColonShape::findNearby(glm::dvec3 centre, double radiusMm, Nearby& nearby) 
         const PathSample& s = path_.samples[n];
         // Beyond the nearest tube's reach, a neighbour matters as far as the septum does.
         const double reach =
-            kBulge * std::max(s.radiusMm, kCollapsedRadiusMm) + wallMm + reachMm + radiusMm + 1.0;
+            mostBulge * std::max(s.radiusMm, collapsedRadiusMm) + wallMm + reachMm + radiusMm + 1.0;
         const glm::dvec3 v = s.position - centre;
         if (glm::dot(v, v) < reach * reach) nearby.segments.push_back(int(n));
     }
@@ -215,8 +216,8 @@ ColonPoint ColonShape::evaluate(glm::dvec3 p, const Nearby& nearby) const {
     if (d > -6.0)
         d += 0.35 * valueNoise(roughness_, p, 6.0) + 0.6 * valueNoise(roughness_ + 1, p, 14.0);
     double outer = d - wallMm;
-    if (s.radiusMm < kCollapsedRadiusMm) {
-        outer = std::min(outer, glm::distance(p, s.position) - kCollapsedRadiusMm);
+    if (s.radiusMm < collapsedRadiusMm) {
+        outer = std::min(outer, glm::distance(p, s.position) - collapsedRadiusMm);
     }
 
     double other = 1e9;
@@ -254,8 +255,8 @@ double ColonShape::smoothTubeMm(glm::dvec3 p, double arcMm, double beyondMm) con
     for (std::size_t n = 0; n < path_.samples.size(); n += 3) {
         if (std::abs(path_.stepMm * double(n) - arcMm) <= beyondMm) continue;
         const PathSample& s = path_.samples[n];
-        least = std::min(least,
-                         glm::distance(p, s.position) - std::max(s.radiusMm, kCollapsedRadiusMm));
+        least =
+            std::min(least, glm::distance(p, s.position) - std::max(s.radiusMm, collapsedRadiusMm));
     }
     return least;
 }

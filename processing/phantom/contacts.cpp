@@ -13,8 +13,8 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kBinMm = 15.0;
-constexpr double kLeastAreaMm2 = 10.0;
+constexpr double binMm = 15.0;
+constexpr double leastAreaMm2 = 10.0;
 
 /// The lumens of the colon and of the ileum in some slices.
 struct Lumens {
@@ -24,7 +24,7 @@ struct Lumens {
     bool isLumen(glm::ivec3 v) const {
         return colon.at(v) != 0 || sites.at(v) == std::uint8_t(Site::ileum);
     }
-    /// The first voxel of another lumen that one meets from `v` on along an axis, up to kContactMm
+    /// The first voxel of another lumen that one meets from `v` on along an axis, up to contactMm
     /// away: beyond a wall; or right beside `v`, where one of the two is colon and the other ileum.
     std::optional<glm::ivec3> facing(glm::ivec3 v, int axis) const {
         const Grid& grid = colon.grid();
@@ -34,7 +34,7 @@ struct Lumens {
         // Two voxels of the same organ side by side are one lumen.
         if (isLumen(w) && isColon(v) == isColon(w)) return std::nullopt;
         while (w[axis] < grid.size[axis] && !isLumen(w) &&
-               (w[axis] - v[axis]) * spacingMm <= kContactMm)
+               (w[axis] - v[axis]) * spacingMm <= contactMm)
             ++w[axis];
         if (w[axis] >= grid.size[axis] || !isLumen(w)) return std::nullopt;
         return w;
@@ -75,7 +75,7 @@ void ContactFinder::look(const Volume<std::uint8_t>& lumen, const Volume<std::ui
 std::optional<ContactFinder::Touch> ContactFinder::touchAt(glm::dvec3 a, glm::dvec3 b,
                                                            double depthMm) {
     const double apart = std::max(0.0, glm::distance(a, b) - depthMm);
-    if (apart >= kContactMm) return std::nullopt;
+    if (apart >= contactMm) return std::nullopt;
     Touch touch;
     touch.apartMm = float(apart);
     touch.at = glm::vec3(0.5 * (a + b));
@@ -124,7 +124,7 @@ std::vector<Structure::Contact> ContactFinder::contacts() const {
     using Bin = std::tuple<bool, int, int>;
     std::map<Bin, std::vector<const Touch*>> bins;
     for (const Touch& touch : touches_) {
-        bins[{touch.ileum, int(touch.arcMm / kBinMm), int(touch.otherArcMm / kBinMm)}].push_back(
+        bins[{touch.ileum, int(touch.arcMm / binMm), int(touch.otherArcMm / binMm)}].push_back(
             &touch);
     }
     std::vector<Structure::Contact> contacts;
@@ -135,7 +135,7 @@ std::vector<Structure::Contact> ContactFinder::contacts() const {
         taken[first] = true;
         Structure::Contact contact;
         contact.ileum = std::get<0>(first);
-        contact.leastMm = kContactMm;
+        contact.leastMm = contactMm;
         double arc = 0.0, other = 0.0;
         glm::dvec3 at(0.0);
         while (!open.empty()) {
@@ -154,7 +154,7 @@ std::vector<Structure::Contact> ContactFinder::contacts() const {
                 open.push_back(beside);
             }
         }
-        if (contact.areaMm2 < kLeastAreaMm2) continue;
+        if (contact.areaMm2 < leastAreaMm2) continue;
         contact.arcMm = arc / contact.areaMm2, contact.otherArcMm = other / contact.areaMm2;
         contact.positionMm = at / contact.areaMm2;
         contacts.push_back(contact);

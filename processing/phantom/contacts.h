@@ -11,7 +11,7 @@
 namespace haustra::phantom {
 
 /// Gathers, slab by slab, the sites where the lumens of two loops of colon, or of colon and ileum,
-/// are less than kContactMm apart along a grid's axis.
+/// are less than contactMm apart along a grid's axis.
 class ContactFinder {
 public:
     explicit ContactFinder(const ColonShape& shape) : shape_(shape) {}

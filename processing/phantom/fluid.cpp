@@ -9,17 +9,17 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kNoFloor = 1e9;
+constexpr double noFloor = 1e9;
 /// Over which a meniscus falls off: the capillary length of water.
-constexpr double kMeniscusMm = 2.7;
+constexpr double meniscusMm = 2.7;
 /// Bowel fluid without tagging.
 
 /// Lowest and highest lumen voxel at each sample of the axis.
 void floorAndCeiling(const ColonShape& shape, const ColonField& field, const Fluid& fluid,
                      std::vector<double>& floor, std::vector<double>& ceiling) {
     const ColonPath& path = shape.path();
-    floor.assign(path.samples.size(), kNoFloor);
-    ceiling.assign(path.samples.size(), -kNoFloor);
+    floor.assign(path.samples.size(), noFloor);
+    ceiling.assign(path.samples.size(), -noFloor);
     for (int b = 0; b < field.blockCount(); ++b) {
         const auto& samples = field.block(b);
         for (int v = 0; v < ColonField::blockVoxels; ++v) {
@@ -69,7 +69,7 @@ std::vector<int> summits(const std::vector<double>& floor, double prominence) {
 }  // namespace
 
 double Pool::levelAt(double lumenMm) const {
-    return levelMm + riseMm * std::exp(std::min(0.0, lumenMm) / kMeniscusMm);
+    return levelMm + riseMm * std::exp(std::min(0.0, lumenMm) / meniscusMm);
 }
 
 double Pool::taggedShareAt(double heightMm) const {
@@ -86,7 +86,7 @@ double Pool::huAt(glm::dvec3 p, double heightMm) const {
     const double depth = std::min(1.0, std::max(0.0, levelMm - heightMm) / 40.0);
     const double blotches = 0.7 * valueNoise(seed, p, 14.0) + 0.3 * valueNoise(seed + 1, p, 5.0);
     const double here = hu * (1.0 + unevenness * (0.35 * blotches + 0.3 * (depth - 0.5)));
-    return waterMm > 0.0 ? glm::mix(kWaterHu, here, taggedShareAt(heightMm)) : here;
+    return waterMm > 0.0 ? glm::mix(waterHu, here, taggedShareAt(heightMm)) : here;
 }
 
 const Pool& Fluid::poolAt(double arcMm) const {
@@ -109,7 +109,7 @@ Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t 
     const int count = int(floor.size());
     std::vector<double> smooth(floor.size());
     for (int n = 0; n < count; ++n) {
-        double lowest = kNoFloor;
+        double lowest = noFloor;
         for (int m = std::max(0, n - 3); m <= std::min(count - 1, n + 3); ++m)
             lowest = std::min(lowest, floor[m]);
         smooth[n] = lowest;
@@ -128,7 +128,7 @@ Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t 
         const double wantedMm = easy ? random.uniform(3.0, 12.0) : random.uniform(12.0, 45.0);
         const bool empty = random.chance(easy ? 0.3 : 0.08);
 
-        double bottom = kNoFloor, top = -kNoFloor;
+        double bottom = noFloor, top = -noFloor;
         for (int n = from; n <= to; ++n)
             bottom = std::min(bottom, smooth[n]), top = std::max(top, ceiling[n]);
         // The ends of the colon are closed; a summit within it spills.
@@ -141,8 +141,8 @@ Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t 
         const bool filled = full < bowel.full;
         if (filled) {
             // Closed ends hold fluid however high it stands.
-            const bool closedBelow = from == 0 || smooth[from] >= kNoFloor,
-                       closedAbove = to == count - 1 || smooth[to] >= kNoFloor;
+            const bool closedBelow = from == 0 || smooth[from] >= noFloor,
+                       closedAbove = to == count - 1 || smooth[to] >= noFloor;
             if (closedBelow && closedAbove) spill = top + 10.0;
         }
         const double level = filled ? spill : std::min(spill, bottom + wantedMm);
@@ -150,15 +150,15 @@ Fluid pourFluid(const ColonShape& shape, const ColonField& field, std::uint64_t 
             // Nobody has drunk a tagging agent; stool stands on the right.
             pool.tagged = false;
             pool.stool = (from + to) * 0.5 * step > shape.path().transverseEndMm - 60.0;
-            pool.hu = kWaterHu;
+            pool.hu = waterHu;
         } else if (untagged < bowel.untagged) {
             pool.tagged = false;
-            pool.hu = kWaterHu;
+            pool.hu = waterHu;
             pool.unevenness = 0.2;
         } else if (layered < bowel.layered) {
             pool.waterMm = depth * std::max(0.0, level - bottom);
         }
-        if ((filled || !empty) && bottom < kNoFloor && level > bottom + 2.0) pool.levelMm = level;
+        if ((filled || !empty) && bottom < noFloor && level > bottom + 2.0) pool.levelMm = level;
         fluid.pools.push_back(pool);
     }
     return fluid;

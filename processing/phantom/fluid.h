@@ -7,7 +7,7 @@
 
 namespace haustra::phantom {
 
-inline constexpr double kWaterHu = 12.0;
+inline constexpr double waterHu = 12.0;
 
 /// One stretch of the colon between two high points of its floor, filled up to a level below both.
 struct Pool {

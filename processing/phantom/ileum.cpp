@@ -10,10 +10,10 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kStepMm = 4.0;
+constexpr double stepMm = 4.0;
 /// Loops that touch press on each other by this much.
-constexpr double kPressMm = 1.5;
-constexpr double kBehindValveMm = 3.0;
+constexpr double pressMm = 1.5;
+constexpr double behindValveMm = 3.0;
 
 /// One walk from the valve.
 class Walk {
@@ -24,10 +24,10 @@ public:
 
     std::vector<Tube::Node> from(const Valve& valve) {
         glm::dvec3 heading = -valve.inward;
-        glm::dvec3 at = valve.at + heading * (kBehindValveMm + radius(0.0));
+        glm::dvec3 at = valve.at + heading * (behindValveMm + radius(0.0));
         std::vector<Tube::Node> nodes = {{at, radius(0.0)}};
         double hugUntilMm = 40.0, freeUntilMm = 0.0;
-        for (double arc = kStepMm; arc < bowel_.ileumMm; arc += kStepMm) {
+        for (double arc = stepMm; arc < bowel_.ileumMm; arc += stepMm) {
             if (arc > hugUntilMm) {
                 freeUntilMm = arc + random_.uniform(15.0, 40.0);
                 hugUntilMm = freeUntilMm + random_.uniform(60.0, 160.0);
@@ -58,13 +58,13 @@ private:
         double least = 40.0;
         for (int n = 0; n < 40; ++n) {
             // No bend tighter than the tube is wide.
-            const double most = std::min(0.8, kStepMm / (1.15 * r));
+            const double most = std::min(0.8, stepMm / (1.15 * r));
             const glm::dvec3 to = glm::normalize(
                 heading + most * random_.uniform() * glm::normalize(random_.normal3() + 1e-6));
-            const glm::dvec3 p = from + kStepMm * to;
+            const glm::dvec3 p = from + stepMm * to;
             // Look a little ahead, so as not to run into a corner.
             const double cost = costOf(p, nodes, arcMm, r, hug) +
-                                0.5 * costOf(p + 2.5 * kStepMm * to, nodes, arcMm, r, hug) +
+                                0.5 * costOf(p + 2.5 * stepMm * to, nodes, arcMm, r, hug) +
                                 1.5 * (1.0 - glm::dot(heading, to));
             if (cost < least) least = cost, best = p;
         }
@@ -83,12 +83,12 @@ private:
         // The first millimetres stand on the colon's wall.
         if (arcMm > 12.0) {
             const double apart = shape_.smoothTubeMm(p) - r;
-            const double wanted = shape_.septumMm() - kPressMm;
+            const double wanted = shape_.septumMm() - pressMm;
             cost += tooNear(apart, hug ? wanted : 4.0);
             if (hug && apart > wanted) cost += 0.25 * std::min(apart - wanted, 40.0);
         }
         for (std::size_t n = 0; n < nodes.size(); ++n) {
-            const double between = arcMm - kStepMm * double(n);
+            const double between = arcMm - stepMm * double(n);
             if (between < 3.2 * (r + nodes[n].radiusMm)) break;
             cost += 3.0 * tooNear(glm::distance(p, nodes[n].position),
                                   r + nodes[n].radiusMm + 2.0 * Ileum::wallMm);
@@ -118,7 +118,7 @@ double Ileum::lumenMm(glm::dvec3 p, double colonLumenMm) const {
     if (valve_.open && glm::distance(p, valve_.at) < 25.0) {
         const double height = valve_.heightMm(p);
         // From the mucosa of the cecum, with which it overlaps a little, into the tube.
-        const double behind = kBehindValveMm + tube_.nodes().front().radiusMm;
+        const double behind = behindValveMm + tube_.nodes().front().radiusMm;
         d = std::min(d, std::max({valve_.slit(p), height - 1.0, -behind - height}));
     }
     return d;
@@ -163,7 +163,7 @@ std::optional<Ileum> addIleum(ColonShape& shape, std::uint64_t seed, const BodyP
         Walk walk(shape, body, bowel, mixBits(seed * 64 + std::uint64_t(attempt)));
         auto nodes = walk.from(valve);
         if (nodes.size() > longest.size()) longest = std::move(nodes), chosen = valve;
-        if (kStepMm * double(longest.size()) >= 0.98 * bowel.ileumMm) break;
+        if (stepMm * double(longest.size()) >= 0.98 * bowel.ileumMm) break;
     }
     if (longest.size() < 8) return std::nullopt;
     shape.setValve(chosen);

@@ -1,5 +1,6 @@
 #include "phantom/phantom.h"
 
+#include "core/voxel_sweep.h"
 #include "phantom/anatomy.h"
 #include "phantom/colon_skeleton.h"
 #include "phantom/contacts.h"
@@ -20,10 +21,10 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kLumenAirHu = -990.0;
-constexpr double kWallHu = 42.0;
-constexpr double kBowelGasHu = -985.0;
-constexpr double kCecumMm = 60.0;  ///< its length where there is no ileocecal valve to begin it
+constexpr double lumenAirHu = -990.0;
+constexpr double wallHu = 42.0;
+constexpr double bowelGasHu = -985.0;
+constexpr double cecumMm = 60.0;  ///< its length where there is no ileocecal valve to begin it
 
 /// Some slices of a scan on its way through the scanner: those that are wanted, and as many on
 /// either side as their blur draws on.
@@ -80,10 +81,10 @@ public:
                 glm::mix(around, solidHu(s, p), coverage(std::min(s.outerMm, s.lumenMm), width_));
             const double share = coverage(s.lumenMm, width_);
             const Contents inside = contents(s, p, stool);
-            const double rest = glm::mix(kLumenAirHu, inside.untaggedHu, inside.untaggedShare);
+            const double rest = glm::mix(lumenAirHu, inside.untaggedHu, inside.untaggedShare);
             untagged[at] = float(glm::mix(solid, rest, share));
             tagged[at] =
-                float(glm::mix(solid, glm::mix(kLumenAirHu, inside.hu, inside.share), share));
+                float(glm::mix(solid, glm::mix(lumenAirHu, inside.hu, inside.share), share));
             if (s.lumenMm < 0.0f && !besideAnotherLoop(s, inField)) {
                 slab.lumen[at] = std::uint8_t(inside.tagged ? LumenLabel::tagged : LumenLabel::air);
                 slab.sites[at] =
@@ -124,17 +125,17 @@ private:
     }
 
     double solidHu(const ColonField::Sample& s, glm::dvec3 p) const {
-        if (s.growth < 0) return kWallHu + 6.0 * valueNoise(seed_, p, 6.0);
+        if (s.growth < 0) return wallHu + 6.0 * valueNoise(seed_, p, 6.0);
         const Growth& growth = shape_.growths()[std::size_t(s.growth)];
         if (growth.kind == Growth::Kind::untaggedStool) {
             // Crumbs with bubbles of gas between.
             const double crumb = valueNoise(growth.seed, p, 3.0);
             return crumb > 0.35 ? -350.0 : growth.hu + 40.0 * crumb;
         }
-        if (growth.kind == Growth::Kind::hyperplastic) return kWallHu + 3.0;
+        if (growth.kind == Growth::Kind::hyperplastic) return wallHu + 3.0;
         // Adenomas are a little denser inside, unevenly.
         const double core = 1.0 - smoothstep(-2.0, -0.5, growth.distance(p));
-        return kWallHu + core * (22.0 + 18.0 * valueNoise(growth.seed + 9, p, 3.5));
+        return wallHu + core * (22.0 + 18.0 * valueNoise(growth.seed + 9, p, 3.5));
     }
 
     Contents contents(const ColonField::Sample& s, glm::dvec3 p,
@@ -146,7 +147,7 @@ private:
         inside.tagged = height < level;
         if (inside.share > 0.0) inside.hu = pool.huAt(p, height);
         if (inside.share > 0.0 && (!pool.tagged || pool.waterMm > 0.0)) {
-            inside.untaggedHu = pool.tagged ? kWaterHu : inside.hu;
+            inside.untaggedHu = pool.tagged ? waterHu : inside.hu;
             inside.untaggedShare = inside.share * (1.0 - pool.taggedShareAt(height));
         }
         for (const Growth* ball : stool) {
@@ -185,7 +186,7 @@ void paintIleum(const Ileum& ileum, glm::dvec3 up, const ColonField& field, int 
                     const double share = coverage(d, width);
                     if (share <= 0.0) continue;
                     const double fluid = coverage(glm::dot(up, p) - ileum.levelMm, levelWidth);
-                    const double hu = glm::mix(kBowelGasHu, ileum.fluidHu, fluid);
+                    const double hu = glm::mix(bowelGasHu, ileum.fluidHu, fluid);
                     const std::size_t at = grid.index(i, j, k);
                     tagged[at] = float(glm::mix(double(tagged[at]), hu, share));
                     untagged[at] = float(glm::mix(double(untagged[at]), hu, share));
@@ -218,23 +219,19 @@ void paintRectalTube(const RectalTube& tube, const ColonField& field, int fieldO
     const glm::ivec3 lo = glm::max(glm::ivec3(glm::floor(low)), glm::ivec3(0)),
                      hi = glm::min(glm::ivec3(glm::ceil(high)), grid.size - 1);
     const auto tagged = slab.tagged.writable(), untagged = slab.untagged.writable();
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                const RectalTube::Point point = tube.at(grid.patientFromVoxelPoint({i, j, k}),
-                                                        field.at(i, j, k + fieldOffset).lumenMm);
-                const double share = coverage(point.outerMm, width);
-                if (share <= 0.0) continue;
-                const std::size_t at = grid.index(i, j, k);
-                tagged[at] = float(glm::mix(double(tagged[at]), point.hu, share));
-                untagged[at] = float(glm::mix(double(untagged[at]), point.hu, share));
-                if (point.outerMm >= 0.0) continue;
-                slab.sites[at] = std::uint8_t(Site::device);
-                // What the device fills holds no fluid.
-                if (slab.lumen[at]) slab.lumen[at] = std::uint8_t(LumenLabel::air);
-            }
-        }
-    }
+    visitBox(lo, hi, [&](glm::ivec3 v) {
+        const RectalTube::Point point = tube.at(grid.patientFromVoxelPoint(glm::dvec3(v)),
+                                                field.at(v.x, v.y, v.z + fieldOffset).lumenMm);
+        const double share = coverage(point.outerMm, width);
+        if (share <= 0.0) return;
+        const std::size_t at = grid.index(v);
+        tagged[at] = float(glm::mix(double(tagged[at]), point.hu, share));
+        untagged[at] = float(glm::mix(double(untagged[at]), point.hu, share));
+        if (point.outerMm >= 0.0) return;
+        slab.sites[at] = std::uint8_t(Site::device);
+        // What the device fills holds no fluid.
+        if (slab.lumen[at]) slab.lumen[at] = std::uint8_t(LumenLabel::air);
+    });
 }
 
 Result<void> check(const PhantomOptions& options) {
@@ -299,7 +296,7 @@ Structure structureOf(const FilledColon& colon, const Phantom& phantom) {
                                path.sigmoidEndMm,
                                path.descendingEndMm,
                                path.transverseEndMm,
-                               shape.valve() ? shape.valve()->arcMm : path.lengthMm() - kCecumMm,
+                               shape.valve() ? shape.valve()->arcMm : path.lengthMm() - cecumMm,
                                path.lengthMm()};
     if (colon.ileum) structure.ileumMm = colon.ileum->tube().lengthMm();
     const double ml = phantom.lumen.grid().voxelVolumeMm3() * 1e-3;
@@ -322,7 +319,7 @@ Grid slicesOf(const Grid& grid, int begin, int end) {
     return some;
 }
 
-constexpr int kSlabSlices = 64;
+constexpr int slabSlices = 64;
 
 /// The slab of slices from…to − 1, empty.
 Slab slabOf(const Grid& grid, int from, int to, int halo) {
@@ -509,8 +506,8 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
     phantom.untaggedHu = Volume<std::int16_t>(grid);
     phantom.scan.position = options.position;
     phantom.noiseSdHu = scanner.noiseSdHu();
-    for (int from = 0; from < grid.size.z; from += kSlabSlices) {
-        const int to = std::min(grid.size.z, from + kSlabSlices);
+    for (int from = 0; from < grid.size.z; from += slabSlices) {
+        const int to = std::min(grid.size.z, from + slabSlices);
         Slab slab = slabOf(grid, from, to, scanner.haloSlices());
         painter.paint(slab);
         copyLabels(slab, from, phantom);

@@ -8,8 +8,8 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kShaftRadiusMm = 4.5, kBoreRadiusMm = 2.5, kBalloonWallMm = 0.8;
-constexpr double kSiliconeHu = 160.0, kLatexHu = 60.0, kGasHu = -990.0;
+constexpr double shaftRadiusMm = 4.5, boreRadiusMm = 2.5, balloonWallMm = 0.8;
+constexpr double siliconeHu = 160.0, latexHu = 60.0, gasHu = -990.0;
 
 }  // namespace
 
@@ -19,9 +19,9 @@ RectalTube::RectalTube(const ColonPath& path, std::uint64_t seed) {
     std::vector<Tube::Node> nodes;
     const PathSample& anus = path.samples.front();
     for (double below = 40.0; below > 0.0; below -= 4.0)
-        nodes.push_back({anus.position - below * anus.tangent, kShaftRadiusMm});
+        nodes.push_back({anus.position - below * anus.tangent, shaftRadiusMm});
     for (double arc = 0.0; arc < std::min(tipMm, path.lengthMm()); arc += 4.0)
-        nodes.push_back({path.at(arc).position, kShaftRadiusMm});
+        nodes.push_back({path.at(arc).position, shaftRadiusMm});
     lowMm_ = highMm_ = nodes[0].position;
     for (const Tube::Node& node : nodes)
         lowMm_ = glm::min(lowMm_, node.position), highMm_ = glm::max(highMm_, node.position);
@@ -44,9 +44,9 @@ RectalTube::Point RectalTube::at(glm::dvec3 p, double colonLumenMm) const {
     Point point;
     point.outerMm = std::min(shaft, balloon);
     if (shaft < 0.0) {
-        point.hu = shaft < kBoreRadiusMm - kShaftRadiusMm ? kGasHu : kSiliconeHu;
+        point.hu = shaft < boreRadiusMm - shaftRadiusMm ? gasHu : siliconeHu;
     } else {
-        point.hu = shaft < balloon ? kSiliconeHu : balloon < -kBalloonWallMm ? kGasHu : kLatexHu;
+        point.hu = shaft < balloon ? siliconeHu : balloon < -balloonWallMm ? gasHu : latexHu;
     }
     return point;
 }

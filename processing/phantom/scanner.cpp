@@ -10,7 +10,7 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kFwhmPerSigma = 2.354820045;
+constexpr double fwhmPerSigma = 2.354820045;
 
 /// Half of a symmetric, normalised Gaussian kernel: centre first.
 std::vector<float> gaussian(double sigmaVoxels) {
@@ -81,7 +81,7 @@ double sumOfSquares(const std::vector<float>& kernel) {
 
 void blur(Volume<float>& volume, glm::dvec3 fwhmMm, int threads) {
     const Grid grid = volume.grid();
-    const glm::dvec3 sigma = fwhmMm / kFwhmPerSigma / grid.spacingMm();
+    const glm::dvec3 sigma = fwhmMm / fwhmPerSigma / grid.spacingMm();
     const auto alongX = gaussian(sigma.x), alongY = gaussian(sigma.y), alongZ = gaussian(sigma.z);
     float* data = volume.writable().data();
     const std::size_t slice = std::size_t(grid.size.x) * grid.size.y;
@@ -124,7 +124,7 @@ void enhanceBesideTagging(Volume<float>& tagged, const Volume<float>& untagged, 
 }
 
 int blurReachSlices(const Grid& grid, glm::dvec3 fwhmMm) {
-    return int(gaussian(fwhmMm.z / kFwhmPerSigma / grid.spacingMm().z).size()) - 1;
+    return int(gaussian(fwhmMm.z / fwhmPerSigma / grid.spacingMm().z).size()) - 1;
 }
 
 Volume<std::int16_t> addNoise(const Volume<float>& clean, const Noise& noise, int threads) {
@@ -137,7 +137,7 @@ void addNoise(const Volume<float>& slab, int first, int count, int firstOfAll, c
               int threads, std::span<std::int16_t> out) {
     const Grid& grid = slab.grid();
     const std::size_t slice = std::size_t(grid.size.x) * grid.size.y;
-    const glm::dvec3 sigma = glm::dvec3(noise.correlationMm) / kFwhmPerSigma / grid.spacingMm();
+    const glm::dvec3 sigma = glm::dvec3(noise.correlationMm) / fwhmPerSigma / grid.spacingMm();
     const auto alongX = gaussian(sigma.x), alongY = gaussian(sigma.y);
     // Neighbouring slices of a helical scan share some of their noise.
     constexpr float beside = 0.25f;

@@ -51,7 +51,7 @@ double distanceToPolyline(const Centerline& line, glm::dvec3 p) {
 void scoreVolumes(const Volume<std::uint8_t>& truth, const Volume<std::uint8_t>& found,
                   LumenScore& score) {
     const Grid& grid = truth.grid();
-    const std::vector<glm::ivec3> steps = ball(grid, kFalseBeyondMm);
+    const std::vector<glm::ivec3> steps = ball(grid, falseBeyondMm);
     // Label by label, then any label (0).
     std::array<std::size_t, 3> both{}, inTruth{}, inFound{};
     std::size_t far = 0;

@@ -13,7 +13,7 @@ struct LumenScore {
     double dice = 0.0;
     double diceAir = 0.0;
     double diceTagged = 0.0;
-    /// Found, but not lumen: all of it, and what lies more than `kFalseBeyondMm` from any lumen.
+    /// Found, but not lumen: all of it, and what lies more than `falseBeyondMm` from any lumen.
     /// The first holds the half-voxel disagreement along the whole wall; the second is other
     /// organs, and is what the project calls false volume.
     double overMl = 0.0;
@@ -29,7 +29,7 @@ struct LumenScore {
     double centerlineMaxErrorMm = 0.0;
 };
 
-inline constexpr double kFalseBeyondMm = 3.0;
+inline constexpr double falseBeyondMm = 3.0;
 
 /// Labels are LumenLabel; any other value than 0 counts as lumen. Fails where the grids differ.
 /// O(voxels + samples of one centerline × samples of the other).

@@ -11,8 +11,8 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr int kAngles = 240;
-constexpr double kPixelMm = 1.5, kMostLog = 3.0, kHardening = 0.4;
+constexpr int angleCount = 240;
+constexpr double pixelMm = 1.5, mostLog = 3.0, hardeningShare = 0.4;
 
 /// One slice's rays and pictures, on square pixels of `mm`, `n` a side.
 class Fan {
@@ -20,18 +20,18 @@ public:
     Fan(const Grid& grid, int firstOfAll, const Streaks& streaks)
         : fine_(grid.size), spacing_(grid.spacingMm()), streaks_(streaks), firstOfAll_(firstOfAll) {
         const double sideMm = std::max(fine_.x * spacing_.x, fine_.y * spacing_.y);
-        mm_ = std::max({kPixelMm, spacing_.x, spacing_.y});
+        mm_ = std::max({pixelMm, spacing_.x, spacing_.y});
         n_ = int(std::ceil(sideMm / mm_));
         bins_ = 2 * (int(std::ceil(0.5 * std::numbers::sqrt2 * n_)) + 2) + 1;
-        for (int a = 0; a < kAngles; ++a) {
-            const double angle = std::numbers::pi * (a + 0.5) / kAngles;
+        for (int a = 0; a < angleCount; ++a) {
+            const double angle = std::numbers::pi * (a + 0.5) / angleCount;
             across_.push_back({std::cos(angle), std::sin(angle)});
         }
         key_ = mixBits(streaks.seed ^ 0x73747265616Bull);
         // Noise of variance 1 in all rays gives a pixel the variance π²/angles · c · Σ h²: h is the
         // filter, Σ h² = 1/12, and c = 0.464 what interpolation between two bins leaves on average.
         noiseGain_ = streaks.noiseHu /
-                     std::sqrt(std::numbers::pi * std::numbers::pi / kAngles * 0.464 / 12.0);
+                     std::sqrt(std::numbers::pi * std::numbers::pi / angleCount * 0.464 / 12.0);
     }
 
     /// Adds nothing and is false where there is nothing to add.
@@ -41,7 +41,7 @@ public:
         const bool metal = shrink(hu);
         if (streaks_.noiseHu <= 0.0 && !metal) return false;
         picture_.assign(water_.size(), 0.0f);
-        for (int a = 0; a < kAngles; ++a) {
+        for (int a = 0; a < angleCount; ++a) {
             project(water_, a, waterRay_);
             ray_.assign(std::size_t(bins_), 0.0);
             if (streaks_.noiseHu > 0.0) addNoise(slice, a);
@@ -50,8 +50,8 @@ public:
                 // −ln cosh (0.4 m), the hardening, in the unit of the rays' noise: HU.
                 for (int b = 0; b < bins_; ++b)
                     ray_[std::size_t(b)] -=
-                        std::log(std::cosh(kHardening * metalRay_[std::size_t(b)])) * 1e3 /
-                        (kWaterPerMm * mm_);
+                        std::log(std::cosh(hardeningShare * metalRay_[std::size_t(b)])) * 1e3 /
+                        (waterPerMm * mm_);
             }
             filter();
             backproject(a);
@@ -66,7 +66,7 @@ private:
     /// Means of the slice on the pixels, as attenuation per pixel; whether there is metal.
     bool shrink(const float* hu) {
         bool metal = false;
-        const float perPixel = float(kWaterPerMm * mm_),
+        const float perPixel = float(waterPerMm * mm_),
                     part = float(spacing_.x * spacing_.y / (mm_ * mm_)) * perPixel;
         for (int j = 0; j < fine_.y; ++j) {
             const int y =
@@ -78,7 +78,7 @@ private:
                 const std::size_t at = std::size_t(y) * n_ + x;
                 const float share = part * std::max(0.0f, 1.0f + value * 1e-3f);
                 water_[at] += share;
-                if (streaks_.hardening && value > kMetalHu) metal_[at] += share, metal = true;
+                if (streaks_.hardening && value > metalHu) metal_[at] += share, metal = true;
             }
         }
         return metal;
@@ -102,9 +102,9 @@ private:
     void addNoise(int slice, int angle) {
         for (int b = 0; b < bins_; ++b) {
             const double more =
-                std::min(waterRay_[std::size_t(b)] - kWaterPerMm * kStreakWaterMm, kMostLog);
+                std::min(waterRay_[std::size_t(b)] - waterPerMm * streakWaterMm, mostLog);
             const std::size_t place =
-                (std::size_t(slice + firstOfAll_) * kAngles + std::size_t(angle)) * 4096 +
+                (std::size_t(slice + firstOfAll_) * angleCount + std::size_t(angle)) * 4096 +
                 std::size_t(b);
             ray_[std::size_t(b)] += noiseGain_ * std::exp(0.5 * more) * whiteNoise(key_, place);
         }
@@ -125,7 +125,7 @@ private:
 
     void backproject(int angle) {
         const glm::dvec2 across = across_[std::size_t(angle)];
-        constexpr double share = std::numbers::pi / kAngles;
+        constexpr double share = std::numbers::pi / angleCount;
         for (int y = 0; y < n_; ++y) {
             double s = offset(0) * across.x + offset(y) * across.y + 0.5 * (bins_ - 1);
             for (int x = 0; x < n_; ++x, s += across.x) {

@@ -17,14 +17,14 @@ namespace haustra::phantom {
 struct Streaks {
     std::uint64_t seed = 1;
     /// Standard deviation of the streak noise in HU at a place where every ray crosses
-    /// kStreakWaterMm of water; 0: none. Where rays cross a more (mm of water) its square grows by
+    /// streakWaterMm of water; 0: none. Where rays cross a more (mm of water) its square grows by
     /// e^(0.0193 a), for each ray apart, up to e^3.
     double noiseHu = 0.0;
-    bool hardening = false;  ///< of what is over kMetalHu
+    bool hardening = false;  ///< of what is over metalHu
 };
 
-inline constexpr double kStreakWaterMm = 400.0, kWaterPerMm = 0.0193;  ///< at 70 keV
-inline constexpr double kMetalHu = 3500.0;
+inline constexpr double streakWaterMm = 400.0, waterPerMm = 0.0193;  ///< at 70 keV
+inline constexpr double metalHu = 3500.0;
 
 /// HU to add to `count` slices of a noise-free slab, from its slice `first` on, which is slice
 /// `firstOfAll` of the whole; on these slices' grid. Parallel rays at 240 angles in each slice

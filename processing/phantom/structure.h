@@ -18,7 +18,7 @@ struct Structure {
         glm::dvec3 beginAtMm{0.0}, endAtMm{0.0};
         double lengthMm() const { return endMm - beginMm; }
     };
-    /// A place where two loops that do not join there have their lumens less than kContactMm apart.
+    /// A place where two loops that do not join there have their lumens less than contactMm apart.
     struct Contact {
         bool ileum = false;  ///< of colon and ileum; or of two loops of colon
         double arcMm = 0.0;
@@ -49,8 +49,8 @@ struct Structure {
     double ileumMl = 0.0;
 };
 
-inline constexpr std::array<const char*, 6> kSegmentNames{"rectum",     "sigmoid",   "descending",
-                                                          "transverse", "ascending", "cecum"};
-inline constexpr double kContactMm = 4.0;
+inline constexpr std::array<const char*, 6> segmentNames{"rectum",     "sigmoid",   "descending",
+                                                         "transverse", "ascending", "cecum"};
+inline constexpr double contactMm = 4.0;
 
 }  // namespace haustra::phantom

@@ -11,13 +11,13 @@
 namespace haustra::phantom {
 namespace {
 
-constexpr double kDifferenceMm = 0.01;  // of differences
-constexpr double kOnSurfaceMm = 2e-4;   // of the field
-constexpr double kNearMm = 0.01;        // nearer than this is near enough
-constexpr double kCellMm = 2.0;
+constexpr double differenceMm = 0.01;  // of differences
+constexpr double onSurfaceMm = 2e-4;   // of the field
+constexpr double nearMm = 0.01;        // nearer than this is near enough
+constexpr double cellMm = 2.0;
 /// A collapsed stretch is left out with this much of the lumen's tapered ends.
-constexpr double kCollapseMarginMm = 6.0;
-constexpr double kLeastPieceMl = 1.0;
+constexpr double collapseMarginMm = 6.0;
+constexpr double leastPieceMl = 1.0;
 
 /// Where the field changes sign between a (negative) and b, to a micrometre.
 glm::dvec3 bisect(const std::function<double(glm::dvec3)>& field, glm::dvec3 a, glm::dvec3 b) {
@@ -65,7 +65,7 @@ TrueSurface::TrueSurface(Implicit implicit, const Volume<std::uint8_t>& inside, 
             boxes.push_back({sample.positionMm, sample.positionMm});
         }
     }
-    near_ = CellGrid(boxes, kCellMm);
+    near_ = CellGrid(boxes, cellMm);
 }
 
 /// Where the surface crosses the edge from `in` to `out`.
@@ -98,8 +98,8 @@ glm::dvec3 TrueSurface::gradient(glm::dvec3 p, double atP) const {
     glm::dvec3 g;
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 q = p;
-        q[axis] += kDifferenceMm;
-        g[axis] = (implicit_.field(q) - atP) / kDifferenceMm;
+        q[axis] += differenceMm;
+        g[axis] = (implicit_.field(q) - atP) / differenceMm;
     }
     return g;
 }
@@ -123,7 +123,7 @@ glm::dvec3 TrueSurface::slide(glm::dvec3 p, glm::dvec3 start) const {
         double f = implicit_.field(q);
         // Back to the surface along the gradient of the start, which is near enough for small
         // steps.
-        for (int round = 0; round < 4 && std::abs(f) > kOnSurfaceMm; ++round) {
+        for (int round = 0; round < 4 && std::abs(f) > onSurfaceMm; ++round) {
             const glm::dvec3 there = round == 0 ? g : gradient(q, f);
             const double square = glm::dot(there, there);
             if (!(square > 1e-6)) break;
@@ -131,7 +131,7 @@ glm::dvec3 TrueSurface::slide(glm::dvec3 p, glm::dvec3 start) const {
             f = implicit_.field(q);
         }
         const double d = glm::distance(p, q);
-        if (std::abs(f) <= kOnSurfaceMm && d < best) {
+        if (std::abs(f) <= onSurfaceMm && d < best) {
             best = d, foot = q;
         } else {
             reach = 0.4 * std::min(reach, length);
@@ -170,10 +170,10 @@ double TrueSurface::distanceMm(glm::dvec3 p) const {
     const bool inLumen = implicit_.field(p) < 0.0;
     bool found = false;
     for (const glm::dvec3& direction : allAround())
-        found |= glm::distance(p, foot) > kNearMm && probe(p, inLumen, direction, foot);
+        found |= glm::distance(p, foot) > nearMm && probe(p, inLumen, direction, foot);
     if (found) foot = slide(p, foot);
     for (const double angle : {0.7, 0.3, 0.12}) {
-        for (int turn = 0; turn < 6 && glm::distance(p, foot) > kNearMm; ++turn) {
+        for (int turn = 0; turn < 6 && glm::distance(p, foot) > nearMm; ++turn) {
             const glm::dvec3 axis = glm::normalize(foot - p);
             const glm::dvec3 u = glm::normalize(glm::cross(
                 axis, std::abs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
@@ -201,21 +201,21 @@ public:
     ColonEverywhere(ColonShape shape, const Grid& grid, int threads) : shape_(std::move(shape)) {
         const glm::dvec3 a = grid.patientFromVoxelPoint(glm::dvec3(0.0)),
                          b = grid.patientFromVoxelPoint(glm::dvec3(grid.size - 1));
-        lowMm_ = glm::min(a, b) - kBlockMm;
-        blocks_ = glm::ivec3(glm::ceil((glm::max(a, b) + kBlockMm - lowMm_) / kBlockMm));
+        lowMm_ = glm::min(a, b) - blockMm;
+        blocks_ = glm::ivec3(glm::ceil((glm::max(a, b) + blockMm - lowMm_) / blockMm));
         nearby_.resize(std::size_t(blocks_.x) * blocks_.y * blocks_.z);
         parallelFor(nearby_.size(), 256, threads, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) {
                 const glm::ivec3 block(int(n % blocks_.x), int(n / blocks_.x % blocks_.y),
                                        int(n / (std::size_t(blocks_.x) * blocks_.y)));
-                shape_.findNearby(lowMm_ + kBlockMm * (glm::dvec3(block) + 0.5), kBlockMm * 0.867,
+                shape_.findNearby(lowMm_ + blockMm * (glm::dvec3(block) + 0.5), blockMm * 0.867,
                                   nearby_[n]);
             }
         });
     }
 
     ColonPoint operator()(glm::dvec3 p) const {
-        const glm::ivec3 block(glm::floor((p - lowMm_) / kBlockMm));
+        const glm::ivec3 block(glm::floor((p - lowMm_) / blockMm));
         if (glm::any(glm::lessThan(block, glm::ivec3(0))) ||
             glm::any(glm::greaterThanEqual(block, blocks_))) {
             return {};
@@ -227,23 +227,23 @@ public:
     }
 
     bool collapsedAt(glm::dvec3 p) const {
-        return shape_.path().collapsedWithin((*this)(p).arcMm, kCollapseMarginMm);
+        return shape_.path().collapsedWithin((*this)(p).arcMm, collapseMarginMm);
     }
 
 private:
-    static constexpr double kBlockMm = 8.0;
+    static constexpr double blockMm = 8.0;
     ColonShape shape_;
     glm::dvec3 lowMm_{0.0};
     glm::ivec3 blocks_{0};
     std::vector<ColonShape::Nearby> nearby_;
 };
 
-/// The lumen without its 6-connected pieces below kLeastPieceMl.
+/// The lumen without its 6-connected pieces below leastPieceMl.
 Volume<std::uint8_t> largePieces(const Volume<std::uint8_t>& labels) {
     const Grid& grid = labels.grid();
     Volume<std::uint8_t> large(grid, 0);
     const auto out = large.writable();
-    const double least = kLeastPieceMl * 1e3 / grid.voxelVolumeMm3();
+    const double least = leastPieceMl * 1e3 / grid.voxelVolumeMm3();
     std::vector<std::uint32_t> piece;
     constexpr std::uint8_t dropped = 2;
     for (std::size_t start = 0; start < grid.voxelCount(); ++start) {

@@ -1,6 +1,7 @@
 #include "phantom/truth.h"
 
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,15 +30,11 @@ Centerline trueCenterline(const ColonShape& shape, const Volume<std::uint8_t>& l
             const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)),
                              hi = glm::min(centre + reach, grid.size - 1);
             double nearest = farthest * farthest;
-            for (int k = lo.z; k <= hi.z; ++k) {
-                for (int j = lo.y; j <= hi.y; ++j) {
-                    for (int i = lo.x; i <= hi.x; ++i) {
-                        if (lumen.at(i, j, k)) continue;
-                        const glm::dvec3 d = (glm::dvec3(i, j, k) - at) * spacing;
-                        nearest = std::min(nearest, glm::dot(d, d));
-                    }
-                }
-            }
+            visitBox(lo, hi, [&](glm::ivec3 v) {
+                if (lumen.at(v)) return;
+                const glm::dvec3 d = (glm::dvec3(v) - at) * spacing;
+                nearest = std::min(nearest, glm::dot(d, d));
+            });
             point.radiusMm = std::sqrt(nearest);
         }
     });
@@ -57,15 +54,11 @@ std::vector<std::vector<std::uint32_t>> polypVoxels(const ColonShape& shape, con
         const glm::dvec3 reach = growth.reachMm() / grid.spacingMm();
         const glm::ivec3 lo = glm::max(glm::ivec3(glm::ceil(middle - reach)), glm::ivec3(0)),
                          hi = glm::min(glm::ivec3(glm::floor(middle + reach)), grid.size - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    const glm::dvec3 p = grid.patientFromVoxelPoint({i, j, k});
-                    if (growth.distance(p) < 0.0 && shape.evaluate(p, nearby).lumenMm < 0.0)
-                        voxels.push_back(std::uint32_t(grid.index(i, j, k)));
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 v) {
+            const glm::dvec3 p = grid.patientFromVoxelPoint(glm::dvec3(v));
+            if (growth.distance(p) < 0.0 && shape.evaluate(p, nearby).lumenMm < 0.0)
+                voxels.push_back(std::uint32_t(grid.index(v)));
+        });
     }
     return all;
 }

@@ -1,5 +1,7 @@
 #include "phantom/tube.h"
 
+#include "core/voxel_sweep.h"
+
 #include <algorithm>
 
 namespace haustra::phantom {
@@ -18,34 +20,28 @@ Tube::Tube(std::vector<Node> nodes, double reachMm) : nodes_(std::move(nodes)) {
     }
     const double margin = widest + reachMm;
     lowMm_ -= margin;
-    cells_ = glm::ivec3(glm::floor((high + margin - lowMm_) / kCellMm)) + 1;
+    cells_ = glm::ivec3(glm::floor((high + margin - lowMm_) / cellMm)) + 1;
     segments_.resize(std::size_t(cells_.x) * cells_.y * cells_.z);
     arcs_.push_back(0.0);
     for (std::size_t n = 0; n + 1 < nodes_.size(); ++n) {
         const glm::dvec3 a = nodes_[n].position, b = nodes_[n + 1].position;
         arcs_.push_back(arcs_.back() + glm::distance(a, b));
         const glm::ivec3 lo = glm::max(
-            glm::ivec3(glm::floor((glm::min(a, b) - margin - lowMm_) / kCellMm)), glm::ivec3(0));
+            glm::ivec3(glm::floor((glm::min(a, b) - margin - lowMm_) / cellMm)), glm::ivec3(0));
         const glm::ivec3 hi = glm::min(
-            glm::ivec3(glm::floor((glm::max(a, b) + margin - lowMm_) / kCellMm)), cells_ - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i)
-                    segments_[std::size_t(i) + std::size_t(cells_.x) * (j + cells_.y * k)]
-                        .push_back(std::uint32_t(n));
-            }
-        }
+            glm::ivec3(glm::floor((glm::max(a, b) + margin - lowMm_) / cellMm)), cells_ - 1);
+        visitBox(lo, hi,
+                 [&](glm::ivec3 cell) { segments_[indexOf(cell)].push_back(std::uint32_t(n)); });
     }
 }
 
 Tube::Place Tube::at(glm::dvec3 p) const {
     Place best;
-    const glm::ivec3 cell(glm::floor((p - lowMm_) / kCellMm));
+    const glm::ivec3 cell(glm::floor((p - lowMm_) / cellMm));
     if (glm::any(glm::lessThan(cell, glm::ivec3(0))) ||
         glm::any(glm::greaterThanEqual(cell, cells_)))
         return best;
-    for (const std::uint32_t n :
-         segments_[std::size_t(cell.x) + std::size_t(cells_.x) * (cell.y + cells_.y * cell.z)]) {
+    for (const std::uint32_t n : segments_[indexOf(cell)]) {
         const Node &a = nodes_[n], &b = nodes_[n + 1];
         const glm::dvec3 ab = b.position - a.position, ap = p - a.position;
         const double t = std::clamp(glm::dot(ap, ab) / std::max(1e-12, glm::dot(ab, ab)), 0.0, 1.0);
@@ -58,18 +54,10 @@ Tube::Place Tube::at(glm::dvec3 p) const {
 bool Tube::mayReach(glm::dvec3 centre, double radiusMm) const {
     if (nodes_.empty()) return false;
     const glm::ivec3 lo =
-        glm::max(glm::ivec3(glm::floor((centre - radiusMm - lowMm_) / kCellMm)), glm::ivec3(0));
+        glm::max(glm::ivec3(glm::floor((centre - radiusMm - lowMm_) / cellMm)), glm::ivec3(0));
     const glm::ivec3 hi =
-        glm::min(glm::ivec3(glm::floor((centre + radiusMm - lowMm_) / kCellMm)), cells_ - 1);
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                if (!segments_[std::size_t(i) + std::size_t(cells_.x) * (j + cells_.y * k)].empty())
-                    return true;
-            }
-        }
-    }
-    return false;
+        glm::min(glm::ivec3(glm::floor((centre + radiusMm - lowMm_) / cellMm)), cells_ - 1);
+    return anyInBox(lo, hi, [&](glm::ivec3 cell) { return !segments_[indexOf(cell)].empty(); });
 }
 
 }  // namespace haustra::phantom

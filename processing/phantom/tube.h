@@ -34,7 +34,12 @@ public:
     bool mayReach(glm::dvec3 centre, double radiusMm) const;
 
 private:
-    static constexpr double kCellMm = 12.0;
+    std::size_t indexOf(glm::ivec3 cell) const {
+        return std::size_t(cell.x) +
+               std::size_t(cells_.x) * (std::size_t(cell.y) + std::size_t(cells_.y) * cell.z);
+    }
+
+    static constexpr double cellMm = 12.0;
     std::vector<Node> nodes_;
     std::vector<double> arcs_;
     glm::dvec3 lowMm_{0.0};

@@ -78,12 +78,7 @@ struct PiecesOfScan {
 
     CellContents cell(glm::ivec3 lo, glm::ivec3 hi) const {
         CellContents cell;
-        for (int k = lo.z; k < hi.z; ++k) {
-            for (int j = lo.y; j < hi.y; ++j) {
-                for (int i = lo.x; i < hi.x; ++i)
-                    add(hu.grid().index(i, j, k), cell);
-            }
-        }
+        visitBox(lo, hi - 1, [&](glm::ivec3 v) { add(hu.grid().index(v), cell); });
         return cell;
     }
 };

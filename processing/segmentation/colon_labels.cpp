@@ -149,6 +149,11 @@ private:
             std::size_t(std::max({spacing.x, spacing.y, spacing.z}) / tickMm) + 2;
         std::vector<std::vector<std::pair<float, std::uint32_t>>> front(buckets);
         float from = 0.0f;
+        const auto leadsOn = [&](std::size_t n, std::size_t m) {
+            if (cut_.pieceAt[m] == cut_.pieceAt[n]) return true;
+            const int o = orificeAt(n, m);
+            return o >= 0 && open_[std::size_t(o)];
+        };
         const auto spreadFrom = [&](std::uint32_t seed) {
             float most = from;
             std::size_t waiting = 1;
@@ -162,13 +167,10 @@ private:
                     way[n] = mm;
                     most = std::max(most, mm);
                     visitFaces(grid_, n, [&](std::size_t m, int axis) {
-                        if (!isKept(cut_.pieceAt[m])) return;
                         const float there = mm + float(spacing[axis]);
-                        if (way[m] >= 0.0f && way[m] <= there) return;
-                        if (cut_.pieceAt[m] != cut_.pieceAt[n]) {
-                            const int o = orificeAt(n, m);
-                            if (o < 0 || !open_[std::size_t(o)]) return;
-                        }
+                        if (!isKept(cut_.pieceAt[m]) || (way[m] >= 0.0f && way[m] <= there) ||
+                            !leadsOn(n, m))
+                            return;
                         front[std::size_t(there / tickMm) % buckets].emplace_back(there,
                                                                                   std::uint32_t(m));
                         ++waiting;
@@ -501,20 +503,13 @@ private:
         };
         std::optional<glm::ivec3> nearest, crumb;
         double nearestMm = 1e9, crumbMm = 1e9;
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    const std::size_t n = grid_.index(i, j, k);
-                    if (cut_.pieceAt[n] != piece || labels_[n] == outside || labels_[n] == bridge)
-                        continue;
-                    const double mm =
-                        glm::distance(grid_.patientFromVoxelPoint(glm::dvec3(i, j, k)), pointMm);
-                    if (mm < crumbMm) crumbMm = mm, crumb = glm::ivec3(i, j, k);
-                    if (mm < nearestMm && ofBody({i, j, k}))
-                        nearestMm = mm, nearest = glm::ivec3(i, j, k);
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 w) {
+            const std::size_t n = grid_.index(w);
+            if (cut_.pieceAt[n] != piece || labels_[n] == outside || labels_[n] == bridge) return;
+            const double mm = glm::distance(grid_.patientFromVoxelPoint(glm::dvec3(w)), pointMm);
+            if (mm < crumbMm) crumbMm = mm, crumb = w;
+            if (mm < nearestMm && ofBody(w)) nearestMm = mm, nearest = w;
+        });
         return nearest ? nearest : crumb;
     }
 

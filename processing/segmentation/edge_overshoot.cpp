@@ -84,14 +84,9 @@ void takeOffOvershoot(const Volume<std::int16_t>& hu, const TissueModel& tissue,
     const auto visitRim = [&](glm::ivec3 v, const auto& visit) {
         const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
                          hi = glm::min(v + reach, grid.size - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    if (glm::length(spacing * glm::dvec3(glm::ivec3(i, j, k) - v)) <= rimMm)
-                        visit(grid.index(i, j, k));
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 w) {
+            if (glm::length(spacing * glm::dvec3(w - v)) <= rimMm) visit(grid.index(w));
+        });
     };
     std::unordered_set<std::size_t> underLevels;
     for (const Level& level : contents.levels) {

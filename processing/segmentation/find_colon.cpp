@@ -1,6 +1,7 @@
 #include "segmentation/find_colon.h"
 
 #include "core/printed_text.h"
+#include "core/voxel_sweep.h"
 #include "segmentation/body_frame.h"
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
@@ -30,15 +31,11 @@ void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
         const glm::ivec3 reach = glm::ivec3(ball.radiusMm / grid.spacingMm()) + 1;
         const glm::ivec3 lo = glm::max(glm::ivec3(centre) - reach, glm::ivec3(0)),
                          hi = glm::min(glm::ivec3(centre) + reach + 1, grid.size - 1);
-        for (int k = lo.z; k <= hi.z; ++k) {
-            for (int j = lo.y; j <= hi.y; ++j) {
-                for (int i = lo.x; i <= hi.x; ++i) {
-                    if (glm::distance(grid.patientFromVoxelPoint(glm::dvec3(i, j, k)),
-                                      ball.centreMm) <= ball.radiusMm)
-                        voxels[grid.index(i, j, k)] = std::uint8_t(Content::tissue);
-                }
-            }
-        }
+        visitBox(lo, hi, [&](glm::ivec3 v) {
+            if (glm::distance(grid.patientFromVoxelPoint(glm::dvec3(v)), ball.centreMm) <=
+                ball.radiusMm)
+                voxels[grid.index(v)] = std::uint8_t(Content::tissue);
+        });
     }
 }
 
@@ -192,13 +189,9 @@ void restrictToMask(BowelContents& contents, const Volume<std::int16_t>& hu,
         const glm::ivec3 v = grid.voxelAt(n);
         const glm::ivec3 lo = glm::max(v - reach, glm::ivec3(0)),
                          hi = glm::min(v + reach, grid.size - 1);
-        bool byTagged = false;
-        for (int k = lo.z; k <= hi.z && !byTagged; ++k) {
-            for (int j = lo.y; j <= hi.y && !byTagged; ++j) {
-                for (int i = lo.x; i <= hi.x && !byTagged; ++i)
-                    byTagged = Content(voxels[grid.index(i, j, k)]) == Content::tagged;
-            }
-        }
+        const bool byTagged = anyInBox(lo, hi, [&](glm::ivec3 w) {
+            return Content(voxels[grid.index(w)]) == Content::tagged;
+        });
         if (!byTagged) walls.push_back(n);
     }
     for (const std::size_t n : walls)

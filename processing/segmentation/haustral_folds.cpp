@@ -27,18 +27,13 @@ std::vector<VoxelBox> boxesOf(const TubePieces& cut, int threads) {
         for (std::size_t s = begin; s < end; ++s) {
             std::vector<Corners>& corners = ofSlab[s];
             corners.assign(cut.pieces.size(), empty);
-            const int last = std::min(grid.size.z, int((s + 1) * slab));
-            for (int k = int(s * slab); k < last; ++k) {
-                for (int j = 0; j < grid.size.y; ++j) {
-                    const std::int32_t* row = &cut.pieceAt.voxels()[grid.index(0, j, k)];
-                    for (int i = 0; i < grid.size.x; ++i) {
-                        if (row[i] < 0) continue;
-                        auto& [lo, hi] = corners[std::size_t(row[i])];
-                        lo = glm::min(lo, glm::ivec3(i, j, k)),
-                        hi = glm::max(hi, glm::ivec3(i, j, k));
-                    }
-                }
-            }
+            const std::size_t last = std::min(std::size_t(grid.size.z), (s + 1) * slab);
+            visitSlices(grid, s * slab, last, [&](std::size_t n, glm::ivec3 v) {
+                const std::int32_t piece = cut.pieceAt[n];
+                if (piece < 0) return;
+                auto& [lo, hi] = corners[std::size_t(piece)];
+                lo = glm::min(lo, v), hi = glm::max(hi, v);
+            });
         }
     });
     std::vector<VoxelBox> boxes;
@@ -108,7 +103,8 @@ double foldDensityOf(const TubePieces& cut, std::int32_t piece, const VoxelBox& 
     const Volume<std::uint8_t> walls = croppedCopy(thinWalls, box, 1);
     const Grid& grid = pieceAt.grid();
     Volume<std::uint8_t> lumen(grid), filled(grid), folds(grid, std::uint8_t(0));
-    const auto own = lumen.writable(), with = filled.writable(), fold = folds.writable();
+    std::uint8_t *const own = lumen.writable().data(), *const with = filled.writable().data(),
+                        *const fold = folds.writable().data();
     double wallMm2 = 0.0;
     const glm::dvec3 spacing = grid.spacingMm(), faceMm2 = grid.voxelVolumeMm3() / spacing;
     visitSlices(grid, 0, std::size_t(grid.size.z), [&](std::size_t n, glm::ivec3 v) {
@@ -123,10 +119,10 @@ double foldDensityOf(const TubePieces& cut, std::int32_t piece, const VoxelBox& 
     for (int d = 14; d < 27; ++d) {  // one of each two opposite neighbours
         const glm::ivec3 step = cornerStep(d);
         const int most = int(std::floor(thickestMm / glm::length(spacing * glm::dvec3(step))));
-        fillBetween(lumen, step, most, fold);
+        fillBetween(lumen, step, most, folds.writable());
     }
     std::vector<std::size_t> between;
-    for (std::size_t n = 0; n < with.size(); ++n) {
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         if (!fold[n] || with[n]) continue;  // not another piece's lumen
         with[n] = 1;
         between.push_back(n);

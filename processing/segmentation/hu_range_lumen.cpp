@@ -1,5 +1,6 @@
 #include "segmentation/hu_range_lumen.h"
 
+#include "core/voxel_sweep.h"
 #include "topology/distance_field.h"
 #include "topology/run_components.h"
 
@@ -102,16 +103,12 @@ int componentNear(const topology::RunComponents& components, const Grid& grid, g
         glm::min(glm::ivec3(glm::ceil(centre + seedReachMm / spacing)), grid.size - 1);
     double nearestMm = seedReachMm;
     int found = -1;
-    for (int k = lowest.z; k <= highest.z; ++k) {
-        for (int j = lowest.y; j <= highest.y; ++j) {
-            for (int i = lowest.x; i <= highest.x; ++i) {
-                const double mm = glm::distance(grid.patientFromVoxelPoint({i, j, k}), pointMm);
-                if (mm > nearestMm || (mm == nearestMm && found >= 0)) continue;
-                const int component = components.at({i, j, k});
-                if (component >= 0) nearestMm = mm, found = component;
-            }
-        }
-    }
+    visitBox(lowest, highest, [&](glm::ivec3 v) {
+        const double mm = glm::distance(grid.patientFromVoxelPoint(glm::dvec3(v)), pointMm);
+        if (mm > nearestMm || (mm == nearestMm && found >= 0)) return;
+        const int component = components.at(v);
+        if (component >= 0) nearestMm = mm, found = component;
+    });
     return found;
 }
 
@@ -204,6 +201,24 @@ Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
     return lumen;
 }
 
+/// Neighbouring lines of a volume, one after another at each place along them; a place more at
+/// either end.
+constexpr int bundled = 32;
+using LineBundle = std::vector<std::array<float, bundled>>;
+
+/// The weights 1, 2, 1 along the lines, whose ends are held.
+void smoothOnce(LineBundle& line) {
+    const auto held = line.end() - 1;
+    *held = *(held - 1);
+    std::array<float, bundled> before = line[1];
+    for (auto at = line.begin() + 1; at != held; ++at) {
+        const std::array<float, bundled> here = *at, &after = *(at + 1);
+        for (std::size_t l = 0; l < bundled; ++l)
+            (*at)[l] = 0.25f * before[l] + 0.5f * here[l] + 0.25f * after[l];
+        before = here;
+    }
+}
+
 // The weights 1, 2, 1 again and again along each axis: a variance of half a voxel each time. The
 // edge of the grid is held.
 Volume<std::int16_t> smoothHu(const Volume<std::int16_t>& hu, double sdMm, int threads) {
@@ -222,31 +237,21 @@ Volume<std::int16_t> smoothHu(const Volume<std::int16_t>& hu, double sdMm, int t
         const int side = axis == 0 ? 1 : 0;
         const std::size_t stride = grid.index(unit),
                           apart = axis == 0 ? std::size_t(grid.size.x) : 1;
-        constexpr int most = 32;
-        across[side] = (across[side] + most - 1) / most;
+        across[side] = (across[side] + bundled - 1) / bundled;
         const Grid bundles{across, glm::dmat4(1.0)};
         parallelFor(bundles.voxelCount(), 8, threads, [&](std::size_t begin, std::size_t end) {
-            std::vector<std::array<float, most>> line(length + 2);
+            LineBundle line(length + 2);
             for (std::size_t n = begin; n < end; ++n) {
                 glm::ivec3 v = bundles.voxelAt(n);
-                v[side] *= most;
+                v[side] *= bundled;
                 const std::size_t first = grid.index(v);
-                const auto width = std::size_t(std::min(most, grid.size[side] - v[side]));
+                const auto width = std::size_t(std::min(bundled, grid.size[side] - v[side]));
                 for (std::size_t at = 0; at < length; ++at) {
                     for (std::size_t l = 0; l < width; ++l)
                         line[at + 1][l] = voxels[first + at * stride + l * apart];
                 }
-                for (long pass = 0; pass < passes; ++pass) {
-                    line[length + 1] = line[length];
-                    std::array<float, most> before = line[1];
-                    for (std::size_t at = 1; at <= length; ++at) {
-                        const std::array<float, most> here = line[at];
-                        for (std::size_t l = 0; l < most; ++l)
-                            line[at][l] =
-                                0.25f * before[l] + 0.5f * here[l] + 0.25f * line[at + 1][l];
-                        before = here;
-                    }
-                }
+                for (long pass = 0; pass < passes; ++pass)
+                    smoothOnce(line);
                 for (std::size_t at = 0; at < length; ++at) {
                     for (std::size_t l = 0; l < width; ++l) {
                         const float value = line[at + 1][l];

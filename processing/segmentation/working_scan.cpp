@@ -1,6 +1,7 @@
 #include "segmentation/working_scan.h"
 
 #include "core/connected_labels.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,26 +40,23 @@ Volume<std::int16_t> binned(const Volume<std::int16_t>& hu, glm::ivec3 by, int t
     Volume<std::int16_t> made(binned(fine, by));
     const Grid& grid = made.grid();
     const auto out = made.writable();
-    parallelFor(std::size_t(grid.size.z), 1, threads, [&](std::size_t first, std::size_t last) {
+    const std::size_t rows = std::size_t(grid.size.y) * std::size_t(grid.size.z);
+    parallelFor(rows, 16, threads, [&](std::size_t first, std::size_t last) {
         std::vector<int> sum(std::size_t(grid.size.x));
-        for (std::size_t z = first; z < last; ++z) {
-            for (int y = 0; y < grid.size.y; ++y) {
-                std::fill(sum.begin(), sum.end(), 0);
-                const glm::ivec3 lo = glm::ivec3(0, y, int(z)) * by;
-                const glm::ivec3 hi = glm::min(lo + by, fine.size);
-                for (int k = lo.z; k < hi.z; ++k) {
-                    for (int j = lo.y; j < hi.y; ++j) {
-                        const std::int16_t* row = &hu.voxels()[fine.index(0, j, k)];
-                        for (int i = 0; i < fine.size.x; ++i)
-                            sum[std::size_t(i / by.x)] += row[i];
-                    }
-                }
-                const int across = (hi.y - lo.y) * (hi.z - lo.z);
-                for (int x = 0; x < grid.size.x; ++x) {
-                    const int count = across * (std::min((x + 1) * by.x, fine.size.x) - x * by.x);
-                    out[grid.index(x, y, int(z))] =
-                        std::int16_t(std::lround(double(sum[std::size_t(x)]) / count));
-                }
+        for (std::size_t r = first; r < last; ++r) {
+            std::fill(sum.begin(), sum.end(), 0);
+            const glm::ivec3 start = grid.voxelAt(r * std::size_t(grid.size.x));
+            const glm::ivec3 lo = start * by, hi = glm::min(lo + by, fine.size);
+            visitBox(lo, {lo.x, hi.y - 1, hi.z - 1}, [&](glm::ivec3 rowStart) {
+                const std::int16_t* row = &hu.voxels()[fine.index(rowStart)];
+                for (int i = 0; i < fine.size.x; ++i)
+                    sum[std::size_t(i / by.x)] += row[i];
+            });
+            const int across = (hi.y - lo.y) * (hi.z - lo.z);
+            for (int x = 0; x < grid.size.x; ++x) {
+                const int count = across * (std::min((x + 1) * by.x, fine.size.x) - x * by.x);
+                out[grid.index(x, start.y, start.z)] =
+                    std::int16_t(std::lround(double(sum[std::size_t(x)]) / count));
             }
         }
     });

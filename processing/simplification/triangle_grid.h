@@ -1,6 +1,8 @@
 // Which triangles may touch a box.
 #pragma once
 
+#include "core/voxel_sweep.h"
+
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -41,18 +43,13 @@ public:
     template <class Visit>
     void visit(const FloatBox& box, const Visit& visit) const {
         const glm::ivec3 low = cellOf(box.low), high = cellOf(box.high);
-        glm::ivec3 c;
-        for (c.z = low.z; c.z <= high.z; ++c.z) {
-            for (c.y = low.y; c.y <= high.y; ++c.y) {
-                for (c.x = low.x; c.x <= high.x; ++c.x) {
-                    // Told in the first of the cells that both boxes touch.
-                    for (const Entry& entry : cells_[indexOf(c)]) {
-                        if (entry.box.touches(box) && glm::max(low, cellOf(entry.box.low)) == c)
-                            visit(entry.triangle, entry.box);
-                    }
-                }
+        visitBox(low, high, [&](glm::ivec3 c) {
+            // Told in the first of the cells that both boxes touch.
+            for (const Entry& entry : cells_[indexOf(c)]) {
+                if (entry.box.touches(box) && glm::max(low, cellOf(entry.box.low)) == c)
+                    visit(entry.triangle, entry.box);
             }
-        }
+        });
     }
 
 private:
@@ -64,12 +61,7 @@ private:
     template <class Visit>
     void forEachCell(const FloatBox& box, const Visit& visit) const {
         const glm::ivec3 low = cellOf(box.low), high = cellOf(box.high);
-        for (int k = low.z; k <= high.z; ++k) {
-            for (int j = low.y; j <= high.y; ++j) {
-                for (int i = low.x; i <= high.x; ++i)
-                    visit(indexOf({i, j, k}));
-            }
-        }
+        visitBox(low, high, [&](glm::ivec3 cell) { visit(indexOf(cell)); });
     }
     glm::ivec3 cellOf(const glm::vec3& point) const {
         const glm::vec3 place = (point - low_) * cellsPerMm_;

@@ -7,6 +7,7 @@
 #include "core/flood_fill.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
+#include "core/voxel_sweep.h"
 #include "topology/distance_field.h"
 
 #include <algorithm>
@@ -197,15 +198,11 @@ void layBridge(BitMask& bridge, Path& path, glm::ivec3 from, glm::ivec3 to, cons
     const glm::ivec3 lo = glm::max(glm::min(from, to) - reach, glm::ivec3(0));
     const glm::ivec3 hi = glm::min(glm::max(from, to) + reach, grid.size - 1);
     const double squaredMm = std::max(1e-9, glm::dot(spacing * d, spacing * d));
-    for (int k = lo.z; k <= hi.z; ++k) {
-        for (int j = lo.y; j <= hi.y; ++j) {
-            for (int i = lo.x; i <= hi.x; ++i) {
-                const glm::dvec3 p = spacing * (glm::dvec3(i, j, k) - a);
-                const double t = std::clamp(glm::dot(p, spacing * d) / squaredMm, 0.0, 1.0);
-                if (glm::distance(p, t * spacing * d) <= radiusMm) bridge.set({i, j, k});
-            }
-        }
-    }
+    visitBox(lo, hi, [&](glm::ivec3 v) {
+        const glm::dvec3 p = spacing * (glm::dvec3(v) - a);
+        const double t = std::clamp(glm::dot(p, spacing * d) / squaredMm, 0.0, 1.0);
+        if (glm::distance(p, t * spacing * d) <= radiusMm) bridge.set(v);
+    });
     // One axis at a time: the one that lags most behind the line.
     for (glm::ivec3 at = from; at != to;) {
         int axis = 0;

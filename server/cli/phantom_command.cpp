@@ -41,7 +41,7 @@ struct PhantomArguments {
     int threads = 0;
 };
 
-constexpr const char* kWild = "wild";
+constexpr const char* wildName = "wild";
 const std::map<std::string, phantom::Preset> presets{{"easy", phantom::Preset::easy},
                                                      {"standard", phantom::Preset::standard},
                                                      {"hard", phantom::Preset::hard}};
@@ -52,7 +52,7 @@ const std::map<std::string, phantom::Size> sizes{
 
 phantom::PhantomOptions optionsOf(const PhantomArguments& arguments) {
     phantom::PhantomOptions options;
-    if (arguments.preset == kWild) {
+    if (arguments.preset == wildName) {
         options = phantom::wildOptions(arguments.seed);
     } else {
         options.preset = presets.at(arguments.preset);
@@ -127,7 +127,7 @@ std::string structureJson(const phantom::Structure& structure) {
     for (std::size_t n = 0; n < structure.segmentEndsMm.size(); ++n) {
         const double end = structure.segmentEndsMm[n];
         segments.push_back(
-            {{"name", phantom::kSegmentNames[n]}, {"begin_mm", begin}, {"end_mm", end}});
+            {{"name", phantom::segmentNames[n]}, {"begin_mm", begin}, {"end_mm", end}});
         begin = end;
     }
     for (const auto& c : structure.collapses) {
@@ -407,7 +407,7 @@ Command addPhantom(CLI::App& program) {
         ->type_name("N")
         ->capture_default_str();
     std::vector<std::string> presetNames = namesOf(presets);
-    presetNames.emplace_back(kWild);
+    presetNames.emplace_back(wildName);
     command
         ->add_option("--preset", arguments->preset,
                      "How hard to read; wild draws from all the options below")

@@ -23,23 +23,23 @@
 namespace haustra::bench {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kIsoHu = -475.0;  // midway between the generated air and wall
+constexpr double isoHu = -475.0;  // midway between the generated air and wall
 
 /// The coil's tube: signed distance-like, negative inside.
 double outsideCoil(const glm::dvec3& at) {
-    constexpr double kCoilMm = 60.0, kPitchMm = 75.0, kTurns = 2.0;
+    constexpr double coilMm = 60.0, pitchMm = 75.0, turns = 2.0;
     const double rho = std::hypot(at.x, at.y), angle = std::atan2(at.y, at.x);
     double nearest = std::numeric_limits<double>::max();
     for (int turn = -1; turn <= 2; ++turn) {
-        const double s = std::clamp(angle / (2.0 * kPi) + turn, 0.0, kTurns);
-        const double theta = 2.0 * kPi * s;
-        const glm::dvec3 centre(kCoilMm * std::cos(theta), kCoilMm * std::sin(theta),
-                                kPitchMm * (s - 0.5 * kTurns));
-        const double phi = std::atan2(at.z - centre.z, rho - kCoilMm);
+        const double s = std::clamp(angle / (2.0 * std::numbers::pi) + turn, 0.0, turns);
+        const double theta = 2.0 * std::numbers::pi * s;
+        const glm::dvec3 centre(coilMm * std::cos(theta), coilMm * std::sin(theta),
+                                pitchMm * (s - 0.5 * turns));
+        const double phi = std::atan2(at.z - centre.z, rho - coilMm);
         // The ends are half balls.
-        const double relief = std::min(1.0, 20.0 * std::min(s, kTurns - s));
-        const double folds = relief * std::pow(0.5 + 0.5 * std::cos(2.0 * kPi * 12.0 * s), 4.0);
+        const double relief = std::min(1.0, 20.0 * std::min(s, turns - s));
+        const double folds =
+            relief * std::pow(0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * 12.0 * s), 4.0);
         const double taeniae = relief * (0.5 + 0.5 * std::cos(3.0 * phi));
         const double radius = 24.0 - 5.0 * folds * (1.0 - taeniae) - 2.0 * taeniae;
         nearest = std::min(nearest, glm::distance(at, centre) - radius);
@@ -84,9 +84,9 @@ class Pouches {
 public:
     Pouches() {
         for (int n = 0; n < 150; ++n) {
-            const double s = 0.05 + 1.85 * (n + 0.5) / 150, theta = 2.0 * kPi * s;
+            const double s = 0.05 + 1.85 * (n + 0.5) / 150, theta = 2.0 * std::numbers::pi * s;
             // Outwards, up and down in turn, by the golden angle.
-            const double phi = std::remainder(2.399963 * n, 2.0 * kPi) * 0.6;
+            const double phi = std::remainder(2.399963 * n, 2.0 * std::numbers::pi) * 0.6;
             const double radius = 2.5 + 2.5 * ((n * 7) % 16) / 15.0;
             const glm::dvec3 out(std::cos(theta), std::sin(theta), 0.0), up(0.0, 0.0, 1.0);
             const glm::dvec3 centre = 60.0 * out + glm::dvec3(0.0, 0.0, 75.0 * (s - 1.0));
@@ -96,7 +96,7 @@ public:
         }
         glm::dvec3 before(46.0, 0.0, 75.0);
         for (double mm = 0.0; mm <= 300.0; mm += 2.0) {
-            const double turn = 2.0 * kPi * mm / 105.0;
+            const double turn = 2.0 * std::numbers::pi * mm / 105.0;
             const double across = std::max(16.0, 46.0 - mm);
             const glm::dvec3 at(across * std::cos(turn), across * std::sin(turn), 75.0 - 0.42 * mm);
             capsules_.push_back({before, at, 10.0});
@@ -132,15 +132,15 @@ private:
 }  // namespace
 
 Result<Tube> generatedTube(double voxelMm, bool pouched) {
-    const double kHalfMm = pouched ? 106.0 : 88.0, kHalfHeightMm = pouched ? 122.0 : 104.0;
-    constexpr double kBlurMm = 1.0;
+    const double halfMm = pouched ? 106.0 : 88.0, halfHeightMm = pouched ? 122.0 : 104.0;
+    constexpr double blurMm = 1.0;
     const Pouches pouches;
     Grid grid;
-    grid.size = {int(2.0 * kHalfMm / voxelMm), int(2.0 * kHalfMm / voxelMm),
-                 int(2.0 * kHalfHeightMm / voxelMm)};
+    grid.size = {int(2.0 * halfMm / voxelMm), int(2.0 * halfMm / voxelMm),
+                 int(2.0 * halfHeightMm / voxelMm)};
     for (int axis = 0; axis < 3; ++axis)
         grid.patientFromVoxel[axis][axis] = voxelMm;
-    grid.patientFromVoxel[3] = {-kHalfMm, -kHalfMm, -kHalfHeightMm, 1.0};
+    grid.patientFromVoxel[3] = {-halfMm, -halfMm, -halfHeightMm, 1.0};
     Volume<std::int16_t> hu(grid);
     Volume<std::uint8_t> lumen(grid);
     const auto huVoxels = hu.writable();
@@ -153,14 +153,14 @@ Result<Tube> generatedTube(double voxelMm, bool pouched) {
                         grid.patientFromVoxelPoint({double(i), double(j), double(k)});
                     const double coil = outsideCoil(at);
                     const double outside = pouched ? std::min(coil, pouches.outside(at)) : coil;
-                    const double value = kIsoHu + 525.0 * std::tanh(outside / kBlurMm);
+                    const double value = isoHu + 525.0 * std::tanh(outside / blurMm);
                     huVoxels[grid.index(i, j, k)] = std::int16_t(std::lround(value));
                     lumenVoxels[grid.index(i, j, k)] = outside < 0.0;
                 }
             }
         }
     });
-    auto closed = contouring::contourLumen(hu, lumen, kIsoHu);
+    auto closed = contouring::contourLumen(hu, lumen, isoHu);
     if (closed && pouched) closed = simplification::simplify(*closed, {0.1});
     if (!closed) return tl::make_unexpected(closed.error());
     const glm::dvec3 ends[2] = {{60.0, 0.0, -75.0}, {60.0, 0.0, 75.0}};

@@ -21,10 +21,10 @@ using namespace haustra::bench;
 
 namespace {
 
-constexpr const char* kWild = "wild";
-const std::map<std::string, phantom::Preset> kPresets{{"easy", phantom::Preset::easy},
-                                                      {"standard", phantom::Preset::standard},
-                                                      {"hard", phantom::Preset::hard}};
+constexpr const char* wildName = "wild";
+const std::map<std::string, phantom::Preset> presetNamed{{"easy", phantom::Preset::easy},
+                                                         {"standard", phantom::Preset::standard},
+                                                         {"hard", phantom::Preset::hard}};
 
 /// The figures of the Colon table that are summed up, of one phantom.
 struct ColonFigures {
@@ -241,12 +241,12 @@ std::vector<std::string> worstCells(const PhantomStudy& study) {
     return lines;
 }
 
-constexpr const char* kSurfaceColumns =
+constexpr const char* surfaceColumns =
     "surface | triangles | Euler, components, bad edges | self-intersections | smallest angles: "
     "least, 1 %, median (% below 10°) | mean mm from mesh, from truth | 95 % mm | maximum mm | "
     "bias mm | farthest at mm | seconds";
 
-constexpr Table kColonTable{
+constexpr Table colonTable{
     "Colon",
     "Dice | false ml (ileum, other bowel, elsewhere) | missed ml | true mm | missed mm (covers %) "
     "| "
@@ -278,7 +278,7 @@ std::vector<Table> tablesOf(const StudyOptions& options, bool worst) {
              "removed | added | seconds",
              topologyCells});
     }
-    if (options.surface) tables.push_back({"Surface", kSurfaceColumns, surfaceCells});
+    if (options.surface) tables.push_back({"Surface", surfaceColumns, surfaceCells});
     if (worst)
         tables.push_back(
             {"Worst places", "region | voxel | voxels | RMSE HU | bias HU", worstCells});
@@ -289,7 +289,7 @@ Row filled(Row row, const PhantomStudy& study, bool colon, const std::vector<Tab
     for (const Table& table : tables)
         row.tables[table.heading] = table.cells(study);
     if (colon) {
-        row.tables[kColonTable.heading] = colonCells(study);
+        row.tables[colonTable.heading] = colonCells(study);
         row.colon = colonFigures(study);
     }
     return row;
@@ -354,18 +354,18 @@ Result<void> scoreMesh(const std::string& file, const phantom::PhantomOptions& o
     const auto truth = TRY(phantom::makePhantom(options));
     const auto study = TRY(
         studySurface(file, mesh, phantom::trueLumenSurface(options, truth.lumen), options.threads));
-    fmt::print("{}\n{}\n", kSurfaceColumns, surfaceLine(study));
+    fmt::print("{}\n{}\n", surfaceColumns, surfaceLine(study));
     return {};
 }
 
 phantom::PhantomOptions phantomOf(const std::string& preset, const std::string& position,
                                   std::uint64_t seed, const phantom::PhantomOptions& base) {
     phantom::PhantomOptions options = base;
-    if (preset == kWild) {
+    if (preset == wildName) {
         options = phantom::wildOptions(seed);
         options.size = base.size, options.threads = base.threads;
     } else {
-        options.preset = kPresets.at(preset);
+        options.preset = presetNamed.at(preset);
     }
     options.seed = seed;
     options.position = patientPositionFromString(position);
@@ -376,7 +376,7 @@ phantom::PhantomOptions phantomOf(const std::string& preset, const std::string& 
 
 int main(int count, char** arguments) {
     CLI::App program("Scores every stage on phantoms, as Markdown tables.");
-    std::vector<std::string> presets = {"easy", "standard", "hard", kWild},
+    std::vector<std::string> presets = {"easy", "standard", "hard", wildName},
                              positions = {"supine", "prone"};
     StudyOptions options;
     std::uint64_t seed = 1;
@@ -385,7 +385,7 @@ int main(int count, char** arguments) {
     bool small = false, noSurface = false, onlyColon = false, worst = false;
     std::string mesh;
     program.add_option("--preset", presets, "easy, standard, hard, wild; some of them")
-        ->check(CLI::IsMember({"easy", "standard", "hard", kWild}));
+        ->check(CLI::IsMember({"easy", "standard", "hard", wildName}));
     program.add_option("--position", positions, "supine, prone …; default: both of these")
         ->check(CLI::IsMember({"supine", "prone", "left-decubitus", "right-decubitus"}));
     program.add_flag("--small", small, "Phantoms of 256×256×200 voxels");
@@ -422,7 +422,7 @@ int main(int count, char** arguments) {
     const std::filesystem::path out = options.out;
     std::vector<Row> rows;
     bool failed = false;
-    if (options.colon) printHead(kColonTable);
+    if (options.colon) printHead(colonTable);
     for (int s = 0; s < seeds; ++s) {
         for (const std::string& preset : presets) {
             for (const std::string& position : positions) {
@@ -436,7 +436,7 @@ int main(int count, char** arguments) {
                 rows.push_back(
                     studyApart({name, preset, "", {}, {}}, options, tables, limitSeconds));
                 failed = failed || !rows.back().failed.empty();
-                if (options.colon) printRow(kColonTable, rows.back());
+                if (options.colon) printRow(colonTable, rows.back());
             }
         }
     }

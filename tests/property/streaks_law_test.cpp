@@ -39,7 +39,7 @@ double covariance(const Volume<float>& streaks, int di, int dj) {
 }
 
 TEST(Streaks, HaveTheStatedNoiseWhereEveryRayCrossesTheStatedWater) {
-    const Volume<float> hu = water(0.5 * kStreakWaterMm, 0.5 * kStreakWaterMm, 12);
+    const Volume<float> hu = water(0.5 * streakWaterMm, 0.5 * streakWaterMm, 12);
     const Volume<float> streaks = streaksOf(hu, 0, 12, 0, {3, 25.0, false}, 0);
     // Rays beside the middle are a little shorter, and pictures a little smoother between pixels.
     EXPECT_NEAR(std::sqrt(covariance(streaks, 0, 0)), 25.0, 3.5);
@@ -65,7 +65,7 @@ TEST(Streaks, RunAlongTheLongRaysAndAreWeakerInASlimmerBody) {
     for (int a = 0; a < 360; ++a) {
         const double angle = std::numbers::pi * a / 360;
         const double chord = 2.0 / std::hypot(std::cos(angle) / 190.0, std::sin(angle) / 100.0);
-        mean += std::exp(kWaterPerMm * (chord - kStreakWaterMm)) / 360.0;
+        mean += std::exp(waterPerMm * (chord - streakWaterMm)) / 360.0;
     }
     EXPECT_NEAR(std::sqrt(variance), 20.0 * std::sqrt(mean), 0.2 * 20.0 * std::sqrt(mean));
     EXPECT_LT(covariance(made(150.0, 100.0), 0, 0), 0.4 * variance);

@@ -10,16 +10,16 @@ using namespace haustra::phantom;
 
 namespace {
 
-constexpr double kRadiusMm = 6.0, kBendMm = 9.0, kLimbMm = 65.0;
-const double kArchMm = kBendMm * std::acos(-1.0);
-const double kLengthMm = 2.0 * kLimbMm + kArchMm;
+constexpr double tubeRadiusMm = 6.0, bendMm = 9.0, limbMm = 65.0;
+const double archMm = bendMm * std::acos(-1.0);
+const double tubeLengthMm = 2.0 * limbMm + archMm;
 
 glm::dvec3 axisAt(double arcMm) {
-    if (arcMm <= kLimbMm) return {15.0, 20.0, 10.0 + arcMm};
-    if (arcMm >= kLimbMm + kArchMm)
-        return {15.0 + 2.0 * kBendMm, 20.0, 75.0 - (arcMm - kLimbMm - kArchMm)};
-    const double turn = (arcMm - kLimbMm) / kBendMm;
-    return {15.0 + kBendMm * (1.0 - std::cos(turn)), 20.0, 75.0 + kBendMm * std::sin(turn)};
+    if (arcMm <= limbMm) return {15.0, 20.0, 10.0 + arcMm};
+    if (arcMm >= limbMm + archMm)
+        return {15.0 + 2.0 * bendMm, 20.0, 75.0 - (arcMm - limbMm - archMm)};
+    const double turn = (arcMm - limbMm) / bendMm;
+    return {15.0 + bendMm * (1.0 - std::cos(turn)), 20.0, 75.0 + bendMm * std::sin(turn)};
 }
 
 bool closedAt(double arcMm, double fromMm, double toMm) {
@@ -32,10 +32,10 @@ Phantom bent(double closedFromMm, double closedToMm) {
     const Grid grid = axisAlignedGrid({50, 40, 100}, {1, 1, 1}, {0, 0, 0});
     phantom.lumen = Volume<std::uint8_t>(grid, 0);
     phantom.sites = Volume<std::uint8_t>(grid, std::uint8_t(Site::elsewhere));
-    for (double arc = 0.0; arc <= kLengthMm; arc += 1.0) {
+    for (double arc = 0.0; arc <= tubeLengthMm; arc += 1.0) {
         const glm::dvec3 p = axisAt(arc);
         const bool closed = closedAt(arc, closedFromMm, closedToMm);
-        phantom.centerline.points.push_back({p, arc, closed ? 0.0 : kRadiusMm, closed});
+        phantom.centerline.points.push_back({p, arc, closed ? 0.0 : tubeRadiusMm, closed});
     }
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
@@ -44,7 +44,7 @@ Phantom bent(double closedFromMm, double closedToMm) {
             const double d = glm::distance(point.positionMm, p);
             if (d < nearest) nearest = d, nearestArc = point.arcMm;
         }
-        if (nearest < kRadiusMm && !closedAt(nearestArc, closedFromMm, closedToMm))
+        if (nearest < tubeRadiusMm && !closedAt(nearestArc, closedFromMm, closedToMm))
             phantom.lumen.writable()[n] = 1;
     }
     return phantom;
@@ -52,7 +52,7 @@ Phantom bent(double closedFromMm, double closedToMm) {
 
 ColonPiece pieceAt(double arcMm) {
     ColonPiece piece;
-    piece.centreMm = axisAt(arcMm), piece.radiusMm = kRadiusMm, piece.lengthMm = 20.0;
+    piece.centreMm = axisAt(arcMm), piece.radiusMm = tubeRadiusMm, piece.lengthMm = 20.0;
     return piece;
 }
 
@@ -88,7 +88,7 @@ TEST(ColonScore, TheTrueChainHasNoFault) {
 
 TEST(ColonScore, AStepBetweenTouchingLimbsIsALeapAndWhatItSkipsIsMissed) {
     const Phantom truth = bent(0.0, 0.0);
-    const ColonRecord record = chainOf({10, kLengthMm - 10});
+    const ColonRecord record = chainOf({10, tubeLengthMm - 10});
     Centerline path;
     for (double x = 15.0; x <= 33.0; x += 1.0)
         path.points.push_back({{x, 20.0, 20.0}, x - 15.0, 1.0, false});
@@ -97,7 +97,7 @@ TEST(ColonScore, AStepBetweenTouchingLimbsIsALeapAndWhatItSkipsIsMissed) {
     ASSERT_EQ(score.wrongSteps.size(), 1u) << "the path's leap is the chain's";
     EXPECT_EQ(score.wrongSteps[0].kind, Kind::leap);
     EXPECT_TRUE(score.wrongSteps[0].warned);
-    EXPECT_GT(score.missedMm, 0.7 * kLengthMm);
+    EXPECT_GT(score.missedMm, 0.7 * tubeLengthMm);
     EXPECT_NEAR(score.wrongMm, 6.0, 3.0) << "the wall between the limbs";
     // A path that leaps where the chain does not.
     const ColonScore alone = scoreColon(truth, truth.lumen, path, chainOf({10, 35, 60, 80}), {});

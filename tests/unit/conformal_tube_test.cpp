@@ -16,12 +16,12 @@ using flatten::conformalTube;
 
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double fullTurn = 2.0 * std::numbers::pi;
 
 /// A colon-like tube: bent, with haustra, and a cross-section that is not round.
 TriMesh bentTube(int around, int along) {
     return tests::tubeMesh(around, along, [](double a, double s) {
-        const double angle = kTurn * a, bend = 2.0 * s;
+        const double angle = fullTurn * a, bend = 2.0 * s;
         const double r = 20.0 + 4.0 * std::cos(40.0 * s) + 3.0 * std::cos(3.0 * angle + 5.0 * s);
         const double out = 90.0 + r * std::cos(angle);
         return glm::dvec3(out * std::cos(bend), out * std::sin(bend),
@@ -91,13 +91,13 @@ TEST(ConformalTube, ConvergesToTheCatenoidsMap) {
     double before = 0.0, meanBefore = 0.0;
     for (const int size : {24, 48, 96}) {
         TriMesh mesh = tests::tubeMesh(size, size / 2, [](double a, double s) {
-            const double z = 2.6 * s - 1.3 + 0.3 * std::sin(kTurn * s) / kTurn;
-            return glm::dvec3(std::cosh(z) * std::cos(kTurn * a),
-                              std::cosh(z) * std::sin(kTurn * a), z);
+            const double z = 2.6 * s - 1.3 + 0.3 * std::sin(fullTurn * s) / fullTurn;
+            return glm::dvec3(std::cosh(z) * std::cos(fullTurn * a),
+                              std::cosh(z) * std::sin(fullTurn * a), z);
         });
         std::vector<glm::dvec2> exact;
         for (const glm::dvec3& at : mesh.vertices)
-            exact.push_back({std::atan2(at.y, at.x) / kTurn, (at.z + 1.3) / kTurn});
+            exact.push_back({std::atan2(at.y, at.x) / fullTurn, (at.z + 1.3) / fullTurn});
         const auto made = conformalTube(mesh, 0);
         ASSERT_TRUE(made) << describe(made.error());
         const double error = largestError(made->map, exact);
@@ -166,7 +166,7 @@ TEST(ConformalTube, UnfoldsWhatTheIntrinsicTriangulationHides) {
             s += shake(random);
         }
         const double r = 20.0 + 60.0 * std::exp(-std::pow(7.0 * std::hypot(a - 0.5, s - 0.5), 6.0));
-        return glm::dvec3(r * std::cos(kTurn * a), r * std::sin(kTurn * a), 120.0 * s);
+        return glm::dvec3(r * std::cos(fullTurn * a), r * std::sin(fullTurn * a), 120.0 * s);
     });
     flatten::ConformalTubeOptions options;
     options.repairFlips = false;

@@ -9,36 +9,36 @@ using namespace haustra::phantom;
 
 namespace {
 
-const Grid kGrid = axisAlignedGrid({48, 48, 40}, {0.8, 0.8, 1.0}, {-5, 3, 60});
-constexpr int kFloor = 34, kLevel = 20, kCeiling = 8;  // along j, which runs down
+const Grid phantomGrid = axisAlignedGrid({48, 48, 40}, {0.8, 0.8, 1.0}, {-5, 3, 60});
+constexpr int floorAt = 34, levelAt = 20, ceilingAt = 8;  // along j, which runs down
 
 /// A box of lumen under a flat level: air above, tagging below, wall all around. Beside it lies a
 /// polyp of 5³ voxels on the floor, and one that hangs in the air.
 Phantom boxPhantom() {
     Phantom phantom;
-    phantom.lumen = Volume<std::uint8_t>(kGrid, 0);
-    phantom.untaggedHu = Volume<std::int16_t>(kGrid, 40);
-    phantom.scan.hu = Volume<std::int16_t>(kGrid, 40);
+    phantom.lumen = Volume<std::uint8_t>(phantomGrid, 0);
+    phantom.untaggedHu = Volume<std::int16_t>(phantomGrid, 40);
+    phantom.scan.hu = Volume<std::int16_t>(phantomGrid, 40);
     const auto labels = phantom.lumen.writable();
     const auto untagged = phantom.untaggedHu.writable(), scan = phantom.scan.hu.writable();
     for (int k = 8; k < 32; ++k) {
-        for (int j = kCeiling; j < kFloor; ++j) {
+        for (int j = ceilingAt; j < floorAt; ++j) {
             for (int i = 8; i < 40; ++i) {
-                const std::size_t n = kGrid.index(i, j, k);
-                labels[n] = j < kLevel ? 1 : 2;
-                untagged[n] = -990, scan[n] = j < kLevel ? -990 : 600;
+                const std::size_t n = phantomGrid.index(i, j, k);
+                labels[n] = j < levelAt ? 1 : 2;
+                untagged[n] = -990, scan[n] = j < levelAt ? -990 : 600;
             }
         }
     }
-    for (const glm::ivec3 low : {glm::ivec3(20, kFloor - 5, 18), glm::ivec3(20, kCeiling, 18)}) {
+    for (const glm::ivec3 low : {glm::ivec3(20, floorAt - 5, 18), glm::ivec3(20, ceilingAt, 18)}) {
         auto& voxels = phantom.polypVoxels.emplace_back();
         for (int n = 0; n < 125; ++n) {
-            const std::size_t at = kGrid.index(low + glm::ivec3(n % 5, n / 5 % 5, n / 25));
+            const std::size_t at = phantomGrid.index(low + glm::ivec3(n % 5, n / 5 % 5, n / 25));
             labels[at] = 0, untagged[at] = scan[at] = 50;
             voxels.push_back(std::uint32_t(at));
         }
         phantom.polyps.findings.push_back(
-            {kGrid.patientFromVoxelPoint(low + 2), 4.0, 1.0, "sessile"});
+            {phantomGrid.patientFromVoxelPoint(low + 2), 4.0, 1.0, "sessile"});
     }
     return phantom;
 }
@@ -71,16 +71,16 @@ TEST(CleansingScore, EachRegionSeesItsOwnErrorAlone) {
         bool fluid, interface, wall, rim;
     };
     for (const Expected& e : {Expected{{12, 26, 12}, true, false, false, false},
-                              Expected{{12, kLevel + 1, 12}, false, true, false, false},
-                              Expected{{12, kLevel - 2, 12}, false, true, false, false},
+                              Expected{{12, levelAt + 1, 12}, false, true, false, false},
+                              Expected{{12, levelAt - 2, 12}, false, true, false, false},
                               Expected{{9, 26, 12}, false, false, true, false},
                               Expected{{6, 26, 12}, false, false, true, false},
-                              Expected{{9, kLevel, 12}, false, true, true, true},
+                              Expected{{9, levelAt, 12}, false, true, true, true},
                               Expected{{5, 26, 12}, false, false, false, false},
-                              Expected{{12, kLevel - 3, 12}, false, false, false, false}}) {
+                              Expected{{12, levelAt - 3, 12}, false, false, false, false}}) {
         SCOPED_TRACE(testing::Message() << e.voxel.x << " " << e.voxel.y);
         auto cleansed = truth.untaggedHu.clone();
-        cleansed.writable()[kGrid.index(e.voxel)] += 100;
+        cleansed.writable()[phantomGrid.index(e.voxel)] += 100;
         const auto score = scoreCleansing(truth, cleansed);
         const auto expect = [&](const RegionError& region, bool in) {
             EXPECT_DOUBLE_EQ(region.biasHu, in ? 100.0 / double(region.voxels) : 0.0);
@@ -123,10 +123,11 @@ TEST(CleansingScore, APolypThatIsEatenLosesVolume) {
 TEST(CleansingScore, ChangesFarFromTheTaggingAreCounted) {
     const Phantom truth = boxPhantom();
     auto cleansed = truth.untaggedHu.clone();
-    cleansed.writable()[kGrid.index(12, kLevel - 4, 12)] += 7;  // four voxels above the fluid
+    cleansed.writable()[phantomGrid.index(12, levelAt - 4, 12)] +=
+        7;  // four voxels above the fluid
     EXPECT_EQ(scoreCleansing(truth, cleansed)->voxelsChangedBeyond, 0u);
-    cleansed.writable()[kGrid.index(12, kLevel - 5, 12)] -= 30;
-    cleansed.writable()[kGrid.index(2, 2, 2)] += 12;
+    cleansed.writable()[phantomGrid.index(12, levelAt - 5, 12)] -= 30;
+    cleansed.writable()[phantomGrid.index(2, 2, 2)] += 12;
     const auto score = scoreCleansing(truth, cleansed);
     EXPECT_EQ(score->voxelsChangedBeyond, 2u);
     EXPECT_EQ(score->maxChangeBeyondHu, 30.0);
@@ -135,11 +136,11 @@ TEST(CleansingScore, ChangesFarFromTheTaggingAreCounted) {
 TEST(CleansingScore, TheWorstPlaceComesFirst) {
     const Phantom truth = boxPhantom();
     auto cleansed = truth.untaggedHu.clone();
-    cleansed.writable()[kGrid.index(11, 30, 11)] += 200;
-    cleansed.writable()[kGrid.index(36, 28, 28)] -= 500;
+    cleansed.writable()[phantomGrid.index(11, 30, 11)] += 200;
+    cleansed.writable()[phantomGrid.index(36, 28, 28)] -= 500;
     const auto score = scoreCleansing(truth, cleansed);
     ASSERT_GE(score->fluid.worst.size(), 2u);
-    EXPECT_LE(score->fluid.worst.size(), kWorstPlaces);
+    EXPECT_LE(score->fluid.worst.size(), worstPlaces);
     EXPECT_EQ(score->fluid.worst[0].voxel, glm::ivec3(36, 28, 28));
     EXPECT_LT(score->fluid.worst[0].biasHu, 0.0);
     EXPECT_EQ(score->fluid.worst[1].voxel, glm::ivec3(11, 30, 11));

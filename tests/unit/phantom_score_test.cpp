@@ -31,11 +31,11 @@ Centerline straight(const Grid& grid, glm::dvec3 offsetMm) {
     return line;
 }
 
-const Grid kGrid = axisAlignedGrid({40, 40, 60}, {1, 1, 1}, {-20, 7, 100});
+const Grid phantomGrid = axisAlignedGrid({40, 40, 60}, {1, 1, 1}, {-20, 7, 100});
 
 TEST(PhantomScore, TruthAgainstItselfIsPerfect) {
-    const auto truth = boxTube(kGrid, 4);
-    const auto line = straight(kGrid, glm::dvec3(0));
+    const auto truth = boxTube(phantomGrid, 4);
+    const auto line = straight(phantomGrid, glm::dvec3(0));
     const auto score = scoreLumen(truth, line, truth, line);
     ASSERT_TRUE(score.has_value());
     EXPECT_EQ(score->dice, 1.0);
@@ -49,8 +49,8 @@ TEST(PhantomScore, TruthAgainstItselfIsPerfect) {
 }
 
 TEST(PhantomScore, DiceAndVolumesCountVoxels) {
-    const auto truth = boxTube(kGrid, 4), found = boxTube(kGrid, 5);
-    const auto line = straight(kGrid, glm::dvec3(0));
+    const auto truth = boxTube(phantomGrid, 4), found = boxTube(phantomGrid, 5);
+    const auto line = straight(phantomGrid, glm::dvec3(0));
     const auto score = scoreLumen(truth, line, found, line);
     const double a = 81 * 50, b = 121 * 50;
     EXPECT_DOUBLE_EQ(score->dice, 2 * a / (a + b));
@@ -63,20 +63,20 @@ TEST(PhantomScore, DiceAndVolumesCountVoxels) {
 }
 
 TEST(PhantomScore, FalseVolumeLiesBeyondThreeMillimetres) {
-    const auto truth = boxTube(kGrid, 4);
-    auto found = boxTube(kGrid, 4);
+    const auto truth = boxTube(phantomGrid, 4);
+    auto found = boxTube(phantomGrid, 4);
     // A second organ: 3 mm away nothing is false yet, farther all is.
     for (int i = 25; i <= 30; ++i)
-        found.writable()[kGrid.index(i, 20, 30)] = 1;
-    const auto line = straight(kGrid, glm::dvec3(0));
+        found.writable()[phantomGrid.index(i, 20, 30)] = 1;
+    const auto line = straight(phantomGrid, glm::dvec3(0));
     const auto score = scoreLumen(truth, line, found, line);
     EXPECT_DOUBLE_EQ(score->overMl, 6e-3);
     EXPECT_DOUBLE_EQ(score->falseMl, 3e-3);
 }
 
 TEST(PhantomScore, LabelsAreScoredApart) {
-    const auto truth = boxTube(kGrid, 4, 2), found = boxTube(kGrid, 4, 1);
-    const auto line = straight(kGrid, glm::dvec3(0));
+    const auto truth = boxTube(phantomGrid, 4, 2), found = boxTube(phantomGrid, 4, 1);
+    const auto line = straight(phantomGrid, glm::dvec3(0));
     const auto score = scoreLumen(truth, line, found, line);
     EXPECT_EQ(score->dice, 1.0);
     EXPECT_EQ(score->diceAir, 0.0);
@@ -84,11 +84,11 @@ TEST(PhantomScore, LabelsAreScoredApart) {
 }
 
 TEST(PhantomScore, MissedCenterlineLeavesGapsOut) {
-    const auto truth = boxTube(kGrid, 4);
-    auto found = boxTube(kGrid, 4);
+    const auto truth = boxTube(phantomGrid, 4);
+    auto found = boxTube(phantomGrid, 4);
     for (int k = 30; k < 55; ++k)
-        found.writable()[kGrid.index(20, 20, k)] = 0;
-    auto line = straight(kGrid, glm::dvec3(0));
+        found.writable()[phantomGrid.index(20, 20, k)] = 0;
+    auto line = straight(phantomGrid, glm::dvec3(0));
     const auto score = scoreLumen(truth, line, found, line);
     EXPECT_DOUBLE_EQ(score->missedCenterlineMm, 24.5);  // samples 25…49; the last stands for half
     EXPECT_DOUBLE_EQ(score->missedCenterlineShare, 24.5 / 49.0);
@@ -98,9 +98,9 @@ TEST(PhantomScore, MissedCenterlineLeavesGapsOut) {
 }
 
 TEST(PhantomScore, CenterlineErrorIsTheDistanceToThePolyline) {
-    const auto truth = boxTube(kGrid, 4);
-    const auto line = straight(kGrid, glm::dvec3(0));
-    auto moved = straight(kGrid, {0, 1.5, 0.4});
+    const auto truth = boxTube(phantomGrid, 4);
+    const auto line = straight(phantomGrid, glm::dvec3(0));
+    auto moved = straight(phantomGrid, {0, 1.5, 0.4});
     moved.points.back().positionMm.z -= 1.0;
     moved.points[10].positionMm.y += 3.0;
     moved.points[20].positionMm.y += 9.0, moved.points[20].gap = true;
@@ -111,8 +111,8 @@ TEST(PhantomScore, CenterlineErrorIsTheDistanceToThePolyline) {
 
 TEST(PhantomScore, RefusesAnotherGrid) {
     const Grid other = axisAlignedGrid({40, 40, 60}, {1, 1, 1.1});
-    const auto line = straight(kGrid, glm::dvec3(0));
-    EXPECT_FALSE(scoreLumen(boxTube(kGrid, 4), line, boxTube(other, 4), line).has_value());
+    const auto line = straight(phantomGrid, glm::dvec3(0));
+    EXPECT_FALSE(scoreLumen(boxTube(phantomGrid, 4), line, boxTube(other, 4), line).has_value());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "phantom/surface_score.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,7 @@ using namespace haustra::phantom;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-const Grid kGrid = axisAlignedGrid({72, 72, 54}, {0.75, 0.75, 1.05}, {-27, -26, -28});
+const Grid phantomGrid = axisAlignedGrid({72, 72, 54}, {0.75, 0.75, 1.05}, {-27, -26, -28});
 
 Volume<std::uint8_t> insideOf(const Grid& grid, const std::function<double(glm::dvec3)>& field) {
     Volume<std::uint8_t> inside(grid);
@@ -24,7 +24,7 @@ Volume<std::uint8_t> insideOf(const Grid& grid, const std::function<double(glm::
 
 TrueSurface surfaceOf(const std::function<double(glm::dvec3)>& field,
                       const std::function<bool(glm::dvec3)>& leftOut = nullptr) {
-    return TrueSurface({field, leftOut}, insideOf(kGrid, field), 2);
+    return TrueSurface({field, leftOut}, insideOf(phantomGrid, field), 2);
 }
 
 double ball(glm::dvec3 p) {
@@ -32,12 +32,12 @@ double ball(glm::dvec3 p) {
 }
 
 /// A sphere about the origin of quads cut in two, finer than a degree.
-TriMesh sphere(double radiusMm, double untilPolar = kPi) {
+TriMesh sphere(double radiusMm, double untilPolar = std::numbers::pi) {
     constexpr int rows = 240, columns = 480;
     TriMesh mesh;
     for (int r = 0; r <= rows; ++r) {
         for (int c = 0; c < columns; ++c) {
-            const double polar = untilPolar * r / rows, turn = 2 * kPi * c / columns;
+            const double polar = untilPolar * r / rows, turn = 2 * std::numbers::pi * c / columns;
             mesh.vertices.push_back(radiusMm * glm::dvec3(std::sin(polar) * std::cos(turn),
                                                           std::sin(polar) * std::sin(turn),
                                                           std::cos(polar)));
@@ -85,7 +85,7 @@ TEST(TrueSurface, SamplesLieOnABallAndAddUpToItsArea) {
         EXPECT_NEAR(ball(sample.positionMm), 0.0, 1e-3);
         EXPECT_GT(glm::dot(sample.outward, glm::normalize(sample.positionMm)), 0.999);
     }
-    EXPECT_NEAR(surface.areaMm2() / (4 * kPi * 400.0), 1.0, 0.005);
+    EXPECT_NEAR(surface.areaMm2() / (4 * std::numbers::pi * 400.0), 1.0, 0.005);
 }
 
 TEST(TrueSurface, DistanceToABallIsExactWhateverTheFieldsScale) {
@@ -102,7 +102,7 @@ TEST(TrueSurface, DistanceToABallIsExactWhateverTheFieldsScale) {
 }
 
 TEST(TrueSurface, HoldsNothingWhereAllIsInside) {
-    const TrueSurface none({ball, nullptr}, Volume<std::uint8_t>(kGrid, 1), 1);
+    const TrueSurface none({ball, nullptr}, Volume<std::uint8_t>(phantomGrid, 1), 1);
     EXPECT_EQ(none.areaMm2(), 0.0);
     EXPECT_TRUE(std::isinf(none.distanceMm(glm::dvec3(0))));
 }
@@ -173,7 +173,7 @@ TEST(SurfaceScore, AWiderSphereIsOutsideByTheDifference) {
         EXPECT_NEAR(way->meanMm, 0.3, 0.003);
         EXPECT_NEAR(way->p95Mm, 0.3, 0.003);
         EXPECT_NEAR(way->maxMm, 0.3, 0.003);
-        EXPECT_NEAR(way->areaMm2 / (4 * kPi * 400.0), 1.0, 0.04);
+        EXPECT_NEAR(way->areaMm2 / (4 * std::numbers::pi * 400.0), 1.0, 0.04);
         EXPECT_EQ(way->leftOutAreaMm2, 0.0);
     }
     EXPECT_NEAR(score->biasMm, 0.3, 0.003);
@@ -183,7 +183,8 @@ TEST(SurfaceScore, AWiderSphereIsOutsideByTheDifference) {
 
 TEST(SurfaceScore, AMissingCapIsSeenFromTheTruthAlone) {
     // Open beyond 120° from the pole: the truth's other pole is 20 · 60° of arc away.
-    const auto score = scoreSurface(sphere(20.0, 2 * kPi / 3), surfaceOf(ball), {20000, 2});
+    const auto score =
+        scoreSurface(sphere(20.0, 2 * std::numbers::pi / 3), surfaceOf(ball), {20000, 2});
     EXPECT_LT(score->fromMesh.maxMm, 0.01);
     EXPECT_NEAR(score->fromTruth.maxMm, 20.0, 0.5);  // the chord
     EXPECT_LT(score->fromTruth.farthestMm.z, -19.8);
@@ -207,7 +208,7 @@ TEST(SurfaceScore, WhatTheTruthLeavesOutIsNotJudged) {
     const auto score = scoreSurface(mesh, surfaceOf(ball, upper), {20000, 2});
     EXPECT_NEAR(score->fromMesh.meanMm, 0.1, 0.003);
     EXPECT_LT(score->hausdorffMm(), 0.12);
-    EXPECT_NEAR(score->fromTruth.leftOutAreaMm2 / (2 * kPi * 400.0), 1.0, 0.02);
+    EXPECT_NEAR(score->fromTruth.leftOutAreaMm2 / (2 * std::numbers::pi * 400.0), 1.0, 0.02);
 }
 
 TEST(SurfaceScore, IsTheSameForAnyNumberOfThreadsAndRefusesNothing) {
@@ -217,7 +218,7 @@ TEST(SurfaceScore, IsTheSameForAnyNumberOfThreadsAndRefusesNothing) {
     EXPECT_EQ(one->fromMesh.meanMm, three->fromMesh.meanMm);
     EXPECT_EQ(one->fromTruth.meanMm, three->fromTruth.meanMm);
     EXPECT_FALSE(scoreSurface(TriMesh{}, truth).has_value());
-    const TrueSurface none({ball, nullptr}, Volume<std::uint8_t>(kGrid, 1), 1);
+    const TrueSurface none({ball, nullptr}, Volume<std::uint8_t>(phantomGrid, 1), 1);
     EXPECT_FALSE(scoreSurface(sphere(20.0), none).has_value());
 }
 

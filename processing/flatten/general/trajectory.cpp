@@ -9,7 +9,7 @@ namespace {
 
 using mesh::HalfedgeMesh;
 
-constexpr double kAtVertex = 1e-9;  // of the triangle's flat size
+constexpr double atVertex = 1e-9;  // of the triangle's flat size
 
 /// Where the line goes on from a vertex: to the target of `along`, or through the edge `across` at
 /// the fraction `at` of it.
@@ -30,8 +30,8 @@ std::optional<Step> nextStep(const CarvedSurface& surface, int v, double offset,
         const double size = std::max(std::abs(right), std::abs(left));
         const double rightOffset = offset + right.imag(), leftOffset = offset + left.imag();
         if (rightOffset < 0.0 && leftOffset >= 0.0) {
-            if (-rightOffset <= kAtVertex * size) return Step{h, -1, 0.0, rightOffset};
-            if (leftOffset <= kAtVertex * size)
+            if (-rightOffset <= atVertex * size) return Step{h, -1, 0.0, rightOffset};
+            if (leftOffset <= atVertex * size)
                 return Step{surface.opposite(back), -1, 0.0, leftOffset};
             return Step{-1, across, rightOffset / (rightOffset - leftOffset), 0.0};
         }

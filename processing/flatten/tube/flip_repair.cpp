@@ -14,20 +14,20 @@
 namespace haustra::flatten {
 namespace {
 
-constexpr double kLeastHeight = 1e-4;  // of a triangle, against its longest side
-constexpr int kRings[] = {0, 1, 2, 3, 5, 8, 12, 18};
+constexpr double leastHeight = 1e-4;  // of a triangle, against its longest side
+constexpr int ringSteps[] = {0, 1, 2, 3, 5, 8, 12, 18};
 /// A map with more flips than this, and one triangle in fifty, is not mended by patches, each of
 /// which is solved for up to 24 times.
-constexpr std::size_t kMostFlips = 1000;
+constexpr std::size_t mostFlips = 1000;
 /// What a neighbour's weight is multiplied with for each ring that it lies further inside.
-constexpr double kLeans[] = {1.0, 0.6, 0.3};
+constexpr double leans[] = {1.0, 0.6, 0.3};
 
 /// Turned over, or of as good as no height.
 bool isFlipped(const PeriodicMap& map, const TriMesh& tube, int t) {
     const auto at = [&](int c) { return map.corner(tube, std::size_t(t), c); };
     const glm::dvec2 p = at(1) - at(0), q = at(2) - at(0), r = q - p;
     const double longest = std::max({glm::dot(p, p), glm::dot(q, q), glm::dot(r, r)});
-    return !(p.x * q.y - p.y * q.x > kLeastHeight * longest);
+    return !(p.x * q.y - p.y * q.x > leastHeight * longest);
 }
 
 /// tan of half the angle at a between b and c, kept within bounds.
@@ -172,13 +172,13 @@ private:
         std::vector<int> vertices;
         std::vector<glm::dvec2> places;
         bool whole = false;
-        for (std::size_t n = 0; n < std::size(kRings) && !whole; ++n) {
-            while (patch.rings < kRings[n])
+        for (std::size_t n = 0; n < std::size(ringSteps) && !whole; ++n) {
+            while (patch.rings < ringSteps[n])
                 grow(patch);
             const std::vector<int> triangles = trianglesAround(patch);
             const std::vector<glm::dvec2> before = placesOf(patch.vertices);
             const int flipsBefore = flipsAmong(triangles);
-            for (const double lean : kLeans) {
+            for (const double lean : leans) {
                 if (!solve(patch, lean)) continue;
                 const int flips = flipsAmong(triangles);
                 if (flipsBefore - flips > most) {
@@ -297,7 +297,7 @@ std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars
     for (int t = 0; t < int(tube.triangles.size()); ++t) {
         if (isFlipped(map, tube, t)) flipped.push_back(t);
     }
-    if (flipped.size() > kMostFlips + tube.triangles.size() / 50) return {};
+    if (flipped.size() > mostFlips + tube.triangles.size() / 50) return {};
     std::vector<int> moved = Repair(map, tube, stars, held).run(flipped);
     std::sort(moved.begin(), moved.end());
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
@@ -307,16 +307,16 @@ std::vector<int> unfold(PeriodicMap& map, const TriMesh& tube, const VertexStars
 namespace {
 
 int repair(PeriodicMap& map, const TriMesh& tube, const std::vector<char>& held) {
-    constexpr double kMostDilatation = 4.0;
-    constexpr int kSweeps = 20, kMostRounds = 4;
+    constexpr double mostDilatation = 4.0;
+    constexpr int sweeps = 20, mostRounds = 4;
     const VertexStars stars(tube);
     std::vector<int> moved;
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < mostRounds; ++round) {
         const std::vector<int> unfolded = unfold(map, tube, stars, held);
         if (round > 0 && unfolded.empty()) break;
-        std::vector<int> stretched = stretchedVertices(map, tube, stars, kMostDilatation);
+        std::vector<int> stretched = stretchedVertices(map, tube, stars, mostDilatation);
         std::erase_if(stretched, [&](int v) { return !held.empty() && held[std::size_t(v)]; });
-        relaxShapes(map, tube, stars, stretched, kSweeps);
+        relaxShapes(map, tube, stars, stretched, sweeps);
         moved.insert(moved.end(), unfolded.begin(), unfolded.end());
         moved.insert(moved.end(), stretched.begin(), stretched.end());
     }

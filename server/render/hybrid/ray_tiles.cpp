@@ -1,5 +1,7 @@
 #include "render/hybrid/ray_tiles.h"
 
+#include "core/voxel_sweep.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,11 +82,8 @@ double RayTiles::beamStart(glm::ivec2 corner) const {
                                            glm::ivec3(0), last),
                          to = glm::clamp(glm::ivec3(glm::floor((place + reach) / side)),
                                          glm::ivec3(0), last);
-        for (int z = from.z; z <= to.z; ++z)
-            for (int y = from.y; y <= to.y; ++y)
-                for (int x = from.x; x <= to.x; ++x)
-                    if (octree.at(level, {x, y, z}) != NodeClass::empty) return false;
-        return true;
+        return !anyInBox(
+            from, to, [&](glm::ivec3 node) { return octree.at(level, node) != NodeClass::empty; });
     };
     double n = 0.0;
     int level = octree.levels() - 1;

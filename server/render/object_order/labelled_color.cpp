@@ -1,6 +1,7 @@
 #include "render/object_order/labelled_color.h"
 
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 #include "render/object_order/cell_grid.h"
 #include "render/optics/srgb.h"
 
@@ -108,15 +109,13 @@ std::vector<std::vector<std::int16_t>> labelsOfCells(const LabelledColorVolume& 
             std::vector<bool> seen(1 << 16, false);
             std::int16_t before = 0;
             bool any = false;
-            for (int z = from.z; z <= to.z; ++z)
-                for (int y = from.y; y <= to.y; ++y)
-                    for (int x = from.x; x <= to.x; ++x) {
-                        const std::int16_t label = volume.labelAt(grid.index(x, y, z));
-                        if (any && label == before) continue;
-                        any = true;
-                        before = label;
-                        seen[std::size_t(label + 32768)] = true;
-                    }
+            visitBox(from, to, [&](glm::ivec3 v) {
+                const std::int16_t label = volume.labelAt(grid.index(v));
+                if (any && label == before) return;
+                any = true;
+                before = label;
+                seen[std::size_t(label + 32768)] = true;
+            });
             for (std::size_t label = 0; label < seen.size(); ++label)
                 if (seen[label]) lists[index].push_back(std::int16_t(int(label) - 32768));
         }

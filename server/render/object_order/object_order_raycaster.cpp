@@ -1,5 +1,6 @@
 #include "render/object_order/object_order_raycaster.h"
 
+#include "core/voxel_sweep.h"
 #include "render/gl/march_variant.h"
 #include "render/object_order/cell_projector.h"
 #include "render/object_order/cell_raycaster.h"
@@ -37,18 +38,12 @@ std::vector<std::uint8_t> neededCells(const ClassifiedOctree& octree, const Cell
     std::vector<std::uint8_t> needed(std::size_t(cells.cells()), 0);
     const glm::ivec3 leaves = octree.nodes(0), last = cells.count() - 1;
     const int leavesInCell = cells.side / leafSide;
-    glm::ivec3 leaf;
-    for (leaf.z = 0; leaf.z < leaves.z; ++leaf.z)
-        for (leaf.y = 0; leaf.y < leaves.y; ++leaf.y)
-            for (leaf.x = 0; leaf.x < leaves.x; ++leaf.x) {
-                if (octree.at(0, leaf) == NodeClass::empty) continue;
-                const glm::ivec3 low = glm::max(leaf - reach, 0) / leavesInCell;
-                const glm::ivec3 high = glm::min((leaf + reach) / leavesInCell, last);
-                for (int z = low.z; z <= high.z; ++z)
-                    for (int y = low.y; y <= high.y; ++y)
-                        for (int x = low.x; x <= high.x; ++x)
-                            needed[std::size_t(cells.index({x, y, z}))] = 1;
-            }
+    visitBox(glm::ivec3(0), leaves - 1, [&](glm::ivec3 leaf) {
+        if (octree.at(0, leaf) == NodeClass::empty) return;
+        const glm::ivec3 low = glm::max(leaf - reach, 0) / leavesInCell;
+        const glm::ivec3 high = glm::min((leaf + reach) / leavesInCell, last);
+        visitBox(low, high, [&](glm::ivec3 cell) { needed[std::size_t(cells.index(cell))] = 1; });
+    });
     return needed;
 }
 

@@ -1,6 +1,7 @@
 #include "render/polygon_assisted/wall_entry.h"
 
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 #include "render/scene/wall_normals.h"
 
 #include <algorithm>
@@ -66,17 +67,13 @@ void WallEntry::touch(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     const glm::dvec3 normal = glm::cross(b - a, c - a);
     const double reach = 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z)) +
                          hair * glm::length(normal);
-    for (int z = low.z; z <= high.z; ++z) {
-        for (int y = low.y; y <= high.y; ++y) {
-            for (int x = low.x; x <= high.x; ++x) {
-                // Of the box and the plane; a box beside the triangle that its plane meets counts.
-                const double away = std::abs(glm::dot(normal, glm::dvec3(x, y, z) + 0.5 - a));
-                const bool atFace =
-                    x == 0 || y == 0 || z == 0 || x == last.x || y == last.y || z == last.z;
-                if (away <= reach || atFace) side_[index({x, y, z})] = touched;
-            }
-        }
-    }
+    visitBox(low, high, [&](glm::ivec3 block) {
+        // Of the box and the plane; a box beside the triangle that its plane meets counts.
+        const double away = std::abs(glm::dot(normal, glm::dvec3(block) + 0.5 - a));
+        const bool atFace =
+            glm::any(glm::equal(block, glm::ivec3(0))) || glm::any(glm::equal(block, last));
+        if (away <= reach || atFace) side_[index(block)] = touched;
+    });
 }
 
 void WallEntry::floodOutside() {
