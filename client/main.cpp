@@ -2,6 +2,7 @@
 #include "core/version.h"
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
+#include "protocol/limits.h"
 #include "script/script.h"
 #include "script/script_player.h"
 #include "window/reader_window.h"

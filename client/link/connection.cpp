@@ -2,6 +2,7 @@
 
 #include "link/fingerprint.h"
 #include "protocol/framing.h"
+#include "tiles/picture_stream.h"
 
 #include <algorithm>
 #include <array>
@@ -55,11 +56,18 @@ struct Connection::Impl {
         SSL_CTX_set_min_proto_version(tls.native_handle(), TLS1_3_VERSION);
         asio::co_spawn(io, run(), asio::detached);
         asio::co_spawn(io, watch(), asio::detached);
-        thread = std::thread([this] { io.run(); });
+        network = std::thread([this] { io.run(); });
+        decoder = std::thread([this] { decode(); });
     }
     ~Impl() {
         io.stop();
-        thread.join();
+        network.join();
+        {
+            const std::lock_guard lock(mutex);
+            stopping = true;
+        }
+        came.notify_one();
+        decoder.join();
     }
 
     // ---- network thread -----------------------------------------------------------------
@@ -71,7 +79,7 @@ struct Connection::Impl {
             stream.reset();
             outgoing.clear();
             writing = false;
-            const bool retry = options.reconnect && ending.worthRetrying;
+            const bool retry = options.reconnect && ending.worthRetrying && !gaveUp;
             if (ending.wasUp) pause = std::chrono::milliseconds(500);
             push(LinkDown{ending.error, !retry, std::chrono::duration<double>(pause).count()}, 0);
             if (!retry) break;
@@ -268,20 +276,81 @@ struct Connection::Impl {
             });
     }
 
-    // ---- both sides of the queue ----------------------------------------------------------
     template <class Body>
     void push(Body body, std::size_t bytes) {
         {
             const std::lock_guard lock(mutex);
-            events.push_back({{Clock::now(), std::move(body)}, bytes, link});
+            incoming.push_back({Clock::now(), std::move(body), bytes, link});
             queuedBytes += bytes;
         }
-        arrived.notify_one();
-        if (options.onEvent) options.onEvent();
+        came.notify_one();
     }
     bool queueIsFull() {
         const std::lock_guard lock(mutex);
         return queuedBytes > maxQueuedBytes;
+    }
+
+    // ---- decoding thread ------------------------------------------------------------------
+    void decode() {
+        tiles::PictureStream pictures;
+        for (;;) {
+            std::unique_lock lock(mutex);
+            came.wait(lock, [this] { return stopping || !incoming.empty(); });
+            if (stopping) return;
+            Incoming next = std::move(incoming.front());
+            incoming.pop_front();
+            lock.unlock();
+            if (gaveUp) {
+                take(next.bytes);
+            } else if (auto* tile = std::get_if<TilePayload>(&next.body)) {
+                auto picture = pictures.add(tile->bytes);
+                if (!picture) {
+                    gaveUp = true;
+                    deliver(next, LinkDown{picture.error(), true}, 0);
+                    asio::post(io, [this] {
+                        if (stream) closeSocket();
+                    });
+                } else if (*picture) {
+                    const std::size_t bytes = (*picture)->rgb.size();
+                    deliver(next, PictureDone{std::move(**picture), Clock::now()}, bytes);
+                } else {
+                    take(next.bytes);
+                }
+            } else if (auto* up = std::get_if<LinkUp>(&next.body)) {
+                pictures.reset();
+                deliver(next, std::move(*up), 0);
+            } else if (auto* down = std::get_if<LinkDown>(&next.body)) {
+                deliver(next, std::move(*down), 0);
+            } else {
+                deliver(next, std::move(std::get<ServerMessage>(next.body)), next.bytes);
+            }
+        }
+    }
+
+    struct TilePayload {
+        std::vector<std::uint8_t> bytes;
+    };
+    struct Incoming {
+        Clock::time_point at;
+        std::variant<LinkUp, LinkDown, TilePayload, ServerMessage> body;
+        std::size_t bytes;
+        std::uint64_t link;
+    };
+    void take(std::size_t bytes) {
+        const std::lock_guard lock(mutex);
+        queuedBytes -= bytes;
+    }
+    /// An event of `bytes` takes the place of what had come.
+    template <class Body>
+    void deliver(const Incoming& from, Body body, std::size_t bytes) {
+        {
+            const std::lock_guard lock(mutex);
+            events.push_back({{from.at, std::move(body)}, bytes, from.link});
+            queuedBytes += bytes;
+            queuedBytes -= from.bytes;
+        }
+        arrived.notify_one();
+        if (options.onEvent) options.onEvent();
     }
 
     struct Queued {
@@ -294,9 +363,12 @@ struct Connection::Impl {
     const std::string name;
 
     std::mutex mutex;
-    std::condition_variable arrived;
-    std::deque<Queued> events;               // guarded by mutex
-    std::size_t queuedBytes = 0;             // guarded by mutex
+    std::condition_variable came, arrived;
+    std::deque<Incoming> incoming;           // guarded by mutex: for the decoding thread
+    std::deque<Queued> events;               // guarded by mutex: for the caller
+    std::size_t queuedBytes = 0;             // guarded by mutex, of both
+    bool stopping = false;                   // guarded by mutex
+    std::atomic<bool> gaveUp{false};         // a tile was none: nothing more is delivered
     std::atomic<std::uint64_t> seenLink{0};  // the link whose LinkUp the caller has taken
     std::atomic<double> medianRoundTripMs{0.0};
     std::atomic<std::uint64_t> bytesReceived{0};
@@ -313,7 +385,7 @@ struct Connection::Impl {
     std::uint64_t pingRequest = 0;
     Clock::time_point pingSentAt;
     std::deque<double> roundTripsMs;
-    std::thread thread;  // last: starts when all of the above is there
+    std::thread network, decoder;  // last: they start when all of the above is there
 };
 
 Connection::Connection(ConnectionOptions options)

@@ -1,9 +1,11 @@
-// The TLS connection to a server: one network thread owns the socket, queues lead to and from it.
+// The TLS connection to a server: one thread owns the socket, another decodes the tiles that come
+// over it; queues lead to and from them.
 #pragma once
 
 #include "link/known_servers.h"
 #include "link/server_address.h"
 #include "protocol/haustra.pb.h"
+#include "tiles/picture.h"
 
 #include <chrono>
 #include <functional>
@@ -25,7 +27,7 @@ struct ConnectionOptions {
     std::chrono::milliseconds connectPatience{10'000};  ///< for name, TCP, TLS and welcome together
     std::chrono::milliseconds silencePatience{
         30'000};                    ///< without one byte the link counts as lost
-    std::function<void()> onEvent;  ///< called on the network thread after an event was queued
+    std::function<void()> onEvent;  ///< called on the decoding thread after an event was queued
 };
 
 /// The server was met, its certificate accepted and the hello answered.
@@ -40,21 +42,25 @@ struct LinkDown {
     bool final = true;
     double retryInSeconds = 0.0;
 };
-struct TilePayload {
-    std::vector<std::uint8_t> bytes;
+/// A picture all of whose tiles have come.
+struct PictureDone {
+    tiles::Picture picture;
+    Clock::time_point decodedAt;
 };
 struct Event {
     Clock::time_point at;  ///< when its last byte had arrived
-    std::variant<LinkUp, LinkDown, TilePayload, protocol::ServerMessage> body;
+    std::variant<LinkUp, LinkDown, PictureDone, protocol::ServerMessage> body;
 };
 
 /// Connects from construction on. Says hello and keeps the link alive with pings by itself. TLS
 /// 1.3 only; the certificate is checked by its pinned fingerprint (known_servers.h), before any
-/// byte of the protocol is sent. All functions may be called from any thread, `next` from one.
+/// byte of the protocol is sent. Events come in the order in which their last bytes did; a tile
+/// that is none ends the connection for good. All functions may be called from any thread, `next`
+/// from one.
 class Connection {
 public:
     explicit Connection(ConnectionOptions options);
-    /// Closes the socket and joins the network thread; what `send` queued may be lost.
+    /// Closes the socket and joins the threads; what `send` queued may be lost.
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -64,7 +70,7 @@ public:
     void send(const protocol::ClientMessage& message);
 
     /// The next event, waiting at most `patience` for it. Reading from the socket pauses while
-    /// 64 MiB of events wait here.
+    /// 64 MiB of tiles, messages and pictures wait here.
     std::optional<Event> next(std::chrono::milliseconds patience);
 
     /// Median of the last few ping times; 0 before the first.

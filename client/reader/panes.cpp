@@ -1,5 +1,7 @@
 #include "reader/panes.h"
 
+#include "protocol/limits.h"
+
 #include <algorithm>
 #include <cmath>
 

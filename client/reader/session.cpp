@@ -1,5 +1,6 @@
 #include "reader/session.h"
 
+#include "protocol/limits.h"
 #include "protocol/optics_message.h"
 #include "protocol/view_message.h"
 #include "reader/incoming_messages.h"
@@ -92,7 +93,7 @@ Session::Session(link::ConnectionOptions options, std::string caseName)
 
 void Session::poll(std::chrono::milliseconds patience) {
     if (phase_ == Phase::failed) return;
-    // A bound on the events, so that a stream faster than the decoder cannot keep the caller here.
+    // A bound on the events, so that a fast stream cannot keep the caller here.
     constexpr int maxEvents = 64;
     auto event = connection_.next(patience);
     for (int n = 1; event;
@@ -101,8 +102,8 @@ void Session::poll(std::chrono::milliseconds patience) {
             handle(std::move(*up));
         else if (auto* down = std::get_if<link::LinkDown>(&event->body))
             handle(*down);
-        else if (auto* tile = std::get_if<link::TilePayload>(&event->body))
-            handle(*tile, event->at);
+        else if (auto* done = std::get_if<link::PictureDone>(&event->body))
+            handle(std::move(*done), event->at);
         else
             handle(std::get<protocol::ServerMessage>(event->body));
         if (phase_ == Phase::failed) return;
@@ -112,8 +113,6 @@ void Session::poll(std::chrono::milliseconds patience) {
 void Session::handle(link::LinkUp up) {
     server_ = std::move(up);
     phase_ = Phase::connecting;
-    for (auto& assembler : assemblers_)
-        assembler.reset();
     askForCase();
 }
 
@@ -196,17 +195,8 @@ void Session::refused(const protocol::ErrorReport& report) {
     if (phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST) giveUp(error);
 }
 
-void Session::handle(const link::TilePayload& payload, Clock::time_point at) {
-    auto tile = decoder_.decode(payload.bytes);
-    if (!tile) return giveUp(tile.error());
-    if (tile->header.viewport >= assemblers_.size())
-        return giveUp(
-            {ErrorKind::badInput, "the server sent a tile of a viewport that cannot be", "tile"});
-    auto& assembler = assemblers_[tile->header.viewport];
-    auto picture = assembler.add(*tile);
-    if (!picture) return giveUp(picture.error());
-    if (!*picture) return;
-    arrivals_.push_back({std::move(**picture), at, Clock::now()});
+void Session::handle(link::PictureDone done, Clock::time_point at) {
+    arrivals_.push_back({std::move(done.picture), at, done.decodedAt});
     if (arrivals_.size() > 64) arrivals_.pop_front();
 }
 

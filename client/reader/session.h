@@ -2,10 +2,9 @@
 #pragma once
 
 #include "link/connection.h"
-#include "protocol/framing.h"
 #include "reader/case_info.h"
 #include "reader/latency.h"
-#include "tiles/picture_assembler.h"
+#include "tiles/picture.h"
 
 #include <array>
 #include <deque>
@@ -39,7 +38,7 @@ public:
     /// Opens `caseName` once linked; where it is empty, asks for the list of cases.
     Session(link::ConnectionOptions options, std::string caseName);
 
-    /// Takes in what has arrived, waiting at most `patience` for the first event. Decodes tiles.
+    /// Takes in what has arrived, waiting at most `patience` for the first event.
     void poll(std::chrono::milliseconds patience);
 
     Phase phase() const { return phase_; }
@@ -121,7 +120,7 @@ private:
     void handle(link::LinkUp up);
     void handle(const link::LinkDown& down);
     void handle(const protocol::ServerMessage& message);
-    void handle(const link::TilePayload& tile, Clock::time_point at);
+    void handle(link::PictureDone done, Clock::time_point at);
     void opened(const protocol::CaseOpened& message);
     void refused(const protocol::ErrorReport& report);
     void acknowledge(const Bookmark& bookmark);
@@ -145,8 +144,6 @@ private:
     double seenShare_ = 0.0;
     std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0;
     std::map<int, ViewportState> viewports_;
-    tiles::TileDecoder decoder_;
-    std::array<tiles::PictureAssembler, protocol::maxViewports> assemblers_;
     std::deque<Arrival> arrivals_;
     std::vector<Error> refusals_;
     std::vector<Bookmark> bookmarks_;

@@ -127,6 +127,41 @@ protected:
     ClientReaderOfAReplacedScan() : ClientReader(replacing()) {}
 };
 
+class ClientReaderOfGarbage : public ClientReader {
+protected:
+    static Misbehaviour garbage() {
+        Misbehaviour misbehaviour;
+        misbehaviour.garbageTiles = true;
+        return misbehaviour;
+    }
+    ClientReaderOfGarbage() : ClientReader(garbage()) {}
+};
+
+// Though it tries again after a lost link: what sends such tiles will send them again.
+TEST_F(ClientReaderOfGarbage, ATileThatIsNoneEndsTheConnectionForGood) {
+    reader_->setPaneSize(View::endoscopic, {64, 64});
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::failed; }));
+    EXPECT_EQ(reader_->session().failure().kind, ErrorKind::badInput);
+    EXPECT_NE(describe(reader_->session().failure()).find("tile"), std::string::npos);
+    EXPECT_EQ(server_.connections(), 1);
+}
+
+TEST_F(ClientReader, TilesAreDecodedWhileTheReaderDoesOtherThings) {
+    Session& session = reader_->session();
+    session.setViewport(0, View::endoscopic, 64, 64);
+    ASSERT_TRUE(runUntil([&] { return reader_->isOpen(); }));
+    bool decodedBefore = false;
+    for (int picture = 0; picture < 200 && !decodedBefore; ++picture) {
+        session.look(0, reader_->flight().camera(), false);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        const auto before = Clock::now();
+        session.poll(std::chrono::milliseconds(0));
+        for (const Arrival& arrival : session.takePictures())
+            decodedBefore |= arrival.decodedAt < before;
+    }
+    EXPECT_TRUE(decodedBefore);
+}
+
 class ClientReaderRefused : public ClientReader, public ::testing::WithParamInterface<int> {
 protected:
     static Misbehaviour refusing() {

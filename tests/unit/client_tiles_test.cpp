@@ -2,6 +2,7 @@
 #include "picture_files.h"
 #include "temporary_folder.h"
 #include "tiles/picture_assembler.h"
+#include "tiles/picture_stream.h"
 #include "tiles/png_file.h"
 
 #include <algorithm>
@@ -152,6 +153,43 @@ TEST(PictureAssembler, ATileThatContradictsItsPictureIsRefused) {
         if (what == 2) second.header.exact = false;
         EXPECT_FALSE(assembler.add(second));
     }
+}
+
+// The same payload, of another viewport.
+Bytes ofViewport(Bytes payload, std::uint8_t viewport) {
+    payload[0] = viewport;
+    return payload;
+}
+
+TEST(PictureStream, ViewportsDoNotDisturbEachOtherAndALostLinksTilesAreForgotten) {
+    const Bytes rgb = smoothPicture(128, 64, 0.0), other = smoothPicture(128, 64, 1.0);
+    const auto tiles = losslessTiles(rgb, 128, 64, 7, 1),
+               others = losslessTiles(other, 128, 64, 2, 1);
+    PictureStream stream;
+    EXPECT_FALSE(*stream.add(tiles[0]));
+    EXPECT_FALSE(*stream.add(ofViewport(others[0], 1)));
+    const auto first = *stream.add(tiles[1]);
+    const auto second = *stream.add(ofViewport(others[1], 1));
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(first->rgb, rgb);
+    EXPECT_EQ(second->rgb, other);
+    EXPECT_EQ(second->viewport, 1);
+
+    EXPECT_FALSE(*stream.add(losslessTiles(rgb, 128, 64, 8, 2)[0]));
+    stream.reset();  // another link: its pictures are counted from 1
+    EXPECT_FALSE(*stream.add(losslessTiles(other, 128, 64, 1, 3)[1]));
+    const auto anew = *stream.add(losslessTiles(other, 128, 64, 1, 3)[0]);
+    ASSERT_TRUE(anew);
+    EXPECT_EQ(anew->rgb, other);
+}
+
+TEST(PictureStream, AViewportThatCannotBeIsRefused) {
+    const auto tiles = losslessTiles(smoothPicture(64, 64, 0.0), 64, 64, 1, 1);
+    PictureStream stream;
+    EXPECT_TRUE(stream.add(ofViewport(tiles[0], std::uint8_t(protocol::maxViewports - 1))));
+    const auto beyond = stream.add(ofViewport(tiles[0], std::uint8_t(protocol::maxViewports)));
+    ASSERT_FALSE(beyond);
+    EXPECT_EQ(beyond.error().kind, ErrorKind::badInput);
 }
 
 TEST(TileDecoder, JpegComesBackNearlyAndLosslessExactly) {

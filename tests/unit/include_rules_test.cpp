@@ -82,7 +82,7 @@ const std::map<std::string, Names>& allowed() {
           "flatten/tube", "flatten/general", "store", "pipeline", "gpu", "render",
           "render/object_order", "render/optics", "render/scene", "render/wall"}},
         {"client", {"protocol", "link", "tiles", "reader", "script", "window"}},
-        {"client/link", {"protocol"}},
+        {"client/link", {"protocol", "tiles"}},
         {"client/tiles", {"protocol"}},
         {"client/reader", {"protocol", "link", "tiles"}},
         {"client/script", {"protocol", "link", "tiles", "reader"}},
