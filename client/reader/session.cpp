@@ -182,7 +182,7 @@ void Session::refused(const protocol::ErrorReport& report) {
     const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
         return report.request() != 0 && o.request == report.request();
     });
-    if (owed != owed_.end()) owed_.erase(owed);  // else it would be sent again for ever
+    if (owed != owed_.end()) settle(owed, false);  // else it would be sent again for ever
     if (questions_.erase(report.request()) > 0)
         wallAnswers_.push_back({report.request(), tl::make_unexpected(error)});
     refusals_.push_back(error);
@@ -372,9 +372,16 @@ std::uint64_t Session::requestBookmarks() {
     return request_;
 }
 
+void Session::settle(std::deque<Owed>::iterator owed, bool saved) {
+    bookmarkOutcomes_.push_back({std::move(owed->bookmark), saved});
+    owed_.erase(owed);
+}
+
 void Session::acknowledge(const Bookmark& bookmark) {
-    std::erase_if(owed_,
-                  [&](const Owed& owed) { return owed.bookmark.clientKey == bookmark.clientKey; });
+    const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
+        return o.bookmark.clientKey == bookmark.clientKey;
+    });
+    if (owed != owed_.end()) settle(owed, true);
     const auto same = std::find_if(bookmarks_.begin(), bookmarks_.end(),
                                    [&](const Bookmark& b) { return b.id == bookmark.id; });
     if (same == bookmarks_.end())

@@ -30,6 +30,12 @@ struct Arrival {
     Clock::time_point receivedAt, decodedAt;
 };
 
+/// What became of a bookmark that was owed.
+struct BookmarkOutcome {
+    Bookmark bookmark;  ///< as it was sent
+    bool saved;         ///< the server has it; else it refused it, and nobody has it
+};
+
 /// Owns the connection; belongs to one thread. The session remembers what each viewport is to
 /// show, so that after a lost link everything is asked for again, and bookmarks that the server
 /// has not acknowledged are sent again under the same key.
@@ -82,6 +88,11 @@ public:
     std::uint64_t requestBookmarks();
     /// Acknowledged ones first, in the server's order, then those still owed.
     std::vector<Bookmark> bookmarks() const;
+    /// Those that the server saved or refused since the last call. Of a refusal, takeRefusals() has
+    /// the server's reason.
+    std::vector<BookmarkOutcome> takeBookmarkOutcomes() {
+        return std::exchange(bookmarkOutcomes_, {});
+    }
     const Bookmark* acknowledgedBookmark(const std::string& clientKey) const;
     std::size_t owedBookmarks() const { return owed_.size(); }
     /// Number of the newest requestBookmarks that was answered.
@@ -124,6 +135,7 @@ private:
     void opened(const protocol::CaseOpened& message);
     void refused(const protocol::ErrorReport& report);
     void acknowledge(const Bookmark& bookmark);
+    void settle(std::deque<Owed>::iterator owed, bool saved);
     std::uint64_t ask(const protocol::ClientMessage& question);
     template <class Message, class Body>
     void answeredAboutWall(const Message& message, Result<Body> body);
@@ -148,6 +160,7 @@ private:
     std::vector<Error> refusals_;
     std::vector<Bookmark> bookmarks_;
     std::deque<Owed> owed_;
+    std::vector<BookmarkOutcome> bookmarkOutcomes_;
     std::map<std::uint64_t, protocol::ClientMessage> questions_;  // without an answer, by request
     std::vector<WallAnswer> wallAnswers_;
 

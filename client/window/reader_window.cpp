@@ -1,5 +1,6 @@
 #include "window/reader_window.h"
 
+#include "core/printed_text.h"
 #include "window/gl_window.h"
 #include "window/layout.h"
 #include "window/ui.h"
@@ -56,13 +57,26 @@ public:
                     session.server().fingerprint.substr(0, 16) + "…)");
             toldFirstUse_ = true;
         }
-        if (owed_ > 0 && session.owedBookmarks() == 0) ui.tell("Bookmark saved");
-        owed_ = session.owedBookmarks();
+        for (const reader::BookmarkOutcome& outcome : session.takeBookmarkOutcomes()) {
+            if (outcome.saved)
+                ui.tell("Bookmark saved");
+            else
+                tellRefused(ui, outcome.bookmark);
+        }
     }
 
 private:
+    // Its note goes back to where it was written, unless another one is being written there.
+    static void tellRefused(Ui& ui, const reader::Bookmark& bookmark) {
+        const std::string place = printed("The bookmark at %.0f mm was not saved", bookmark.arcMm);
+        if (bookmark.note.empty()) return ui.tell(place, true);
+        if (ui.note[0] != 0) return ui.tell(place + ": " + bookmark.note, true);
+        bookmark.note.copy(ui.note.data(), ui.note.size() - 1);
+        ui.showBookmarks = true;
+        ui.tell(place + "; its note is in its field again", true);
+    }
+
     bool toldFirstUse_ = false;
-    std::size_t owed_ = 0;
 };
 
 // When the time has come; where pictures are still on their way, up to 20 s later.

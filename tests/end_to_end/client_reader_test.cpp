@@ -162,6 +162,42 @@ TEST_F(ClientReader, TilesAreDecodedWhileTheReaderDoesOtherThings) {
     EXPECT_TRUE(decodedBefore);
 }
 
+class ClientReaderOfAFullDisk : public ClientReader {
+protected:
+    static Misbehaviour refusing() {
+        Misbehaviour misbehaviour;
+        misbehaviour.refuseBookmarks = 1;
+        return misbehaviour;
+    }
+    ClientReaderOfAFullDisk() : ClientReader(refusing()) {}
+};
+
+TEST_F(ClientReaderOfAFullDisk, ARefusedBookmarkIsNeverCalledSavedAndItsNoteIsNotLost) {
+    ASSERT_TRUE(runUntil([&] { return reader_->isOpen(); }));
+    Session& session = reader_->session();
+    std::vector<BookmarkOutcome> outcomes;
+    const auto settled = [&](std::size_t count) {
+        return runUntil([&] {
+            for (BookmarkOutcome& outcome : session.takeBookmarkOutcomes())
+                outcomes.push_back(std::move(outcome));
+            return outcomes.size() >= count;
+        });
+    };
+    reader_->addBookmark("sessile, 8 mm");
+    ASSERT_TRUE(settled(1));
+    EXPECT_FALSE(outcomes[0].saved);
+    EXPECT_EQ(outcomes[0].bookmark.note, "sessile, 8 mm");
+    EXPECT_EQ(session.owedBookmarks(), 0u);  // it is not sent again by itself
+    ASSERT_EQ(session.takeRefusals().size(), 1u);
+    EXPECT_TRUE(server_.storedBookmarkKeys().empty());
+
+    reader_->addBookmark("sessile, 8 mm");
+    ASSERT_TRUE(settled(2));
+    EXPECT_TRUE(outcomes[1].saved);
+    EXPECT_EQ(server_.storedBookmarkKeys(),
+              std::vector<std::string>{outcomes[1].bookmark.clientKey});
+}
+
 class ClientReaderRefused : public ClientReader, public ::testing::WithParamInterface<int> {
 protected:
     static Misbehaviour refusing() {

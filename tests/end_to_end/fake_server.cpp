@@ -187,7 +187,19 @@ struct FakeServer::Impl {
     bool addBookmark(Stream& stream, const protocol::AddBookmark& add) {
         ++bookmarkMessages;
         ServerMessage answer;
-        bool drop = false;
+        bool drop = false, refuse = false;
+        {
+            const std::lock_guard lock(mutex);
+            refuse = misbehaviour.refuseBookmarks > 0;
+            misbehaviour.refuseBookmarks -= refuse;
+        }
+        if (refuse) {
+            answer.mutable_error()->set_code(protocol::ErrorReport::INTERNAL);
+            answer.mutable_error()->set_request(add.request());
+            answer.mutable_error()->set_message("the disk is full");
+            write(stream, answer);
+            return true;
+        }
         {
             const std::lock_guard lock(mutex);
             protocol::Bookmark* stored = nullptr;
