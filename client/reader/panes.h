@@ -38,9 +38,10 @@ public:
     std::uint64_t pictureCount(View view) const { return pictures_.count(view); }
     /// What the newest picture of a view shows, which lags behind what the view is asked to show
     /// now; null before there is one. The flat window is in pixels of its pane.
+    const std::optional<ViewState>& shownState(View view) const { return pictures_.shown(view); }
     template <class State>
     const State* shown(View view) const {
-        const std::optional<ViewState>& shown = pictures_.shown(view);
+        const std::optional<ViewState>& shown = shownState(view);
         return shown ? std::get_if<State>(&*shown) : nullptr;
     }
     /// See PictureLog.

@@ -22,6 +22,7 @@ void Reader::update(double seconds) {
     if (session_.caseInfo() && session_.caseInfo() != case_) caseOpened();
     panes_.takePictures(Clock::now());
     if (!case_) return;
+    if (session_.phase() != Phase::open) setMotion(Motion::paused);
     if (const auto picked = flat_.update(seconds))
         slices_.show(picked->positionMm, flight_.camera().positionMm);
     slices_.follow(flight_.camera().positionMm);
@@ -69,6 +70,14 @@ ViewState Reader::stateOf(View view) const {
         default:  // the window has no pane for it
             return {};
     }
+}
+
+Freshness Reader::freshness(View view) const {
+    if (panes_.pictureCount(view) == 0) return Freshness::none;
+    if (session_.phase() != Phase::open) return Freshness::old;
+    return panes_.picture(view).exact && panes_.shownState(view) == stateOf(view)
+               ? Freshness::exact
+               : Freshness::moving;
 }
 
 void Reader::setPaneSize(View view, glm::ivec2 pixels) {

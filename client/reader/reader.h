@@ -12,13 +12,22 @@
 
 namespace haustra::reader {
 
+/// How the picture in a pane stands to what its view is to show now.
+enum class Freshness {
+    none,    ///< there is no picture yet
+    exact,   ///< the lossless still of it
+    moving,  ///< a newer picture will come
+    old,     ///< the link is down: none will come until it is back
+};
+
 /// Belongs to one thread.
 class Reader {
 public:
     Reader(link::ConnectionOptions options, std::string caseName);
 
     /// One step of the loop: takes in what the server sent, moves the flight on by `seconds`, asks
-    /// for the views that changed. Never blocks.
+    /// for the views that changed. While the link is down nothing moves by itself: the pictures
+    /// would not follow. Never blocks.
     void update(double seconds);
     bool isOpen() const { return case_ != nullptr; }
     /// Whether the picture will change soon by itself: draw at full rate.
@@ -45,6 +54,7 @@ public:
 
     /// Where they are drawn.
     const Panes& panes() const { return panes_; }
+    Freshness freshness(View view) const;
     void setPaneSize(View view, glm::ivec2 pixels);
 
     /// Of the fly-over where it is on, else of the flight.

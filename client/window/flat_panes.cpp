@@ -120,6 +120,7 @@ void drawZoomPicture(Ui& ui, const FlatArea& flat, ImDrawList* list) {
     shown.window.center.x += std::round(flat.window.center.x - shown.window.center.x);
     list->AddImage(ui.textures[std::size_t(View::flattenedZoom)].id(),
                    flat.screen(shown.flat(flat.area.min)), flat.screen(shown.flat(flat.area.max)));
+    dimOldPicture(ui, View::flattenedZoom, flat.area, list);
 }
 
 void drawMeasurement(Ui& ui, const FlatArea& flat, ImDrawList* list) {

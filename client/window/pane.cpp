@@ -21,8 +21,14 @@ bool preparePicture(Ui& ui, View view, Rect area, ImDrawList* list) {
 }
 
 void drawPicture(Ui& ui, View view, Rect area, ImDrawList* list) {
-    if (preparePicture(ui, view, area, list))
-        list->AddImage(ui.textures[std::size_t(view)].id(), area.min, area.max);
+    if (!preparePicture(ui, view, area, list)) return;
+    list->AddImage(ui.textures[std::size_t(view)].id(), area.min, area.max);
+    dimOldPicture(ui, view, area, list);
+}
+
+void dimOldPicture(Ui& ui, View view, Rect area, ImDrawList* list) {
+    if (ui.reader.freshness(view) == reader::Freshness::old)
+        list->AddRectFilled(area.min, area.max, color::veil);
 }
 
 bool pane(Ui& ui, const char* id, Rect area) {

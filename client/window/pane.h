@@ -10,6 +10,8 @@ namespace haustra::window {
 bool preparePicture(Ui& ui, View view, Rect area, ImDrawList* list);
 /// The view's newest picture over all of `area`.
 void drawPicture(Ui& ui, View view, Rect area, ImDrawList* list);
+/// Where the link is down, the pane tells at a glance that nothing follows the hand.
+void dimOldPicture(Ui& ui, View view, Rect area, ImDrawList* list);
 /// An invisible button that takes the mouse over the pane; Ui::drag grows while it is held. True
 /// while the mouse is over it.
 bool pane(Ui& ui, const char* id, Rect area);

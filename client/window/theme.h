@@ -19,6 +19,7 @@ inline constexpr ImU32 accent = IM_COL32(72, 190, 199, 255);
 inline constexpr ImU32 accentDim = IM_COL32(37, 98, 105, 255);
 inline constexpr ImU32 bookmark = IM_COL32(235, 176, 88, 255);
 inline constexpr ImU32 trouble = IM_COL32(240, 106, 98, 255);
+inline constexpr ImU32 veil = IM_COL32(8, 10, 13, 130);  // over a picture that is old
 inline constexpr ImU32 shade = IM_COL32(8, 10, 13, 200);
 }  // namespace color
 

@@ -162,15 +162,20 @@ void drawEndoscopicPane(Ui& ui, Rect area) {
                      {area.min.x + margin, area.max.y - margin - ui.fonts.small->FontSize},
                      IM_COL32(200, 208, 216, 255), look);
     }
-    const bool exact = reader.panes().picture(View::endoscopic).exact;
-    const std::string badge = exact ? "exact" : "moving";
+    const reader::Freshness freshness = reader.freshness(View::endoscopic);
+    const bool exact = freshness == reader::Freshness::exact,
+               old = freshness == reader::Freshness::old;
+    const std::string badge = old ? "old" : exact ? "exact" : "moving";
     const ImVec2 size = textSize(ui.fonts.small, badge);
     const float dot = ui.px(4);
     const ImVec2 corner(area.max.x - margin - size.x, area.max.y - margin - size.y);
-    if (reader.panes().pictureCount(View::endoscopic) > 0) {
+    if (freshness != reader::Freshness::none) {
         list->AddCircleFilled({corner.x - 2.2f * dot, corner.y + size.y / 2}, dot,
-                              exact ? color::accent : color::bookmark);
-        outlinedText(list, ui.fonts.small, corner, IM_COL32(200, 208, 216, 255), badge);
+                              old     ? color::trouble
+                              : exact ? color::accent
+                                      : color::bookmark);
+        outlinedText(list, ui.fonts.small, corner,
+                     old ? color::trouble : IM_COL32(200, 208, 216, 255), badge);
     }
 }
 

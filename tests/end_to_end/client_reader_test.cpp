@@ -319,6 +319,24 @@ TEST_F(ClientReaderWithALossyLink, ALostLinkComesBackWithViewsFlightAndBookmarks
     expectPicturesOf(reader_->flight().camera().positionMm);
 }
 
+TEST_F(ClientReaderWithALossyLink, WhileTheLinkIsDownTheFlightStandsAndItsPictureIsOld) {
+    EXPECT_EQ(reader_->freshness(View::endoscopic), Freshness::none);
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    EXPECT_EQ(reader_->freshness(View::endoscopic), Freshness::exact);
+    reader_->setMotion(Motion::forward);
+    reader_->update(0.05);
+    EXPECT_EQ(reader_->freshness(View::endoscopic), Freshness::moving);
+    reader_->addBookmark("first");
+    reader_->addBookmark("second: the link breaks");
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::lost; }));
+    const double arc = reader_->flight().arcMm();
+    EXPECT_EQ(reader_->motion(), Motion::paused);
+    EXPECT_EQ(reader_->freshness(View::endoscopic), Freshness::old);
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::open && allAtRest(); }));
+    EXPECT_EQ(reader_->flight().arcMm(), arc);
+    EXPECT_EQ(reader_->freshness(View::endoscopic), Freshness::exact);
+}
+
 TEST_F(ClientReaderOfAReplacedScan, WhatWasMarkedOnTheOneIsNotSentToTheOther) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     reader_->addBookmark("first");
