@@ -4,6 +4,7 @@
 
 #include "data_folder.h"
 #include "flat_meshes.h"
+#include "flatten/tube/rim_cut.h"
 #include "handle_meshes.h"
 #include "handles/handle_removal.h"
 #include "mesh/halfedge_mesh.h"
@@ -220,6 +221,49 @@ TEST(EndHoles, RefuseWhatHasNoTwoEnds) {
         EXPECT_TRUE(refused(closed, {0, 0, 0}, {0, 0, 60}, rimMm)) << rimMm;
     const glm::dvec3 ends[2] = {{0, 0, 0}, {0, 0, 1}}, same[2] = {down, down};
     EXPECT_FALSE(punchEnds(closed, ends, same));
+}
+
+/// How many edges of the mesh away each vertex is from the first.
+std::vector<int> stepsFromFirst(const TriMesh& mesh) {
+    const auto halfedges = mesh::HalfedgeMesh::ofClosed(mesh).value();
+    std::vector<int> steps(mesh.vertices.size(), -1), front{0};
+    steps[0] = 0;
+    for (std::size_t head = 0; head < front.size(); ++head) {
+        int h = halfedges.outgoing(front[head]);
+        do {
+            const int next = halfedges.target(h);
+            if (steps[std::size_t(next)] < 0) {
+                steps[std::size_t(next)] = steps[std::size_t(front[head])] + 1;
+                front.push_back(next);
+            }
+            h = halfedges.turnLeft(h);
+        } while (h != halfedges.outgoing(front[head]));
+    }
+    return steps;
+}
+
+// Around a vertex above the level whose neighbours are all just below it, what is left of the
+// triangles hangs together with the rest across nothing but the rim, wherever the neighbours move.
+TEST(RimCut, APocketWithinTheHoleGoesWithIt) {
+    const TriMesh closed = tests::torusMesh(40.0, 15.0, 40, 80);
+    const std::vector<int> steps = stepsFromFirst(closed);
+    const double values[] = {0.9, 0.39, 0.2, 0.6, 0.8};
+    TipFunction function;
+    for (std::size_t v = 0; v < steps.size(); ++v) {
+        function.value.push_back(steps[v] < 5 ? values[steps[v]] : 1.0);
+        if (steps[v] == 2 && function.tip < 0) function.tip = int(v), function.value.back() = 0.0;
+    }
+    for (const double snapShare : {0.0, 0.1, 0.25}) {
+        SCOPED_TRACE(snapShare);
+        const auto cut = cutRim(closed, function, 0.4, snapShare);
+        ASSERT_TRUE(cut);
+        for (const glm::ivec3& t : cut->triangles)
+            for (int corner = 0; corner < 3; ++corner)
+                EXPECT_NE(t[corner], 0);
+        EXPECT_EQ(std::set<int>(cut->rim.begin(), cut->rim.end()).size(), cut->rim.size());
+        for (const int v : cut->rim)
+            EXPECT_TRUE(v >= int(closed.vertices.size()) || steps[std::size_t(v)] >= 2);
+    }
 }
 
 TEST(EndHoles, LeaveATubeAnywhereOnARealColon) {

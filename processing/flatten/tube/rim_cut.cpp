@@ -33,7 +33,7 @@ double leastAngle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
 
 struct DeletableTraits : OpenMesh::DefaultTraits {
     VertexAttributes(OpenMesh::Attributes::Status);
-    HalfedgeAttributes(OpenMesh::Attributes::None);
+    HalfedgeAttributes(OpenMesh::Attributes::Status);  // else walks meet deleted ones too
     EdgeAttributes(OpenMesh::Attributes::Status);
     FaceAttributes(OpenMesh::Attributes::Status);
 };
