@@ -157,6 +157,13 @@ Result<void> readValues(MaybeGzipFile& stream, bool swapped, const Scaling& scal
     return {};
 }
 
+tl::unexpected<Error> unreadType(short datatype, const std::string& place) {
+    return fail(
+        ErrorKind::unsupported,
+        std::string("NIfTI images of type ") + nifti_datatype_string(datatype) + " are not read",
+        place);
+}
+
 template <class T>
 Result<void> readValuesOf(short datatype, MaybeGzipFile& stream, bool swapped,
                           const Scaling& scaling, std::span<T> values, const std::string& place) {
@@ -187,10 +194,7 @@ Result<void> readValuesOf(short datatype, MaybeGzipFile& stream, bool swapped,
         default:
             break;
     }
-    return fail(
-        ErrorKind::unsupported,
-        std::string("NIfTI images of type ") + nifti_datatype_string(datatype) + " are not read",
-        place);
+    return unreadType(datatype, place);
 }
 
 /// An image whose values come next in its stream.
@@ -210,6 +214,8 @@ Result<OpenImage> openImage(const std::filesystem::path& file) {
     TRY(skipToData(stream, header, place));
     int bytesPerVoxel = 0, swapSize = 0;
     nifti_datatype_sizes(header.datatype, &bytesPerVoxel, &swapSize);
+    // Before anything is allocated: what has no size would pass for a file of any length.
+    if (bytesPerVoxel == 0) return unreadType(header.datatype, place);
     if (grid.voxelCount() * std::size_t(bytesPerVoxel) > stream.mostBytes())
         return fail(ErrorKind::badInput, "the file is truncated", place);
     return OpenImage{std::move(stream), header, swapped, grid};

@@ -50,6 +50,12 @@ TEST_F(Nifti, RefusesWhatItCannotMean) {
     };
     HandWritten file = oneVoxel(32);
     refuse(file, "COMPLEX64");
+    // A type without a size, of more voxels than memory holds: told before any is asked for.
+    for (const int type : {0, 1, 255}) {
+        file = oneVoxel(std::int16_t(type));
+        file.size(4096, 4096, 4096);
+        refuse(file, "are not read");
+    }
     file = oneVoxel(2);
     file.set<std::int16_t>(40, 4);
     file.set<std::int16_t>(48, 3);
