@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <utility>
 
@@ -83,8 +84,10 @@ struct Connection::Impl {
             if (ending.wasUp) pause = std::chrono::milliseconds(500);
             push(LinkDown{ending.error, !retry, std::chrono::duration<double>(pause).count()}, 0);
             if (!retry) break;
-            asio::steady_timer timer(io, pause);
-            co_await timer.async_wait(asio::use_awaitable);
+            retryTimer.expires_after(pause);
+            asio::error_code ignored;
+            co_await retryTimer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+            if (gaveUp) break;
             pause = std::min(2 * pause, std::chrono::milliseconds(5000));
         }
         watchdog.cancel();
@@ -281,13 +284,13 @@ struct Connection::Impl {
         {
             const std::lock_guard lock(mutex);
             incoming.push_back({Clock::now(), std::move(body), bytes, link});
-            queuedBytes += bytes;
+            incomingBytes += bytes;
         }
         came.notify_one();
     }
     bool queueIsFull() {
         const std::lock_guard lock(mutex);
-        return queuedBytes > maxQueuedBytes;
+        return incomingBytes > maxQueuedBytes;
     }
 
     // ---- decoding thread ------------------------------------------------------------------
@@ -295,26 +298,29 @@ struct Connection::Impl {
         tiles::PictureStream pictures;
         for (;;) {
             std::unique_lock lock(mutex);
-            came.wait(lock, [this] { return stopping || !incoming.empty(); });
+            came.wait(lock, [this] {
+                return stopping || (!incoming.empty() && eventBytes <= maxQueuedBytes);
+            });
             if (stopping) return;
             Incoming next = std::move(incoming.front());
             incoming.pop_front();
+            incomingBytes -= next.bytes;
             lock.unlock();
-            if (gaveUp) {
-                take(next.bytes);
-            } else if (auto* tile = std::get_if<TilePayload>(&next.body)) {
-                auto picture = pictures.add(tile->bytes);
+            if (gaveUp) continue;
+            if (auto* tile = std::get_if<TilePayload>(&next.body)) {
+                auto picture = decoded(pictures, tile->bytes);
                 if (!picture) {
                     gaveUp = true;
                     deliver(next, LinkDown{picture.error(), true}, 0);
+                    // Whatever the link is about just now, an attempt to come back among it.
                     asio::post(io, [this] {
+                        retryTimer.cancel();
+                        resolver.cancel();
                         if (stream) closeSocket();
                     });
                 } else if (*picture) {
                     const std::size_t bytes = (*picture)->rgb.size();
                     deliver(next, PictureDone{std::move(**picture), Clock::now()}, bytes);
-                } else {
-                    take(next.bytes);
                 }
             } else if (auto* up = std::get_if<LinkUp>(&next.body)) {
                 pictures.reset();
@@ -336,18 +342,20 @@ struct Connection::Impl {
         std::size_t bytes;
         std::uint64_t link;
     };
-    void take(std::size_t bytes) {
-        const std::lock_guard lock(mutex);
-        queuedBytes -= bytes;
+    static Result<std::optional<tiles::Picture>> decoded(tiles::PictureStream& pictures,
+                                                         const std::vector<std::uint8_t>& tile) {
+        try {
+            return pictures.add(tile);
+        } catch (const std::bad_alloc&) {
+            return fail(ErrorKind::device, "there is no memory for a picture", "tile");
+        }
     }
-    /// An event of `bytes` takes the place of what had come.
     template <class Body>
     void deliver(const Incoming& from, Body body, std::size_t bytes) {
         {
             const std::lock_guard lock(mutex);
             events.push_back({{from.at, std::move(body)}, bytes, from.link});
-            queuedBytes += bytes;
-            queuedBytes -= from.bytes;
+            eventBytes += bytes;
         }
         arrived.notify_one();
         if (options.onEvent) options.onEvent();
@@ -364,19 +372,19 @@ struct Connection::Impl {
 
     std::mutex mutex;
     std::condition_variable came, arrived;
-    std::deque<Incoming> incoming;           // guarded by mutex: for the decoding thread
-    std::deque<Queued> events;               // guarded by mutex: for the caller
-    std::size_t queuedBytes = 0;             // guarded by mutex, of both
-    bool stopping = false;                   // guarded by mutex
-    std::atomic<bool> gaveUp{false};         // a tile was none: nothing more is delivered
-    std::atomic<std::uint64_t> seenLink{0};  // the link whose LinkUp the caller has taken
+    std::deque<Incoming> incoming;                  // guarded by mutex: for the decoding thread
+    std::deque<Queued> events;                      // guarded by mutex: for the caller
+    std::size_t incomingBytes = 0, eventBytes = 0;  // guarded by mutex
+    bool stopping = false;                          // guarded by mutex
+    std::atomic<bool> gaveUp{false};                // a tile was none: nothing more is delivered
+    std::atomic<std::uint64_t> seenLink{0};         // the link whose LinkUp the caller has taken
     std::atomic<double> medianRoundTripMs{0.0};
     std::atomic<std::uint64_t> bytesReceived{0};
 
     asio::io_context io{1};
     asio::ssl::context tls{asio::ssl::context::tls_client};
     asio::ip::tcp::resolver resolver{io};
-    asio::steady_timer watchdog{io};
+    asio::steady_timer watchdog{io}, retryTimer{io};
     Clock::time_point deadline = Clock::time_point::max();
     std::shared_ptr<Stream> stream;
     std::uint64_t link = 1;  // counts the attempts
@@ -405,7 +413,8 @@ std::optional<Event> Connection::next(std::chrono::milliseconds patience) {
         return std::nullopt;
     auto queued = std::move(impl_->events.front());
     impl_->events.pop_front();
-    impl_->queuedBytes -= queued.bytes;
+    impl_->eventBytes -= queued.bytes;
+    impl_->came.notify_one();
     if (std::holds_alternative<LinkUp>(queued.event.body)) impl_->seenLink = queued.link;
     return std::move(queued.event);
 }

@@ -70,7 +70,8 @@ public:
     void send(const protocol::ClientMessage& message);
 
     /// The next event, waiting at most `patience` for it. Reading from the socket pauses while
-    /// 64 MiB of tiles, messages and pictures wait here.
+    /// 64 MiB of tiles and messages wait to be decoded, and decoding while as much of pictures and
+    /// messages waits here.
     std::optional<Event> next(std::chrono::milliseconds patience);
 
     /// Median of the last few ping times; 0 before the first.

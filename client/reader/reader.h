@@ -17,7 +17,7 @@ enum class Freshness {
     none,    ///< there is no picture yet
     exact,   ///< the lossless still of it
     moving,  ///< a newer picture will come
-    old,     ///< the link is down: none will come until it is back
+    old,     ///< the link is down, or the case not open over it yet: none will come until it is
 };
 
 /// Belongs to one thread.
@@ -26,8 +26,8 @@ public:
     Reader(link::ConnectionOptions options, std::string caseName);
 
     /// One step of the loop: takes in what the server sent, moves the flight on by `seconds`, asks
-    /// for the views that changed. While the link is down nothing moves by itself: the pictures
-    /// would not follow. Never blocks.
+    /// for the views that changed. While the case is not open over a link nothing moves by
+    /// itself: the pictures would not follow. Never blocks.
     void update(double seconds);
     bool isOpen() const { return case_ != nullptr; }
     /// Whether the picture will change soon by itself: draw at full rate.

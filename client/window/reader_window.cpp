@@ -1,6 +1,5 @@
 #include "window/reader_window.h"
 
-#include "core/printed_text.h"
 #include "window/gl_window.h"
 #include "window/layout.h"
 #include "window/ui.h"
@@ -57,23 +56,34 @@ public:
                     session.server().fingerprint.substr(0, 16) + "…)");
             toldFirstUse_ = true;
         }
-        for (const reader::BookmarkOutcome& outcome : session.takeBookmarkOutcomes()) {
-            if (outcome.saved)
-                ui.tell("Bookmark saved");
-            else
-                tellRefused(ui, outcome.bookmark);
-        }
+        tellOfBookmarks(ui, session.takeBookmarkOutcomes());
     }
 
 private:
-    // Its note goes back to where it was written, unless another one is being written there.
-    static void tellRefused(Ui& ui, const reader::Bookmark& bookmark) {
-        const std::string place = printed("The bookmark at %.0f mm was not saved", bookmark.arcMm);
-        if (bookmark.note.empty()) return ui.tell(place, true);
-        if (ui.note[0] != 0) return ui.tell(place + ": " + bookmark.note, true);
-        bookmark.note.copy(ui.note.data(), ui.note.size() - 1);
-        ui.showBookmarks = true;
-        ui.tell(place + "; its note is in its field again", true);
+    // What was refused and noted goes back to where notes are written, unless another one is being
+    // written there.
+    static void tellOfBookmarks(Ui& ui, const std::vector<reader::BookmarkOutcome>& outcomes) {
+        std::size_t saved = 0, refused = 0;
+        std::string notes;
+        for (const auto& [bookmark, isSaved] : outcomes) {
+            ++(isSaved ? saved : refused);
+            if (!isSaved && !bookmark.note.empty())
+                notes += (notes.empty() ? "" : "; ") + bookmark.note;
+        }
+        if (saved > 0)
+            ui.tell(saved == 1 ? "Bookmark saved" : std::to_string(saved) + " bookmarks saved");
+        if (refused == 0) return;
+        std::string text = refused == 1 ? "A bookmark was not saved"
+                                        : std::to_string(refused) + " bookmarks were not saved";
+        if (!notes.empty() && ui.note[0] == 0 && notes.size() < ui.note.size()) {
+            ui.note.fill(0);
+            notes.copy(ui.note.data(), ui.note.size() - 1);
+            ui.showBookmarks = true;
+            text += "; what was noted is in its field again";
+        } else if (!notes.empty()) {
+            text += ": " + notes;
+        }
+        ui.tell(text, true);
     }
 
     bool toldFirstUse_ = false;

@@ -201,6 +201,8 @@ Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
     return lumen;
 }
 
+namespace {
+
 /// Neighbouring lines of a volume, one after another at each place along them; a place more at
 /// either end.
 constexpr int bundled = 32;
@@ -218,6 +220,8 @@ void smoothOnce(LineBundle& line) {
         before = here;
     }
 }
+
+}  // namespace
 
 // The weights 1, 2, 1 again and again along each axis: a variance of half a voxel each time. The
 // edge of the grid is held.

@@ -127,24 +127,27 @@ protected:
     ClientReaderOfAReplacedScan() : ClientReader(replacing()) {}
 };
 
-class ClientReaderOfGarbage : public ClientReader {
+class ClientReaderOfGarbage : public ClientReader, public ::testing::WithParamInterface<bool> {
 protected:
     static Misbehaviour garbage() {
         Misbehaviour misbehaviour;
         misbehaviour.garbageTiles = true;
+        misbehaviour.closesAfterTile = GetParam();
         return misbehaviour;
     }
     ClientReaderOfGarbage() : ClientReader(garbage()) {}
 };
 
 // Though it tries again after a lost link: what sends such tiles will send them again.
-TEST_F(ClientReaderOfGarbage, ATileThatIsNoneEndsTheConnectionForGood) {
+TEST_P(ClientReaderOfGarbage, ATileThatIsNoneEndsTheConnectionForGood) {
     reader_->setPaneSize(View::endoscopic, {64, 64});
     ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::failed; }));
     EXPECT_EQ(reader_->session().failure().kind, ErrorKind::badInput);
     EXPECT_NE(describe(reader_->session().failure()).find("tile"), std::string::npos);
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));  // a lost link is tried after 500
     EXPECT_EQ(server_.connections(), 1);
 }
+INSTANTIATE_TEST_SUITE_P(ThatStaysAndThatCloses, ClientReaderOfGarbage, ::testing::Bool());
 
 TEST_F(ClientReader, TilesAreDecodedWhileTheReaderDoesOtherThings) {
     Session& session = reader_->session();

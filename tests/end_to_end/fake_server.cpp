@@ -152,6 +152,7 @@ struct FakeServer::Impl {
                                                    input.sequence(), !input.moving(), positionMm,
                                                    viewport.centerHu + shiftHu,
                                                    misbehaviour.garbageTiles})));
+        if (misbehaviour.closesAfterTile) throw std::runtime_error("closes with its first picture");
     }
 
     ServerMessage caseOpened(const std::string& name) {

@@ -23,9 +23,10 @@ inline constexpr double cleansedShiftHu = 1000.0;
 /// What the fake server does wrong.
 struct Misbehaviour {
     std::uint32_t protocolVersion = 1;
-    bool garbageTiles = false;   ///< tiles whose JPEG or lossless bytes are noise
-    bool noStills = false;       ///< never answers a camera at rest
-    int dropAfterBookmarks = 0;  ///< stores so many, then closes the socket before acknowledging
+    bool garbageTiles = false;     ///< tiles whose JPEG or lossless bytes are noise
+    bool closesAfterTile = false;  ///< closes the socket with its first picture
+    bool noStills = false;         ///< never answers a camera at rest
+    int dropAfterBookmarks = 0;    ///< stores so many, then closes the socket before acknowledging
     bool truncateWelcome = false;
     bool anotherScanLater = false;    ///< after the first connection the case is of another scan
     bool notFlattened = false;        ///< the case has no strip
