@@ -279,6 +279,7 @@ struct Connection::Impl {
             });
     }
 
+    /// Queues what has come for the decoding thread.
     template <class Body>
     void push(Body body, std::size_t bytes) {
         {
@@ -312,7 +313,7 @@ struct Connection::Impl {
                 if (!picture) {
                     gaveUp = true;
                     deliver(next, LinkDown{picture.error(), true}, 0);
-                    // Whatever the link is about just now, an attempt to come back among it.
+                    // Ends what the network thread waits for now, be it the next attempt.
                     asio::post(io, [this] {
                         retryTimer.cancel();
                         resolver.cancel();
@@ -350,6 +351,7 @@ struct Connection::Impl {
             return fail(ErrorKind::device, "there is no memory for a picture", "tile");
         }
     }
+    /// Queues an event for the caller, of `bytes` while it waits there.
     template <class Body>
     void deliver(const Incoming& from, Body body, std::size_t bytes) {
         {

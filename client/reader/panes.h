@@ -37,8 +37,9 @@ public:
     const tiles::Picture& picture(View view) const { return pictures_.picture(view); }
     std::uint64_t pictureCount(View view) const { return pictures_.count(view); }
     /// What the newest picture of a view shows, which lags behind what the view is asked to show
-    /// now; null before there is one. The flat window is in pixels of its pane.
+    /// now; nothing before there is one. The flat window is in pixels of its pane.
     const std::optional<ViewState>& shownState(View view) const { return pictures_.shown(view); }
+    /// The same as a view's own state; null before there is one.
     template <class State>
     const State* shown(View view) const {
         const std::optional<ViewState>& shown = shownState(view);

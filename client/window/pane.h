@@ -10,7 +10,7 @@ namespace haustra::window {
 bool preparePicture(Ui& ui, View view, Rect area, ImDrawList* list);
 /// The view's newest picture over all of `area`.
 void drawPicture(Ui& ui, View view, Rect area, ImDrawList* list);
-/// Where the link is down, the pane tells at a glance that nothing follows the hand.
+/// Dims `area` where the view's picture is old (Freshness::old): nothing follows the hand there.
 void dimOldPicture(Ui& ui, View view, Rect area, ImDrawList* list);
 /// An invisible button that takes the mouse over the pane; Ui::drag grows while it is held. True
 /// while the mouse is over it.

@@ -106,15 +106,20 @@ TEST_F(ClientReader, OpticsAreShownWhileTheHandChangesThem) {
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
 }
 
-class ClientReaderWithALossyLink : public ClientReader {
+/// Of a server that does one thing wrong.
+template <auto misbehaves, auto value>
+class ClientReaderWith : public ClientReader {
 protected:
-    static Misbehaviour dropping() {
-        Misbehaviour misbehaviour;
-        misbehaviour.dropAfterBookmarks = 2;
-        return misbehaviour;
+    static Misbehaviour misbehaviour() {
+        Misbehaviour made;
+        made.*misbehaves = value;
+        return made;
     }
-    ClientReaderWithALossyLink() : ClientReader(dropping()) {}
+    ClientReaderWith() : ClientReader(misbehaviour()) {}
 };
+
+using ClientReaderWithALossyLink = ClientReaderWith<&Misbehaviour::dropAfterBookmarks, 2>;
+using ClientReaderOfAFullDisk = ClientReaderWith<&Misbehaviour::refuseBookmarks, 1>;
 
 class ClientReaderOfAReplacedScan : public ClientReader {
 protected:
@@ -164,16 +169,6 @@ TEST_F(ClientReader, TilesAreDecodedWhileTheReaderDoesOtherThings) {
     }
     EXPECT_TRUE(decodedBefore);
 }
-
-class ClientReaderOfAFullDisk : public ClientReader {
-protected:
-    static Misbehaviour refusing() {
-        Misbehaviour misbehaviour;
-        misbehaviour.refuseBookmarks = 1;
-        return misbehaviour;
-    }
-    ClientReaderOfAFullDisk() : ClientReader(refusing()) {}
-};
 
 TEST_F(ClientReaderOfAFullDisk, ARefusedBookmarkIsNeverCalledSavedAndItsNoteIsNotLost) {
     ASSERT_TRUE(runUntil([&] { return reader_->isOpen(); }));
