@@ -320,7 +320,7 @@ struct Connection::Impl {
                         if (stream) closeSocket();
                     });
                 } else if (*picture) {
-                    const std::size_t bytes = (*picture)->rgb.size();
+                    const std::size_t bytes = (*picture)->pixels.size();
                     deliver(next, PictureDone{std::move(**picture), Clock::now()}, bytes);
                 }
             } else if (auto* up = std::get_if<LinkUp>(&next.body)) {

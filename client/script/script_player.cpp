@@ -196,8 +196,8 @@ Status Player::awaitStill(int viewport, std::uint64_t sequence, Clock::time_poin
     report.seconds = msBetween(askedAt, arrival.decodedAt) / 1000.0;
     if (png.empty()) return {};
     report.file = png;
-    return tiles::writePng(options_.outFolder / png, arrival.picture.rgb, arrival.picture.width,
-                           arrival.picture.height);
+    return tiles::writePng(options_.outFolder / png, tiles::rgbOf(arrival.picture),
+                           arrival.picture.width, arrival.picture.height);
 }
 
 // ---- actions --------------------------------------------------------------------------------

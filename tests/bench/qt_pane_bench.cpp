@@ -4,8 +4,7 @@
 // 2000x1200x24'). Arguments: PICTURE.png… RATE SECONDS [WIDTHxHEIGHT of the pane]
 #include "encode/tile_encoder.h"
 #include "stopwatch.h"
-#include "tiles/picture_assembler.h"
-#include "tiles/tile_decoder.h"
+#include "tiles/picture_stream.h"
 
 #include <QApplication>
 #include <QImage>
@@ -30,7 +29,7 @@ double threadCpuMs() {
 /// The newest picture, from the thread that decodes to the one that paints.
 struct Newest {
     QMutex mutex;
-    QImage image;
+    tiles::Picture picture;
     double fedMs = 0.0;
     int replaced = 0;
 };
@@ -49,14 +48,15 @@ protected:
         double fedMs = 0.0;
         {
             const QMutexLocker lock(&newest_.mutex);
-            if (!newest_.image.isNull()) shown_ = std::exchange(newest_.image, {});
+            if (newest_.picture.width > 0) shown_ = std::exchange(newest_.picture, {});
             fedMs = std::exchange(newest_.fedMs, 0.0);
         }
+        const QImage image(shown_.pixels.data(), shown_.width, shown_.height, QImage::Format_RGB32);
         QPainter painter(this);
-        if (shown_.size() == size() * devicePixelRatioF())
-            painter.drawImage(0, 0, shown_);
+        if (image.size() == size() * devicePixelRatioF())
+            painter.drawImage(0, 0, image);
         else
-            painter.drawImage(rect(), shown_);
+            painter.drawImage(rect(), image);
         painter.setPen(Qt::white);
         painter.drawText(16, 28, QStringLiteral("1234 mm"));
         painter.end();
@@ -65,24 +65,16 @@ protected:
 
 private:
     Newest& newest_;
-    QImage shown_;
+    tiles::Picture shown_;
 };
 
 /// Decodes the frames of one picture as a session does, into what QPainter paints fastest.
-QImage decoded(tiles::TileDecoder& decoder, tiles::PictureAssembler& assembler,
-               std::span<const std::uint8_t> frames) {
+tiles::Picture decoded(tiles::PictureStream& stream, std::span<const std::uint8_t> frames) {
     while (!frames.empty()) {
         const auto header = protocol::parseFrameHeader(frames.first(protocol::frameHeaderBytes),
                                                        protocol::clientReceives);
-        const auto tile =
-            decoder.decode(frames.subspan(protocol::frameHeaderBytes, header->payloadBytes));
-        const auto picture = assembler.add(*tile);
-        if (*picture) {
-            const tiles::Picture& rgb = **picture;
-            return QImage(rgb.rgb.data(), rgb.width, rgb.height, 3 * rgb.width,
-                          QImage::Format_RGB888)
-                .convertToFormat(QImage::Format_RGB32);
-        }
+        auto picture = stream.add(frames.subspan(protocol::frameHeaderBytes, header->payloadBytes));
+        if (*picture) return std::move(**picture);
         frames = frames.subspan(protocol::frameHeaderBytes + header->payloadBytes);
     }
     return {};
@@ -121,18 +113,17 @@ int run(std::span<char*> files, double perSecond, double seconds, QSize paneSize
     pane.show();
     double decodeCpuMs = 0.0;
     std::thread feeder([&] {
-        tiles::TileDecoder decoder;
-        tiles::PictureAssembler assembler;
+        tiles::PictureStream stream;
         const double before = threadCpuMs();
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         const auto start = std::chrono::steady_clock::now();
         for (int n = 0; n < count; ++n) {
             std::this_thread::sleep_until(start + std::chrono::duration<double>(n / perSecond));
             const double fedMs = bench::milliseconds();
-            QImage image = decoded(decoder, assembler, frames[std::size_t(n)]);
+            tiles::Picture picture = decoded(stream, frames[std::size_t(n)]);
             const QMutexLocker lock(&newest.mutex);
-            newest.replaced += !newest.image.isNull();
-            newest.image = std::move(image), newest.fedMs = fedMs;
+            newest.replaced += newest.picture.width > 0;
+            newest.picture = std::move(picture), newest.fedMs = fedMs;
             QMetaObject::invokeMethod(
                 &pane, [&pane] { pane.update(); }, Qt::QueuedConnection);
         }

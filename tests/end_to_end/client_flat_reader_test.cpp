@@ -30,7 +30,7 @@ protected:
         return true;
     }
     void expectZoomPictureOf(glm::dvec2 center, double pixelsPerCircumference) const {
-        EXPECT_EQ(reader_->panes().picture(View::flattenedZoom).rgb,
+        EXPECT_EQ(tiles::rgbOf(reader_->panes().picture(View::flattenedZoom)),
                   tests::syntheticPicture(
                       232, 100, tests::syntheticPosition(center, pixelsPerCircumference), 0.0));
     }
@@ -87,7 +87,7 @@ TEST_F(ClientFlatReader, AClickOnTheStripLeadsAllViewsThere) {
     }));
     EXPECT_LT(glm::distance(reader_->panes().shown<SliceView>(View::axial)->positionMm, wall),
               1e-9);
-    EXPECT_EQ(reader_->panes().picture(View::endoscopic).rgb,
+    EXPECT_EQ(tiles::rgbOf(reader_->panes().picture(View::endoscopic)),
               tests::syntheticPicture(100, 90, camera.positionMm, 0.0));
     expectZoomPictureOf(flat, 200.0);
     // The mark goes when the camera goes on, and slices follow the camera again.

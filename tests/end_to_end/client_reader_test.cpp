@@ -28,11 +28,11 @@ protected:
         return true;
     }
     void expectPicturesOf(glm::dvec3 positionMm) const {
-        EXPECT_EQ(reader_->panes().picture(View::endoscopic).rgb,
+        EXPECT_EQ(tiles::rgbOf(reader_->panes().picture(View::endoscopic)),
                   tests::syntheticPicture(240, 160, positionMm, 0.0));
         for (const View view : {View::axial, View::coronal, View::sagittal}) {
             EXPECT_EQ(
-                reader_->panes().picture(view).rgb,
+                tiles::rgbOf(reader_->panes().picture(view)),
                 tests::syntheticPicture(100, 90, positionMm, reader_->slices().window().centerHu));
             EXPECT_EQ(reader_->panes().shown<SliceView>(view)->positionMm, positionMm);
         }
@@ -47,12 +47,12 @@ TEST_F(ClientReader, TheOverviewStandsStillWhileTheReaderFliesAndTurnsByHand) {
                reader_->panes().picture(View::oblique).exact;
     }));
     const auto expectBoth = [&] {
-        EXPECT_EQ(reader_->panes().picture(View::overview).rgb,
+        EXPECT_EQ(tiles::rgbOf(reader_->panes().picture(View::overview)),
                   tests::syntheticPicture(120, 100, cameraOf(reader_->outside().orbit()).positionMm,
                                           0.0));
         EXPECT_EQ(reader_->panes().shown<Overview>(View::overview)->camera,
                   cameraOf(reader_->outside().orbit()));
-        EXPECT_EQ(reader_->panes().picture(View::oblique).rgb,
+        EXPECT_EQ(tiles::rgbOf(reader_->panes().picture(View::oblique)),
                   tests::syntheticPicture(
                       80, 60, reader_->slices().oblique(reader_->flight().camera()).positionMm,
                       reader_->slices().window().centerHu));
@@ -254,7 +254,7 @@ TEST_F(ClientReader, SlicesShowTheCleansedScanOnRequest) {
     for (const View view : {View::axial, View::coronal, View::sagittal}) {
         EXPECT_TRUE(showsCleansed(*reader_->panes().shown<SliceView>(view)));
         EXPECT_EQ(
-            reader_->panes().picture(view).rgb,
+            tiles::rgbOf(reader_->panes().picture(view)),
             tests::syntheticPicture(100, 90, camera,
                                     reader_->slices().window().centerHu + tests::cleansedShiftHu));
     }

@@ -1,7 +1,6 @@
 // Tiles: decoding, assembly in any order, hostile bytes, PNG files.
 #include "picture_files.h"
 #include "temporary_folder.h"
-#include "tiles/picture_assembler.h"
 #include "tiles/picture_stream.h"
 #include "tiles/png_file.h"
 
@@ -11,6 +10,7 @@
 #include <filesystem>
 #include <random>
 
+#include <glm/glm.hpp>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <turbojpeg.h>
@@ -60,15 +60,15 @@ Bytes payload(const TileHeader& header, const Bytes& codecBytes) {
     return bytes;
 }
 
-// The payloads of a lossless picture in tiles of 64 pixels, the last one flagged.
-std::vector<Bytes> losslessTiles(const Bytes& rgb, int width, int height, std::uint32_t number,
-                                 std::uint64_t sequence) {
+// The payloads of a picture in tiles of 64 pixels, the last one flagged.
+std::vector<Bytes> tilesOf(const Bytes& rgb, int width, int height, std::uint32_t number,
+                           std::uint64_t sequence, TileCodec codec = TileCodec::lossless) {
     std::vector<Bytes> tiles;
     for (int y = 0; y < height; y += 64) {
         for (int x = 0; x < width; x += 64) {
             TileHeader header;
-            header.codec = TileCodec::lossless;
-            header.exact = true;
+            header.codec = codec;
+            header.exact = codec == TileCodec::lossless;
             header.picture = number;
             header.sequence = sequence;
             header.pictureWidth = std::uint16_t(width);
@@ -80,33 +80,39 @@ std::vector<Bytes> losslessTiles(const Bytes& rgb, int width, int height, std::u
             header.last = x + 64 >= width && y + 64 >= height;
             const Bytes tile = cut(rgb, width, x, y, header.width, header.height);
             tiles.push_back(
-                payload(header, protocol::encodeLossless(tile, header.width, header.height)));
+                payload(header, codec == TileCodec::jpeg
+                                    ? encodeJpeg(tile, header.width, header.height)
+                                    : protocol::encodeLossless(tile, header.width, header.height)));
         }
     }
     return tiles;
 }
 
-std::optional<Picture> feed(PictureAssembler& assembler, TileDecoder& decoder, const Bytes& bytes) {
-    const auto tile = decoder.decode(bytes);
-    EXPECT_TRUE(tile) << describe(tile.error());
-    auto picture = assembler.add(*tile);
+std::optional<Picture> feed(PictureStream& stream, const Bytes& bytes) {
+    auto picture = stream.add(bytes);
     EXPECT_TRUE(picture) << describe(picture.error());
     return std::move(*picture);
 }
 
-TEST(PictureAssembler, TilesInAnyOrderGiveTheSamePicture) {
+void expectOpaque(const Picture& picture) {
+    ASSERT_EQ(picture.pixels.size(), std::size_t(picture.width) * std::size_t(picture.height) * 4);
+    for (std::size_t n = 3; n < picture.pixels.size(); n += 4)
+        ASSERT_EQ(picture.pixels[n], 255) << "pixel " << n / 4;
+}
+
+TEST(PictureStream, TilesInAnyOrderGiveTheSamePicture) {
     const Bytes rgb = smoothPicture(200, 150, 0.0);
-    TileDecoder decoder;
     std::mt19937 random(5);
-    PictureAssembler assembler;
+    PictureStream stream;
     for (std::uint32_t number = 1; number <= 20; ++number) {
-        auto tiles = losslessTiles(rgb, 200, 150, number, number * 10);
+        auto tiles = tilesOf(rgb, 200, 150, number, number * 10);
         std::shuffle(tiles.begin(), tiles.end(), random);
         for (std::size_t n = 0; n < tiles.size(); ++n) {
-            const auto picture = feed(assembler, decoder, tiles[n]);
+            const auto picture = feed(stream, tiles[n]);
             ASSERT_EQ(picture.has_value(), n + 1 == tiles.size());
             if (!picture) continue;
-            EXPECT_EQ(picture->rgb, rgb);
+            EXPECT_EQ(rgbOf(*picture), rgb);
+            expectOpaque(*picture);
             EXPECT_EQ(picture->number, number);
             EXPECT_EQ(picture->sequence, number * 10);
             EXPECT_TRUE(picture->exact);
@@ -114,44 +120,66 @@ TEST(PictureAssembler, TilesInAnyOrderGiveTheSamePicture) {
     }
 }
 
-TEST(PictureAssembler, StaleTilesAreIgnoredAndANewerPictureWins) {
+// Tiles are decoded in place: one that wrote past its edge would spoil its neighbour.
+TEST(PictureStream, NoJpegTileWritesIntoAnother) {
+    std::mt19937 random(7);
+    PictureStream stream;
+    std::uint32_t number = 0;
+    for (const glm::ivec2 size : {glm::ivec2(200, 150), {65, 129}, {191, 67}, {64, 64}}) {
+        const Bytes rgb = smoothPicture(size.x, size.y, 0.4);
+        std::optional<Pixels> first;
+        for (int order = 0; order < 12; ++order) {
+            auto tiles = tilesOf(rgb, size.x, size.y, ++number, 1, TileCodec::jpeg);
+            if (order > 0) std::shuffle(tiles.begin(), tiles.end(), random);
+            std::optional<Picture> picture;
+            for (const Bytes& tile : tiles)
+                picture = feed(stream, tile);
+            ASSERT_TRUE(picture);
+            expectOpaque(*picture);
+            if (!first) first = picture->pixels;
+            ASSERT_EQ(picture->pixels, *first) << size.x << "x" << size.y;
+        }
+    }
+}
+
+TEST(PictureStream, StaleTilesAreIgnoredAndANewerPictureWins) {
     const Bytes older = smoothPicture(128, 64, 0.0), newer = smoothPicture(128, 64, 2.0);
-    const auto a = losslessTiles(older, 128, 64, 4, 40), b = losslessTiles(newer, 128, 64, 5, 50);
-    TileDecoder decoder;
-    PictureAssembler assembler;
-    EXPECT_FALSE(feed(assembler, decoder, a[0]));
-    EXPECT_FALSE(feed(assembler, decoder, b[0]));  // abandons picture 4
-    EXPECT_FALSE(feed(assembler, decoder, a[1]));  // would have finished it
-    const auto picture = feed(assembler, decoder, b[1]);
+    const auto a = tilesOf(older, 128, 64, 4, 40), b = tilesOf(newer, 128, 64, 5, 50);
+    PictureStream stream;
+    EXPECT_FALSE(feed(stream, a[0]));
+    EXPECT_FALSE(feed(stream, b[0]));  // abandons picture 4
+    EXPECT_FALSE(feed(stream, a[1]));  // would have finished it
+    const auto picture = feed(stream, b[1]);
     ASSERT_TRUE(picture);
-    EXPECT_EQ(picture->rgb, newer);
-    EXPECT_FALSE(feed(assembler, decoder, b[1]));  // already finished
-    assembler.reset();
-    EXPECT_FALSE(feed(assembler, decoder, losslessTiles(older, 128, 64, 1, 60)[0]));
-    EXPECT_TRUE(feed(assembler, decoder, losslessTiles(older, 128, 64, 1, 60)[1]));
+    EXPECT_EQ(rgbOf(*picture), newer);
+    EXPECT_FALSE(feed(stream, b[1]));  // already finished
+    stream.reset();
+    EXPECT_FALSE(feed(stream, tilesOf(older, 128, 64, 1, 60)[0]));
+    EXPECT_TRUE(feed(stream, tilesOf(older, 128, 64, 1, 60)[1]));
 }
 
-TEST(PictureAssembler, WithoutTheLastFlagOrWithAHoleNothingIsFinished) {
-    const auto tiles = losslessTiles(smoothPicture(192, 64, 0.0), 192, 64, 1, 1);
-    TileDecoder decoder;
-    PictureAssembler hole;
-    EXPECT_FALSE(feed(hole, decoder, tiles[0]));
-    EXPECT_FALSE(feed(hole, decoder, tiles[0]));
-    EXPECT_FALSE(feed(hole, decoder, tiles[2]));
-    EXPECT_TRUE(feed(hole, decoder, tiles[1]));
+TEST(PictureStream, WithoutTheLastFlagOrWithAHoleNothingIsFinished) {
+    const auto tiles = tilesOf(smoothPicture(192, 64, 0.0), 192, 64, 1, 1);
+    PictureStream hole;
+    EXPECT_FALSE(feed(hole, tiles[0]));
+    EXPECT_FALSE(feed(hole, tiles[0]));
+    EXPECT_FALSE(feed(hole, tiles[2]));
+    EXPECT_TRUE(feed(hole, tiles[1]));
 }
 
-TEST(PictureAssembler, ATileThatContradictsItsPictureIsRefused) {
-    TileDecoder decoder;
+TEST(PictureStream, ATileThatContradictsItsPictureIsRefused) {
+    const auto tiles = tilesOf(smoothPicture(128, 64, 0.0), 128, 64, 1, 1);
     for (int what = 0; what < 3; ++what) {
-        PictureAssembler assembler;
-        const auto tiles = losslessTiles(smoothPicture(128, 64, 0.0), 128, 64, 1, 1);
-        ASSERT_FALSE(feed(assembler, decoder, tiles[0]));
-        auto second = *decoder.decode(tiles[1]);
-        if (what == 0) second.header.pictureHeight = 65;
-        if (what == 1) second.header.sequence = 2;
-        if (what == 2) second.header.exact = false;
-        EXPECT_FALSE(assembler.add(second));
+        PictureStream stream;
+        ASSERT_FALSE(feed(stream, tiles[0]));
+        TileHeader header = *protocol::parseTileHeader(tiles[1]);
+        if (what == 0) header.pictureHeight = 65;
+        if (what == 1) header.sequence = 2;
+        if (what == 2) header.exact = false;
+        const auto second = stream.add(
+            payload(header, Bytes(tiles[1].begin() + protocol::tileHeaderBytes, tiles[1].end())));
+        ASSERT_FALSE(second);
+        EXPECT_NE(second.error().message.find("contradicts"), std::string::npos);
     }
 }
 
@@ -163,28 +191,27 @@ Bytes ofViewport(Bytes payload, std::uint8_t viewport) {
 
 TEST(PictureStream, ViewportsDoNotDisturbEachOtherAndALostLinksTilesAreForgotten) {
     const Bytes rgb = smoothPicture(128, 64, 0.0), other = smoothPicture(128, 64, 1.0);
-    const auto tiles = losslessTiles(rgb, 128, 64, 7, 1),
-               others = losslessTiles(other, 128, 64, 2, 1);
+    const auto tiles = tilesOf(rgb, 128, 64, 7, 1), others = tilesOf(other, 128, 64, 2, 1);
     PictureStream stream;
     EXPECT_FALSE(*stream.add(tiles[0]));
     EXPECT_FALSE(*stream.add(ofViewport(others[0], 1)));
     const auto first = *stream.add(tiles[1]);
     const auto second = *stream.add(ofViewport(others[1], 1));
     ASSERT_TRUE(first && second);
-    EXPECT_EQ(first->rgb, rgb);
-    EXPECT_EQ(second->rgb, other);
+    EXPECT_EQ(rgbOf(*first), rgb);
+    EXPECT_EQ(rgbOf(*second), other);
     EXPECT_EQ(second->viewport, 1);
 
-    EXPECT_FALSE(*stream.add(losslessTiles(rgb, 128, 64, 8, 2)[0]));
+    EXPECT_FALSE(*stream.add(tilesOf(rgb, 128, 64, 8, 2)[0]));
     stream.reset();  // another link: its pictures are counted from 1
-    EXPECT_FALSE(*stream.add(losslessTiles(other, 128, 64, 1, 3)[1]));
-    const auto anew = *stream.add(losslessTiles(other, 128, 64, 1, 3)[0]);
+    EXPECT_FALSE(*stream.add(tilesOf(other, 128, 64, 1, 3)[1]));
+    const auto anew = *stream.add(tilesOf(other, 128, 64, 1, 3)[0]);
     ASSERT_TRUE(anew);
-    EXPECT_EQ(anew->rgb, other);
+    EXPECT_EQ(rgbOf(*anew), other);
 }
 
 TEST(PictureStream, AViewportThatCannotBeIsRefused) {
-    const auto tiles = losslessTiles(smoothPicture(64, 64, 0.0), 64, 64, 1, 1);
+    const auto tiles = tilesOf(smoothPicture(64, 64, 0.0), 64, 64, 1, 1);
     PictureStream stream;
     EXPECT_TRUE(stream.add(ofViewport(tiles[0], std::uint8_t(protocol::maxViewports - 1))));
     const auto beyond = stream.add(ofViewport(tiles[0], std::uint8_t(protocol::maxViewports)));
@@ -192,39 +219,41 @@ TEST(PictureStream, AViewportThatCannotBeIsRefused) {
     EXPECT_EQ(beyond.error().kind, ErrorKind::badInput);
 }
 
-TEST(TileDecoder, JpegComesBackNearlyAndLosslessExactly) {
+TEST(PictureStream, JpegComesBackNearlyAndLosslessExactly) {
     const Bytes rgb = smoothPicture(120, 90, 1.0);
     TileHeader header;
     header.picture = 1;
     header.pictureWidth = header.width = 120;
     header.pictureHeight = header.height = 90;
     header.last = true;
-    TileDecoder decoder;
-    const auto jpeg = decoder.decode(payload(header, encodeJpeg(rgb, 120, 90)));
-    ASSERT_TRUE(jpeg) << describe(jpeg.error());
+    PictureStream stream;
+    const auto jpeg = feed(stream, payload(header, encodeJpeg(rgb, 120, 90)));
+    ASSERT_TRUE(jpeg);
+    const Bytes near = rgbOf(*jpeg);
     double error = 0.0;
     for (std::size_t n = 0; n < rgb.size(); ++n)
-        error += std::pow(double(rgb[n]) - jpeg->rgb[n], 2);
+        error += std::pow(double(rgb[n]) - near[n], 2);
     EXPECT_GT(10 * std::log10(255.0 * 255.0 * double(rgb.size()) / error), 40.0);
+    expectOpaque(*jpeg);
     header.codec = TileCodec::lossless;
-    const auto exact = decoder.decode(payload(header, protocol::encodeLossless(rgb, 120, 90)));
-    ASSERT_TRUE(exact) << describe(exact.error());
-    EXPECT_EQ(exact->rgb, rgb);
+    header.picture = 2;
+    const auto exact = feed(stream, payload(header, protocol::encodeLossless(rgb, 120, 90)));
+    ASSERT_TRUE(exact);
+    EXPECT_EQ(rgbOf(*exact), rgb);
 }
 
-TEST(TileDecoder, RefusesAJpegOfAnotherSizeThanItsHeaderSays) {
+TEST(PictureStream, RefusesAJpegOfAnotherSizeThanItsHeaderSays) {
     TileHeader header;
     header.picture = 1;
     header.pictureWidth = header.width = 16;
     header.pictureHeight = header.height = 16;
-    TileDecoder decoder;
-    const auto tile =
-        decoder.decode(payload(header, encodeJpeg(smoothPicture(400, 300, 0), 400, 300)));
+    PictureStream stream;
+    const auto tile = stream.add(payload(header, encodeJpeg(smoothPicture(400, 300, 0), 400, 300)));
     ASSERT_FALSE(tile);
     EXPECT_NE(tile.error().message.find("400x300"), std::string::npos) << tile.error().message;
 }
 
-TEST(TileDecoder, SurvivesAnyBytes) {
+TEST(PictureStream, SurvivesAnyBytes) {
     const Bytes rgb = smoothPicture(64, 48, 0.5);
     std::vector<Bytes> sound;
     for (const TileCodec codec : {TileCodec::jpeg, TileCodec::lossless}) {
@@ -238,7 +267,7 @@ TEST(TileDecoder, SurvivesAnyBytes) {
                                             ? encodeJpeg(rgb, 64, 48)
                                             : protocol::encodeLossless(rgb, 64, 48)));
     }
-    TileDecoder decoder;
+    PictureStream stream;
     std::mt19937 random(2);
     int refused = 0;
     for (int n = 0; n < 6000; ++n) {
@@ -254,12 +283,10 @@ TEST(TileDecoder, SurvivesAnyBytes) {
             for (auto& byte : bytes)
                 byte = std::uint8_t(random());
         }
-        PictureAssembler assembler;
-        const auto tile = decoder.decode(bytes);
-        refused += !tile;
-        if (!tile) continue;
-        ASSERT_EQ(tile->rgb.size(), std::size_t(tile->header.width) * tile->header.height * 3);
-        (void)assembler.add(*tile);
+        stream.reset();
+        const auto picture = stream.add(bytes);
+        refused += !picture;
+        if (picture && *picture) expectOpaque(**picture);
     }
     EXPECT_GT(refused, 3000);
 }
