@@ -1,6 +1,7 @@
 #include "tiles/picture_stream.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -24,6 +25,10 @@ using Bytes = std::span<const std::uint8_t>;
 
 std::string sizeText(int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
+}
+
+constexpr std::size_t wordsOfRow(int width) {
+    return (std::size_t(width) + 63) / 64;
 }
 
 // Where a tile goes: within its picture, as parseTileHeader has seen to.
@@ -81,7 +86,7 @@ void PictureStream::Unfinished::begin(const TileHeader& header) {
     picture.exact = header.exact;
     picture.raycaster = header.raycaster;
     picture.coarse = header.coarse();
-    covered.assign(count, 0);
+    covered.assign(wordsOfRow(picture.width) * header.pictureHeight, 0);
     uncovered = count;
     newest = header.picture;
     open = true;
@@ -95,11 +100,16 @@ bool PictureStream::Unfinished::isOf(const TileHeader& header) const {
 }
 
 void PictureStream::Unfinished::cover(const TileHeader& header) {
-    for (std::size_t row = 0; row < header.height; ++row) {
-        const auto first = covered.begin() +
-                           std::ptrdiff_t((header.y + row) * std::size_t(picture.width) + header.x);
-        uncovered -= std::size_t(std::count(first, first + header.width, 0));
-        std::fill_n(first, header.width, 1);
+    const unsigned end = unsigned(header.x) + header.width;
+    for (std::size_t y = header.y; y < std::size_t(header.y) + header.height; ++y) {
+        std::uint64_t* const row = &covered[y * wordsOfRow(picture.width)];
+        for (unsigned x = header.x; x < end;) {
+            const unsigned count = std::min(64 - x % 64, end - x);
+            const std::uint64_t bits = ~std::uint64_t(0) >> (64 - count) << x % 64;
+            uncovered -= std::size_t(std::popcount(bits & ~row[x / 64]));
+            row[x / 64] |= bits;
+            x += count;
+        }
     }
 }
 

@@ -17,7 +17,7 @@ namespace haustra::tiles {
 /// picture is finished when its last tile has been seen and every pixel is covered, in whatever
 /// order the tiles came. A tile of a newer picture abandons the unfinished one of its viewport; a
 /// tile of an older picture, or of one already finished, is ignored and not decoded. Belongs to
-/// one thread; holds at most one picture a viewport (16 MB and a byte a pixel), and the JPEG
+/// one thread; holds at most one picture a viewport (16 MB and a bit a pixel), and the JPEG
 /// library's state. About 0.7 ms for 512×512 pixels of JPEG, 3 ms of lossless.
 class PictureStream {
 public:
@@ -35,7 +35,7 @@ public:
 private:
     struct Unfinished {
         Picture picture;
-        std::vector<std::uint8_t> covered;  // a byte a pixel
+        std::vector<std::uint64_t> covered;  // a bit a pixel, each row from a new word
         std::size_t uncovered = 0;
         std::uint32_t newest = 0;  // number of the newest picture begun
         bool open = false;         // the picture still waits for tiles
