@@ -235,6 +235,10 @@ int main(int argc, char** argv) {
     window::WindowOptions options;
     options.connection = connection;
     options.caseName = a.caseName;
+    if (const auto folder = reader::BookmarkJournal::defaultFolder())
+        options.journal.emplace(*folder);
+    else
+        std::cerr << "haustra-client: " << describe(folder.error()) << "\n";
     if (width > 0) options.width = width, options.height = height;
     if (a.scale > 0.0) options.scale = a.scale;
     if (!a.screenshot.empty()) options.screenshot = a.screenshot;

@@ -1,16 +1,11 @@
 #include "link/known_servers.h"
 
 #include "link/fingerprint.h"
+#include "link/private_file.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <vector>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace haustra::link {
 namespace {
@@ -49,46 +44,11 @@ Result<std::vector<Entry>> readEntries(const std::filesystem::path& file) {
     return entries;
 }
 
-Result<void> writeAtomically(const std::filesystem::path& file, const std::string& text) {
-    const auto refuse = [&](const char* what) {
-        return fail(ErrorKind::io,
-                    std::string(what) + " the known servers: " + std::strerror(errno),
-                    file.string());
-    };
-    std::string temporary = file.string() + ".XXXXXX";
-    const int descriptor = ::mkstemp(temporary.data());
-    if (descriptor < 0) return refuse("cannot write");
-    std::size_t written = 0;
-    bool sound = true;
-    while (sound && written < text.size()) {
-        const ssize_t count = ::write(descriptor, text.data() + written, text.size() - written);
-        if (count > 0)
-            written += std::size_t(count);
-        else if (errno != EINTR)
-            sound = false;
-    }
-    sound = sound && ::fsync(descriptor) == 0;
-    sound = ::close(descriptor) == 0 && sound;
-    if (!sound || ::rename(temporary.c_str(), file.c_str()) != 0) {
-        const int reason = errno;
-        ::unlink(temporary.c_str());
-        errno = reason;
-        return refuse("cannot write");
-    }
-    return {};
-}
-
 }  // namespace
 
 Result<std::filesystem::path> KnownServers::defaultFile() {
-    const auto variable = [](const char* name) {
-        const char* value = std::getenv(name);
-        return std::filesystem::path(value ? value : "");
-    };
-    if (const auto config = variable("XDG_CONFIG_HOME"); config.is_absolute())
-        return config / "haustra" / "known_servers";
-    if (const auto home = variable("HOME"); home.is_absolute())
-        return home / ".config" / "haustra" / "known_servers";
+    if (const auto folder = userFolder("XDG_CONFIG_HOME", ".config"))
+        return *folder / "haustra" / "known_servers";
     return fail(ErrorKind::notFound,
                 "no folder for the known servers: set HOME, or give --known-servers FILE");
 }
@@ -106,15 +66,7 @@ Result<void> KnownServers::pin(const std::string& server, const std::string& fin
     for (const Entry& entry : entries)
         if (entry.server != server) text += entry.line + "\n";
     text += server + " " + fingerprint + "\n";
-    if (const auto folder = file_.parent_path(); !folder.empty()) {
-        std::error_code error;
-        const bool made = std::filesystem::create_directories(folder, error);
-        if (error)
-            return fail(ErrorKind::io, "cannot make the folder: " + error.message(),
-                        folder.string());
-        if (made) std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
-    }
-    return writeAtomically(file_, text);
+    return writePrivateFile(file_, text);
 }
 
 Result<Trust> checkPin(const Pinning& pinning, const std::string& server,

@@ -14,8 +14,9 @@ constexpr auto opticsRest = milliseconds(350);
 
 }  // namespace
 
-Reader::Reader(link::ConnectionOptions options, std::string caseName)
-    : session_(std::move(options), std::move(caseName)) {}
+Reader::Reader(link::ConnectionOptions options, std::string caseName,
+               std::optional<BookmarkJournal> journal)
+    : session_(std::move(options), std::move(caseName), std::move(journal)) {}
 
 void Reader::update(double seconds) {
     session_.poll(milliseconds(0));

@@ -23,7 +23,9 @@ enum class Freshness {
 /// Belongs to one thread.
 class Reader {
 public:
-    Reader(link::ConnectionOptions options, std::string caseName);
+    /// As Session's.
+    Reader(link::ConnectionOptions options, std::string caseName,
+           std::optional<BookmarkJournal> journal = {});
 
     /// One step of the loop: takes in what the server sent, moves the flight on by `seconds`, asks
     /// for the views that changed. While the case is not open over a link nothing moves by

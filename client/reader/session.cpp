@@ -6,6 +6,7 @@
 #include "reader/incoming_messages.h"
 
 #include <algorithm>
+#include <iterator>
 #include <random>
 #include <utility>
 
@@ -21,6 +22,11 @@ std::string newClientKey() {
         for (std::uint32_t bits = random(), n = 0; n < 8; ++n, bits >>= 4)
             key += digits[bits & 15];
     return key;
+}
+
+std::int64_t nowMs() {
+    using namespace std::chrono;
+    return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
 }
 
 // Cuts at a character's start: protobuf refuses broken UTF-8.
@@ -88,8 +94,12 @@ protocol::ClientMessage measureMessage(std::uint64_t request, const std::vector<
 
 }  // namespace
 
-Session::Session(link::ConnectionOptions options, std::string caseName)
-    : caseName_(std::move(caseName)), connection_(std::move(options)) {}
+Session::Session(link::ConnectionOptions options, std::string caseName,
+                 std::optional<BookmarkJournal> journal)
+    : caseName_(std::move(caseName)),
+      serverName_(link::toString(options.address)),
+      journal_(std::move(journal)),
+      connection_(std::move(options)) {}
 
 void Session::poll(std::chrono::milliseconds patience) {
     if (phase_ == Phase::failed) return;
@@ -172,7 +182,10 @@ void Session::opened(const protocol::CaseOpened& message) {
                       caseInfo_->cleansed == info->cleansed &&
                       sameStrip(caseInfo_->flat, info->flat) &&
                       sameGrid(caseInfo_->grid, info->grid);
-    if (!same) caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
+    if (!same) {
+        caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
+        takeFromJournal();
+    }
     phase_ = Phase::open;
     askAgain();
 }
@@ -182,7 +195,12 @@ void Session::refused(const protocol::ErrorReport& report) {
     const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
         return report.request() != 0 && o.request == report.request();
     });
-    if (owed != owed_.end()) settle(owed, false);  // else it would be sent again for ever
+    if (owed != owed_.end()) {  // it would be sent again for ever
+        refused_.push_back(*owed);
+        refused_.back().refusal = report.message().empty() ? "it gave no reason" : report.message();
+        record(refused_.back());
+        settle(owed, false);
+    }
     if (questions_.erase(report.request()) > 0)
         wallAnswers_.push_back({report.request(), tl::make_unexpected(error)});
     refusals_.push_back(error);
@@ -246,11 +264,13 @@ void Session::askAgain() {
         else
             kept += owed.caseName == caseName_;
     }
+    for (const Owed& owed : refused_)
+        kept += owed.caseName == caseName_ && !isOfOpenCase(owed);
     if (kept > 0)
         refusals_.push_back({ErrorKind::badInput,
                              "the case is of another scan now: " + std::to_string(kept) +
                                  " bookmarks on the former one are not sent",
-                             {}});
+                             journal_ ? journal_->folder().string() : ""});
     for (const auto& [request, question] : questions_)
         connection_.send(question);
     requestBookmarks();
@@ -350,7 +370,8 @@ void Session::answeredAboutWall(const Message& message, Result<Body> body) {
 
 // One made on a scan that the case is no longer of belongs to another patient, it may be.
 bool Session::isOfOpenCase(const Owed& owed) const {
-    return owed.caseName == caseName_ && (!caseInfo_ || owed.scan == caseInfo_->scan);
+    return owed.caseName == caseName_ &&
+           (!caseInfo_ || !owed.scan || *owed.scan == caseInfo_->scan);
 }
 
 std::string Session::addBookmark(const Camera& camera, double arcMm, std::string note) {
@@ -359,8 +380,11 @@ std::string Session::addBookmark(const Camera& camera, double arcMm, std::string
     bookmark.arcMm = arcMm;
     bookmark.note = cutUtf8(std::move(note), protocol::maxNoteBytes);
     bookmark.clientKey = newClientKey();
-    owed_.push_back({caseName_, caseInfo_ && caseInfo_->name == caseName_ ? caseInfo_->scan : "",
-                     ++request_, bookmark});
+    // While another case is being opened, the reader still sees the one before.
+    Owed owed{caseName_, std::nullopt, ++request_, bookmark, nowMs()};
+    if (caseInfo_) owed.caseName = caseInfo_->name, owed.scan = caseInfo_->scan;
+    record(owed);
+    owed_.push_back(std::move(owed));
     sendIfOpen(bookmarkMessage(request_, bookmark));
     return bookmark.clientKey;
 }
@@ -372,6 +396,99 @@ std::uint64_t Session::requestBookmarks() {
     return request_;
 }
 
+// What is noted before any case is open is recorded, as it is sent, when one is.
+bool Session::record(const Owed& owed) {
+    if (!journal_ || !owed.scan) return true;
+    JournalEntry entry{serverName_,  server_.fingerprint, owed.caseName, *owed.scan,
+                       owed.notedMs, owed.bookmark,       std::nullopt};
+    if (!owed.refusal.empty()) entry.refusal = owed.refusal;
+    const auto written = journal_->write(entry);
+    if (written) return true;
+    refusals_.push_back({written.error().kind,
+                         "a bookmark is not on this computer's disk, and is lost with the window "
+                         "where the server does not take it: " +
+                             written.error().message,
+                         written.error().place});
+    return false;
+}
+
+void Session::unrecord(const std::string& clientKey) {
+    if (!journal_) return;
+    if (const auto erased = journal_->erase(clientKey); !erased)
+        refusals_.push_back(erased.error());
+}
+
+// Once for each case that is opened: what this session notes thereafter it knows.
+void Session::takeFromJournal() {
+    for (Owed& owed : owed_) {
+        if (owed.scan || (!owed.caseName.empty() && owed.caseName != caseName_)) continue;
+        owed.caseName = caseName_;
+        owed.scan = caseInfo_->scan;
+        record(owed);
+    }
+    if (!journal_) return;
+    auto contents = journal_->read();
+    std::move(contents.errors.begin(), contents.errors.end(), std::back_inserter(refusals_));
+    std::size_t ofAnotherCertificate = 0;
+    for (JournalEntry& entry : contents.entries) {
+        if (entry.server != serverName_ || entry.caseName != caseName_) continue;
+        const auto same = [&](const Owed& o) {
+            return o.bookmark.clientKey == entry.bookmark.clientKey;
+        };
+        if (entry.fingerprint != server_.fingerprint)
+            ++ofAnotherCertificate;
+        else if (std::none_of(owed_.begin(), owed_.end(), same) &&
+                 std::none_of(refused_.begin(), refused_.end(), same))
+            (entry.refusal ? refused_ : owed_)
+                .push_back({std::move(entry.caseName), std::move(entry.scan), ++request_,
+                            std::move(entry.bookmark), entry.notedMs, entry.refusal.value_or("")});
+    }
+    if (ofAnotherCertificate > 0)
+        refusals_.push_back(
+            {ErrorKind::badInput,
+             "the server has another certificate now: " + std::to_string(ofAnotherCertificate) +
+                 " bookmarks noted under the former one are kept and not sent",
+             journal_->folder().string()});
+}
+
+std::deque<Session::Owed>::iterator Session::findRefused(const std::string& clientKey) {
+    return std::find_if(refused_.begin(), refused_.end(),
+                        [&](const Owed& o) { return o.bookmark.clientKey == clientKey; });
+}
+
+std::vector<RefusedBookmark> Session::refusedBookmarks() const {
+    std::vector<RefusedBookmark> all;
+    for (const Owed& owed : refused_)
+        if (isOfOpenCase(owed)) all.push_back({owed.bookmark, owed.refusal});
+    return all;
+}
+
+void Session::dismissRefused(const std::string& clientKey) {
+    const auto found = findRefused(clientKey);
+    if (found == refused_.end()) return;
+    refused_.erase(found);
+    unrecord(clientKey);
+}
+
+std::string Session::sendRefusedAgain(const std::string& clientKey, std::string note) {
+    const auto found = findRefused(clientKey);
+    if (found == refused_.end() || !isOfOpenCase(*found)) return {};
+    Owed owed = std::move(*found);
+    refused_.erase(found);
+    note = cutUtf8(std::move(note), protocol::maxNoteBytes);
+    const bool changed = note != owed.bookmark.note;
+    if (changed) {
+        owed.bookmark.note = std::move(note);
+        owed.bookmark.clientKey = newClientKey();
+    }
+    owed.refusal.clear();
+    owed.request = ++request_;
+    if (record(owed) && changed) unrecord(clientKey);
+    sendIfOpen(bookmarkMessage(owed.request, owed.bookmark));
+    owed_.push_back(std::move(owed));
+    return owed_.back().bookmark.clientKey;
+}
+
 void Session::settle(std::deque<Owed>::iterator owed, bool saved) {
     bookmarkOutcomes_.push_back({std::move(owed->bookmark), saved});
     owed_.erase(owed);
@@ -381,7 +498,11 @@ void Session::acknowledge(const Bookmark& bookmark) {
     const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
         return o.bookmark.clientKey == bookmark.clientKey;
     });
-    if (owed != owed_.end()) settle(owed, true);
+    if (owed != owed_.end()) {
+        unrecord(bookmark.clientKey);
+        settle(owed, true);
+    }
+    dismissRefused(bookmark.clientKey);  // that another of the user's clients has sent again
     const auto same = std::find_if(bookmarks_.begin(), bookmarks_.end(),
                                    [&](const Bookmark& b) { return b.id == bookmark.id; });
     if (same == bookmarks_.end())
@@ -395,6 +516,11 @@ std::vector<Bookmark> Session::bookmarks() const {
     for (const Owed& owed : owed_)
         if (isOfOpenCase(owed)) all.push_back(owed.bookmark);
     return all;
+}
+
+std::size_t Session::owedBookmarks() const {
+    return std::size_t(std::count_if(owed_.begin(), owed_.end(),
+                                     [this](const Owed& owed) { return isOfOpenCase(owed); }));
 }
 
 const Bookmark* Session::acknowledgedBookmark(const std::string& clientKey) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "link/connection.h"
+#include "reader/bookmark_journal.h"
 #include "reader/case_info.h"
 #include "reader/latency.h"
 #include "tiles/picture.h"
@@ -33,16 +34,25 @@ struct Arrival {
 /// What became of a bookmark that was owed.
 struct BookmarkOutcome {
     Bookmark bookmark;  ///< as it was sent
-    bool saved;         ///< the server has it; else it refused it, and nobody has it
+    bool saved;         ///< the server has it; else it refused it: see refusedBookmarks()
+};
+
+struct RefusedBookmark {
+    Bookmark bookmark;
+    std::string reason;  ///< the server's
 };
 
 /// Owns the connection; belongs to one thread. The session remembers what each viewport is to
 /// show, so that after a lost link everything is asked for again, and bookmarks that the server
-/// has not acknowledged are sent again under the same key.
+/// has not acknowledged are sent again under the same key. With a journal they outlive the session:
+/// each is on the disk before it is sent, and until the server has acknowledged it or the reader
+/// has dismissed it; when the case is open again over this server, on the same scan, it is taken
+/// up.
 class Session {
 public:
     /// Opens `caseName` once linked; where it is empty, asks for the list of cases.
-    Session(link::ConnectionOptions options, std::string caseName);
+    Session(link::ConnectionOptions options, std::string caseName,
+            std::optional<BookmarkJournal> journal = {});
 
     /// Takes in what has arrived, waiting at most `patience` for the first event.
     void poll(std::chrono::milliseconds patience);
@@ -79,7 +89,7 @@ public:
 
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
     std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
-    /// What the server refused since the last call; the session goes on.
+    /// What the server refused since the last call, or the journal's disk; the session goes on.
     std::vector<Error> takeRefusals() { return std::exchange(refusals_, {}); }
 
     /// Returns the bookmark's client key. `note` is cut to protocol::maxNoteBytes.
@@ -93,8 +103,16 @@ public:
     std::vector<BookmarkOutcome> takeBookmarkOutcomes() {
         return std::exchange(bookmarkOutcomes_, {});
     }
+    /// Those of the open case that the server refused and the reader has not dealt with. A journal
+    /// brings those of earlier sessions too.
+    std::vector<RefusedBookmark> refusedBookmarks() const;
+    void dismissRefused(const std::string& clientKey);
+    /// Returns the key under which it is sent: another one where the note is another, since a
+    /// server keeps what it has under a key. Empty where no such bookmark is refused.
+    std::string sendRefusedAgain(const std::string& clientKey, std::string note);
     const Bookmark* acknowledgedBookmark(const std::string& clientKey) const;
-    std::size_t owedBookmarks() const { return owed_.size(); }
+    /// Of the open case, or of the one that is being opened.
+    std::size_t owedBookmarks() const;
     /// Number of the newest requestBookmarks that was answered.
     std::uint64_t answeredBookmarkRequest() const { return answeredList_; }
 
@@ -122,12 +140,18 @@ private:
     };
     struct Owed {
         std::string caseName;
-        std::string scan;  // that the reader saw
+        std::optional<std::string> scan;  // that the reader saw; nothing before any case was open
         std::uint64_t request;
         Bookmark bookmark;
+        std::int64_t notedMs;      // since 1970
+        std::string refusal = {};  // the server's reason, of those in refused_
     };
 
     bool isOfOpenCase(const Owed& owed) const;
+    bool record(const Owed& owed);
+    void unrecord(const std::string& clientKey);
+    void takeFromJournal();
+    std::deque<Owed>::iterator findRefused(const std::string& clientKey);
     void handle(link::LinkUp up);
     void handle(const link::LinkDown& down);
     void handle(const protocol::ServerMessage& message);
@@ -159,7 +183,9 @@ private:
     std::deque<Arrival> arrivals_;
     std::vector<Error> refusals_;
     std::vector<Bookmark> bookmarks_;
-    std::deque<Owed> owed_;
+    const std::string serverName_;
+    std::optional<BookmarkJournal> journal_;
+    std::deque<Owed> owed_, refused_;
     std::vector<BookmarkOutcome> bookmarkOutcomes_;
     std::map<std::uint64_t, protocol::ClientMessage> questions_;  // without an answer, by request
     std::vector<WallAnswer> wallAnswers_;

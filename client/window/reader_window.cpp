@@ -120,7 +120,7 @@ Result<void> run(WindowOptions options) {
     GlWindow& window = *made;
     options.connection.reconnect = true;
     options.connection.onEvent = [&window] { window.wake(); };
-    reader::Reader reader(options.connection, options.caseName);
+    reader::Reader reader(options.connection, options.caseName, options.journal);
     Ui ui{reader, window.fonts(), float(window.scale()),
           link::toString(options.connection.address)};
     Watcher watcher;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "link/connection.h"
+#include "reader/bookmark_journal.h"
 
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,7 @@ namespace haustra::window {
 struct WindowOptions {
     link::ConnectionOptions connection;
     std::string caseName;  ///< empty: the window offers the server's cases
+    std::optional<reader::BookmarkJournal> journal;
     int width = 1440, height = 900;
     std::optional<double> scale;  ///< of text and controls; default: what the display asks for
     std::optional<std::filesystem::path> screenshot;  ///< write the window's picture here and quit

@@ -191,6 +191,10 @@ struct FakeServer::Impl {
         bool drop = false, refuse = false;
         {
             const std::lock_guard lock(mutex);
+            if (misbehaviour.ignoreBookmarks > 0) {
+                --misbehaviour.ignoreBookmarks;
+                return true;
+            }
             refuse = misbehaviour.refuseBookmarks > 0;
             misbehaviour.refuseBookmarks -= refuse;
         }

@@ -32,6 +32,7 @@ struct Misbehaviour {
     bool notFlattened = false;        ///< the case has no strip
     bool silentAboutTheWall = false;  ///< never says where a place lies, nor how long a line is
     int refuseBookmarks = 0;          ///< refuses so many, then stores them
+    int ignoreBookmarks = 0;          ///< says nothing to so many, then stores them
     int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
 };
 
