@@ -122,12 +122,15 @@ void Session::poll(std::chrono::milliseconds patience) {
 
 void Session::handle(link::LinkUp up) {
     server_ = std::move(up);
+    lastWords_.clear();
     phase_ = Phase::connecting;
     askForCase();
 }
 
 void Session::handle(const link::LinkDown& down) {
+    if (phase_ == Phase::open) dropQuestionsOfLostLinks();
     failure_ = down.error;
+    if (!lastWords_.empty()) failure_.message = "the connection was lost: " + lastWords_;
     phase_ = down.final ? Phase::failed : Phase::lost;
 }
 
@@ -191,6 +194,11 @@ void Session::opened(const protocol::CaseOpened& message) {
 }
 
 void Session::refused(const protocol::ErrorReport& report) {
+    // It stops, or has no room: no refusal of what was asked for, which is tried again.
+    if (report.fatal() && report.code() == protocol::ErrorReport::BUSY) {
+        lastWords_ = report.message();
+        return;
+    }
     const Error error{ErrorKind::badInput, "the server refused: " + report.message(), {}};
     const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
         return report.request() != 0 && o.request == report.request();
@@ -201,9 +209,7 @@ void Session::refused(const protocol::ErrorReport& report) {
         record(refused_.back());
         settle(owed, false);
     }
-    if (questions_.erase(report.request()) > 0)
-        wallAnswers_.push_back({report.request(), tl::make_unexpected(error)});
-    refusals_.push_back(error);
+    refuse(report.request(), error);
     // An input's late refusal (BAD_VALUE, BAD_STATE) does not tell of the case that is awaited.
     const bool ofTheCase =
         report.request() == 0 && (report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
@@ -211,6 +217,24 @@ void Session::refused(const protocol::ErrorReport& report) {
                                   report.code() == protocol::ErrorReport::BUSY);
     if (phase_ == Phase::connecting && (ofTheCase || report.fatal())) giveUp(error);
     if (phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST) giveUp(error);
+}
+
+void Session::refuse(std::uint64_t request, const Error& error) {
+    if (questions_.erase(request) > 0)
+        wallAnswers_.push_back({request, tl::make_unexpected(error)});
+    refusals_.push_back(error);
+}
+
+// All have been sent over it. A server that ends the link because of one would do so for ever.
+void Session::dropQuestionsOfLostLinks() {
+    constexpr int maxLostLinks = 2;
+    std::vector<std::uint64_t> dropped;
+    for (auto& [request, question] : questions_)
+        if (++question.lostLinks >= maxLostLinks) dropped.push_back(request);
+    for (const std::uint64_t request : dropped)
+        refuse(request,
+               {ErrorKind::device,
+                "the link was lost twice while this was asked: it is not asked again", "wall"});
 }
 
 void Session::handle(link::PictureDone done, Clock::time_point at) {
@@ -272,7 +296,7 @@ void Session::askAgain() {
                                  " bookmarks on the former one are not sent",
                              journal_ ? journal_->folder().string() : ""});
     for (const auto& [request, question] : questions_)
-        connection_.send(question);
+        connection_.send(question.message);
     requestBookmarks();
 }
 
@@ -338,7 +362,7 @@ std::uint64_t Session::setWallPaint(const WallPaintChoice& paint) {
 // ---- the wall -------------------------------------------------------------------------------
 
 std::uint64_t Session::ask(const protocol::ClientMessage& question) {
-    questions_[request_] = question;
+    questions_[request_] = {question};
     sendIfOpen(question);
     return request_;
 }

@@ -117,7 +117,8 @@ public:
     std::uint64_t answeredBookmarkRequest() const { return answeredList_; }
 
     /// Questions about the wall; each returns its request's number. What has no answer when the
-    /// link is lost is asked again when it is back; another case forgets it.
+    /// link is lost is asked again when it is back, and counts as refused when that too is lost: it
+    /// may be why. Another case forgets it.
     std::uint64_t locate(glm::dvec2 flat);
     std::uint64_t locate(glm::dvec3 positionMm);
     std::uint64_t measure(const std::vector<glm::dvec2>& points, bool closed);
@@ -137,6 +138,10 @@ private:
         std::optional<OpticsChoice> optics;
         std::optional<ViewState> state;
         bool moving = false;
+    };
+    struct Question {
+        protocol::ClientMessage message;
+        int lostLinks = 0;  // over which it was asked in vain
     };
     struct Owed {
         std::string caseName;
@@ -158,6 +163,8 @@ private:
     void handle(link::PictureDone done, Clock::time_point at);
     void opened(const protocol::CaseOpened& message);
     void refused(const protocol::ErrorReport& report);
+    void refuse(std::uint64_t request, const Error& error);
+    void dropQuestionsOfLostLinks();
     void acknowledge(const Bookmark& bookmark);
     void settle(std::deque<Owed>::iterator owed, bool saved);
     std::uint64_t ask(const protocol::ClientMessage& question);
@@ -172,6 +179,7 @@ private:
     Phase phase_ = Phase::connecting;
     Error failure_;
     link::LinkUp server_;
+    std::string lastWords_;  // why the server ends the link; it is lost next
     std::string caseName_;
     std::vector<std::string> caseNames_;
     std::shared_ptr<const CaseInfo> caseInfo_;
@@ -187,7 +195,7 @@ private:
     std::optional<BookmarkJournal> journal_;
     std::deque<Owed> owed_, refused_;
     std::vector<BookmarkOutcome> bookmarkOutcomes_;
-    std::map<std::uint64_t, protocol::ClientMessage> questions_;  // without an answer, by request
+    std::map<std::uint64_t, Question> questions_;  // without an answer, by request
     std::vector<WallAnswer> wallAnswers_;
 
     link::Connection connection_;  // last: its events must not outlive what they change

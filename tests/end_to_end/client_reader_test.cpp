@@ -119,6 +119,8 @@ protected:
 };
 
 using ClientReaderWithALossyLink = ClientReaderWith<&Misbehaviour::dropAfterBookmarks, 2>;
+using ClientReaderOfARestart = ClientReaderWith<&Misbehaviour::stopsWhileOpening, 2>;
+using ClientReaderOfAFragileServer = ClientReaderWith<&Misbehaviour::closesAtWallQuestions, true>;
 using ClientReaderOfAFullDisk = ClientReaderWith<&Misbehaviour::refuseBookmarks, 1>;
 
 class ClientReaderOfAReplacedScan : public ClientReader {
@@ -216,6 +218,35 @@ INSTANTIATE_TEST_SUITE_P(Codes, ClientReaderRefused,
                          ::testing::Values(protocol::ErrorReport::NO_SUCH_CASE,
                                            protocol::ErrorReport::INTERNAL,
                                            protocol::ErrorReport::BUSY));
+
+TEST_F(ClientReaderOfARestart, AServerThatStopsWhileItOpensTheCaseIsTriedAgain) {
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::lost; }));
+    EXPECT_NE(reader_->session().failure().message.find("the server stops"), std::string::npos);
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    EXPECT_EQ(server_.connections(), 3);
+    EXPECT_TRUE(reader_->session().takeRefusals().empty());
+}
+
+TEST_F(ClientReaderOfAFragileServer, AQuestionThatEndsTheLinkTwiceIsNotAskedAgain) {
+    Session& session = reader_->session();
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    const std::uint64_t request = session.locate(glm::dvec2(0.5, 0.5));
+    std::vector<Session::WallAnswer> answers;
+    for (int n = 0; n < 200 && answers.empty(); ++n) {
+        session.poll(std::chrono::milliseconds(50));
+        answers = session.takeWallAnswers();
+    }
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].request, request);
+    EXPECT_FALSE(answers[0].body);
+    EXPECT_EQ(session.takeRefusals().size(), 1u);
+    EXPECT_EQ(session.phase(), Phase::lost);
+    ASSERT_TRUE(runUntil([&] { return session.phase() == Phase::open && allAtRest(); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    reader_->update(0.0);
+    EXPECT_EQ(session.phase(), Phase::open);
+    EXPECT_EQ(server_.connections(), 3);
+}
 
 TEST_F(ClientReader, AtRestAllViewsAreExactAndShowTheCamerasPlace) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));

@@ -256,6 +256,13 @@ struct FakeServer::Impl {
                     write(stream, answer);
                     break;
                 case ClientMessage::kOpenCase:
+                    if (connections <= misbehaviour.stopsWhileOpening) {
+                        answer.mutable_error()->set_code(protocol::ErrorReport::BUSY);
+                        answer.mutable_error()->set_message("the server stops");
+                        answer.mutable_error()->set_fatal(true);
+                        write(stream, answer);
+                        return;
+                    }
                     if (misbehaviour.refuseCaseWith != 0) {
                         answer.mutable_error()->set_code(
                             protocol::ErrorReport::Code(misbehaviour.refuseCaseWith));
@@ -317,6 +324,7 @@ struct FakeServer::Impl {
                 case ClientMessage::kLocateFlat:
                 case ClientMessage::kLocatePoint:
                 case ClientMessage::kMeasureFlat:
+                    if (misbehaviour.closesAtWallQuestions) return;
                     if (!misbehaviour.silentAboutTheWall) write(stream, aboutFakeWall(message));
                     break;
                 case ClientMessage::kSetTransferFunction:

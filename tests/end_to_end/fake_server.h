@@ -28,11 +28,13 @@ struct Misbehaviour {
     bool noStills = false;         ///< never answers a camera at rest
     int dropAfterBookmarks = 0;    ///< stores so many, then closes the socket before acknowledging
     bool truncateWelcome = false;
-    bool anotherScanLater = false;    ///< after the first connection the case is of another scan
-    bool notFlattened = false;        ///< the case has no strip
-    bool silentAboutTheWall = false;  ///< never says where a place lies, nor how long a line is
-    int refuseBookmarks = 0;          ///< refuses so many, then stores them
-    int ignoreBookmarks = 0;          ///< says nothing to so many, then stores them
+    bool anotherScanLater = false;       ///< after the first connection the case is of another scan
+    bool notFlattened = false;           ///< the case has no strip
+    bool silentAboutTheWall = false;     ///< never says where a place lies, nor how long a line is
+    bool closesAtWallQuestions = false;  ///< closes the socket where it is asked about the wall
+    int stopsWhileOpening = 0;           ///< says so to as many OpenCases, and closes the socket
+    int refuseBookmarks = 0;             ///< refuses so many, then stores them
+    int ignoreBookmarks = 0;             ///< says nothing to so many, then stores them
     int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
 };
 
