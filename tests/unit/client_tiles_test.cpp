@@ -41,11 +41,11 @@ Bytes cut(const Bytes& rgb, int pictureWidth, int x, int y, int width, int heigh
     return tile;
 }
 
-Bytes encodeJpeg(const Bytes& rgb, int width, int height) {
+Bytes encodeJpeg(const Bytes& rgb, int width, int height, int subsampling = TJSAMP_444) {
     tjhandle handle = tjInitCompress();
     unsigned char* bytes = nullptr;
     unsigned long size = 0;
-    tjCompress2(handle, rgb.data(), width, width * 3, height, TJPF_RGB, &bytes, &size, TJSAMP_444,
+    tjCompress2(handle, rgb.data(), width, width * 3, height, TJPF_RGB, &bytes, &size, subsampling,
                 90, 0);
     Bytes jpeg(bytes, bytes + size);
     tjFree(bytes);
@@ -62,7 +62,8 @@ Bytes payload(const TileHeader& header, const Bytes& codecBytes) {
 
 // The payloads of a picture in tiles of 64 pixels, the last one flagged.
 std::vector<Bytes> tilesOf(const Bytes& rgb, int width, int height, std::uint32_t number,
-                           std::uint64_t sequence, TileCodec codec = TileCodec::lossless) {
+                           std::uint64_t sequence, TileCodec codec = TileCodec::lossless,
+                           int subsampling = TJSAMP_444) {
     std::vector<Bytes> tiles;
     for (int y = 0; y < height; y += 64) {
         for (int x = 0; x < width; x += 64) {
@@ -81,7 +82,7 @@ std::vector<Bytes> tilesOf(const Bytes& rgb, int width, int height, std::uint32_
             const Bytes tile = cut(rgb, width, x, y, header.width, header.height);
             tiles.push_back(
                 payload(header, codec == TileCodec::jpeg
-                                    ? encodeJpeg(tile, header.width, header.height)
+                                    ? encodeJpeg(tile, header.width, header.height, subsampling)
                                     : protocol::encodeLossless(tile, header.width, header.height)));
         }
     }
@@ -125,19 +126,22 @@ TEST(PictureStream, NoJpegTileWritesIntoAnother) {
     std::mt19937 random(7);
     PictureStream stream;
     std::uint32_t number = 0;
-    for (const glm::ivec2 size : {glm::ivec2(200, 150), {65, 129}, {191, 67}, {64, 64}}) {
-        const Bytes rgb = smoothPicture(size.x, size.y, 0.4);
-        std::optional<Pixels> first;
-        for (int order = 0; order < 12; ++order) {
-            auto tiles = tilesOf(rgb, size.x, size.y, ++number, 1, TileCodec::jpeg);
-            if (order > 0) std::shuffle(tiles.begin(), tiles.end(), random);
-            std::optional<Picture> picture;
-            for (const Bytes& tile : tiles)
-                picture = feed(stream, tile);
-            ASSERT_TRUE(picture);
-            expectOpaque(*picture);
-            if (!first) first = picture->pixels;
-            ASSERT_EQ(picture->pixels, *first) << size.x << "x" << size.y;
+    for (const int subsampling : {TJSAMP_444, TJSAMP_422, TJSAMP_420}) {
+        for (const glm::ivec2 size : {glm::ivec2(200, 150), {65, 129}, {191, 67}, {64, 64}}) {
+            const Bytes rgb = smoothPicture(size.x, size.y, 0.4);
+            std::optional<Pixels> first;
+            for (int order = 0; order < 12; ++order) {
+                auto tiles =
+                    tilesOf(rgb, size.x, size.y, ++number, 1, TileCodec::jpeg, subsampling);
+                if (order > 0) std::shuffle(tiles.begin(), tiles.end(), random);
+                std::optional<Picture> picture;
+                for (const Bytes& tile : tiles)
+                    picture = feed(stream, tile);
+                ASSERT_TRUE(picture);
+                expectOpaque(*picture);
+                if (!first) first = picture->pixels;
+                ASSERT_EQ(picture->pixels, *first) << size.x << "x" << size.y;
+            }
         }
     }
 }
