@@ -24,6 +24,8 @@ inline constexpr double maxCoordinateMm = 1e6;  ///< of each coordinate, either 
 using haustra::maxMarkRadiusMm;
 using haustra::maxObliqueMm;
 using haustra::maxOverviewBookmarks;
+using haustra::maxPanMm;
+using haustra::maxSlabMm;
 using haustra::maxSliceZoom;
 using haustra::minMarkRadiusMm;
 using haustra::minObliqueMm;

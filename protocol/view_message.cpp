@@ -83,6 +83,9 @@ SetSlice& bodyOf(ClientMessage& message, const SliceView& slice) {
     fill(*body.mutable_position_mm(), slice.positionMm);
     body.set_zoom(slice.zoom);
     body.set_cleansed(slice.scan == Scan::cleansed);
+    body.set_pan_right_mm(slice.panMm.x);
+    body.set_pan_down_mm(slice.panMm.y);
+    if (slice.slab != haustra::Slab{}) fill(*body.mutable_slab(), slice.slab);
     return body;
 }
 
@@ -91,6 +94,7 @@ SetOblique& bodyOf(ClientMessage& message, const ObliqueView& oblique) {
     fillPose(body, oblique);
     body.set_height_mm(oblique.heightMm);
     body.set_cleansed(oblique.scan == Scan::cleansed);
+    if (oblique.slab != haustra::Slab{}) fill(*body.mutable_slab(), oblique.slab);
     return body;
 }
 
@@ -125,7 +129,14 @@ Result<ViewState> stateOf(const SetCamera& message, haustra::View view) {
 Result<ViewState> stateOf(const SetSlice& message, haustra::View view) {
     if (!isSlice(view)) return refuseView("this view takes no slice", "viewport");
     const auto position = TRY(positionFrom(message.position_mm()));
-    const SliceView slice{view, position, message.zoom(), {}, scanOf(message.cleansed())};
+    const auto slab = TRY(slabFrom(message.slab()));
+    const SliceView slice{view,
+                          position,
+                          message.zoom(),
+                          {},
+                          scanOf(message.cleansed()),
+                          {message.pan_right_mm(), message.pan_down_mm()},
+                          slab};
     TRY(checkSlice(slice));
     return slice;
 }
@@ -134,9 +145,14 @@ Result<ViewState> stateOf(const SetOblique& message, haustra::View view) {
     if (view != haustra::View::oblique)
         return refuseView("only an oblique view takes an oblique slice", "viewport");
     const auto position = TRY(positionFrom(message.position_mm()));
-    const ObliqueView oblique{
-        position, vectorFrom(message.forward()), vectorFrom(message.up()), message.height_mm(),
-        {},       scanOf(message.cleansed())};
+    const auto slab = TRY(slabFrom(message.slab()));
+    const ObliqueView oblique{position,
+                              vectorFrom(message.forward()),
+                              vectorFrom(message.up()),
+                              message.height_mm(),
+                              {},
+                              scanOf(message.cleansed()),
+                              slab};
     TRY(checkOblique(oblique));
     return oblique;
 }
@@ -314,6 +330,21 @@ Result<glm::dvec2> flatPointFrom(const FlatPoint& message) {
 
 Result<haustra::Camera> cameraFrom(const Camera& message) {
     return soundCamera(message);
+}
+
+void fill(Slab& message, const haustra::Slab& slab) {
+    message.set_thickness_mm(slab.thicknessMm);
+    message.set_projection(slab.projection == haustra::Projection::maximum ? MAXIMUM : MEAN);
+}
+
+Result<haustra::Slab> slabFrom(const Slab& message) {
+    if (message.projection() != MEAN && message.projection() != MAXIMUM)
+        return refuseView("there is no such projection", "slice");
+    const haustra::Slab slab{message.thickness_mm(), message.projection() == MAXIMUM
+                                                         ? haustra::Projection::maximum
+                                                         : haustra::Projection::mean};
+    TRY(checkSlab(slab));
+    return slab;
 }
 
 }  // namespace haustra::protocol

@@ -45,6 +45,7 @@ Result<WallPaintChoice> paintFrom(const SetWallPaint& message);
 void fill(Vec3& message, glm::dvec3 v);
 void fill(FlatPoint& message, glm::dvec2 flat);
 void fill(Camera& message, const haustra::Camera& camera);
+void fill(Slab& message, const haustra::Slab& slab);
 /// Of whatever message has a place, a gaze and what is up in it.
 template <class Message, class Pose>
 void fillPose(Message& message, const Pose& pose) {
@@ -61,5 +62,7 @@ Result<glm::dvec3> positionFrom(const Vec3& message);
 Result<glm::dvec2> flatPointFrom(const FlatPoint& message);
 /// Position, directions, lens and field of view or height as checkCamera has it.
 Result<haustra::Camera> cameraFrom(const Camera& message);
+/// Fails on a projection that there is not, or a thickness out of range.
+Result<haustra::Slab> slabFrom(const Slab& message);
 
 }  // namespace haustra::protocol

@@ -52,14 +52,16 @@ struct MarchUniforms {
     vec4 integralAbove;  ///<   and above its last
 };
 
-/// One slice. Voxel coordinates, centres at integers.
+/// One slice, in the volume's texture coordinates.
 struct SliceUniforms {
     vec4 originTexture;         ///< xyz: centre of the top left pixel
-    vec4 rightTexture;          ///< xyz: one pixel to the right
+    vec4 rightTexture;          ///< xyz: one pixel to the right; w: 1 where a slab shows its maximum
     vec3 downTexture;           ///< one pixel down
     int firstRow;               ///< of the band
     ivec2 bandSize;             ///< pixels
     float greyScale, greyBias;  ///< stored value -> grey 0…1
+    vec3 alongTexture;          ///< from one sample of a slab to the next
+    int samplesAside;           ///< of a slab, on each side of the plane
 };
 
 /// One window onto the flattened wall. Flat coordinates are whole numbers of a small unit: what is
@@ -106,7 +108,7 @@ static_assert(offsetof(MarchUniforms, mostSteps) == 2 * 16 + 12);
 static_assert(offsetof(MarchUniforms, entryScale) == 9 * 16);
 static_assert(offsetof(MarchUniforms, lastBlock) == 12 * 16);
 static_assert(offsetof(MarchUniforms, integralAbove) == 14 * 16);
-static_assert(sizeof(SliceUniforms) == 4 * 16 && offsetof(SliceUniforms, bandSize) == 3 * 16);
+static_assert(sizeof(SliceUniforms) == 5 * 16 && offsetof(SliceUniforms, bandSize) == 3 * 16);
 static_assert(sizeof(FlatUniforms) == 6 * 16 && offsetof(FlatUniforms, lattice) == 2 * 16);
 static_assert(offsetof(FlatUniforms, mostRayAngle) == 4 * 16);
 static_assert(sizeof(FlatVertex) == 3 * 16 && offsetof(FlatVertex, intoLumen) == 2 * 16);

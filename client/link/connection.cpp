@@ -1,6 +1,7 @@
 #include "link/connection.h"
 
 #include "link/fingerprint.h"
+#include "protocol/capabilities.h"
 #include "protocol/framing.h"
 #include "tiles/picture_stream.h"
 
@@ -25,6 +26,7 @@ namespace {
 using Stream = asio::ssl::stream<asio::ip::tcp::socket>;
 using protocol::ClientMessage;
 using protocol::ServerMessage;
+namespace capability = protocol::capability;
 
 constexpr std::size_t maxQueuedBytes = 64u << 20;
 constexpr std::chrono::seconds pingInterval{1};
@@ -175,9 +177,8 @@ struct Connection::Impl {
     asio::awaitable<Result<void>> greet(LinkUp& up) {
         ClientMessage hello;
         hello.mutable_hello()->set_protocol_version(protocol::protocolVersion);
-        hello.mutable_hello()->add_capabilities("jpeg");
-        hello.mutable_hello()->add_capabilities("lossless");
-        hello.mutable_hello()->add_capabilities("coarse");
+        for (const char* name : {capability::jpeg, capability::lossless, capability::coarse})
+            hello.mutable_hello()->add_capabilities(name);
         hello.mutable_hello()->set_software(options.software);
         co_await asio::async_write(*stream, asio::buffer(protocol::controlFrame(hello)),
                                    asio::use_awaitable);
@@ -199,6 +200,8 @@ struct Connection::Impl {
                            name);
         up.serverSoftware = answer.welcome().software();
         up.renderer = answer.welcome().renderer();
+        up.capabilities.insert(answer.welcome().capabilities().begin(),
+                               answer.welcome().capabilities().end());
         co_return Result<void>{};
     }
 

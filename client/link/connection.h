@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -35,6 +36,7 @@ struct LinkUp {
     std::string fingerprint;
     bool firstUse = false;  ///< the certificate was pinned just now
     std::string serverSoftware, renderer;
+    std::set<std::string> capabilities;  ///< of the server (protocol/capabilities.h)
 };
 /// The link is gone. Where `final`, no further event follows.
 struct LinkDown {

@@ -60,6 +60,11 @@ public:
     Phase phase() const { return phase_; }
     const Error& failure() const { return failure_; }  ///< of phases lost and failed
     const link::LinkUp& server() const { return server_; }
+    /// Of the server that was met last: whether it says that it knows this
+    /// (protocol/capabilities.h).
+    bool serverCan(const std::string& capability) const {
+        return server_.capabilities.contains(capability);
+    }
     double roundTripMs() const { return connection_.roundTripMs(); }
     std::uint64_t receivedBytes() const { return connection_.receivedBytes(); }
 

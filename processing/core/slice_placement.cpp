@@ -45,6 +45,17 @@ glm::dvec2 SlicePlacement::pixelFromPatient(glm::dvec3 patientMm) const {
            glm::dot(rightMm, rightMm);
 }
 
+SlabSamples slabSamples(const Slab& slab, glm::dvec3 normal, const Grid& grid) {
+    const glm::dvec3 spacing = grid.spacingMm();
+    const double stepMm = 0.5 * std::min(spacing.x, std::min(spacing.y, spacing.z));
+    SlabSamples samples;
+    // The middles of 2·aside + 1 equal layers, none thicker than the step.
+    samples.aside = int(std::ceil(0.5 * (slab.thicknessMm / stepMm - 1.0) - 1e-9));
+    samples.aside = std::clamp(samples.aside, 0, maxSamplesAside);
+    samples.stepMm = slab.thicknessMm / samples.count() * glm::normalize(normal);
+    return samples;
+}
+
 Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height) {
     TRY(checkSlice(view));
     if (width <= 0 || height <= 0)
@@ -60,6 +71,7 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
     // The picture's centre moves towards the position as the zoom grows.
     glm::dvec3 center = view.positionMm + (middle - view.positionMm) / view.zoom;
     center += normal * glm::dot(view.positionMm - center, normal);
+    center -= view.panMm.x * right + view.panMm.y * down;
     return SlicePlacement{
         center - pixelMm * (0.5 * (width - 1) * right + 0.5 * (height - 1) * down), pixelMm * right,
         pixelMm * down};

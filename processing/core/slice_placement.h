@@ -15,6 +15,8 @@ struct SlicePlacement {
     glm::dvec3 downMm{0.0, 1.0, 0.0};
 
     double pixelMm() const { return glm::length(rightMm); }
+    /// Unit: right × down.
+    glm::dvec3 normal() const { return glm::normalize(glm::cross(rightMm, downMm)); }
     glm::dvec3 patientFromPixel(glm::dvec2 pixel) const {
         return topLeftMm + pixel.x * rightMm + pixel.y * downMm;
     }
@@ -22,12 +24,26 @@ struct SlicePlacement {
     glm::dvec2 pixelFromPatient(glm::dvec3 patientMm) const;
 };
 
-/// Fails (badInput) unless the plane is a slice, zoom and window are in range, and width and height
-/// positive. Slices are planes of patient space also where the grid is oblique.
+/// Where a slab's samples lie about a place of its plane: at n·stepMm, n from −aside to aside.
+struct SlabSamples {
+    int aside = 0;
+    glm::dvec3 stepMm{0.0};
+    int count() const { return 2 * aside + 1; }
+};
+/// The middles of equal layers, which are no thicker than half the smallest distance between
+/// voxels: no voxel is passed over, and their mean is the integral by the midpoint rule. Their
+/// number is odd, so that the plane itself is among them: a slab's maximum is never below the
+/// slice's value, and a slab as thin as one layer is the slice. At most maxSamplesAside on a side:
+/// finer scans than 1/20 mm, which CT has not, are sampled more coarsely. `normal` is not zero.
+SlabSamples slabSamples(const Slab& slab, glm::dvec3 normal, const Grid& grid);
+inline constexpr int maxSamplesAside = 2000;
+
+/// Fails (badInput) unless the plane is a slice, zoom, window, pan and slab are in range, and width
+/// and height positive. Slices are planes of patient space also where the grid is oblique.
 Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int width, int height);
 
-/// Fails (badInput) on directions that span no plane, height or window out of range, or a picture
-/// without pixels.
+/// Fails (badInput) on directions that span no plane, height, window or slab out of range, or a
+/// picture without pixels.
 Result<SlicePlacement> placeSlice(const ObliqueView& view, int width, int height);
 
 }  // namespace haustra

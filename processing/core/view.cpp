@@ -82,6 +82,11 @@ Result<void> checkWindow(const WindowLevel& window) {
                 "slice");
 }
 
+Result<void> checkSlab(const Slab& slab) {
+    if (slab.thicknessMm >= 0.0 && slab.thicknessMm <= maxSlabMm) return {};
+    return fail(ErrorKind::badInput, "the slab's thickness is not within 0 to 100 mm", "slice");
+}
+
 Result<void> checkSlice(const SliceView& view) {
     if (!isSlice(view.plane))
         return fail(ErrorKind::badInput,
@@ -90,6 +95,9 @@ Result<void> checkSlice(const SliceView& view) {
         return fail(ErrorKind::badInput, "the position is not finite", "slice");
     if (!(view.zoom >= 1.0 && view.zoom <= maxSliceZoom))
         return fail(ErrorKind::badInput, "the zoom is not within 1 to 64", "slice");
+    if (!(std::abs(view.panMm.x) <= maxPanMm && std::abs(view.panMm.y) <= maxPanMm))
+        return fail(ErrorKind::badInput, "the slice is moved by more than 10000 mm", "slice");
+    TRY(checkSlab(view.slab));
     return checkWindow(view.window);
 }
 
@@ -99,6 +107,7 @@ Result<void> checkOblique(const ObliqueView& view) {
     TRY(checkCamera(plane));
     if (!(view.heightMm >= minObliqueMm && view.heightMm <= maxObliqueMm))
         return fail(ErrorKind::badInput, "the slice's height is not within 1 to 2000 mm", "slice");
+    TRY(checkSlab(view.slab));
     return checkWindow(view.window);
 }
 

@@ -54,19 +54,35 @@ Result<void> checkWindow(const WindowLevel& window);
 /// Which of a case's two scans a slice shows.
 enum class Scan { original, cleansed };
 
+/// How the samples of a slab become one value.
+enum class Projection { mean, maximum };
+
+/// A slice of some thickness: `thicknessMm` of the scan along the slice's normal, half of it on
+/// either side of the plane, by its mean or its greatest value. 0: the plane alone.
+struct Slab {
+    double thicknessMm = 0.0;  ///< 0…maxSlabMm
+    Projection projection = Projection::mean;
+    bool operator==(const Slab&) const = default;
+};
+inline constexpr double maxSlabMm = 100.0;
+Result<void> checkSlab(const Slab& slab);
+
 /// A slice through `positionMm`, radiological convention: axial seen from the feet (patient's
 /// left on the picture's right), coronal from the front, sagittal from the patient's left.
 /// At zoom 1 the whole slice fits the picture, centred, with square millimetres; zooming holds
-/// `positionMm` where it is in the picture.
+/// `positionMm` where it is in the picture. Then the picture's content is moved by `panMm`, to the
+/// right and down.
 struct SliceView {
     View plane = View::axial;
     glm::dvec3 positionMm{0.0};
     double zoom = 1.0;  ///< 1…maxSliceZoom
     WindowLevel window{};
     Scan scan = Scan::original;
+    glm::dvec2 panMm{0.0};  ///< of the patient; each within ±maxPanMm
+    Slab slab{};
     bool operator==(const SliceView&) const = default;
 };
-inline constexpr double maxSliceZoom = 64.0;
+inline constexpr double maxSliceZoom = 64.0, maxPanMm = 10'000.0;
 
 /// A slice in any direction, as an orthographic camera at `positionMm` sees the plane before it:
 /// `positionMm` is in the picture's middle, the picture's right is forward × up. Looking along the
@@ -78,6 +94,7 @@ struct ObliqueView {
     double heightMm = 60.0;  ///< of the picture, minObliqueMm…maxObliqueMm
     WindowLevel window{};
     Scan scan = Scan::original;
+    Slab slab{};
     bool operator==(const ObliqueView&) const = default;
 };
 inline constexpr double minObliqueMm = 1.0, maxObliqueMm = 2000.0;

@@ -121,11 +121,13 @@ struct CaseRenderer::Impl {
         std::abort();  // no such kind
     }
 
-    Result<void> drawSlice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
-                           const Band& band, Image& picture) {
-        if (scan == Scan::cleansed && !hasCleansed)
+    template <class View>
+    Result<void> drawSlice(const SlicePlacement& placement, const View& view, const Band& band,
+                           Image& picture) {
+        if (view.scan == Scan::cleansed && !hasCleansed)
             return fail(ErrorKind::badInput, "the case has no cleansed scan", "slice");
-        return put(pictures().slice(placement, window, scan, band), {0, band.firstRow}, picture);
+        return put(pictures().slice({placement, view.window, view.scan, view.slab}, band),
+                   {0, band.firstRow}, picture);
     }
 
     Result<void> checkPaint(const WallPaint* paint) const {
@@ -265,13 +267,13 @@ Result<void> CaseRenderer::render(const SliceView& view, const Band& band, Image
     TRY(checkBand(band, picture));
     const auto placement =
         TRY(placeSlice(view, impl_->grid(), band.pictureSize.x, band.pictureSize.y));
-    return impl_->drawSlice(placement, view.window, view.scan, band, picture);
+    return impl_->drawSlice(placement, view, band, picture);
 }
 
 Result<void> CaseRenderer::render(const ObliqueView& view, const Band& band, Image& picture) {
     TRY(checkBand(band, picture));
     const auto placement = TRY(placeSlice(view, band.pictureSize.x, band.pictureSize.y));
-    return impl_->drawSlice(placement, view.window, view.scan, band, picture);
+    return impl_->drawSlice(placement, view, band, picture);
 }
 
 Result<void> CaseRenderer::render(const FlatView& view, const Band& band, Image& picture) {

@@ -61,8 +61,9 @@ public:
     /// A new transfer function costs some 0.1 s for the leap map of a 512³ scan; the last four are
     /// kept, so that readers with different ones do not disturb each other.
     Result<void> render(const CameraView& view, const Band& band, Image& picture);
-    /// Slice of the scan that the view names, linearly interpolated; black outside it. Fail
-    /// (badInput) where there is no cleansed scan.
+    /// Slice of the scan that the view names, linearly interpolated; black outside it. Of a slab,
+    /// what slabSamples places inside the scan, by its mean or greatest value: as many slices' work
+    /// as there are samples. Fail (badInput) where there is no cleansed scan.
     Result<void> render(const SliceView& view, const Band& band, Image& picture);
     Result<void> render(const ObliqueView& view, const Band& band, Image& picture);
     /// The flattened wall. Fail (badInput) where the case has no flat map.

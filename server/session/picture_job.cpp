@@ -8,7 +8,9 @@ namespace haustra::session {
 bool canBeCoarse(const AnyView& view) {
     return std::visit(
         [](const auto& any) {
-            if constexpr (requires { any.optics; })
+            if constexpr (requires { any.slab; })
+                return any.slab.thicknessMm > 0.0;
+            else if constexpr (requires { any.optics; })
                 return !std::is_same_v<decltype(any), const render::FlatOverview&>;
             else
                 return false;

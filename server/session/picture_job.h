@@ -34,8 +34,8 @@ struct PictureJob {
     std::function<void(const protocol::TileHeader&, Result<Image>)> done;
 };
 
-/// Whether a smaller picture of this view shows the same, coarser, and saves time: slices are drawn
-/// in no time, and the whole strip never moves.
+/// Whether a smaller picture of this view shows the same, coarser, and saves time: slices that are
+/// no slabs are drawn in no time, and the whole strip never moves.
 bool canBeCoarse(const AnyView& view);
 /// The view as it is to be drawn into a picture of another width, which shows the same.
 AnyView scaledView(AnyView view, int fromWidth, int toWidth);

@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include "protocol/capabilities.h"
 #include "protocol/view_message.h"
 #include "session/messages.h"
 #include "session/worker.h"
@@ -14,6 +15,7 @@ namespace haustra::session {
 using protocol::ClientMessage;
 using protocol::ErrorReport;
 using protocol::ServerMessage;
+namespace capability = protocol::capability;
 
 namespace {
 
@@ -144,17 +146,17 @@ void Session::handle(const protocol::Hello& hello) {
         const auto& all = hello.capabilities();
         return std::find(all.begin(), all.end(), capability) != all.end();
     };
-    if (!can("lossless"))
+    if (!can(capability::lossless))
         return end(ErrorReport::VERSION, "a client without \"lossless\" cannot show exact stills");
-    pictures_->setJpeg(can("jpeg"));
-    pictures_->setCoarse(can("coarse"));
+    pictures_->setJpeg(can(capability::jpeg));
+    pictures_->setCoarse(can(capability::coarse));
     state_ = State::ready;
     ServerMessage answer;
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
-    welcome->add_capabilities("jpeg");
-    welcome->add_capabilities("lossless");
-    welcome->add_capabilities("coarse");
+    for (const char* known :
+         {capability::jpeg, capability::lossless, capability::coarse, capability::slabs})
+        welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
     send(answer);

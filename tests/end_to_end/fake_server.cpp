@@ -2,6 +2,7 @@
 
 #include "end_to_end/fake_wall.h"
 #include "link/fingerprint.h"
+#include "protocol/capabilities.h"
 #include "protocol/framing.h"
 #include "protocol/haustra.pb.h"
 #include "protocol/optics_message.h"
@@ -239,6 +240,9 @@ struct FakeServer::Impl {
         welcome.mutable_welcome()->set_protocol_version(misbehaviour.protocolVersion);
         welcome.mutable_welcome()->set_software("fake-server 1");
         welcome.mutable_welcome()->set_renderer("none");
+        if (!misbehaviour.old)
+            for (const char* known : {protocol::capability::slabs})
+                welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
             std::vector<std::uint8_t> frame;
             protocol::appendFrameHeader(frame, {3, protocol::FrameType::control});

@@ -176,6 +176,153 @@ TEST_F(Slices, ShowTheScanUnlessTheCleansedOneIsAskedFor) {
     EXPECT_NE(describe(none.error()).find("no cleansed scan"), std::string::npos);
 }
 
+// Slices are drawn by the GPU or by the CPU, as the case's raycaster is.
+class Slabs : public Drawing, public testing::WithParamInterface<RaycasterKind> {
+protected:
+    std::unique_ptr<render::CaseRenderer> rendererOf(const Volume<std::int16_t>& ct) {
+        auto made = render::CaseRenderer::create(*context, ct, {}, {.raycaster = GetParam()});
+        EXPECT_TRUE(made);
+        return made ? std::move(*made) : nullptr;
+    }
+};
+INSTANTIATE_TEST_SUITE_P(OnGpuAndCpu, Slabs,
+                         testing::Values(RaycasterKind::singlePass, RaycasterKind::native));
+
+TEST_P(Slabs, AreTheMeanAndTheMaximumOfSlicesThroughThem) {
+    std::mt19937 random(11);
+    std::uniform_int_distribution<int> hu(-1000, 1000);
+    const Grid grid = obliqueGrid({30, 26, 22}, {0.9, 0.8, 1.5});
+    const Volume<std::int16_t> volume = sampled(grid, [&](glm::dvec3) { return hu(random); });
+    const auto scan = rendererOf(volume);
+    const WindowLevel window{0.0, 2000.0};
+    for (const double thickness : {0.3, 2.0, 9.0, 100.0}) {
+        for (const Projection projection : {Projection::mean, Projection::maximum}) {
+            const ObliqueView view{{0.4, -0.6, 0.3}, {0.2, 0.5, 1.0}, {0, -1, 0.1},           36.0,
+                                   window,           Scan::original,  {thickness, projection}};
+            const SliceView axial{View::axial, {0.4, -0.6, 0.3},       1.5, window, Scan::original,
+                                  {0.0, 0.0},  {thickness, projection}};
+            const auto check = [&](const Image& image, const SlicePlacement& placement) {
+                const glm::dvec3 normal =
+                    glm::normalize(glm::cross(placement.rightMm, placement.downMm));
+                for (int y = 0; y < image.height; ++y) {
+                    for (int x = 0; x < image.width; ++x) {
+                        // By far finer steps than the renderer's.
+                        const int steps = 4001;
+                        double sum = 0.0, most = -INFINITY, atEdge = INFINITY;
+                        int inside = 0;
+                        for (int n = 0; n < steps; ++n) {
+                            const double at = thickness * ((n + 0.5) / steps - 0.5);
+                            const glm::dvec3 voxel = grid.voxelFromPatientPoint(
+                                placement.patientFromPixel({x, y}) + at * normal);
+                            const glm::dvec3 in =
+                                glm::min(voxel + 0.5, glm::dvec3(grid.size) - 0.5 - voxel);
+                            const double edge = std::min(in.x, std::min(in.y, in.z));
+                            atEdge = std::min(atEdge, std::abs(edge));
+                            if (edge < 0.0) continue;
+                            const double value = trilinear(volume, voxel);
+                            sum += value, most = std::max(most, value), ++inside;
+                        }
+                        if (inside == 0 && atEdge > 0.01) {
+                            EXPECT_EQ(pixel(image, x, y), 0);
+                        }
+                        if (inside < steps && (inside < steps / 10 || atEdge < 0.5)) continue;
+                        const double expected =
+                            windowed(projection == Projection::mean ? sum / inside : most, window);
+                        // Samples half a voxel apart miss a peak by what values change in a
+                        // quarter of a voxel, and the mean by far less.
+                        const double tolerance = projection == Projection::mean ? 8.0 : 40.0;
+                        ASSERT_NEAR(pixel(image, x, y), expected, tolerance)
+                            << thickness << " mm at " << x << " " << y;
+                        if (projection == Projection::maximum) {
+                            ASSERT_LE(pixel(image, x, y), expected + 1.0);
+                        }
+                    }
+                }
+            };
+            check(draw(*scan, view, 24, 18), *placeSlice(view, 24, 18));
+            check(draw(*scan, axial, 20, 20), *placeSlice(axial, grid, 20, 20));
+        }
+    }
+}
+
+TEST_P(Slabs, TheMaximumShowsABallThatTheSliceMisses) {
+    const Grid grid = axisAlignedGrid({41, 41, 41}, glm::dvec3(1.0), glm::dvec3(-20.0));
+    const glm::dvec3 ball(6.0, -4.0, 9.0);
+    const auto scan = rendererOf(
+        sampled(grid, [&](glm::dvec3 p) { return glm::distance(p, ball) < 3.0 ? 900.0 : -900.0; }));
+    SliceView view{View::axial, glm::dvec3(0.0), 1.0, {0.0, 2000.0}};
+    const auto brightest = [&] {
+        const Image image = draw(*scan, view, 41, 41);
+        return *std::max_element(image.rgb.begin(), image.rgb.end());
+    };
+    const int air = brightest();
+    view.slab = {11.0, Projection::maximum};  // ends 0.5 mm before the ball
+    EXPECT_EQ(brightest(), air);
+    view.slab.thicknessMm = 20.0;  // past its middle
+    EXPECT_EQ(brightest(), int(std::lround(windowed(900.0, view.window))));
+    const glm::dvec2 seen = whereSeen([&] {
+        Image image = draw(*scan, view, 41, 41);
+        for (auto& byte : image.rgb)
+            byte = byte > 128 ? 255 : 0;
+        return image;
+    }());
+    EXPECT_NEAR(glm::distance(seen, glm::dvec2(6.0, -4.0) / 20.5), 0.0, 0.01);
+}
+
+TEST_P(Slabs, TheMeanOfALinearRampIsItsMiddleSlice) {
+    const Grid grid = obliqueGrid({60, 60, 60}, {0.7, 0.8, 1.1});
+    const auto scan = rendererOf(
+        sampled(grid, [](glm::dvec3 p) { return 40.0 * p.x - 25.0 * p.y + 30.0 * p.z; }));
+    ObliqueView view{{0.3, -0.2, 0.1}, {0.3, -0.4, 1.0}, {0, -1, 0}, 12.0, {0.0, 1600.0}};
+    const Image slice = draw(*scan, view, 40, 40);
+    for (const double thickness : {0.4, 1.0, 7.3, 16.0}) {
+        view.slab = {thickness, Projection::mean};
+        const Image slab = draw(*scan, view, 40, 40);
+        for (std::size_t n = 0; n < slab.rgb.size(); ++n)
+            ASSERT_NEAR(slab.rgb[n], slice.rgb[n], 1.0) << thickness;
+    }
+    // The maximum is not: it grows with the thickness.
+    view.slab = {7.3, Projection::maximum};
+    const Image most = draw(*scan, view, 40, 40);
+    const double perMm = std::abs(glm::dot(glm::dvec3(40, -25, 30), glm::normalize(view.forward)));
+    EXPECT_NEAR(pixel(most, 20, 20) - pixel(slice, 20, 20), 0.5 * 7.3 * perMm * 255 / 1600, 1.5);
+}
+
+TEST_P(Slabs, ALayerAsThinAsOneSampleIsTheSliceToTheByte) {
+    std::mt19937 random(4);
+    const Grid grid = axisAlignedGrid({20, 20, 20}, {0.8, 0.8, 1.0});
+    const auto scan = rendererOf(sampled(grid, [&](glm::dvec3) { return int(random() % 2000); }));
+    SliceView view{View::coronal, {8.0, 7.3, 9.0}, 1.3, {1000.0, 2000.0}};
+    const Image slice = draw(*scan, view, 33, 29);
+    for (const Projection projection : {Projection::mean, Projection::maximum}) {
+        view.slab = {0.39, projection};
+        EXPECT_EQ(draw(*scan, view, 33, 29).rgb, slice.rgb);
+        view.slab.thicknessMm = 2.0;
+        EXPECT_NE(draw(*scan, view, 33, 29).rgb, slice.rgb);
+    }
+}
+
+TEST_P(Slabs, APanMovesABrightVoxelByThePixelsThatItShould) {
+    const Grid grid = axisAlignedGrid({40, 40, 40}, glm::dvec3(1.0));
+    Volume<std::int16_t> volume(grid, -1000);
+    volume.writable()[grid.index(22, 17, 25)] = 1000;
+    const auto scan = rendererOf(volume);
+    for (const auto& [plane, at] : {std::pair{View::axial, glm::dvec2(22, 17)},
+                                    {View::coronal, glm::dvec2(22, 39 - 25)},
+                                    {View::sagittal, glm::dvec2(17, 39 - 25)}}) {
+        const auto brightest = [&](glm::dvec2 panMm) {
+            const Image image = draw(
+                *scan, SliceView{plane, {22, 17, 25}, 1.0, {0.0, 2000.0}, Scan::original, panMm},
+                80, 80);
+            return 0.5 * glm::dvec2(80) * (whereSeen(image) + 1.0);
+        };
+        // Two pixels a voxel.
+        EXPECT_LT(glm::distance(brightest({0, 0}), 2.0 * at + 1.0), 1e-6) << toString(plane);
+        EXPECT_LT(glm::distance(brightest({5, 3}), 2.0 * at + 1.0 + glm::dvec2(10, 6)), 1e-6);
+        EXPECT_LT(glm::distance(brightest({-4, -1.5}), 2.0 * at + 1.0 - glm::dvec2(8, 3)), 1e-6);
+    }
+}
+
 TEST_F(Slices, SayWhatIsWrong) {
     const auto scan =
         renderer(Volume<std::int16_t>(axisAlignedGrid({8, 8, 8}, glm::dvec3(1.0)), 0));

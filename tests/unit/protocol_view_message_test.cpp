@@ -29,6 +29,10 @@ public:
         return camera;
     }
     Scan scan() { return flip() ? Scan::cleansed : Scan::original; }
+    haustra::Slab slab() {
+        return {flip() ? within(0, maxSlabMm) : 0.0,
+                flip() ? haustra::Projection::maximum : haustra::Projection::mean};
+    }
     /// Sound, and of this view.
     ViewState stateOf(haustra::View view) {
         using enum haustra::Lens;
@@ -38,7 +42,9 @@ public:
             case haustra::View::axial:
             case haustra::View::coronal:
             case haustra::View::sagittal:
-                return SliceView{view, place(), within(1, maxSliceZoom), {}, scan()};
+                return SliceView{view,  place(), within(1, maxSliceZoom),
+                                 {},    scan(),  {within(-maxPanMm, maxPanMm), within(-300, 300)},
+                                 slab()};
             case haustra::View::flattened:
                 return WholeStrip{};
             case haustra::View::flattenedZoom:
@@ -46,7 +52,8 @@ public:
                                   within(minPixelsPerCircumference, maxPixelsPerCircumference)};
             case haustra::View::oblique:
                 return ObliqueView{
-                    place(), {0, 0, 2}, {0, 1, 0}, within(minObliqueMm, maxObliqueMm), {}, scan()};
+                    place(), {0, 0, 2}, {0, 1, 0}, within(minObliqueMm, maxObliqueMm),
+                    {},      scan(),    slab()};
             case haustra::View::overview:
                 break;
         }
@@ -143,6 +150,24 @@ TEST(ViewMessage, WhatIsOutOfBoundsIsRefused) {
         EXPECT_TRUE(refused(overview));
         EXPECT_TRUE(refused(FlatWindow{{bad, 0.0}, 512.0}));
     }
+    for (const double bad : {-0.01, 1.01 * maxSlabMm, double(NAN), double(INFINITY)}) {
+        SliceView slice;
+        slice.slab.thicknessMm = bad;
+        EXPECT_TRUE(refused(slice));
+        ObliqueView oblique;
+        oblique.slab.thicknessMm = bad;
+        EXPECT_TRUE(refused(oblique));
+    }
+    for (const double bad : {1.01 * maxPanMm, -1.01 * maxPanMm, double(NAN)}) {
+        SliceView slice;
+        slice.panMm.x = bad;
+        EXPECT_TRUE(refused(slice));
+        slice.panMm = {0.0, bad};
+        EXPECT_TRUE(refused(slice));
+    }
+    Slab strange;
+    strange.set_projection(Projection(2));
+    EXPECT_FALSE(slabFrom(strange));
     EXPECT_TRUE(refused(SliceView{haustra::View::axial, {}, 1.01 * maxSliceZoom}));
     EXPECT_TRUE(refused(SliceView{haustra::View::axial, {}, 0.99}));
     EXPECT_TRUE(refused(ObliqueView{{}, {0, 0, 1}, {0, 0, 1}}));

@@ -124,6 +124,48 @@ TEST(SlicePlacement, TheWholeScanFitsAtZoomOneAndZoomingHoldsThePosition) {
     }
 }
 
+TEST(SlicePlacement, APanMovesThePictureAndNotThePlane) {
+    const Grid grid = axisAlignedGrid({512, 512, 430}, {0.7, 0.7, 0.8}, {-180, -160, -900});
+    const glm::dvec3 point(33, 41, -650);
+    for (const View view : {View::axial, View::coronal, View::sagittal}) {
+        for (const double zoom : {1.0, 4.0}) {
+            SliceView slice{view, {20, 30, -700}, zoom};
+            const SlicePlacement before = *placeSlice(slice, grid, 640, 480);
+            slice.panMm = {12.0, -7.0};
+            const SlicePlacement moved = *placeSlice(slice, grid, 640, 480);
+            const glm::dvec2 by = moved.pixelFromPatient(point) - before.pixelFromPatient(point);
+            EXPECT_LT(glm::distance(by, glm::dvec2(12.0, -7.0) / before.pixelMm()), 1e-9);
+            EXPECT_EQ(moved.rightMm, before.rightMm);
+            EXPECT_EQ(moved.downMm, before.downMm);
+            EXPECT_NEAR(glm::dot(moved.topLeftMm - slice.positionMm, moved.normal()), 0.0, 1e-9);
+        }
+    }
+}
+
+TEST(SlicePlacement, ASlabsSamplesAreTheMiddlesOfThinLayersOfIt) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> thickness(0.0, maxSlabMm), part(-1.0, 1.0);
+    for (int n = 0; n < 300; ++n) {
+        const Grid grid = oblique(random);
+        const glm::dvec3 spacing = grid.spacingMm();
+        const double least = std::min({spacing.x, spacing.y, spacing.z});
+        const glm::dvec3 normal(part(random), part(random), 1.5);
+        const Slab slab{n % 3 == 0 ? 0.1 * thickness(random) : thickness(random)};
+        const SlabSamples samples = slabSamples(slab, normal, grid);
+        EXPECT_NEAR(samples.count() * glm::length(samples.stepMm), slab.thicknessMm, 1e-9);
+        EXPECT_LE(glm::length(samples.stepMm), 0.5 * least * (1.0 + 1e-6));
+        EXPECT_LT(glm::length(glm::cross(samples.stepMm, normal)), 1e-9);
+        // As few as that takes.
+        if (samples.aside > 0) {
+            EXPECT_GT(slab.thicknessMm / (samples.count() - 2), 0.5 * least);
+        }
+    }
+    const Grid grid = axisAlignedGrid({10, 10, 10}, {1.0, 1.0, 2.0});
+    EXPECT_EQ(slabSamples({}, {0, 0, 1}, grid).aside, 0);
+    EXPECT_EQ(slabSamples({0.5}, {0, 0, 1}, grid).aside, 0);
+    EXPECT_EQ(slabSamples({1.5}, {0, 0, 1}, grid).aside, 1);
+}
+
 TEST(SlicePlacement, WhatIsNoSliceIsRefused) {
     const Grid grid = axisAlignedGrid({10, 10, 10}, {1.0, 1.0, 1.0});
     EXPECT_TRUE(placeSlice(SliceView{View::axial}, grid, 1, 1));

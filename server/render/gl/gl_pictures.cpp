@@ -57,8 +57,8 @@ Result<Image> GlPictures::readPicture(int errorsBefore) {
     return image;
 }
 
-Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLevel& window,
-                                Scan scan, const Band& band) {
+Result<Image> GlPictures::slice(const SlicePicture& picture, const Band& band) {
+    const auto& [placement, window, scan, slab] = picture;
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     const int errorsBefore = scene_->context().errorCount();
     TRY(makePicture(size));
@@ -73,6 +73,10 @@ Result<Image> GlPictures::slice(const SlicePlacement& placement, const WindowLev
         (glm::dvec3(voxelFromPatient * glm::dvec4(placement.topLeftMm, 1.0)) + 0.5) / voxels, 0.0);
     u.rightTexture = glm::vec4(textureVector(placement.rightMm), 0.0);
     u.downTexture = textureVector(placement.downMm);
+    const SlabSamples samples = slabSamples(slab, placement.normal(), grid);
+    u.alongTexture = textureVector(samples.stepMm);
+    u.samplesAside = samples.aside;
+    u.rightTexture.w = slab.projection == Projection::maximum ? 1.0f : 0.0f;
     u.greyScale = float(storedRange / window.widthHu);
     u.greyBias = float(0.5 - (storedOffset + window.centerHu) / window.widthHu);
     u.bandSize = size;

@@ -24,8 +24,7 @@ public:
                                                       std::shared_ptr<const FlatSurface> surface,
                                                       int threads);
 
-    Result<Image> slice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
-                        const Band& band) override;
+    Result<Image> slice(const SlicePicture& picture, const Band& band) override;
     Result<Image> flat(const FlatView& view, const Band& band) override;
     /// Without the scene's and the surface's.
     std::size_t gpuBytes() const override;

@@ -35,16 +35,20 @@ NativePictures::NativePictures(std::shared_ptr<NativeScene> scene, Volume<std::i
       drawSlice_(slicePackets()),
       castFlat_(flatPackets()) {}
 
-Result<Image> NativePictures::slice(const SlicePlacement& placement, const WindowLevel& window,
-                                    Scan scan, const Band& band) {
+Result<Image> NativePictures::slice(const SlicePicture& picture, const Band& band) {
+    const auto& [placement, window, scan, slab] = picture;
     const glm::ivec2 size(band.pictureSize.x, band.rows);
     PacketScene packets;
     (scan == Scan::cleansed ? scene_->volume() : ct_).describe(packets);
     const Grid& grid = ct_.volume().grid();
     const glm::dmat3 linear(grid.voxelFromPatient());
+    const SlabSamples samples = slabSamples(slab, placement.normal(), grid);
     const PacketSlice slice{grid.voxelFromPatientPoint(placement.topLeftMm),
                             linear * placement.rightMm,
                             linear * placement.downMm,
+                            linear * samples.stepMm,
+                            samples.aside,
+                            slab.projection == Projection::maximum,
                             float(1.0 / window.widthHu),
                             float(0.5 - window.centerHu / window.widthHu),
                             size.x,

@@ -20,8 +20,7 @@ public:
         std::shared_ptr<NativeScene> scene, Volume<std::int16_t> ct,
         std::shared_ptr<const FlatGeometry> geometry);
 
-    Result<Image> slice(const SlicePlacement& placement, const WindowLevel& window, Scan scan,
-                        const Band& band) override;
+    Result<Image> slice(const SlicePicture& picture, const Band& band) override;
     Result<Image> flat(const FlatView& view, const Band& band) override;
 
 private:

@@ -76,6 +76,9 @@ CastFlat flatPackets();
 struct PacketSlice {
     glm::vec3 origin{0.0f};  ///< the centre of the picture's top left pixel
     glm::vec3 right{0.0f}, down{0.0f};
+    glm::vec3 along{0.0f};              ///< from one sample of a slab to the next
+    int samplesAside = 0;               ///< of a slab, on each side of the plane
+    bool maximum = false;               ///< of a slab's samples; else their mean
     float perHu = 1.0f, atZero = 0.0f;  ///< HU -> grey 0…1
     int width = 0;
     int firstRow = 0;  ///< of the picture: the band's row 0

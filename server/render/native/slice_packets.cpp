@@ -15,6 +15,25 @@ namespace HWY_NAMESPACE {
 
 namespace {
 
+// Of the samples along the normal that lie in the volume; `met` is where there is one.
+template <class AnyVoxels, class IsInside>
+VF slabValue(const VolumeSampler<AnyVoxels>& sampler, const PacketSlice& slice, V3 middle,
+             const IsInside& isInside, MF& met) {
+    const V3 step{set(slice.along.x), set(slice.along.y), set(slice.along.z)};
+    VF sum = hn::Zero(f), count = hn::Zero(f), most = set(-1e9f);
+    for (int n = -slice.samplesAside; n <= slice.samplesAside; ++n) {
+        const V3 place = along(middle, set(float(n)), step);
+        const MF inside = isInside(place);
+        if (!any(inside)) continue;
+        const VF hu = sampler.value(onlyWhere(inside, place));
+        sum = hn::Add(sum, hn::IfThenElseZero(inside, hu));
+        count = hn::Add(count, hn::IfThenElseZero(inside, set(1.0f)));
+        most = hn::IfThenElse(inside, hn::Max(most, hu), most);
+    }
+    met = hn::Gt(count, hn::Zero(f));
+    return slice.maximum ? most : hn::Div(sum, hn::Max(count, set(1.0f)));
+}
+
 template <class AnyVoxels>
 void drawRows(const PacketScene& scene, const PacketSlice& slice, int firstRow, int endRow,
               std::uint8_t* rgb) {
@@ -29,11 +48,17 @@ void drawRows(const PacketScene& scene, const PacketSlice& slice, int firstRow, 
                 return hn::And(hn::Ge(p, set(-0.5f)),
                                hn::Le(p, set(float(scene.size[axis]) - 0.5f)));
             };
-            const MF inside =
-                hn::And(within(place.x, 0), hn::And(within(place.y, 1), within(place.z, 2)));
+            const auto isInside = [&](V3 p) HWY_ATTR {
+                return hn::And(within(p.x, 0), hn::And(within(p.y, 1), within(p.z, 2)));
+            };
+            MF inside = isInside(place);
+            VF hu = hn::Zero(f);
+            if (slice.samplesAside > 0)
+                hu = slabValue(sampler, slice, place, isInside, inside);
+            else if (any(inside))
+                hu = sampler.value(onlyWhere(inside, place));
             Bytes bytes{};
             if (any(inside)) {
-                const VF hu = sampler.value(onlyWhere(inside, place));
                 const VF grey =
                     clamped(hn::MulAdd(hu, set(slice.perHu), set(slice.atZero)), 0.0f, 1.0f);
                 hn::StoreU(hn::NearestInt(hn::IfThenElseZero(inside, hn::Mul(grey, set(255.0f)))),

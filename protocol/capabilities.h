@@ -1,0 +1,12 @@
+// What one side tells the other that it knows beyond what every version 1 does (PROTOCOL.md §4,
+// Hello and Welcome): each name once.
+#pragma once
+
+namespace haustra::protocol::capability {
+
+// ---- both: how pictures may come
+inline constexpr char jpeg[] = "jpeg", lossless[] = "lossless", coarse[] = "coarse";
+// ---- a server: what it may be asked
+inline constexpr char slabs[] = "slabs";  ///< slices with a slab, moved by a pan
+
+}  // namespace haustra::protocol::capability
