@@ -7,6 +7,7 @@ namespace haustra::protocol::capability {
 // ---- both: how pictures may come
 inline constexpr char jpeg[] = "jpeg", lossless[] = "lossless", coarse[] = "coarse";
 // ---- a server: what it may be asked
-inline constexpr char slabs[] = "slabs";  ///< slices with a slab, moved by a pan
+inline constexpr char slabs[] = "slabs";             ///< slices with a slab, moved by a pan
+inline constexpr char scanValues[] = "scan-values";  ///< MeasureScan
 
 }  // namespace haustra::protocol::capability

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/flat_map.h"
+#include "core/scan_values.h"
 #include "core/view.h"
 
 #include <cstddef>
@@ -38,6 +39,10 @@ inline constexpr double minPixelsPerCircumference = 16.0, maxPixelsPerCircumfere
 inline constexpr int minLinePoints = 2, minOutlinePoints = 3, maxMeasuredPoints = 128;
 inline constexpr double maxMeasuredTurns = 32.0;  ///< |x| of a measured point
 inline constexpr double maxLineCircumferences = 256.0, maxOutlineCircumferences = 16.0;
+
+// ---- §4, values of the scan
+using haustra::maxHalfAxisMm;
+using haustra::maxScanSamples;
 
 // ---- §4, bookmarks
 inline constexpr std::size_t maxNoteBytes = 2000;

@@ -178,4 +178,14 @@ Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message) {
     return measure;
 }
 
+Result<ScanStatistics> statisticsFrom(const protocol::ScanStatistics& message) {
+    const ScanStatistics values{std::size_t(message.samples()), message.mean_hu(),
+                                message.deviation_hu(),         message.least_hu(),
+                                message.greatest_hu(),          message.area_mm2()};
+    if (!std::isfinite(values.meanHu + values.deviationHu + values.leastHu + values.greatestHu +
+                       values.areaMm2))
+        return fail(ErrorKind::badInput, "the server sent a value that is no number", "scan");
+    return values;
+}
+
 }  // namespace haustra::reader

@@ -3,6 +3,7 @@
 // order.
 #pragma once
 
+#include "core/scan_values.h"
 #include "protocol/haustra.pb.h"
 #include "reader/case_info.h"
 
@@ -14,5 +15,6 @@ Bookmark bookmarkFrom(const protocol::Bookmark& message);
 /// Fail where a number is not finite.
 Result<WallPlace> placeFrom(const protocol::WallPlace& message);
 Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message);
+Result<ScanStatistics> statisticsFrom(const protocol::ScanStatistics& message);
 
 }  // namespace haustra::reader

@@ -1,5 +1,6 @@
 #include "reader/session.h"
 
+#include "protocol/capabilities.h"
 #include "protocol/limits.h"
 #include "protocol/optics_message.h"
 #include "protocol/view_message.h"
@@ -92,6 +93,24 @@ protocol::ClientMessage measureMessage(std::uint64_t request, const std::vector<
     return message;
 }
 
+protocol::ClientMessage scanMessage(std::uint64_t request, const ScanRegion& region) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_measure_scan();
+    body->set_request(request);
+    protocol::fill(*body->mutable_center_mm(), region.centerMm);
+    protocol::fill(*body->mutable_half_a_mm(), region.halfAMm);
+    protocol::fill(*body->mutable_half_b_mm(), region.halfBMm);
+    body->set_cleansed(region.scan == Scan::cleansed);
+    if (region.slab != Slab{}) protocol::fill(*body->mutable_slab(), region.slab);
+    return message;
+}
+
+/// The capability without which a server does not know a question; null of those that every server
+/// knows.
+const char* neededBy(const protocol::ClientMessage& question) {
+    return question.has_measure_scan() ? protocol::capability::scanValues : nullptr;
+}
+
 }  // namespace
 
 Session::Session(link::ConnectionOptions options, std::string caseName,
@@ -155,10 +174,14 @@ void Session::handle(const protocol::ServerMessage& message) {
             break;
         }
         case protocol::ServerMessage::kWallPlace:
-            answeredAboutWall(message.wall_place(), placeFrom(message.wall_place()));
+            answered(message.wall_place(), placeFrom(message.wall_place()), wallAnswers_);
             break;
         case protocol::ServerMessage::kFlatMeasure:
-            answeredAboutWall(message.flat_measure(), measureFrom(message.flat_measure()));
+            answered(message.flat_measure(), measureFrom(message.flat_measure()), wallAnswers_);
+            break;
+        case protocol::ServerMessage::kScanStatistics:
+            answered(message.scan_statistics(), statisticsFrom(message.scan_statistics()),
+                     scanAnswers_);
             break;
         case protocol::ServerMessage::kWallSeen:
             if (!(message.wall_seen().share() >= 0.0 && message.wall_seen().share() <= 1.0))
@@ -220,8 +243,7 @@ void Session::refused(const protocol::ErrorReport& report) {
 }
 
 void Session::refuse(std::uint64_t request, const Error& error) {
-    if (questions_.erase(request) > 0)
-        wallAnswers_.push_back({request, tl::make_unexpected(error)});
+    refuseQuestion(request, error);
     refusals_.push_back(error);
 }
 
@@ -264,6 +286,7 @@ void Session::openCase(const std::string& name) {
     viewports_.clear();
     questions_.clear();
     wallAnswers_.clear();
+    scanAnswers_.clear();
     paint_ = {};
     if (phase_ == Phase::failed || phase_ == Phase::lost) return;
     phase_ = Phase::connecting;
@@ -295,8 +318,11 @@ void Session::askAgain() {
                              "the case is of another scan now: " + std::to_string(kept) +
                                  " bookmarks on the former one are not sent",
                              journal_ ? journal_->folder().string() : ""});
+    std::vector<std::uint64_t> unanswered;
     for (const auto& [request, question] : questions_)
-        connection_.send(question.message);
+        unanswered.push_back(request);
+    for (const std::uint64_t request : unanswered)
+        say(request);
     requestBookmarks();
 }
 
@@ -363,8 +389,28 @@ std::uint64_t Session::setWallPaint(const WallPaintChoice& paint) {
 
 std::uint64_t Session::ask(const protocol::ClientMessage& question) {
     questions_[request_] = {question};
-    sendIfOpen(question);
+    if (phase_ == Phase::open) say(request_);
     return request_;
+}
+
+// A server that does not know a message would end the session.
+void Session::say(std::uint64_t request) {
+    const protocol::ClientMessage& question = questions_.at(request).message;
+    const char* needed = neededBy(question);
+    if (!needed || serverCan(needed)) return connection_.send(question);
+    refuseQuestion(request, {ErrorKind::unsupported, "the server is too old to answer this", {}});
+}
+
+// False where the request is no question that waits for its answer.
+bool Session::refuseQuestion(std::uint64_t request, const Error& error) {
+    const auto asked = questions_.find(request);
+    if (asked == questions_.end()) return false;
+    if (asked->second.message.has_measure_scan())
+        scanAnswers_.push_back({request, tl::make_unexpected(error)});
+    else
+        wallAnswers_.push_back({request, tl::make_unexpected(error)});
+    questions_.erase(asked);
+    return true;
 }
 
 std::uint64_t Session::locate(glm::dvec2 flat) {
@@ -383,11 +429,15 @@ std::uint64_t Session::measure(const std::vector<glm::dvec2>& points, bool close
     return ask(measureMessage(++request_, points, closed));
 }
 
-template <class Message, class Body>
-void Session::answeredAboutWall(const Message& message, Result<Body> body) {
+std::uint64_t Session::measureScan(const ScanRegion& region) {
+    return ask(scanMessage(++request_, region));
+}
+
+template <class Message, class Body, class Answer>
+void Session::answered(const Message& message, Result<Body> body, std::vector<Answer>& answers) {
     if (questions_.erase(message.request()) == 0) return;  // of a case that is left
     if (!body) return giveUp(body.error());
-    wallAnswers_.push_back({message.request(), std::move(*body)});
+    answers.push_back({message.request(), std::move(*body)});
 }
 
 // ---- bookmarks ------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // The reader's session with a server: what is asked for, what has come, what is still owed.
 #pragma once
 
+#include "core/scan_values.h"
 #include "link/connection.h"
 #include "reader/bookmark_journal.h"
 #include "reader/case_info.h"
@@ -41,6 +42,9 @@ struct RefusedBookmark {
     Bookmark bookmark;
     std::string reason;  ///< the server's
 };
+
+using haustra::ScanRegion;
+using haustra::ScanStatistics;
 
 /// Owns the connection; belongs to one thread. The session remembers what each viewport is to
 /// show, so that after a lost link everything is asked for again, and bookmarks that the server
@@ -134,6 +138,17 @@ public:
     /// What has been answered since the last call, or refused.
     std::vector<WallAnswer> takeWallAnswers() { return std::exchange(wallAnswers_, {}); }
 
+    /// Asks for the scan's values there; as a question about the wall is kept and asked again. Of
+    /// a server without protocol::capability::scanValues the answer is a refusal of the client's
+    /// own.
+    std::uint64_t measureScan(const ScanRegion& region);
+    struct ScanAnswer {
+        std::uint64_t request;
+        Result<ScanStatistics> values;
+    };
+    /// What has been answered since the last call, or refused.
+    std::vector<ScanAnswer> takeScanAnswers() { return std::exchange(scanAnswers_, {}); }
+
 private:
     struct ViewportState {
         View view = View::endoscopic;
@@ -173,8 +188,10 @@ private:
     void acknowledge(const Bookmark& bookmark);
     void settle(std::deque<Owed>::iterator owed, bool saved);
     std::uint64_t ask(const protocol::ClientMessage& question);
-    template <class Message, class Body>
-    void answeredAboutWall(const Message& message, Result<Body> body);
+    template <class Message, class Body, class Answer>
+    void answered(const Message& message, Result<Body> body, std::vector<Answer>& answers);
+    void say(std::uint64_t request);
+    bool refuseQuestion(std::uint64_t request, const Error& error);
     void askForCase();
     void askAgain();
     void giveUp(Error error);
@@ -202,6 +219,7 @@ private:
     std::vector<BookmarkOutcome> bookmarkOutcomes_;
     std::map<std::uint64_t, Question> questions_;  // without an answer, by request
     std::vector<WallAnswer> wallAnswers_;
+    std::vector<ScanAnswer> scanAnswers_;
 
     link::Connection connection_;  // last: its events must not outlive what they change
 };

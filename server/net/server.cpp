@@ -113,7 +113,7 @@ struct Server::Impl {
     std::unique_ptr<session::RenderThread> renderer;
     std::unique_ptr<session::CaseLoader> loader;  // after the renderer, which it uses
     std::unique_ptr<session::EncoderThreads> encoders;
-    std::unique_ptr<session::WallThread> walls;
+    std::unique_ptr<session::QuestionThread> questions;
     std::unique_ptr<session::PaintThread> painting;
     session::News<records::Bookmark> bookmarks;
     session::News<std::shared_ptr<const session::OpenCase>> lostCases;
@@ -160,10 +160,10 @@ Result<void> Server::Impl::start() {
     records = std::make_unique<session::RecordsThread>(std::move(kept), std::move(cases));
     renderer = std::move(rendering);
     encoders = std::move(encoding);
-    walls = std::make_unique<session::WallThread>();
+    questions = std::make_unique<session::QuestionThread>();
     painting = std::make_unique<session::PaintThread>();
-    services.emplace(session::Services{*renderer, *loader, *encoders, *records, *walls, *painting,
-                                       bookmarks, lostCases, presets, options.software});
+    services.emplace(session::Services{*renderer, *loader, *encoders, *records, *questions,
+                                       *painting, bookmarks, lostCases, presets, options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);
     signals.async_wait([this](const asio::error_code& error, int) {

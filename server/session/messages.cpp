@@ -88,19 +88,19 @@ Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
         caseName, scan, key, camera.positionMm, camera.forward, camera.up, message.arc_mm(), note};
 }
 
-Result<WallQuestion> questionFrom(const protocol::LocateFlat& message, const Wall& wall) {
+Result<CaseQuestion> questionFrom(const protocol::LocateFlat& message, const OpenCase& of) {
     const auto flat = TRY(protocol::flatPointFrom(message.flat()));
-    if (!(flat.y >= 0.0 && flat.y <= wall.map->height))
+    if (!(flat.y >= 0.0 && flat.y <= of.wall->map->height))
         return fail(ErrorKind::badInput, "the place lies beyond the strip", "flat");
-    return LocateInStrip{flat};
+    return WallQuestion(LocateInStrip{flat});
 }
 
-Result<WallQuestion> questionFrom(const protocol::LocatePoint& message, const Wall&) {
+Result<CaseQuestion> questionFrom(const protocol::LocatePoint& message, const OpenCase&) {
     const auto position = TRY(protocol::positionFrom(message.position_mm()));
-    return LocateInSpace{position};
+    return WallQuestion(LocateInSpace{position});
 }
 
-Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wall& wall) {
+Result<CaseQuestion> questionFrom(const protocol::MeasureFlat& message, const OpenCase& of) {
     Measure question;
     question.closed = message.closed();
     if (message.points_size() <
@@ -113,7 +113,7 @@ Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wa
         const auto point = TRY(protocol::flatPointFrom(corner));
         if (std::abs(point.x) > protocol::maxMeasuredTurns)
             return refuse("a point lies more than 32 turns away", "measurement");
-        question.points.push_back({point.x, std::clamp(point.y, 0.0, wall.map->height)});
+        question.points.push_back({point.x, std::clamp(point.y, 0.0, of.wall->map->height)});
     }
     const auto& points = question.points;
     double legs = question.closed ? glm::distance(points.front(), points.back()) : 0.0;
@@ -126,7 +126,20 @@ Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wa
         points.begin(), points.end(), [](glm::dvec2 a, glm::dvec2 b) { return a.x < b.x; });
     if (question.closed && right->x - left->x > 1.0)
         return refuse("the outline is wider than the colon", "measurement");
-    return question;
+    return WallQuestion(std::move(question));
+}
+
+Result<CaseQuestion> questionFrom(const protocol::MeasureScan& message, const OpenCase& of) {
+    ScanRegion region;
+    region.centerMm = TRY(protocol::positionFrom(message.center_mm()));
+    region.halfAMm = protocol::vectorFrom(message.half_a_mm());
+    region.halfBMm = protocol::vectorFrom(message.half_b_mm());
+    region.slab = TRY(protocol::slabFrom(message.slab()));
+    if (message.cleansed()) region.scan = Scan::cleansed;
+    TRY(checkScanRegion(region));
+    if (message.cleansed() && !of.cleansed)
+        return refuse("the case has no cleansed scan", "scan values");
+    return region;
 }
 
 // ---- to clients -------------------------------------------------------------------------------
@@ -207,7 +220,7 @@ void fill(protocol::Bookmark& message, const records::Bookmark& bookmark) {
     message.set_client_key(bookmark.clientKey);
 }
 
-protocol::ServerMessage messageOf(const WallAnswer& answer, std::uint64_t request) {
+protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t request) {
     protocol::ServerMessage message;
     if (const auto* place = std::get_if<WallPlace>(&answer)) {
         auto* body = message.mutable_wall_place();
@@ -218,6 +231,17 @@ protocol::ServerMessage messageOf(const WallAnswer& answer, std::uint64_t reques
         body->set_triangle(std::uint32_t(place->sourceTriangle));
         body->set_arc_mm(place->arcMm);
         protocol::fill(*body->mutable_camera_mm(), place->cameraMm);
+        return message;
+    }
+    if (const auto* values = std::get_if<ScanStatistics>(&answer)) {
+        auto* body = message.mutable_scan_statistics();
+        body->set_request(request);
+        body->set_samples(values->samples);
+        body->set_mean_hu(values->meanHu);
+        body->set_deviation_hu(values->deviationHu);
+        body->set_least_hu(values->leastHu);
+        body->set_greatest_hu(values->greatestHu);
+        body->set_area_mm2(values->areaMm2);
         return message;
     }
     const auto& measure = std::get<WallMeasure>(answer);

@@ -7,11 +7,12 @@
 #include "protocol/limits.h"
 #include "records/bookmarks.h"
 #include "render/optics/optics_presets.h"
+#include "session/case_questions.h"
 #include "session/open_case.h"
-#include "session/wall.h"
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace haustra::session {
@@ -27,9 +28,16 @@ Result<Optics> opticsFrom(const protocol::SetTransferFunction& message,
 Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
                                           const std::string& caseName, const std::string& scan);
 
-Result<WallQuestion> questionFrom(const protocol::LocateFlat& message, const Wall& wall);
-Result<WallQuestion> questionFrom(const protocol::LocatePoint& message, const Wall& wall);
-Result<WallQuestion> questionFrom(const protocol::MeasureFlat& message, const Wall& wall);
+/// Of a case that has a wall.
+Result<CaseQuestion> questionFrom(const protocol::LocateFlat& message, const OpenCase& of);
+Result<CaseQuestion> questionFrom(const protocol::LocatePoint& message, const OpenCase& of);
+Result<CaseQuestion> questionFrom(const protocol::MeasureFlat& message, const OpenCase& of);
+/// Of any.
+Result<CaseQuestion> questionFrom(const protocol::MeasureScan& message, const OpenCase& of);
+template <class Question>
+bool asksAboutStrip(const Question&) {
+    return !std::is_same_v<Question, protocol::MeasureScan>;
+}
 
 /// How much of a session's share of unanswered requests a question takes.
 inline int weightOf(const protocol::LocateFlat&) {
@@ -39,6 +47,9 @@ inline int weightOf(const protocol::LocatePoint&) {
     return 1;
 }
 inline int weightOf(const protocol::MeasureFlat&) {
+    return protocol::measurementWeight;
+}
+inline int weightOf(const protocol::MeasureScan&) {
     return protocol::measurementWeight;
 }
 
@@ -53,6 +64,6 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
 
 void fill(protocol::Bookmark& message, const records::Bookmark& bookmark);
 
-protocol::ServerMessage messageOf(const WallAnswer& answer, std::uint64_t request);
+protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t request);
 
 }  // namespace haustra::session

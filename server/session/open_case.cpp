@@ -25,6 +25,7 @@ Result<CaseFiles> readCase(const store::Case& source) {
         if (known && known->shown) files.facts.content += entry.product + ':' + entry.key.hex + ' ';
     }
     files.ct = TRY(source.readVolume<std::int16_t>(product::ct));
+    files.facts.ct = std::make_shared<const Volume<std::int16_t>>(files.ct.share());
     files.facts.grid = files.ct.grid();
     if (const auto attributes = source.attributes(product::ct)) {
         const auto position = attributes->find("position");
@@ -32,8 +33,11 @@ Result<CaseFiles> readCase(const store::Case& source) {
             files.facts.position = patientPositionFromString(position->second);
     }
     files.facts.cleansed = held.contains(product::cleansed);
-    if (files.facts.cleansed)
+    if (files.facts.cleansed) {
         files.cleansed = TRY(source.readVolume<std::int16_t>(product::cleansed));
+        files.facts.cleansedScan =
+            std::make_shared<const Volume<std::int16_t>>(files.cleansed.share());
+    }
     if (held.contains(product::centerline)) files.facts.centerline = TRY(source.readCenterline());
     if (held.contains(product::quality)) files.facts.trust = TRY(store::readTrust(source));
     files.flattened = held.contains(product::flatMap);

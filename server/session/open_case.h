@@ -6,6 +6,7 @@
 #include "core/ct_scan.h"
 #include "core/histogram.h"
 #include "core/tri_mesh.h"
+#include "core/volume.h"
 #include "render/raycaster_choice.h"
 #include "session/wall.h"
 #include "store/case_store.h"
@@ -25,10 +26,13 @@ struct OpenCase {
     std::string content;  ///< equal for equal products of the case, of those that are shown
     Grid grid;
     PatientPosition position = PatientPosition::unknown;
-    std::optional<ColonTrust> trust;   ///< where a colon was searched for
-    Centerline centerline;             ///< empty where the case has none yet
-    Histogram histogram;               ///< of the scan that the endoscopic view shows
-    bool cleansed = false;             ///< the endoscopic view shows the cleansed scan, slices can
+    std::optional<ColonTrust> trust;  ///< where a colon was searched for
+    Centerline centerline;            ///< empty where the case has none yet
+    Histogram histogram;              ///< of the scan that the endoscopic view shows
+    bool cleansed = false;            ///< the endoscopic view shows the cleansed scan, slices can
+    /// Memory-mapped, for questions about single values; the renderer has its own.
+    std::shared_ptr<const Volume<std::int16_t>> ct;
+    std::shared_ptr<const Volume<std::int16_t>> cleansedScan;  ///< empty where there is none
     std::shared_ptr<const Wall> wall;  ///< empty where the case has not been flattened
     /// What draws it, and what was measured to choose it (nothing where it was not).
     RaycasterKind raycaster = RaycasterKind::singlePass;

@@ -95,6 +95,8 @@ void Session::dispatch(const ClientMessage& message) {
             return handleQuestion(message.locate_point());
         case ClientMessage::kMeasureFlat:
             return handleQuestion(message.measure_flat());
+        case ClientMessage::kMeasureScan:
+            return handleQuestion(message.measure_scan());
         case ClientMessage::kAddBookmark:
             return handle(message.add_bookmark());
         case ClientMessage::kListBookmarks:
@@ -154,8 +156,8 @@ void Session::handle(const protocol::Hello& hello) {
     ServerMessage answer;
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
-    for (const char* known :
-         {capability::jpeg, capability::lossless, capability::coarse, capability::slabs})
+    for (const char* known : {capability::jpeg, capability::lossless, capability::coarse,
+                              capability::slabs, capability::scanValues})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
@@ -242,29 +244,30 @@ void Session::handleInput(const ClientMessage& message) {
     if (const auto taken = pictures_->input(message); !taken) report(taken.error());
 }
 
-// ---- the wall -----------------------------------------------------------------------------------
+// ---- questions, and the wall
+// -----------------------------------------------------------------------------------
 
 template <class Question>
 void Session::handleQuestion(const Question& message) {
     const std::uint64_t request = message.request();
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
-    if (!case_->wall)
+    if (asksAboutStrip(message) && !case_->wall)
         return refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
-    auto question = questionFrom(message, *case_->wall);
+    auto question = questionFrom(message, *case_);
     if (!question) return report(question.error(), request);
-    questions_.push_back({case_->wall, std::move(*question),
-                          answer(&Session::answeredAboutWall, request, weightOf(message))});
+    questions_.push_back({case_, std::move(*question),
+                          answer(&Session::answeredQuestion, request, weightOf(message))});
     if (!asking_) askNext();
 }
 
 void Session::askNext() {
     asking_ = !questions_.empty();
     if (!asking_) return;
-    services_.walls.push(std::move(questions_.front()));
+    services_.questions.push(std::move(questions_.front()));
     questions_.pop_front();
 }
 
-void Session::answeredAboutWall(std::uint64_t request, Result<WallAnswer> answer) {
+void Session::answeredQuestion(std::uint64_t request, Result<CaseAnswer> answer) {
     if (answer)
         send(messageOf(*answer, request));
     else

@@ -3,10 +3,10 @@
 
 #include "protocol/haustra.pb.h"
 #include "session/case_loader.h"
+#include "session/case_questions.h"
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
 #include "session/render_thread.h"
-#include "session/wall.h"
 
 #include <cstdint>
 #include <deque>
@@ -46,7 +46,7 @@ struct Services {
     CaseLoader& loader;
     EncoderThreads& encoders;
     RecordsThread& records;
-    WallThread& walls;
+    QuestionThread& questions;
     PaintThread& painting;
     News<records::Bookmark>& bookmarks;                ///< that are in the store now
     News<std::shared_ptr<const OpenCase>>& lostCases;  ///< whose files cannot be read any more
@@ -98,7 +98,7 @@ private:
     template <class Question>
     void handleQuestion(const Question& message);
     void askNext();
-    void answeredAboutWall(std::uint64_t request, Result<WallAnswer> answer);
+    void answeredQuestion(std::uint64_t request, Result<CaseAnswer> answer);
     void opened(Result<std::shared_ptr<const OpenCase>> result);
     void leaveCase();
     void lost(const std::shared_ptr<const OpenCase>& of);
@@ -131,7 +131,7 @@ private:
     std::uint64_t readings_ = 0;
     int unanswered_ = 0;
 
-    std::deque<WallRequest> questions_;  // not yet asked
+    std::deque<CaseRequest> questions_;  // not yet asked
     bool asking_ = false;
 };
 

@@ -1,6 +1,5 @@
 #include "session/wall.h"
 
-#include "session/worker.h"
 #include "store/products.h"
 
 #include <algorithm>
@@ -103,13 +102,6 @@ Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question) {
     if (const auto* inSpace = std::get_if<LocateInSpace>(&question))
         return wall.lookup.nearest(inSpace->positionMm);
     return measure(wall.lookup, std::get<Measure>(question));
-}
-
-WallThread::WallThread() {
-    start("wall", 1, [](auto& taken) {
-        const WallRequest& request = taken.front();
-        request.done(guarded([&] { return answer(*request.wall, request.question); }));
-    });
 }
 
 }  // namespace haustra::session

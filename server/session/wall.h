@@ -4,9 +4,7 @@
 #include "core/flat_lookup.h"
 #include "core/result.h"
 #include "render/wall/strip_painter.h"
-#include "session/worker.h"
 
-#include <functional>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -63,18 +61,5 @@ using WallAnswer = std::variant<WallPlace, WallMeasure>;
 /// Some microseconds for a place. A measurement crosses some hundred triangles a circumference;
 /// within the protocol's bounds it takes at most about a second, and some milliseconds in use.
 Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question);
-
-struct WallRequest {
-    std::shared_ptr<const Wall> wall;
-    WallQuestion question;
-    std::function<void(Result<WallAnswer>)> done;  ///< called on the wall thread
-};
-
-/// The thread that answers: measuring may take longer than a socket can wait. A session has one
-/// question here at a time, so that sessions take turns however much one of them asks.
-class WallThread : public Worker<WallRequest> {
-public:
-    WallThread();
-};
 
 }  // namespace haustra::session

@@ -241,7 +241,8 @@ struct FakeServer::Impl {
         welcome.mutable_welcome()->set_software("fake-server 1");
         welcome.mutable_welcome()->set_renderer("none");
         if (!misbehaviour.old)
-            for (const char* known : {protocol::capability::slabs})
+            for (const char* known :
+                 {protocol::capability::slabs, protocol::capability::scanValues})
                 welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
             std::vector<std::uint8_t> frame;
@@ -330,6 +331,15 @@ struct FakeServer::Impl {
                 case ClientMessage::kMeasureFlat:
                     if (misbehaviour.closesAtWallQuestions) return;
                     if (!misbehaviour.silentAboutTheWall) write(stream, aboutFakeWall(message));
+                    break;
+                case ClientMessage::kMeasureScan:
+                    if (misbehaviour.old) return;
+                    if (misbehaviour.dropAtQuestions > 0) {
+                        --misbehaviour.dropAtQuestions;
+                        return;
+                    }
+                    *answer.mutable_scan_statistics() = fakeStatistics(message.measure_scan());
+                    write(stream, answer);
                     break;
                 case ClientMessage::kSetTransferFunction:
                     if (!message.set_transfer_function().has_optics() &&

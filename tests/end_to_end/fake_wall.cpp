@@ -40,6 +40,23 @@ protocol::FlatMeasure measured(const protocol::MeasureFlat& question) {
 
 }  // namespace
 
+protocol::ScanStatistics fakeStatistics(const protocol::MeasureScan& question) {
+    const auto vector = [](const protocol::Vec3& v) { return glm::dvec3(v.x(), v.y(), v.z()); };
+    const glm::dvec3 slope(2, 3, 1), a = vector(question.half_a_mm()),
+                                     b = vector(question.half_b_mm());
+    const double change = std::hypot(glm::dot(slope, a), glm::dot(slope, b));
+    protocol::ScanStatistics found;
+    found.set_request(question.request());
+    found.set_samples(change > 0.0 ? 1000 : 1);
+    found.set_mean_hu(glm::dot(slope, vector(question.center_mm())) +
+                      (question.cleansed() ? 1000.0 : 0.0));
+    found.set_deviation_hu(0.5 * change);
+    found.set_least_hu(found.mean_hu() - change);
+    found.set_greatest_hu(found.mean_hu() + change);
+    found.set_area_mm2(std::numbers::pi * glm::length(glm::cross(a, b)));
+    return found;
+}
+
 Centerline fakeCenterline() {
     Centerline path;
     for (int n = 0; n <= 600; ++n) {

@@ -20,4 +20,8 @@ protocol::WallPlace fakePlace(glm::dvec2 flat);
 /// MeasureFlat (as on a cylinder), a refusal where the place is not on the strip.
 protocol::ServerMessage aboutFakeWall(const protocol::ClientMessage& question);
 
+/// Of a scan whose value at (x, y, z) mm is 2x + 3y + z HU, 1000 more where it is cleansed: what
+/// is known of it without sampling.
+protocol::ScanStatistics fakeStatistics(const protocol::MeasureScan& question);
+
 }  // namespace haustra::tests

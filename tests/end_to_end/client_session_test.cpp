@@ -1,0 +1,125 @@
+// What a client's session asks and is told beside pictures, against a server on the loopback that
+// closes its socket, or is an old one.
+#include "end_to_end/fake_server.h"
+#include "end_to_end/fake_wall.h"
+#include "reader/session.h"
+#include "temporary_folder.h"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace haustra::reader {
+namespace {
+
+using tests::FakeServer;
+using tests::Misbehaviour;
+
+class ClientSession : public ::testing::Test {
+protected:
+    std::unique_ptr<Session> sessionWith(const FakeServer& server,
+                                         const std::string& caseName = "phantom") const {
+        link::ConnectionOptions options;
+        options.address = {"127.0.0.1", server.port()};
+        options.pinning.knownServersFile =
+            temporary_.path() / ("known_servers" + std::to_string(server.port()));
+        options.reconnect = true;
+        return std::make_unique<Session>(options, caseName);
+    }
+    /// False when it takes absurdly long.
+    template <class Done>
+    static bool until(Session& session, const Done& done) {
+        const auto deadline = Clock::now() + std::chrono::seconds(30);
+        while (!done() && Clock::now() < deadline)
+            session.poll(std::chrono::milliseconds(10));
+        return done();
+    }
+    static bool open(Session& session) {
+        return until(session, [&] { return session.phase() == Phase::open; });
+    }
+    static std::vector<Session::ScanAnswer> scanAnswers(Session& session, std::size_t count) {
+        std::vector<Session::ScanAnswer> answers;
+        EXPECT_TRUE(until(session, [&] {
+            for (auto& answer : session.takeScanAnswers())
+                answers.push_back(std::move(answer));
+            return answers.size() >= count;
+        }));
+        return answers;
+    }
+
+    const tests::TemporaryFolder temporary_;
+};
+
+TEST_F(ClientSession, ValuesOfTheScanAreAskedForAndTold) {
+    FakeServer server;
+    const auto session = sessionWith(server);
+    // Before there is a case, too.
+    const auto first = session->measureScan({{3, 4, 5}});
+    ASSERT_TRUE(open(*session));
+    ASSERT_TRUE(session->serverCan("scan-values"));
+    const auto second = session->measureScan({{1, 2, 3}, {4, 0, 0}, {0, 5, 0}, Scan::cleansed});
+    EXPECT_GT(second, first);
+    const auto answers = scanAnswers(*session, 2);
+    ASSERT_EQ(answers.size(), 2u);
+    EXPECT_EQ(answers[0].request, first);
+    ASSERT_TRUE(answers[0].values);
+    EXPECT_EQ(answers[0].values->samples, 1u);
+    EXPECT_EQ(answers[0].values->meanHu, 2 * 3 + 3 * 4 + 5);
+    EXPECT_EQ(answers[1].request, second);
+    ASSERT_TRUE(answers[1].values);
+    EXPECT_EQ(answers[1].values->meanHu, 2 * 1 + 3 * 2 + 3 + 1000);
+    EXPECT_NEAR(answers[1].values->deviationHu, 0.5 * std::hypot(8, 15), 1e-12);
+    EXPECT_NEAR(answers[1].values->areaMm2, std::numbers::pi * 20, 1e-12);
+    EXPECT_TRUE(session->takeScanAnswers().empty());
+    EXPECT_TRUE(session->takeWallAnswers().empty());
+}
+
+TEST_F(ClientSession, WhatALostLinkLeftUnansweredIsAskedAgain) {
+    Misbehaviour wrong;
+    wrong.dropAtQuestions = 1;
+    FakeServer server(wrong);
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(open(*session));
+    const auto request = session->measureScan({{1, 1, 1}});
+    const auto answers = scanAnswers(*session, 1);
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].request, request);
+    EXPECT_TRUE(answers[0].values);
+    EXPECT_EQ(server.connections(), 2);
+    // Another case forgets what was asked of the one before.
+    session->measureScan({{2, 2, 2}});
+    session->openCase("phantom");
+    ASSERT_TRUE(open(*session));
+    const auto last = session->measureScan({{3, 3, 3}});
+    for (const auto& answer : scanAnswers(*session, 1))
+        EXPECT_EQ(answer.request, last);
+}
+
+TEST_F(ClientSession, AnOldServerIsNotAskedWhatItDoesNotKnow) {
+    Misbehaviour wrong;
+    wrong.old = true;
+    FakeServer server(wrong);
+    const auto session = sessionWith(server);
+    const auto early = session->measureScan({{1, 1, 1}});
+    ASSERT_TRUE(open(*session));
+    EXPECT_FALSE(session->serverCan("scan-values"));
+    const auto late = session->measureScan({{2, 2, 2}});
+    const auto answers = scanAnswers(*session, 2);
+    ASSERT_EQ(answers.size(), 2u);
+    EXPECT_EQ(answers[0].request, early);
+    EXPECT_EQ(answers[1].request, late);
+    for (const auto& answer : answers) {
+        ASSERT_FALSE(answer.values);
+        EXPECT_EQ(answer.values.error().kind, ErrorKind::unsupported);
+    }
+    // The session is as it was.
+    const auto list = session->requestBookmarks();
+    ASSERT_TRUE(until(*session, [&] { return session->answeredBookmarkRequest() >= list; }));
+    EXPECT_EQ(server.connections(), 1);
+    EXPECT_EQ(session->phase(), Phase::open);
+}
+
+}  // namespace
+}  // namespace haustra::reader

@@ -1,0 +1,135 @@
+// What the real haustra-server says about the values of an open case's scan.
+#include "core/scan_values.h"
+#include "end_to_end/flat_store.h"
+#include "end_to_end/server_test_client.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace haustra::tests {
+namespace {
+
+using protocol::ClientMessage;
+using protocol::ErrorReport;
+using protocol::ServerMessage;
+
+class ServerQuestions : public FlatServer {
+protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        makeFlatStore(folder_->path(), tube());
+        auto store = store::CaseStore::open(folder_->path(), false).value();
+        const auto key = [](const char* stage) { return store::makeKey(stage, 3, "", {}); };
+        {
+            const SmallCase small = makeSmallCase();
+            auto made = store.createCase("cleansed").value();
+            ASSERT_TRUE(made.publishVolume("ct", key("ct"), small.ct));
+            ASSERT_TRUE(made.publishVolume("cleansed", key("cleansed"), small.cleansed));
+        }
+        server_ = std::make_unique<ServerProcess>(folder_->path());
+    }
+    static std::unique_ptr<TestClient> reader(const std::string& name) {
+        auto client = std::make_unique<TestClient>(server_->port());
+        const auto welcome = client->hello();
+        EXPECT_TRUE(welcome && welcome->has_welcome());
+        const auto opened = client->openCase(name);
+        EXPECT_TRUE(opened && opened->has_case_opened());
+        return client;
+    }
+    static ServerMessage ask(TestClient& client, const ClientMessage& question) {
+        client.send(question);
+        const auto answer = client.answer();
+        if (!answer) throw std::runtime_error("no answer came");
+        return *answer;
+    }
+    static void expectRefusal(const ServerMessage& answer, ErrorReport::Code code,
+                              std::uint64_t request) {
+        ASSERT_TRUE(answer.has_error()) << answer.ShortDebugString();
+        EXPECT_EQ(answer.error().code(), code) << answer.error().message();
+        EXPECT_EQ(answer.error().request(), request);
+        EXPECT_FALSE(answer.error().fatal());
+    }
+    static void set(protocol::Vec3* out, glm::dvec3 v) { TestClient::set(out, {v.x, v.y, v.z}); }
+
+    static ClientMessage measure(std::uint64_t request, const ScanRegion& region) {
+        ClientMessage message;
+        auto* body = message.mutable_measure_scan();
+        body->set_request(request);
+        set(body->mutable_center_mm(), region.centerMm);
+        set(body->mutable_half_a_mm(), region.halfAMm);
+        set(body->mutable_half_b_mm(), region.halfBMm);
+        body->set_cleansed(region.scan == Scan::cleansed);
+        body->mutable_slab()->set_thickness_mm(region.slab.thicknessMm);
+        if (region.slab.projection == Projection::maximum)
+            body->mutable_slab()->set_projection(protocol::MAXIMUM);
+        return message;
+    }
+};
+
+TEST_F(ServerQuestions, ValuesOfTheScanAreThoseOfTheFile) {
+    const SmallCase truth = makeSmallCase();
+    const auto client = reader("cleansed");
+    const Grid& grid = truth.ct.grid();
+    std::uint64_t request = 0;
+    const auto expectSame = [&](const ScanRegion& region) {
+        const auto answer = ask(*client, measure(++request, region));
+        ASSERT_TRUE(answer.has_scan_statistics()) << answer.ShortDebugString();
+        const auto& told = answer.scan_statistics();
+        const auto expected =
+            measureScan(region.scan == Scan::cleansed ? truth.cleansed : truth.ct, region);
+        ASSERT_TRUE(expected);
+        EXPECT_EQ(told.request(), request);
+        EXPECT_EQ(told.samples(), expected->samples);
+        EXPECT_EQ(told.mean_hu(), expected->meanHu);
+        EXPECT_EQ(told.deviation_hu(), expected->deviationHu);
+        EXPECT_EQ(told.least_hu(), expected->leastHu);
+        EXPECT_EQ(told.greatest_hu(), expected->greatestHu);
+        EXPECT_EQ(told.area_mm2(), expected->areaMm2);
+    };
+    // Where cleansing has changed most: in the pool of tagged fluid.
+    std::size_t tagged = 0;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+        if (truth.ct[n] - truth.cleansed[n] > truth.ct[tagged] - truth.cleansed[tagged]) tagged = n;
+    const glm::dvec3 pool = grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(tagged)));
+    for (const Scan scan : {Scan::original, Scan::cleansed}) {
+        expectSame({pool, {}, {}, scan});
+        expectSame({pool, {6, 1, 0}, {0, 3, 2}, scan});
+        expectSame({pool, {6, 1, 0}, {0, 3, 2}, scan, {5.0, Projection::maximum}});
+    }
+    // Half beyond the scan's border, and all of it.
+    const glm::dvec3 corner = grid.patientFromVoxelPoint(glm::dvec3(-0.5));
+    expectSame({corner, {7, 0, 0}, {0, 7, 0}, Scan::original, {4.0}});
+    const auto nothing = ask(*client, measure(99, {pool + glm::dvec3(1e5, 0, 0)}));
+    ASSERT_TRUE(nothing.has_scan_statistics());
+    EXPECT_EQ(nothing.scan_statistics().samples(), 0u);
+}
+
+TEST_F(ServerQuestions, RegionsThatAreNoneAreRefusedAndTheSessionGoesOn) {
+    const auto client = reader("scan");
+    const glm::dvec3 x(5, 0, 0), y(0, 5, 0);
+    const double nan = std::nan("");
+    std::uint64_t request = 0;
+    for (const ScanRegion& bad :
+         {ScanRegion{{nan, 0, 0}}, ScanRegion{{2e6, 0, 0}}, ScanRegion{{}, x, {}},
+          ScanRegion{{}, x, 2.0 * x}, ScanRegion{{}, nan * x, y}, ScanRegion{{}, 101.0 * x, y},
+          ScanRegion{{}, x, y, Scan::original, {101.0}},
+          ScanRegion{{}, x, y, Scan::original, {nan}},
+          ScanRegion{{}, 90.0 * x, 90.0 * y, Scan::original, {100.0}},
+          ScanRegion{{}, x, y, Scan::cleansed}}) {
+        ++request;
+        expectRefusal(ask(*client, measure(request, bad)), ErrorReport::BAD_VALUE, request);
+    }
+    auto strange = measure(++request, {{}, x, y});
+    strange.mutable_measure_scan()->mutable_slab()->set_projection(protocol::Projection(7));
+    expectRefusal(ask(*client, strange), ErrorReport::BAD_VALUE, request);
+    EXPECT_TRUE(ask(*client, measure(++request, {})).has_scan_statistics());
+
+    TestClient early(server_->port());
+    ASSERT_TRUE(early.hello());
+    expectRefusal(ask(early, measure(3, {})), ErrorReport::BAD_STATE, 3);
+}
+
+}  // namespace
+}  // namespace haustra::tests
