@@ -9,5 +9,6 @@ inline constexpr char jpeg[] = "jpeg", lossless[] = "lossless", coarse[] = "coar
 // ---- a server: what it may be asked
 inline constexpr char slabs[] = "slabs";             ///< slices with a slab, moved by a pan
 inline constexpr char scanValues[] = "scan-values";  ///< MeasureScan
+inline constexpr char pick[] = "pick";               ///< PickWall
 
 }  // namespace haustra::protocol::capability

@@ -43,17 +43,26 @@ void FlatReading::goTo(glm::dvec2 flat, bool center) {
     if (!hasStrip()) return;
     flat.y = std::clamp(flat.y, 0.0, case_->flat->height);
     centerPicked_ = center;
+    cameraStays_ = false;
     wall_.pick(flat);
+}
+
+void FlatReading::pick(glm::dvec3 fromMm, glm::dvec3 direction) {
+    centerPicked_ = cameraStays_ = true;
+    wall_.pick(fromMm, direction);
 }
 
 std::optional<WallPlace> FlatReading::takePicked() {
     const auto place = wall_.takePicked();
     if (!place) return std::nullopt;
     tour_.setMotion(Motion::paused);
-    flight_.lookAt(place->arcMm, place->positionMm);
+    if (cameraStays_)
+        flight_.setMotion(Motion::paused);
+    else
+        flight_.lookAt(place->arcMm, place->positionMm);
     // The camera's new place is not followed: slices and window show what was picked.
     followedArcMm_ = flight_.placeArcMm();
-    if (centerPicked_) tour_.centerOn(place->flat);
+    if (centerPicked_ && place->flat) tour_.centerOn(*place->flat);
     followedY_ = tour_.window().center.y;
     picked_ = place;
     return place;

@@ -30,7 +30,10 @@ public:
     /// Goes to a place of the flattened wall: once the server has said where it is, the camera
     /// looks at it, slices show it, and with `center` the zoom view has it in its middle.
     void goTo(glm::dvec2 flat, bool center);
-    /// The place that was gone to last, until the camera moves on.
+    /// Picks the place of the wall that a ray from the camera meets: the camera stays, slices show
+    /// the place, and the zoom view has it in its middle. Of any case, flattened or not.
+    void pick(glm::dvec3 fromMm, glm::dvec3 direction);
+    /// The place that was picked or gone to last, until the camera moves on.
     const std::optional<WallPlace>& picked() const { return picked_; }
     WallQuestions& wall() { return wall_; }
     const WallQuestions& wall() const { return wall_; }
@@ -41,7 +44,7 @@ public:
     void forgetSeen();
 
     /// One step of the loop: takes in the server's answers, and moves flight and window on by
-    /// `seconds`. The place that has just been reached by goTo(), if any.
+    /// `seconds`. The place that has just been reached by goTo() or pick(), if any.
     std::optional<WallPlace> update(double seconds);
 
 private:
@@ -54,7 +57,7 @@ private:
     StripTour tour_;
     WallQuestions wall_{session_};
     std::optional<WallPlace> picked_;
-    bool centerPicked_ = false;
+    bool centerPicked_ = false, cameraStays_ = false;
     double followedArcMm_ = 0.0, followedY_ = 0.0;  // of camera and tour, when last one led
 };
 

@@ -3,6 +3,7 @@
 
 #include "core/strip_layout.h"
 
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -27,9 +28,9 @@ struct FlatStrip {
 
 /// One place of the wall: in the strip, in the patient, and the camera that looks at it.
 struct WallPlace {
-    glm::dvec2 flat{0.0};
+    std::optional<glm::dvec2> flat;  ///< none where the case has no strip, or this lies beside it
     glm::dvec3 positionMm{0.0};
-    std::uint32_t triangle = 0;  ///< of the closed surface
+    std::uint32_t triangle = 0;  ///< of the closed surface, where there is one
     double arcMm = 0.0;          ///< of the camera, along the path
     glm::dvec3 cameraMm{0.0};
 };

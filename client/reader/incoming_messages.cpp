@@ -156,14 +156,14 @@ Bookmark bookmarkFrom(const protocol::Bookmark& message) {
 
 Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
     WallPlace place;
-    place.flat = {message.flat().x(), message.flat().y()};
+    if (message.has_flat()) place.flat = {message.flat().x(), message.flat().y()};
     place.positionMm = protocol::vectorFrom(message.position_mm());
     place.triangle = message.triangle();
     place.arcMm = message.arc_mm();
     place.cameraMm = protocol::vectorFrom(message.camera_mm());
     const glm::dvec3 sum = place.positionMm + place.cameraMm;
-    const bool inStrip = place.flat.x >= 0.0 && place.flat.x < 1.0 && place.flat.y >= 0.0 &&
-                         place.flat.y <= maxFlatHeight;
+    const bool inStrip = !place.flat || (place.flat->x >= 0.0 && place.flat->x < 1.0 &&
+                                         place.flat->y >= 0.0 && place.flat->y <= maxFlatHeight);
     if (!inStrip || !std::isfinite(sum.x + sum.y + sum.z + place.arcMm))
         return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
     return place;

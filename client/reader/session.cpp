@@ -93,6 +93,16 @@ protocol::ClientMessage measureMessage(std::uint64_t request, const std::vector<
     return message;
 }
 
+protocol::ClientMessage pickMessage(std::uint64_t request, glm::dvec3 positionMm,
+                                    glm::dvec3 direction) {
+    protocol::ClientMessage message;
+    auto* body = message.mutable_pick_wall();
+    body->set_request(request);
+    protocol::fill(*body->mutable_position_mm(), positionMm);
+    protocol::fill(*body->mutable_direction(), direction);
+    return message;
+}
+
 protocol::ClientMessage scanMessage(std::uint64_t request, const ScanRegion& region) {
     protocol::ClientMessage message;
     auto* body = message.mutable_measure_scan();
@@ -108,6 +118,7 @@ protocol::ClientMessage scanMessage(std::uint64_t request, const ScanRegion& reg
 /// The capability without which a server does not know a question; null of those that every server
 /// knows.
 const char* neededBy(const protocol::ClientMessage& question) {
+    if (question.has_pick_wall()) return protocol::capability::pick;
     return question.has_measure_scan() ? protocol::capability::scanValues : nullptr;
 }
 
@@ -418,6 +429,9 @@ std::uint64_t Session::locate(glm::dvec2 flat) {
 }
 std::uint64_t Session::locate(glm::dvec3 positionMm) {
     return ask(locateMessage(++request_, positionMm));
+}
+std::uint64_t Session::pick(glm::dvec3 positionMm, glm::dvec3 direction) {
+    return ask(pickMessage(++request_, positionMm, direction));
 }
 std::uint64_t Session::askSeen(bool forget) {
     protocol::ClientMessage message;

@@ -131,6 +131,9 @@ public:
     std::uint64_t locate(glm::dvec2 flat);
     std::uint64_t locate(glm::dvec3 positionMm);
     std::uint64_t measure(const std::vector<glm::dvec2>& points, bool closed);
+    /// The first place of the wall that a ray from a camera (core's rayThrough) meets. Of any case;
+    /// of a server without protocol::capability::pick, as measureScan.
+    std::uint64_t pick(glm::dvec3 positionMm, glm::dvec3 direction);
     struct WallAnswer {
         std::uint64_t request;
         Result<std::variant<WallPlace, FlatMeasure>> body;

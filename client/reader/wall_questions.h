@@ -30,6 +30,8 @@ public:
 
     /// A click on the flattened wall.
     void pick(glm::dvec2 flat) { pick_ = session_.locate(flat); }
+    /// A click in the endoscopic view.
+    void pick(glm::dvec3 fromMm, glm::dvec3 direction) { pick_ = session_.pick(fromMm, direction); }
     /// The place of the newest click, once.
     std::optional<WallPlace> takePicked() { return std::exchange(picked_, std::nullopt); }
 

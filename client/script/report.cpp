@@ -28,7 +28,8 @@ ordered_json jsonOf(glm::dvec3 v) {
 }
 
 ordered_json jsonOf(const WallPlace& place) {
-    return {{"flat", ordered_json::array({place.flat.x, place.flat.y})},
+    return {{"flat", place.flat ? ordered_json::array({place.flat->x, place.flat->y})
+                                : ordered_json(nullptr)},
             {"position_mm", jsonOf(place.positionMm)},
             {"triangle", place.triangle},
             {"arc_mm", place.arcMm},

@@ -69,9 +69,9 @@ void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
     list->AddTriangleFilled({area.max.x, row - tip}, {area.max.x, row + tip},
                             {area.max.x - tip, row}, color::accent);
     for (const auto& [key, place] : reader.flat().wall().bookmarkPlaces())
-        flat.forEachCopy(place.flat, [&](ImVec2 p) { drawFlag(ui, list, p); });
-    if (const auto& picked = reader.flat().picked())
-        flat.forEachCopy(picked->flat, [&](ImVec2 p) { drawPickedCross(ui, list, p); });
+        if (place.flat) flat.forEachCopy(*place.flat, [&](ImVec2 p) { drawFlag(ui, list, p); });
+    if (const auto& picked = reader.flat().picked(); picked && picked->flat)
+        flat.forEachCopy(*picked->flat, [&](ImVec2 p) { drawPickedCross(ui, list, p); });
 }
 
 // ---- the strip --------------------------------------------------------------------------------

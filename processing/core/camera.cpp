@@ -1,6 +1,7 @@
 #include "core/camera.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace haustra {
 
@@ -27,6 +28,18 @@ Result<void> checkCamera(const Camera& camera) {
         return fail(ErrorKind::badInput, "the forward and up directions are zero or parallel",
                     "camera");
     return {};
+}
+
+std::optional<glm::dvec3> rayThrough(const Camera& camera, glm::dvec2 heightsFromMiddle) {
+    const glm::dvec3 ahead = glm::normalize(camera.forward);
+    const glm::dvec3 right = glm::normalize(glm::cross(ahead, camera.up));
+    const glm::dvec3 down = glm::cross(ahead, right);
+    const glm::dvec3 aside = 2.0 * (heightsFromMiddle.x * right + heightsFromMiddle.y * down);
+    const double half = glm::radians(0.5 * camera.fovDegrees), length = glm::length(aside);
+    if (camera.lens == Lens::perspective) return glm::normalize(ahead + std::tan(half) * aside);
+    if (camera.lens == Lens::orthographic || half * length > std::numbers::pi) return std::nullopt;
+    if (length == 0.0) return ahead;
+    return std::cos(half * length) * ahead + std::sin(half * length) / length * aside;
 }
 
 }  // namespace haustra

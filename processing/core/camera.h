@@ -3,6 +3,8 @@
 
 #include "core/result.h"
 
+#include <optional>
+
 #include <glm/glm.hpp>
 
 namespace haustra {
@@ -33,5 +35,11 @@ bool isFinite(glm::dvec3 v);
 /// Says (badInput) what is wrong with a camera: field of view, height, directions finite and not
 /// parallel.
 Result<void> checkCamera(const Camera& camera);
+
+/// The unit direction in which a camera that has passed its check sees the place of its picture
+/// that lies so many heights of the picture from its middle, x to the right and y down. None where
+/// a fisheye shows nothing, and of an orthographic camera, whose rays have one direction and begin
+/// beside it.
+std::optional<glm::dvec3> rayThrough(const Camera& camera, glm::dvec2 heightsFromMiddle);
 
 }  // namespace haustra

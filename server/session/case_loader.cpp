@@ -29,7 +29,7 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
     }
     if (files.surface) {
         if (auto surface = readSurface(source))
-            prepared.wall = std::move(*surface);
+            prepared.wall = files.facts.surface = std::move(*surface);
         else
             spdlog::warn("a case's overview has no colon: {}", surface.error().message);
     }

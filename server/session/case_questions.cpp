@@ -21,6 +21,35 @@ Result<CaseAnswer> answerTo(const OpenCase& of, const ScanRegion& region) {
     return found;
 }
 
+/// As the path has it, of a place that the strip does not.
+WallPlace placeBeside(const OpenCase& of, const PickRay& ray, const MetTriangle& met) {
+    WallPlace place;
+    place.positionMm = met.positionMm;
+    place.sourceTriangle = met.triangle;
+    place.cameraMm = ray.fromMm;
+    if (of.centerline.points.empty()) return place;
+    place.arcMm = nearestArc(of.centerline, met.positionMm);
+    place.cameraMm = poseAtArc(of.centerline, place.arcMm).point.positionMm;
+    return place;
+}
+
+Result<CaseAnswer> answerTo(const OpenCase& of, const PickRay& ray) {
+    if (of.wall) {
+        if (const auto met = of.wall->painter->sight().firstMet(ray.fromMm, ray.direction)) {
+            const auto place = of.wall->lookup.at(met->flat);
+            return place ? *place : of.wall->lookup.nearest(met->positionMm);
+        }
+    } else if (of.surface) {
+        if (const auto met = firstMet(*of.surface, ray)) return placeBeside(of, ray, *met);
+    }
+    const auto& shown = of.cleansedScan ? of.cleansedScan : of.ct;
+    const auto tissue = firstTissue(*shown, ray);
+    if (!store::isWhole(shown->voxels().data()))
+        return fail(ErrorKind::io, "the scan was cut short, or its disk fails", of.name);
+    if (!tissue) return fail(ErrorKind::badInput, "no wall lies in this direction", "wall");
+    return placeBeside(of, ray, {-1, *tissue});
+}
+
 }  // namespace
 
 Result<CaseAnswer> answer(const OpenCase& of, const CaseQuestion& question) {

@@ -142,6 +142,15 @@ Result<CaseQuestion> questionFrom(const protocol::MeasureScan& message, const Op
     return region;
 }
 
+Result<CaseQuestion> questionFrom(const protocol::PickWall& message, const OpenCase&) {
+    const auto position = TRY(protocol::positionFrom(message.position_mm()));
+    const glm::dvec3 direction = protocol::vectorFrom(message.direction());
+    const double length = glm::length(direction);
+    if (!std::isfinite(length) || !(length > 0.0))
+        return refuse("the direction is zero, or no number", "wall");
+    return PickRay{position, direction / length};
+}
+
 // ---- to clients -------------------------------------------------------------------------------
 
 std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message) {
@@ -225,10 +234,9 @@ protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t reques
     if (const auto* place = std::get_if<WallPlace>(&answer)) {
         auto* body = message.mutable_wall_place();
         body->set_request(request);
-        body->mutable_flat()->set_x(place->flat.x);
-        body->mutable_flat()->set_y(place->flat.y);
+        if (place->flatTriangle >= 0) protocol::fill(*body->mutable_flat(), place->flat);
         protocol::fill(*body->mutable_position_mm(), place->positionMm);
-        body->set_triangle(std::uint32_t(place->sourceTriangle));
+        body->set_triangle(std::uint32_t(std::max(place->sourceTriangle, 0)));
         body->set_arc_mm(place->arcMm);
         protocol::fill(*body->mutable_camera_mm(), place->cameraMm);
         return message;

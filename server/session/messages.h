@@ -34,9 +34,11 @@ Result<CaseQuestion> questionFrom(const protocol::LocatePoint& message, const Op
 Result<CaseQuestion> questionFrom(const protocol::MeasureFlat& message, const OpenCase& of);
 /// Of any.
 Result<CaseQuestion> questionFrom(const protocol::MeasureScan& message, const OpenCase& of);
+Result<CaseQuestion> questionFrom(const protocol::PickWall& message, const OpenCase& of);
 template <class Question>
 bool asksAboutStrip(const Question&) {
-    return !std::is_same_v<Question, protocol::MeasureScan>;
+    return !std::is_same_v<Question, protocol::MeasureScan> &&
+           !std::is_same_v<Question, protocol::PickWall>;
 }
 
 /// How much of a session's share of unanswered requests a question takes.
@@ -50,6 +52,9 @@ inline int weightOf(const protocol::MeasureFlat&) {
     return protocol::measurementWeight;
 }
 inline int weightOf(const protocol::MeasureScan&) {
+    return protocol::measurementWeight;
+}
+inline int weightOf(const protocol::PickWall&) {
     return protocol::measurementWeight;
 }
 

@@ -33,7 +33,8 @@ struct OpenCase {
     /// Memory-mapped, for questions about single values; the renderer has its own.
     std::shared_ptr<const Volume<std::int16_t>> ct;
     std::shared_ptr<const Volume<std::int16_t>> cleansedScan;  ///< empty where there is none
-    std::shared_ptr<const Wall> wall;  ///< empty where the case has not been flattened
+    std::shared_ptr<const TriMesh> surface;  ///< the wall's mesh, where the case has it
+    std::shared_ptr<const Wall> wall;        ///< empty where the case has not been flattened
     /// What draws it, and what was measured to choose it (nothing where it was not).
     RaycasterKind raycaster = RaycasterKind::singlePass;
     std::vector<render::RaycasterTrial> trials;

@@ -97,6 +97,8 @@ void Session::dispatch(const ClientMessage& message) {
             return handleQuestion(message.measure_flat());
         case ClientMessage::kMeasureScan:
             return handleQuestion(message.measure_scan());
+        case ClientMessage::kPickWall:
+            return handleQuestion(message.pick_wall());
         case ClientMessage::kAddBookmark:
             return handle(message.add_bookmark());
         case ClientMessage::kListBookmarks:
@@ -157,7 +159,7 @@ void Session::handle(const protocol::Hello& hello) {
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
     for (const char* known : {capability::jpeg, capability::lossless, capability::coarse,
-                              capability::slabs, capability::scanValues})
+                              capability::slabs, capability::scanValues, capability::pick})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());

@@ -98,15 +98,32 @@ TEST_F(ClientFlatReader, AClickOnTheStripLeadsAllViewsThere) {
               reader_->flight().camera().positionMm);
 }
 
+TEST_F(ClientFlatReader, AClickOnTheWallBeforeTheCameraLeavesItWhereItIs) {
+    reader_->flight().goTo(150.0);
+    reader_->flight().setMotion(Motion::forward);
+    const Camera camera = reader_->flight().camera();
+    reader_->flat().pick(camera.positionMm, {1, 0, 0});
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
+    EXPECT_EQ(reader_->flight().motion(), Motion::paused);
+    const WallPlace picked = *reader_->flat().picked();
+    EXPECT_LT(
+        glm::distance(picked.positionMm, camera.positionMm + glm::dvec3(tests::fakeRadiusMm, 0, 0)),
+        1e-9);
+    EXPECT_EQ(reader_->flat().tour().window().center, *picked.flat);
+    ASSERT_TRUE(runUntil([&] { return atRest(); }));
+    EXPECT_EQ(reader_->panes().shown<SliceView>(View::axial)->positionMm, picked.positionMm);
+    EXPECT_TRUE(reader_->flat().picked());
+}
+
 TEST_F(ClientFlatReader, AClickInTheWindowLeavesItWhereItIs) {
     reader_->flat().tour().centerOn({0.5, 3.0});
     reader_->flat().goTo({1.2, 3.1}, false);  // past the seam
     ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
-    EXPECT_NEAR(reader_->flat().picked()->flat.x, 0.2, 1e-9);
+    EXPECT_NEAR(reader_->flat().picked()->flat->x, 0.2, 1e-9);
     EXPECT_EQ(reader_->flat().tour().window().center, glm::dvec2(0.5, 3.0));
     EXPECT_NEAR(reader_->flight().arcMm(), 3.1 / 6.0 * length(), 1e-9);
     reader_->flat().goTo({0.5, 99.0}, false);  // held to the strip
-    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked()->flat.y == 6.0; }));
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked()->flat->y == 6.0; }));
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
 }
 
@@ -149,7 +166,7 @@ TEST_F(ClientFlatReader, BookmarksFindTheirPlaceOnTheStrip) {
     ASSERT_TRUE(runUntil([&] { return reader_->flat().wall().bookmarkPlaces().size() == 3; }));
     for (const Bookmark& bookmark : reader_->session().bookmarks()) {
         const WallPlace& place = reader_->flat().wall().bookmarkPlaces().at(bookmark.clientKey);
-        EXPECT_NEAR(place.flat.y, 6.0 * bookmark.arcMm / length(), 0.2);
+        EXPECT_NEAR(place.flat->y, 6.0 * bookmark.arcMm / length(), 0.2);
     }
 }
 
@@ -192,6 +209,14 @@ TEST_F(ClientFlatReaderWithoutStrip, NothingOfItIsAskedFor) {
     EXPECT_EQ(reader_->panes().pictureCount(View::flattened), 0u);
     EXPECT_EQ(reader_->panes().pictureCount(View::flattenedZoom), 0u);
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
+    // A place before the camera can be picked all the same.
+    const glm::dvec3 from = reader_->flight().camera().positionMm;
+    reader_->flat().pick(from, {0, 1, 0});
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
+    EXPECT_FALSE(reader_->flat().picked()->flat);
+    EXPECT_LT(glm::distance(reader_->slices().slice(View::axial).positionMm,
+                            from + glm::dvec3(0, tests::fakeRadiusMm, 0)),
+              1e-9);
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ TEST_F(ClientHeadless, TheFlattenedWallIsSeenLocatedAndMeasured) {
     EXPECT_NEAR(place["arc_mm"], truth.arc_mm(), 1e-9);
     EXPECT_NEAR(place["position_mm"][1], truth.position_mm().y(), 1e-9);
     EXPECT_EQ(place["triangle"], truth.triangle());
-    EXPECT_NEAR(report.actions[5].place->flat.y, 0.0, 1e-9);
+    EXPECT_NEAR(report.actions[5].place->flat->y, 0.0, 1e-9);
     EXPECT_NEAR(report.actions[6].measure->lengthMm, 0.2 * tests::fakeCircumferenceMm, 1e-9);
     EXPECT_NEAR(report.actions[7].measure->areaMm2, 0.01 * 90.0 * 90.0, 1e-9);
     const auto json = nlohmann::json::parse(toJson(report));
@@ -229,7 +229,7 @@ TEST_F(ClientHeadless, AQuestionThatTheLostLinkSwallowedIsAskedAgain) {
     }));
     EXPECT_EQ(answers.front().request, request);
     ASSERT_TRUE(answers.front().body);
-    EXPECT_EQ(std::get<WallPlace>(*answers.front().body).flat.y, 1.0);
+    EXPECT_EQ(std::get<WallPlace>(*answers.front().body).flat->y, 1.0);
     EXPECT_EQ(dropping.connections(), 2);
 }
 

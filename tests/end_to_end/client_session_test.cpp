@@ -76,6 +76,33 @@ TEST_F(ClientSession, ValuesOfTheScanAreAskedForAndTold) {
     EXPECT_TRUE(session->takeWallAnswers().empty());
 }
 
+TEST_F(ClientSession, AWallIsPickedWithAndWithoutAStrip) {
+    for (const bool flattened : {true, false}) {
+        Misbehaviour bare;
+        bare.notFlattened = !flattened;
+        FakeServer server(bare);
+        const auto session = sessionWith(server);
+        const auto hit = session->pick({1, 2, 3}, {0, 0, 7});
+        ASSERT_TRUE(open(*session));
+        const auto missed = session->pick({1, 2, 3}, {0, 0, -1});
+        std::vector<Session::WallAnswer> answers;
+        ASSERT_TRUE(until(*session, [&] {
+            for (auto& answer : session->takeWallAnswers())
+                answers.push_back(std::move(answer));
+            return answers.size() >= 2;
+        }));
+        EXPECT_EQ(answers[0].request, hit);
+        ASSERT_TRUE(answers[0].body);
+        const auto& place = std::get<WallPlace>(*answers[0].body);
+        EXPECT_LT(glm::distance(place.positionMm, glm::dvec3(1, 2, 3 + tests::fakeRadiusMm)), 1e-9);
+        EXPECT_EQ(place.flat.has_value(), flattened);
+        EXPECT_EQ(answers[1].request, missed);
+        EXPECT_FALSE(answers[1].body);
+        EXPECT_EQ(session->takeRefusals().size(), 1u);
+        EXPECT_EQ(session->phase(), Phase::open);
+    }
+}
+
 TEST_F(ClientSession, WhatALostLinkLeftUnansweredIsAskedAgain) {
     Misbehaviour wrong;
     wrong.dropAtQuestions = 1;

@@ -241,8 +241,8 @@ struct FakeServer::Impl {
         welcome.mutable_welcome()->set_software("fake-server 1");
         welcome.mutable_welcome()->set_renderer("none");
         if (!misbehaviour.old)
-            for (const char* known :
-                 {protocol::capability::slabs, protocol::capability::scanValues})
+            for (const char* known : {protocol::capability::slabs, protocol::capability::scanValues,
+                                      protocol::capability::pick})
                 welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
             std::vector<std::uint8_t> frame;
@@ -331,6 +331,10 @@ struct FakeServer::Impl {
                 case ClientMessage::kMeasureFlat:
                     if (misbehaviour.closesAtWallQuestions) return;
                     if (!misbehaviour.silentAboutTheWall) write(stream, aboutFakeWall(message));
+                    break;
+                case ClientMessage::kPickWall:
+                    if (misbehaviour.old) return;
+                    write(stream, fakePick(message.pick_wall(), !misbehaviour.notFlattened));
                     break;
                 case ClientMessage::kMeasureScan:
                     if (misbehaviour.old) return;

@@ -40,6 +40,28 @@ protocol::FlatMeasure measured(const protocol::MeasureFlat& question) {
 
 }  // namespace
 
+protocol::ServerMessage fakePick(const protocol::PickWall& question, bool flattened) {
+    protocol::ServerMessage answer;
+    const glm::dvec3 from(question.position_mm().x(), question.position_mm().y(),
+                          question.position_mm().z());
+    const glm::dvec3 along = glm::normalize(
+        glm::dvec3(question.direction().x(), question.direction().y(), question.direction().z()));
+    if (along.z < -0.999) {
+        answer.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);
+        answer.mutable_error()->set_message("no wall lies in this direction");
+        answer.mutable_error()->set_request(question.request());
+        return answer;
+    }
+    const Centerline path = fakeCenterline();
+    const double arc = nearestArc(path, from);
+    auto* place = answer.mutable_wall_place();
+    *place = fakePlace({0.75, arc / path.lengthMm() * fakeStripHeight});
+    if (!flattened) place->clear_flat();
+    place->set_request(question.request());
+    set(place->mutable_position_mm(), from + fakeRadiusMm * along);
+    return answer;
+}
+
 protocol::ScanStatistics fakeStatistics(const protocol::MeasureScan& question) {
     const auto vector = [](const protocol::Vec3& v) { return glm::dvec3(v.x(), v.y(), v.z()); };
     const glm::dvec3 slope(2, 3, 1), a = vector(question.half_a_mm()),

@@ -20,6 +20,9 @@ protocol::WallPlace fakePlace(glm::dvec2 flat);
 /// MeasureFlat (as on a cylinder), a refusal where the place is not on the strip.
 protocol::ServerMessage aboutFakeWall(const protocol::ClientMessage& question);
 
+/// The wall is fakeRadiusMm from the camera wherever it looks; a ray straight down (−z) meets
+/// nothing, and is refused.
+protocol::ServerMessage fakePick(const protocol::PickWall& question, bool flattened);
 /// Of a scan whose value at (x, y, z) mm is 2x + 3y + z HU, 1000 more where it is cleansed: what
 /// is known of it without sampling.
 protocol::ScanStatistics fakeStatistics(const protocol::MeasureScan& question);

@@ -1,4 +1,5 @@
-// What the real haustra-server says about the values of an open case's scan.
+// What the real haustra-server says about the values of an open case's scan, and the wall before an
+// eye.
 #include "core/scan_values.h"
 #include "end_to_end/flat_store.h"
 #include "end_to_end/server_test_client.h"
@@ -28,6 +29,11 @@ protected:
             ASSERT_TRUE(made.publishVolume("ct", key("ct"), small.ct));
             ASSERT_TRUE(made.publishVolume("cleansed", key("cleansed"), small.cleansed));
         }
+        {
+            auto made = store.createCase("meshed").value();
+            ASSERT_TRUE(made.publishVolume("ct", key("its scan"), tube().scan()));
+            ASSERT_TRUE(made.publishMesh("surface", key("its mesh"), tube().map().surface));
+        }
         server_ = std::make_unique<ServerProcess>(folder_->path());
     }
     static std::unique_ptr<TestClient> reader(const std::string& name) {
@@ -53,6 +59,13 @@ protected:
     }
     static void set(protocol::Vec3* out, glm::dvec3 v) { TestClient::set(out, {v.x, v.y, v.z}); }
 
+    static ClientMessage pick(std::uint64_t request, glm::dvec3 from, glm::dvec3 direction) {
+        ClientMessage message;
+        message.mutable_pick_wall()->set_request(request);
+        set(message.mutable_pick_wall()->mutable_position_mm(), from);
+        set(message.mutable_pick_wall()->mutable_direction(), direction);
+        return message;
+    }
     static ClientMessage measure(std::uint64_t request, const ScanRegion& region) {
         ClientMessage message;
         auto* body = message.mutable_measure_scan();
@@ -129,6 +142,64 @@ TEST_F(ServerQuestions, RegionsThatAreNoneAreRefusedAndTheSessionGoesOn) {
     TestClient early(server_->port());
     ASSERT_TRUE(early.hello());
     expectRefusal(ask(early, measure(3, {})), ErrorReport::BAD_STATE, 3);
+}
+
+TEST_F(ServerQuestions, ARayMeetsTheWallOfFlattenedMeshedAndBareCases) {
+    // From the axis across: the wall's radius is known there, whoever finds it.
+    const auto flattened = reader(smallCaseName), meshed = reader("meshed"), bare = reader("scan");
+    for (const double angle : {0.3, 2.0, 4.4}) {
+        const glm::dvec3 across(7.0 * std::cos(angle), 7.0 * std::sin(angle), 0.0);
+        const glm::dvec3 from(0, 0, 31.0);
+        const auto inStrip = ask(*flattened, pick(4, from, across));
+        ASSERT_TRUE(inStrip.has_wall_place()) << inStrip.ShortDebugString();
+        const auto& place = inStrip.wall_place();
+        EXPECT_EQ(place.request(), 4u);
+        ASSERT_TRUE(place.has_flat());
+        EXPECT_NEAR(place.flat().x(), angle / (2.0 * std::numbers::pi), 1e-3);
+        const glm::dvec3 wall = tube().positionMm({place.flat().x(), place.flat().y()});
+        const auto at = [](const ServerMessage& answer) {
+            const auto& p = answer.wall_place().position_mm();
+            return glm::dvec3(p.x(), p.y(), p.z());
+        };
+        EXPECT_LT(glm::distance(at(inStrip), wall), 0.3);
+        EXPECT_NEAR(at(inStrip).z, 31.0, 1e-3);
+        EXPECT_NEAR(place.arc_mm(), 31.0, 1.0);
+
+        const auto onMesh = ask(*meshed, pick(5, from, across));
+        ASSERT_TRUE(onMesh.has_wall_place()) << onMesh.ShortDebugString();
+        EXPECT_FALSE(onMesh.wall_place().has_flat());
+        EXPECT_LT(glm::distance(at(onMesh), at(inStrip)), 1e-3);
+        EXPECT_EQ(onMesh.wall_place().triangle(), place.triangle());
+        // There is no path: it is looked at from where the ray begins.
+        EXPECT_EQ(onMesh.wall_place().camera_mm().z(), 31.0);
+    }
+    const auto inScan = ask(*bare, pick(6, {-1.2, 2.2, 112.0}, {1, 0, 0}));
+    ASSERT_TRUE(inScan.has_wall_place()) << inScan.ShortDebugString();
+    EXPECT_FALSE(inScan.wall_place().has_flat());
+    EXPECT_GT(inScan.wall_place().position_mm().x(), -1.2);
+    EXPECT_NEAR(inScan.wall_place().position_mm().z(), 112.0, 1e-9);
+}
+
+TEST_F(ServerQuestions, RaysThatMeetNothingAreRefused) {
+    const double nan = std::nan("");
+    for (const char* name : {smallCaseName, "meshed", "scan"}) {
+        const auto client = reader(name);
+        std::uint64_t request = 10;
+        for (const auto& [from, direction] :
+             {std::pair{glm::dvec3(5000, 0, 0), glm::dvec3(1, 0, 0)},
+              {glm::dvec3(0, 0, 0), glm::dvec3(0, 0, 0)},
+              {glm::dvec3(0, 0, 0), glm::dvec3(nan, 0, 1)},
+              {glm::dvec3(0, 0, 0), glm::dvec3(1e300, 1e300, 1)},
+              {glm::dvec3(nan, 0, 0), glm::dvec3(0, 0, 1)},
+              {glm::dvec3(0, 2e6, 0), glm::dvec3(0, 0, 1)}}) {
+            ++request;
+            expectRefusal(ask(*client, pick(request, from, direction)), ErrorReport::BAD_VALUE,
+                          request);
+        }
+    }
+    TestClient early(server_->port());
+    ASSERT_TRUE(early.hello());
+    expectRefusal(ask(early, pick(3, {}, {1, 0, 0})), ErrorReport::BAD_STATE, 3);
 }
 
 }  // namespace
