@@ -7,8 +7,9 @@ namespace haustra::protocol::capability {
 // ---- both: how pictures may come
 inline constexpr char jpeg[] = "jpeg", lossless[] = "lossless", coarse[] = "coarse";
 // ---- a server: what it may be asked
-inline constexpr char slabs[] = "slabs";             ///< slices with a slab, moved by a pan
-inline constexpr char scanValues[] = "scan-values";  ///< MeasureScan
-inline constexpr char pick[] = "pick";               ///< PickWall
+inline constexpr char slabs[] = "slabs";               ///< slices with a slab, moved by a pan
+inline constexpr char caseEntries[] = "case-entries";  ///< CaseList says more than names
+inline constexpr char scanValues[] = "scan-values";    ///< MeasureScan
+inline constexpr char pick[] = "pick";                 ///< PickWall
 
 }  // namespace haustra::protocol::capability

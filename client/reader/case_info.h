@@ -31,6 +31,26 @@ struct CaseInfo {
     std::optional<FlatStrip> flat;      ///< where the case has been flattened
 };
 
+/// A case of the server's list. An old server tells its name alone.
+struct CaseEntry {
+    enum class State {
+        unknown,     ///< not told
+        ready,       ///< it can be opened
+        incomplete,  ///< there is no scan in it yet
+        damaged,     ///< it cannot be opened
+    };
+    std::string name;
+    State state = State::unknown;
+    std::string reason;       ///< a sentence: why it is not ready
+    std::string preparedUtc;  ///< when a product of it was last published, as of a bookmark
+    glm::ivec3 size{0};       ///< of the scan, voxels
+    glm::dvec3 spacingMm{0.0};
+    bool cleansed = false, flattened = false;
+    std::optional<double> confidence;  ///< 0…1, where a colon was searched for
+    int warnings = 0, bookmarks = 0;
+    int readers = 0;  ///< sessions that had it open when the list was made
+};
+
 struct Bookmark {
     std::uint64_t id = 0;  ///< the server's number; 0 until it acknowledged
     Camera camera;         ///< a place and a gaze; its lens means nothing

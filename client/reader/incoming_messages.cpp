@@ -5,7 +5,9 @@
 #include "protocol/optics_message.h"
 #include "protocol/view_message.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace haustra::reader {
 namespace {
@@ -139,6 +141,38 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
         info.flat = std::move(strip);
     }
     return info;
+}
+
+std::vector<CaseEntry> casesFrom(const protocol::CaseList& message) {
+    std::map<std::string, const protocol::CaseEntry*> told;
+    for (const protocol::CaseEntry& entry : message.entries())
+        told[entry.name()] = &entry;
+    std::vector<CaseEntry> cases;
+    for (const std::string& name : message.names()) {
+        CaseEntry& made = cases.emplace_back();
+        made.name = name;
+        const auto found = told.find(name);
+        if (found == told.end()) continue;
+        const protocol::CaseEntry& entry = *found->second;
+        if (entry.state() == protocol::CaseEntry::READY) made.state = CaseEntry::State::ready;
+        if (entry.state() == protocol::CaseEntry::INCOMPLETE)
+            made.state = CaseEntry::State::incomplete;
+        if (entry.state() == protocol::CaseEntry::DAMAGED) made.state = CaseEntry::State::damaged;
+        made.reason = entry.reason();
+        made.preparedUtc = entry.prepared_utc();
+        const auto count = [](std::uint32_t n) { return int(std::min(n, 1'000'000'000u)); };
+        made.size = {count(entry.size_x()), count(entry.size_y()), count(entry.size_z())};
+        const glm::dvec3 spacing = protocol::vectorFrom(entry.spacing_mm());
+        if (isFinite(spacing)) made.spacingMm = spacing;
+        made.cleansed = entry.cleansed();
+        made.flattened = entry.flattened();
+        if (entry.has_confidence() && entry.confidence() >= 0.0 && entry.confidence() <= 1.0)
+            made.confidence = entry.confidence();
+        made.warnings = count(entry.warnings());
+        made.bookmarks = count(entry.bookmarks());
+        made.readers = count(entry.readers());
+    }
+    return cases;
 }
 
 Bookmark bookmarkFrom(const protocol::Bookmark& message) {

@@ -11,6 +11,8 @@ namespace haustra::reader {
 
 /// Fails, naming the field, where the server's description of the case is not sound.
 Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message);
+/// An entry for each name, in the names' order.
+std::vector<CaseEntry> casesFrom(const protocol::CaseList& message);
 Bookmark bookmarkFrom(const protocol::Bookmark& message);
 /// Fail where a number is not finite.
 Result<WallPlace> placeFrom(const protocol::WallPlace& message);

@@ -154,21 +154,27 @@ void Session::handle(link::LinkUp up) {
     server_ = std::move(up);
     lastWords_.clear();
     phase_ = Phase::connecting;
+    linked_ = true;
     askForCase();
+    if (!caseName_.empty() && casesAsked_ > answeredCases_) sayListCases();
 }
 
 void Session::handle(const link::LinkDown& down) {
     if (phase_ == Phase::open) dropQuestionsOfLostLinks();
     failure_ = down.error;
     if (!lastWords_.empty()) failure_.message = "the connection was lost: " + lastWords_;
+    linked_ = false;
     phase_ = down.final ? Phase::failed : Phase::lost;
 }
 
 void Session::handle(const protocol::ServerMessage& message) {
     switch (message.body_case()) {
         case protocol::ServerMessage::kCaseList:
-            caseNames_.assign(message.case_list().names().begin(),
-                              message.case_list().names().end());
+            cases_ = casesFrom(message.case_list());
+            // An old server does not say which request it answers.
+            answeredCases_ = std::max(answeredCases_, message.case_list().request() != 0
+                                                          ? message.case_list().request()
+                                                          : casesAsked_);
             if (caseName_.empty()) phase_ = Phase::choosing;
             break;
         case protocol::ServerMessage::kCaseOpened:
@@ -246,9 +252,10 @@ void Session::refused(const protocol::ErrorReport& report) {
     refuse(report.request(), error);
     // An input's late refusal (BAD_VALUE, BAD_STATE) does not tell of the case that is awaited.
     const bool ofTheCase =
-        report.request() == 0 && (report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
-                                  report.code() == protocol::ErrorReport::INTERNAL ||
-                                  report.code() == protocol::ErrorReport::BUSY);
+        (report.request() == 0 || (caseName_.empty() && report.request() == casesAsked_)) &&
+        (report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
+         report.code() == protocol::ErrorReport::INTERNAL ||
+         report.code() == protocol::ErrorReport::BUSY);
     if (phase_ == Phase::connecting && (ofTheCase || report.fatal())) giveUp(error);
     if (phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST) giveUp(error);
 }
@@ -283,12 +290,32 @@ void Session::giveUp(Error error) {
 // ---- asking ---------------------------------------------------------------------------------
 
 void Session::askForCase() {
+    if (caseName_.empty()) {
+        requestCases();
+        return;
+    }
     protocol::ClientMessage message;
-    if (caseName_.empty())
-        message.mutable_list_cases();
-    else
-        message.mutable_open_case()->set_name(caseName_);
+    message.mutable_open_case()->set_name(caseName_);
     connection_.send(message);
+}
+
+std::uint64_t Session::requestCases() {
+    casesAsked_ = ++request_;
+    if (linked_) sayListCases();
+    return casesAsked_;
+}
+
+void Session::sayListCases() {
+    protocol::ClientMessage message;
+    message.mutable_list_cases()->set_request(casesAsked_);
+    connection_.send(message);
+}
+
+std::vector<std::string> Session::caseNames() const {
+    std::vector<std::string> names;
+    for (const CaseEntry& entry : cases_)
+        names.push_back(entry.name);
+    return names;
 }
 
 void Session::openCase(const std::string& name) {

@@ -20,7 +20,7 @@ using link::Clock;
 
 enum class Phase {
     connecting,  ///< no link yet, or the case is being opened
-    choosing,    ///< linked; no case was named: caseNames() tells what there is
+    choosing,    ///< linked; no case was named: cases() tells what there is
     open,        ///< pictures flow
     lost,        ///< the link is down; it is tried again
     failed,      ///< for good: failure() tells why
@@ -72,7 +72,13 @@ public:
     double roundTripMs() const { return connection_.roundTripMs(); }
     std::uint64_t receivedBytes() const { return connection_.receivedBytes(); }
 
-    const std::vector<std::string>& caseNames() const { return caseNames_; }
+    /// The server's list as it came last; empty before. Names alone of a server without
+    /// protocol::capability::caseEntries.
+    const std::vector<CaseEntry>& cases() const { return cases_; }
+    std::vector<std::string> caseNames() const;
+    /// Asks for it, whatever is open. Returns the request's number.
+    std::uint64_t requestCases();
+    std::uint64_t answeredCasesRequest() const { return answeredCases_; }
     void openCase(const std::string& name);
     /// The open case; empty before. Its address changes only when a case is opened.
     const std::shared_ptr<const CaseInfo>& caseInfo() const { return caseInfo_; }
@@ -196,6 +202,7 @@ private:
     void say(std::uint64_t request);
     bool refuseQuestion(std::uint64_t request, const Error& error);
     void askForCase();
+    void sayListCases();
     void askAgain();
     void giveUp(Error error);
     void sayWhatWaited(int viewport, const ViewportState& state);
@@ -206,12 +213,14 @@ private:
     link::LinkUp server_;
     std::string lastWords_;  // why the server ends the link; it is lost next
     std::string caseName_;
-    std::vector<std::string> caseNames_;
+    std::vector<CaseEntry> cases_;
+    bool linked_ = false;
     std::shared_ptr<const CaseInfo> caseInfo_;
 
     WallPaintChoice paint_;
     double seenShare_ = 0.0;
-    std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0;
+    std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0,
+                  casesAsked_ = 0, answeredCases_ = 0;
     std::map<int, ViewportState> viewports_;
     std::deque<Arrival> arrivals_;
     std::vector<Error> refusals_;

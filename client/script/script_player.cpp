@@ -155,7 +155,7 @@ Status Player::awaitCase() {
         if (known) flight_ = Flight(session_.caseInfo()->centerline);
         return known;
     }
-    const auto& names = session_.caseNames();
+    const std::vector<std::string> names = session_.caseNames();
     if (names.empty()) return fail(ErrorKind::notFound, "the server has no case");
     if (names.size() > 1) {
         std::string list;

@@ -223,6 +223,14 @@ Result<CaseStore> CaseStore::open(const fs::path& folder, bool create) {
     return store;
 }
 
+std::optional<std::chrono::system_clock::time_point> Case::changedAt() const {
+    std::error_code error;
+    const auto at = fs::last_write_time(folder_ / caseIndexName, error);
+    if (error) return std::nullopt;
+    return std::chrono::time_point_cast<std::chrono::system_clock::duration>(
+        std::chrono::file_clock::to_sys(at));
+}
+
 Result<std::vector<std::string>> CaseStore::cases() const {
     std::error_code error;
     std::vector<std::string> names;

@@ -23,6 +23,7 @@
 #include "core/tissue.h"
 #include "core/tri_mesh.h"
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -80,6 +81,10 @@ public:
     /// The scan that the case is of. Where nothing has bound it (no UIDs are known then) its key is
     /// that of the product "ct"; none where there is no such product either.
     Result<std::optional<ScanIdentity>> scan() const;
+
+    /// When a product of it was last published, by the clock of the file system; none where that
+    /// cannot be told.
+    std::optional<std::chrono::system_clock::time_point> changedAt() const;
 
     /// A view of the memory-mapped product; T (int16_t, uint8_t, float or TissueFractions) must be
     /// the type that was published. Reads the header alone: the values' pages come when they are

@@ -117,6 +117,7 @@ struct Server::Impl {
     std::unique_ptr<session::PaintThread> painting;
     session::News<records::Bookmark> bookmarks;
     session::News<std::shared_ptr<const session::OpenCase>> lostCases;
+    session::OpenCounts readers;
     render::PresetLibrary presets;
     std::optional<session::Services> services;
 
@@ -163,7 +164,8 @@ Result<void> Server::Impl::start() {
     questions = std::make_unique<session::QuestionThread>();
     painting = std::make_unique<session::PaintThread>();
     services.emplace(session::Services{*renderer, *loader, *encoders, *records, *questions,
-                                       *painting, bookmarks, lostCases, presets, options.software});
+                                       *painting, bookmarks, lostCases, readers, presets,
+                                       options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);
     signals.async_wait([this](const asio::error_code& error, int) {

@@ -205,6 +205,24 @@ Result<std::vector<Result<Bookmark>>> BookmarkStore::add(
     return added;
 }
 
+std::size_t BookmarkCounts::of(const std::string& caseName, const std::string& scan) const {
+    std::size_t count = 0;
+    for (const std::string& key : {scan, caseForScan + caseName})
+        if (const auto found = byScan.find(key); found != byScan.end()) count += found->second;
+    return count;
+}
+
+Result<BookmarkCounts> BookmarkStore::counts() {
+    auto rows = TRY(Statement::prepare(database_.get(),
+                                       "SELECT scan, count(*) FROM scan_bookmarks GROUP BY scan"));
+    BookmarkCounts counts;
+    auto row = rows.step();
+    for (; row && *row; row = rows.step())
+        counts.byScan[rows.text(0)] = std::size_t(rows.integer(1));
+    if (!row) return tl::make_unexpected(row.error());
+    return counts;
+}
+
 Result<std::vector<Bookmark>> BookmarkStore::list(const std::string& scan) {
     std::vector<Bookmark> bookmarks;
     list_.bind(1, scan);

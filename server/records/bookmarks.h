@@ -31,6 +31,12 @@ struct Bookmark : NewBookmark {
     std::string createdUtc;  ///< "2020-01-31T23:59:59Z"
 };
 
+struct BookmarkCounts {
+    std::map<std::string, std::size_t> byScan;
+    /// Of a case of this scan, those of the case of which no scan is known included.
+    std::size_t of(const std::string& caseName, const std::string& scan) const;
+};
+
 /// The table of bookmarks. SQLite in WAL mode with synchronous=FULL: what add() has returned
 /// survives a crash of the process, and of the machine where its disk honours fsync. Belongs to
 /// one thread; other processes may have the same file open.
@@ -52,6 +58,9 @@ public:
 
     /// A scan's bookmarks in the order in which they were added.
     Result<std::vector<Bookmark>> list(const std::string& scan);
+
+    /// How many bookmarks there are now, of each scan.
+    Result<BookmarkCounts> counts();
 
     /// The bookmarks of case `caseName` of which no scan is known are from now on of this one. For
     /// the scan that the case is of when it is first opened.

@@ -220,6 +220,58 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
     return answer;
 }
 
+namespace {
+
+protocol::CaseEntry::State stateOf(CaseSummary::State state) {
+    switch (state) {
+        case CaseSummary::State::ready:
+            return protocol::CaseEntry::READY;
+        case CaseSummary::State::incomplete:
+            return protocol::CaseEntry::INCOMPLETE;
+        default:
+            return protocol::CaseEntry::DAMAGED;
+    }
+}
+
+void fill(protocol::CaseEntry& message, const CaseSummary& summary) {
+    message.set_name(summary.name);
+    message.set_state(stateOf(summary.state));
+    message.set_reason(shortened(summary.reason, protocol::maxWarningBytes));
+    message.set_prepared_utc(summary.preparedUtc);
+    message.set_size_x(std::uint32_t(summary.size.x));
+    message.set_size_y(std::uint32_t(summary.size.y));
+    message.set_size_z(std::uint32_t(summary.size.z));
+    protocol::fill(*message.mutable_spacing_mm(), summary.spacingMm);
+    message.set_cleansed(summary.cleansed);
+    message.set_flattened(summary.flattened);
+    if (summary.confidence) message.set_confidence(*summary.confidence);
+    message.set_warnings(
+        std::uint32_t(std::min(summary.warnings, std::size_t(protocol::maxWarnings))));
+    message.set_bookmarks(std::uint32_t(summary.bookmarks));
+}
+
+}  // namespace
+
+protocol::ServerMessage caseListMessage(const std::vector<CaseSummary>& cases,
+                                        const OpenCounts& readers, std::uint64_t request) {
+    protocol::ServerMessage message;
+    auto* list = message.mutable_case_list();
+    list->set_request(request);
+    for (const CaseSummary& summary : cases)
+        list->add_names(summary.name);
+    std::size_t bytes = message.ByteSizeLong();
+    for (const CaseSummary& summary : cases) {
+        protocol::CaseEntry entry;
+        fill(entry, summary);
+        entry.set_readers(std::uint32_t(readers.of(summary.name)));
+        constexpr std::size_t around = 16;  // what says that an entry follows, and how long it is
+        bytes += entry.ByteSizeLong() + around;
+        if (bytes > protocol::maxServerControlBytes) break;
+        *list->add_entries() = std::move(entry);
+    }
+    return message;
+}
+
 void fill(protocol::Bookmark& message, const records::Bookmark& bookmark) {
     message.set_id(bookmark.id);
     protocol::fillPose(message, bookmark);

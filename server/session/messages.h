@@ -7,6 +7,7 @@
 #include "protocol/limits.h"
 #include "records/bookmarks.h"
 #include "render/optics/optics_presets.h"
+#include "session/case_list.h"
 #include "session/case_questions.h"
 #include "session/open_case.h"
 
@@ -66,6 +67,10 @@ protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std
 
 protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
                                           const render::PresetLibrary& presets);
+
+/// Without the entries of cases that do not fit into the message any more.
+protocol::ServerMessage caseListMessage(const std::vector<CaseSummary>& cases,
+                                        const OpenCounts& readers, std::uint64_t request);
 
 void fill(protocol::Bookmark& message, const records::Bookmark& bookmark);
 

@@ -15,7 +15,7 @@ constexpr std::size_t maxSharedCommit = 256;
 // What lives on the records thread.
 struct RecordsThread::Keeping {
     records::BookmarkStore bookmarks;
-    store::CaseStore cases;
+    CaseReader cases;
     std::vector<Add> additions;  // since the last commit
 
     void commit() {
@@ -46,18 +46,18 @@ struct RecordsThread::Keeping {
     }
     void serve(ListCases& list) {
         commit();
-        list.done(guarded([&] { return cases.cases(); }));
+        list.done(guarded([&] { return cases.read(bookmarks); }));
     }
 };
 
 RecordsThread::RecordsThread(records::BookmarkStore bookmarks, store::CaseStore cases) {
-    worker_.start(
-        "records", maxSharedCommit,
-        [keeping = Keeping{std::move(bookmarks), std::move(cases), {}}](auto& taken) mutable {
-            for (Request& request : taken)
-                std::visit([&](auto& body) { keeping.serve(body); }, request);
-            keeping.commit();
-        });
+    worker_.start("records", maxSharedCommit,
+                  [keeping = Keeping{std::move(bookmarks), CaseReader(std::move(cases)), {}}](
+                      auto& taken) mutable {
+                      for (Request& request : taken)
+                          std::visit([&](auto& body) { keeping.serve(body); }, request);
+                      keeping.commit();
+                  });
 }
 
 void RecordsThread::add(records::NewBookmark bookmark, Added done) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "records/bookmarks.h"
+#include "session/case_list.h"
 #include "session/worker.h"
 #include "store/case_store.h"
 
@@ -26,7 +27,7 @@ public:
     using Listed = std::function<void(Result<std::vector<records::Bookmark>>)>;
     /// `scan` is what the case of that name is of.
     void list(std::string caseName, std::string scan, Listed done);
-    using Cases = std::function<void(Result<std::vector<std::string>>)>;
+    using Cases = std::function<void(Result<std::vector<CaseSummary>>)>;
     void listCases(Cases done);
 
 private:

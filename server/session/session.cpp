@@ -132,6 +132,7 @@ void Session::disconnected() {
     pictures_->stop();
     reading_.reset();
     case_.reset();
+    counted_.reset();
     questions_.clear();
 }
 
@@ -158,8 +159,9 @@ void Session::handle(const protocol::Hello& hello) {
     ServerMessage answer;
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
-    for (const char* known : {capability::jpeg, capability::lossless, capability::coarse,
-                              capability::slabs, capability::scanValues, capability::pick})
+    for (const char* known :
+         {capability::jpeg, capability::lossless, capability::coarse, capability::slabs,
+          capability::caseEntries, capability::scanValues, capability::pick})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
@@ -181,17 +183,14 @@ auto Session::answer(void (Session::*then)(std::uint64_t, Result<T>), std::uint6
     };
 }
 
-void Session::handle(const protocol::ListCases&) {
-    services_.records.listCases(answer(&Session::listedCases, 0, protocol::listWeight));
+void Session::handle(const protocol::ListCases& message) {
+    services_.records.listCases(
+        answer(&Session::listedCases, message.request(), protocol::listWeight));
 }
 
-void Session::listedCases(std::uint64_t, Result<std::vector<std::string>> names) {
-    if (!names) return report(names.error());
-    ServerMessage message;
-    auto* list = message.mutable_case_list();
-    for (std::string& name : *names)
-        list->add_names(std::move(name));
-    send(message);
+void Session::listedCases(std::uint64_t request, Result<std::vector<CaseSummary>> cases) {
+    if (!cases) return report(cases.error(), request);
+    send(caseListMessage(*cases, services_.readers, request));
 }
 
 void Session::handle(const protocol::OpenCase& message) {
@@ -212,6 +211,7 @@ void Session::handle(const protocol::OpenCase& message) {
 void Session::leaveCase() {
     state_ = State::ready;
     case_.reset();
+    counted_.reset();
     reading_.reset();
     pictures_->setCase(nullptr);
 }
@@ -235,6 +235,7 @@ void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
     }
     state_ = State::open;
     case_ = std::move(*result);
+    counted_ = services_.readers.enter(case_->name);
     pictures_->setCase(case_);
     if (case_->wall) makeReading();
     spdlog::info("session {} has a case open", id_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "protocol/haustra.pb.h"
+#include "session/case_list.h"
 #include "session/case_loader.h"
 #include "session/case_questions.h"
 #include "session/picture_stream.h"
@@ -50,6 +51,7 @@ struct Services {
     PaintThread& painting;
     News<records::Bookmark>& bookmarks;                ///< that are in the store now
     News<std::shared_ptr<const OpenCase>>& lostCases;  ///< whose files cannot be read any more
+    OpenCounts& readers;                               ///< of each case
     const render::PresetLibrary& presets;              ///< not empty
     std::string software;                              ///< name and version, for the welcome
 };
@@ -113,7 +115,7 @@ private:
     template <class T>
     auto answer(void (Session::*then)(std::uint64_t request, Result<T>), std::uint64_t request,
                 int weight = 1);
-    void listedCases(std::uint64_t request, Result<std::vector<std::string>> names);
+    void listedCases(std::uint64_t request, Result<std::vector<CaseSummary>> cases);
     void addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark);
     void listedBookmarks(std::uint64_t request, Result<std::vector<records::Bookmark>> bookmarks);
     void makeReading();
@@ -126,6 +128,7 @@ private:
     Peer peer_;
     State state_ = State::hello;
     std::shared_ptr<const OpenCase> case_;
+    std::shared_ptr<const void> counted_;  // while a case is open
     std::shared_ptr<PictureStream> pictures_;
     std::shared_ptr<WallReading> reading_;  // where the open case has been flattened
     std::uint64_t readings_ = 0;

@@ -1,5 +1,6 @@
 #include "session/wall_reading.h"
 
+#include "protocol/limits.h"
 #include "render/wall/strip_painter.h"
 #include "render/wall/wall_coverage.h"
 #include "session/worker.h"

@@ -103,6 +103,64 @@ TEST_F(ClientSession, AWallIsPickedWithAndWithoutAStrip) {
     }
 }
 
+TEST_F(ClientSession, CasesAreToldBesideAnOpenOne) {
+    FakeServer server;
+    const auto session = sessionWith(server);
+    const auto early = session->requestCases();  // before there is a link
+    ASSERT_TRUE(open(*session));
+    ASSERT_TRUE(until(*session, [&] { return session->answeredCasesRequest() >= early; }));
+    const auto info = session->caseInfo();
+    session->addBookmark({}, 0.0, "one");
+    const auto late = session->requestCases();
+    EXPECT_GT(late, early);
+    ASSERT_TRUE(until(*session, [&] { return session->answeredCasesRequest() >= late; }));
+    EXPECT_EQ(session->phase(), Phase::open);
+    EXPECT_EQ(session->caseInfo(), info);
+    ASSERT_EQ(session->cases().size(), 1u);
+    const CaseEntry& entry = session->cases().front();
+    EXPECT_EQ(entry.name, "phantom");
+    EXPECT_EQ(entry.state, CaseEntry::State::ready);
+    EXPECT_EQ(entry.preparedUtc, "2020-02-20T20:20:20Z");
+    EXPECT_EQ(entry.size, glm::ivec3(256, 256, 200));
+    EXPECT_TRUE(entry.cleansed && entry.flattened);
+    EXPECT_EQ(entry.confidence, 0.75);
+    EXPECT_EQ(entry.warnings, 2);
+    EXPECT_EQ(entry.bookmarks, 1);
+    EXPECT_EQ(entry.readers, 1);
+}
+
+TEST_F(ClientSession, AListThatALostLinkLeftIsAskedForAgain) {
+    Misbehaviour wrong;
+    wrong.dropAtQuestions = 1;
+    FakeServer server(wrong);
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(open(*session));
+    session->measureScan({});  // closes the socket
+    ASSERT_TRUE(until(*session, [&] { return session->phase() == Phase::lost; }));
+    const auto request = session->requestCases();
+    ASSERT_TRUE(until(*session, [&] { return session->answeredCasesRequest() >= request; }));
+    EXPECT_EQ(session->caseNames(), std::vector<std::string>{"phantom"});
+    ASSERT_TRUE(open(*session));
+}
+
+TEST_F(ClientSession, WithoutACaseTheListIsWhatThereIsToChooseFrom) {
+    for (const bool old : {false, true}) {
+        Misbehaviour wrong;
+        wrong.old = old;
+        FakeServer server(wrong);
+        const auto session = sessionWith(server, "");
+        ASSERT_TRUE(until(*session, [&] { return session->phase() == Phase::choosing; }));
+        EXPECT_EQ(session->caseNames(), std::vector<std::string>{"phantom"});
+        EXPECT_EQ(session->cases().front().state,
+                  old ? CaseEntry::State::unknown : CaseEntry::State::ready);
+        const auto again = session->requestCases();
+        ASSERT_TRUE(until(*session, [&] { return session->answeredCasesRequest() >= again; }));
+        EXPECT_EQ(session->phase(), Phase::choosing);
+        session->openCase("phantom");
+        ASSERT_TRUE(open(*session));
+    }
+}
+
 TEST_F(ClientSession, WhatALostLinkLeftUnansweredIsAskedAgain) {
     Misbehaviour wrong;
     wrong.dropAtQuestions = 1;

@@ -185,6 +185,25 @@ struct FakeServer::Impl {
         return message;
     }
 
+    void fillCases(protocol::CaseList& list) {
+        list.add_names("phantom");
+        if (misbehaviour.old) return;
+        auto* entry = list.add_entries();
+        entry->set_name("phantom");
+        entry->set_state(protocol::CaseEntry::READY);
+        entry->set_prepared_utc("2020-02-20T20:20:20Z");
+        entry->set_size_x(256);
+        entry->set_size_y(256);
+        entry->set_size_z(200);
+        entry->set_cleansed(true);
+        entry->set_flattened(!misbehaviour.notFlattened);
+        entry->set_confidence(0.75);
+        entry->set_warnings(2);
+        entry->set_readers(1);
+        const std::lock_guard lock(mutex);
+        entry->set_bookmarks(std::uint32_t(bookmarks.size()));
+    }
+
     // False: the socket is to be closed.
     bool addBookmark(Stream& stream, const protocol::AddBookmark& add) {
         ++bookmarkMessages;
@@ -241,8 +260,9 @@ struct FakeServer::Impl {
         welcome.mutable_welcome()->set_software("fake-server 1");
         welcome.mutable_welcome()->set_renderer("none");
         if (!misbehaviour.old)
-            for (const char* known : {protocol::capability::slabs, protocol::capability::scanValues,
-                                      protocol::capability::pick})
+            for (const char* known :
+                 {protocol::capability::caseEntries, protocol::capability::slabs,
+                  protocol::capability::scanValues, protocol::capability::pick})
                 welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
             std::vector<std::uint8_t> frame;
@@ -257,7 +277,9 @@ struct FakeServer::Impl {
             ServerMessage answer;
             switch (message.body_case()) {
                 case ClientMessage::kListCases:
-                    answer.mutable_case_list()->add_names("phantom");
+                    fillCases(*answer.mutable_case_list());
+                    if (!misbehaviour.old)
+                        answer.mutable_case_list()->set_request(message.list_cases().request());
                     write(stream, answer);
                     break;
                 case ClientMessage::kOpenCase:
