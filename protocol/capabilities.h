@@ -6,9 +6,12 @@ namespace haustra::protocol::capability {
 
 // ---- both: how pictures may come
 inline constexpr char jpeg[] = "jpeg", lossless[] = "lossless", coarse[] = "coarse";
-// ---- a server: what it may be asked
+// ---- a client: what it may be told unasked; a server: what it tells to such a client
+inline constexpr char bookmarkPush[] = "bookmark-push";  ///< others' bookmarks, as they are added
+// ---- a server: what it may be asked, and what it tells besides
 inline constexpr char slabs[] = "slabs";               ///< slices with a slab, moved by a pan
 inline constexpr char caseEntries[] = "case-entries";  ///< CaseList says more than names
+inline constexpr char marks[] = "marks";               ///< Bookmark.mark
 inline constexpr char scanValues[] = "scan-values";    ///< MeasureScan
 inline constexpr char pick[] = "pick";                 ///< PickWall
 

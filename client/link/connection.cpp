@@ -177,7 +177,8 @@ struct Connection::Impl {
     asio::awaitable<Result<void>> greet(LinkUp& up) {
         ClientMessage hello;
         hello.mutable_hello()->set_protocol_version(protocol::protocolVersion);
-        for (const char* name : {capability::jpeg, capability::lossless, capability::coarse})
+        for (const char* name :
+             {capability::jpeg, capability::lossless, capability::coarse, capability::bookmarkPush})
             hello.mutable_hello()->add_capabilities(name);
         hello.mutable_hello()->set_software(options.software);
         co_await asio::async_write(*stream, asio::buffer(protocol::controlFrame(hello)),

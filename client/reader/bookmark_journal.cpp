@@ -43,8 +43,8 @@ glm::dvec3 vectorOf(const json& list) {
 
 std::string lineOf(const JournalEntry& entry) {
     // Each field by name: one that is added does not compile until it is kept here, and read below.
-    const auto& [id, camera, arcMm, note, createdUtc, clientKey] = entry.bookmark;
-    static_cast<void>(id), static_cast<void>(createdUtc);  // the server's
+    const auto& [id, camera, arcMm, note, createdUtc, mark, clientKey] = entry.bookmark;
+    static_cast<void>(id), static_cast<void>(createdUtc), static_cast<void>(mark);  // the server's
     json line = {{"format", format},
                  {"server", entry.server},
                  {"fingerprint", entry.fingerprint},

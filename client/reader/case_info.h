@@ -56,6 +56,8 @@ struct Bookmark {
     Camera camera;         ///< a place and a gaze; its lens means nothing
     double arcMm = 0.0;
     std::string note, createdUtc;
+    /// The place of the wall that it means, where the server has told it.
+    std::optional<WallPlace> mark;
     std::string clientKey;  ///< chosen by the client: the same bookmark sent twice is kept once
     bool acknowledged() const { return id != 0; }
 };

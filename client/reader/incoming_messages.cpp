@@ -175,19 +175,6 @@ std::vector<CaseEntry> casesFrom(const protocol::CaseList& message) {
     return cases;
 }
 
-Bookmark bookmarkFrom(const protocol::Bookmark& message) {
-    Bookmark bookmark;
-    bookmark.id = message.id();
-    bookmark.camera.positionMm = protocol::vectorFrom(message.position_mm());
-    bookmark.camera.forward = protocol::vectorFrom(message.forward());
-    bookmark.camera.up = protocol::vectorFrom(message.up());
-    bookmark.arcMm = message.arc_mm();
-    bookmark.note = message.note();
-    bookmark.createdUtc = message.created_utc();
-    bookmark.clientKey = message.client_key();
-    return bookmark;
-}
-
 Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
     WallPlace place;
     if (message.has_flat()) place.flat = {message.flat().x(), message.flat().y()};
@@ -201,6 +188,22 @@ Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
     if (!inStrip || !std::isfinite(sum.x + sum.y + sum.z + place.arcMm))
         return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
     return place;
+}
+
+Bookmark bookmarkFrom(const protocol::Bookmark& message) {
+    Bookmark bookmark;
+    bookmark.id = message.id();
+    bookmark.camera.positionMm = protocol::vectorFrom(message.position_mm());
+    bookmark.camera.forward = protocol::vectorFrom(message.forward());
+    bookmark.camera.up = protocol::vectorFrom(message.up());
+    bookmark.arcMm = message.arc_mm();
+    bookmark.note = message.note();
+    bookmark.createdUtc = message.created_utc();
+    bookmark.clientKey = message.client_key();
+    // One that is nowhere is none.
+    if (message.has_mark())
+        if (const auto mark = placeFrom(message.mark())) bookmark.mark = *mark;
+    return bookmark;
 }
 
 Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message) {

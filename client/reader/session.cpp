@@ -181,6 +181,8 @@ void Session::handle(const protocol::ServerMessage& message) {
             opened(message.case_opened());
             break;
         case protocol::ServerMessage::kBookmarkAdded:
+            // Another session's, of a case that is left.
+            if (message.bookmark_added().request() == 0 && phase_ != Phase::open) break;
             acknowledge(bookmarkFrom(message.bookmark_added().bookmark()));
             break;
         case protocol::ServerMessage::kBookmarkList: {
@@ -326,6 +328,7 @@ void Session::openCase(const std::string& name) {
     wallAnswers_.clear();
     scanAnswers_.clear();
     paint_ = {};
+    seenShare_.reset();
     if (phase_ == Phase::failed || phase_ == Phase::lost) return;
     phase_ = Phase::connecting;
     askForCase();
@@ -333,7 +336,7 @@ void Session::openCase(const std::string& name) {
 
 // Everything that the server has to know of a session that it sees for the first time.
 void Session::askAgain() {
-    seenShare_ = 0.0;
+    seenShare_.reset();
     if (caseInfo_->flat && paint_.any())
         connection_.send(protocol::paintMessage(++sequence_, paint_));
     for (const auto& [id, state] : viewports_) {
@@ -361,6 +364,7 @@ void Session::askAgain() {
         unanswered.push_back(request);
     for (const std::uint64_t request : unanswered)
         say(request);
+    if (caseInfo_->flat) askSeen(false);
     requestBookmarks();
 }
 

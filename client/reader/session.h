@@ -95,8 +95,9 @@ public:
     std::uint64_t setWallPaint(const WallPaintChoice& paint);
     const WallPaintChoice& wallPaint() const { return paint_; }
     /// How much of the wall's area this session's pictures have shown, 0…1, as the server told
-    /// last. A link that was lost begins anew.
-    double seenShare() const { return seenShare_; }
+    /// last. None before it has: it is asked when a case is open, and again after a lost link,
+    /// where it begins anew.
+    std::optional<double> seenShare() const { return seenShare_; }
     /// Asks for it, of all pictures so far; with `forget`, nothing has been shown. Returns the
     /// request's number.
     std::uint64_t askSeen(bool forget);
@@ -111,7 +112,9 @@ public:
     std::string addBookmark(const Camera& camera, double arcMm, std::string note);
     /// Returns the request's number; after a reconnection the list is asked for anew.
     std::uint64_t requestBookmarks();
-    /// Acknowledged ones first, in the server's order, then those still owed.
+    /// Those of other sessions appear by themselves, where the server has
+    /// protocol::capability::bookmarkPush; else with the next list. Acknowledged ones first, in the
+    /// server's order, then those still owed.
     std::vector<Bookmark> bookmarks() const;
     /// Those that the server saved or refused since the last call. Of a refusal, takeRefusals() has
     /// the server's reason.
@@ -218,7 +221,7 @@ private:
     std::shared_ptr<const CaseInfo> caseInfo_;
 
     WallPaintChoice paint_;
-    double seenShare_ = 0.0;
+    std::optional<double> seenShare_;
     std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0,
                   casesAsked_ = 0, answeredCases_ = 0;
     std::map<int, ViewportState> viewports_;

@@ -1,5 +1,7 @@
 #include "reader/wall_questions.h"
 
+#include "protocol/capabilities.h"
+
 namespace haustra::reader {
 namespace {
 
@@ -24,7 +26,7 @@ void WallQuestions::update(const CaseInfo& info) {
         measuring_ = session_.measure(measurement_->points, measurement_->closed);
         measurementChanged_ = false;
     }
-    askForBookmarks(info.centerline);
+    placeBookmarks(info.centerline);
 }
 
 void WallQuestions::take(const Session::WallAnswer& answer) {
@@ -53,9 +55,12 @@ void WallQuestions::measure(std::vector<glm::dvec2> points, bool closed) {
     measurementChanged_ = true;
 }
 
-void WallQuestions::askForBookmarks(const Centerline& path) {
+void WallQuestions::placeBookmarks(const Centerline& path) {
     if (session_.phase() != Phase::open) return;
+    const bool told = session_.serverCan(protocol::capability::marks);
     for (const Bookmark& bookmark : session_.bookmarks()) {
+        if (bookmark.mark) bookmarkPlaces_[bookmark.clientKey] = *bookmark.mark;
+        if (told) continue;
         if (bookmarksAsked_.size() >= maxBookmarksAsked) return;
         if (!bookmarksSeen_.insert(bookmark.clientKey).second) continue;
         constexpr double withoutPathMm = 15.0;

@@ -40,8 +40,9 @@ public:
     void clearMeasurement() { measurement_.reset(); }
     const std::optional<Measurement>& measurement() const { return measurement_; }
 
-    /// The wall at which each bookmark looks, by its client key: nearest to the point that lies
-    /// the lumen's radius in front of its camera.
+    /// The place of the wall that each bookmark means, by its client key: its mark, as the server
+    /// tells it and paints it. Of an old server's, which tells none, the place nearest to the point
+    /// that lies the lumen's radius in front of its camera.
     const std::map<std::string, WallPlace>& bookmarkPlaces() const { return bookmarkPlaces_; }
 
     /// An answer is on its way that will change the picture.
@@ -49,7 +50,7 @@ public:
 
 private:
     void take(const Session::WallAnswer& answer);
-    void askForBookmarks(const Centerline& path);
+    void placeBookmarks(const Centerline& path);
 
     Session& session_;
     std::uint64_t pick_ = 0, measuring_ = 0;  // requests without an answer, or 0

@@ -93,9 +93,9 @@ void drawTopBar(Ui& ui, Rect area) {
     if (!raycaster.empty())
         right = drawFigure(ui, list, right, middle, raycaster.c_str(),
                            printed("%.0f ms", 1e-3 * shown.renderMicroseconds), color::text);
-    if (ui.reader.flat().hasStrip())
+    if (ui.reader.flat().hasStrip() && session.seenShare())
         drawFigure(ui, list, right, middle, "wall seen",
-                   printed("%.1f %%", 100.0 * session.seenShare()), color::text);
+                   printed("%.1f %%", 100.0 * *session.seenShare()), color::text);
 }
 
 }  // namespace haustra::window

@@ -115,7 +115,7 @@ struct Server::Impl {
     std::unique_ptr<session::EncoderThreads> encoders;
     std::unique_ptr<session::QuestionThread> questions;
     std::unique_ptr<session::PaintThread> painting;
-    session::News<records::Bookmark> bookmarks;
+    session::News<session::BookmarkNews> bookmarks;
     session::News<std::shared_ptr<const session::OpenCase>> lostCases;
     session::OpenCounts readers;
     render::PresetLibrary presets;

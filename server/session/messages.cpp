@@ -272,25 +272,42 @@ protocol::ServerMessage caseListMessage(const std::vector<CaseSummary>& cases,
     return message;
 }
 
-void fill(protocol::Bookmark& message, const records::Bookmark& bookmark) {
+namespace {
+
+void fill(protocol::WallPlace& message, const WallPlace& place) {
+    if (place.flatTriangle >= 0) protocol::fill(*message.mutable_flat(), place.flat);
+    protocol::fill(*message.mutable_position_mm(), place.positionMm);
+    message.set_triangle(std::uint32_t(std::max(place.sourceTriangle, 0)));
+    message.set_arc_mm(place.arcMm);
+    protocol::fill(*message.mutable_camera_mm(), place.cameraMm);
+}
+
+}  // namespace
+
+void fill(protocol::Bookmark& message, const MarkedBookmark& marked) {
+    const records::Bookmark& bookmark = marked.bookmark;
     message.set_id(bookmark.id);
     protocol::fillPose(message, bookmark);
     message.set_arc_mm(bookmark.arcMm);
     message.set_note(bookmark.note);
     message.set_created_utc(bookmark.createdUtc);
     message.set_client_key(bookmark.clientKey);
+    if (marked.mark) fill(*message.mutable_mark(), *marked.mark);
+}
+
+protocol::ServerMessage bookmarkAddedMessage(const MarkedBookmark& bookmark,
+                                             std::uint64_t request) {
+    protocol::ServerMessage message;
+    message.mutable_bookmark_added()->set_request(request);
+    fill(*message.mutable_bookmark_added()->mutable_bookmark(), bookmark);
+    return message;
 }
 
 protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t request) {
     protocol::ServerMessage message;
     if (const auto* place = std::get_if<WallPlace>(&answer)) {
-        auto* body = message.mutable_wall_place();
-        body->set_request(request);
-        if (place->flatTriangle >= 0) protocol::fill(*body->mutable_flat(), place->flat);
-        protocol::fill(*body->mutable_position_mm(), place->positionMm);
-        body->set_triangle(std::uint32_t(std::max(place->sourceTriangle, 0)));
-        body->set_arc_mm(place->arcMm);
-        protocol::fill(*body->mutable_camera_mm(), place->cameraMm);
+        message.mutable_wall_place()->set_request(request);
+        fill(*message.mutable_wall_place(), *place);
         return message;
     }
     if (const auto* values = std::get_if<ScanStatistics>(&answer)) {

@@ -9,6 +9,7 @@
 #include "render/optics/optics_presets.h"
 #include "session/case_list.h"
 #include "session/case_questions.h"
+#include "session/marked_bookmark.h"
 #include "session/open_case.h"
 
 #include <cstdint>
@@ -72,7 +73,8 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
 protocol::ServerMessage caseListMessage(const std::vector<CaseSummary>& cases,
                                         const OpenCounts& readers, std::uint64_t request);
 
-void fill(protocol::Bookmark& message, const records::Bookmark& bookmark);
+void fill(protocol::Bookmark& message, const MarkedBookmark& bookmark);
+protocol::ServerMessage bookmarkAddedMessage(const MarkedBookmark& bookmark, std::uint64_t request);
 
 protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t request);
 

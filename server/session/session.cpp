@@ -55,10 +55,8 @@ std::shared_ptr<Session> Session::create(SessionId id, asio::any_io_executor io,
     };
     self->pictures_ = std::make_shared<PictureStream>(id, io, services.renderer, services.encoders,
                                                       services.presets, std::move(outlet));
-    services.bookmarks.listen(weak, [weak](const records::Bookmark& bookmark) {
-        const auto session = weak.lock();
-        if (session && session->reading_ && bookmark.scan == session->case_->scan)
-            session->reading_->addBookmark(bookmark);
+    services.bookmarks.listen(weak, [weak](const BookmarkNews& news) {
+        if (const auto session = weak.lock()) session->heard(news);
     });
     services.lostCases.listen(weak, [weak](const std::shared_ptr<const OpenCase>& of) {
         if (const auto session = weak.lock()) session->lost(of);
@@ -155,13 +153,14 @@ void Session::handle(const protocol::Hello& hello) {
         return end(ErrorReport::VERSION, "a client without \"lossless\" cannot show exact stills");
     pictures_->setJpeg(can(capability::jpeg));
     pictures_->setCoarse(can(capability::coarse));
+    takesBookmarks_ = can(capability::bookmarkPush);
     state_ = State::ready;
     ServerMessage answer;
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
-    for (const char* known :
-         {capability::jpeg, capability::lossless, capability::coarse, capability::slabs,
-          capability::caseEntries, capability::scanValues, capability::pick})
+    for (const char* known : {capability::jpeg, capability::lossless, capability::coarse,
+                              capability::slabs, capability::bookmarkPush, capability::marks,
+                              capability::caseEntries, capability::scanValues, capability::pick})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
@@ -236,6 +235,7 @@ void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
     state_ = State::open;
     case_ = std::move(*result);
     counted_ = services_.readers.enter(case_->name);
+    newestHeard_ = 0;
     pictures_->setCase(case_);
     if (case_->wall) makeReading();
     spdlog::info("session {} has a case open", id_);
@@ -346,36 +346,59 @@ void Session::handle(const protocol::AddBookmark& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
     auto bookmark = bookmarkFrom(message, case_->name, case_->scan);
     if (!bookmark) return report(bookmark.error(), request);
-    services_.records.add(std::move(*bookmark), [io = io_, &news = services_.bookmarks,
-                                                 told = answer(&Session::addedBookmark, request)](
-                                                    Result<records::Bookmark> added) {
-        // Others show it, whether or not this session is still there.
-        if (added) asio::post(io, [&news, bookmark = *added] { news.tell(bookmark); });
-        told(std::move(added));
-    });
+    services_.records.add(
+        std::move(*bookmark),
+        [io = io_, &news = services_.bookmarks, of = case_, by = id_,
+         told = answer(&Session::addedBookmark, request)](Result<records::Bookmark> added) {
+            auto one = guarded(
+                [&]() -> Result<MarkedBookmark> { return marked(TRY(std::move(added)), *of); });
+            // Others show it, whether or not this session is still there.
+            if (one)
+                asio::post(io, [&news, told = BookmarkNews{*one, of, by}] { news.tell(told); });
+            told(std::move(one));
+        });
 }
 
-void Session::addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark) {
+void Session::addedBookmark(std::uint64_t request, Result<MarkedBookmark> bookmark) {
     if (!bookmark) return report(bookmark.error(), request);
-    ServerMessage message;
-    message.mutable_bookmark_added()->set_request(request);
-    fill(*message.mutable_bookmark_added()->mutable_bookmark(), *bookmark);
-    send(message);
+    send(bookmarkAddedMessage(*bookmark, request));
+}
+
+// Bookmarks become known in the order of their numbers; one that is added again is not told again.
+void Session::heard(const BookmarkNews& news) {
+    const records::Bookmark& bookmark = news.added.bookmark;
+    if (state_ != State::open || bookmark.scan != case_->scan) return;
+    if (reading_) reading_->addBookmark(bookmark);
+    if (bookmark.id <= newestHeard_) return;
+    newestHeard_ = bookmark.id;
+    if (!takesBookmarks_ || news.by == id_) return;
+    send(bookmarkAddedMessage(news.of->wall == case_->wall ? news.added : marked(bookmark, *case_),
+                              0));
 }
 
 void Session::handle(const protocol::ListBookmarks& message) {
     const std::uint64_t request = message.request();
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
-    services_.records.list(case_->name, case_->scan,
-                           answer(&Session::listedBookmarks, request, protocol::listWeight));
+    services_.records.list(
+        case_->name, case_->scan,
+        [of = case_, told = answer(&Session::listedBookmarks, request, protocol::listWeight)](
+            Result<std::vector<records::Bookmark>> listed) {
+            told(guarded([&]() -> Result<std::vector<MarkedBookmark>> {
+                std::vector<MarkedBookmark> all;
+                auto bookmarks = TRY(std::move(listed));
+                for (records::Bookmark& bookmark : bookmarks)
+                    all.push_back(marked(std::move(bookmark), *of));
+                return all;
+            }));
+        });
 }
 
 void Session::listedBookmarks(std::uint64_t request,
-                              Result<std::vector<records::Bookmark>> bookmarks) {
+                              Result<std::vector<MarkedBookmark>> bookmarks) {
     if (!bookmarks) return report(bookmarks.error(), request);
     ServerMessage message;
     message.mutable_bookmark_list()->set_request(request);
-    for (const records::Bookmark& bookmark : *bookmarks)
+    for (const MarkedBookmark& bookmark : *bookmarks)
         fill(*message.mutable_bookmark_list()->add_bookmarks(), bookmark);
     send(message);
 }

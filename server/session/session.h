@@ -5,6 +5,7 @@
 #include "session/case_list.h"
 #include "session/case_loader.h"
 #include "session/case_questions.h"
+#include "session/marked_bookmark.h"
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
 #include "session/render_thread.h"
@@ -49,7 +50,7 @@ struct Services {
     RecordsThread& records;
     QuestionThread& questions;
     PaintThread& painting;
-    News<records::Bookmark>& bookmarks;                ///< that are in the store now
+    News<BookmarkNews>& bookmarks;
     News<std::shared_ptr<const OpenCase>>& lostCases;  ///< whose files cannot be read any more
     OpenCounts& readers;                               ///< of each case
     const render::PresetLibrary& presets;              ///< not empty
@@ -116,8 +117,9 @@ private:
     auto answer(void (Session::*then)(std::uint64_t request, Result<T>), std::uint64_t request,
                 int weight = 1);
     void listedCases(std::uint64_t request, Result<std::vector<CaseSummary>> cases);
-    void addedBookmark(std::uint64_t request, Result<records::Bookmark> bookmark);
-    void listedBookmarks(std::uint64_t request, Result<std::vector<records::Bookmark>> bookmarks);
+    void addedBookmark(std::uint64_t request, Result<MarkedBookmark> bookmark);
+    void heard(const BookmarkNews& news);
+    void listedBookmarks(std::uint64_t request, Result<std::vector<MarkedBookmark>> bookmarks);
     void makeReading();
     void listedToPaint(std::uint64_t ofReading, Result<std::vector<records::Bookmark>> bookmarks);
     void tellSeen(std::uint64_t request, double share);
@@ -127,6 +129,8 @@ private:
     const Services& services_;
     Peer peer_;
     State state_ = State::hello;
+    bool takesBookmarks_ = false;    // of others, unasked
+    std::uint64_t newestHeard_ = 0;  // bookmark of the open case
     std::shared_ptr<const OpenCase> case_;
     std::shared_ptr<const void> counted_;  // while a case is open
     std::shared_ptr<PictureStream> pictures_;

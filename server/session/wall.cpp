@@ -1,5 +1,6 @@
 #include "session/wall.h"
 
+#include "render/wall/wall_coverage.h"
 #include "store/products.h"
 
 #include <algorithm>
@@ -7,6 +8,9 @@
 
 namespace haustra::session {
 namespace {
+
+// So near to the wall a bookmark is a place of it, wherever it looks.
+constexpr double onWallMm = 2.0;
 
 double areaMm2(const TriMesh& surface) {
     double doubled = 0.0;
@@ -102,6 +106,15 @@ Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question) {
     if (const auto* inSpace = std::get_if<LocateInSpace>(&question))
         return wall.lookup.nearest(inSpace->positionMm);
     return measure(wall.lookup, std::get<Measure>(question));
+}
+
+std::optional<WallPlace> markOf(const Wall& wall, glm::dvec3 positionMm, glm::dvec3 forward) {
+    const WallPlace near = wall.lookup.nearest(positionMm);
+    if (glm::distance(near.positionMm, positionMm) <= onWallMm) return near;
+    const auto met = wall.painter->sight().firstMet(positionMm, forward);
+    if (!met || met->distanceMm > render::seenLimits.farthestMm) return std::nullopt;
+    const auto place = wall.lookup.at(met->flat);
+    return place ? *place : wall.lookup.nearest(met->positionMm);
 }
 
 }  // namespace haustra::session

@@ -6,6 +6,7 @@
 #include "render/wall/strip_painter.h"
 
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -61,5 +62,10 @@ using WallAnswer = std::variant<WallPlace, WallMeasure>;
 /// Some microseconds for a place. A measurement crosses some hundred triangles a circumference;
 /// within the protocol's bounds it takes at most about a second, and some milliseconds in use.
 Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question);
+
+/// The place of the wall that a bookmark means, which its disc is around: the nearest within 2 mm
+/// of where it stands, or else where its gaze first meets the wall, within 100 mm. Some
+/// microseconds.
+std::optional<WallPlace> markOf(const Wall& wall, glm::dvec3 positionMm, glm::dvec3 forward);
 
 }  // namespace haustra::session

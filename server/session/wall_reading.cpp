@@ -16,20 +16,6 @@ namespace haustra::session {
 namespace {
 
 constexpr int maxLooks = 16;  // that wait
-// So near to the wall a bookmark is a place of it, wherever it looks.
-constexpr double onWallMm = 2.0;
-
-/// The place of the wall that a bookmark means: its own, or else where its gaze meets the wall.
-std::optional<render::WallMark> markOf(const Wall& wall, glm::dvec3 positionMm,
-                                       glm::dvec3 forward) {
-    const WallPlace near = wall.lookup.nearest(positionMm);
-    if (glm::distance(near.positionMm, positionMm) <= onWallMm)
-        return render::WallMark{near.flat, near.positionMm};
-    const auto met = wall.painter->sight().firstMet(positionMm, forward);
-    if (!met || met->distanceMm > render::seenLimits.farthestMm) return std::nullopt;
-    return render::WallMark{met->flat, met->positionMm};
-}
-
 bool nearlySame(const Camera& a, const Camera& b) {
     const double cosine = glm::dot(glm::normalize(a.forward), glm::normalize(b.forward));
     return a.lens == b.lens && a.fovDegrees == b.fovDegrees && a.heightMm == b.heightMm &&
@@ -56,7 +42,7 @@ struct WallReading::Work {
         marks.clear();
         for (const Gaze& gaze : gazes)
             if (const auto mark = markOf(*of->wall, gaze.positionMm, gaze.forward))
-                marks.push_back(*mark);
+                marks.push_back({mark->flat, mark->positionMm});
     }
     Paint paint(const WallPaintChoice& choice) {
         const render::StripPainter& painter = *of->wall->painter;

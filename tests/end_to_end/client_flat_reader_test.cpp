@@ -167,6 +167,29 @@ TEST_F(ClientFlatReader, BookmarksFindTheirPlaceOnTheStrip) {
     for (const Bookmark& bookmark : reader_->session().bookmarks()) {
         const WallPlace& place = reader_->flat().wall().bookmarkPlaces().at(bookmark.clientKey);
         EXPECT_NEAR(place.flat->y, 6.0 * bookmark.arcMm / length(), 0.2);
+        EXPECT_NEAR(place.flat->x, 0.75, 1e-9) << "not the server's mark";
+    }
+}
+
+class ClientFlatReaderOfAnOldServer : public ClientFlatReader {
+protected:
+    static Misbehaviour old() {
+        Misbehaviour misbehaviour;
+        misbehaviour.old = true;
+        return misbehaviour;
+    }
+    ClientFlatReaderOfAnOldServer() : ClientFlatReader(old()) {}
+};
+
+TEST_F(ClientFlatReaderOfAnOldServer, BookmarksPlacesAreAskedFor) {
+    for (const double arc : {100.0, 200.0}) {
+        reader_->flight().goTo(arc);
+        reader_->addBookmark("");
+    }
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().wall().bookmarkPlaces().size() == 2; }));
+    for (const Bookmark& bookmark : reader_->session().bookmarks()) {
+        const WallPlace& place = reader_->flat().wall().bookmarkPlaces().at(bookmark.clientKey);
+        EXPECT_NEAR(place.flat->x, 0.25, 1e-9);
     }
 }
 

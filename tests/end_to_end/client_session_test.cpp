@@ -161,6 +161,55 @@ TEST_F(ClientSession, WithoutACaseTheListIsWhatThereIsToChooseFrom) {
     }
 }
 
+TEST_F(ClientSession, OthersBookmarksAppearByThemselvesWithTheirMarks) {
+    Misbehaviour sharing;
+    sharing.othersMarkToo = true;
+    FakeServer server(sharing);
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(open(*session));
+    const std::string key = session->addBookmark({}, 120.0, "mine");
+    ASSERT_TRUE(until(*session, [&] {
+        return session->acknowledgedBookmark(key) && session->acknowledgedBookmark("another's");
+    }));
+    EXPECT_EQ(session->bookmarks().size(), 2u);
+    EXPECT_EQ(session->takeBookmarkOutcomes().size(), 1u);
+    EXPECT_EQ(session->owedBookmarks(), 0u);
+    for (const Bookmark& bookmark : session->bookmarks()) {
+        ASSERT_TRUE(bookmark.mark && bookmark.mark->flat);
+        EXPECT_NEAR(bookmark.mark->flat->x, 0.75, 1e-9);
+        EXPECT_NEAR(bookmark.mark->arcMm, 120.0, 1e-9);
+    }
+}
+
+TEST_F(ClientSession, TheSeenShareIsTheServersAndNotKnownBefore) {
+    Misbehaviour wrong;
+    wrong.seenAtFirst = 0.375;
+    wrong.dropAtQuestions = 1;
+    FakeServer server(wrong);
+    const auto session = sessionWith(server);
+    EXPECT_FALSE(session->seenShare());
+    ASSERT_TRUE(until(*session, [&] { return session->seenShare().has_value(); }));
+    EXPECT_EQ(session->seenShare(), 0.375);
+    const auto forgot = session->askSeen(true);
+    ASSERT_TRUE(until(*session, [&] { return session->answeredSeenRequest() >= forgot; }));
+    EXPECT_EQ(session->seenShare(), 0.0);
+    session->measureScan({});  // closes the socket; the next connection begins anew
+    ASSERT_TRUE(until(*session, [&] { return server.connections() == 2; }));
+    ASSERT_TRUE(until(*session, [&] { return session->seenShare() == 0.375; }));
+}
+
+TEST_F(ClientSession, WithoutAStripNothingIsAskedAboutIt) {
+    Misbehaviour bare;
+    bare.notFlattened = true;
+    FakeServer server(bare);
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(open(*session));
+    const auto list = session->requestBookmarks();
+    ASSERT_TRUE(until(*session, [&] { return session->answeredBookmarkRequest() >= list; }));
+    EXPECT_FALSE(session->seenShare());
+    EXPECT_TRUE(session->takeRefusals().empty());
+}
+
 TEST_F(ClientSession, WhatALostLinkLeftUnansweredIsAskedAgain) {
     Misbehaviour wrong;
     wrong.dropAtQuestions = 1;

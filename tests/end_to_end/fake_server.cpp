@@ -240,12 +240,23 @@ struct FakeServer::Impl {
                 stored->set_note(add.note());
                 stored->set_client_key(add.client_key());
                 stored->set_created_utc("2020-02-20T20:20:20Z");
+                if (!misbehaviour.old && !misbehaviour.notFlattened)
+                    *stored->mutable_mark() = fakeMark(add.arc_mm());
             }
             drop = misbehaviour.dropAfterBookmarks > 0 &&
                    int(bookmarks.size()) == misbehaviour.dropAfterBookmarks;
             if (drop) misbehaviour.dropAfterBookmarks = 0;
             answer.mutable_bookmark_added()->set_request(add.request());
             *answer.mutable_bookmark_added()->mutable_bookmark() = *stored;
+        }
+        if (!drop && misbehaviour.othersMarkToo) {
+            ServerMessage theirs = answer;
+            theirs.mutable_bookmark_added()->set_request(0);
+            auto* bookmark = theirs.mutable_bookmark_added()->mutable_bookmark();
+            bookmark->set_id(1000 + bookmark->id());
+            bookmark->set_client_key("another's");
+            bookmark->set_note("another's");
+            write(stream, theirs);
         }
         if (!drop) write(stream, answer);
         return !drop;
@@ -254,6 +265,7 @@ struct FakeServer::Impl {
     void converse(Stream& stream) {
         std::map<int, Viewport> viewports;
         std::uint32_t pictures = 0;
+        double seen = misbehaviour.seenAtFirst;
         if (!read(stream).has_hello()) return;
         ServerMessage welcome;
         welcome.mutable_welcome()->set_protocol_version(misbehaviour.protocolVersion);
@@ -261,7 +273,8 @@ struct FakeServer::Impl {
         welcome.mutable_welcome()->set_renderer("none");
         if (!misbehaviour.old)
             for (const char* known :
-                 {protocol::capability::caseEntries, protocol::capability::slabs,
+                 {protocol::capability::caseEntries, protocol::capability::bookmarkPush,
+                  protocol::capability::marks, protocol::capability::slabs,
                   protocol::capability::scanValues, protocol::capability::pick})
                 welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
@@ -357,6 +370,12 @@ struct FakeServer::Impl {
                 case ClientMessage::kPickWall:
                     if (misbehaviour.old) return;
                     write(stream, fakePick(message.pick_wall(), !misbehaviour.notFlattened));
+                    break;
+                case ClientMessage::kAskSeen:
+                    if (message.ask_seen().forget()) seen = 0.0;
+                    answer.mutable_wall_seen()->set_request(message.ask_seen().request());
+                    answer.mutable_wall_seen()->set_share(seen);
+                    write(stream, answer);
                     break;
                 case ClientMessage::kMeasureScan:
                     if (misbehaviour.old) return;

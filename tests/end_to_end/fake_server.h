@@ -34,6 +34,8 @@ struct Misbehaviour {
     bool silentAboutTheWall = false;     ///< never says where a place lies, nor how long a line is
     bool closesAtWallQuestions = false;  ///< closes the socket where it is asked about the wall
     int stopsWhileOpening = 0;           ///< says so to as many OpenCases, and closes the socket
+    bool othersMarkToo = false;  ///< with each bookmark that is added, another session adds one
+    double seenAtFirst = 0.0;    ///< share of the wall that each connection begins with
     int dropAtQuestions = 0;             ///< closes the socket at so many questions about the scan
     int refuseBookmarks = 0;             ///< refuses so many, then stores them
     int ignoreBookmarks = 0;             ///< says nothing to so many, then stores them

@@ -40,6 +40,10 @@ protocol::FlatMeasure measured(const protocol::MeasureFlat& question) {
 
 }  // namespace
 
+protocol::WallPlace fakeMark(double arcMm) {
+    return fakePlace({0.75, arcMm / fakeCenterline().lengthMm() * fakeStripHeight});
+}
+
 protocol::ServerMessage fakePick(const protocol::PickWall& question, bool flattened) {
     protocol::ServerMessage answer;
     const glm::dvec3 from(question.position_mm().x(), question.position_mm().y(),

@@ -20,6 +20,8 @@ protocol::WallPlace fakePlace(glm::dvec2 flat);
 /// MeasureFlat (as on a cylinder), a refusal where the place is not on the strip.
 protocol::ServerMessage aboutFakeWall(const protocol::ClientMessage& question);
 
+/// What a bookmark at an arc means: the place across from what LocatePoint finds.
+protocol::WallPlace fakeMark(double arcMm);
 /// The wall is fakeRadiusMm from the camera wherever it looks; a ray straight down (−z) meets
 /// nothing, and is refused.
 protocol::ServerMessage fakePick(const protocol::PickWall& question, bool flattened);

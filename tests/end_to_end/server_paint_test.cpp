@@ -146,6 +146,64 @@ TEST_F(ServerPaintTest, BookmarksAreDiscsOnTheWallForWhoeverWantsThem) {
     EXPECT_EQ(awaitPicture(*others, 0, 5).rgb, marked.rgb);
 }
 
+// The place that comes with a bookmark is the one that its disc is painted around, also where
+// another wall is nearer to the camera than the one that it looks at.
+TEST_F(ServerPaintTest, TheMarkOfABookmarkIsTheMiddleOfItsDisc) {
+    const auto client = reader();
+    std::uint64_t sequence = 0;
+    for (const double x : {0.2, 0.45, 0.8}) {
+        const auto strip = [&](glm::dvec2 center) {
+            client->viewport(++sequence, 5, protocol::FLATTENED_ZOOM, 200, 200);
+            ClientMessage window;
+            window.mutable_set_flat()->set_sequence(++sequence);
+            window.mutable_set_flat()->set_viewport(5);
+            window.mutable_set_flat()->mutable_center()->set_x(center.x);
+            window.mutable_set_flat()->mutable_center()->set_y(center.y);
+            window.mutable_set_flat()->set_pixels_per_circumference(600);
+            client->send(window);
+            return awaitPicture(*client, 5, sequence);
+        };
+        const glm::dvec3 place = facing(x);
+        // Where the gaze first meets the wall, by the tube's own shape.
+        const double slope = std::hypot(place.x, place.y) / (place.z - 10.0);
+        double y = 0.0;
+        const auto isBeyond = [&] {
+            const glm::dvec3 wall = tube().positionMm({0.0, y});
+            return wall.z > 10.0 && wall.x <= slope * (wall.z - 10.0);
+        };
+        while (!isBeyond())
+            y += 0.001;
+        const glm::dvec2 expected(x, y);
+        client->send(bookmark("middle" + std::to_string(x), place));
+        std::optional<protocol::Bookmark> told;
+        while (!told) {
+            const auto answer = client->answer();
+            ASSERT_TRUE(answer);
+            if (answer->has_bookmark_added()) told = answer->bookmark_added().bookmark();
+        }
+        ASSERT_TRUE(told->has_mark());
+        const glm::dvec2 mark(told->mark().flat().x(), told->mark().flat().y());
+        EXPECT_LT(glm::distance(mark, expected), 0.02);
+        client->send(paint(++sequence, false, false));
+        const TestPicture bare = strip(mark);
+        client->send(paint(++sequence, true, false, 3.0));
+        const TestPicture marked = strip(mark);
+        glm::dvec2 sum(0.0), low(200.0), high(0.0);
+        int changed = 0;
+        for (int row = 0; row < 200; ++row)
+            for (int column = 0; column < 200; ++column)
+                if (pixel(bare, column, row) != pixel(marked, column, row)) {
+                    const glm::dvec2 at(column + 0.5, row + 0.5);
+                    sum += at, ++changed;
+                    low = glm::min(low, at), high = glm::max(high, at);
+                }
+        ASSERT_GT(changed, 100);
+        const double radius = 0.25 * (high.x - low.x + high.y - low.y);
+        EXPECT_LT(glm::distance(sum / double(changed), glm::dvec2(100.0)), 0.2 * radius)
+            << "of a disc of " << radius << " pixels";
+    }
+}
+
 TEST_F(ServerPaintTest, EachSessionHasSeenWhatItWasShown) {
     const auto mine = reader(), others = reader();
     EXPECT_EQ(seen(*mine, 1), 0.0);
