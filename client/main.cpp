@@ -5,7 +5,7 @@
 #include "protocol/limits.h"
 #include "script/script.h"
 #include "script/script_player.h"
-#include "window/reader_window.h"
+#include "window/run.h"
 
 #include <cstdio>
 #include <fstream>
@@ -22,6 +22,7 @@ const std::string software = std::string("haustra-client ") + softwareVersion;
 
 struct Arguments {
     std::string server, caseName, script, out, size, fingerprint, knownServers, screenshot;
+    std::string theme, language;
     bool list = false, headless = false, reconnect = false;
     double timeoutSeconds = 30.0, scale = 0.0;
     int screenshotAfterMs = 3000;
@@ -46,7 +47,8 @@ void declare(CLI::App& app, Arguments& a) {
         "refused\n"
         "when it changes. For a physician's judgement; not a certified medical device.");
     app.footer(
-        "In the window, ? or F1 shows the keys.\n"
+        "In the window, ? or F1 shows the keys, which can be changed. Settings, layouts and keys are\n"
+        "kept in $XDG_CONFIG_HOME/haustra.\n"
         "Scripts have one JSON object a line; \"do\" names its action, one of\n" +
         actionNames() +
         "\n"
@@ -69,7 +71,7 @@ void declare(CLI::App& app, Arguments& a) {
     app.add_flag("--list", a.list, "print the names of the server's cases, and quit");
     app.add_option(
            "--size", a.size,
-           "the window's size, or with --headless that of pictures (default 1440x900; 512x512)")
+           "the window's size, or with --headless that of pictures (default as it was last; 512x512)")
         ->type_name("WxH");
     app.add_option("--fingerprint", a.fingerprint,
                    "SHA-256 of the server's certificate, as the server prints it: must match, and "
@@ -102,6 +104,15 @@ void declare(CLI::App& app, Arguments& a) {
                    "size of text and controls (default: what the display asks for)")
         ->type_name("FACTOR")
         ->check(CLI::Range(0.5, 4.0))
+        ->group("Window");
+    app.add_option("--theme", a.theme, "colours of the window (default: as chosen in it; dark)")
+        ->type_name("dark|light|contrast")
+        ->check(CLI::IsMember({"dark", "light", "contrast"}))
+        ->group("Window");
+    app.add_option("--language", a.language,
+                   "of the window (default: as chosen in it; the system's)")
+        ->type_name("en|de")
+        ->check(CLI::IsMember({"en", "de"}))
         ->group("Window");
     auto* screenshot = app.add_option("--screenshot", a.screenshot,
                                       "write a picture of the window as PNG, and quit")
@@ -241,6 +252,8 @@ int main(int argc, char** argv) {
         std::cerr << "haustra-client: " << describe(folder.error()) << "\n";
     if (width > 0) options.width = width, options.height = height;
     if (a.scale > 0.0) options.scale = a.scale;
+    options.theme = a.theme;
+    options.language = a.language;
     if (!a.screenshot.empty()) options.screenshot = a.screenshot;
     options.screenshotAfterMs = a.screenshotAfterMs;
     if (const auto ran = window::run(options); !ran) return failed(ran.error());

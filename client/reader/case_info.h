@@ -49,6 +49,7 @@ struct CaseEntry {
     std::optional<double> confidence;  ///< 0…1, where a colon was searched for
     int warnings = 0, bookmarks = 0;
     int readers = 0;  ///< sessions that had it open when the list was made
+    bool operator==(const CaseEntry&) const = default;
 };
 
 struct Bookmark {

@@ -42,29 +42,48 @@ void FlatReading::travel(double seconds) {
 void FlatReading::goTo(glm::dvec2 flat, bool center) {
     if (!hasStrip()) return;
     flat.y = std::clamp(flat.y, 0.0, case_->flat->height);
-    centerPicked_ = center;
-    cameraStays_ = false;
+    asked_ = center ? Asked::atFlatToCenter : Asked::atFlat;
     wall_.pick(flat);
 }
 
 void FlatReading::pick(glm::dvec3 fromMm, glm::dvec3 direction) {
-    centerPicked_ = cameraStays_ = true;
+    asked_ = Asked::alongRay;
     wall_.pick(fromMm, direction);
+}
+
+void FlatReading::goTo(glm::dvec3 placeMm) {
+    tour_.setMotion(Motion::paused);
+    if (!case_->centerline.points.empty())
+        flight_.lookAt(nearestArc(case_->centerline, placeMm), placeMm);
+    stay();
+    picked_ = GoneTo{placeMm};
+    if (!hasStrip()) return;
+    asked_ = Asked::nearPlace;
+    wall_.pickNear(placeMm);
+}
+
+// The camera's new place is not followed: slices and window show what was picked.
+void FlatReading::stay() {
+    followedArcMm_ = flight_.placeArcMm();
+    followedY_ = tour_.window().center.y;
 }
 
 std::optional<WallPlace> FlatReading::takePicked() {
     const auto place = wall_.takePicked();
     if (!place) return std::nullopt;
+    if (asked_ == Asked::nearPlace) {
+        if (!picked_) return std::nullopt;  // the reader has moved on
+        picked_->wall = place;
+        if (place->flat) tour_.centerOn(*place->flat);
+        stay();
+        return std::nullopt;
+    }
     tour_.setMotion(Motion::paused);
-    if (cameraStays_)
-        flight_.setMotion(Motion::paused);
-    else
-        flight_.lookAt(place->arcMm, place->positionMm);
-    // The camera's new place is not followed: slices and window show what was picked.
-    followedArcMm_ = flight_.placeArcMm();
-    if (centerPicked_ && place->flat) tour_.centerOn(*place->flat);
-    followedY_ = tour_.window().center.y;
-    picked_ = place;
+    flight_.setMotion(Motion::paused);
+    if (asked_ != Asked::alongRay) flight_.lookAt(place->arcMm, place->positionMm);
+    if (asked_ != Asked::atFlat && place->flat) tour_.centerOn(*place->flat);
+    stay();
+    picked_ = GoneTo{place->positionMm, place};
     return place;
 }
 

@@ -12,6 +12,13 @@
 
 namespace haustra::reader {
 
+/// Where the reader has gone to by a click: of the scan, and the wall there or nearest to it, once
+/// the server has said where that is.
+struct GoneTo {
+    glm::dvec3 positionMm{0.0};
+    std::optional<WallPlace> wall{};
+};
+
 /// Belongs to the session's thread; session and flight must outlive it.
 class FlatReading {
 public:
@@ -30,11 +37,13 @@ public:
     /// Goes to a place of the flattened wall: once the server has said where it is, the camera
     /// looks at it, slices show it, and with `center` the zoom view has it in its middle.
     void goTo(glm::dvec2 flat, bool center);
-    /// Picks the place of the wall that a ray from the camera meets: the camera stays, slices show
-    /// the place, and the zoom view has it in its middle. Of any case, flattened or not.
+    /// Goes to the first wall that the ray meets: slices and zoom view show it, the camera stays.
     void pick(glm::dvec3 fromMm, glm::dvec3 direction);
-    /// The place that was picked or gone to last, until the camera moves on.
-    const std::optional<WallPlace>& picked() const { return picked_; }
+    /// Goes to a place of the scan: the camera looks at it from the nearest place of the path, and
+    /// the zoom view shows the wall nearest to it.
+    void goTo(glm::dvec3 placeMm);
+    /// The place that was gone to last, until the camera moves on.
+    const std::optional<GoneTo>& picked() const { return picked_; }
     WallQuestions& wall() { return wall_; }
     const WallQuestions& wall() const { return wall_; }
 
@@ -44,11 +53,13 @@ public:
     void forgetSeen();
 
     /// One step of the loop: takes in the server's answers, and moves flight and window on by
-    /// `seconds`. The place that has just been reached by goTo() or pick(), if any.
+    /// `seconds`. The place that has just been reached by goTo(), if any.
     std::optional<WallPlace> update(double seconds);
 
 private:
+    enum class Asked { atFlat, atFlatToCenter, alongRay, nearPlace };
     std::optional<WallPlace> takePicked();
+    void stay();
     void travel(double seconds);
 
     Session& session_;
@@ -56,8 +67,8 @@ private:
     std::shared_ptr<const CaseInfo> case_;
     StripTour tour_;
     WallQuestions wall_{session_};
-    std::optional<WallPlace> picked_;
-    bool centerPicked_ = false, cameraStays_ = false;
+    std::optional<GoneTo> picked_;
+    Asked asked_ = Asked::atFlat;
     double followedArcMm_ = 0.0, followedY_ = 0.0;  // of camera and tour, when last one led
 };
 

@@ -45,6 +45,12 @@ bool OpticsEditor::choose(const std::string& name) {
     return true;
 }
 
+void OpticsEditor::show(const ShownOptics& shown) {
+    if (!choose(shown.preset)) return;
+    change() = shown.optics;
+    row_ = std::min(shown.row, rows() - 1);
+}
+
 void OpticsEditor::backToPreset() {
     change() = draft().preset.optics;
     row_ = std::min(row_, rows() - 1);

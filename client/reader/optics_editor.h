@@ -39,6 +39,16 @@ public:
     /// Grows whenever what is shown may have become another.
     std::uint64_t revision() const { return revision_; }
 
+    /// All that is shown, to be shown again: which preset, as it has been changed.
+    struct ShownOptics {
+        std::string preset;
+        Optics optics;
+        std::size_t row = 0;
+    };
+    ShownOptics shown() const { return {preset(chosen_).name, optics(), row_}; }
+    /// Nothing where there is no such preset any more.
+    void show(const ShownOptics& shown);
+
     void setComposition(Composition composition);
     /// Not of a transfer function with gradient rows: stays off.
     void setPreIntegrated(bool preIntegrated);

@@ -55,12 +55,21 @@ Panes::Panes(Session& session)
     : session_(session), pacers_(allPacers(std::make_index_sequence<viewCount>())) {}
 
 bool Panes::setSize(View view, glm::ivec2 pixels) {
+    if (pixels == glm::ivec2(0)) return close(view);
     // A picture of the same shape within the protocol's bound; the window stretches it.
     const double limit = double(protocol::maxViewportPixels) / std::max({pixels.x, pixels.y, 1});
     const glm::ivec2 size = scaled(pixels, std::min(1.0, limit));
     if (size == sizes_[at(view)]) return false;
     sizes_[at(view)] = size;
     touch(view);
+    return true;
+}
+
+bool Panes::close(View view) {
+    if (sizes_[at(view)] == glm::ivec2(0)) return false;
+    sizes_[at(view)] = glm::ivec2(0);
+    if (openSizes_[at(view)] != glm::ivec2(0)) session_.setViewport(int(view), view, 0, 0);
+    openSizes_[at(view)] = glm::ivec2(0);
     return true;
 }
 

@@ -18,8 +18,8 @@ class Panes {
 public:
     explicit Panes(Session& session);
 
-    /// The pane's size in pixels; the server draws at this size, at most 2048 a side. False where
-    /// it has been so before.
+    /// The pane's size in pixels; the server draws at this size, at most 2048 a side. A pane of
+    /// 0 × 0 is not in sight: nothing is asked for it. False where it has been so before.
     bool setSize(View view, glm::ivec2 pixels);
     glm::ivec2 size(View view) const { return sizes_[std::size_t(view)]; }
 
@@ -50,6 +50,7 @@ public:
     double picturesPerSecond() const { return double(pictures_.picturesPerSecond()); }
 
 private:
+    bool close(View view);
     bool inUse(View view) const;
     void open(View view, bool moving);
     ViewState toSend(View view, ViewState state, bool moving) const;

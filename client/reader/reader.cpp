@@ -1,5 +1,7 @@
 #include "reader/reader.h"
 
+#include "protocol/capabilities.h"
+
 #include <limits>
 
 namespace haustra::reader {
@@ -27,6 +29,7 @@ void Reader::update(double seconds) {
     if (const auto picked = flat_.update(seconds))
         slices_.show(picked->positionMm, flight_.camera().positionMm);
     slices_.follow(flight_.camera().positionMm);
+    measures_.update();
     sendWindow();
     sendOptics(Clock::now());
     panes_.askForViews([this](View view) { return stateOf(view); }, Clock::now());
@@ -43,8 +46,10 @@ void Reader::caseOpened() {
         flight_.goTo(camera, 0.0);
     }
     flat_.open(case_, panes_.size(View::flattenedZoom));
-    slices_.open(case_, flight_.camera().positionMm);
+    slices_.open(case_, flight_.camera().positionMm,
+                 session_.serverCan(protocol::capability::slabs));
     outside_.open(case_);
+    measures_.reset();
     panes_.clear();
     optics_.offer(case_->presets);
     sentOptics_ = seenOptics_ = optics_.revision();
@@ -82,7 +87,14 @@ Freshness Reader::freshness(View view) const {
 }
 
 void Reader::setPaneSize(View view, glm::ivec2 pixels) {
-    if (!panes_.setSize(view, pixels)) return;
+    const bool wasClosed = panes_.size(view) == glm::ivec2(0);
+    if (!panes_.setSize(view, pixels) || pixels == glm::ivec2(0)) return;
+    if (wasClosed && case_) {
+        // The server knows nothing of a view that comes back.
+        sentWindow_.reset();
+        if (view == View::endoscopic || isFlat(view))
+            session_.setTransferFunction(int(view), optics_.choice());
+    }
     if (view == View::flattenedZoom) flat_.tour().setPaneSize(panes_.size(view));
     if (view == View::overview) outside_.setPaneSize(panes_.size(view));
 }
@@ -118,8 +130,8 @@ void Reader::sendOptics(Clock::time_point now) {
 
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
-    return motion() != Motion::paused || flat_.wall().waits() || opticsChangedAt_ ||
-           optics_.revision() != sentOptics_ || panes_.owe();
+    return motion() != Motion::paused || flat_.wall().waits() || measures_.waits() ||
+           opticsChangedAt_ || optics_.revision() != sentOptics_ || panes_.owe();
 }
 
 Motion Reader::motion() const {
@@ -133,10 +145,20 @@ void Reader::setMotion(Motion motion) {
         flight_.setMotion(motion);
 }
 
-void Reader::goNear(glm::dvec3 patientMm) {
-    if (!case_ || case_->centerline.points.empty()) return;
-    setMotion(Motion::paused);
-    flight_.goTo(nearestArc(case_->centerline, patientMm));
+void Reader::goTo(glm::dvec3 placeMm, View plane) {
+    if (!case_) return;
+    if (slices_.linked()) {
+        setMotion(Motion::paused);
+        flat_.goTo(placeMm);
+    }
+    slices_.show(placeMm, flight_.camera().positionMm, plane);
+}
+
+void Reader::restore(const Flight& flight, const SliceViews& slices) {
+    flight_ = flight;
+    const WindowLevel window = slices_.window();
+    slices_ = slices;
+    slices_.setWindow(window);
 }
 
 void Reader::addBookmark(std::string note) {

@@ -6,6 +6,7 @@
 #include "reader/optics_editor.h"
 #include "reader/outside_view.h"
 #include "reader/panes.h"
+#include "reader/scan_measures.h"
 #include "reader/slice_views.h"
 
 #include <memory>
@@ -47,6 +48,8 @@ public:
     const FlatReading& flat() const { return flat_; }
     OutsideView& outside() { return outside_; }
     const OutsideView& outside() const { return outside_; }
+    ScanMeasures& measures() { return measures_; }
+    const ScanMeasures& measures() const { return measures_; }
     /// How the wall is drawn: what is made of it is shown in the endoscopic view while it changes,
     /// and in the flattened ones when it rests.
     OpticsEditor& optics() { return optics_; }
@@ -57,13 +60,17 @@ public:
     /// Where they are drawn.
     const Panes& panes() const { return panes_; }
     Freshness freshness(View view) const;
+    /// 0 × 0: the view is not in sight, and nothing is asked for it.
     void setPaneSize(View view, glm::ivec2 pixels);
 
     /// Of the fly-over where it is on, else of the flight.
     Motion motion() const;
     void setMotion(Motion motion);
-    /// Flies to the point of the centerline nearest to `patientMm`.
-    void goNear(glm::dvec3 patientMm);
+    /// A click in a slice: every view shows that place. Where slices are not linked, `plane` shows
+    /// it and nothing else moves.
+    void goTo(glm::dvec3 placeMm, View plane);
+    /// Back where flight and slices were.
+    void restore(const Flight& flight, const SliceViews& slices);
 
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
@@ -81,6 +88,7 @@ private:
     SliceViews slices_;
     FlatReading flat_{session_, flight_};
     OutsideView outside_;
+    ScanMeasures measures_{session_};
     OpticsEditor optics_;
     Panes panes_{session_};
 

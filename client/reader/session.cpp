@@ -221,6 +221,7 @@ void Session::handle(const protocol::ServerMessage& message) {
 void Session::opened(const protocol::CaseOpened& message) {
     auto info = caseInfoFrom(message);
     if (!info) return giveUp(info.error());
+    if (info->name != caseName_) return;  // the reader has chosen another since
     // After a reconnection the same case keeps its address, and the reader's flight with it.
     const bool same = caseInfo_ && caseInfo_->name == info->name && caseInfo_->scan == info->scan &&
                       caseInfo_->centerline.points.size() == info->centerline.points.size() &&
@@ -258,8 +259,16 @@ void Session::refused(const protocol::ErrorReport& report) {
         (report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
          report.code() == protocol::ErrorReport::INTERNAL ||
          report.code() == protocol::ErrorReport::BUSY);
-    if (phase_ == Phase::connecting && (ofTheCase || report.fatal())) giveUp(error);
-    if (phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST) giveUp(error);
+    const bool lost = phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST;
+    if (offersCases_ && !report.fatal() && ((phase_ == Phase::connecting && ofTheCase) || lost)) {
+        caseName_.clear();
+        phase_ = Phase::choosing;
+        requestCases();
+    } else if (phase_ == Phase::connecting && (ofTheCase || report.fatal())) {
+        giveUp(error);
+    } else if (lost) {
+        giveUp(error);
+    }
 }
 
 void Session::refuse(std::uint64_t request, const Error& error) {

@@ -79,6 +79,9 @@ public:
     /// Asks for it, whatever is open. Returns the request's number.
     std::uint64_t requestCases();
     std::uint64_t answeredCasesRequest() const { return answeredCases_; }
+    /// Whether a case that the server refuses to open, or loses, leads back to the list of cases,
+    /// with a refusal; else it ends the session.
+    void setOffersCases(bool offers) { offersCases_ = offers; }
     void openCase(const std::string& name);
     /// The open case; empty before. Its address changes only when a case is opened.
     const std::shared_ptr<const CaseInfo>& caseInfo() const { return caseInfo_; }
@@ -216,6 +219,7 @@ private:
     link::LinkUp server_;
     std::string lastWords_;  // why the server ends the link; it is lost next
     std::string caseName_;
+    bool offersCases_ = false;
     std::vector<CaseEntry> cases_;
     bool linked_ = false;
     std::shared_ptr<const CaseInfo> caseInfo_;

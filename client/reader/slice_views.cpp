@@ -1,5 +1,7 @@
 #include "reader/slice_views.h"
 
+#include "core/slice_placement.h"
+
 #include <algorithm>
 
 namespace haustra::reader {
@@ -15,40 +17,94 @@ glm::dvec3 sliceNormal(View view) {
     }
 }
 
-void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm) {
+SliceViews::Plane& SliceViews::of(View plane) {
+    return planes_[plane == View::coronal ? 1 : plane == View::sagittal ? 2 : 0];
+}
+
+void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm, bool canPan) {
     case_ = std::move(info);
-    focusMm_ = followedMm_ = cameraMm;
-    zoom_ = 1.0;
+    canPan_ = canPan;
+    if (!canPan) slab_ = {};
+    planes_.fill({cameraMm, 1.0, glm::dvec2(0.0)});
+    followedMm_ = cameraMm;
     aheadMm_ = 0.0;
     heightMm_ = ObliqueView{}.heightMm;
     cleansed_ = false;
 }
 
 void SliceViews::follow(glm::dvec3 cameraMm) {
-    if (cameraMm != followedMm_) focusMm_ = followedMm_ = cameraMm;
+    if (cameraMm == followedMm_) return;
+    followedMm_ = cameraMm;
+    if (!linked_) return;
+    for (Plane& plane : planes_)
+        plane.focusMm = cameraMm;
 }
 
-void SliceViews::show(glm::dvec3 placeMm, glm::dvec3 cameraMm) {
-    focusMm_ = placeMm;
+void SliceViews::show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane) {
     followedMm_ = cameraMm;
+    if (linked_)
+        for (Plane& each : planes_)
+            each.focusMm = placeMm;
+    else if (plane)
+        of(*plane).focusMm = placeMm;
 }
 
 SliceView SliceViews::slice(View plane) const {
-    return {plane, focusMm_, zoom_, window_, scan()};
+    const Plane& shown = of(plane);
+    return {plane, shown.focusMm, shown.zoom, window_, scan(), shown.panMm, slab_};
+}
+
+// A slice outside the scan is black, and the way back hard to find.
+glm::dvec3 SliceViews::withinScan(glm::dvec3 mm) const {
+    const Grid& grid = case_->grid;
+    const glm::dvec3 voxel =
+        glm::clamp(grid.voxelFromPatientPoint(mm), glm::dvec3(0.0), glm::dvec3(grid.size - 1));
+    return grid.patientFromVoxelPoint(voxel);
 }
 
 void SliceViews::scroll(View plane, double mm) {
     if (!case_) return;
-    focusMm_ += mm * sliceNormal(plane);
-    // Kept within the scan: a slice outside it is black, and the way back hard to find.
-    const Grid& grid = case_->grid;
-    const glm::dvec3 voxel = glm::clamp(grid.voxelFromPatientPoint(focusMm_), glm::dvec3(0.0),
-                                        glm::dvec3(grid.size - 1));
-    focusMm_ = grid.patientFromVoxelPoint(voxel);
+    const glm::dvec3 there = withinScan(of(plane).focusMm + mm * sliceNormal(plane));
+    of(plane).focusMm = there;
+    if (linked_)
+        for (Plane& each : planes_)
+            each.focusMm = there;
 }
 
-void SliceViews::zoom(double factor) {
-    zoom_ = std::clamp(zoom_ * factor, 1.0, 32.0);
+void SliceViews::zoom(View plane, double factor, glm::dvec2 pixel, glm::ivec2 size) {
+    if (!case_) return;
+    const auto before = placeSlice(slice(plane), case_->grid, size.x, size.y);
+    const double zoomed = std::clamp(of(plane).zoom * factor, 1.0, maxZoom);
+    of(plane).zoom = zoomed;
+    if (linked_)
+        for (Plane& each : planes_)
+            each.zoom = zoomed;
+    const auto after = placeSlice(slice(plane), case_->grid, size.x, size.y);
+    if (!before || !after) return;
+    const glm::dvec2 moved = after->pixelFromPatient(before->patientFromPixel(pixel)) - pixel;
+    pan(plane, -moved * after->pixelMm());
+    if (zoomed == 1.0) of(plane).panMm = glm::dvec2(0.0);
+}
+
+void SliceViews::pan(View plane, glm::dvec2 mm) {
+    if (!canPan_) return;
+    constexpr double farthestMm = 1000.0;
+    glm::dvec2& pan = of(plane).panMm;
+    pan = glm::clamp(pan + mm, glm::dvec2(-farthestMm), glm::dvec2(farthestMm));
+}
+
+void SliceViews::showWhole(View plane) {
+    for (Plane& each : planes_)
+        if (linked_ || &each == &of(plane)) each.zoom = 1.0, each.panMm = glm::dvec2(0.0);
+}
+
+void SliceViews::setLinked(bool linked) {
+    if (linked && !linked_) {
+        const double zoom = planes_[0].zoom;
+        for (Plane& plane : planes_)
+            plane.focusMm = followedMm_, plane.zoom = zoom;
+    }
+    linked_ = linked;
 }
 
 ObliqueView SliceViews::oblique(const Camera& gaze) const {
@@ -57,7 +113,8 @@ ObliqueView SliceViews::oblique(const Camera& gaze) const {
             gaze.up,
             heightMm_,
             window_,
-            scan()};
+            scan(),
+            slab_};
 }
 
 void SliceViews::scrollOblique(double mm) {
@@ -75,6 +132,11 @@ void SliceViews::setCleansed(bool cleansed) {
 void SliceViews::setWindow(WindowLevel window) {
     window_.widthHu = std::clamp(window.widthHu, 1.0, 6000.0);
     window_.centerHu = std::clamp(window.centerHu, -2000.0, 4000.0);
+}
+
+void SliceViews::setSlab(Slab slab) {
+    slab_ = slab;
+    slab_.thicknessMm = std::clamp(slab.thicknessMm, 0.0, maxSlabMm);
 }
 
 }  // namespace haustra::reader

@@ -3,6 +3,7 @@
 
 #include "reader/case_info.h"
 
+#include <array>
 #include <memory>
 
 namespace haustra::reader {
@@ -11,18 +12,33 @@ namespace haustra::reader {
 /// opposite, the patient's left).
 glm::dvec3 sliceNormal(View view);
 
-/// Belongs to one thread. Slices follow the camera; scrolling leaves it until it moves.
+/// Belongs to one thread. Linked slices show one point and are enlarged alike; they follow the
+/// camera, and scrolling leaves it until it moves. Each slice that is not linked stays where it is
+/// put.
 class SliceViews {
 public:
-    /// Another case is open, and the camera stands there. The window stays.
-    void open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm);
+    static constexpr double maxZoom = 32.0;
+
+    /// Another case is open, and the camera stands there. Window, slab and linking stay. `canPan`:
+    /// the server moves pictures (protocol::capability::slabs); else they stay centred.
+    void open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm, bool canPan = true);
     void follow(glm::dvec3 cameraMm);
-    /// Shows a place until the camera leaves `cameraMm`.
-    void show(glm::dvec3 placeMm, glm::dvec3 cameraMm);
+    /// Shows a place until the camera leaves `cameraMm`. Of slices that are not linked, only in
+    /// `plane`, if any is given.
+    void show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane = {});
 
     SliceView slice(View plane) const;
     void scroll(View plane, double mm);
-    void zoom(double factor);
+    /// What is at `pixel` of a picture of `size` stays there.
+    void zoom(View plane, double factor, glm::dvec2 pixel, glm::ivec2 size);
+    /// Moves what the picture shows, patient mm to the right and down.
+    void pan(View plane, glm::dvec2 mm);
+    /// Whole and centred again.
+    void showWhole(View plane);
+
+    bool linked() const { return linked_; }
+    /// Slices that are linked again show the camera's place.
+    void setLinked(bool linked);
 
     /// Across the gaze, so far ahead of the camera as it was scrolled to.
     ObliqueView oblique(const Camera& gaze) const;
@@ -32,18 +48,29 @@ public:
     /// Whether all four show the cleansed scan; stays false where the case has none.
     bool cleansed() const { return cleansed_; }
     void setCleansed(bool cleansed);
+    Scan scan() const { return cleansed_ ? Scan::cleansed : Scan::original; }
     const WindowLevel& window() const { return window_; }
     void setWindow(WindowLevel window);
+    const Slab& slab() const { return slab_; }
+    void setSlab(Slab slab);
 
 private:
-    Scan scan() const { return cleansed_ ? Scan::cleansed : Scan::original; }
+    struct Plane {
+        glm::dvec3 focusMm{0.0};
+        double zoom = 1.0;
+        glm::dvec2 panMm{0.0};
+    };
+    Plane& of(View plane);
+    const Plane& of(View plane) const { return const_cast<SliceViews*>(this)->of(plane); }
+    glm::dvec3 withinScan(glm::dvec3 mm) const;
 
     std::shared_ptr<const CaseInfo> case_;
-    glm::dvec3 focusMm_{0.0}, followedMm_{0.0};
-    double zoom_ = 1.0;
+    std::array<Plane, 3> planes_;
+    glm::dvec3 followedMm_{0.0};
     double aheadMm_ = 0.0, heightMm_ = ObliqueView{}.heightMm;
-    bool cleansed_ = false;
+    bool cleansed_ = false, linked_ = true, canPan_ = true;
     WindowLevel window_;
+    Slab slab_;
 };
 
 }  // namespace haustra::reader

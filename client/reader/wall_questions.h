@@ -28,10 +28,10 @@ public:
     /// Takes in answers, asks what is due. Call at every step of the loop.
     void update(const CaseInfo& info);
 
-    /// A click on the flattened wall.
+    /// A click on the flattened wall; the first wall that a ray meets; the wall nearest to a place.
     void pick(glm::dvec2 flat) { pick_ = session_.locate(flat); }
-    /// A click in the endoscopic view.
     void pick(glm::dvec3 fromMm, glm::dvec3 direction) { pick_ = session_.pick(fromMm, direction); }
+    void pickNear(glm::dvec3 placeMm) { pick_ = session_.locate(placeMm); }
     /// The place of the newest click, once.
     std::optional<WallPlace> takePicked() { return std::exchange(picked_, std::nullopt); }
 

@@ -1,86 +1,170 @@
-// The list of bookmarks at the right.
-#include "core/printed_text.h"
-#include "window/ui.h"
-#include "window/widgets.h"
+#include "window/bookmark_panel.h"
 
+#include "window/icons.h"
+#include "window/theme.h"
+
+#include <QDateTime>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QInputDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QLocale>
+#include <QMenu>
+#include <QToolButton>
+#include <QTreeWidget>
+#include <QVBoxLayout>
 #include <algorithm>
 
 namespace haustra::window {
 namespace {
 
-// One bookmark: its place, note and whether the server has it. A click goes there.
-void drawRow(Ui& ui, const reader::Bookmark& bookmark, int number) {
-    const float high = ui.px(46), wide = ImGui::GetContentRegionAvail().x;
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImGui::PushID(number);
-    if (ImGui::InvisibleButton("row", {wide, high})) ui.reader.goTo(bookmark);
-    const bool hovered = ImGui::IsItemHovered();
-    ImGui::PopID();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 end(corner.x + wide, corner.y + high);
-    list->AddRectFilled(corner, end, hovered ? color::hovered : color::raised, ui.px(5));
-    list->AddRectFilled(corner, {corner.x + ui.px(3), end.y},
-                        bookmark.acknowledged() ? color::bookmark : color::muted, ui.px(2));
-    list->PushClipRect(corner, {end.x - ui.px(8), end.y}, true);
-    list->AddText(ui.fonts.normal, ui.fonts.normal->FontSize,
-                  {corner.x + ui.px(12), corner.y + ui.px(5)}, color::text,
-                  bookmark.note.empty() ? "Bookmark" : bookmark.note.c_str());
-    const std::string when =
-        bookmark.createdUtc.size() >= 16
-            ? bookmark.createdUtc.substr(0, 10) + "  " + bookmark.createdUtc.substr(11, 5)
-            : "";
-    const std::string where =
-        printed("%.0f mm   %s", bookmark.arcMm, bookmark.acknowledged() ? when.c_str() : "saving…");
-    list->AddText(ui.fonts.small, ui.fonts.small->FontSize,
-                  {corner.x + ui.px(12), corner.y + ui.px(26)}, color::muted, where.c_str());
-    list->PopClipRect();
-    if (hovered && !bookmark.note.empty()) tooltip(bookmark.note.c_str());
+enum State { saved, sending, refused };
+constexpr int keyRole = Qt::UserRole, stateRole = Qt::UserRole + 1;
+
+/// Of those that the server has or will have, and those that it refused; along the colon, as they
+/// are met in flight.
+struct Entry {
+    reader::Bookmark bookmark;
+    State state;
+    QString reason{};
+};
+
+std::vector<Entry> entriesOf(const reader::Session& session) {
+    std::vector<Entry> entries;
+    for (const reader::Bookmark& bookmark : session.bookmarks())
+        entries.push_back({bookmark, bookmark.acknowledged() ? saved : sending});
+    for (const reader::RefusedBookmark& refusal : session.refusedBookmarks())
+        entries.push_back({refusal.bookmark, refused, text(refusal.reason)});
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+        return a.bookmark.arcMm < b.bookmark.arcMm;
+    });
+    return entries;
+}
+
+QString whenText(const std::string& utc) {
+    const QDateTime when = QDateTime::fromString(text(utc), Qt::ISODate).toLocalTime();
+    return when.isValid() ? QLocale().toString(when, QLocale::ShortFormat) : QString();
 }
 
 }  // namespace
 
-void drawBookmarkPanel(Ui& ui, Rect area) {
-    ImGui::SetCursorScreenPos(area.min);
-    ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, 0.0f);
-    ImGui::BeginChild("bookmarks", area.size(), true, ImGuiWindowFlags_AlwaysUseWindowPadding);
-    const auto bookmarks = ui.reader.session().bookmarks();
-    ImGui::TextUnformatted("Bookmarks");
-    ImGui::SameLine();
-    ImGui::TextDisabled("%zu", bookmarks.size());
+BookmarkPanel::BookmarkPanel(Reading& reading)
+    : reading_(reading),
+      note_(new QLineEdit),
+      list_(new QTreeWidget),
+      hint_(new QLabel(tr("B marks the place in view; Shift+B with a note."))) {
+    note_->setPlaceholderText(tr("note, then Enter"));
+    note_->setAccessibleName(tr("Note of a new bookmark"));
+    auto* addButton = new QToolButton;
+    addButton->setIcon(iconOf(Symbol::bookmark));
+    addButton->setToolTip(tr("Bookmark this place with this note"));
+    addButton->setAccessibleName(tr("Add the bookmark"));
+    list_->setAccessibleName(tr("Bookmarks along the colon"));
+    list_->setColumnCount(3);
+    list_->setHeaderLabels({tr("mm"), tr("Note"), tr("Saved")});
+    list_->setRootIsDecorated(false);
+    list_->setAllColumnsShowFocus(true);
+    list_->setContextMenuPolicy(Qt::CustomContextMenu);
+    list_->header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+    list_->header()->setSectionResizeMode(1, QHeaderView::Stretch);
+    list_->header()->setSectionResizeMode(2, QHeaderView::ResizeToContents);
+    list_->header()->setStretchLastSection(false);
+    hint_->setWordWrap(true);
+    hint_->setAlignment(Qt::AlignCenter);
+    auto* row = new QHBoxLayout;
+    row->addWidget(note_);
+    row->addWidget(addButton);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(6, 6, 6, 6);
+    column->addLayout(row);
+    column->addWidget(list_, 1);
+    column->addWidget(hint_);
+    connect(note_, &QLineEdit::returnPressed, this, &BookmarkPanel::add);
+    connect(addButton, &QToolButton::clicked, this, &BookmarkPanel::add);
+    connect(list_, &QTreeWidget::itemClicked, this, &BookmarkPanel::goTo);
+    connect(list_, &QTreeWidget::itemActivated, this, &BookmarkPanel::goTo);
+    connect(list_, &QTreeWidget::customContextMenuRequested, this, &BookmarkPanel::showMenu);
+    connect(&reading, &Reading::stepped, this, &BookmarkPanel::look);
+}
 
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - ui.px(40));
-    if (ui.focusNote) ImGui::SetKeyboardFocusHere();
-    ui.focusNote = false;
-    const bool entered =
-        ImGui::InputTextWithHint("##note", "note, then Enter", ui.note.data(), ui.note.size(),
-                                 ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::SameLine(0, ui.px(8));
-    const bool pressed = iconButton("add", Icon::bookmark, ui.px(30), "Bookmark this place (B)");
-    if (entered || pressed) {
-        ui.reader.addBookmark(ui.note.data());
-        ui.note.fill(0);
+void BookmarkPanel::writeNote() {
+    note_->setFocus(Qt::ShortcutFocusReason);
+}
+
+void BookmarkPanel::add() {
+    if (!reading_.reader().isOpen()) return;
+    reading_.reader().addBookmark(note_->text().toStdString());
+    note_->clear();
+    reading_.changed();
+}
+
+void BookmarkPanel::look() {
+    setEnabled(reading_.reader().isOpen());
+    std::vector<std::pair<std::string, int>> now;
+    for (const Entry& entry : entriesOf(reading_.reader().session()))
+        now.emplace_back(entry.bookmark.clientKey + entry.bookmark.note, entry.state);
+    if (now == shown_) return;
+    shown_ = std::move(now);
+    fill();
+}
+
+void BookmarkPanel::fill() {
+    const QString current =
+        list_->currentItem() ? list_->currentItem()->data(0, keyRole).toString() : QString();
+    list_->clear();
+    for (const Entry& entry : entriesOf(reading_.reader().session())) {
+        const QString note = text(entry.bookmark.note);
+        const QString when = entry.state == saved     ? whenText(entry.bookmark.createdUtc)
+                             : entry.state == sending ? tr("sending…")
+                                                      : tr("refused");
+        auto* item = new QTreeWidgetItem(list_, {QString::number(entry.bookmark.arcMm, 'f', 0),
+                                                 note.isEmpty() ? tr("Bookmark") : note, when});
+        item->setTextAlignment(0, Qt::AlignRight | Qt::AlignVCenter);
+        item->setData(0, keyRole, text(entry.bookmark.clientKey));
+        item->setData(0, stateRole, entry.state);
+        item->setToolTip(1, entry.state == refused ? note + '\n' + entry.reason : note);
+        if (entry.state == refused)
+            for (int column = 0; column < 3; ++column)
+                item->setForeground(column, theme().trouble);
+        else
+            item->setForeground(0, theme().bookmark);
+        if (item->data(0, keyRole).toString() == current) list_->setCurrentItem(item);
     }
-    ImGui::Spacing();
-    ImGui::BeginChild("list", {0, 0}, false);
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, ui.px(6)});
-    // Along the colon, as they are met in flight.
-    auto sorted = bookmarks;
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const auto& a, const auto& b) { return a.arcMm < b.arcMm; });
-    ImGuiListClipper clipper;
-    clipper.Begin(int(sorted.size()), ui.px(52));
-    while (clipper.Step())
-        for (int n = clipper.DisplayStart; n < clipper.DisplayEnd; ++n)
-            drawRow(ui, sorted[std::size_t(n)], n);
-    ImGui::PopStyleVar();
-    if (bookmarks.empty()) {
-        ImGui::PushFont(ui.fonts.small);
-        ImGui::TextDisabled("B marks the place in view.");
-        ImGui::PopFont();
+    hint_->setVisible(list_->topLevelItemCount() == 0);
+}
+
+void BookmarkPanel::goTo(QTreeWidgetItem* item) {
+    const std::string key = item->data(0, keyRole).toString().toStdString();
+    for (const Entry& entry : entriesOf(reading_.reader().session()))
+        if (entry.bookmark.clientKey == key)
+            return reading_.jump(tr("go to a bookmark"), [this, bookmark = entry.bookmark] {
+                reading_.reader().goTo(bookmark);
+            });
+}
+
+void BookmarkPanel::showMenu(const QPoint& position) {
+    QTreeWidgetItem* item = list_->itemAt(position);
+    if (!item) return;
+    QMenu menu(this);
+    menu.addAction(tr("Go there"), this, [this, item] { goTo(item); });
+    if (item->data(0, stateRole).toInt() == refused) {
+        const std::string key = item->data(0, keyRole).toString().toStdString();
+        const QString before = item->text(1);
+        menu.addAction(tr("Send again…"), this, [this, key, before] {
+            bool wanted = false;
+            const QString note =
+                QInputDialog::getText(this, tr("Send the bookmark again"), tr("Note"),
+                                      QLineEdit::Normal, before, &wanted);
+            if (wanted) reading_.reader().session().sendRefusedAgain(key, note.toStdString());
+            reading_.changed();
+        });
+        menu.addAction(tr("Discard"), this, [this, key] {
+            reading_.reader().session().dismissRefused(key);
+            reading_.changed();
+        });
     }
-    ImGui::EndChild();
-    ImGui::EndChild();
-    ImGui::PopStyleVar();
+    menu.exec(list_->viewport()->mapToGlobal(position));
 }
 
 }  // namespace haustra::window

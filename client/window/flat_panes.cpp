@@ -1,299 +1,339 @@
-// The flattened strip and the window onto it: pictures, what is drawn on them, the mouse.
-#include "core/bridges.h"
-#include "core/printed_text.h"
-#include "window/pane.h"
-#include "window/widgets.h"
+#include "window/flat_panes.h"
 
+#include "core/bridges.h"
+#include "window/theme.h"
+
+#include <QMenu>
+#include <QToolTip>
 #include <algorithm>
 #include <cmath>
 
 namespace haustra::window {
 namespace {
 
-constexpr ImU32 pale = IM_COL32(200, 208, 216, 255);
-constexpr ImU32 measured = IM_COL32(255, 221, 87, 255);
-
-// A stretch of the screen that shows a window of the strip.
+/// A stretch of the pane that shows a window of the strip.
 struct FlatArea {
-    Rect area;
+    QRectF area;
     FlatWindow window;
     glm::ivec2 size;  ///< of the window's picture
 
-    double pixels() const { return area.size().x / size.x; }
-    ImVec2 screen(glm::dvec2 flat) const {
-        const glm::dvec2 pixel = window.pixelFromFlat(flat, size);
-        return {area.min.x + float(pixel.x * pixels()), area.min.y + float(pixel.y * pixels())};
+    double pixels() const { return area.width() / std::max(1, size.x); }
+    QPointF position(glm::dvec2 flat) const {
+        return area.topLeft() + point(window.pixelFromFlat(flat, size) * pixels());
     }
-    glm::dvec2 flat(ImVec2 screen) const {
-        return window.flatFromPixel(
-            {(screen.x - area.min.x) / pixels(), (screen.y - area.min.y) / pixels()}, size);
+    glm::dvec2 flat(QPointF position) const {
+        return window.flatFromPixel(vector(position - area.topLeft()) / pixels(), size);
     }
-    // Calls visit(screen position) for each copy of a place that may be seen.
+    // Calls visit(position) for each copy of a place that may be seen.
     template <class Visit>
     void forEachCopy(glm::dvec2 flat, const Visit& visit) const {
         const double half = 0.5 * size.x / window.pixelsPerUnit + 0.1;
         const double first = std::ceil(window.center.x - half - flat.x);
         for (double turn = first; flat.x + turn <= window.center.x + half; turn += 1.0)
-            visit(screen({flat.x + turn, flat.y}));
+            visit(position({flat.x + turn, flat.y}));
     }
 };
 
-void drawFlag(Ui& ui, ImDrawList* list, ImVec2 p) {
-    list->AddLine(p, {p.x, p.y - ui.px(12)}, color::bookmark, ui.px(1.5f));
-    list->AddTriangleFilled({p.x, p.y - ui.px(13)}, {p.x + ui.px(8), p.y - ui.px(9.5f)},
-                            {p.x, p.y - ui.px(6)}, color::bookmark);
-    list->AddCircleFilled(p, ui.px(2), color::bookmark);
-}
-
 // Their lengths beside the hatched bridges: what the strip makes long or short is not to be read
 // off.
-void drawBridges(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const reader::FlatStrip& strip = ui.reader.flat().tour().strip();
-    for (const Bridge& bridge : bridgesOf(ui.reader.session().caseInfo()->centerline)) {
+void paintBridges(QPainter& painter, const reader::Reader& reader, const FlatArea& flat) {
+    const reader::FlatStrip& strip = reader.flat().tour().strip();
+    for (const Bridge& bridge : bridgesOf(reader.session().caseInfo()->centerline)) {
         const double y = strip.yAtArc(0.5 * (bridge.fromArcMm + bridge.toArcMm));
-        const float row = flat.screen({0.0, y}).y - ui.fonts.small->FontSize / 2;
-        outlinedText(list, ui.fonts.small, {flat.area.min.x + ui.px(8), row}, color::bookmark,
-                     printed("bridge %.0f mm", bridge.lengthMm()));
+        outlinedText(painter, {flat.area.left() + 8, flat.position({0.0, y}).y()},
+                     Qt::AlignLeft | Qt::AlignVCenter, theme().bookmarkOnPicture,
+                     StripPane::tr("bridge %1 mm").arg(bridge.lengthMm(), 0, 'f', 0));
     }
 }
 
-// The row of the camera, bookmarks, and the place that was picked.
-void drawMarks(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const reader::Reader& reader = ui.reader;
+// The row of the camera, bookmarks, and the place that was gone to.
+void paintPlaces(QPainter& painter, const reader::Reader& reader, const FlatArea& flat) {
     const double y = reader.flat().tour().strip().yAtArc(reader.flight().placeArcMm());
-    const float row = flat.screen({0.0, y}).y, tip = ui.px(6);
-    const Rect& area = flat.area;
-    list->AddLine({area.min.x, row}, {area.max.x, row}, IM_COL32(72, 190, 199, 110));
-    list->AddTriangleFilled({area.min.x, row - tip}, {area.min.x + tip, row},
-                            {area.min.x, row + tip}, color::accent);
-    list->AddTriangleFilled({area.max.x, row - tip}, {area.max.x, row + tip},
-                            {area.max.x - tip, row}, color::accent);
+    const double row = flat.position({0.0, y}).y(), tip = 6.0;
+    const QRectF& area = flat.area;
+    QColor faint = theme().accentOnPicture;
+    faint.setAlpha(theme().lineWidth > 1.0 ? 255 : 110);
+    painter.setPen(QPen(faint, theme().lineWidth));
+    painter.drawLine(QPointF(area.left(), row), QPointF(area.right(), row));
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(theme().accentOnPicture);
+    painter.drawPolygon(
+        QPolygonF({{area.left(), row - tip}, {area.left() + tip, row}, {area.left(), row + tip}}));
+    painter.drawPolygon(QPolygonF(
+        {{area.right(), row - tip}, {area.right(), row + tip}, {area.right() - tip, row}}));
     for (const auto& [key, place] : reader.flat().wall().bookmarkPlaces())
-        if (place.flat) flat.forEachCopy(*place.flat, [&](ImVec2 p) { drawFlag(ui, list, p); });
-    if (const auto& picked = reader.flat().picked(); picked && picked->flat)
-        flat.forEachCopy(*picked->flat, [&](ImVec2 p) { drawPickedCross(ui, list, p); });
+        if (place.flat)
+            flat.forEachCopy(*place.flat, [&](QPointF p) { paintBookmarkFlag(painter, p); });
+    if (const auto& picked = reader.flat().picked(); picked && picked->wall && picked->wall->flat)
+        flat.forEachCopy(*picked->wall->flat, [&](QPointF p) { paintPlaceMark(painter, p); });
 }
 
-// ---- the strip --------------------------------------------------------------------------------
-
-// What of the strip the zoom view shows, in one of the columns.
-void drawZoomFrame(Ui& ui, const FlatArea& column, ImDrawList* list) {
-    const reader::StripTour& tour = ui.reader.flat().tour();
-    const glm::dvec2 half = 0.5 * glm::dvec2(tour.paneSize()) / tour.window().pixelsPerUnit;
-    const float left = column.area.min.x + ui.px(1), right = column.area.max.x - ui.px(1);
-    const bool allAround = half.x >= 0.5;
-    for (const double turn : {-1.0, 0.0, 1.0}) {
-        const glm::dvec2 center = tour.window().center + glm::dvec2(turn, 0.0);
-        ImVec2 min = column.screen(center + half), max = column.screen(center - half);
-        min.x = allAround ? left : std::max(min.x, left);
-        max.x = allAround ? right : std::min(max.x, right);
-        if (min.x >= max.x || (allAround && turn != 0.0)) continue;
-        list->AddRect(min, max, IM_COL32(0, 0, 0, 150), 0, 0, ui.px(3));
-        list->AddRect(min, max, IM_COL32(255, 255, 255, 220), 0, 0, ui.px(1.2f));
-    }
-}
-
-void handleStripMouse(Ui& ui, const StripLayout& layout, Rect area, double pixels, bool hovered) {
-    reader::Reader& reader = ui.reader;
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const auto flat =
-        layout.flatFromPixel({(mouse.x - area.min.x) / pixels, (mouse.y - area.min.y) / pixels},
-                             reader.flat().tour().strip().height);
-    if (!flat) return;
-    if (ImGui::IsItemActive() && ui.drag > ui.px(4)) reader.flat().tour().centerOn(*flat);
-    if (ImGui::IsItemDeactivated()) {
-        reader.setMotion(reader::Motion::paused);
-        reader.flat().goTo(*flat, true);
-    }
-    if (hovered && !ImGui::IsItemActive())
-        tooltip(printed("%.0f mm", reader.flat().tour().strip().arcAtY(flat->y)).c_str());
-}
-
-// ---- the window onto it -----------------------------------------------------------------------
-
-// The newest picture where it belongs: it lags behind the window that the hand moves.
-void drawZoomPicture(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    if (!preparePicture(ui, View::flattenedZoom, flat.area, list)) return;
-    FlatArea shown = flat;
-    if (const auto* window = ui.reader.panes().shown<FlatWindow>(View::flattenedZoom))
-        shown.window = *window;
-    shown.window.center.x += std::round(flat.window.center.x - shown.window.center.x);
-    list->AddImage(ui.textures[std::size_t(View::flattenedZoom)].id(),
-                   flat.screen(shown.flat(flat.area.min)), flat.screen(shown.flat(flat.area.max)));
-    dimOldPicture(ui, View::flattenedZoom, flat.area, list);
-}
-
-void drawMeasurement(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const auto& measurement = ui.reader.flat().wall().measurement();
-    if (!measurement || measurement->points.size() < 2) return;
-    // The copy that is nearest to the window's middle.
-    const double turn = std::round(flat.window.center.x - measurement->points.front().x);
-    std::vector<ImVec2> points;
-    for (const glm::dvec2 point : measurement->points)
-        points.push_back(flat.screen(point + glm::dvec2(turn, 0.0)));
-    const ImDrawFlags closed = measurement->closed ? ImDrawFlags_Closed : ImDrawFlags_None;
-    list->AddPolyline(points.data(), int(points.size()), IM_COL32(0, 0, 0, 170), closed,
-                      ui.px(3.5f));
-    list->AddPolyline(points.data(), int(points.size()), measured, closed, ui.px(1.6f));
-    ImVec2 low = points.front();
-    for (const ImVec2 p : points)
-        if (p.y > low.y) low = p;
-    if (!measurement->closed)
-        for (const ImVec2 p : {points.front(), points.back()})
-            list->AddCircleFilled(p, ui.px(3), measured);
-    const bool inSight = std::any_of(points.begin(), points.end(), [&](ImVec2 p) {
-        return p.x >= flat.area.min.x && p.x <= flat.area.max.x && p.y >= flat.area.min.y &&
-               p.y <= flat.area.max.y;
-    });
-    if (!measurement->result || !inSight) return;
-    const reader::FlatMeasure& result = *measurement->result;
-    const std::string text =
-        measurement->closed
-            ? printed("%.1f mm across   %.0f mm²", result.largestDiameterMm, result.areaMm2)
-            : printed("%.1f mm   straight %.1f mm", result.lengthMm, result.straightMm);
-    const ImVec2 size = textSize(ui.fonts.normal, text);
-    const ImVec2 corner(
-        std::clamp(low.x - size.x / 2, flat.area.min.x + ui.px(6),
-                   std::max(flat.area.min.x + ui.px(6), flat.area.max.x - size.x - ui.px(6))),
-        std::min(low.y + ui.px(8), flat.area.max.y - size.y - ui.px(6)));
-    outlinedText(list, ui.fonts.normal, corner, measured, text);
-}
-
-// Follows the hand with a line or an outline, of at most as many points as a server measures.
-void draw(Ui& ui, DrawingTool tool, const FlatArea& flat) {
-    constexpr std::size_t mostPoints = 120;
-    const glm::dvec2 here = flat.flat(ImGui::GetIO().MousePos);
-    std::vector<glm::dvec2>& points = ui.drawing;
-    if (tool == DrawingTool::line) {
-        points.resize(std::min<std::size_t>(points.size(), 1));
-        points.push_back(here);
-    } else if (points.empty() || glm::distance(points.back(), here) * flat.window.pixelsPerUnit >
-                                     4.0 / flat.pixels()) {
-        points.push_back(here);
-        if (points.size() > mostPoints) {  // every other one is enough
-            for (std::size_t n = 0; 2 * n < points.size(); ++n)
-                points[n] = points[2 * n];
-            points.resize((points.size() + 1) / 2);
-        }
-    }
-    const bool closed = tool == DrawingTool::outline;
-    if (points.size() >= (closed ? 3u : 2u)) ui.reader.flat().wall().measure(points, closed);
-}
-
-void handleZoomMouse(Ui& ui, const FlatArea& flat, bool hovered) {
-    reader::Reader& reader = ui.reader;
-    const ImGuiIO& io = ImGui::GetIO();
-    const double pixels = flat.pixels();
-    if (ImGui::IsItemActivated()) {
-        const DrawingTool held = io.KeyShift  ? DrawingTool::line
-                                 : io.KeyCtrl ? DrawingTool::outline
-                                              : ui.tool;
-        ui.drawing.clear();
-        if (held != DrawingTool::none) ui.drawing.push_back(flat.flat(io.MousePos));
-        ui.drawsOutline = held == DrawingTool::outline;
-    }
-    const bool draws = !ui.drawing.empty();
-    if (ImGui::IsItemActive() && ui.drag > ui.px(4)) {
-        if (draws)
-            draw(ui, ui.drawsOutline ? DrawingTool::outline : DrawingTool::line, flat);
-        else
-            reader.flat().tour().drag({io.MouseDelta.x / pixels, io.MouseDelta.y / pixels});
-    }
-    if (ImGui::IsItemDeactivated()) {
-        if (!draws && ui.drag <= ui.px(4)) {
-            reader.flat().wall().clearMeasurement();
-            reader.setMotion(reader::Motion::paused);
-            reader.flat().goTo(flat.flat(io.MousePos), false);
-        }
-        ui.drawing.clear();
-    }
-    if (hovered && io.MouseWheel != 0.0f)
-        reader.flat().tour().zoom(std::pow(1.2, io.MouseWheel),
-                                  {(io.MousePos.x - flat.area.min.x) / pixels,
-                                   (io.MousePos.y - flat.area.min.y) / pixels});
-}
-
-void drawZoomTexts(Ui& ui, const FlatArea& flat, ImDrawList* list) {
-    const reader::Reader& reader = ui.reader;
+// What the zoom view shows of the strip.
+void paintZoomFrame(QPainter& painter, const reader::Reader& reader, const FlatArea& flat) {
     const reader::StripTour& tour = reader.flat().tour();
-    const Rect& area = flat.area;
-    const float margin = ui.px(10), high = ui.fonts.small->FontSize;
-    const ImVec2 corner(area.min.x + margin, area.min.y + ui.px(8));
-    if (tour.flyingOver())
-        outlinedText(list, ui.fonts.normal, corner, color::accent,
-                     printed("Fly-over   %.0f mm", tour.arcMm()));
-    else
-        outlinedText(list, ui.fonts.small, corner, color::text, "Flattened wall");
-    const double zoom = tour.window().pixelsPerUnit / reader::wholeCircumference(flat.size.x);
-    const std::string right =
-        std::abs(zoom - 1.0) < 0.01 ? std::string("cecum ↑") : printed("×%.1f   cecum ↑", zoom);
-    outlinedText(list, ui.fonts.small,
-                 {area.max.x - margin - textSize(ui.fonts.small, right).x, corner.y}, pale, right);
-    if (ui.tool == DrawingTool::none) return;
-    const char* hint = ui.tool == DrawingTool::line ? "drag a line to measure it   Esc ends"
-                                                    : "drag around a polyp   Esc ends";
-    outlinedText(list, ui.fonts.small, {corner.x, area.max.y - ui.px(8) - high}, measured, hint);
+    const FlatWindow& window = tour.window();
+    const glm::dvec2 half = 0.5 * glm::dvec2(tour.paneSize()) / window.pixelsPerUnit;
+    const bool allAround = 2.0 * half.x >= 1.0;
+    for (const double turn : {-1.0, 0.0, 1.0}) {
+        if (allAround && turn != 0.0) continue;
+        QRectF frame(flat.position(window.center + half + glm::dvec2(turn, 0)),
+                     flat.position(window.center - half + glm::dvec2(turn, 0)));
+        if (allAround) frame.setLeft(flat.area.left()), frame.setRight(flat.area.right());
+        frame &= flat.area.adjusted(1, 1, -1, -1);
+        if (frame.isEmpty()) continue;
+        painter.setBrush(Qt::NoBrush);
+        painter.setPen(QPen(QColor(0, 0, 0, 150), 3.0));
+        painter.drawRect(frame);
+        painter.setPen(QPen(QColor(255, 255, 255, 220), 1.2 * theme().lineWidth));
+        painter.drawRect(frame);
+    }
+}
+
+void addPlaces(Shown& shown, const reader::Reader& reader) {
+    shown.add(reader.flight().placeArcMm());
+    const reader::StripTour& tour = reader.flat().tour();
+    shown.add(tour.window().center.x), shown.add(tour.window().center.y);
+    shown.add(tour.window().pixelsPerUnit);
+    shown.add(tour.flyingOver());
+    for (const auto& [key, place] : reader.flat().wall().bookmarkPlaces())
+        shown.add(place.positionMm);
+    if (const auto& picked = reader.flat().picked(); picked && picked->wall)
+        shown.add(picked->wall->positionMm);
 }
 
 }  // namespace
 
-void drawStripPane(Ui& ui, Rect area) {
-    reader::Reader& reader = ui.reader;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    reader.setPaneSize(View::flattened, framebufferSize(area));
-    drawPicture(ui, View::flattened, area, list);
-    const bool hovered = pane(ui, "strip", area);
-    const glm::ivec2 size = reader.panes().size(View::flattened);
-    const double pixels = area.size().x / size.x;
-    const double height = reader.flat().tour().strip().height;
-    const StripLayout layout = layOutStrip(height, size);
-    handleStripMouse(ui, layout, area, pixels, hovered);
+// ---- the whole strip ----------------------------------------------------------------------------
 
-    for (std::size_t n = 0; n < layout.columns.size(); ++n) {
-        const StripColumn& column = layout.columns[n];
-        const auto x = [&](double pixel) { return area.min.x + float(pixel * pixels); };
-        const FlatArea flat{
-            {{x(column.left), area.min.y}, {x(column.left + column.size.x), area.max.y}},
-            column.window,
-            column.size};
-        list->PushClipRect(flat.area.min, flat.area.max, true);
-        drawZoomFrame(ui, flat, list);
-        drawBridges(ui, flat, list);
-        drawMarks(ui, flat, list);
-        list->PopClipRect();
-    }
-    const float margin = ui.px(6), high = ui.fonts.small->FontSize;
-    const ImVec2 bottom(area.min.x + float(layout.columns.front().left * pixels) + margin,
-                        area.max.y - margin - high);
-    outlinedText(list, ui.fonts.small, bottom, pale, "rectum");
-    glm::dvec2 top = layout.pixelFromFlat({0.5, height});
-    const float textY =
-        std::max(area.min.y + margin, area.min.y + float(top.y * pixels) - high - margin);
-    outlinedText(
-        list, ui.fonts.small,
-        {area.min.x + float(top.x * pixels) - textSize(ui.fonts.small, "cecum").x / 2, textY}, pale,
-        "cecum");
-    list->AddRect(area.min, area.max, hovered ? color::muted : color::border);
+StripPane::StripPane(Reading& reading) : Pane(reading, View::flattened, tr("Flattened colon")) {}
+
+StripLayout StripPane::layout() const {
+    return layOutStrip(reader().flat().tour().strip().height, pictureSize());
 }
 
-void drawZoomPane(Ui& ui, Rect area) {
-    reader::Reader& reader = ui.reader;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    reader.setPaneSize(View::flattenedZoom, framebufferSize(area));
-    const bool hovered = pane(ui, "zoom", area);
-    const auto here = [&] {
-        return FlatArea{area, reader.flat().tour().window(), reader.flat().tour().paneSize()};
-    };
-    handleZoomMouse(ui, here(), hovered);
-    const FlatArea flat = here();  // as the hand has left it
-    list->PushClipRect(area.min, area.max, true);
-    drawZoomPicture(ui, flat, list);
-    drawBridges(ui, flat, list);
-    drawMarks(ui, flat, list);
-    drawMeasurement(ui, flat, list);
-    drawZoomTexts(ui, flat, list);
-    list->PopClipRect();
-    list->AddRect(area.min, area.max, hovered ? color::muted : color::border);
+std::optional<glm::dvec2> StripPane::flatAt(QPointF position) const {
+    if (!reader().flat().hasStrip()) return std::nullopt;
+    return layout().flatFromPixel(vector(position) / widgetPerPixel(),
+                                  reader().flat().tour().strip().height);
+}
+
+void StripPane::addShown(Shown& shown) const {
+    if (reader().flat().hasStrip()) addPlaces(shown, reader());
+}
+
+void StripPane::paintMarks(QPainter& painter) {
+    if (!reader().flat().hasStrip()) return;
+    const double pixels = widgetPerPixel();
+    const StripLayout columns = layout();
+    painter.setFont(smallFont(font()));
+    for (const StripColumn& column : columns.columns) {
+        const FlatArea flat{QRectF(column.left * pixels, 0, column.size.x * pixels, height()),
+                            column.window, column.size};
+        painter.save();
+        painter.setClipRect(flat.area);
+        paintZoomFrame(painter, reader(), flat);
+        paintBridges(painter, reader(), flat);
+        paintPlaces(painter, reader(), flat);
+        painter.restore();
+    }
+    painter.setFont(smallFont(font()));
+    constexpr double margin = 6.0;
+    outlinedText(painter, {columns.columns.front().left * pixels + margin, height() - margin},
+                 Qt::AlignLeft | Qt::AlignBottom, theme().dimOnPicture, tr("rectum"));
+    const double high = reader().flat().tour().strip().height;
+    const QPointF top = point(columns.pixelFromFlat({0.5, high}) * pixels);
+    const double textHigh = QFontMetricsF(painter.font()).height();
+    outlinedText(painter, {top.x(), std::max(margin, top.y() - textHigh - margin)},
+                 Qt::AlignHCenter | Qt::AlignTop, theme().dimOnPicture, tr("cecum"));
+}
+
+void StripPane::dragged(const Hand& hand) {
+    if (const auto flat = flatAt(hand.position)) reader().flat().tour().centerOn(*flat);
+}
+
+void StripPane::released(const Hand& hand) {
+    if (hand.button == Qt::RightButton) return;
+    if (const auto flat = flatAt(hand.position))
+        reading().jump(tr("go along the flattened colon"),
+                       [this, flat = *flat] { reader().flat().goTo(flat, true); });
+}
+
+void StripPane::hovered(const Hand& hand) {
+    const auto flat = flatAt(hand.position);
+    setToolTip(flat ? tr("%1 mm").arg(reader().flat().tour().strip().arcAtY(flat->y), 0, 'f', 0)
+                    : QString());
+}
+
+// ---- the window onto it -------------------------------------------------------------------------
+
+FlatZoomPane::FlatZoomPane(Reading& reading)
+    : Pane(reading, View::flattenedZoom, tr("Flattened wall")) {}
+
+namespace {
+
+FlatArea areaOf(const QWidget& pane, const reader::Reader& reader) {
+    return {QRectF(pane.rect()), reader.flat().tour().window(), reader.flat().tour().paneSize()};
+}
+
+}  // namespace
+
+void FlatZoomPane::fillMenu(QMenu& menu) {
+    menu.addAction(tr("Whole circumference"), this, [this] {
+        reader().flat().tour().showWholeCircumference();
+        reading().changed();
+    });
+    menu.addAction(tr("Clear the measurement"), this, [this] {
+        reader().flat().wall().clearMeasurement();
+        reading().changed();
+    });
+}
+
+void FlatZoomPane::addShown(Shown& shown) const {
+    if (!reader().flat().hasStrip()) return;
+    addPlaces(shown, reader());
+    const auto& measurement = reader().flat().wall().measurement();
+    if (!measurement) return;
+    shown.add(measurement->result ? measurement->result->lengthMm : -1.0);
+    for (const glm::dvec2 p : measurement->points)
+        shown.add(p.x), shown.add(p.y);
+}
+
+// The newest picture where it belongs: it lags behind the window that the hand moves.
+void FlatZoomPane::paintPicture(QPainter& painter, const QImage& picture) {
+    const FlatArea flat = areaOf(*this, reader());
+    const auto* window = reader().panes().shown<FlatWindow>(View::flattenedZoom);
+    if (!window || *window == flat.window) return Pane::paintPicture(painter, picture);
+    FlatArea shown = flat;
+    shown.window = *window;
+    shown.window.center.x += std::round(flat.window.center.x - shown.window.center.x);
+    painter.setRenderHint(QPainter::SmoothPixmapTransform);
+    painter.drawImage(QRectF(flat.position(shown.flat(flat.area.topLeft())),
+                             flat.position(shown.flat(flat.area.bottomRight()))),
+                      picture);
+}
+
+void FlatZoomPane::paintMarks(QPainter& painter) {
+    if (!reader().flat().hasStrip()) return;
+    const FlatArea flat = areaOf(*this, reader());
+    painter.setFont(smallFont(font()));
+    paintBridges(painter, reader(), flat);
+    paintPlaces(painter, reader(), flat);
+    paintMeasurement(painter);
+    paintTexts(painter);
+}
+
+void FlatZoomPane::paintMeasurement(QPainter& painter) {
+    const auto& measurement = reader().flat().wall().measurement();
+    if (!measurement || measurement->points.size() < 2) return;
+    const FlatArea flat = areaOf(*this, reader());
+    const QColor color = theme().measuredOnPicture;
+    // The copy that is nearest to the window's middle.
+    const double turn = std::round(flat.window.center.x - measurement->points.front().x);
+    QPolygonF points;
+    for (const glm::dvec2 p : measurement->points)
+        points << flat.position(p + glm::dvec2(turn, 0.0));
+    outlinedPolyline(painter, points, measurement->closed, color);
+    if (!measurement->closed) {
+        painter.setPen(Qt::NoPen);
+        painter.setBrush(color);
+        painter.drawEllipse(points.front(), 3, 3);
+        painter.drawEllipse(points.back(), 3, 3);
+    }
+    const bool inSight =
+        std::any_of(points.begin(), points.end(), [&](QPointF p) { return flat.area.contains(p); });
+    if (!measurement->result || !inSight) return;
+    const QPointF low = *std::max_element(points.begin(), points.end(),
+                                          [](QPointF a, QPointF b) { return a.y() < b.y(); });
+    const reader::FlatMeasure& result = *measurement->result;
+    const QString text = measurement->closed ? tr("%1 mm across   %2 mm²")
+                                                   .arg(decimal(result.largestDiameterMm))
+                                                   .arg(result.areaMm2, 0, 'f', 0)
+                                             : tr("%1 mm   straight %2 mm")
+                                                   .arg(decimal(result.lengthMm))
+                                                   .arg(decimal(result.straightMm));
+    painter.setFont(font());
+    const QFontMetricsF metrics(painter.font());
+    const double half = metrics.horizontalAdvance(text) / 2 + 6;
+    outlinedText(painter,
+                 {std::clamp(low.x(), half, std::max(half, width() - half)),
+                  std::min(low.y() + 8, height() - metrics.height() - 6)},
+                 Qt::AlignHCenter | Qt::AlignTop, color, text);
+}
+
+void FlatZoomPane::paintTexts(QPainter& painter) {
+    const reader::StripTour& tour = reader().flat().tour();
+    const double margin = 10.0;
+    painter.setFont(smallFont(font()));
+    if (tour.flyingOver())
+        outlinedText(painter, {margin, 8}, Qt::AlignLeft | Qt::AlignTop, theme().accentOnPicture,
+                     tr("Fly-over   %1 mm").arg(tour.arcMm(), 0, 'f', 0));
+    else if (namesItself())
+        outlinedText(painter, {margin, 8}, Qt::AlignLeft | Qt::AlignTop, theme().onPicture,
+                     title());
+    const double zoom = tour.window().pixelsPerUnit / reader::wholeCircumference(tour.paneSize().x);
+    outlinedText(
+        painter, {width() - margin, 8}, Qt::AlignRight | Qt::AlignTop, theme().dimOnPicture,
+        std::abs(zoom - 1.0) < 0.01 ? tr("cecum ↑") : tr("×%1   cecum ↑").arg(decimal(zoom)));
+    if (reading().tool() == DrawingTool::none) return;
+    outlinedText(painter, {margin, height() - 8.0}, Qt::AlignLeft | Qt::AlignBottom,
+                 theme().measuredOnPicture,
+                 reading().tool() == DrawingTool::line ? tr("drag a line to measure it   Esc ends")
+                                                       : tr("drag around a polyp   Esc ends"));
+}
+
+void FlatZoomPane::pressed(const Hand& hand) {
+    drawing_.clear();
+    if (!reader().flat().hasStrip() || hand.button != Qt::LeftButton) return;
+    const DrawingTool held = hand.shift()  ? DrawingTool::line
+                             : hand.ctrl() ? DrawingTool::outline
+                                           : reading().tool();
+    drawsOutline_ = held == DrawingTool::outline;
+    if (held != DrawingTool::none) drawing_.push_back(areaOf(*this, reader()).flat(hand.position));
+}
+
+// Follows the hand with a line or an outline, of at most as many points as a server measures.
+void FlatZoomPane::draw(glm::dvec2 flat, double leastStep) {
+    constexpr std::size_t mostPoints = 120;
+    if (!drawsOutline_) {
+        drawing_.resize(1);
+        drawing_.push_back(flat);
+    } else if (glm::distance(drawing_.back(), flat) > leastStep) {
+        drawing_.push_back(flat);
+        if (drawing_.size() > mostPoints) {  // every other one is enough
+            for (std::size_t n = 0; 2 * n < drawing_.size(); ++n)
+                drawing_[n] = drawing_[2 * n];
+            drawing_.resize((drawing_.size() + 1) / 2);
+        }
+    }
+    if (drawing_.size() >= (drawsOutline_ ? 3u : 2u))
+        reader().flat().wall().measure(drawing_, drawsOutline_);
+}
+
+void FlatZoomPane::dragged(const Hand& hand) {
+    if (!reader().flat().hasStrip()) return;
+    const FlatArea flat = areaOf(*this, reader());
+    if (!drawing_.empty())
+        draw(flat.flat(hand.position), 4.0 / flat.pixels() / flat.window.pixelsPerUnit);
+    else
+        reader().flat().tour().drag(vector(hand.moved) / flat.pixels());
+}
+
+void FlatZoomPane::released(const Hand&) {
+    drawing_.clear();
+}
+
+void FlatZoomPane::clicked(const Hand& hand) {
+    if (hand.button != Qt::LeftButton || !drawing_.empty() || !reader().flat().hasStrip()) return;
+    reader().flat().wall().clearMeasurement();
+    const glm::dvec2 flat = areaOf(*this, reader()).flat(hand.position);
+    reading().jump(tr("go to a place of the wall"),
+                   [this, flat] { reader().flat().goTo(flat, false); });
+}
+
+void FlatZoomPane::wheeled(const Hand& hand, double steps) {
+    if (!reader().flat().hasStrip()) return;
+    reader().flat().tour().zoom(std::pow(1.2, steps),
+                                vector(hand.position) / areaOf(*this, reader()).pixels());
 }
 
 }  // namespace haustra::window

@@ -1,161 +1,652 @@
 #include "window/reader_window.h"
 
-#include "window/gl_window.h"
-#include "window/layout.h"
-#include "window/ui.h"
+#include "core/raycasters.h"
+#include "protocol/capabilities.h"
+#include "window/bookmark_panel.h"
+#include "window/case_list.h"
+#include "window/endoscopic_pane.h"
+#include "window/flat_panes.h"
+#include "window/flight_bar.h"
+#include "window/help_pages.h"
+#include "window/language.h"
+#include "window/notices.h"
+#include "window/optics_panel.h"
+#include "window/overview_pane.h"
+#include "window/path_track.h"
+#include "window/picture_out.h"
+#include "window/slice_panes.h"
+#include "window/theme.h"
 
-#include <algorithm>
-#include <atomic>
+#include <QAbstractButton>
+#include <QAbstractItemView>
+#include <QAbstractSlider>
+#include <QAbstractSpinBox>
+#include <QActionGroup>
+#include <QApplication>
+#include <QClipboard>
+#include <QCloseEvent>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QHBoxLayout>
+#include <QInputDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMenuBar>
+#include <QMimeData>
+#include <QScrollArea>
+#include <QSettings>
+#include <QStatusBar>
+#include <QToolBar>
+#include <QToolButton>
+#include <QVBoxLayout>
 
 namespace haustra::window {
 namespace {
 
-using reader::Clock;
-void drawEverything(Ui& ui) {
-    ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-    ImGui::Begin("haustra", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav |
-                     ImGuiWindowFlags_NoScrollWithMouse);
-    ImGui::PopStyleVar();
-    const Layout layout = layOut(ui, ImGui::GetIO().DisplaySize);
-    drawTopBar(ui, layout.top);
-    if (ui.reader.isOpen()) {
-        drawEndoscopicPane(ui, layout.endoscopic);
-        drawSlicePane(ui, View::axial, layout.axial);
-        drawSlicePane(ui, View::coronal, layout.coronal);
-        drawSlicePane(ui, View::sagittal, layout.sagittal);
-        if (ui.reader.flat().hasStrip()) {
-            drawStripPane(ui, layout.strip);
-            drawZoomPane(ui, layout.zoom);
-        }
-        drawOverviewPane(ui, layout.overview);
-        drawObliquePane(ui, layout.oblique);
-        if (ui.showBookmarks) drawBookmarkPanel(ui, layout.bookmarks);
-        drawTransportBar(ui, layout.transport);
-    } else {
-        drawStart(ui, {layout.middle.min, layout.transport.max});
-    }
-    drawNotices(ui, ui.reader.isOpen() ? layout.endoscopic : layout.middle);
-    if (ui.showHelp) drawHelp(ui, {{0, 0}, ImGui::GetIO().DisplaySize});
-    ImGui::End();
-    if (ui.showTransfer && ui.reader.isOpen()) drawTransferPanel(ui, layout.middle);
+const auto layoutSetting = QStringLiteral("window/layout");
+const auto geometrySetting = QStringLiteral("window/geometry");
+
+// Keys that such a control needs for itself while it has the keyboard, though they are a command's.
+bool needsKey(const QWidget* widget, const QKeyEvent& key) {
+    if (!widget || (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier))) return false;
+    const bool arrows = key.key() >= Qt::Key_Home && key.key() <= Qt::Key_PageDown;
+    const bool presses =
+        key.key() == Qt::Key_Space || key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter;
+    const bool types = !key.text().isEmpty() && key.text()[0].isPrint();
+    if (qobject_cast<const QAbstractButton*>(widget)) return presses;
+    if (qobject_cast<const QAbstractSlider*>(widget)) return arrows;
+    if (qobject_cast<const QComboBox*>(widget)) return arrows || presses;
+    if (qobject_cast<const QAbstractSpinBox*>(widget) || qobject_cast<const QLineEdit*>(widget))
+        return arrows || types || presses || key.key() == Qt::Key_Backspace ||
+               key.key() == Qt::Key_Delete;
+    if (qobject_cast<const QAbstractItemView*>(widget)) return arrows || presses;
+    // The transfer function's graph moves its points.
+    return widget->inherits("haustra::window::TransferGraph") &&
+           (arrows || key.key() == Qt::Key_Insert || key.key() == Qt::Key_Delete ||
+            key.key() == Qt::Key_N || key.key() == Qt::Key_P);
 }
 
-// Turns what happened in the session since the last frame into notices.
-class Watcher {
-public:
-    void look(Ui& ui) {
-        reader::Session& session = ui.reader.session();
-        for (const Error& refusal : session.takeRefusals())
-            ui.tell(describe(refusal), true);
-        if (session.server().firstUse && !toldFirstUse_) {
-            ui.tell("First meeting with this server: its certificate is now pinned (" +
-                    session.server().fingerprint.substr(0, 16) + "…)");
-            toldFirstUse_ = true;
-        }
-        tellOfBookmarks(ui, session.takeBookmarkOutcomes());
-    }
-
-private:
-    // What was refused and noted goes back to where notes are written, unless another one is being
-    // written there.
-    static void tellOfBookmarks(Ui& ui, const std::vector<reader::BookmarkOutcome>& outcomes) {
-        std::size_t saved = 0, refused = 0;
-        std::string notes;
-        for (const auto& [bookmark, isSaved] : outcomes) {
-            ++(isSaved ? saved : refused);
-            if (!isSaved && !bookmark.note.empty())
-                notes += (notes.empty() ? "" : "; ") + bookmark.note;
-        }
-        if (saved > 0)
-            ui.tell(saved == 1 ? "Bookmark saved" : std::to_string(saved) + " bookmarks saved");
-        if (refused == 0) return;
-        std::string text = refused == 1 ? "A bookmark was not saved"
-                                        : std::to_string(refused) + " bookmarks were not saved";
-        if (!notes.empty() && ui.note[0] == 0 && notes.size() < ui.note.size()) {
-            ui.note.fill(0);
-            notes.copy(ui.note.data(), ui.note.size() - 1);
-            ui.showBookmarks = true;
-            text += "; what was noted is in its field again";
-        } else if (!notes.empty()) {
-            text += ": " + notes;
-        }
-        ui.tell(text, true);
-    }
-
-    bool toldFirstUse_ = false;
-};
-
-// When the time has come; where pictures are still on their way, up to 20 s later.
-bool readyForScreenshot(const reader::Reader& reader, const WindowOptions& options,
-                        Clock::duration elapsed) {
-    const auto due = std::chrono::milliseconds(options.screenshotAfterMs);
-    if (elapsed < due) return false;
-    const reader::Phase phase = reader.session().phase();
-    bool waiting = phase == reader::Phase::connecting;
-    if (phase == reader::Phase::open && reader.motion() == reader::Motion::paused)
-        for (const View view : allViews)
-            // Views without a pane are never asked for, nor flat ones of a case without a strip.
-            waiting = waiting ||
-                      (reader.panes().size(view).x > 0 && !reader.panes().picture(view).exact &&
-                       (reader.flat().hasStrip() || !isFlat(view)));
-    return !waiting || elapsed > due + std::chrono::seconds(20);
-}
-
-// Bookmarks on their way are waited for, but not for long.
-void finishBookmarks(reader::Session& session) {
-    const auto deadline = Clock::now() + std::chrono::seconds(2);
-    while (session.owedBookmarks() > 0 && session.phase() == reader::Phase::open &&
-           Clock::now() < deadline)
-        session.poll(std::chrono::milliseconds(50));
+bool typesText(const QWidget* widget) {
+    return qobject_cast<const QLineEdit*>(widget) || qobject_cast<const QAbstractSpinBox*>(widget);
 }
 
 }  // namespace
 
-Result<void> run(WindowOptions options) {
-    auto made = TRY(GlWindow::create("Haustra", options.width, options.height, options.scale));
-    GlWindow& window = *made;
-    options.connection.reconnect = true;
-    options.connection.onEvent = [&window] { window.wake(); };
-    reader::Reader reader(options.connection, options.caseName, options.journal);
-    Ui ui{reader, window.fonts(), float(window.scale()),
-          link::toString(options.connection.address)};
-    Watcher watcher;
+ReaderWindow::ReaderWindow(Reading& reading)
+    : reading_(reading), commands_(*this), docks_(makeDocks()), layouts_(*this, second_, docks_) {
+    setDockNestingEnabled(true);
+    setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
+    second_.setDockNestingEnabled(true);
+    second_.setObjectName(QStringLiteral("second"));
+    makeHeader();
+    makeMenus();
+    makeStatus();
+    cases_ = new CaseList(reading);
+    setCentralWidget(cases_);
+    for (const Command& command : commands())
+        for (QMainWindow* window : {static_cast<QMainWindow*>(this), &second_})
+            window->addAction(commands_.action(command));
+    connect(cases_, &CaseList::chosenAgain, this, &ReaderWindow::caseOpened);
+    connect(&reading, &Reading::caseOpened, this, &ReaderWindow::caseOpened);
+    connect(&reading, &Reading::phaseChanged, this, [this] {
+        if (reader().session().phase() == reader::Phase::choosing && !cases_->isVisible())
+            showCases();
+    });
+    connect(&reading, &Reading::stepped, this, &ReaderWindow::look);
+    connect(&reading, &Reading::told, this, [this](const QString& text, bool trouble) {
+        if (!trouble) statusBar()->showMessage(text, 4000);
+    });
+    connect(&reading, &Reading::toolChanged, this, [this] {
+        for (Pane* pane : panes_)
+            pane->setCursor(reading_.tool() == DrawingTool::none ? Qt::ArrowCursor
+                                                                 : Qt::CrossCursor);
+    });
+    qApp->installEventFilter(this);
+    setWindowTitle(QStringLiteral("Haustra"));
+    second_.setWindowTitle(tr("Haustra, second window"));
+    restoreGeometry(QSettings().value(geometrySetting).toByteArray());
+    look();
+}
 
-    const auto start = Clock::now();
-    auto before = start;
-    int busyFrames = 3;  // ImGui settles in a few frames after each event
-    while (window.beginFrame(busyFrames > 0)) {
-        const auto now = Clock::now();
-        const double seconds = std::chrono::duration<double>(now - before).count();
-        before = now;
-        const bool wanted = handleKeys(ui, window.keyPresses(), seconds);
-        // A frame that was long in coming must not throw the reader far along the colon.
-        reader.update(std::min(seconds, 0.1));
-        watcher.look(ui);
-        drawEverything(ui);
-        window.endFrame();
-        if (!wanted) break;
-        const ImGuiIO& io = ImGui::GetIO();
-        const bool handAtWork = io.MouseDelta.x != 0 || io.MouseDelta.y != 0 ||
-                                ImGui::IsAnyMouseDown() || reader.flight().isFree();
-        busyFrames = reader.restless() || handAtWork || !ui.notices.empty()
-                         ? 3
-                         : std::max(0, busyFrames - 1);
-        if (options.screenshot && readyForScreenshot(reader, options, now - start)) {
-            TRY(window.writeScreenshot(*options.screenshot));
-            if (reader.session().phase() == reader::Phase::failed)
-                return tl::make_unexpected(reader.session().failure());
-            break;
+ReaderWindow::~ReaderWindow() {
+    qApp->removeEventFilter(this);
+    // Panes tell the reader that they are gone: not while it goes itself.
+    for (Pane* pane : panes_)
+        delete pane;
+}
+
+// ---- what it consists of ------------------------------------------------------------------------
+
+QDockWidget* ReaderWindow::dock(QWidget* content, const char* name, const QString& title) {
+    auto* dock = new QDockWidget(title, this);
+    dock->setObjectName(QString::fromLatin1(name));
+    dock->setAccessibleName(title);
+    dock->setWidget(content);
+    dock->setAllowedAreas(Qt::AllDockWidgetAreas);
+    dock->hide();
+    return dock;
+}
+
+Docks ReaderWindow::makeDocks() {
+    Docks docks;
+    const auto pane = [&](Pane* made, const char* name) {
+        panes_.push_back(made);
+        connect(made, &Pane::menuWanted, this,
+                [this, made](const QPoint& at) { showMenuOf(*made, at); });
+        return dock(made, name, made->title());
+    };
+    docks.endoscopic = pane(new EndoscopicPane(reading_), "endoscopic");
+    docks.axial = pane(new SlicePane(reading_, View::axial), "axial");
+    docks.coronal = pane(new SlicePane(reading_, View::coronal), "coronal");
+    docks.sagittal = pane(new SlicePane(reading_, View::sagittal), "sagittal");
+    docks.strip = pane(new StripPane(reading_), "strip");
+    docks.zoom = pane(new FlatZoomPane(reading_), "zoom");
+    docks.overview = pane(new OverviewPane(reading_), "overview");
+    docks.oblique = pane(new ObliquePane(reading_), "oblique");
+    bookmarks_ = new BookmarkPanel(reading_);
+    docks.bookmarks = dock(bookmarks_, "bookmarks", tr("Bookmarks"));
+    docks.optics = dock(new OpticsPanel(reading_), "optics", tr("Colours, opacities and light"));
+    return docks;
+}
+
+void ReaderWindow::makeMenus() {
+    for (std::size_t n = 0; n < menuCount; ++n) {
+        QMenu* menu = menus_->addMenu(nameOf(Menu(n)));
+        for (const Command& command : commands()) {
+            if (command.menu != Menu(n)) continue;
+            if (command.separatorBefore) menu->addSeparator();
+            menu->addAction(commands_.action(command));
+            if (std::string_view(command.id) == "layout-save") {
+                layoutMenu_ = menu->addMenu(tr("Saved layouts"));
+                connect(layoutMenu_, &QMenu::aboutToShow, this, &ReaderWindow::fillLayoutMenu);
+            }
+        }
+        if (Menu(n) != Menu::view) continue;
+        menu->addSeparator();
+        QMenu* panes = menu->addMenu(tr("Panes"));
+        for (QDockWidget* dock : docks_.all())
+            panes->addAction(dock->toggleViewAction());
+        const auto choices = [&](const QString& title, const QStringList& values,
+                                 const QString& setting, const QString& current, const auto& name,
+                                 const auto& choose) {
+            QMenu* choice = menu->addMenu(title);
+            auto* group = new QActionGroup(choice);
+            for (const QString& value : values) {
+                QAction* action = choice->addAction(name(value));
+                action->setCheckable(true);
+                action->setChecked(value == current);
+                group->addAction(action);
+                connect(action, &QAction::triggered, this, [setting, value, choose] {
+                    QSettings().setValue(setting, value);
+                    choose(value);
+                });
+            }
+        };
+        choices(
+            tr("Theme"), themeNames(), QStringLiteral("appearance/theme"), theme().name,
+            [](const QString& name) {
+                return name == QStringLiteral("dark")    ? tr("Dark")
+                       : name == QStringLiteral("light") ? tr("Light")
+                                                         : tr("High contrast");
+            },
+            [this](const QString& name) {
+                applyTheme(*qApp, name);
+                for (Pane* pane : panes_)
+                    pane->update();
+            });
+        choices(tr("Language"), languages(), QStringLiteral("appearance/language"),
+                QLocale().name().left(2), nameOfLanguage, [this](const QString&) {
+                    statusBar()->showMessage(tr("The language changes with the next start."), 8000);
+                });
+    }
+}
+
+// Menus, the line about the case, notices: as high as these need at the window's width.
+void ReaderWindow::makeHeader() {
+    auto* top = new QWidget;
+    auto* lines = new QVBoxLayout(top);
+    lines->setContentsMargins(0, 0, 0, 0);
+    lines->setSpacing(0);
+    menus_ = new QMenuBar;
+    notices_ = new Notices(reading_);
+    auto* widget = new QWidget;
+    auto* row = new QHBoxLayout(widget);
+    row->setContentsMargins(6, 3, 6, 3);
+    const auto button = [&](const char* id, Qt::ToolButtonStyle style) {
+        auto* made = new QToolButton;
+        made->setDefaultAction(commands_.action(id));
+        made->setToolButtonStyle(style);
+        row->addWidget(made);
+    };
+    button("cases", Qt::ToolButtonTextBesideIcon);
+    row->addSpacing(10);
+    caseName_ = new QLabel;
+    QFont bold = caseName_->font();
+    bold.setBold(true);
+    bold.setPointSizeF(bold.pointSizeF() * 1.15);
+    caseName_->setFont(bold);
+    caseName_->setTextFormat(Qt::PlainText);
+    about_ = new QLabel;
+    notCleansed_ = new QLabel(tr("not cleansed"));
+    trust_ = new QToolButton;
+    trust_->setPopupMode(QToolButton::InstantPopup);
+    trust_->setToolButtonStyle(Qt::ToolButtonTextOnly);
+    trust_->setAutoRaise(true);
+    for (QWidget* shown : {static_cast<QWidget*>(caseName_), static_cast<QWidget*>(about_),
+                           static_cast<QWidget*>(notCleansed_), static_cast<QWidget*>(trust_)}) {
+        row->addWidget(shown);
+        row->addSpacing(8);
+    }
+    row->addStretch(1);
+    button("bookmarks-panel", Qt::ToolButtonTextOnly);
+    button("help", Qt::ToolButtonTextOnly);
+    lines->addWidget(menus_);
+    lines->addWidget(widget);
+    lines->addWidget(notices_);
+    setMenuWidget(top);
+
+    trackBar_ = new QToolBar(tr("Place along the colon"));
+    auto* track = new QWidget;
+    auto* along = new QHBoxLayout(track);
+    along->setContentsMargins(6, 0, 6, 0);
+    along->addWidget(new QLabel(tr("rectum")));
+    along->addWidget(new PathTrack(reading_), 1);
+    along->addWidget(new QLabel(tr("cecum")));
+    trackBar_->addWidget(track);
+    flightBar_ = new FlightBar(reading_, commands_);
+    trackBar_->setObjectName(QStringLiteral("track"));
+    flightBar_->setObjectName(QStringLiteral("flight"));
+    for (QToolBar* bar : {trackBar_, flightBar_}) {
+        bar->setMovable(false);
+        bar->setContextMenuPolicy(Qt::PreventContextMenu);
+    }
+    // Lines of this area are added from the bottom up.
+    addToolBar(Qt::BottomToolBarArea, flightBar_);
+    addToolBarBreak(Qt::BottomToolBarArea);
+    addToolBar(Qt::BottomToolBarArea, trackBar_);
+}
+
+void ReaderWindow::makeStatus() {
+    figures_ = new QLabel;
+    figures_->setAccessibleName(tr("Figures of the link and the pictures"));
+    server_ = new QLabel;
+    server_->setAccessibleName(tr("Server"));
+    statusBar()->addPermanentWidget(figures_);
+    statusBar()->addPermanentWidget(server_);
+}
+
+// ---- cases --------------------------------------------------------------------------------------
+
+void ReaderWindow::showCases() {
+    if (cases_->isVisible()) {
+        const reader::Phase phase = reader().session().phase();
+        if (reader().isOpen() && (phase == reader::Phase::open || phase == reader::Phase::lost))
+            caseOpened();
+        return;
+    }
+    keepLayout();
+    for (QDockWidget* dock : docks_.all())
+        dock->hide();
+    second_.hide();
+    cases_->show();
+}
+
+void ReaderWindow::caseOpened() {
+    cases_->hide();
+    beforeEnlarged_.clear();
+    const bool flat = reader().flat().hasStrip();
+    // The case's reader has no strip before its first step; the server has said whether it will.
+    const bool hasFlat = reader().session().caseInfo() && reader().session().caseInfo()->flat;
+    const QByteArray kept = QSettings().value(layoutSetting).toByteArray();
+    if (kept.isEmpty() || !layouts_.restore(kept, flat || hasFlat))
+        layouts_.arrange(BuiltinLayout::reading, flat || hasFlat);
+    panes_.front()->setFocus();
+    look();
+}
+
+// ---- layouts ------------------------------------------------------------------------------------
+
+void ReaderWindow::keepLayout() {
+    if (isEnlarged())
+        QSettings().setValue(layoutSetting, beforeEnlarged_);
+    else if (!cases_->isVisible())
+        QSettings().setValue(layoutSetting, layouts_.state());
+}
+
+void ReaderWindow::arrange(BuiltinLayout layout) {
+    beforeEnlarged_.clear();
+    cases_->hide();
+    layouts_.arrange(layout, reader().flat().hasStrip());
+}
+
+void ReaderWindow::saveLayout() {
+    bool wanted = false;
+    const QString name = QInputDialog::getText(this, tr("Save this layout"), tr("Name"),
+                                               QLineEdit::Normal, {}, &wanted)
+                             .trimmed();
+    if (!wanted || name.isEmpty()) return;
+    leaveEnlarged();
+    layouts_.save(name);
+    statusBar()->showMessage(tr("The layout “%1” is saved.").arg(name), 4000);
+}
+
+void ReaderWindow::fillLayoutMenu() {
+    layoutMenu_->clear();
+    const QStringList names = Layouts::names();
+    for (const QString& name : names)
+        layoutMenu_->addAction(name, this, [this, name] {
+            beforeEnlarged_.clear();
+            if (!layouts_.restore(name, reader().flat().hasStrip()))
+                reading_.tell(tr("The layout “%1” cannot be read.").arg(name), true);
+        });
+    if (names.isEmpty()) layoutMenu_->addAction(tr("none yet"))->setEnabled(false);
+    layoutMenu_->addSeparator();
+    QMenu* remove = layoutMenu_->addMenu(tr("Remove"));
+    remove->setEnabled(!names.isEmpty());
+    for (const QString& name : names)
+        remove->addAction(name, this, [name] { Layouts::remove(name); });
+}
+
+void ReaderWindow::enlarge() {
+    if (isEnlarged()) return leaveEnlarged();
+    Pane* pane = currentPane();
+    if (!pane) return;
+    auto* of = qobject_cast<QDockWidget*>(pane->parentWidget());
+    if (!of) return;
+    beforeEnlarged_ = layouts_.state();
+    // A pane of the second window is enlarged there.
+    for (QDockWidget* dock : docks_.all())
+        if (dock != of && (dock->isFloating() || dock->parentWidget() == of->parentWidget()))
+            dock->hide();
+    of->setFloating(false);
+    of->show();
+    pane->setFocus();
+}
+
+void ReaderWindow::leaveEnlarged() {
+    if (!isEnlarged()) return;
+    Pane* pane = currentPane();
+    layouts_.restore(std::exchange(beforeEnlarged_, {}), reader().flat().hasStrip());
+    if (pane) pane->setFocus();
+}
+
+Pane* ReaderWindow::currentPane() const {
+    for (Pane* pane : panes_)
+        if (pane->isVisible() && pane->underMouse()) return pane;
+    for (Pane* pane : panes_)
+        if (pane->isVisible() && pane->hasFocus()) return pane;
+    for (Pane* pane : panes_)
+        if (pane->isVisible()) return pane;
+    return nullptr;
+}
+
+void ReaderWindow::toggleFullScreen() {
+    setWindowState(windowState() ^ Qt::WindowFullScreen);
+}
+
+// ---- pictures -----------------------------------------------------------------------------------
+
+void ReaderWindow::showMenuOf(Pane& pane, const QPoint& globalPosition) {
+    QMenu menu(this);
+    pane.fillMenu(menu);
+    if (!menu.isEmpty()) menu.addSeparator();
+    const auto take = [&](const char* id) { return commands_.action(id)->text(); };
+    menu.addAction(iconOf(Symbol::enlarge), take("enlarge"), this, [this, &pane] {
+        pane.setFocus();
+        isEnlarged() ? leaveEnlarged() : enlarge();
+    });
+    menu.addAction(take("copy-picture"), this, [this, &pane] {
+        const QImage image = pane.pictureWithMarks();
+        if (!image.isNull()) QApplication::clipboard()->setMimeData(mimeDataOf(image));
+    });
+    menu.exec(globalPosition);
+}
+
+void ReaderWindow::copyPicture() {
+    Pane* pane = currentPane();
+    const QImage image = pane ? pane->pictureWithMarks() : QImage();
+    if (image.isNull()) return;
+    QApplication::clipboard()->setMimeData(mimeDataOf(image));
+    statusBar()->showMessage(tr("The picture of “%1” is copied.").arg(pane->title()), 4000);
+}
+
+void ReaderWindow::savePicture() {
+    Pane* pane = currentPane();
+    const QImage image = pane ? pane->pictureWithMarks() : QImage();
+    if (image.isNull()) return;
+    const QString name = QStringLiteral("%1-%2mm.png")
+                             .arg(text(reader().session().caseInfo()->name))
+                             .arg(reader().flight().placeArcMm(), 0, 'f', 0);
+    if (const QString error = window::savePicture(this, image, name); !error.isEmpty())
+        reading_.tell(error, true);
+}
+
+// ---- other commands -----------------------------------------------------------------------------
+
+void ReaderWindow::quit() {
+    close();
+}
+
+void ReaderWindow::askForPlace() {
+    const double length = reader().flight().centerline().lengthMm();
+    bool wanted = false;
+    const double arc =
+        QInputDialog::getDouble(this, tr("Go to a place along the path"),
+                                tr("mm from the rectum (up to %1)").arg(length, 0, 'f', 0),
+                                reader().flight().arcMm(), 0.0, length, 0, &wanted);
+    if (wanted)
+        reading_.jump(tr("go along the path"), [this, arc] { reader().flight().goTo(arc); });
+}
+
+void ReaderWindow::setWindowPreset(std::size_t n) {
+    reader().slices().setWindow(windowPresets[n].window);
+}
+
+std::size_t ReaderWindow::windowPreset() const {
+    std::size_t n = 0;
+    while (n < windowPresets.size() &&
+           !(windowPresets[n].window == reading_.reader().slices().window()))
+        ++n;
+    return n;
+}
+
+void ReaderWindow::toggleCleansed() {
+    if (!reader().session().caseInfo()->cleansed)
+        return reading_.tell(tr("This case has no cleansed scan."));
+    reader().slices().setCleansed(!reader().slices().cleansed());
+}
+
+void ReaderWindow::setSlab(Slab slab) {
+    if (!reader().session().serverCan(protocol::capability::slabs))
+        return reading_.tell(tr("This server cannot show slabs."));
+    reader().slices().setSlab(slab);
+}
+
+void ReaderWindow::toggleOptics() {
+    QDockWidget* dock = docks_.optics;
+    if (dock->isVisible()) return dock->hide();
+    if (dock->isFloating() && !placedOptics_) {
+        placedOptics_ = true;
+        const QSize size = dock->widget()->sizeHint() + QSize(20, 40);
+        dock->resize(size);
+        dock->move(mapToGlobal(QPoint(width() - size.width() - 24, 120)));
+    }
+    dock->show();
+    dock->raise();
+}
+bool ReaderWindow::showsOptics() const {
+    return docks_.optics->isVisible();
+}
+
+void ReaderWindow::writeNote() {
+    docks_.bookmarks->show();
+    docks_.bookmarks->raise();
+    bookmarks_->writeNote();
+}
+void ReaderWindow::toggleBookmarks() {
+    docks_.bookmarks->setVisible(!docks_.bookmarks->isVisible());
+}
+bool ReaderWindow::showsBookmarks() const {
+    return docks_.bookmarks->isVisible();
+}
+
+void ReaderWindow::showHelp() {
+    (new HelpPage(commands_, this))->show();
+}
+void ReaderWindow::changeKeys() {
+    (new KeysDialog(commands_, this))->show();
+}
+void ReaderWindow::showAbout() {
+    window::showAbout(this, reading_);
+}
+
+// ---- what it shows ------------------------------------------------------------------------------
+
+void ReaderWindow::look() {
+    const reader::Session& session = reader().session();
+    const bool open = reader().isOpen();
+    // A layout that was kept says which bars were shown then.
+    flightBar_->setVisible(open && !cases_->isVisible());
+    trackBar_->setVisible(open && !cases_->isVisible());
+    caseName_->setVisible(open);
+    about_->setVisible(open);
+    const bool up =
+        session.phase() != reader::Phase::lost && session.phase() != reader::Phase::failed;
+    const auto paint = [](QWidget* widget, const QColor& color) {
+        QPalette palette = widget->palette();
+        if (palette.color(QPalette::WindowText) == color) return;
+        palette.setColor(QPalette::WindowText, color);
+        widget->setPalette(palette);
+    };
+    const auto say = [](QLabel* label, const QString& text) {
+        if (label->text() != text) label->setText(text);
+    };
+    say(server_, up ? reading_.serverName() : tr("%1: no link").arg(reading_.serverName()));
+    paint(server_, up ? theme().text : theme().trouble);
+    commands_.look();
+    notCleansed_->setVisible(open && !session.caseInfo()->cleansed);
+    trust_->setVisible(open && session.caseInfo()->trust.has_value());
+    if (!open) return say(figures_, {});
+
+    const reader::CaseInfo& info = *session.caseInfo();
+    say(caseName_, text(info.name));
+    const QString position =
+        info.position == PatientPosition::unknown
+            ? QString()
+            : QString::fromLatin1(toString(info.position)) + QStringLiteral("   ");
+    say(about_, position + QStringLiteral("%1×%2×%3")
+                               .arg(info.grid.size.x)
+                               .arg(info.grid.size.y)
+                               .arg(info.grid.size.z));
+    paint(about_, theme().muted);
+    paint(notCleansed_, theme().bookmark);
+    if (info.trust) {
+        const auto& warnings = info.trust->warnings;
+        QString sure = tr("colon %1 % sure").arg(100.0 * info.trust->confidence, 0, 'f', 0);
+        if (!warnings.empty())
+            sure +=
+                QStringLiteral(", ") + tr("%n place(s) to look at", nullptr, int(warnings.size()));
+        if (trust_->text() != sure) {
+            trust_->setText(sure);
+            QMenu* places = new QMenu(trust_);
+            QStringList all;
+            for (const std::string& warning : warnings) {
+                places->addAction(text(warning))->setEnabled(true);
+                all += text(warning);
+            }
+            delete trust_->menu();
+            trust_->setMenu(warnings.empty() ? nullptr : places);
+            trust_->setToolTip(all.join('\n'));
+        }
+        // A style sheet paints buttons: it leaves the palette out.
+        const QString color =
+            QStringLiteral("QToolButton { color: %1 }")
+                .arg((warnings.empty() ? theme().muted : theme().bookmark).name());
+        if (trust_->styleSheet() != color) trust_->setStyleSheet(color);
+    }
+
+    QStringList figures;
+    const std::optional<double> seen = session.seenShare();
+    if (info.flat)
+        figures += seen ? tr("wall seen %1 %").arg(decimal(100.0 * *seen)) : tr("wall seen –");
+    const tiles::Picture& shown = reader().panes().picture(View::endoscopic);
+    const std::string raycaster = raycasterName(shown.raycaster);
+    if (!raycaster.empty())
+        figures += QStringLiteral("%1 %2 ms")
+                       .arg(text(raycaster))
+                       .arg(1e-3 * shown.renderMicroseconds, 0, 'f', 0);
+    figures += tr("%1 pictures/s").arg(reader().panes().picturesPerSecond(), 0, 'f', 0);
+    const reader::Summary latency = reader().panes().latencyMs();
+    if (latency.count > 0)
+        figures += tr("hand to picture %1 ms, p95 %2")
+                       .arg(latency.p50, 0, 'f', 0)
+                       .arg(latency.p95, 0, 'f', 0);
+    figures += tr("link %1 ms").arg(decimal(session.roundTripMs()));
+    say(figures_, figures.join(QStringLiteral("   ·   ")));
+}
+
+bool ReaderWindow::isSettled() const {
+    const reader::Reader& reader = reading_.reader();
+    const reader::Phase phase = reader.session().phase();
+    if (phase == reader::Phase::connecting) return false;
+    if (phase != reader::Phase::open || reader.motion() != reader::Motion::paused) return true;
+    for (const View view : allViews)
+        if (reader.panes().size(view).x > 0 && (reader.flat().hasStrip() || !isFlat(view)) &&
+            reader.freshness(view) != reader::Freshness::exact)
+            return false;
+    return true;
+}
+
+// ---- keys ---------------------------------------------------------------------------------------
+
+bool ReaderWindow::eventFilter(QObject* object, QEvent* event) {
+    if (event->type() == QEvent::ShortcutOverride) {
+        const auto& key = static_cast<const QKeyEvent&>(*event);
+        if (needsKey(qobject_cast<QWidget*>(object), key)) {
+            event->accept();
+            return false;
         }
     }
-    finishBookmarks(reader.session());
-    if (!reader.isOpen() && reader.session().phase() == reader::Phase::failed)
-        return tl::make_unexpected(reader.session().failure());
-    return {};
+    if ((event->type() == QEvent::KeyPress || event->type() == QEvent::KeyRelease) &&
+        handleHeldKeys(event))
+        return true;
+    if (event->type() == QEvent::WindowDeactivate && !held_.empty()) {
+        held_.clear();
+        reading_.setHeldWay(glm::dvec3(0.0), false);
+    }
+    return QMainWindow::eventFilter(object, event);
+}
+
+// Free flight: keys that are held. True: the key is one of them.
+bool ReaderWindow::handleHeldKeys(QEvent* event) {
+    if (!reader().isOpen() || !reader().flight().isFree()) {
+        held_.clear();
+        return false;
+    }
+    const auto& key = static_cast<const QKeyEvent&>(*event);
+    const bool isWay = key.key() == Qt::Key_W || key.key() == Qt::Key_A || key.key() == Qt::Key_S ||
+                       key.key() == Qt::Key_D || key.key() == Qt::Key_Q || key.key() == Qt::Key_E;
+    if (!isWay || typesText(QApplication::focusWidget()) || QApplication::activeModalWidget() ||
+        (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier)))
+        return false;
+    if (key.isAutoRepeat()) return true;
+    if (event->type() == QEvent::KeyPress)
+        held_.insert(key.key());
+    else
+        held_.erase(key.key());
+    const auto held = [&](Qt::Key code) { return held_.contains(code) ? 1.0 : 0.0; };
+    reading_.setHeldWay({held(Qt::Key_D) - held(Qt::Key_A), held(Qt::Key_E) - held(Qt::Key_Q),
+                         held(Qt::Key_W) - held(Qt::Key_S)},
+                        key.modifiers().testFlag(Qt::ShiftModifier));
+    return true;
+}
+
+void ReaderWindow::closeEvent(QCloseEvent* event) {
+    if (reader().isOpen()) keepLayout();
+    QSettings().setValue(geometrySetting, saveGeometry());
+    second_.close();
+    event->accept();
+    QApplication::quit();
 }
 
 }  // namespace haustra::window

@@ -1,27 +1,101 @@
 // The reader's window.
 #pragma once
 
-#include "link/connection.h"
-#include "reader/bookmark_journal.h"
+#include "window/commands.h"
+#include "window/layouts.h"
+#include "window/reading.h"
 
-#include <filesystem>
-#include <optional>
-#include <string>
+#include <QMainWindow>
+#include <set>
+#include <vector>
+
+class QLabel;
+class QMenu;
+class QMenuBar;
+class QToolButton;
 
 namespace haustra::window {
 
-struct WindowOptions {
-    link::ConnectionOptions connection;
-    std::string caseName;  ///< empty: the window offers the server's cases
-    std::optional<reader::BookmarkJournal> journal;
-    int width = 1440, height = 900;
-    std::optional<double> scale;  ///< of text and controls; default: what the display asks for
-    std::optional<std::filesystem::path> screenshot;  ///< write the window's picture here and quit
-    int screenshotAfterMs = 3000;
-};
+class BookmarkPanel;
+class CaseList;
+class Notices;
+class Pane;
 
-/// Opens the window and runs until the reader closes it. Must be called on the main thread. Fails
-/// where there is no display, no OpenGL 3, or the link fails for good before the first picture.
-Result<void> run(WindowOptions options);
+/// Panes in docks, the flight's bar, menus. One per program, on the main thread.
+class ReaderWindow : public QMainWindow {
+    Q_OBJECT
+public:
+    explicit ReaderWindow(Reading& reading);
+    ~ReaderWindow() override;
+
+    Reading& reading() { return reading_; }
+    reader::Reader& reader() { return reading_.reader(); }
+
+    // What the commands do.
+    void showCases();
+    void savePicture();
+    void copyPicture();
+    void quit();
+    /// The pane under the mouse, or that which has the keyboard; back again.
+    void enlarge();
+    void leaveEnlarged();
+    bool isEnlarged() const { return !beforeEnlarged_.isEmpty(); }
+    void arrange(BuiltinLayout layout);
+    void saveLayout();
+    void toggleFullScreen();
+    void askForPlace();
+    void setWindowPreset(std::size_t n);
+    std::size_t windowPreset() const;
+    void toggleCleansed();
+    void setSlab(Slab slab);
+    void toggleOptics();
+    bool showsOptics() const;
+    void writeNote();
+    void toggleBookmarks();
+    bool showsBookmarks() const;
+    void showHelp();
+    void changeKeys();
+    void showAbout();
+
+    /// All panes that are in sight show their lossless stills, or none is open.
+    bool isSettled() const;
+
+protected:
+    void closeEvent(QCloseEvent*) override;
+    bool eventFilter(QObject* object, QEvent* event) override;
+
+private:
+    QDockWidget* dock(QWidget* content, const char* name, const QString& title);
+    Docks makeDocks();
+    void makeMenus();
+    void makeHeader();
+    void makeStatus();
+    void fillLayoutMenu();
+    void showMenuOf(Pane& pane, const QPoint& globalPosition);
+    Pane* currentPane() const;
+    void caseOpened();
+    void look();
+    void keepLayout();
+    bool handleHeldKeys(QEvent* event);
+
+    Reading& reading_;
+    QMainWindow second_;
+    CommandSet commands_;
+    std::vector<Pane*> panes_;
+    BookmarkPanel* bookmarks_ = nullptr;
+    Docks docks_;
+    Layouts layouts_;
+    CaseList* cases_ = nullptr;
+    Notices* notices_ = nullptr;
+    QMenuBar* menus_ = nullptr;
+    QToolBar *trackBar_ = nullptr, *flightBar_ = nullptr;
+    QLabel *caseName_ = nullptr, *about_ = nullptr, *notCleansed_ = nullptr;
+    QToolButton* trust_ = nullptr;
+    QLabel *figures_ = nullptr, *server_ = nullptr;
+    QMenu* layoutMenu_ = nullptr;
+    QByteArray beforeEnlarged_;
+    std::set<int> held_;  // keys of free flight
+    bool placedOptics_ = false;
+};
 
 }  // namespace haustra::window

@@ -1,85 +1,156 @@
 #include "window/theme.h"
 
-#include <filesystem>
+#include <QApplication>
+#include <QPalette>
+#include <QStyleFactory>
+#include <array>
 
 namespace haustra::window {
 namespace {
 
-ImFont* load(const char* file, double pixels) {
-    // Latin with its supplements, punctuation, arrows and mathematical signs.
-    static constexpr ImWchar ranges[] = {0x0020, 0x024F, 0x2010, 0x2027, 0x2190,
-                                         0x21FF, 0x2200, 0x22FF, 0};
-    ImGuiIO& io = ImGui::GetIO();
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) {
-        ImFontConfig config;
-        config.SizePixels = float(pixels);
-        return io.Fonts->AddFontDefault(&config);
-    }
-    return io.Fonts->AddFontFromFileTTF(file, float(pixels), nullptr, ranges);
+const std::array<Theme, 3>& themes() {
+    static const std::array<Theme, 3> all = [] {
+        Theme dark;
+        dark.name = QStringLiteral("dark");
+        dark.window = QColor(21, 25, 31);
+        dark.base = QColor(13, 16, 20);
+        dark.raised = QColor(38, 45, 54);
+        dark.text = QColor(222, 228, 235);
+        dark.muted = QColor(150, 160, 173);
+        dark.border = QColor(58, 67, 79);
+        dark.accent = QColor(37, 120, 128);
+        dark.accentText = Qt::white;
+        dark.bookmark = QColor(235, 176, 88);
+        dark.trouble = QColor(240, 106, 98);
+        dark.onPicture = QColor(222, 228, 235);
+        dark.dimOnPicture = QColor(200, 208, 216);
+        dark.accentOnPicture = QColor(72, 190, 199);
+        dark.bookmarkOnPicture = QColor(235, 176, 88);
+        dark.troubleOnPicture = QColor(240, 106, 98);
+        dark.measuredOnPicture = QColor(255, 221, 87);
+        dark.outline = QColor(0, 0, 0, 200);
+        Theme light = dark;
+        light.name = QStringLiteral("light");
+        light.window = QColor(240, 242, 245);
+        light.base = Qt::white;
+        light.raised = QColor(226, 230, 235);
+        light.text = QColor(24, 29, 36);
+        light.muted = QColor(90, 100, 112);
+        light.border = QColor(178, 186, 196);
+        light.accent = QColor(0, 110, 120);
+        light.bookmark = QColor(150, 92, 0);
+        light.trouble = QColor(180, 30, 24);
+        Theme contrast = dark;
+        contrast.name = QStringLiteral("contrast");
+        contrast.window = contrast.base = contrast.raised = Qt::black;
+        contrast.text = contrast.muted = contrast.border = Qt::white;
+        contrast.accent = QColor(255, 235, 0);
+        contrast.accentText = Qt::black;
+        contrast.bookmark = QColor(255, 170, 0);
+        contrast.trouble = QColor(255, 120, 120);
+        contrast.onPicture = contrast.dimOnPicture = Qt::white;
+        contrast.accentOnPicture = QColor(0, 255, 255);
+        contrast.bookmarkOnPicture = QColor(255, 190, 0);
+        contrast.troubleOnPicture = QColor(255, 120, 120);
+        contrast.measuredOnPicture = QColor(255, 255, 0);
+        contrast.outline = Qt::black;
+        contrast.lineWidth = 1.6;
+        return std::array{dark, light, contrast};
+    }();
+    return all;
 }
 
-ImVec4 asVector(ImU32 packed) {
-    return ImGui::ColorConvertU32ToFloat4(packed);
+const Theme* inUse = nullptr;
+
+QPalette paletteOf(const Theme& theme) {
+    QPalette palette;
+    palette.setColor(QPalette::Window, theme.window);
+    palette.setColor(QPalette::WindowText, theme.text);
+    palette.setColor(QPalette::Base, theme.base);
+    palette.setColor(QPalette::AlternateBase, theme.window);
+    palette.setColor(QPalette::Text, theme.text);
+    palette.setColor(QPalette::PlaceholderText, theme.muted);
+    palette.setColor(QPalette::Button, theme.raised);
+    palette.setColor(QPalette::ButtonText, theme.text);
+    palette.setColor(QPalette::BrightText, theme.trouble);
+    palette.setColor(QPalette::Highlight, theme.accent);
+    palette.setColor(QPalette::HighlightedText, theme.accentText);
+    palette.setColor(QPalette::Link, theme.accent);
+    palette.setColor(QPalette::ToolTipBase, theme.raised);
+    palette.setColor(QPalette::ToolTipText, theme.text);
+    palette.setColor(QPalette::Mid, theme.border);
+    palette.setColor(QPalette::Dark, theme.border);
+    palette.setColor(QPalette::Light, theme.raised.lighter(115));
+    const QColor faint =
+        theme.name == QStringLiteral("contrast") ? QColor(170, 170, 170) : theme.muted.darker(130);
+    for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText})
+        palette.setColor(QPalette::Disabled, role, faint);
+    return palette;
 }
 
 }  // namespace
 
-Fonts applyTheme(double scale) {
-    ImGui::StyleColorsDark();
-    ImGuiStyle& style = ImGui::GetStyle();
-    style.WindowPadding = {12, 10};
-    style.FramePadding = {10, 6};
-    style.ItemSpacing = {8, 8};
-    style.FrameRounding = 5;
-    style.GrabRounding = 5;
-    style.GrabMinSize = 12;
-    style.PopupRounding = 6;
-    style.WindowRounding = 0;
-    style.ChildRounding = 6;
-    style.ScrollbarSize = 10;
-    style.ScrollbarRounding = 5;
-    style.WindowBorderSize = 0;
-    style.FrameBorderSize = 0;
-    style.PopupBorderSize = 1;
-    style.ScaleAllSizes(float(scale));
+QStringList themeNames() {
+    QStringList names;
+    for (const Theme& theme : themes())
+        names += theme.name;
+    return names;
+}
 
-    const auto set = [&](ImGuiCol what, ImU32 value) { style.Colors[what] = asVector(value); };
-    set(ImGuiCol_WindowBg, color::background);
-    set(ImGuiCol_ChildBg, color::bar);
-    set(ImGuiCol_PopupBg, color::bar);
-    set(ImGuiCol_TitleBg, color::bar);
-    set(ImGuiCol_TitleBgActive, color::raised);
-    set(ImGuiCol_Border, color::border);
-    set(ImGuiCol_Text, color::text);
-    set(ImGuiCol_TextDisabled, color::muted);
-    set(ImGuiCol_FrameBg, color::raised);
-    set(ImGuiCol_FrameBgHovered, color::hovered);
-    set(ImGuiCol_FrameBgActive, color::hovered);
-    set(ImGuiCol_Button, color::raised);
-    set(ImGuiCol_ButtonHovered, color::hovered);
-    set(ImGuiCol_ButtonActive, color::accentDim);
-    set(ImGuiCol_Header, color::raised);
-    set(ImGuiCol_HeaderHovered, color::hovered);
-    set(ImGuiCol_HeaderActive, color::accentDim);
-    set(ImGuiCol_SliderGrab, color::accent);
-    set(ImGuiCol_SliderGrabActive, color::accent);
-    set(ImGuiCol_CheckMark, color::accent);
-    set(ImGuiCol_Separator, color::border);
-    set(ImGuiCol_TextSelectedBg, color::accentDim);
-    set(ImGuiCol_NavHighlight, color::accent);
-    set(ImGuiCol_ScrollbarBg, IM_COL32(0, 0, 0, 0));
-    set(ImGuiCol_ScrollbarGrab, color::hovered);
-    set(ImGuiCol_ScrollbarGrabHovered, color::muted);
-    set(ImGuiCol_ScrollbarGrabActive, color::muted);
+const Theme& themeOf(const QString& name) {
+    for (const Theme& theme : themes())
+        if (theme.name == name) return theme;
+    return themes().front();
+}
 
-    constexpr const char* sans = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-    constexpr const char* bold = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
-    Fonts fonts;
-    fonts.normal = load(sans, 15.0 * scale);
-    fonts.small = load(sans, 12.5 * scale);
-    fonts.large = load(bold, 18.0 * scale);
-    return fonts;
+const Theme& theme() {
+    return inUse ? *inUse : themes().front();
+}
+
+void applyTheme(QApplication& application, const QString& name) {
+    inUse = &themeOf(name);
+    application.setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
+    application.setPalette(paletteOf(*inUse));
+    // Style sheets only where the palette cannot say it: frames of a colour, visible focus.
+    const Theme& t = *inUse;
+    // A palette all of black and white leaves fields without edges.
+    const QString edges =
+        t.name == QStringLiteral("contrast")
+            ? QStringLiteral(
+                  "QLineEdit, QTreeView, QTableView, QPushButton, QMenu, QComboBox, "
+                  "QAbstractSpinBox { border: 1px solid white; }"
+                  "QPushButton { padding: 4px 9px; } QMenuBar::item:selected, "
+                  "QMenu::item:selected { background: #ffeb00; color: black; }"
+                  "QSlider::groove:horizontal { height: 4px; background: #909090; }"
+                  "QSlider::sub-page:horizontal { height: 4px; background: #ffeb00; }"
+                  "QSlider::handle:horizontal { width: 10px; margin: -6px 0; "
+                  "background: white; }")
+            : QString();
+    application.setStyleSheet(
+        edges +
+        QStringLiteral(
+            "QToolTip { color: %1; background: %2; border: 1px solid %3; padding: 3px; }"
+            "QDockWidget::title { background: %4; padding: 3px 6px; }"
+            "QMainWindow::separator { background: %4; width: 4px; height: 4px; }"
+            "QMainWindow::separator:hover { background: %5; }"
+            "QStatusBar::item { border: none; }"
+            "QToolBar { border: none; spacing: 3px; padding: 3px; }"
+            "QToolBar::separator { width: 1px; margin: 5px 3px; background: %3; }"
+            "QToolButton { background: %2; border: 1px solid %3; border-radius: 3px; "
+            "padding: 3px 5px; color: %1; }"
+            "QToolButton:hover { border-color: %6; }"
+            "QToolButton:checked { background: %5; color: %7; border-color: %5; }"
+            "QToolButton:pressed { background: %5; color: %7; }"
+            "QToolButton:disabled { color: %8; }"
+            "QToolButton[autoRaise=\"true\"]:!checked { background: transparent; border-color: "
+            "transparent; "
+            "}"
+            "QToolButton#qt_toolbar_ext_button { background: %2; border-color: %6; }"
+            "QToolButton:focus { border: 2px solid %6; padding: 2px 4px; }"
+            "QPushButton:focus { border: 2px solid %6; border-radius: 3px; padding: 3px 8px; }")
+            .arg(t.text.name(), t.raised.name(), t.border.name(), t.window.name(), t.accent.name(),
+                 t.name == QStringLiteral("dark") ? t.accentOnPicture.name() : t.accent.name(),
+                 t.accentText.name(), t.muted.darker(130).name()));
 }
 
 }  // namespace haustra::window

@@ -1,56 +1,23 @@
 #include "window/transfer_graph.h"
 
-#include "core/printed_text.h"
-#include "window/widgets.h"
+#include "window/optics_steps.h"
+#include "window/theme.h"
 
+#include <QKeyEvent>
+#include <QPainter>
+#include <QPainterPath>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace haustra::window {
 namespace {
 
-using reader::TransferCurve;
-
 constexpr double leastAxisHu = 8.0, mostAxisHu = 70'000.0;
 
-ImU32 colourOf(glm::dvec3 c, double alpha = 1.0) {
-    return ImGui::ColorConvertFloat4ToU32({float(c.r), float(c.g), float(c.b), float(alpha)});
-}
-
-/// The graph's scales: HU across, and opacity up by its root, so that veils of a hundredth can be
-/// told apart.
-struct Graph {
-    Rect area;
-    double lowHu, highHu;
-
-    ImVec2 place(double hu, double opacity) const {
-        const double x = (hu - lowHu) / (highHu - lowHu);
-        return {area.min.x + float(x) * area.size().x,
-                area.max.y - float(std::sqrt(opacity)) * area.size().y};
-    }
-    double huPerPixel() const { return (highHu - lowHu) / std::max(area.size().x, 1.0f); }
-    double hu(ImVec2 p) const { return lowHu + huPerPixel() * double(p.x - area.min.x); }
-    double opacity(ImVec2 p) const {
-        const double up = std::clamp(double(area.max.y - p.y) / area.size().y, 0.0, 1.0);
-        return up * up;
-    }
-};
-
-// By its logarithm: air is most of a scan, and what matters is little of it.
-void drawHistogram(const Histogram& histogram, const Graph& graph, ImDrawList* list) {
-    std::uint64_t most = 0;
-    for (const std::uint64_t voxels : histogram.voxels)
-        most = std::max(most, voxels);
-    if (most == 0) return;
-    const double scale = 0.9 / std::log1p(double(most));
-    for (std::size_t n = 0; n < histogram.voxels.size(); ++n) {
-        const double low = histogram.firstHu + double(n) * histogram.huPerBin;
-        const double tall = std::log1p(double(histogram.voxels[n])) * scale;
-        const ImVec2 a = graph.place(low, tall * tall),
-                     b = graph.place(low + histogram.huPerBin, 0.0);
-        if (b.x >= graph.area.min.x && a.x <= graph.area.max.x)
-            list->AddRectFilled(a, b, color::raised);
-    }
+QColor colorOf(glm::dvec3 c, double alpha = 1.0) {
+    c = glm::clamp(c, 0.0, 1.0);
+    return QColor::fromRgbF(float(c.r), float(c.g), float(c.b), float(alpha));
 }
 
 double roundStep(double atLeast) {
@@ -60,141 +27,260 @@ double roundStep(double atLeast) {
     return 10.0 * ten;
 }
 
-void drawScales(Ui& ui, const Graph& graph, ImDrawList* list) {
-    const Rect area = graph.area;
-    ImFont* font = ui.fonts.small;
-    const double step = roundStep(graph.huPerPixel() * ui.px(64));
-    for (double n = std::ceil(graph.lowHu / step); n * step <= graph.highHu; ++n) {
-        const float x = graph.place(n * step, 0.0).x;
-        list->AddLine({x, area.min.y}, {x, area.max.y}, color::border);
-        const std::string text = printed("%.0f", n * step + 0.0);
-        const float wide = textSize(font, text).x;
-        const float left = std::clamp(x - wide / 2, area.min.x, area.max.x - wide);
-        list->AddText(font, font->FontSize, {left, area.max.y + ui.px(3)}, color::muted,
-                      text.c_str());
-    }
-    for (const double opacity : {0.01, 0.1, 0.5, 1.0}) {
-        const float y = graph.place(0.0, opacity).y;
-        if (opacity < 1.0) list->AddLine({area.min.x, y}, {area.max.x, y}, color::border);
-        const std::string text = printed("%g", opacity);
-        list->AddText(font, font->FontSize,
-                      {area.min.x - ui.px(6) - textSize(font, text).x, y - font->FontSize / 2},
-                      color::muted, text.c_str());
-    }
-}
-
-// Under the curve its colours, column by column.
-void drawCurve(Ui& ui, const Graph& graph, const TransferCurve& curve, ImDrawList* list) {
-    const float step = std::max(ui.px(2), 1.0f);
-    ImVec2 before;
-    for (float x = graph.area.min.x; x <= graph.area.max.x; x += step) {
-        const TransferFunctionPoint here = curve.at(graph.hu({x, 0.0f}));
-        const ImVec2 top = graph.place(here.hu, here.opacity);
-        list->AddRectFilled({x, top.y}, {x + step, graph.area.max.y}, colourOf(here.color, 0.62));
-        if (x > graph.area.min.x) list->AddLine(before, {x, top.y}, color::text, ui.px(1.4f));
-        before = {x, top.y};
-    }
-}
-
-void drawPoints(Ui& ui, const Graph& graph, const TransferCurve& curve, ImDrawList* list) {
-    for (std::size_t n = 0; n < curve.points().size(); ++n) {
-        const TransferFunctionPoint& point = curve.points()[n];
-        if (point.hu < graph.lowHu || point.hu > graph.highHu) continue;
-        const ImVec2 p = graph.place(point.hu, point.opacity);
-        const bool chosen = int(n) == ui.transfer.point;
-        list->AddCircleFilled(p, ui.px(chosen ? 8.0f : 6.0f), chosen ? color::accent : color::text);
-        list->AddCircleFilled(p, ui.px(chosen ? 5.0f : 4.2f), colourOf(point.color));
-    }
-}
-
-std::optional<std::size_t> pointUnder(Ui& ui, const Graph& graph, const TransferCurve& curve,
-                                      ImVec2 mouse) {
-    std::optional<std::size_t> found;
-    float nearest = ui.px(12);
-    for (std::size_t n = 0; n < curve.points().size(); ++n) {
-        const ImVec2 p = graph.place(curve.points()[n].hu, curve.points()[n].opacity);
-        const float distance = std::hypot(p.x - mouse.x, p.y - mouse.y);
-        if (distance < nearest) nearest = distance, found = n;
-    }
-    return found;
-}
-
-void setAxis(Ui& ui, double lowHu, double highHu) {
-    const double wide = std::clamp(highHu - lowHu, leastAxisHu, mostAxisHu);
-    const double middle = std::clamp(0.5 * (lowHu + highHu), lowestTransferHu, highestTransferHu);
-    ui.transfer.lowHu = middle - 0.5 * wide;
-    ui.transfer.highHu = middle + 0.5 * wide;
-}
-
-// Whether the mouse is over a point.
-bool handleMouse(Ui& ui, const Graph& graph) {
-    ImGui::SetCursorScreenPos(graph.area.min);
-    ImGui::InvisibleButton("graph", graph.area.size(),
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-    const ImGuiIO& io = ImGui::GetIO();
-    const ImVec2 mouse = io.MousePos;
-    reader::OpticsEditor& optics = ui.reader.optics();
-    TransferCurve curve = optics.curve();
-    const auto under = pointUnder(ui, graph, curve, mouse);
-    const bool hovered = ImGui::IsItemHovered();
-    if (hovered && io.MouseWheel != 0.0f) {
-        const double shrink = std::pow(0.85, double(io.MouseWheel)), at = graph.hu(mouse);
-        setAxis(ui, at - (at - graph.lowHu) * shrink, at + (graph.highHu - at) * shrink);
-    }
-    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-        if (under && curve.remove(*under)) {
-            ui.transfer.point = -1;
-            optics.setCurve(curve);
-        }
-    } else if (hovered && !under && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-        ui.transfer.point = int(curve.add(graph.hu(mouse), graph.opacity(mouse)));
-        optics.setCurve(curve);
-    } else if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-        ui.transfer.point = under ? int(*under) : -1;
-    } else if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
-               (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f)) {
-        if (ui.transfer.point >= 0) {
-            curve.move(std::size_t(ui.transfer.point), graph.hu(mouse), graph.opacity(mouse));
-            optics.setCurve(curve);
-        } else {
-            const double moved = -double(io.MouseDelta.x) * graph.huPerPixel();
-            setAxis(ui, graph.lowHu + moved, graph.highHu + moved);
-        }
-    }
-    return hovered && under;
-}
-
 }  // namespace
 
-void fitTransferAxis(Ui& ui) {
+/// HU across, and opacity up by its root, so that veils of a hundredth can be told apart.
+struct TransferGraph::Scales {
+    QRectF area;
+    double lowHu, highHu;
+
+    QPointF place(double hu, double opacity) const {
+        return {area.left() + (hu - lowHu) / (highHu - lowHu) * area.width(),
+                area.bottom() - std::sqrt(opacity) * area.height()};
+    }
+    double huPerPixel() const { return (highHu - lowHu) / std::max(area.width(), 1.0); }
+    double hu(QPointF p) const { return lowHu + huPerPixel() * (p.x() - area.left()); }
+    double opacity(QPointF p) const {
+        const double up = std::clamp((area.bottom() - p.y()) / area.height(), 0.0, 1.0);
+        return up * up;
+    }
+};
+
+TransferGraph::TransferGraph(Reading& reading) : reading_(reading) {
+    setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
+    setAccessibleName(tr("Transfer function: opacity and colour over the scan's values"));
+}
+
+TransferGraph::Scales TransferGraph::scales() const {
+    return {QRectF(rect()).adjusted(38, 6, -8, -22), lowHu_, highHu_};
+}
+
+void TransferGraph::choosePoint(int point) {
+    point_ = point;
+    update();
+    emit pointChosen();
+}
+
+void TransferGraph::setAxis(double lowHu, double highHu) {
+    const double wide = std::clamp(highHu - lowHu, leastAxisHu, mostAxisHu);
+    const double middle = std::clamp(0.5 * (lowHu + highHu), lowestTransferHu, highestTransferHu);
+    lowHu_ = middle - 0.5 * wide;
+    highHu_ = middle + 0.5 * wide;
+    update();
+}
+
+void TransferGraph::fitAxis() {
     double low = highestTransferHu, high = lowestTransferHu;
     const auto take = [&](const std::vector<TransferFunctionPoint>& points) {
         low = std::min(low, points.front().hu);
         high = std::max(high, points.back().hu);
     };
-    const TransferFunction& function = ui.reader.optics().optics().transferFunction;
+    const TransferFunction& function = optics().optics().transferFunction;
     take(function.points);
     for (const GradientRow& row : function.rows)
         take(row.points);
     const double margin = 0.12 * (high - low);
-    setAxis(ui, low - margin, high + margin);
+    setAxis(low - margin, high + margin);
 }
 
-void drawTransferGraph(Ui& ui, Rect area) {
-    const TransferCurve before = ui.reader.optics().curve();
-    if (ui.transfer.point >= int(before.points().size())) ui.transfer.point = -1;
-    const Graph graph{area, ui.transfer.lowHu, ui.transfer.highHu};
-    if (handleMouse(ui, graph)) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-    const TransferCurve curve = ui.reader.optics().curve();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.min, area.max, color::background);
-    list->PushClipRect(area.min, area.max, true);
-    drawHistogram(ui.reader.session().caseInfo()->histogram, graph, list);
-    drawCurve(ui, graph, curve, list);
-    list->PopClipRect();
-    drawScales(ui, graph, list);
-    drawPoints(ui, graph, curve, list);
-    list->AddRect(area.min, area.max, color::border);
+// ---- painting -----------------------------------------------------------------------------------
+
+namespace {
+
+// By its logarithm: air is most of a scan, and what matters is little of it.
+template <class Scales>
+void paintHistogram(QPainter& painter, const Histogram& histogram, const Scales& scales) {
+    std::uint64_t most = 0;
+    for (const std::uint64_t voxels : histogram.voxels)
+        most = std::max(most, voxels);
+    if (most == 0) return;
+    const double scale = 0.9 / std::log1p(double(most));
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(theme().raised);
+    for (std::size_t n = 0; n < histogram.voxels.size(); ++n) {
+        const double low = histogram.firstHu + double(n) * histogram.huPerBin;
+        const double tall = std::log1p(double(histogram.voxels[n])) * scale;
+        painter.drawRect(
+            QRectF(scales.place(low, tall * tall), scales.place(low + histogram.huPerBin, 0.0)));
+    }
+}
+
+template <class Scales>
+void paintScales(QPainter& painter, const Scales& scales) {
+    const QRectF area = scales.area;
+    const QFontMetricsF metrics(painter.font());
+    const double step = roundStep(scales.huPerPixel() * 64.0);
+    for (double n = std::ceil(scales.lowHu / step); n * step <= scales.highHu; ++n) {
+        const double x = scales.place(n * step, 0.0).x();
+        painter.setPen(theme().border);
+        painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
+        painter.setPen(theme().muted);
+        painter.drawText(QRectF(x - 60, area.bottom() + 2, 120, metrics.height()), Qt::AlignHCenter,
+                         QString::number(n * step + 0.0, 'f', 0));
+    }
+    for (const double opacity : {0.01, 0.1, 0.5, 1.0}) {
+        const double y = scales.place(0.0, opacity).y();
+        painter.setPen(theme().border);
+        if (opacity < 1.0) painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y));
+        painter.setPen(theme().muted);
+        painter.drawText(QRectF(0, y - metrics.height() / 2, area.left() - 6, metrics.height()),
+                         Qt::AlignRight | Qt::AlignVCenter, QString::number(opacity));
+    }
+}
+
+}  // namespace
+
+void TransferGraph::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.fillRect(rect(), theme().window);
+    const Scales s = scales();
+    painter.fillRect(s.area, theme().base);
+    if (!reading_.reader().isOpen()) return;
+    const reader::TransferCurve curve = optics().curve();
+    painter.save();
+    painter.setClipRect(s.area);
+    paintHistogram(painter, reading_.reader().session().caseInfo()->histogram, s);
+    QPainterPath line;
+    for (double x = s.area.left(); x <= s.area.right(); x += 2.0) {
+        const TransferFunctionPoint here = curve.at(s.hu({x, 0.0}));
+        const QPointF top = s.place(here.hu, here.opacity);
+        painter.fillRect(QRectF(x, top.y(), 2.0, s.area.bottom() - top.y()),
+                         colorOf(here.color, 0.62));
+        x == s.area.left() ? line.moveTo(x, top.y()) : line.lineTo(x, top.y());
+    }
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(theme().text, 1.4));
+    painter.drawPath(line);
+    painter.restore();
+    painter.setFont(font());
+    paintScales(painter, s);
+    for (std::size_t n = 0; n < curve.points().size(); ++n) {
+        const TransferFunctionPoint& point = curve.points()[n];
+        if (point.hu < lowHu_ || point.hu > highHu_) continue;
+        const QPointF p = s.place(point.hu, point.opacity);
+        const bool chosen = int(n) == point_;
+        painter.setPen(Qt::NoPen);
+        painter.setBrush(chosen ? theme().accentOnPicture : theme().text);
+        painter.drawEllipse(p, chosen ? 8 : 6, chosen ? 8 : 6);
+        painter.setBrush(colorOf(point.color));
+        painter.drawEllipse(p, chosen ? 5.0 : 4.2, chosen ? 5.0 : 4.2);
+    }
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(hasFocus() ? QPen(theme().accentOnPicture, 2) : QPen(theme().border, 1));
+    painter.drawRect(s.area);
+}
+
+// ---- the hand -----------------------------------------------------------------------------------
+
+int TransferGraph::pointAt(QPointF position) const {
+    const auto points = reading_.reader().optics().curve().points();
+    const Scales s = scales();
+    int found = -1;
+    double nearest = 12.0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const QPointF away = s.place(points[n].hu, points[n].opacity) - position;
+        if (std::hypot(away.x(), away.y()) < nearest)
+            nearest = std::hypot(away.x(), away.y()), found = int(n);
+    }
+    return found;
+}
+
+void TransferGraph::change(const reader::TransferCurve& curve) {
+    changeOptics(reading_, tr("change the transfer function"),
+                 [&](reader::OpticsEditor& optics) { optics.setCurve(curve); });
+    update();
+    emit pointChosen();
+}
+
+void TransferGraph::mousePressEvent(QMouseEvent* event) {
+    lastAt_ = event->position();
+    const int under = pointAt(lastAt_);
+    if (event->button() == Qt::RightButton) {
+        reader::TransferCurve curve = optics().curve();
+        if (under < 0 || !curve.remove(std::size_t(under))) return;
+        point_ = -1;
+        return change(curve);
+    }
+    choosePoint(under);
+    dragsAxis_ = under < 0;
+}
+
+void TransferGraph::mouseMoveEvent(QMouseEvent* event) {
+    const QPointF now = event->position();
+    if (!event->buttons().testFlag(Qt::LeftButton)) {
+        setCursor(pointAt(now) >= 0 ? Qt::PointingHandCursor : Qt::ArrowCursor);
+        return;
+    }
+    const Scales s = scales();
+    if (dragsAxis_) {
+        const double moved = (lastAt_.x() - now.x()) * s.huPerPixel();
+        setAxis(lowHu_ + moved, highHu_ + moved);
+    } else if (point_ >= 0) {
+        reader::TransferCurve curve = optics().curve();
+        curve.move(std::size_t(point_), s.hu(now), s.opacity(now));
+        change(curve);
+    }
+    lastAt_ = now;
+}
+
+void TransferGraph::mouseReleaseEvent(QMouseEvent*) {
+    dragsAxis_ = false;
+}
+
+void TransferGraph::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (event->button() != Qt::LeftButton || pointAt(event->position()) >= 0) return;
+    const Scales s = scales();
+    reader::TransferCurve curve = optics().curve();
+    point_ = int(curve.add(s.hu(event->position()), s.opacity(event->position())));
+    dragsAxis_ = false;
+    change(curve);
+}
+
+void TransferGraph::wheelEvent(QWheelEvent* event) {
+    const Scales s = scales();
+    const double shrink = std::pow(0.85, event->angleDelta().y() / 120.0),
+                 at = s.hu(event->position());
+    setAxis(at - (at - lowHu_) * shrink, at + (highHu_ - at) * shrink);
+    event->accept();
+}
+
+void TransferGraph::keyPressEvent(QKeyEvent* event) {
+    reader::TransferCurve curve = optics().curve();
+    const int points = int(curve.points().size());
+    const Scales s = scales();
+    const double stepHu = s.huPerPixel() * (event->modifiers() & Qt::ShiftModifier ? 20.0 : 4.0);
+    const auto move = [&](double hu, double rootOpacity) {
+        if (point_ < 0) return;
+        const TransferFunctionPoint& p = curve.points()[std::size_t(point_)];
+        const double root = std::clamp(std::sqrt(p.opacity) + rootOpacity, 0.0, 1.0);
+        curve.move(std::size_t(point_), p.hu + hu, root * root);
+        change(curve);
+    };
+    switch (event->key()) {
+        case Qt::Key_N:
+            return choosePoint((point_ + 1) % points);
+        case Qt::Key_P:
+            return choosePoint((point_ + points - 1) % points);
+        case Qt::Key_Left:
+            return move(-stepHu, 0.0);
+        case Qt::Key_Right:
+            return move(stepHu, 0.0);
+        case Qt::Key_Up:
+            return move(0.0, 0.02);
+        case Qt::Key_Down:
+            return move(0.0, -0.02);
+        case Qt::Key_Insert:
+            point_ = int(curve.add(0.5 * (lowHu_ + highHu_), 0.5));
+            return change(curve);
+        case Qt::Key_Delete:
+            if (point_ < 0 || !curve.remove(std::size_t(point_))) return;
+            point_ = -1;
+            return change(curve);
+        default:
+            QWidget::keyPressEvent(event);
+    }
 }
 
 }  // namespace haustra::window

@@ -105,7 +105,7 @@ TEST_F(ClientFlatReader, AClickOnTheWallBeforeTheCameraLeavesItWhereItIs) {
     reader_->flat().pick(camera.positionMm, {1, 0, 0});
     ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
     EXPECT_EQ(reader_->flight().motion(), Motion::paused);
-    const WallPlace picked = *reader_->flat().picked();
+    const WallPlace picked = *reader_->flat().picked()->wall;
     EXPECT_LT(
         glm::distance(picked.positionMm, camera.positionMm + glm::dvec3(tests::fakeRadiusMm, 0, 0)),
         1e-9);
@@ -119,11 +119,11 @@ TEST_F(ClientFlatReader, AClickInTheWindowLeavesItWhereItIs) {
     reader_->flat().tour().centerOn({0.5, 3.0});
     reader_->flat().goTo({1.2, 3.1}, false);  // past the seam
     ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
-    EXPECT_NEAR(reader_->flat().picked()->flat->x, 0.2, 1e-9);
+    EXPECT_NEAR(reader_->flat().picked()->wall->flat->x, 0.2, 1e-9);
     EXPECT_EQ(reader_->flat().tour().window().center, glm::dvec2(0.5, 3.0));
     EXPECT_NEAR(reader_->flight().arcMm(), 3.1 / 6.0 * length(), 1e-9);
     reader_->flat().goTo({0.5, 99.0}, false);  // held to the strip
-    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked()->flat->y == 6.0; }));
+    ASSERT_TRUE(runUntil([&] { return reader_->flat().picked()->wall->flat->y == 6.0; }));
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
 }
 
@@ -236,7 +236,7 @@ TEST_F(ClientFlatReaderWithoutStrip, NothingOfItIsAskedFor) {
     const glm::dvec3 from = reader_->flight().camera().positionMm;
     reader_->flat().pick(from, {0, 1, 0});
     ASSERT_TRUE(runUntil([&] { return reader_->flat().picked().has_value(); }));
-    EXPECT_FALSE(reader_->flat().picked()->flat);
+    EXPECT_FALSE(reader_->flat().picked()->wall->flat);
     EXPECT_LT(glm::distance(reader_->slices().slice(View::axial).positionMm,
                             from + glm::dvec3(0, tests::fakeRadiusMm, 0)),
               1e-9);

@@ -231,6 +231,22 @@ TEST_F(ClientSession, WhatALostLinkLeftUnansweredIsAskedAgain) {
         EXPECT_EQ(answer.request, last);
 }
 
+TEST_F(ClientSession, ACaseThatIsRefusedLeadsBackToTheListWhereThereIsOne) {
+    for (const bool offers : {true, false}) {
+        Misbehaviour wrong;
+        wrong.refuseCaseWith = protocol::ErrorReport::NO_SUCH_CASE;
+        FakeServer server(wrong);
+        const auto session = sessionWith(server);
+        session->setOffersCases(offers);
+        const Phase expected = offers ? Phase::choosing : Phase::failed;
+        ASSERT_TRUE(until(*session, [&] { return session->phase() == expected; }));
+        EXPECT_FALSE(session->takeRefusals().empty());
+        if (offers) {
+            EXPECT_TRUE(until(*session, [&] { return !session->cases().empty(); }));
+        }
+    }
+}
+
 TEST_F(ClientSession, AnOldServerIsNotAskedWhatItDoesNotKnow) {
     Misbehaviour wrong;
     wrong.old = true;

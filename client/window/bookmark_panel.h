@@ -1,0 +1,39 @@
+// The bookmarks of the open case.
+#pragma once
+
+#include "window/reading.h"
+
+#include <QWidget>
+
+class QLabel;
+class QLineEdit;
+class QTreeWidget;
+class QTreeWidgetItem;
+
+namespace haustra::window {
+
+/// A note to write, and the list along the colon: who has which, which are on their way, which the
+/// server refused (to be sent again with another note, or discarded). A click goes there.
+class BookmarkPanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit BookmarkPanel(Reading& reading);
+    /// The cursor goes to the note's field.
+    void writeNote();
+    QSize sizeHint() const override { return {300, 220}; }
+
+private:
+    void look();
+    void add();
+    void fill();
+    void goTo(QTreeWidgetItem* item);
+    void showMenu(const QPoint& position);
+
+    Reading& reading_;
+    QLineEdit* note_;
+    QTreeWidget* list_;
+    QLabel* hint_;
+    std::vector<std::pair<std::string, int>> shown_;  // client keys and states, as listed
+};
+
+}  // namespace haustra::window

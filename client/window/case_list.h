@@ -1,0 +1,49 @@
+// The server's cases, to choose from.
+#pragma once
+
+#include "window/reading.h"
+
+#include <QWidget>
+
+class QLabel;
+class QLineEdit;
+class QPushButton;
+class QSortFilterProxyModel;
+class QStandardItemModel;
+class QTableView;
+
+namespace haustra::window {
+
+/// A table with a field to search in it. While it is in sight it is asked for anew every few
+/// seconds. Without a link it says so instead.
+class CaseList : public QWidget {
+    Q_OBJECT
+public:
+    explicit CaseList(Reading& reading);
+
+signals:
+    /// The case that is open was chosen again.
+    void chosenAgain();
+
+protected:
+    void showEvent(QShowEvent*) override;
+
+private:
+    void look();
+    void fill();
+    void openCurrent();
+    void ask();
+
+    Reading& reading_;
+    QLabel *heading_, *state_;
+    QLineEdit* search_;
+    QTableView* table_;
+    QStandardItemModel* model_;
+    QSortFilterProxyModel* found_;
+    QPushButton* open_;
+    std::vector<reader::CaseEntry> shown_;
+    QTimer askTimer_;
+    bool listed_ = false;  // the list is in sight
+};
+
+}  // namespace haustra::window

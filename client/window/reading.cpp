@@ -1,0 +1,172 @@
+#include "window/reading.h"
+
+#include <QLocale>
+#include <QUndoCommand>
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace haustra::window {
+namespace {
+
+using reader::Clock;
+using std::chrono::milliseconds;
+
+constexpr auto steadyInterval = milliseconds(15), idleInterval = milliseconds(250),
+               mergeWithin = milliseconds(1000);
+
+class Step : public QUndoCommand {
+public:
+    Step(const QString& text, std::function<void()> undo, std::function<void()> redo, int mergeId)
+        : QUndoCommand(text), undo_(std::move(undo)), redo_(std::move(redo)), mergeId_(mergeId) {}
+    void undo() override { undo_(); }
+    void redo() override {
+        if (!std::exchange(first_, false)) redo_();
+    }
+    int id() const override { return mergeId_; }
+    bool mergeWith(const QUndoCommand* other) override {
+        const auto* later = static_cast<const Step*>(other);
+        if (later->madeAt_ - madeAt_ > mergeWithin) return false;
+        redo_ = later->redo_;
+        madeAt_ = later->madeAt_;
+        return true;
+    }
+
+private:
+    std::function<void()> undo_, redo_;
+    int mergeId_;
+    bool first_ = true;  // it has been done when it is pushed
+    Clock::time_point madeAt_ = Clock::now();
+};
+
+}  // namespace
+
+QString text(const std::string& utf8) {
+    return QString::fromStdString(utf8);
+}
+
+QString decimal(double value) {
+    return QLocale().toString(value, 'f', 1);
+}
+
+QString text(const Error& error) {
+    return text(describe(error));
+}
+
+Reading::Reading(link::ConnectionOptions options, std::string caseName,
+                 std::optional<reader::BookmarkJournal> journal)
+    : serverName_(text(link::toString(options.address))) {
+    options.reconnect = true;
+    options.onEvent = [this] { wakeFromThread(); };
+    steady_.setTimerType(Qt::PreciseTimer);
+    steady_.setInterval(steadyInterval);
+    idle_.setInterval(idleInterval);
+    connect(&steady_, &QTimer::timeout, this, &Reading::step);
+    connect(&idle_, &QTimer::timeout, this, &Reading::step);
+    undoStack_.setUndoLimit(100);
+    reader_ = std::make_unique<reader::Reader>(std::move(options), std::move(caseName),
+                                               std::move(journal));
+    sinceStep_.start();
+    idle_.start();
+}
+
+Reading::~Reading() {
+    // Bookmarks on their way are waited for, but not for long.
+    reader::Session& session = reader_->session();
+    const auto deadline = Clock::now() + std::chrono::seconds(2);
+    while (session.owedBookmarks() > 0 && session.phase() == reader::Phase::open &&
+           Clock::now() < deadline)
+        session.poll(milliseconds(50));
+}
+
+// From the connection's thread: the many pictures of one moment are one step.
+void Reading::wakeFromThread() {
+    if (stepWaits_.exchange(true)) return;
+    QMetaObject::invokeMethod(this, &Reading::step, Qt::QueuedConnection);
+}
+
+void Reading::changed() {
+    wakeFromThread();
+}
+
+void Reading::step() {
+    stepWaits_ = false;
+    // A step that was long in coming must not throw the reader far along the colon.
+    const double seconds = std::min(1e-3 * double(sinceStep_.restart()), 0.1);
+    reader::Flight& flight = reader_->flight();
+    const bool holds = flight.isFree() && heldWay_ != glm::dvec3(0.0);
+    if (holds)
+        flight.moveFreely(heldWay_ * flight.speedMmPerS() * seconds * (heldFast_ ? 3.0 : 1.0));
+    reader_->update(seconds);
+    watchSession();
+    const bool steadily = holds || reader_->restless();
+    if (steadily != steady_.isActive()) steadily ? steady_.start() : steady_.stop();
+    emit stepped();
+}
+
+void Reading::watchSession() {
+    reader::Session& session = reader_->session();
+    if (session.caseInfo() != case_) {
+        case_ = session.caseInfo();
+        undoStack_.clear();
+        setTool(DrawingTool::none);
+        emit caseOpened();
+    }
+    if (session.phase() != phase_) {
+        phase_ = session.phase();
+        emit phaseChanged();
+    }
+    for (const Error& refusal : session.takeRefusals())
+        tell(text(refusal), true);
+    if (session.server().firstUse && !std::exchange(toldFirstUse_, true))
+        tell(tr("First meeting with this server: its certificate is now pinned (%1…)")
+                 .arg(text(session.server().fingerprint.substr(0, 16))));
+    int saved = 0, refused = 0;
+    for (const auto& outcome : session.takeBookmarkOutcomes())
+        ++(outcome.saved ? saved : refused);
+    if (saved > 0) tell(tr("%n bookmark(s) saved", nullptr, saved));
+    if (refused > 0)
+        tell(tr("%n bookmark(s) not saved: the server refused. They are kept in the list of "
+                "bookmarks, to be sent again or discarded.",
+                nullptr, refused),
+             true);
+}
+
+void Reading::did(const QString& text, std::function<void()> undo, std::function<void()> redo,
+                  int mergeId) {
+    const auto andStep = [this](std::function<void()> what) {
+        return [this, what = std::move(what)] {
+            what();
+            changed();
+        };
+    };
+    undoStack_.push(new Step(text, andStep(std::move(undo)), andStep(std::move(redo)), mergeId));
+    changed();
+}
+
+void Reading::jump(const QString& text, std::function<void()> go) {
+    reader::Reader& reader = *reader_;
+    const auto goThere = [&reader, go = std::move(go)] {
+        reader.setMotion(reader::Motion::paused);
+        go();
+    };
+    const auto goBack = [&reader, flight = reader.flight(), slices = reader.slices()] {
+        reader.setMotion(reader::Motion::paused);
+        reader.restore(flight, slices);
+    };
+    goThere();
+    constexpr int jumps = 1;
+    did(text, goBack, goThere, jumps);
+}
+
+void Reading::setTool(DrawingTool tool) {
+    if (std::exchange(tool_, tool) != tool) emit toolChanged();
+}
+
+void Reading::setHeldWay(glm::dvec3 way, bool fast) {
+    heldWay_ = way;
+    heldFast_ = fast;
+    changed();
+}
+
+}  // namespace haustra::window

@@ -1,0 +1,85 @@
+// The reader at work in Qt's event loop: what the window's parts share.
+#pragma once
+
+#include "reader/reader.h"
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QString>
+#include <QTimer>
+#include <QUndoStack>
+#include <atomic>
+#include <functional>
+#include <memory>
+
+namespace haustra::window {
+
+/// What a drag in a pane does. `none`: it turns, moves or windows the picture.
+enum class DrawingTool { none, line, outline };
+
+/// Belongs to the main thread. Steps when the server sent something, when a part of the window has
+/// changed the reader (changed()), and steadily while something moves by itself.
+class Reading : public QObject {
+    Q_OBJECT
+public:
+    /// `serverName` is what the window calls the server.
+    Reading(link::ConnectionOptions options, std::string caseName,
+            std::optional<reader::BookmarkJournal> journal = {});
+    ~Reading() override;
+
+    reader::Reader& reader() { return *reader_; }
+    const reader::Reader& reader() const { return *reader_; }
+    const QString& serverName() const { return serverName_; }
+
+    /// The hand changed the reader: a step follows as soon as this event is handled.
+    void changed();
+    /// Tells the person who reads: in the status line, or, of trouble, until it is dismissed.
+    void tell(const QString& text, bool trouble = false) { emit told(text, trouble); }
+
+    /// Steps that Ctrl+Z takes back. `redo` has been done already. Steps with the same `mergeId`
+    /// (not −1) that follow one another within a second are one.
+    void did(const QString& text, std::function<void()> undo, std::function<void()> redo,
+             int mergeId = -1);
+    QUndoStack& undoStack() { return undoStack_; }
+    /// A jump of the flight that can be taken back, and done again by `go`.
+    void jump(const QString& text, std::function<void()> go);
+
+    DrawingTool tool() const { return tool_; }
+    void setTool(DrawingTool tool);
+
+    /// Free flight: the way that keys are held for, right, up and forward.
+    void setHeldWay(glm::dvec3 way, bool fast);
+
+signals:
+    /// Something may have changed: whoever shows it looks whether it has.
+    void stepped();
+    /// Another case is open.
+    void caseOpened();
+    void phaseChanged();
+    void told(const QString& text, bool trouble);
+    void toolChanged();
+
+private:
+    void step();
+    void wakeFromThread();
+    void watchSession();
+
+    std::atomic<bool> stepWaits_ = false;
+    QString serverName_;
+    std::unique_ptr<reader::Reader> reader_;
+    QTimer steady_, idle_;
+    QElapsedTimer sinceStep_;
+    QUndoStack undoStack_;
+    DrawingTool tool_ = DrawingTool::none;
+    glm::dvec3 heldWay_{0.0};
+    bool heldFast_ = false, toldFirstUse_ = false;
+    std::shared_ptr<const reader::CaseInfo> case_;
+    reader::Phase phase_ = reader::Phase::connecting;
+};
+
+QString text(const std::string& utf8);
+QString text(const Error& error);
+/// With one decimal, as the language writes it.
+QString decimal(double value);
+
+}  // namespace haustra::window

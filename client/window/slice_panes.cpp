@@ -1,0 +1,409 @@
+#include "window/slice_panes.h"
+
+#include "window/theme.h"
+
+#include <QKeyEvent>
+#include <QMenu>
+#include <QPainterPath>
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::window {
+namespace {
+
+constexpr Qt::Alignment topLeft = Qt::AlignLeft | Qt::AlignTop,
+                        topRight = Qt::AlignRight | Qt::AlignTop,
+                        bottomLeft = Qt::AlignLeft | Qt::AlignBottom,
+                        bottomRight = Qt::AlignRight | Qt::AlignBottom;
+
+// Undo steps of one kind that follow one another are one.
+constexpr int windowSteps = 2;
+
+QString axisOf(View view) {
+    return view == View::coronal    ? QStringLiteral("y")
+           : view == View::sagittal ? QStringLiteral("x")
+                                    : QStringLiteral("z");
+}
+
+}  // namespace
+
+// ---- what all grey panes do ---------------------------------------------------------------------
+
+QString GreyPane::heading() const {
+    QStringList heading;
+    if (namesItself()) heading += title();
+    if (shownScan() == Scan::cleansed) heading += tr("cleansed");
+    const Slab& slab = reader().slices().slab();
+    if (slab.thicknessMm > 0.0)
+        heading += slab.projection == Projection::maximum
+                       ? tr("maximum of %1 mm").arg(slab.thicknessMm, 0, 'g', 3)
+                       : tr("mean of %1 mm").arg(slab.thicknessMm, 0, 'g', 3);
+    return heading.join(QStringLiteral(", "));
+}
+
+QString GreyPane::inWords() const {
+    const WindowLevel& window = reader().slices().window();
+    return tr("window centre %1, width %2 HU").arg(window.centerHu).arg(window.widthHu) +
+           QStringLiteral(", ") + Pane::inWords();
+}
+
+void GreyPane::fillMenu(QMenu& menu) {
+    menu.addAction(tr("Clear rulers and ellipses"), this,
+                   [this] {
+                       reader::ScanMeasures& measures = reader().measures();
+                       const auto before = measures.measures();
+                       measures.set({});
+                       reading().did(
+                           tr("clear measurements"), [&measures, before] { measures.set(before); },
+                           [&measures] { measures.set({}); });
+                   })
+        ->setEnabled(!reader().measures().measures().empty());
+}
+
+void GreyPane::addShown(Shown& shown) const {
+    const reader::SliceViews& slices = reader().slices();
+    shown.add(slices.window().centerHu), shown.add(slices.window().widthHu);
+    shown.add(slices.slab().thicknessMm), shown.add(double(slices.slab().projection));
+    shown.add(slices.linked());
+    for (const reader::ScanMeasure& measure : reader().measures().measures()) {
+        shown.add(measure.fromMm), shown.add(measure.toMm);
+        shown.add(measure.values ? measure.values->meanHu : -1e9);
+    }
+    if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
+    if (const auto& pointed = reader().measures().pointed(); pointed && underMouse()) {
+        shown.add(pointed->placeMm);
+        shown.add(pointed->hu);
+    }
+}
+
+std::optional<glm::dvec3> GreyPane::patientAt(QPointF position) const {
+    const auto placed = placement();
+    if (!placed) return std::nullopt;
+    return placed->patientFromPixel(vector(position) / widgetPerPixel() - 0.5);
+}
+
+QPointF GreyPane::positionOf(const SlicePlacement& placement, glm::dvec3 mm) const {
+    return point((placement.pixelFromPatient(mm) + 0.5) * widgetPerPixel());
+}
+
+void GreyPane::pressed(const Hand& hand) {
+    drawnFrom_.reset();
+    windowBefore_ = reader().slices().window();
+    if (hand.button != Qt::LeftButton) return;
+    const DrawingTool tool = hand.shift()  ? DrawingTool::line
+                             : hand.ctrl() ? DrawingTool::outline
+                                           : reading().tool();
+    if (tool == DrawingTool::none) return;
+    drawnFrom_ = patientAt(hand.position);
+    drawsEllipse_ = tool == DrawingTool::outline;
+    hasBegun_ = false;
+    measuresBefore_ = reader().measures().measures();
+}
+
+void GreyPane::dragged(const Hand& hand) {
+    const auto placed = placement();
+    if (hand.button == Qt::MiddleButton || hand.button == Qt::RightButton) {
+        if (placed) moved(vector(hand.moved) / widgetPerPixel() * placed->pixelMm());
+        return;
+    }
+    if (drawnFrom_ && placed) {
+        reader::ScanMeasure measure;
+        measure.isEllipse = drawsEllipse_;
+        measure.right = glm::normalize(placed->rightMm);
+        measure.normal = glm::normalize(glm::cross(placed->rightMm, placed->downMm));
+        measure.fromMm = *drawnFrom_;
+        measure.toMm = *patientAt(hand.position);
+        measure.scan = shownScan();
+        reader().measures().draw(measure, !std::exchange(hasBegun_, true));
+        return;
+    }
+    // Across: the window's width; up and down: its centre.
+    WindowLevel window = reader().slices().window();
+    const double stepHu = std::max(1.0, window.widthHu / 400.0);
+    window.widthHu += std::round(hand.moved.x() * stepHu);
+    window.centerHu += std::round(hand.moved.y() * stepHu);
+    reader().slices().setWindow(window);
+}
+
+void GreyPane::released(const Hand&) {
+    reader::Reader& r = reader();
+    if (drawnFrom_ && hasBegun_) {
+        const auto after = r.measures().measures();
+        reading().did(
+            drawsEllipse_ ? tr("draw an ellipse") : tr("draw a ruler"),
+            [&r, before = measuresBefore_] { r.measures().set(before); },
+            [&r, after] { r.measures().set(after); });
+    } else if (!(windowBefore_ == r.slices().window())) {
+        reading().did(
+            tr("change the window"), [&r, before = windowBefore_] { r.slices().setWindow(before); },
+            [&r, after = r.slices().window()] { r.slices().setWindow(after); }, windowSteps);
+    }
+    drawnFrom_.reset();
+}
+
+void GreyPane::hovered(const Hand& hand) {
+    reader().measures().pointAt(patientAt(hand.position), shownScan());
+    reading().changed();
+}
+
+void GreyPane::left() {
+    reader().measures().pointAt({}, Scan::original);
+    reading().changed();
+}
+
+void GreyPane::paintMeasures(QPainter& painter, const SlicePlacement& placement) {
+    const glm::dvec3 normal = glm::normalize(glm::cross(placement.rightMm, placement.downMm));
+    const glm::dvec3 spacing = reader().session().caseInfo()->grid.spacingMm();
+    const double nearMm =
+        0.51 * std::max({spacing.x, spacing.y, spacing.z, reader().slices().slab().thicknessMm});
+    painter.setFont(font());
+    for (const reader::ScanMeasure& measure : reader().measures().measures()) {
+        if (std::abs(glm::dot(measure.normal, normal)) < 0.999 ||
+            std::abs(glm::dot(measure.fromMm - placement.topLeftMm, normal)) > nearMm)
+            continue;
+        const QPointF from = positionOf(placement, measure.fromMm),
+                      to = positionOf(placement, measure.toMm);
+        const QColor color = theme().measuredOnPicture;
+        QString text = tr("%1 mm").arg(decimal(measure.lengthMm()));
+        if (measure.isEllipse) {
+            QPainterPath path;
+            path.addEllipse(QRectF(from, to).normalized());
+            outlinedPolyline(painter, path.toFillPolygon(), true, color);
+            const double area =
+                M_PI * glm::length(measure.halfAMm()) * glm::length(measure.halfBMm());
+            text = tr("%1 mm²").arg(area, 0, 'f', 0);
+            if (measure.values)
+                text = tr("mean %1 ± %2 HU   %3")
+                           .arg(decimal(measure.values->meanHu))
+                           .arg(decimal(measure.values->deviationHu))
+                           .arg(text);
+        } else {
+            outlinedPolyline(painter, QPolygonF({from, to}), false, color);
+            painter.setPen(Qt::NoPen);
+            painter.setBrush(color);
+            for (const QPointF end : {from, to})
+                painter.drawEllipse(end, 2.5, 2.5);
+        }
+        const double wide = QFontMetricsF(painter.font()).horizontalAdvance(text);
+        const QPointF low((from.x() + to.x()) / 2, std::max(from.y(), to.y()) + 4);
+        outlinedText(
+            painter,
+            {std::clamp(low.x(), wide / 2 + 4, std::max(wide / 2 + 4, width() - wide / 2 - 4)),
+             std::min(low.y(), height() - 24.0)},
+            Qt::AlignHCenter | Qt::AlignTop, color, text);
+    }
+}
+
+void GreyPane::paintTexts(QPainter& painter, const QString& place) {
+    painter.setFont(smallFont(font()));
+    const double margin = 8.0;
+    outlinedText(painter, {margin, margin}, topLeft, theme().onPicture, heading());
+    outlinedText(painter, {width() - margin, margin}, topRight, theme().dimOnPicture, place);
+    const WindowLevel& window = reader().slices().window();
+    const double low =
+        outlinedText(painter, {margin, height() - margin}, bottomLeft, theme().dimOnPicture,
+                     tr("C %1  W %2 HU").arg(window.centerHu).arg(window.widthHu))
+            .top();
+    const auto& pointed = reader().measures().pointed();
+    if (!pointed || !underMouse()) return;
+    outlinedText(painter, {margin, low}, bottomLeft, theme().accentOnPicture,
+                 tr("%1 HU").arg(std::lround(pointed->hu)));
+}
+
+// ---- a slice ------------------------------------------------------------------------------------
+
+SlicePane::SlicePane(Reading& reading, View view)
+    : GreyPane(reading, view,
+               view == View::coronal    ? tr("Coronal")
+               : view == View::sagittal ? tr("Sagittal")
+                                        : tr("Axial")) {}
+
+SliceView SlicePane::shownSlice() const {
+    const SliceView* pictured = reader().panes().shown<SliceView>(view());
+    return pictured ? *pictured : reader().slices().slice(view());
+}
+
+std::optional<SlicePlacement> SlicePane::placement() const {
+    const glm::ivec2 size = pictureSize();
+    const auto placed =
+        placeSlice(shownSlice(), reader().session().caseInfo()->grid, size.x, size.y);
+    return placed ? std::optional(*placed) : std::nullopt;
+}
+
+Scan SlicePane::shownScan() const {
+    return shownSlice().scan;
+}
+
+double SlicePane::stepMm() const {
+    const glm::dvec3 spacing = reader().session().caseInfo()->grid.spacingMm();
+    return view() == View::axial ? spacing.z : view() == View::coronal ? spacing.y : spacing.x;
+}
+
+QString SlicePane::inWords() const {
+    return tr("%1 %2 mm")
+               .arg(axisOf(view()))
+               .arg(decimal(glm::dot(shownSlice().positionMm, reader::sliceNormal(view())))) +
+           QStringLiteral(", ") + GreyPane::inWords();
+}
+
+void SlicePane::fillMenu(QMenu& menu) {
+    menu.addAction(tr("Whole slice"), this, [this] {
+        reader().slices().showWhole(view());
+        reading().changed();
+    });
+    GreyPane::fillMenu(menu);
+}
+
+void SlicePane::addShown(Shown& shown) const {
+    GreyPane::addShown(shown);
+    shown.add(reader().flight().camera());
+    shown.add(shownSlice().positionMm);
+}
+
+// A cross with an open middle where the camera is, and an arrow along its gaze.
+void SlicePane::paintCrosshair(QPainter& painter, const SlicePlacement& placement) {
+    const Camera camera = reader().flight().camera();
+    const QPointF p = positionOf(placement, camera.positionMm);
+    constexpr double gap = 9.0;
+    QColor faint = theme().accentOnPicture;
+    faint.setAlpha(theme().lineWidth > 1.0 ? 255 : 120);
+    painter.setPen(QPen(faint, theme().lineWidth));
+    painter.setRenderHint(QPainter::Antialiasing, false);
+    painter.drawLine(QPointF(0, p.y()), p - QPointF(gap, 0));
+    painter.drawLine(p + QPointF(gap, 0), QPointF(width(), p.y()));
+    painter.drawLine(QPointF(p.x(), 0), p - QPointF(0, gap));
+    painter.drawLine(p + QPointF(0, gap), QPointF(p.x(), height()));
+    painter.setRenderHint(QPainter::Antialiasing);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(theme().accentOnPicture);
+    painter.drawEllipse(p, 2.5, 2.5);
+    const glm::dvec2 ahead =
+        placement.pixelFromPatient(camera.positionMm + camera.forward * placement.pixelMm()) -
+        placement.pixelFromPatient(camera.positionMm);
+    const double length = glm::length(ahead);
+    if (length < 0.15) return;  // looking along the slice's normal
+    const QPointF along = point(ahead / length), across(-along.y(), along.x());
+    const QPointF end = p + along * (4.0 + 16.0 * length);
+    painter.setPen(QPen(theme().accentOnPicture, 1.5 * theme().lineWidth));
+    painter.drawLine(p, end);
+    painter.setPen(Qt::NoPen);
+    painter.drawPolygon(QPolygonF({end + along * 4.0, end + across * 3.2, end - across * 3.2}));
+}
+
+void SlicePane::paintMarks(QPainter& painter) {
+    const auto placed = placement();
+    if (!placed) return;
+    paintCrosshair(painter, *placed);
+    if (const auto& picked = reader().flat().picked())
+        paintPlaceMark(painter, positionOf(*placed, picked->positionMm));
+    painter.setFont(smallFont(font()));
+    paintSides(painter, rect(), glm::normalize(placed->rightMm), -glm::normalize(placed->downMm));
+    paintMeasures(painter, *placed);
+    const SliceView shown = shownSlice();
+    paintTexts(painter, tr("%1 %2 mm")
+                            .arg(axisOf(view()))
+                            .arg(decimal(glm::dot(shown.positionMm, reader::sliceNormal(view())))));
+    const double top = paintScaleBar(painter, rect(), widgetPerPixel() / placed->pixelMm());
+    QString state = shown.zoom > 1.001 ? tr("×%1").arg(decimal(shown.zoom)) : QString();
+    if (!reader().slices().linked()) state = tr("not linked") + QStringLiteral("  ") + state;
+    outlinedText(painter, {width() - 8.0, top}, bottomRight, theme().dimOnPicture, state);
+}
+
+void SlicePane::clicked(const Hand& hand) {
+    if (hand.button != Qt::LeftButton) return;
+    if (const auto place = patientAt(hand.position))
+        reading().jump(tr("go to a voxel"),
+                       [this, place = *place] { reader().goTo(place, view()); });
+}
+
+void SlicePane::wheeled(const Hand& hand, double steps) {
+    if (hand.ctrl())
+        reader().slices().zoom(view(), std::pow(1.2, steps),
+                               vector(hand.position) / widgetPerPixel() - 0.5, pictureSize());
+    else
+        reader().slices().scroll(view(), steps * stepMm() * (hand.shift() ? 10.0 : 1.0));
+}
+
+void SlicePane::moved(glm::dvec2 mm) {
+    reader().slices().pan(view(), mm);
+}
+
+void SlicePane::keyPressEvent(QKeyEvent* event) {
+    if (!isOpen()) return Pane::keyPressEvent(event);
+    switch (event->key()) {
+        case Qt::Key_PageUp:
+            reader().slices().scroll(view(), stepMm());
+            break;
+        case Qt::Key_PageDown:
+            reader().slices().scroll(view(), -stepMm());
+            break;
+        default:
+            return Pane::keyPressEvent(event);
+    }
+    reading().changed();
+}
+
+// ---- the slice across the gaze ------------------------------------------------------------------
+
+ObliquePane::ObliquePane(Reading& reading)
+    : GreyPane(reading, View::oblique, tr("Across the gaze")) {}
+
+ObliqueView ObliquePane::shownSlice() const {
+    const ObliqueView* pictured = reader().panes().shown<ObliqueView>(View::oblique);
+    return pictured ? *pictured : reader().slices().oblique(reader().flight().camera());
+}
+
+std::optional<SlicePlacement> ObliquePane::placement() const {
+    const glm::ivec2 size = pictureSize();
+    const auto placed = placeSlice(shownSlice(), size.x, size.y);
+    return placed ? std::optional(*placed) : std::nullopt;
+}
+
+Scan ObliquePane::shownScan() const {
+    return shownSlice().scan;
+}
+
+void ObliquePane::addShown(Shown& shown) const {
+    GreyPane::addShown(shown);
+    const ObliqueView slice = shownSlice();
+    shown.add(slice.positionMm), shown.add(slice.forward), shown.add(slice.heightMm);
+    shown.add(reader().flight().camera().positionMm);
+}
+
+void ObliquePane::paintMarks(QPainter& painter) {
+    const auto placed = placement();
+    if (!placed) return;
+    const ObliqueView shown = shownSlice();
+    const Camera camera = reader().flight().camera();
+    paintCross(painter, QRectF(rect()).center(), 4.0, 9.0, theme().accentOnPicture);
+    if (const auto& picked = reader().flat().picked()) {
+        const double beside =
+            glm::dot(picked->positionMm - shown.positionMm, glm::normalize(shown.forward));
+        if (std::abs(beside) < 2.0)
+            paintPlaceMark(painter, positionOf(*placed, picked->positionMm));
+    }
+    painter.setFont(smallFont(font()));
+    paintSides(painter, rect(), glm::cross(shown.forward, shown.up), shown.up);
+    paintMeasures(painter, *placed);
+    const double ahead = glm::dot(shown.positionMm - camera.positionMm, shown.forward);
+    paintTexts(painter, std::abs(ahead) < 0.5 ? QString()
+                        : ahead > 0.0         ? tr("%1 mm ahead").arg(ahead, 0, 'f', 0)
+                                              : tr("%1 mm behind").arg(-ahead, 0, 'f', 0));
+    paintScaleBar(painter, rect(), height() / shown.heightMm);
+}
+
+void ObliquePane::clicked(const Hand& hand) {
+    if (hand.button != Qt::LeftButton) return;
+    if (const auto place = patientAt(hand.position))
+        reading().jump(tr("go to a voxel"),
+                       [this, place = *place] { reader().goTo(place, View::axial); });
+}
+
+void ObliquePane::wheeled(const Hand& hand, double steps) {
+    if (hand.ctrl())
+        reader().slices().zoomOblique(std::pow(1.2, steps));
+    else
+        reader().slices().scrollOblique(steps * (hand.shift() ? 10.0 : 1.0));
+}
+
+}  // namespace haustra::window

@@ -1,0 +1,91 @@
+// The panes in grey: three slices, and the slice across the gaze.
+#pragma once
+
+#include "core/slice_placement.h"
+#include "window/pane.h"
+
+#include <optional>
+
+namespace haustra::window {
+
+/// What all grey panes do: a drag changes the window, the middle button moves the picture, the
+/// wheel scrolls, with Ctrl it enlarges; a tool or Shift draws a ruler, Ctrl an ellipse.
+class GreyPane : public Pane {
+    Q_OBJECT
+public:
+    using Pane::Pane;
+    void fillMenu(QMenu& menu) override;
+    QString inWords() const override;
+    /// A point of the scan under the pane's middle, which keys use where no mouse points.
+    QSize sizeHint() const override { return {300, 280}; }
+
+protected:
+    /// Where the picture that is shown lies in the patient, and which scan it is of.
+    virtual std::optional<SlicePlacement> placement() const = 0;
+    virtual Scan shownScan() const = 0;
+    /// In words: "Axial, cleansed".
+    QString heading() const;
+
+    void addShown(Shown& shown) const override;
+    void dragged(const Hand& hand) override;
+    void pressed(const Hand& hand) override;
+    void released(const Hand& hand) override;
+    void hovered(const Hand& hand) override;
+    void left() override;
+    virtual void moved(glm::dvec2 mm) { (void)mm; }
+
+    std::optional<glm::dvec3> patientAt(QPointF position) const;
+    QPointF positionOf(const SlicePlacement& placement, glm::dvec3 mm) const;
+    void paintMeasures(QPainter& painter, const SlicePlacement& placement);
+    void paintTexts(QPainter& painter, const QString& place);
+
+private:
+    std::vector<reader::ScanMeasure> measuresBefore_;
+    std::optional<glm::dvec3> drawnFrom_;
+    WindowLevel windowBefore_;
+    bool drawsEllipse_ = false, hasBegun_ = false;
+};
+
+/// Axial, coronal or sagittal. A click goes to that very voxel, in all views.
+class SlicePane : public GreyPane {
+    Q_OBJECT
+public:
+    SlicePane(Reading& reading, View view);
+    void fillMenu(QMenu& menu) override;
+    QString inWords() const override;
+
+protected:
+    std::optional<SlicePlacement> placement() const override;
+    Scan shownScan() const override;
+    void paintMarks(QPainter& painter) override;
+    void addShown(Shown& shown) const override;
+    void clicked(const Hand& hand) override;
+    void wheeled(const Hand& hand, double steps) override;
+    void moved(glm::dvec2 mm) override;
+    void keyPressEvent(QKeyEvent*) override;
+
+private:
+    SliceView shownSlice() const;
+    double stepMm() const;
+    void paintCrosshair(QPainter& painter, const SlicePlacement& placement);
+};
+
+/// The slice across the gaze: the lumen's cross-section, as the endoscopic view looks.
+class ObliquePane : public GreyPane {
+    Q_OBJECT
+public:
+    explicit ObliquePane(Reading& reading);
+
+protected:
+    std::optional<SlicePlacement> placement() const override;
+    Scan shownScan() const override;
+    void paintMarks(QPainter& painter) override;
+    void addShown(Shown& shown) const override;
+    void clicked(const Hand& hand) override;
+    void wheeled(const Hand& hand, double steps) override;
+
+private:
+    ObliqueView shownSlice() const;
+};
+
+}  // namespace haustra::window

@@ -1,0 +1,1583 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="de" sourcelanguage="en">
+<context>
+    <name>Commands</name>
+    <message>
+        <source>This case has not been flattened.</source>
+        <translation>Für diesen Fall gibt es keine Abwicklung.</translation>
+    </message>
+    <message>
+        <source>Cases of the server…</source>
+        <translation>Fälle auf dem Server…</translation>
+    </message>
+    <message>
+        <source>Cases</source>
+        <translation>Fälle</translation>
+    </message>
+    <message>
+        <source>Save the picture…</source>
+        <translation>Bild speichern…</translation>
+    </message>
+    <message>
+        <source>Copy the picture</source>
+        <translation>Bild kopieren</translation>
+    </message>
+    <message>
+        <source>Quit</source>
+        <translation>Beenden</translation>
+    </message>
+    <message>
+        <source>Undo</source>
+        <translation>Rückgängig</translation>
+    </message>
+    <message>
+        <source>Redo</source>
+        <translation>Wiederherstellen</translation>
+    </message>
+    <message>
+        <source>Stop measuring and clear it</source>
+        <translation>Messung beenden und löschen</translation>
+    </message>
+    <message>
+        <source>Enlarge this pane, and back</source>
+        <translation>Diese Ansicht vergrößern und zurück</translation>
+    </message>
+    <message>
+        <source>Layout: endoscopic reading</source>
+        <translation>Layout: endoskopische Befundung</translation>
+    </message>
+    <message>
+        <source>Layout: slices first</source>
+        <translation>Layout: Schichten zuerst</translation>
+    </message>
+    <message>
+        <source>Layout: flattened reading</source>
+        <translation>Layout: Befundung der Abwicklung</translation>
+    </message>
+    <message>
+        <source>Layout: two monitors</source>
+        <translation>Layout: zwei Monitore</translation>
+    </message>
+    <message>
+        <source>Save this layout…</source>
+        <translation>Dieses Layout speichern…</translation>
+    </message>
+    <message>
+        <source>Full screen</source>
+        <translation>Vollbild</translation>
+    </message>
+    <message>
+        <source>Fly forward, pause</source>
+        <translation>Vorwärts fliegen, anhalten</translation>
+    </message>
+    <message>
+        <source>Fly backward, pause</source>
+        <translation>Rückwärts fliegen, anhalten</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Anhalten</translation>
+    </message>
+    <message>
+        <source>1 mm forward</source>
+        <translation>1 mm vorwärts</translation>
+    </message>
+    <message>
+        <source>1 mm backward</source>
+        <translation>1 mm rückwärts</translation>
+    </message>
+    <message>
+        <source>10 mm forward</source>
+        <translation>10 mm vorwärts</translation>
+    </message>
+    <message>
+        <source>10 mm backward</source>
+        <translation>10 mm rückwärts</translation>
+    </message>
+    <message>
+        <source>To the rectum</source>
+        <translation>Zum Rektum</translation>
+    </message>
+    <message>
+        <source>To the cecum</source>
+        <translation>Zum Zökum</translation>
+    </message>
+    <message>
+        <source>Go to a place along the path…</source>
+        <translation>Zu einer Stelle auf dem Pfad gehen…</translation>
+    </message>
+    <message>
+        <source>Faster</source>
+        <translation>Schneller</translation>
+    </message>
+    <message>
+        <source>Slower</source>
+        <translation>Langsamer</translation>
+    </message>
+    <message>
+        <source>Turn round</source>
+        <translation>Umkehren</translation>
+    </message>
+    <message>
+        <source>Back to the path, straight ahead</source>
+        <translation>Zurück zum Pfad, geradeaus</translation>
+    </message>
+    <message>
+        <source>Free flight: W A S D, Q E down and up</source>
+        <translation>Freier Flug: W A S D, mit Q E ab und auf</translation>
+    </message>
+    <message>
+        <source>Fisheye, which sees all around</source>
+        <translation>Fischauge mit Rundumsicht</translation>
+    </message>
+    <message>
+        <source>Wider field of view</source>
+        <translation>Größeres Blickfeld</translation>
+    </message>
+    <message>
+        <source>Narrower field of view</source>
+        <translation>Kleineres Blickfeld</translation>
+    </message>
+    <message>
+        <source>Window: colon</source>
+        <translation>Fenster: Kolon</translation>
+    </message>
+    <message>
+        <source>Window: soft tissue</source>
+        <translation>Fenster: Weichteile</translation>
+    </message>
+    <message>
+        <source>Window: lung</source>
+        <translation>Fenster: Lunge</translation>
+    </message>
+    <message>
+        <source>Window: bone</source>
+        <translation>Fenster: Knochen</translation>
+    </message>
+    <message>
+        <source>As scanned, or cleansed</source>
+        <translation>Original oder digital gereinigt</translation>
+    </message>
+    <message>
+        <source>cleansed</source>
+        <translation>gereinigt</translation>
+    </message>
+    <message>
+        <source>Linked: they follow the camera and one another</source>
+        <translation>Gekoppelt: folgen der Kamera und einander</translation>
+    </message>
+    <message>
+        <source>Thicker slab</source>
+        <translation>Dickeres Schichtpaket</translation>
+    </message>
+    <message>
+        <source>Thinner slab</source>
+        <translation>Dünneres Schichtpaket</translation>
+    </message>
+    <message>
+        <source>Slab: maximum instead of mean</source>
+        <translation>Schichtpaket: Maximum statt Mittelwert</translation>
+    </message>
+    <message>
+        <source>Measure a line: on a slice, or along the flattened wall</source>
+        <translation>Strecke messen: in einer Schicht oder auf der abgewickelten Wand</translation>
+    </message>
+    <message>
+        <source>Measure an ellipse on a slice, or an outline on the flattened wall</source>
+        <translation>Ellipse in einer Schicht oder Umriss auf der abgewickelten Wand messen</translation>
+    </message>
+    <message>
+        <source>Next look of the wall</source>
+        <translation>Nächste Darstellung der Wand</translation>
+    </message>
+    <message>
+        <source>Colours, opacities and light</source>
+        <translation>Farben, Deckkraft und Licht</translation>
+    </message>
+    <message>
+        <source>…</source>
+        <translation>…</translation>
+    </message>
+    <message>
+        <source>Fly over the flattened wall</source>
+        <translation>Abgewickelte Wand überfliegen</translation>
+    </message>
+    <message>
+        <source>Colour the wall around bookmarks</source>
+        <translation>Wand um Lesezeichen einfärben</translation>
+    </message>
+    <message>
+        <source>marks</source>
+        <translation>Marken</translation>
+    </message>
+    <message>
+        <source>Colour what has not been seen yet</source>
+        <translation>Noch nicht Gesehenes einfärben</translation>
+    </message>
+    <message>
+        <source>unseen</source>
+        <translation>ungesehen</translation>
+    </message>
+    <message>
+        <source>Nothing has been seen: begin anew</source>
+        <translation>Alles wieder ungesehen: neu beginnen</translation>
+    </message>
+    <message>
+        <source>Overview: with the body</source>
+        <translation>Übersicht: mit Körper</translation>
+    </message>
+    <message>
+        <source>Bookmark this place</source>
+        <translation>Lesezeichen an dieser Stelle setzen</translation>
+    </message>
+    <message>
+        <source>Bookmark with a note</source>
+        <translation>Lesezeichen mit Notiz setzen</translation>
+    </message>
+    <message>
+        <source>Previous bookmark</source>
+        <translation>Voriges Lesezeichen</translation>
+    </message>
+    <message>
+        <source>Next bookmark</source>
+        <translation>Nächstes Lesezeichen</translation>
+    </message>
+    <message>
+        <source>Show the list of bookmarks</source>
+        <translation>Liste der Lesezeichen zeigen</translation>
+    </message>
+    <message>
+        <source>Bookmarks</source>
+        <translation>Lesezeichen</translation>
+    </message>
+    <message>
+        <source>Keys and mouse</source>
+        <translation>Tasten und Maus</translation>
+    </message>
+    <message>
+        <source>Keys</source>
+        <translation>Tasten</translation>
+    </message>
+    <message>
+        <source>Change the keys…</source>
+        <translation>Tasten ändern…</translation>
+    </message>
+    <message>
+        <source>About Haustra and this server</source>
+        <translation>Über Haustra und diesen Server</translation>
+    </message>
+    <message>
+        <source>&amp;File</source>
+        <translation>&amp;Datei</translation>
+    </message>
+    <message>
+        <source>&amp;Edit</source>
+        <translation>&amp;Bearbeiten</translation>
+    </message>
+    <message>
+        <source>&amp;View</source>
+        <translation>&amp;Ansicht</translation>
+    </message>
+    <message>
+        <source>F&amp;light</source>
+        <translation>&amp;Flug</translation>
+    </message>
+    <message>
+        <source>&amp;Slices</source>
+        <translation>&amp;Schichten</translation>
+    </message>
+    <message>
+        <source>&amp;Wall</source>
+        <translation>&amp;Wand</translation>
+    </message>
+    <message>
+        <source>&amp;Bookmarks</source>
+        <translation>&amp;Lesezeichen</translation>
+    </message>
+    <message>
+        <source>&amp;Help</source>
+        <translation>&amp;Hilfe</translation>
+    </message>
+</context>
+<context>
+    <name>Help</name>
+    <message>
+        <source>click in any view</source>
+        <translation>Klick in eine beliebige Ansicht</translation>
+    </message>
+    <message>
+        <source>go to that place, in all views</source>
+        <translation>in allen Ansichten zu dieser Stelle gehen</translation>
+    </message>
+    <message>
+        <source>drag the endoscopic view</source>
+        <translation>Ziehen in der endoskopischen Ansicht</translation>
+    </message>
+    <message>
+        <source>look around; double-click: straight ahead</source>
+        <translation>umherblicken; Doppelklick: geradeaus</translation>
+    </message>
+    <message>
+        <source>wheel on the endoscopic view</source>
+        <translation>Mausrad in der endoskopischen Ansicht</translation>
+    </message>
+    <message>
+        <source>move along the path; with Shift farther; with Ctrl the field of view</source>
+        <translation>sich auf dem Pfad bewegen; mit Umschalt weiter; mit Strg das Blickfeld</translation>
+    </message>
+    <message>
+        <source>drag a slice</source>
+        <translation>Ziehen in einer Schicht</translation>
+    </message>
+    <message>
+        <source>window (across) and centre (up, down)</source>
+        <translation>Fensterbreite (quer) und Fenstermitte (auf, ab)</translation>
+    </message>
+    <message>
+        <source>middle or right drag on a slice</source>
+        <translation>Ziehen mit mittlerer oder rechter Taste in einer Schicht</translation>
+    </message>
+    <message>
+        <source>move the picture</source>
+        <translation>Bild verschieben</translation>
+    </message>
+    <message>
+        <source>wheel on a slice</source>
+        <translation>Mausrad in einer Schicht</translation>
+    </message>
+    <message>
+        <source>scroll; with Ctrl enlarge; with Shift ten times as far</source>
+        <translation>blättern; mit Strg vergrößern; mit Umschalt zehnmal so weit</translation>
+    </message>
+    <message>
+        <source>Shift, Ctrl drag</source>
+        <translation>Ziehen mit Umschalt, mit Strg</translation>
+    </message>
+    <message>
+        <source>measure a line, an ellipse or an outline</source>
+        <translation>Strecke, Ellipse oder Umriss messen</translation>
+    </message>
+    <message>
+        <source>drag the overview</source>
+        <translation>Ziehen in der Übersicht</translation>
+    </message>
+    <message>
+        <source>turn it; wheel: enlarge; double-click: from the front</source>
+        <translation>drehen; Mausrad: vergrößern; Doppelklick: von vorn</translation>
+    </message>
+    <message>
+        <source>click a bookmark</source>
+        <translation>Klick auf ein Lesezeichen</translation>
+    </message>
+    <message>
+        <source>go there</source>
+        <translation>dorthin gehen</translation>
+    </message>
+    <message>
+        <source>drag the strip</source>
+        <translation>Ziehen im abgewickelten Kolon</translation>
+    </message>
+    <message>
+        <source>look it over</source>
+        <translation>es durchmustern</translation>
+    </message>
+    <message>
+        <source>drag the flattened wall</source>
+        <translation>Ziehen auf der abgewickelten Wand</translation>
+    </message>
+    <message>
+        <source>move it; wheel: enlarge</source>
+        <translation>verschieben; Mausrad: vergrößern</translation>
+    </message>
+    <message>
+        <source>press the track</source>
+        <translation>Klick auf die Pfadleiste</translation>
+    </message>
+    <message>
+        <source>go to that place along the path</source>
+        <translation>zu dieser Stelle auf dem Pfad gehen</translation>
+    </message>
+    <message>
+        <source>Alt drag in a view</source>
+        <translation>Ziehen mit Alt in einer Ansicht</translation>
+    </message>
+    <message>
+        <source>take its picture into another program</source>
+        <translation>ihr Bild in ein anderes Programm ziehen</translation>
+    </message>
+    <message>
+        <source>right click in a view</source>
+        <translation>Rechtsklick in eine Ansicht</translation>
+    </message>
+    <message>
+        <source>what else can be done there</source>
+        <translation>was dort sonst noch möglich ist</translation>
+    </message>
+</context>
+<context>
+    <name>PictureOut</name>
+    <message>
+        <source>Save the picture</source>
+        <translation>Bild speichern</translation>
+    </message>
+    <message>
+        <source>Pictures (*.png)</source>
+        <translation>Bilder (*.png)</translation>
+    </message>
+    <message>
+        <source>cannot write %1: %2</source>
+        <translation>%1 kann nicht geschrieben werden: %2</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::BookmarkPanel</name>
+    <message>
+        <source>B marks the place in view; Shift+B with a note.</source>
+        <translation>B setzt ein Lesezeichen an der gezeigten Stelle, Umschalt+B eines mit Notiz.</translation>
+    </message>
+    <message>
+        <source>note, then Enter</source>
+        <translation>Notiz, dann Enter</translation>
+    </message>
+    <message>
+        <source>Note of a new bookmark</source>
+        <translation>Notiz für ein neues Lesezeichen</translation>
+    </message>
+    <message>
+        <source>Bookmark this place with this note</source>
+        <translation>Lesezeichen mit dieser Notiz an dieser Stelle setzen</translation>
+    </message>
+    <message>
+        <source>Add the bookmark</source>
+        <translation>Lesezeichen hinzufügen</translation>
+    </message>
+    <message>
+        <source>Bookmarks along the colon</source>
+        <translation>Lesezeichen entlang des Kolons</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>Note</source>
+        <translation>Notiz</translation>
+    </message>
+    <message>
+        <source>Saved</source>
+        <translation>Gespeichert</translation>
+    </message>
+    <message>
+        <source>sending…</source>
+        <translation>wird gesendet…</translation>
+    </message>
+    <message>
+        <source>refused</source>
+        <translation>abgelehnt</translation>
+    </message>
+    <message>
+        <source>Bookmark</source>
+        <translation>Lesezeichen</translation>
+    </message>
+    <message>
+        <source>go to a bookmark</source>
+        <translation>zu einem Lesezeichen gehen</translation>
+    </message>
+    <message>
+        <source>Go there</source>
+        <translation>Dorthin gehen</translation>
+    </message>
+    <message>
+        <source>Send again…</source>
+        <translation>Erneut senden…</translation>
+    </message>
+    <message>
+        <source>Send the bookmark again</source>
+        <translation>Lesezeichen erneut senden</translation>
+    </message>
+    <message>
+        <source>Discard</source>
+        <translation>Verwerfen</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::CaseList</name>
+    <message>
+        <source>damaged</source>
+        <translation>beschädigt</translation>
+    </message>
+    <message>
+        <source>ready</source>
+        <translation>bereit</translation>
+    </message>
+    <message>
+        <source>cleansed</source>
+        <translation>gereinigt</translation>
+    </message>
+    <message>
+        <source>flattened</source>
+        <translation>abgewickelt</translation>
+    </message>
+    <message>
+        <source>%1 % sure</source>
+        <translation>%1 % sicher</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n place(s) to look at</source>
+        <translation>
+            <numerusform>%n Stelle zu prüfen</numerusform>
+            <numerusform>%n Stellen zu prüfen</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>Open</source>
+        <translation>Öffnen</translation>
+    </message>
+    <message>
+        <source>search</source>
+        <translation>suchen</translation>
+    </message>
+    <message>
+        <source>Search in the list of cases</source>
+        <translation>In der Liste der Fälle suchen</translation>
+    </message>
+    <message>
+        <source>Cases of the server</source>
+        <translation>Fälle auf dem Server</translation>
+    </message>
+    <message>
+        <source>Connecting…</source>
+        <translation>Verbindung wird aufgebaut…</translation>
+    </message>
+    <message>
+        <source>Opening the case…</source>
+        <translation>Fall wird geöffnet…</translation>
+    </message>
+    <message>
+        <source>Waiting for the server…</source>
+        <translation>Warten auf den Server…</translation>
+    </message>
+    <message>
+        <source>No connection</source>
+        <translation>Keine Verbindung</translation>
+    </message>
+    <message>
+        <source>The server has no case yet</source>
+        <translation>Der Server hat noch keinen Fall</translation>
+    </message>
+    <message>
+        <source>Choose a case</source>
+        <translation>Fall auswählen</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n case(s) on %1</source>
+        <translation>
+            <numerusform>%n Fall auf %1</numerusform>
+            <numerusform>%n Fälle auf %1</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>Case</source>
+        <translation>Fall</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>Status</translation>
+    </message>
+    <message>
+        <source>Colon</source>
+        <translation>Kolon</translation>
+    </message>
+    <message>
+        <source>Slices</source>
+        <translation>Schichten</translation>
+    </message>
+    <message>
+        <source>Bookmarks</source>
+        <translation>Lesezeichen</translation>
+    </message>
+    <message>
+        <source>Open for</source>
+        <translation>Geöffnet bei</translation>
+    </message>
+    <message>
+        <source>Prepared</source>
+        <translation>Aufbereitet</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n reader(s)</source>
+        <translation>
+            <numerusform>%n Person</numerusform>
+            <numerusform>%n Personen</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>not ready</source>
+        <translation>nicht bereit</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::EndoscopicPane</name>
+    <message>
+        <source>Endoscopic view</source>
+        <translation>Endoskopische Ansicht</translation>
+    </message>
+    <message>
+        <source>free flight</source>
+        <translation>freier Flug</translation>
+    </message>
+    <message>
+        <source>%1 mm of %2 mm, %3</source>
+        <translation>%1 mm von %2 mm, %3</translation>
+    </message>
+    <message>
+        <source>towards the cecum</source>
+        <translation>Richtung Zökum</translation>
+    </message>
+    <message>
+        <source>towards the rectum</source>
+        <translation>Richtung Rektum</translation>
+    </message>
+    <message>
+        <source>Straight ahead</source>
+        <translation>Geradeaus</translation>
+    </message>
+    <message>
+        <source>Free flight</source>
+        <translation>Freier Flug</translation>
+    </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>W A S D move, drag to look, C returns to the path</source>
+        <translation>W A S D bewegen, Ziehen zum Umherblicken, C zurück zum Pfad</translation>
+    </message>
+    <message>
+        <source>of %1 mm, %2</source>
+        <translation>von %1 mm, %2</translation>
+    </message>
+    <message>
+        <source>bridge of %1 mm: the colon is collapsed or filled, no wall is seen</source>
+        <translation>Brücke von %1 mm: Kolon kollabiert oder gefüllt, keine Wand zu sehen</translation>
+    </message>
+    <message>
+        <source>look %1°  %2°   double-click: straight ahead</source>
+        <translation>Blick %1°  %2°   Doppelklick: geradeaus</translation>
+    </message>
+    <message>
+        <source>old</source>
+        <translation>veraltet</translation>
+    </message>
+    <message>
+        <source>exact</source>
+        <translation>exakt</translation>
+    </message>
+    <message>
+        <source>moving</source>
+        <translation>bewegt</translation>
+    </message>
+    <message>
+        <source>This server cannot tell where the wall is that was clicked.</source>
+        <translation>Dieser Server kann die angeklickte Stelle der Wand nicht bestimmen.</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::FlatZoomPane</name>
+    <message>
+        <source>Flattened wall</source>
+        <translation>Abgewickelte Wand</translation>
+    </message>
+    <message>
+        <source>Whole circumference</source>
+        <translation>Gesamter Umfang</translation>
+    </message>
+    <message>
+        <source>Clear the measurement</source>
+        <translation>Messung löschen</translation>
+    </message>
+    <message>
+        <source>%1 mm across   %2 mm²</source>
+        <translation>max. Ø %1 mm   %2 mm²</translation>
+    </message>
+    <message>
+        <source>%1 mm   straight %2 mm</source>
+        <translation>%1 mm   geradlinig %2 mm</translation>
+    </message>
+    <message>
+        <source>Fly-over   %1 mm</source>
+        <translation>Überflug   %1 mm</translation>
+    </message>
+    <message>
+        <source>cecum ↑</source>
+        <translation>Zökum ↑</translation>
+    </message>
+    <message>
+        <source>×%1   cecum ↑</source>
+        <translation>×%1   Zökum ↑</translation>
+    </message>
+    <message>
+        <source>drag a line to measure it   Esc ends</source>
+        <translation>Strecke zum Messen ziehen   Esc beendet</translation>
+    </message>
+    <message>
+        <source>drag around a polyp   Esc ends</source>
+        <translation>Polypen umfahren   Esc beendet</translation>
+    </message>
+    <message>
+        <source>go to a place of the wall</source>
+        <translation>zu einer Stelle der Wand gehen</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::FlightBar</name>
+    <message>
+        <source>Speed of flight</source>
+        <translation>Fluggeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Speed (+ and −)</source>
+        <translation>Geschwindigkeit (+ und −)</translation>
+    </message>
+    <message>
+        <source>%1 mm/s</source>
+        <translation>%1 mm/s</translation>
+    </message>
+    <message>
+        <source>Field of view, degrees</source>
+        <translation>Blickfeld, Grad</translation>
+    </message>
+    <message>
+        <source>Field of view (Ctrl and the wheel on the endoscopic view)</source>
+        <translation>Blickfeld (Strg und Mausrad in der endoskopischen Ansicht)</translation>
+    </message>
+    <message>
+        <source>Look of the wall</source>
+        <translation>Darstellung der Wand</translation>
+    </message>
+    <message>
+        <source>Window of the slices</source>
+        <translation>Fensterung der Schichten</translation>
+    </message>
+    <message>
+        <source>own</source>
+        <translation>eigenes</translation>
+    </message>
+    <message>
+        <source>Wall</source>
+        <translation>Wand</translation>
+    </message>
+    <message>
+        <source>Slices</source>
+        <translation>Schichten</translation>
+    </message>
+    <message>
+        <source>colon</source>
+        <translation>Kolon</translation>
+    </message>
+    <message>
+        <source>soft tissue</source>
+        <translation>Weichteile</translation>
+    </message>
+    <message>
+        <source>lung</source>
+        <translation>Lunge</translation>
+    </message>
+    <message>
+        <source>bone</source>
+        <translation>Knochen</translation>
+    </message>
+    <message>
+        <source>Flight</source>
+        <translation>Flug</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::GreyPane</name>
+    <message>
+        <source>cleansed</source>
+        <translation>gereinigt</translation>
+    </message>
+    <message>
+        <source>maximum of %1 mm</source>
+        <translation>Maximum über %1 mm</translation>
+    </message>
+    <message>
+        <source>mean of %1 mm</source>
+        <translation>Mittelwert über %1 mm</translation>
+    </message>
+    <message>
+        <source>window centre %1, width %2 HU</source>
+        <translation>Fenstermitte %1, Fensterbreite %2 HU</translation>
+    </message>
+    <message>
+        <source>Clear rulers and ellipses</source>
+        <translation>Strecken und Ellipsen löschen</translation>
+    </message>
+    <message>
+        <source>clear measurements</source>
+        <translation>Messungen löschen</translation>
+    </message>
+    <message>
+        <source>draw an ellipse</source>
+        <translation>Ellipse zeichnen</translation>
+    </message>
+    <message>
+        <source>draw a ruler</source>
+        <translation>Strecke zeichnen</translation>
+    </message>
+    <message>
+        <source>change the window</source>
+        <translation>Fensterung ändern</translation>
+    </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>%1 mm²</source>
+        <translation>%1 mm²</translation>
+    </message>
+    <message>
+        <source>mean %1 ± %2 HU   %3</source>
+        <translation>Mittelwert %1 ± %2 HU   %3</translation>
+    </message>
+    <message>
+        <source>C %1  W %2 HU</source>
+        <translation>C %1  W %2 HU</translation>
+    </message>
+    <message>
+        <source>%1 HU</source>
+        <translation>%1 HU</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::HelpPage</name>
+    <message>
+        <source>Keys and mouse</source>
+        <translation>Tasten und Maus</translation>
+    </message>
+    <message>
+        <source>Key</source>
+        <translation>Taste</translation>
+    </message>
+    <message>
+        <source>Meaning</source>
+        <translation>Bedeutung</translation>
+    </message>
+    <message>
+        <source>Mouse</source>
+        <translation>Maus</translation>
+    </message>
+    <message>
+        <source>For a physician&apos;s judgement; not a certified medical device.</source>
+        <translation>Zur ärztlichen Beurteilung; kein zertifiziertes Medizinprodukt.</translation>
+    </message>
+    <message>
+        <source>Virtual colonoscopy. For a physician&apos;s judgement; not a certified medical device.</source>
+        <translation>Virtuelle Koloskopie (CT-Kolonographie). Zur ärztlichen Beurteilung; kein zertifiziertes Medizinprodukt.</translation>
+    </message>
+    <message>
+        <source>Server</source>
+        <translation>Server</translation>
+    </message>
+    <message>
+        <source>Software</source>
+        <translation>Software</translation>
+    </message>
+    <message>
+        <source>Renderer</source>
+        <translation>Renderer</translation>
+    </message>
+    <message>
+        <source>Certificate</source>
+        <translation>Zertifikat</translation>
+    </message>
+    <message>
+        <source>About Haustra</source>
+        <translation>Über Haustra</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::KeysDialog</name>
+    <message>
+        <source>Command</source>
+        <translation>Befehl</translation>
+    </message>
+    <message>
+        <source>Keys</source>
+        <translation>Tasten</translation>
+    </message>
+    <message>
+        <source>Change the keys</source>
+        <translation>Tasten ändern</translation>
+    </message>
+    <message>
+        <source>Commands and their keys</source>
+        <translation>Befehle und ihre Tasten</translation>
+    </message>
+    <message>
+        <source>Change…</source>
+        <translation>Ändern…</translation>
+    </message>
+    <message>
+        <source>All as they were at first</source>
+        <translation>Alle zurücksetzen</translation>
+    </message>
+    <message>
+        <source>The new key</source>
+        <translation>Neue Taste</translation>
+    </message>
+    <message>
+        <source>Press the new key. An empty field means: no key.</source>
+        <translation>Die neue Taste drücken. Ein leeres Feld bedeutet: keine Taste.</translation>
+    </message>
+    <message>
+        <source>No key</source>
+        <translation>Keine Taste</translation>
+    </message>
+    <message>
+        <source>The key is taken</source>
+        <translation>Die Taste ist belegt</translation>
+    </message>
+    <message>
+        <source>%1 is the key of “%2”. Take it from there?</source>
+        <translation>%1 ist schon die Taste für „%2“. Dort entfernen?</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::Notices</name>
+    <message>
+        <source>Dismiss this notice</source>
+        <translation>Diesen Hinweis schließen</translation>
+    </message>
+    <message>
+        <source>The link is down: %1. Trying again; the flight stands still.</source>
+        <translation>Die Verbindung ist unterbrochen: %1. Neuer Versuch läuft; der Flug steht still.</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) will be saved when the server is back.</source>
+        <translation>
+            <numerusform>%n Lesezeichen wird gespeichert, sobald der Server wieder erreichbar ist.</numerusform>
+            <numerusform>%n Lesezeichen werden gespeichert, sobald der Server wieder erreichbar ist.</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::ObliquePane</name>
+    <message>
+        <source>Across the gaze</source>
+        <translation>Quer zum Blick</translation>
+    </message>
+    <message>
+        <source>%1 mm ahead</source>
+        <translation>%1 mm voraus</translation>
+    </message>
+    <message>
+        <source>%1 mm behind</source>
+        <translation>%1 mm zurück</translation>
+    </message>
+    <message>
+        <source>go to a voxel</source>
+        <translation>zu einem Voxel gehen</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::OpticsPanel</name>
+    <message>
+        <source>Reach</source>
+        <translation>Reichweite</translation>
+    </message>
+    <message>
+        <source>Where the lamp&apos;s light has fallen to a half, mm</source>
+        <translation>Entfernung, in der das Licht der Lampe auf die Hälfte abgefallen ist, mm</translation>
+    </message>
+    <message>
+        <source>Ambient</source>
+        <translation>Umgebung</translation>
+    </message>
+    <message>
+        <source>Light from everywhere</source>
+        <translation>Licht von allen Seiten</translation>
+    </message>
+    <message>
+        <source>Diffuse</source>
+        <translation>Diffus</translation>
+    </message>
+    <message>
+        <source>What faces the lamp is brighter</source>
+        <translation>Was der Lampe zugewandt ist, ist heller</translation>
+    </message>
+    <message>
+        <source>Gloss</source>
+        <translation>Glanz</translation>
+    </message>
+    <message>
+        <source>Highlights, as of a moist wall</source>
+        <translation>Glanzlichter wie auf einer feuchten Wand</translation>
+    </message>
+    <message>
+        <source>Sharpness</source>
+        <translation>Schärfe</translation>
+    </message>
+    <message>
+        <source>How small highlights are</source>
+        <translation>Wie klein die Glanzlichter sind</translation>
+    </message>
+    <message>
+        <source>Preset of the wall&apos;s optics</source>
+        <translation>Vorlage für die Optik der Wand</translation>
+    </message>
+    <message>
+        <source>Back to the preset</source>
+        <translation>Zurück zur Vorlage</translation>
+    </message>
+    <message>
+        <source>Fit</source>
+        <translation>Einpassen</translation>
+    </message>
+    <message>
+        <source>The axis as wide as the points</source>
+        <translation>Die Achse so breit wie die Punkte</translation>
+    </message>
+    <message>
+        <source>choose a preset</source>
+        <translation>Vorlage wählen</translation>
+    </message>
+    <message>
+        <source>back to the preset</source>
+        <translation>zurück zur Vorlage</translation>
+    </message>
+    <message>
+        <source>Gradient magnitude</source>
+        <translation>Gradientenbetrag</translation>
+    </message>
+    <message>
+        <source>HU per mm: how quickly the scan&apos;s values change there</source>
+        <translation>HU pro mm: wie schnell sich die CT-Werte dort ändern</translation>
+    </message>
+    <message>
+        <source>Add a row by gradient magnitude</source>
+        <translation>Zeile nach Gradientenbetrag hinzufügen</translation>
+    </message>
+    <message>
+        <source>Other colours where the gradient is greater: a row more</source>
+        <translation>Andere Farben, wo der Gradient größer ist: eine weitere Zeile</translation>
+    </message>
+    <message>
+        <source>Remove this row</source>
+        <translation>Diese Zeile entfernen</translation>
+    </message>
+    <message>
+        <source>Take this row away</source>
+        <translation>Diese Zeile entfernen</translation>
+    </message>
+    <message>
+        <source>From which gradient magnitude on, HU per mm</source>
+        <translation>Ab welchem Gradientenbetrag, HU pro mm</translation>
+    </message>
+    <message>
+        <source> HU/mm</source>
+        <translation> HU/mm</translation>
+    </message>
+    <message>
+        <source>add a row</source>
+        <translation>Zeile hinzufügen</translation>
+    </message>
+    <message>
+        <source>There is no room for another row.</source>
+        <translation>Für eine weitere Zeile ist kein Platz.</translation>
+    </message>
+    <message>
+        <source>remove a row</source>
+        <translation>Zeile entfernen</translation>
+    </message>
+    <message>
+        <source>move a row</source>
+        <translation>Zeile verschieben</translation>
+    </message>
+    <message>
+        <source>Drag a point. Double click adds one, right click takes one. The wheel enlarges, a drag beside the points moves the axis.</source>
+        <translation>Einen Punkt ziehen. Doppelklick fügt einen hinzu, Rechtsklick entfernt einen. Das Mausrad vergrößert, Ziehen neben den Punkten verschiebt die Achse.</translation>
+    </message>
+    <message>
+        <source>Colour of the point</source>
+        <translation>Farbe des Punktes</translation>
+    </message>
+    <message>
+        <source>Colour</source>
+        <translation>Farbe</translation>
+    </message>
+    <message>
+        <source>Value of the point, HU</source>
+        <translation>Wert des Punktes, HU</translation>
+    </message>
+    <message>
+        <source> HU</source>
+        <translation> HU</translation>
+    </message>
+    <message>
+        <source>Opacity of a millimetre</source>
+        <translation>Deckkraft eines Millimeters</translation>
+    </message>
+    <message>
+        <source>opacity </source>
+        <translation>Deckkraft </translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>Entfernen</translation>
+    </message>
+    <message>
+        <source>Remove the point</source>
+        <translation>Punkt entfernen</translation>
+    </message>
+    <message>
+        <source>remove a point</source>
+        <translation>Punkt entfernen</translation>
+    </message>
+    <message>
+        <source>emission and absorption</source>
+        <translation>Emission und Absorption</translation>
+    </message>
+    <message>
+        <source>maximum intensity</source>
+        <translation>maximale Intensität</translation>
+    </message>
+    <message>
+        <source>first hit</source>
+        <translation>erster Treffer</translation>
+    </message>
+    <message>
+        <source>Composition</source>
+        <translation>Komposition</translation>
+    </message>
+    <message>
+        <source>What a ray makes of its samples: all of them front to back, the greatest, or the first that is half opaque</source>
+        <translation>Was ein Strahl aus seinen Abtastwerten macht: alle von vorn nach hinten, den größten oder den ersten, der halb deckend ist</translation>
+    </message>
+    <message>
+        <source>pre-integrated</source>
+        <translation>vorintegriert</translation>
+    </message>
+    <message>
+        <source>Smooth where opacity changes quickly; not with rows by gradient magnitude</source>
+        <translation>Glatt, wo sich die Deckkraft schnell ändert; nicht mit Zeilen nach Gradientenbetrag</translation>
+    </message>
+    <message>
+        <source>lit</source>
+        <translation>beleuchtet</translation>
+    </message>
+    <message>
+        <source>choose the composition</source>
+        <translation>Komposition wählen</translation>
+    </message>
+    <message>
+        <source>pre-integration</source>
+        <translation>Vorintegration</translation>
+    </message>
+    <message>
+        <source>shading</source>
+        <translation>Beleuchtung</translation>
+    </message>
+    <message>
+        <source>change the light</source>
+        <translation>Licht ändern</translation>
+    </message>
+    <message>
+        <source>Save as a file…</source>
+        <translation>Als Datei speichern…</translation>
+    </message>
+    <message>
+        <source>For haustra render --tf, or a server&apos;s --presets folder</source>
+        <translation>Für haustra render --tf oder den Ordner --presets eines Servers</translation>
+    </message>
+    <message>
+        <source>Open…</source>
+        <translation>Öffnen…</translation>
+    </message>
+    <message>
+        <source>Open a preset&apos;s file</source>
+        <translation>Datei einer Vorlage öffnen</translation>
+    </message>
+    <message>
+        <source>any</source>
+        <translation>jeder</translation>
+    </message>
+    <message>
+        <source>Row from %1 HU per mm</source>
+        <translation>Zeile ab %1 HU pro mm</translation>
+    </message>
+    <message>
+        <source>move a point</source>
+        <translation>Punkt verschieben</translation>
+    </message>
+    <message>
+        <source>colour a point</source>
+        <translation>Punkt einfärben</translation>
+    </message>
+    <message>
+        <source>Save the optics as a preset</source>
+        <translation>Optik als Vorlage speichern</translation>
+    </message>
+    <message>
+        <source>Presets (*.json)</source>
+        <translation>Vorlagen (*.json)</translation>
+    </message>
+    <message>
+        <source>Saved %1</source>
+        <translation>Gespeichert: %1</translation>
+    </message>
+    <message>
+        <source>Open a preset</source>
+        <translation>Vorlage öffnen</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::OverviewPane</name>
+    <message>
+        <source>Overview</source>
+        <translation>Übersicht</translation>
+    </message>
+    <message>
+        <source>From the front</source>
+        <translation>Von vorn</translation>
+    </message>
+    <message>
+        <source>go to a bookmark</source>
+        <translation>zu einem Lesezeichen gehen</translation>
+    </message>
+    <message>
+        <source>go along the path</source>
+        <translation>auf dem Pfad gehen</translation>
+    </message>
+    <message>
+        <source>Bookmark</source>
+        <translation>Lesezeichen</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::Pane</name>
+    <message>
+        <source>waiting for the picture</source>
+        <translation>wartet auf das Bild</translation>
+    </message>
+    <message>
+        <source>old: the link is down</source>
+        <translation>veraltet: keine Verbindung</translation>
+    </message>
+    <message>
+        <source>exact</source>
+        <translation>exakt</translation>
+    </message>
+    <message>
+        <source>moving</source>
+        <translation>bewegt</translation>
+    </message>
+    <message>
+        <source>waiting for the picture…</source>
+        <translation>Warten auf das Bild…</translation>
+    </message>
+    <message>
+        <source>old picture: the link is down</source>
+        <translation>veraltetes Bild: keine Verbindung</translation>
+    </message>
+    <message>
+        <source>Case: %1</source>
+        <translation>Fall: %1</translation>
+    </message>
+    <message>
+        <source>View: %1 (%2)</source>
+        <translation>Ansicht: %1 (%2)</translation>
+    </message>
+    <message>
+        <source>Place: %1 mm of %2 mm along the path</source>
+        <translation>Stelle: %1 mm von %2 mm auf dem Pfad</translation>
+    </message>
+    <message>
+        <source>Server: %1, %2</source>
+        <translation>Server: %1, %2</translation>
+    </message>
+    <message>
+        <source>Taken: %1</source>
+        <translation>Bild erstellt: %1</translation>
+    </message>
+    <message>
+        <source>For a physician&apos;s judgement; not a certified medical device.</source>
+        <translation>Zur ärztlichen Beurteilung; kein zertifiziertes Medizinprodukt.</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::PathTrack</name>
+    <message>
+        <source>Place along the colon, millimetres from the rectum</source>
+        <translation>Stelle im Kolon, Millimeter ab dem Rektum</translation>
+    </message>
+    <message>
+        <source>go along the path</source>
+        <translation>auf dem Pfad gehen</translation>
+    </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::ReaderWindow</name>
+    <message>
+        <source>Haustra, second window</source>
+        <translation>Haustra, zweites Fenster</translation>
+    </message>
+    <message>
+        <source>Bookmarks</source>
+        <translation>Lesezeichen</translation>
+    </message>
+    <message>
+        <source>Colours, opacities and light</source>
+        <translation>Farben, Deckkraft und Licht</translation>
+    </message>
+    <message>
+        <source>Saved layouts</source>
+        <translation>Gespeicherte Layouts</translation>
+    </message>
+    <message>
+        <source>Panes</source>
+        <translation>Bereiche</translation>
+    </message>
+    <message>
+        <source>Theme</source>
+        <translation>Farbschema</translation>
+    </message>
+    <message>
+        <source>Dark</source>
+        <translation>Dunkel</translation>
+    </message>
+    <message>
+        <source>Light</source>
+        <translation>Hell</translation>
+    </message>
+    <message>
+        <source>High contrast</source>
+        <translation>Hoher Kontrast</translation>
+    </message>
+    <message>
+        <source>Language</source>
+        <translation>Sprache</translation>
+    </message>
+    <message>
+        <source>The language changes with the next start.</source>
+        <translation>Die Sprache wechselt mit dem nächsten Start.</translation>
+    </message>
+    <message>
+        <source>Case</source>
+        <translation>Fall</translation>
+    </message>
+    <message>
+        <source>not cleansed</source>
+        <translation>nicht gereinigt</translation>
+    </message>
+    <message>
+        <source>Notices</source>
+        <translation>Hinweise</translation>
+    </message>
+    <message>
+        <source>Figures of the link and the pictures</source>
+        <translation>Werte der Verbindung und der Bilder</translation>
+    </message>
+    <message>
+        <source>Server</source>
+        <translation>Server</translation>
+    </message>
+    <message>
+        <source>Save this layout</source>
+        <translation>Dieses Layout speichern</translation>
+    </message>
+    <message>
+        <source>Name</source>
+        <translation>Name</translation>
+    </message>
+    <message>
+        <source>The layout “%1” is saved.</source>
+        <translation>Das Layout „%1“ ist gespeichert.</translation>
+    </message>
+    <message>
+        <source>The layout “%1” cannot be read.</source>
+        <translation>Das Layout „%1“ kann nicht gelesen werden.</translation>
+    </message>
+    <message>
+        <source>none yet</source>
+        <translation>noch keines</translation>
+    </message>
+    <message>
+        <source>Remove</source>
+        <translation>Entfernen</translation>
+    </message>
+    <message>
+        <source>The picture of “%1” is copied.</source>
+        <translation>Das Bild von „%1“ ist kopiert.</translation>
+    </message>
+    <message>
+        <source>Go to a place along the path</source>
+        <translation>Zu einer Stelle auf dem Pfad gehen</translation>
+    </message>
+    <message>
+        <source>mm from the rectum (up to %1)</source>
+        <translation>mm ab dem Rektum (bis %1)</translation>
+    </message>
+    <message>
+        <source>go along the path</source>
+        <translation>auf dem Pfad gehen</translation>
+    </message>
+    <message>
+        <source>This case has no cleansed scan.</source>
+        <translation>Für diesen Fall gibt es keine gereinigten CT-Daten.</translation>
+    </message>
+    <message>
+        <source>This server cannot show slabs.</source>
+        <translation>Dieser Server kann keine Schichtpakete zeigen.</translation>
+    </message>
+    <message>
+        <source>%1: no link</source>
+        <translation>%1: keine Verbindung</translation>
+    </message>
+    <message>
+        <source>colon %1 % sure</source>
+        <translation>Kolon %1 % sicher</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n place(s) to look at</source>
+        <translation>
+            <numerusform>%n Stelle zu prüfen</numerusform>
+            <numerusform>%n Stellen zu prüfen</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>wall seen %1 %</source>
+        <translation>Wand gesehen %1 %</translation>
+    </message>
+    <message>
+        <source>wall seen –</source>
+        <translation>Wand gesehen –</translation>
+    </message>
+    <message>
+        <source>%1 pictures/s</source>
+        <translation>%1 Bilder/s</translation>
+    </message>
+    <message>
+        <source>hand to picture %1 ms, p95 %2</source>
+        <translation>Hand bis Bild %1 ms, p95 %2</translation>
+    </message>
+    <message>
+        <source>link %1 ms</source>
+        <translation>Verbindung %1 ms</translation>
+    </message>
+    <message>
+        <source>Place along the colon</source>
+        <translation>Stelle im Kolon</translation>
+    </message>
+    <message>
+        <source>rectum</source>
+        <translation>Rektum</translation>
+    </message>
+    <message>
+        <source>cecum</source>
+        <translation>Zökum</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::Reading</name>
+    <message>
+        <source>First meeting with this server: its certificate is now pinned (%1…)</source>
+        <translation>Erster Kontakt mit diesem Server: Sein Zertifikat ist jetzt hinterlegt (%1…)</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) saved</source>
+        <translation>
+            <numerusform>%n Lesezeichen gespeichert</numerusform>
+            <numerusform>%n Lesezeichen gespeichert</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) not saved: the server refused. They are kept in the list of bookmarks, to be sent again or discarded.</source>
+        <translation>
+            <numerusform>%n Lesezeichen nicht gespeichert: Der Server hat es abgelehnt. Es bleibt in der Liste der Lesezeichen und kann erneut gesendet oder verworfen werden.</numerusform>
+            <numerusform>%n Lesezeichen nicht gespeichert: Der Server hat sie abgelehnt. Sie bleiben in der Liste der Lesezeichen und können erneut gesendet oder verworfen werden.</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::SlicePane</name>
+    <message>
+        <source>%1 %2 mm</source>
+        <translation>%1 %2 mm</translation>
+    </message>
+    <message>
+        <source>Whole slice</source>
+        <translation>Ganze Schicht</translation>
+    </message>
+    <message>
+        <source>×%1</source>
+        <translation>×%1</translation>
+    </message>
+    <message>
+        <source>not linked</source>
+        <translation>nicht gekoppelt</translation>
+    </message>
+    <message>
+        <source>go to a voxel</source>
+        <translation>zu einem Voxel gehen</translation>
+    </message>
+    <message>
+        <source>Coronal</source>
+        <translation>Koronal</translation>
+    </message>
+    <message>
+        <source>Sagittal</source>
+        <translation>Sagittal</translation>
+    </message>
+    <message>
+        <source>Axial</source>
+        <translation>Axial</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::StripPane</name>
+    <message>
+        <source>bridge %1 mm</source>
+        <translation>Brücke %1 mm</translation>
+    </message>
+    <message>
+        <source>Flattened colon</source>
+        <translation>Abgewickeltes Kolon</translation>
+    </message>
+    <message>
+        <source>rectum</source>
+        <translation>Rektum</translation>
+    </message>
+    <message>
+        <source>cecum</source>
+        <translation>Zökum</translation>
+    </message>
+    <message>
+        <source>go along the flattened colon</source>
+        <translation>entlang des abgewickelten Kolons gehen</translation>
+    </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+</context>
+<context>
+    <name>haustra::window::TransferGraph</name>
+    <message>
+        <source>Transfer function: opacity and colour over the scan&apos;s values</source>
+        <translation>Übertragungsfunktion: Deckkraft und Farbe über den CT-Werten</translation>
+    </message>
+    <message>
+        <source>change the transfer function</source>
+        <translation>Übertragungsfunktion ändern</translation>
+    </message>
+</context>
+</TS>
