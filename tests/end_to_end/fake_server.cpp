@@ -1,7 +1,7 @@
 #include "end_to_end/fake_server.h"
 
 #include "end_to_end/fake_wall.h"
-#include "link/fingerprint.h"
+#include "end_to_end/self_signed.h"
 #include "protocol/capabilities.h"
 #include "protocol/framing.h"
 #include "protocol/haustra.pb.h"
@@ -11,14 +11,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <random>
 
 #include <asio.hpp>
 #include <asio/ssl.hpp>
-#include <openssl/evp.h>
-#include <openssl/rsa.h>
 #include <openssl/ssl.h>
-#include <openssl/x509.h>
 
 namespace haustra::tests {
 namespace {
@@ -27,33 +23,6 @@ using asio::ip::tcp;
 using Stream = asio::ssl::stream<tcp::socket>;
 using protocol::ClientMessage;
 using protocol::ServerMessage;
-
-struct Identity {
-    std::shared_ptr<EVP_PKEY> key;
-    std::shared_ptr<X509> certificate;
-    std::string fingerprint;
-};
-
-Identity makeIdentity() {
-    Identity identity;
-    identity.key.reset(EVP_EC_gen("P-256"), EVP_PKEY_free);
-    identity.certificate.reset(X509_new(), X509_free);
-    X509* certificate = identity.certificate.get();
-    X509_set_version(certificate, 2);
-    ASN1_INTEGER_set(X509_get_serialNumber(certificate), long(std::random_device{}() >> 1));
-    X509_gmtime_adj(X509_getm_notBefore(certificate), 0);
-    X509_gmtime_adj(X509_getm_notAfter(certificate), 24 * 3600);
-    X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate), "CN", MBSTRING_ASC,
-                               reinterpret_cast<const unsigned char*>("test"), -1, -1, 0);
-    X509_set_issuer_name(certificate, X509_get_subject_name(certificate));
-    X509_set_pubkey(certificate, identity.key.get());
-    X509_sign(certificate, identity.key.get(), EVP_sha256());
-    unsigned char* der = nullptr;
-    const int bytes = i2d_X509(certificate, &der);
-    identity.fingerprint = link::fingerprintOf({der, std::size_t(bytes)});
-    OPENSSL_free(der);
-    return identity;
-}
 
 struct Viewport {
     protocol::View view = protocol::VIEW_UNSPECIFIED;
@@ -65,7 +34,7 @@ struct Viewport {
 
 struct FakeServer::Impl {
     Misbehaviour misbehaviour;
-    Identity identity = makeIdentity();
+    SelfSigned identity = makeSelfSigned();
     asio::io_context io;
     asio::ssl::context tls{asio::ssl::context::tls_server};
     tcp::acceptor acceptor;
