@@ -1,6 +1,7 @@
 #include "window/reading.h"
 
 #include <QLocale>
+#include <QLoggingCategory>
 #include <QUndoCommand>
 #include <algorithm>
 #include <chrono>
@@ -14,6 +15,10 @@ using std::chrono::milliseconds;
 
 constexpr auto steadyInterval = milliseconds(15), idleInterval = milliseconds(250),
                mergeWithin = milliseconds(1000);
+
+// What the person who reads is told, for whoever reads the log instead:
+// QT_LOGGING_RULES=haustra.reading=true.
+Q_LOGGING_CATEGORY(readingLog, "haustra.reading", QtCriticalMsg)
 
 class Step : public QUndoCommand {
 public:
@@ -114,6 +119,10 @@ void Reading::watchSession() {
     }
     if (session.phase() != phase_) {
         phase_ = session.phase();
+        if (phase_ == reader::Phase::lost)
+            qCInfo(readingLog) << "lost:" << text(session.failure());
+        else if (phase_ == reader::Phase::failed)
+            qCInfo(readingLog) << "failed:" << text(session.failure());
         emit phaseChanged();
     }
     for (const Error& refusal : session.takeRefusals())
@@ -130,6 +139,11 @@ void Reading::watchSession() {
                 "bookmarks, to be sent again or discarded.",
                 nullptr, refused),
              true);
+}
+
+void Reading::tell(const QString& text, bool trouble) {
+    qCInfo(readingLog) << (trouble ? "trouble:" : "told:") << text;
+    emit told(text, trouble);
 }
 
 void Reading::did(const QString& text, std::function<void()> undo, std::function<void()> redo,

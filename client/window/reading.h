@@ -34,7 +34,7 @@ public:
     /// The hand changed the reader: a step follows as soon as this event is handled.
     void changed();
     /// Tells the person who reads: in the status line, or, of trouble, until it is dismissed.
-    void tell(const QString& text, bool trouble = false) { emit told(text, trouble); }
+    void tell(const QString& text, bool trouble = false);
 
     /// Steps that Ctrl+Z takes back. `redo` has been done already. Steps with the same `mergeId`
     /// (not −1) that follow one another within a second are one.
