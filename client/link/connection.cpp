@@ -1,6 +1,7 @@
 #include "link/connection.h"
 
 #include "link/fingerprint.h"
+#include "link/peer_text.h"
 #include "protocol/capabilities.h"
 #include "protocol/framing.h"
 #include "tiles/picture_stream.h"
@@ -29,6 +30,8 @@ using protocol::ServerMessage;
 namespace capability = protocol::capability;
 
 constexpr std::size_t maxQueuedBytes = 64u << 20;
+// What a control message takes once it is read, by its bytes: an empty bookmark of two takes 130.
+constexpr std::size_t messageWeight = 64;
 constexpr std::chrono::seconds pingInterval{1};
 
 std::string peerFingerprint(Stream& stream) {
@@ -41,6 +44,12 @@ std::string peerFingerprint(Stream& stream) {
     std::string fingerprint = fingerprintOf({der, std::size_t(bytes)});
     OPENSSL_free(der);
     return fingerprint;
+}
+
+std::string inWords(const asio::error_code& error) {
+    if (error == asio::error::eof || error == asio::ssl::error::stream_truncated)
+        return "the server closed it";
+    return error.message();
 }
 
 }  // namespace
@@ -123,6 +132,7 @@ struct Connection::Impl {
     asio::awaitable<Ending> converse() {
         Ending ending;
         timedOut = false;
+        writeFailure = {};
         expectWithin(options.connectPatience);
         try {
             stream = std::make_shared<Stream>(io, tls);
@@ -166,7 +176,7 @@ struct Connection::Impl {
             ending.error = {
                 ErrorKind::device,
                 what + (timedOut ? "no answer for " + std::to_string(patience.count() / 1000) + " s"
-                                 : failure.code().message()),
+                                 : inWords(writeFailure ? writeFailure : failure.code())),
                 name};
         }
         open = false;
@@ -187,8 +197,9 @@ struct Connection::Impl {
         if (auto read = co_await readFrame(&answer); !read) co_return read;
         if (answer.has_error()) {
             const bool busy = answer.error().code() == protocol::ErrorReport::BUSY;
-            co_return fail(busy ? ErrorKind::device : ErrorKind::unsupported,
-                           "the server refused the connection: " + answer.error().message(), name);
+            co_return fail(
+                busy ? ErrorKind::device : ErrorKind::unsupported,
+                "the server refused the connection: " + peerText(answer.error().message()), name);
         }
         if (!answer.has_welcome())
             co_return fail(ErrorKind::badInput,
@@ -199,8 +210,8 @@ struct Connection::Impl {
                                std::to_string(answer.welcome().protocol_version()) +
                                ", this client version " + std::to_string(protocol::protocolVersion),
                            name);
-        up.serverSoftware = answer.welcome().software();
-        up.renderer = answer.welcome().renderer();
+        up.serverSoftware = peerText(answer.welcome().software());
+        up.renderer = peerText(answer.welcome().renderer());
         up.capabilities.insert(answer.welcome().capabilities().begin(),
                                answer.welcome().capabilities().end());
         co_return Result<void>{};
@@ -232,7 +243,7 @@ struct Connection::Impl {
             else if (parsed.has_pong())
                 notePong(parsed.pong().request());
             else
-                push(std::move(parsed), payload.size());
+                push(std::move(parsed), messageWeight * payload.size());
         }
         while (queueIsFull()) {
             asio::steady_timer timer(io, std::chrono::milliseconds(2));
@@ -276,10 +287,12 @@ struct Connection::Impl {
             [this, bytes, held = stream, ofLink = link](asio::error_code error, std::size_t) {
                 if (link != ofLink) return;
                 writing = false;
-                if (error)
+                if (error) {
+                    writeFailure = error;
                     closeSocket();  // the reader notices, and says so
-                else
+                } else {
                     writeOut();
+                }
             });
     }
 
@@ -395,6 +408,7 @@ struct Connection::Impl {
     std::shared_ptr<Stream> stream;
     std::uint64_t link = 1;  // counts the attempts
     bool open = false, timedOut = false, finished = false, writing = false;
+    asio::error_code writeFailure;
     std::vector<std::uint8_t> outgoing;
     std::uint64_t pingRequest = 0;
     Clock::time_point pingSentAt;

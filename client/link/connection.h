@@ -34,9 +34,9 @@ struct ConnectionOptions {
 /// The server was met, its certificate accepted and the hello answered.
 struct LinkUp {
     std::string fingerprint;
-    bool firstUse = false;  ///< the certificate was pinned just now
-    std::string serverSoftware, renderer;
-    std::set<std::string> capabilities;  ///< of the server (protocol/capabilities.h)
+    bool firstUse = false;                 ///< the certificate was pinned just now
+    std::string serverSoftware, renderer;  ///< fit to be shown (peer_text.h)
+    std::set<std::string> capabilities;    ///< of the server (protocol/capabilities.h)
 };
 /// The link is gone. Where `final`, no further event follows.
 struct LinkDown {
@@ -73,7 +73,7 @@ public:
 
     /// The next event, waiting at most `patience` for it. Reading from the socket pauses while
     /// 64 MiB of tiles and messages wait to be decoded, and decoding while as much of pictures and
-    /// messages waits here.
+    /// messages waits here; a message counts as what it takes in memory, at most.
     std::optional<Event> next(std::chrono::milliseconds patience);
 
     /// Median of the last few ping times; 0 before the first.

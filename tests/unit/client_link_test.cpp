@@ -1,6 +1,7 @@
 // Addresses, fingerprints and the file of pinned certificates.
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
+#include "link/peer_text.h"
 #include "link/server_address.h"
 #include "temporary_folder.h"
 
@@ -47,6 +48,19 @@ TEST(ServerAddress, ReadsWhatPeopleWrite) {
     for (const char* wrong : {"", ":80", "a:", "a:0", "a:65536", "a:x", "a:80x", "::1", "[::1",
                               "[::1]80", "a b", "https://a"})
         EXPECT_FALSE(parseServerAddress(wrong)) << wrong;
+}
+
+TEST(PeerText, IsOneShortLineWithoutControls) {
+    EXPECT_EQ(peerText("the disk is full"), "the disk is full");
+    EXPECT_EQ(peerText("a\nb\tc\x1b[31m\x7f"), "a b c [31m ");
+    EXPECT_EQ(peerText("a\nb\tc\r", 400, true), "a\nb\tc ");
+    EXPECT_EQ(peerText("\u202Edrawkcab\u2066 \u0085\u2028"), " drawkcab    ");
+    EXPECT_EQ(peerText("größer · 大"), "größer · 大");
+    EXPECT_EQ(peerText("größer", 3), "gr…");
+    EXPECT_EQ(peerText("größer", 4), "grö…");
+    EXPECT_LE(peerText(std::string(4'000'000, 'x')).size(), maxPeerTextBytes + 3);
+    for (const char* broken : {"\xc3", "a\xe2\x82", "\xff\xff", "\x80"})
+        EXPECT_LE(peerText(broken).size(), 3u);
 }
 
 TEST(Fingerprint, IsSha256OfTheBytes) {
