@@ -53,9 +53,10 @@ Result<void> decodeJpeg(tjhandle handle, Bytes bytes, const TileHeader& header, 
                     "the JPEG picture is " + sizeText(jpegWidth, jpegHeight) +
                         ", its tile header says " + sizeText(header.width, header.height),
                     "tile");
+    // A picture can be sent in scans without end, each of which takes the time of a whole one.
     // BGRA, not BGRX: of that the library promises nothing about the fourth byte.
     if (tjDecompress2(handle, bytes.data(), bytes.size(), place.corner, header.width,
-                      int(place.pitch), header.height, TJPF_BGRA, 0) != 0)
+                      int(place.pitch), header.height, TJPF_BGRA, TJFLAG_LIMITSCANS) != 0)
         return fail(ErrorKind::badInput,
                     std::string("damaged JPEG data: ") + tjGetErrorStr2(handle), "tile");
     return {};
