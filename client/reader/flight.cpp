@@ -45,16 +45,15 @@ const char* toString(FlightDirection direction) {
     return direction == FlightDirection::antegrade ? "antegrade" : "retrograde";
 }
 
-Flight::Flight(Centerline centerline) : centerline_(std::move(centerline)) {
-    if (!centerline_.points.empty())
-        ups_ = rotationMinimizingUps(centerline_, flightPreferredUp);
-    else
-        free_ = true;
+Flight::Flight(Centerline centerline) : free_(centerline.points.empty()) {
+    Path path{std::move(centerline), {}};
+    if (!free_) path.ups = rotationMinimizingUps(path.centerline, flightPreferredUp);
+    path_ = std::make_shared<const Path>(std::move(path));
 }
 
 void Flight::goTo(double arcMm) {
-    if (centerline_.points.empty()) return;
-    arcMm_ = std::clamp(std::isfinite(arcMm) ? arcMm : 0.0, 0.0, centerline_.lengthMm());
+    if (centerline().points.empty()) return;
+    arcMm_ = std::clamp(std::isfinite(arcMm) ? arcMm : 0.0, 0.0, centerline().lengthMm());
     free_ = false;
 }
 
@@ -63,7 +62,7 @@ void Flight::advance(double seconds) {
     const double facing = direction_ == FlightDirection::antegrade ? 1.0 : -1.0;
     const double going = motion_ == Motion::forward ? facing : -facing;
     const double target = arcMm_ + going * speedMmPerS_ * seconds;
-    arcMm_ = std::clamp(target, 0.0, centerline_.lengthMm());
+    arcMm_ = std::clamp(target, 0.0, centerline().lengthMm());
     if (arcMm_ != target) motion_ = Motion::paused;
 }
 
@@ -116,28 +115,28 @@ void Flight::moveFreely(glm::dvec3 rightUpForwardMm) {
 }
 
 void Flight::returnToCenterline() {
-    if (!free_ || centerline_.points.empty()) return;
-    goTo(nearestArc(centerline_, freeCamera_.positionMm));
-    const double along = glm::dot(freeCamera_.forward, poseAtArc(centerline_, arcMm_).tangent);
+    if (!free_ || centerline().points.empty()) return;
+    goTo(nearestArc(centerline(), freeCamera_.positionMm));
+    const double along = glm::dot(freeCamera_.forward, poseAtArc(centerline(), arcMm_).tangent);
     direction_ = along < 0.0 ? FlightDirection::retrograde : FlightDirection::antegrade;
     resetLook();
 }
 
 double Flight::placeArcMm() const {
-    return free_ && !centerline_.points.empty() ? nearestArc(centerline_, freeCamera_.positionMm)
-                                                : arcMm_;
+    return free_ && !centerline().points.empty() ? nearestArc(centerline(), freeCamera_.positionMm)
+                                                 : arcMm_;
 }
 
 void Flight::goTo(const Camera& camera, double arcMm) {
     motion_ = Motion::paused;
-    if (!centerline_.points.empty()) {
-        const CenterlinePose pose = poseAtArc(centerline_, arcMm);
+    if (!centerline().points.empty()) {
+        const CenterlinePose pose = poseAtArc(centerline(), arcMm);
         if (glm::distance(pose.point.positionMm, camera.positionMm) < 0.5) {
             goTo(arcMm);
             lookAs(camera);
             return;
         }
-        arcMm_ = nearestArc(centerline_, camera.positionMm);
+        arcMm_ = nearestArc(centerline(), camera.positionMm);
     }
     freeCamera_ = camera;
     freeCamera_.fovDegrees = fovDegrees_;
@@ -160,7 +159,7 @@ void Flight::lookAs(const Camera& camera) {
 
 void Flight::lookAt(double arcMm, glm::dvec3 targetMm) {
     motion_ = Motion::paused;
-    if (centerline_.points.empty()) return;
+    if (centerline().points.empty()) return;
     goTo(arcMm);
     const glm::dvec3 towards = targetMm - straightCamera().positionMm;
     const double length = glm::length(towards);
@@ -179,7 +178,7 @@ void Flight::lookAlong(glm::dvec3 direction) {
 
 // The camera that looks straight along the path.
 Camera Flight::straightCamera() const {
-    const CenterlineCamera camera = cameraAtArc(centerline_, ups_, arcMm_, direction_);
+    const CenterlineCamera camera = cameraAtArc(centerline(), path_->ups, arcMm_, direction_);
     return {camera.positionMm, camera.forward, camera.up, fovDegrees_, lens_};
 }
 

@@ -5,6 +5,7 @@
 #include "core/camera.h"
 #include "core/centerline.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -78,7 +79,7 @@ public:
     double speedMmPerS() const { return speedMmPerS_; }
     double yawDegrees() const { return yawDegrees_; }
     double pitchDegrees() const { return pitchDegrees_; }
-    const Centerline& centerline() const { return centerline_; }
+    const Centerline& centerline() const { return path_->centerline; }
 
 private:
     Camera centerlineCamera() const;
@@ -86,8 +87,12 @@ private:
     void lookAs(const Camera& camera);
     void lookAlong(glm::dvec3 direction);
 
-    Centerline centerline_;
-    std::vector<glm::dvec3> ups_;
+    // Shared by copies: every step that can be taken back holds one.
+    struct Path {
+        Centerline centerline;
+        std::vector<glm::dvec3> ups;  // of each of its points
+    };
+    std::shared_ptr<const Path> path_;
     double arcMm_ = 0.0, yawDegrees_ = 0.0, pitchDegrees_ = 0.0;
     double speedMmPerS_ = defaultSpeedMmPerS, fovDegrees_ = 90.0;
     double otherFovDegrees_ = 180.0;  // of the lens that is not on
