@@ -53,6 +53,9 @@ inline constexpr std::size_t maxScanBookmarkBytes = 4'000'000, bookmarkOverheadB
 /// The newest ones have discs on the wall.
 inline constexpr std::size_t maxMarkedBookmarks = 1024;
 
+// ---- §4, the list of cases: a client shows so many, the first ones
+inline constexpr std::size_t maxListedCases = 100'000;
+
 // ---- §4, the trust in a colon
 inline constexpr int maxWarnings = 200;
 inline constexpr std::size_t maxWarningBytes = 400;

@@ -1,18 +1,87 @@
 #include "reader/incoming_messages.h"
 
 #include "core/flat_map.h"
-#include "protocol/limits.h"
+#include "link/peer_text.h"
 #include "protocol/optics_message.h"
 #include "protocol/view_message.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace haustra::reader {
 namespace {
 
+using link::peerText;
+using protocol::maxCoordinateMm;
+
 constexpr double maxBinHu = 1e6;
+// Of the scan, along each axis.
+constexpr double minSpacingMm = 1e-3, maxSpacingMm = 1e3;
+constexpr int maxPresets = 64;
+constexpr std::size_t maxNameBytes = 64, maxDescriptionBytes = 1000, maxTimeBytes = 40;
+
+// Written so that what is not a number is outside, too.
+bool isWithin(double value, double low, double high) {
+    return value >= low && value <= high;
+}
+bool isPlace(glm::dvec3 mm) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!isWithin(mm[axis], -maxCoordinateMm, maxCoordinateMm)) return false;
+    return true;
+}
+bool isArc(double mm) {
+    return isWithin(mm, -maxCoordinateMm, maxCoordinateMm);
+}
+bool isCaseName(const std::string& name) {
+    const auto allowed = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '.' || c == '_' || c == '-';
+    };
+    return !name.empty() && name.size() <= maxNameBytes && name[0] != '.' &&
+           std::all_of(name.begin(), name.end(), allowed);
+}
+bool isVisibleAscii(const std::string& text, std::size_t mostBytes) {
+    return text.size() <= mostBytes &&
+           std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 127; });
+}
+
+// PROTOCOL.md bounds every place; a grid's are those of its corners.
+Result<void> checkExtent(const Grid& grid) {
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 last(grid.size - 1);
+        const glm::dvec3 voxel((corner & 1) ? last.x : 0.0, (corner & 2) ? last.y : 0.0,
+                               (corner & 4) ? last.z : 0.0);
+        if (!isPlace(grid.patientFromVoxelPoint(voxel)))
+            return fail(ErrorKind::badInput, "the volume lies nowhere",
+                        "case opened: patient_from_voxel");
+    }
+    const glm::dvec3 spacing = grid.spacingMm();
+    for (int axis = 0; axis < 3; ++axis)
+        if (!isWithin(spacing[axis], minSpacingMm, maxSpacingMm))
+            return fail(ErrorKind::badInput, "the voxels are of no scan's size",
+                        "case opened: patient_from_voxel");
+    return {};
+}
+
+Result<std::vector<OpticsPreset>> presetsFrom(const protocol::CaseOpened& message) {
+    const auto refuse = [](const std::string& what) {
+        return fail(ErrorKind::badInput, what, "case opened: presets");
+    };
+    if (message.presets().empty()) return refuse("there is none");
+    if (message.presets_size() > maxPresets) return refuse("there are too many");
+    std::vector<OpticsPreset> presets;
+    std::set<std::string> names;
+    for (const protocol::OpticsPreset& preset : message.presets()) {
+        auto sound = protocol::presetFrom(preset);
+        if (!sound) return refuse(describe(sound.error()));
+        if (!names.insert(sound->name).second) return refuse("two have the same name");
+        sound->description = peerText(sound->description, maxDescriptionBytes);
+        presets.push_back(std::move(*sound));
+    }
+    return presets;
+}
 constexpr std::size_t maxBins = 65536;
 
 Result<Centerline> centerlineFrom(const protocol::CaseOpened& message) {
@@ -31,8 +100,9 @@ Result<Centerline> centerlineFrom(const protocol::CaseOpened& message) {
         point.positionMm = {sample[0], sample[1], sample[2]};
         point.arcMm = sample[3];
         point.radiusMm = sample[4];
-        for (int k = 0; k < perSample; ++k)
-            if (!std::isfinite(sample[k])) return refuse("a number is not finite");
+        if (!isPlace(point.positionMm) || !isArc(point.arcMm) ||
+            !isWithin(point.radiusMm, 0.0, maxCoordinateMm))
+            return refuse("a sample lies nowhere");
         if (point.arcMm < arcBefore) return refuse("its arc does not grow");
         arcBefore = point.arcMm;
     }
@@ -50,18 +120,18 @@ Result<FlatStrip> stripFrom(const protocol::FlatStrip& message) {
     FlatStrip strip;
     strip.height = message.height();
     strip.circumferenceMm = message.circumference_mm();
-    if (!(strip.height > 0.0 && strip.height <= maxFlatHeight))
+    constexpr double leastHeight = 1e-3, leastMm = 1e-3;
+    if (!isWithin(strip.height, leastHeight, maxFlatHeight))
         return refuse("the strip's height is none");
-    if (!(strip.circumferenceMm > 0.0) || !std::isfinite(strip.circumferenceMm))
+    if (!isWithin(strip.circumferenceMm, leastMm, maxCoordinateMm))
         return refuse("its circumference is none");
     if (message.rows_size() < 2 || message.rows_size() % 2 != 0)
         return refuse("its rows do not come in pairs");
     FlatStrip::Row before;
     for (int n = 0; n < message.rows_size(); n += 2) {
         const FlatStrip::Row row{message.rows(n), message.rows(n + 1)};
-        // Written so that what is not a number fails, too.
-        if (!(row.arcMm >= before.arcMm && row.arcMm < INFINITY && row.y >= before.y &&
-              row.y <= strip.height))
+        if (!(isWithin(row.arcMm, before.arcMm, maxCoordinateMm) &&
+              isWithin(row.y, before.y, strip.height)))
             return refuse("its rows are not in order within the strip");
         strip.rows.push_back(row);
         before = row;
@@ -75,15 +145,15 @@ Result<ColonTrust> trustFrom(const protocol::ColonTrust& message) {
     };
     ColonTrust trust;
     trust.confidence = message.confidence(), trust.lengthMm = message.length_mm();
-    if (!(trust.confidence >= 0.0 && trust.confidence <= 1.0 && trust.lengthMm >= 0.0 &&
-          trust.lengthMm < INFINITY))
+    if (!isWithin(trust.confidence, 0.0, 1.0) || !isWithin(trust.lengthMm, 0.0, maxCoordinateMm))
         return refuse("its confidence or length is none");
     if (message.warnings_size() > protocol::maxWarnings) return refuse("too many warnings");
     for (const std::string& warning : message.warnings()) {
         if (warning.size() > protocol::maxWarningBytes) return refuse("a warning is too long");
-        trust.warnings.push_back(warning);
+        trust.warnings.push_back(peerText(warning, protocol::maxWarningBytes));
     }
     if (message.segments_size() != colonSegments) return refuse("not six segments");
+    constexpr double maxFigure = 1e6;
     for (int n = 0; n < colonSegments; ++n) {
         const protocol::ColonSegment& segment = message.segments(n);
         trust.segments[std::size_t(n)] = {segment.length_mm(), segment.diameter_mm(),
@@ -91,7 +161,7 @@ Result<ColonTrust> trustFrom(const protocol::ColonTrust& message) {
                                           segment.collapsed_mm()};
         for (const double number : {segment.length_mm(), segment.diameter_mm(), segment.gas_ml(),
                                     segment.tagged_ml(), segment.collapsed_mm()}) {
-            if (!(number >= 0.0 && number < INFINITY)) return refuse("a segment's figure is none");
+            if (!isWithin(number, 0.0, maxFigure)) return refuse("a segment's figure is none");
         }
     }
     return trust;
@@ -103,6 +173,10 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     CaseInfo info;
     info.name = message.name();
     info.scan = message.scan();
+    if (!isCaseName(info.name))
+        return fail(ErrorKind::badInput, "its name is none", "case opened: name");
+    if (!isVisibleAscii(info.scan, maxNameBytes))
+        return fail(ErrorKind::badInput, "its scan has no name", "case opened: scan");
     for (const std::uint32_t extent : {message.size_x(), message.size_y(), message.size_z()})
         if (extent > 4096)
             return fail(ErrorKind::badInput, "the volume is too large", "case opened: size");
@@ -113,17 +187,12 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
         for (int column = 0; column < 4; ++column)
             info.grid.patientFromVoxel[column][row] = message.patient_from_voxel(4 * row + column);
     TRY(checkGrid(info.grid, "case opened"));
+    TRY(checkExtent(info.grid));
     auto centerline = TRY(centerlineFrom(message));
     info.centerline = std::move(centerline);
     info.position = patientPositionFromString(message.patient_position());
-    for (const protocol::OpticsPreset& preset : message.presets()) {
-        auto sound = protocol::presetFrom(preset);
-        if (!sound)
-            return fail(ErrorKind::badInput, describe(sound.error()), "case opened: presets");
-        info.presets.push_back(std::move(*sound));
-    }
-    if (info.presets.empty())
-        return fail(ErrorKind::badInput, "there is none", "case opened: presets");
+    auto presets = TRY(presetsFrom(message));
+    info.presets = std::move(presets);
     info.histogram = {message.histogram().first_hu(),
                       message.histogram().hu_per_bin(),
                       {message.histogram().voxels().begin(), message.histogram().voxels().end()}};
@@ -143,12 +212,17 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     return info;
 }
 
-std::vector<CaseEntry> casesFrom(const protocol::CaseList& message) {
+Result<std::vector<CaseEntry>> casesFrom(const protocol::CaseList& message) {
     std::map<std::string, const protocol::CaseEntry*> told;
     for (const protocol::CaseEntry& entry : message.entries())
         told[entry.name()] = &entry;
     std::vector<CaseEntry> cases;
     for (const std::string& name : message.names()) {
+        if (cases.size() == protocol::maxListedCases) break;
+        if (!isCaseName(name))
+            return fail(ErrorKind::badInput, "the server names a case that cannot be", "case list");
+        if (!cases.empty() && name <= cases.back().name)
+            return fail(ErrorKind::badInput, "the server's cases are not sorted", "case list");
         CaseEntry& made = cases.emplace_back();
         made.name = name;
         const auto found = told.find(name);
@@ -158,8 +232,8 @@ std::vector<CaseEntry> casesFrom(const protocol::CaseList& message) {
         if (entry.state() == protocol::CaseEntry::INCOMPLETE)
             made.state = CaseEntry::State::incomplete;
         if (entry.state() == protocol::CaseEntry::DAMAGED) made.state = CaseEntry::State::damaged;
-        made.reason = entry.reason();
-        made.preparedUtc = entry.prepared_utc();
+        made.reason = peerText(entry.reason());
+        made.preparedUtc = peerText(entry.prepared_utc(), maxTimeBytes);
         const auto count = [](std::uint32_t n) { return int(std::min(n, 1'000'000'000u)); };
         made.size = {count(entry.size_x()), count(entry.size_y()), count(entry.size_z())};
         const glm::dvec3 spacing = protocol::vectorFrom(entry.spacing_mm());
@@ -182,25 +256,46 @@ Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
     place.triangle = message.triangle();
     place.arcMm = message.arc_mm();
     place.cameraMm = protocol::vectorFrom(message.camera_mm());
-    const glm::dvec3 sum = place.positionMm + place.cameraMm;
     const bool inStrip = !place.flat || (place.flat->x >= 0.0 && place.flat->x < 1.0 &&
-                                         place.flat->y >= 0.0 && place.flat->y <= maxFlatHeight);
-    if (!inStrip || !std::isfinite(sum.x + sum.y + sum.z + place.arcMm))
+                                         isWithin(place.flat->y, 0.0, maxFlatHeight));
+    if (!inStrip || !isPlace(place.positionMm) || !isPlace(place.cameraMm) || !isArc(place.arcMm))
         return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
     return place;
 }
 
-Bookmark bookmarkFrom(const protocol::Bookmark& message) {
+Result<Bookmark> bookmarkFrom(const protocol::Bookmark& message) {
+    const auto refuse = [](const char* what) {
+        return fail(ErrorKind::badInput, what, "bookmark");
+    };
     Bookmark bookmark;
     bookmark.id = message.id();
     bookmark.camera.positionMm = protocol::vectorFrom(message.position_mm());
-    bookmark.camera.forward = protocol::vectorFrom(message.forward());
-    bookmark.camera.up = protocol::vectorFrom(message.up());
     bookmark.arcMm = message.arc_mm();
-    bookmark.note = message.note();
-    bookmark.createdUtc = message.created_utc();
+    if (bookmark.id == 0) return refuse("the server sent one without a number");
+    if (!isPlace(bookmark.camera.positionMm) || !isArc(bookmark.arcMm))
+        return refuse("the server sent one that lies nowhere");
+    const glm::dvec3 forward = protocol::vectorFrom(message.forward()),
+                     up = protocol::vectorFrom(message.up());
+    const double length = glm::length(forward), high = glm::length(up);
+    constexpr double least = 1e-100, most = 1e100, leastSine = 1e-6;
+    if (!isWithin(length, least, most) || !isWithin(high, least, most))
+        return refuse("the server sent one that looks nowhere");
+    const glm::dvec3 right = glm::cross(forward / length, up / high);
+    if (!(glm::length(right) > leastSine)) return refuse("the server sent one that looks nowhere");
+    // One that the client has sent comes back as it was.
+    constexpr double asGood = 1e-9;
+    const bool unit = std::abs(length - 1.0) < asGood && std::abs(high - 1.0) < asGood &&
+                      std::abs(glm::length(right) - 1.0) < asGood;
+    bookmark.camera.forward = unit ? forward : forward / length;
+    bookmark.camera.up = unit ? up : glm::cross(glm::normalize(right), bookmark.camera.forward);
+    if (message.note().size() > protocol::maxNoteBytes)
+        return refuse("the server sent one whose note is too long");
+    if (!isVisibleAscii(message.client_key(), protocol::maxClientKeyBytes))
+        return refuse("the server sent one whose key is none");
+    bookmark.note = peerText(message.note(), protocol::maxNoteBytes, true);
+    bookmark.createdUtc = peerText(message.created_utc(), maxTimeBytes);
     bookmark.clientKey = message.client_key();
-    // One that is nowhere is none.
+    // A mark that is nowhere is none.
     if (message.has_mark())
         if (const auto mark = placeFrom(message.mark())) bookmark.mark = *mark;
     return bookmark;
@@ -209,9 +304,11 @@ Bookmark bookmarkFrom(const protocol::Bookmark& message) {
 Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message) {
     const FlatMeasure measure{message.length_mm(), message.straight_mm(), message.area_mm2(),
                               message.largest_diameter_mm()};
-    if (!std::isfinite(measure.lengthMm + measure.straightMm + measure.areaMm2 +
-                       measure.largestDiameterMm))
-        return fail(ErrorKind::badInput, "the server sent a measurement that is no number", "wall");
+    constexpr double most = 1e9;
+    for (const double figure :
+         {measure.lengthMm, measure.straightMm, measure.areaMm2, measure.largestDiameterMm})
+        if (!isWithin(figure, 0.0, most))
+            return fail(ErrorKind::badInput, "the server sent a measurement that is none", "wall");
     return measure;
 }
 
@@ -219,9 +316,11 @@ Result<ScanStatistics> statisticsFrom(const protocol::ScanStatistics& message) {
     const ScanStatistics values{std::size_t(message.samples()), message.mean_hu(),
                                 message.deviation_hu(),         message.least_hu(),
                                 message.greatest_hu(),          message.area_mm2()};
-    if (!std::isfinite(values.meanHu + values.deviationHu + values.leastHu + values.greatestHu +
-                       values.areaMm2))
-        return fail(ErrorKind::badInput, "the server sent a value that is no number", "scan");
+    constexpr double most = 1e9;
+    for (const double figure :
+         {values.meanHu, values.deviationHu, values.leastHu, values.greatestHu, values.areaMm2})
+        if (!isWithin(figure, -most, most))
+            return fail(ErrorKind::badInput, "the server sent a value that is none", "scan");
     return values;
 }
 

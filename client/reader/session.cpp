@@ -1,5 +1,6 @@
 #include "reader/session.h"
 
+#include "link/peer_text.h"
 #include "protocol/capabilities.h"
 #include "protocol/limits.h"
 #include "protocol/optics_message.h"
@@ -122,6 +123,28 @@ const char* neededBy(const protocol::ClientMessage& question) {
     return question.has_measure_scan() ? protocol::capability::scanValues : nullptr;
 }
 
+/// The kind of message that answers a question.
+protocol::ServerMessage::BodyCase answerOf(const protocol::ClientMessage& question) {
+    switch (question.body_case()) {
+        case protocol::ClientMessage::kMeasureFlat:
+            return protocol::ServerMessage::kFlatMeasure;
+        case protocol::ClientMessage::kMeasureScan:
+            return protocol::ServerMessage::kScanStatistics;
+        case protocol::ClientMessage::kAskSeen:
+            return protocol::ServerMessage::kWallSeen;
+        default:
+            return protocol::ServerMessage::kWallPlace;
+    }
+}
+
+std::uint64_t requestOf(const protocol::ServerMessage& answer) {
+    return answer.has_wall_place()        ? answer.wall_place().request()
+           : answer.has_flat_measure()    ? answer.flat_measure().request()
+           : answer.has_scan_statistics() ? answer.scan_statistics().request()
+           : answer.has_wall_seen()       ? answer.wall_seen().request()
+                                          : 0;
+}
+
 }  // namespace
 
 Session::Session(link::ConnectionOptions options, std::string caseName,
@@ -133,11 +156,12 @@ Session::Session(link::ConnectionOptions options, std::string caseName,
 
 void Session::poll(std::chrono::milliseconds patience) {
     if (phase_ == Phase::failed) return;
-    // A bound on the events, so that a fast stream cannot keep the caller here.
-    constexpr int maxEvents = 64;
+    // A bound on the time, so that a fast stream cannot keep the caller here.
+    constexpr std::chrono::milliseconds longest{10};
     auto event = connection_.next(patience);
-    for (int n = 1; event;
-         event = n++ < maxEvents ? connection_.next(std::chrono::milliseconds(0)) : std::nullopt) {
+    const auto end = Clock::now() + longest;
+    for (; event; event = Clock::now() < end ? connection_.next(std::chrono::milliseconds(0))
+                                             : std::nullopt) {
         if (auto* up = std::get_if<link::LinkUp>(&event->body))
             handle(std::move(*up));
         else if (auto* down = std::get_if<link::LinkDown>(&event->body))
@@ -155,6 +179,7 @@ void Session::handle(link::LinkUp up) {
     lastWords_.clear();
     phase_ = Phase::connecting;
     linked_ = true;
+    opensAsked_ = 0;
     askForCase();
     if (!caseName_.empty() && casesAsked_ > answeredCases_) sayListCases();
 }
@@ -168,30 +193,42 @@ void Session::handle(const link::LinkDown& down) {
 }
 
 void Session::handle(const protocol::ServerMessage& message) {
+    const auto question = questions_.find(requestOf(message));
+    if (question != questions_.end() && answerOf(question->second.message) != message.body_case())
+        return giveUp({ErrorKind::badInput, "the server answered what was not asked", "wall"});
     switch (message.body_case()) {
-        case protocol::ServerMessage::kCaseList:
-            cases_ = casesFrom(message.case_list());
+        case protocol::ServerMessage::kCaseList: {
+            auto cases = casesFrom(message.case_list());
+            if (!cases) return giveUp(cases.error());
+            if (*cases != cases_) {
+                cases_ = std::move(*cases);
+                ++casesRevision_;
+                if (std::size_t(message.case_list().names_size()) > cases_.size())
+                    refuse(0, {ErrorKind::unsupported,
+                               "the server has more cases than can be listed here: the first " +
+                                   std::to_string(cases_.size()) + " are",
+                               "case list"});
+            }
             // An old server does not say which request it answers.
-            answeredCases_ = std::max(answeredCases_, message.case_list().request() != 0
-                                                          ? message.case_list().request()
-                                                          : casesAsked_);
+            const std::uint64_t request = message.case_list().request();
+            if (request > request_)
+                return giveUp(
+                    {ErrorKind::badInput, "the server answered what was not asked", "case list"});
+            answeredCases_ = std::max(answeredCases_, request != 0 ? request : casesAsked_);
             if (caseName_.empty()) phase_ = Phase::choosing;
             break;
+        }
         case protocol::ServerMessage::kCaseOpened:
             opened(message.case_opened());
             break;
         case protocol::ServerMessage::kBookmarkAdded:
             // Another session's, of a case that is left.
             if (message.bookmark_added().request() == 0 && phase_ != Phase::open) break;
-            acknowledge(bookmarkFrom(message.bookmark_added().bookmark()));
+            acknowledge(message.bookmark_added().bookmark());
             break;
-        case protocol::ServerMessage::kBookmarkList: {
-            bookmarks_.clear();
-            for (const auto& bookmark : message.bookmark_list().bookmarks())
-                acknowledge(bookmarkFrom(bookmark));
-            answeredList_ = std::max(answeredList_, message.bookmark_list().request());
+        case protocol::ServerMessage::kBookmarkList:
+            take(message.bookmark_list());
             break;
-        }
         case protocol::ServerMessage::kWallPlace:
             answered(message.wall_place(), placeFrom(message.wall_place()), wallAnswers_);
             break;
@@ -219,9 +256,18 @@ void Session::handle(const protocol::ServerMessage& message) {
 }
 
 void Session::opened(const protocol::CaseOpened& message) {
+    // What is open must not become another patient's of itself.
+    if (opensAsked_ == 0)
+        return giveUp({ErrorKind::badInput, "the server opened a case that was not asked for",
+                       "case opened"});
+    --opensAsked_;
     auto info = caseInfoFrom(message);
     if (!info) return giveUp(info.error());
-    if (info->name != caseName_) return;  // the reader has chosen another since
+    if (info->name != caseName_) {
+        if (opensAsked_ > 0) return;  // the reader has chosen another since
+        return giveUp({ErrorKind::badInput, "the server opened another case than was asked for",
+                       "case opened: name"});
+    }
     // After a reconnection the same case keeps its address, and the reader's flight with it.
     const bool same = caseInfo_ && caseInfo_->name == info->name && caseInfo_->scan == info->scan &&
                       caseInfo_->centerline.points.size() == info->centerline.points.size() &&
@@ -230,6 +276,7 @@ void Session::opened(const protocol::CaseOpened& message) {
                       sameGrid(caseInfo_->grid, info->grid);
     if (!same) {
         caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
+        ++bookmarksRevision_;
         takeFromJournal();
     }
     phase_ = Phase::open;
@@ -239,16 +286,18 @@ void Session::opened(const protocol::CaseOpened& message) {
 void Session::refused(const protocol::ErrorReport& report) {
     // It stops, or has no room: no refusal of what was asked for, which is tried again.
     if (report.fatal() && report.code() == protocol::ErrorReport::BUSY) {
-        lastWords_ = report.message();
+        lastWords_ = link::peerText(report.message());
         return;
     }
-    const Error error{ErrorKind::badInput, "the server refused: " + report.message(), {}};
+    const std::string reason =
+        report.message().empty() ? "it gave no reason" : link::peerText(report.message());
+    const Error error{ErrorKind::badInput, "the server refused: " + reason, {}};
     const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
         return report.request() != 0 && o.request == report.request();
     });
     if (owed != owed_.end()) {  // it would be sent again for ever
         refused_.push_back(*owed);
-        refused_.back().refusal = report.message().empty() ? "it gave no reason" : report.message();
+        refused_.back().refusal = reason;
         record(refused_.back());
         settle(owed, false);
     }
@@ -273,7 +322,9 @@ void Session::refused(const protocol::ErrorReport& report) {
 
 void Session::refuse(std::uint64_t request, const Error& error) {
     refuseQuestion(request, error);
-    refusals_.push_back(error);
+    // Nobody reads more at a time.
+    constexpr std::size_t maxRefusals = 16;
+    if (refusals_.size() < maxRefusals) refusals_.push_back(error);
 }
 
 // All have been sent over it. A server that ends the link because of one would do so for ever.
@@ -307,6 +358,7 @@ void Session::askForCase() {
     }
     protocol::ClientMessage message;
     message.mutable_open_case()->set_name(caseName_);
+    ++opensAsked_;
     connection_.send(message);
 }
 
@@ -332,6 +384,8 @@ std::vector<std::string> Session::caseNames() const {
 void Session::openCase(const std::string& name) {
     caseName_ = name;
     bookmarks_.clear();
+    bookmarkOfId_.clear();
+    ++bookmarksRevision_;
     viewports_.clear();
     questions_.clear();
     wallAnswers_.clear();
@@ -513,6 +567,7 @@ std::string Session::addBookmark(const Camera& camera, double arcMm, std::string
     if (caseInfo_) owed.caseName = caseInfo_->name, owed.scan = caseInfo_->scan;
     record(owed);
     owed_.push_back(std::move(owed));
+    ++bookmarksRevision_;
     sendIfOpen(bookmarkMessage(request_, bookmark));
     return bookmark.clientKey;
 }
@@ -595,6 +650,7 @@ void Session::dismissRefused(const std::string& clientKey) {
     const auto found = findRefused(clientKey);
     if (found == refused_.end()) return;
     refused_.erase(found);
+    ++bookmarksRevision_;
     unrecord(clientKey);
 }
 
@@ -614,29 +670,49 @@ std::string Session::sendRefusedAgain(const std::string& clientKey, std::string 
     if (record(owed) && changed) unrecord(clientKey);
     sendIfOpen(bookmarkMessage(owed.request, owed.bookmark));
     owed_.push_back(std::move(owed));
+    ++bookmarksRevision_;
     return owed_.back().bookmark.clientKey;
 }
 
 void Session::settle(std::deque<Owed>::iterator owed, bool saved) {
     bookmarkOutcomes_.push_back({std::move(owed->bookmark), saved});
     owed_.erase(owed);
+    ++bookmarksRevision_;
 }
 
-void Session::acknowledge(const Bookmark& bookmark) {
-    const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
-        return o.bookmark.clientKey == bookmark.clientKey;
-    });
+void Session::take(const protocol::BookmarkList& message) {
+    bookmarks_.clear();
+    bookmarkOfId_.clear();
+    ++bookmarksRevision_;
+    for (const auto& bookmark : message.bookmarks())
+        if (!acknowledge(bookmark)) return;
+    answeredList_ = std::max(answeredList_, message.request());
+}
+
+// False where the session has given up for it.
+bool Session::acknowledge(const protocol::Bookmark& message) {
+    auto sound = bookmarkFrom(message);
+    if (!sound) return giveUp(sound.error()), false;
+    const std::string key = sound->clientKey;
+    const auto [place, isNew] = bookmarkOfId_.try_emplace(sound->id, bookmarks_.size());
+    if (!isNew) {
+        bookmarks_[place->second] = std::move(*sound);
+    } else if (bookmarks_.size() < maxScanBookmarks) {
+        bookmarks_.push_back(std::move(*sound));
+    } else {
+        giveUp({ErrorKind::badInput, "the server sent more bookmarks than a scan can have",
+                "bookmark"});
+        return false;
+    }
+    ++bookmarksRevision_;
+    const auto owed = std::find_if(owed_.begin(), owed_.end(),
+                                   [&](const Owed& o) { return o.bookmark.clientKey == key; });
     if (owed != owed_.end()) {
-        unrecord(bookmark.clientKey);
+        unrecord(key);
         settle(owed, true);
     }
-    dismissRefused(bookmark.clientKey);  // that another of the user's clients has sent again
-    const auto same = std::find_if(bookmarks_.begin(), bookmarks_.end(),
-                                   [&](const Bookmark& b) { return b.id == bookmark.id; });
-    if (same == bookmarks_.end())
-        bookmarks_.push_back(bookmark);
-    else
-        *same = bookmark;
+    dismissRefused(key);  // that another of the user's clients has sent again
+    return true;
 }
 
 std::vector<Bookmark> Session::bookmarks() const {

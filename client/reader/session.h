@@ -11,6 +11,7 @@
 #include <array>
 #include <deque>
 #include <map>
+#include <unordered_map>
 #include <utility>
 #include <variant>
 
@@ -75,6 +76,7 @@ public:
     /// The server's list as it came last; empty before. Names alone of a server without
     /// protocol::capability::caseEntries.
     const std::vector<CaseEntry>& cases() const { return cases_; }
+    std::uint64_t casesRevision() const { return casesRevision_; }  ///< of another list another
     std::vector<std::string> caseNames() const;
     /// Asks for it, whatever is open. Returns the request's number.
     std::uint64_t requestCases();
@@ -108,7 +110,8 @@ public:
 
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
     std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
-    /// What the server refused since the last call, or the journal's disk; the session goes on.
+    /// What the server refused since the last call, or the journal's disk; the session goes on. Of
+    /// many the first 16.
     std::vector<Error> takeRefusals() { return std::exchange(refusals_, {}); }
 
     /// Returns the bookmark's client key. `note` is cut to protocol::maxNoteBytes.
@@ -119,6 +122,8 @@ public:
     /// protocol::capability::bookmarkPush; else with the next list. Acknowledged ones first, in the
     /// server's order, then those still owed.
     std::vector<Bookmark> bookmarks() const;
+    /// Another one where bookmarks() or refusedBookmarks() may tell something else.
+    std::uint64_t bookmarksRevision() const { return bookmarksRevision_; }
     /// Those that the server saved or refused since the last call. Of a refusal, takeRefusals() has
     /// the server's reason.
     std::vector<BookmarkOutcome> takeBookmarkOutcomes() {
@@ -188,6 +193,8 @@ private:
     };
 
     bool isOfOpenCase(const Owed& owed) const;
+    void take(const protocol::BookmarkList& message);
+    bool acknowledge(const protocol::Bookmark& message);
     bool record(const Owed& owed);
     void unrecord(const std::string& clientKey);
     void takeFromJournal();
@@ -200,7 +207,6 @@ private:
     void refused(const protocol::ErrorReport& report);
     void refuse(std::uint64_t request, const Error& error);
     void dropQuestionsOfLostLinks();
-    void acknowledge(const Bookmark& bookmark);
     void settle(std::deque<Owed>::iterator owed, bool saved);
     std::uint64_t ask(const protocol::ClientMessage& question);
     template <class Message, class Body, class Answer>
@@ -221,7 +227,9 @@ private:
     std::string caseName_;
     bool offersCases_ = false;
     std::vector<CaseEntry> cases_;
+    std::uint64_t casesRevision_ = 0;
     bool linked_ = false;
+    int opensAsked_ = 0;  // over this link, without an answer
     std::shared_ptr<const CaseInfo> caseInfo_;
 
     WallPaintChoice paint_;
@@ -232,6 +240,8 @@ private:
     std::deque<Arrival> arrivals_;
     std::vector<Error> refusals_;
     std::vector<Bookmark> bookmarks_;
+    std::unordered_map<std::uint64_t, std::size_t> bookmarkOfId_;  // its place among them
+    std::uint64_t bookmarksRevision_ = 0;
     const std::string serverName_;
     std::optional<BookmarkJournal> journal_;
     std::deque<Owed> owed_, refused_;

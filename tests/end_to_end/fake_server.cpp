@@ -108,7 +108,8 @@ struct FakeServer::Impl {
             throw std::runtime_error("bad message");
         return message;
     }
-    static void write(Stream& stream, const ServerMessage& message) {
+    void write(Stream& stream, ServerMessage message) const {
+        if (misbehaviour.alters) misbehaviour.alters(message);
         asio::write(stream, asio::buffer(protocol::controlFrame(message)));
     }
 

@@ -4,6 +4,7 @@
 
 #include "core/centerline.h"
 #include "end_to_end/fake_pictures.h"
+#include "protocol/haustra.pb.h"
 
 #include <atomic>
 #include <cstdint>
@@ -28,7 +29,7 @@ struct Misbehaviour {
     bool noStills = false;         ///< never answers a camera at rest
     int dropAfterBookmarks = 0;    ///< stores so many, then closes the socket before acknowledging
     bool truncateWelcome = false;
-    bool old = false;  ///< knows nothing that a capability announces, and says so
+    bool old = false;                    ///< knows nothing that a capability announces, and says so
     bool anotherScanLater = false;       ///< after the first connection the case is of another scan
     bool notFlattened = false;           ///< the case has no strip
     bool silentAboutTheWall = false;     ///< never says where a place lies, nor how long a line is
@@ -39,6 +40,8 @@ struct Misbehaviour {
     int dropAtQuestions = 0;             ///< closes the socket at so many questions about the scan
     int refuseBookmarks = 0;             ///< refuses so many, then stores them
     int ignoreBookmarks = 0;             ///< says nothing to so many, then stores them
+    /// Changes what is told, once it is right.
+    std::function<void(protocol::ServerMessage&)> alters = {};
     int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
 };
 

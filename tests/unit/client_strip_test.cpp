@@ -132,6 +132,7 @@ TEST(ClientFlight, LooksAtAPlaceFromThePath) {
 
 protocol::CaseOpened soundCase() {
     protocol::CaseOpened opened;
+    opened.set_name("a-case");
     opened.set_size_x(10), opened.set_size_y(10), opened.set_size_z(10);
     for (const double number : {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})
         opened.add_patient_from_voxel(number);
@@ -205,6 +206,95 @@ TEST(ClientCase, OnlySoundPresetsAndHistogramsAreTakenFromAServer) {
     EXPECT_FALSE(taken([](protocol::CaseOpened& opened) {
         opened.mutable_presets(0)->mutable_optics()->mutable_points(0)->set_opacity(2.0);
     }));
+}
+
+TEST(ClientCase, OnlyCasesThatLieSomewhereAreTakenFromAServer) {
+    const auto refused = [](const auto& spoil) {
+        protocol::CaseOpened opened = soundCase();
+        spoil(opened);
+        return !caseInfoFrom(opened);
+    };
+    using Opened = protocol::CaseOpened;
+    EXPECT_FALSE(refused([](Opened&) {}));
+    for (const char* name : {"", ".hidden", "a b", "a/b", "<b>"})
+        EXPECT_TRUE(refused([&](Opened& o) { o.set_name(name); })) << name;
+    EXPECT_TRUE(refused([](Opened& o) { o.set_scan("a b"); }));
+    EXPECT_TRUE(refused([](Opened& o) { o.set_scan(std::string(65, 'x')); }));
+    for (const double bad : {1e7, -1e300, double(INFINITY)})
+        EXPECT_TRUE(refused([&](Opened& o) { o.set_patient_from_voxel(3, bad); })) << bad;
+    for (const double scale : {1e-9, 1e-200, 1e7, 1e200})
+        EXPECT_TRUE(refused([&](Opened& o) {
+            for (double& number : *o.mutable_patient_from_voxel())
+                number *= scale;
+        })) << scale;
+    const auto withPath = [&](const std::array<double, 5>& sample) {
+        return refused([&](Opened& o) {
+            for (const double number : sample)
+                o.add_centerline(number);
+        });
+    };
+    EXPECT_FALSE(withPath({1, 2, 3, 0, 10}));
+    EXPECT_TRUE(withPath({1e7, 2, 3, 0, 10}));
+    EXPECT_TRUE(withPath({1, 2, std::nan(""), 0, 10}));
+    EXPECT_TRUE(withPath({1, 2, 3, 1e7, 10}));
+    EXPECT_TRUE(withPath({1, 2, 3, 0, -1}));
+    EXPECT_TRUE(refused([](Opened& o) { *o.add_presets() = o.presets(0); }));
+    EXPECT_TRUE(refused([](Opened& o) {
+        const protocol::OpticsPreset first = o.presets(0);
+        for (int n = 0; n < 64; ++n) {
+            *o.add_presets() = first;
+            o.mutable_presets(n + 1)->set_name("p" + std::to_string(n));
+        }
+    }));
+}
+
+TEST(ClientCase, OnlySortedListsOfNamesAreTakenFromAServer) {
+    const auto taken = [](const std::vector<std::string>& names) {
+        protocol::CaseList list;
+        for (const std::string& name : names)
+            list.add_names(name);
+        return bool(casesFrom(list));
+    };
+    EXPECT_TRUE(taken({}));
+    EXPECT_TRUE(taken({"A", "a", "b-1"}));
+    EXPECT_FALSE(taken({"b", "a"}));
+    EXPECT_FALSE(taken({"a", "a"}));
+    EXPECT_FALSE(taken({""}));
+    EXPECT_FALSE(taken({std::string(65, 'x')}));
+    protocol::CaseList many;
+    for (int n = 0; n < 150'000; ++n)
+        many.add_names(std::to_string(1'000'000 + n));
+    EXPECT_EQ(casesFrom(many)->size(), protocol::maxListedCases);
+}
+
+TEST(ClientCase, OnlyBookmarksThatLookSomewhereAreTakenFromAServer) {
+    protocol::Bookmark sound;
+    sound.set_id(1);
+    sound.set_client_key("key");
+    sound.mutable_forward()->set_z(2.0);
+    sound.mutable_up()->set_y(-3.0), sound.mutable_up()->set_z(1.0);
+    sound.set_note("a note\non \u202Etwo lines\x07");
+    const auto taken = bookmarkFrom(sound);
+    ASSERT_TRUE(taken);
+    EXPECT_NEAR(glm::length(taken->camera.forward), 1.0, 1e-12);
+    EXPECT_NEAR(glm::length(taken->camera.up), 1.0, 1e-12);
+    EXPECT_NEAR(glm::dot(taken->camera.forward, taken->camera.up), 0.0, 1e-12);
+    EXPECT_LT(taken->camera.up.y, 0.0);
+    EXPECT_EQ(taken->note, "a note\non  two lines ");
+    const auto refused = [&](const auto& spoil) {
+        protocol::Bookmark bookmark = sound;
+        spoil(bookmark);
+        return !bookmarkFrom(bookmark);
+    };
+    using Message = protocol::Bookmark;
+    EXPECT_TRUE(refused([](Message& b) { b.set_id(0); }));
+    EXPECT_TRUE(refused([](Message& b) { b.clear_forward(); }));
+    EXPECT_TRUE(refused([](Message& b) { *b.mutable_up() = b.forward(); }));
+    EXPECT_TRUE(refused([](Message& b) { b.mutable_forward()->set_x(std::nan("")); }));
+    EXPECT_TRUE(refused([](Message& b) { b.mutable_position_mm()->set_x(1e7); }));
+    EXPECT_TRUE(refused([](Message& b) { b.set_arc_mm(-1e7); }));
+    EXPECT_TRUE(refused([](Message& b) { b.set_note(std::string(2001, 'x')); }));
+    EXPECT_TRUE(refused([](Message& b) { b.set_client_key("a key"); }));
 }
 
 TEST(ClientStrip, OnlySoundStripsAreTakenFromAServer) {

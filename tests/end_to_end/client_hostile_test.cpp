@@ -1,0 +1,160 @@
+// What a client's session makes of a server that lies: it ends and says why, soon, or goes on.
+#include "end_to_end/fake_server.h"
+#include "end_to_end/reader_fixture.h"
+#include "reader/session.h"
+#include "temporary_folder.h"
+
+#include <functional>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+namespace haustra::reader {
+namespace {
+
+using protocol::ServerMessage;
+
+class ClientOfAHostileServer : public ::testing::Test {
+protected:
+    static tests::Misbehaviour altering(std::function<void(ServerMessage&)> alters) {
+        tests::Misbehaviour wrong;
+        wrong.alters = std::move(alters);
+        return wrong;
+    }
+    std::unique_ptr<Session> sessionWith(const tests::FakeServer& server,
+                                         const std::string& caseName = "phantom") const {
+        link::ConnectionOptions options;
+        options.address = {"127.0.0.1", server.port()};
+        options.pinning.knownServersFile =
+            temporary_.path() / ("known_servers" + std::to_string(server.port()));
+        options.reconnect = true;
+        return std::make_unique<Session>(options, caseName);
+    }
+    template <class Done>
+    static bool until(Session& session, const Done& done) {
+        const auto deadline = Clock::now() + std::chrono::seconds(30);
+        while (!done() && Clock::now() < deadline)
+            session.poll(std::chrono::milliseconds(10));
+        return done();
+    }
+    /// Why the session ended, of a server that alters what it says.
+    std::string endOf(std::function<void(ServerMessage&)> alters,
+                      const std::function<void(Session&)>& asks = {}) const {
+        const tests::FakeServer server(altering(std::move(alters)));
+        const auto session = sessionWith(server);
+        if (asks) asks(*session);
+        return until(*session, [&] { return session->phase() == Phase::failed; })
+                   ? describe(session->failure())
+                   : "it did not end";
+    }
+    static bool has(const std::string& text, const std::string& part) {
+        return text.find(part) != std::string::npos;
+    }
+
+    const tests::TemporaryFolder temporary_;
+};
+
+TEST_F(ClientOfAHostileServer, AnotherCaseThanAskedForIsNotShown) {
+    const auto end = endOf([](ServerMessage& message) {
+        if (message.has_case_opened()) message.mutable_case_opened()->set_name("another");
+    });
+    EXPECT_TRUE(has(end, "another case than was asked for")) << end;
+}
+
+TEST_F(ClientOfAHostileServer, AnOpenCaseDoesNotBecomeAnotherOfItself) {
+    ServerMessage opened;
+    const auto end = endOf([&](ServerMessage& message) {
+        if (message.has_case_opened()) opened = message;
+        if (!message.has_bookmark_list()) return;
+        message = opened;
+        message.mutable_case_opened()->set_scan("of-another-patient");
+    });
+    EXPECT_TRUE(has(end, "was not asked for")) << end;
+}
+
+TEST_F(ClientOfAHostileServer, AnAnswerIsOfTheQuestionsKind) {
+    const auto end = endOf(
+        [](ServerMessage& message) {
+            if (!message.has_wall_place()) return;
+            const std::uint64_t request = message.wall_place().request();
+            message.mutable_scan_statistics()->set_request(request);
+        },
+        [](Session& session) { session.locate(glm::dvec2(0.5, 1.0)); });
+    EXPECT_TRUE(has(end, "what was not asked")) << end;
+}
+
+TEST_F(ClientOfAHostileServer, APlaceFarAwayIsNone) {
+    const auto end = endOf(
+        [](ServerMessage& message) {
+            if (message.has_wall_place()) message.mutable_wall_place()->set_arc_mm(1e200);
+        },
+        [](Session& session) { session.locate(glm::dvec2(0.5, 1.0)); });
+    EXPECT_TRUE(has(end, "nowhere")) << end;
+}
+
+void fillBookmarks(protocol::BookmarkList& list, std::uint64_t count) {
+    for (std::uint64_t n = 1; n <= count; ++n) {
+        auto* bookmark = list.add_bookmarks();
+        bookmark->set_id(n);
+        bookmark->set_client_key(std::to_string(n));
+        bookmark->mutable_forward()->set_z(1.0);
+        bookmark->mutable_up()->set_y(-1.0);
+    }
+}
+
+TEST_F(ClientOfAHostileServer, MoreBookmarksThanAScanCanHaveAreRefused) {
+    const auto end = endOf([](ServerMessage& message) {
+        if (message.has_bookmark_list()) fillBookmarks(*message.mutable_bookmark_list(), 60'000);
+    });
+    EXPECT_TRUE(has(end, "more bookmarks")) << end;
+}
+
+TEST_F(ClientOfAHostileServer, TheMostBookmarksThatCanBeAreTakenSoon) {
+    const tests::FakeServer server(altering([](ServerMessage& message) {
+        if (message.has_bookmark_list()) fillBookmarks(*message.mutable_bookmark_list(), 15'000);
+    }));
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(until(*session, [&] { return session->phase() == Phase::open; }));
+    const auto revision = session->bookmarksRevision();
+    const auto start = Clock::now();
+    ASSERT_TRUE(until(*session, [&] { return session->answeredBookmarkRequest() > 0; }));
+    EXPECT_EQ(session->bookmarks().size(), 15'000u);
+    EXPECT_NE(session->bookmarksRevision(), revision);
+    EXPECT_LT(Clock::now() - start, std::chrono::seconds(10));
+}
+
+TEST_F(ClientOfAHostileServer, ItsReasonsAreShortLines) {
+    const tests::FakeServer server(altering([](ServerMessage& message) {
+        if (!message.has_bookmark_list()) return;
+        message.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);
+        message.mutable_error()->set_message("no\n" + std::string(3'000'000, 'x'));
+    }));
+    const auto session = sessionWith(server);
+    std::vector<Error> refusals;
+    ASSERT_TRUE(until(*session, [&] {
+        for (Error& refusal : session->takeRefusals())
+            refusals.push_back(std::move(refusal));
+        return !refusals.empty();
+    }));
+    EXPECT_LT(refusals[0].message.size(), 500u);
+    EXPECT_EQ(refusals[0].message.find('\n'), std::string::npos);
+}
+
+TEST_F(ClientOfAHostileServer, AFloodOfRefusalsIsTakenAFewAtATime) {
+    const tests::FakeServer server;
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(until(*session, [&] { return session->phase() == Phase::open; }));
+    for (int n = 0; n < 200; ++n)
+        session->pick({0, 0, 0}, {0, 0, -1});  // which the fake wall refuses
+    std::size_t answered = 0, told = 0;
+    ASSERT_TRUE(until(*session, [&] {
+        answered += session->takeWallAnswers().size();
+        return answered == 200;
+    }));
+    told = session->takeRefusals().size();
+    EXPECT_GT(told, 0u);
+    EXPECT_LE(told, 16u);
+}
+
+}  // namespace
+}  // namespace haustra::reader
