@@ -2,6 +2,7 @@
 
 #include <QLocale>
 #include <QLoggingCategory>
+#include <QTextDocument>
 #include <QUndoCommand>
 #include <algorithm>
 #include <chrono>
@@ -58,12 +59,18 @@ QString text(const Error& error) {
     return text(describe(error));
 }
 
+QString toolTipOf(const QString& said) {
+    return said.isEmpty() ? said : Qt::convertFromPlainText(said);
+}
+
 Reading::Reading(link::ConnectionOptions options, std::string caseName,
                  std::optional<reader::BookmarkJournal> journal)
     : serverName_(text(link::toString(options.address))) {
     options.reconnect = true;
     options.onEvent = [this] { wakeFromThread(); };
     steady_.setTimerType(Qt::PreciseTimer);
+    soon_.setSingleShot(true);
+    connect(&soon_, &QTimer::timeout, this, &Reading::step);
     steady_.setInterval(steadyInterval);
     idle_.setInterval(idleInterval);
     connect(&steady_, &QTimer::timeout, this, &Reading::step);
@@ -84,10 +91,12 @@ Reading::~Reading() {
         session.poll(milliseconds(50));
 }
 
-// From the connection's thread: the many pictures of one moment are one step.
+// From the connection's thread: the many pictures of one moment are one step. By a timer, since
+// Qt delivers what is queued before it paints or hears the hand, for ever where more comes
+// meanwhile.
 void Reading::wakeFromThread() {
     if (stepWaits_.exchange(true)) return;
-    QMetaObject::invokeMethod(this, &Reading::step, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(&soon_, qOverload<>(&QTimer::start), Qt::QueuedConnection);
 }
 
 void Reading::changed() {

@@ -67,7 +67,7 @@ private:
     std::atomic<bool> stepWaits_ = false;
     QString serverName_;
     std::unique_ptr<reader::Reader> reader_;
-    QTimer steady_, idle_;
+    QTimer steady_, idle_, soon_;
     QElapsedTimer sinceStep_;
     QUndoStack undoStack_;
     DrawingTool tool_ = DrawingTool::none;
@@ -81,5 +81,7 @@ QString text(const std::string& utf8);
 QString text(const Error& error);
 /// With one decimal, as the language writes it.
 QString decimal(double value);
+/// What a server says, in a tool tip: Qt would take it for HTML where it looks like that.
+QString toolTipOf(const QString& said);
 
 }  // namespace haustra::window
