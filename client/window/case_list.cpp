@@ -2,6 +2,7 @@
 
 #include "window/theme.h"
 
+#include <QAbstractTableModel>
 #include <QDateTime>
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -10,9 +11,9 @@
 #include <QLocale>
 #include <QPushButton>
 #include <QSortFilterProxyModel>
-#include <QStandardItemModel>
 #include <QTableView>
 #include <QVBoxLayout>
+#include <array>
 #include <utility>
 
 namespace haustra::window {
@@ -20,13 +21,6 @@ namespace {
 
 constexpr int sortRole = Qt::UserRole, nameRole = Qt::UserRole + 1;
 constexpr auto askAgain = std::chrono::seconds(10);
-
-QStandardItem* cell(const QString& text, const QVariant& sorted) {
-    auto* item = new QStandardItem(text);
-    item->setEditable(false);
-    item->setData(sorted, sortRole);
-    return item;
-}
 
 QString stateText(const reader::CaseEntry& entry) {
     switch (entry.state) {
@@ -54,7 +48,99 @@ QString trustText(const reader::CaseEntry& entry) {
                : sure;
 }
 
+QDateTime preparedAt(const reader::CaseEntry& entry) {
+    return QDateTime::fromString(text(entry.preparedUtc), Qt::ISODate).toLocalTime();
+}
+
 }  // namespace
+
+/// Makes each cell when it is looked at: of a list of a hundred thousand, few are.
+class CaseTable : public QAbstractTableModel {
+public:
+    using QAbstractTableModel::QAbstractTableModel;
+
+    void set(const std::vector<reader::CaseEntry>& cases) {
+        beginResetModel();
+        cases_ = cases;
+        endResetModel();
+    }
+    int rowCount(const QModelIndex& parent) const override {
+        return parent.isValid() ? 0 : int(cases_.size());
+    }
+    int columnCount(const QModelIndex& parent) const override {
+        return parent.isValid() ? 0 : columns;
+    }
+    QVariant headerData(int column, Qt::Orientation along, int role) const override {
+        const std::array<QString, columns> headings{
+            CaseList::tr("Case"),    CaseList::tr("State"),     CaseList::tr("Colon"),
+            CaseList::tr("Slices"),  CaseList::tr("Bookmarks"), CaseList::tr("Open for"),
+            CaseList::tr("Prepared")};
+        if (along != Qt::Horizontal || role != Qt::DisplayRole) return {};
+        return headings[std::size_t(column)];
+    }
+    QVariant data(const QModelIndex& index, int role) const override {
+        const reader::CaseEntry& entry = cases_[std::size_t(index.row())];
+        switch (role) {
+            case Qt::DisplayRole:
+                return textOf(entry, index.column());
+            case sortRole:
+                return sortedBy(entry, index.column());
+            case nameRole:
+                return text(entry.name);
+            case Qt::ToolTipRole:
+                return toolTipOf(text(entry.reason));
+            case Qt::ForegroundRole:
+                if (index.column() == 2 && entry.warnings > 0) return theme().bookmark;
+                if (entry.state == reader::CaseEntry::State::damaged) return theme().trouble;
+                return {};
+            default:
+                return {};
+        }
+    }
+
+private:
+    static constexpr int columns = 7;
+
+    static QString textOf(const reader::CaseEntry& entry, int column) {
+        switch (column) {
+            case 0:
+                return text(entry.name);
+            case 1:
+                return stateText(entry);
+            case 2:
+                return trustText(entry);
+            case 3:
+                return entry.size.z > 0 ? QString::number(entry.size.z) : QString();
+            case 4:
+                return entry.bookmarks > 0 ? QString::number(entry.bookmarks) : QString();
+            case 5:
+                return entry.readers > 0 ? CaseList::tr("%n reader(s)", nullptr, int(entry.readers))
+                                         : QString();
+            default:
+                break;
+        }
+        const QDateTime prepared = preparedAt(entry);
+        return prepared.isValid() ? QLocale().toString(prepared, QLocale::ShortFormat) : QString();
+    }
+    static QVariant sortedBy(const reader::CaseEntry& entry, int column) {
+        switch (column) {
+            case 2:
+                return entry.confidence.value_or(2.0);
+            case 3:
+                return entry.size.z;
+            case 4:
+                return entry.bookmarks;
+            case 5:
+                return entry.readers;
+            case 6:
+                return preparedAt(entry);
+            default:
+                return textOf(entry, column);
+        }
+    }
+
+    std::vector<reader::CaseEntry> cases_;
+};
 
 CaseList::CaseList(Reading& reading)
     : reading_(reading),
@@ -62,13 +148,14 @@ CaseList::CaseList(Reading& reading)
       state_(new QLabel),
       search_(new QLineEdit),
       table_(new QTableView),
-      model_(new QStandardItemModel(this)),
+      model_(new CaseTable(this)),
       found_(new QSortFilterProxyModel(this)),
       open_(new QPushButton(tr("Open"))) {
     QFont large = heading_->font();
     large.setPointSizeF(large.pointSizeF() * 1.6);
     heading_->setFont(large);
     state_->setWordWrap(true);
+    state_->setTextFormat(Qt::PlainText);
     state_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     search_->setPlaceholderText(tr("search"));
     search_->setClearButtonEnabled(true);
@@ -166,45 +253,20 @@ void CaseList::look() {
     if (lists && !std::exchange(listed_, lists)) search_->setFocus();
     listed_ = lists;
     open_->setEnabled(found_->rowCount() > 0);
-    if (session.cases() == shown_) return;
-    shown_ = session.cases();
+    if (session.casesRevision() == shownRevision_) return;
+    shownRevision_ = session.casesRevision();
     fill();
 }
 
 void CaseList::fill() {
     const QString current = table_->currentIndex().data(nameRole).toString();
-    model_->clear();
-    model_->setHorizontalHeaderLabels({tr("Case"), tr("State"), tr("Colon"), tr("Slices"),
-                                       tr("Bookmarks"), tr("Open for"), tr("Prepared")});
-    for (const reader::CaseEntry& entry : shown_) {
-        const QDateTime prepared =
-            QDateTime::fromString(text(entry.preparedUtc), Qt::ISODate).toLocalTime();
-        QList<QStandardItem*> row{
-            cell(text(entry.name), text(entry.name)),
-            cell(stateText(entry), stateText(entry)),
-            cell(trustText(entry), entry.confidence.value_or(2.0)),
-            cell(entry.size.z > 0 ? QString::number(entry.size.z) : QString(), entry.size.z),
-            cell(entry.bookmarks > 0 ? QString::number(entry.bookmarks) : QString(),
-                 entry.bookmarks),
-            cell(entry.readers > 0 ? tr("%n reader(s)", nullptr, int(entry.readers)) : QString(),
-                 entry.readers),
-            cell(
-                prepared.isValid() ? QLocale().toString(prepared, QLocale::ShortFormat) : QString(),
-                prepared)};
-        for (QStandardItem* item : row) {
-            item->setData(text(entry.name), nameRole);
-            item->setToolTip(text(entry.reason));
-            if (entry.state == reader::CaseEntry::State::damaged)
-                item->setForeground(theme().trouble);
-        }
-        if (entry.warnings > 0) row[2]->setForeground(theme().bookmark);
-        model_->appendRow(row);
-    }
+    model_->set(reading_.reader().session().cases());
     table_->resizeColumnsToContents();
     table_->setColumnWidth(0, std::max(table_->columnWidth(0), 200));
-    for (int row = 0; row < found_->rowCount(); ++row)
-        if (found_->index(row, 0).data(nameRole).toString() == current || row == 0)
-            table_->selectRow(row);
+    int shown = 0;
+    for (int row = 0; row < found_->rowCount() && shown == 0; ++row)
+        if (found_->index(row, 0).data(nameRole).toString() == current) shown = row;
+    if (found_->rowCount() > 0) table_->selectRow(shown);
 }
 
 void CaseList::openCurrent() {

@@ -9,10 +9,11 @@ class QLabel;
 class QLineEdit;
 class QPushButton;
 class QSortFilterProxyModel;
-class QStandardItemModel;
 class QTableView;
 
 namespace haustra::window {
+
+class CaseTable;
 
 /// A table with a field to search in it. While it is in sight it is asked for anew every few
 /// seconds. Without a link it says so instead.
@@ -38,10 +39,10 @@ private:
     QLabel *heading_, *state_;
     QLineEdit* search_;
     QTableView* table_;
-    QStandardItemModel* model_;
+    CaseTable* model_;
     QSortFilterProxyModel* found_;
     QPushButton* open_;
-    std::vector<reader::CaseEntry> shown_;
+    std::uint64_t shownRevision_ = 0;  // of the session's list
     QTimer askTimer_;
     bool listed_ = false;  // the list is in sight
 };
