@@ -72,12 +72,14 @@ void EndoscopicPane::paintFlight(QPainter& painter) {
                                          .arg(flight.direction() == FlightDirection::antegrade
                                                   ? tr("towards the cecum")
                                                   : tr("towards the rectum")));
-    for (const Bridge& bridge : bridgesOf(flight.centerline()))
-        if (!flight.isFree() && flight.arcMm() >= bridge.fromArcMm &&
-            flight.arcMm() <= bridge.toArcMm)
-            line(theme().bookmarkOnPicture,
-                 tr("bridge of %1 mm: the colon is collapsed or filled, no wall is seen")
-                     .arg(bridge.lengthMm(), 0, 'f', 0));
+    const auto bridges = bridgesOf(flight.centerline());
+    const auto bridge = std::find_if(bridges.begin(), bridges.end(), [&](const Bridge& b) {
+        return flight.arcMm() >= b.fromArcMm && flight.arcMm() <= b.toArcMm;
+    });
+    if (!flight.isFree() && bridge != bridges.end())
+        line(theme().bookmarkOnPicture,
+             tr("bridge of %1 mm: the colon is collapsed or filled, no wall is seen")
+                 .arg(bridge->lengthMm(), 0, 'f', 0));
     if (flight.yawDegrees() != 0.0 || flight.pitchDegrees() != 0.0)
         outlinedText(painter, {margin, height() - margin}, Qt::AlignLeft | Qt::AlignBottom,
                      theme().dimOnPicture,

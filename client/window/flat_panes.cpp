@@ -38,10 +38,17 @@ struct FlatArea {
 // off.
 void paintBridges(QPainter& painter, const reader::Reader& reader, const FlatArea& flat) {
     const reader::FlatStrip& strip = reader.flat().tour().strip();
+    const double high = QFontMetricsF(painter.font()).height();
+    double lastAt = INFINITY;
     for (const Bridge& bridge : bridgesOf(reader.session().caseInfo()->centerline)) {
         const double y = strip.yAtArc(0.5 * (bridge.fromArcMm + bridge.toArcMm));
-        outlinedText(painter, {flat.area.left() + 8, flat.position({0.0, y}).y()},
-                     Qt::AlignLeft | Qt::AlignVCenter, theme().bookmarkOnPicture,
+        const double at = flat.position({0.0, y}).y();
+        // Nobody reads one above the other; a path may have bridges without number.
+        const bool inSight = at > flat.area.top() - high && at < flat.area.bottom() + high;
+        if (!inSight || std::abs(at - lastAt) < high) continue;
+        lastAt = at;
+        outlinedText(painter, {flat.area.left() + 8, at}, Qt::AlignLeft | Qt::AlignVCenter,
+                     theme().bookmarkOnPicture,
                      StripPane::tr("bridge %1 mm").arg(bridge.lengthMm(), 0, 'f', 0));
     }
 }
