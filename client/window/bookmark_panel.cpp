@@ -101,11 +101,9 @@ void BookmarkPanel::add() {
 
 void BookmarkPanel::look() {
     setEnabled(reading_.reader().isOpen());
-    std::vector<std::pair<std::string, int>> now;
-    for (const Entry& entry : entriesOf(reading_.reader().session()))
-        now.emplace_back(entry.bookmark.clientKey + entry.bookmark.note, entry.state);
-    if (now == shown_) return;
-    shown_ = std::move(now);
+    const std::uint64_t revision = reading_.reader().session().bookmarksRevision();
+    if (!isVisible() || revision == shownRevision_) return;
+    shownRevision_ = revision;
     fill();
 }
 
@@ -123,7 +121,7 @@ void BookmarkPanel::fill() {
         item->setTextAlignment(0, Qt::AlignRight | Qt::AlignVCenter);
         item->setData(0, keyRole, text(entry.bookmark.clientKey));
         item->setData(0, stateRole, entry.state);
-        item->setToolTip(1, entry.state == refused ? note + '\n' + entry.reason : note);
+        item->setToolTip(1, toolTipOf(entry.state == refused ? note + '\n' + entry.reason : note));
         if (entry.state == refused)
             for (int column = 0; column < 3; ++column)
                 item->setForeground(column, theme().trouble);

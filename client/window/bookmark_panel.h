@@ -33,7 +33,7 @@ private:
     QLineEdit* note_;
     QTreeWidget* list_;
     QLabel* hint_;
-    std::vector<std::pair<std::string, int>> shown_;  // client keys and states, as listed
+    std::uint64_t shownRevision_ = 0;  // of the session's bookmarks
 };
 
 }  // namespace haustra::window

@@ -75,6 +75,7 @@ OpticsPanel::OpticsPanel(Reading& reading) : reading_(reading), graph_(new Trans
     column->addWidget(presetRow());
     column->addWidget(description_ = new QLabel);
     description_->setWordWrap(true);
+    description_->setTextFormat(Qt::PlainText);
     column->addWidget(gradientRow());
     column->addWidget(graph_, 1);
     column->addWidget(pointRow());
@@ -295,7 +296,7 @@ void OpticsPanel::fillPresets() {
     for (std::size_t n = 0; n < o.presets(); ++n) {
         preset_->addItem(text(o.preset(n).name) +
                          (o.isChanged(n) ? QStringLiteral(" *") : QString()));
-        preset_->setItemData(int(n), text(o.preset(n).description), Qt::ToolTipRole);
+        preset_->setItemData(int(n), toolTipOf(text(o.preset(n).description)), Qt::ToolTipRole);
     }
     preset_->setCurrentIndex(int(o.chosen()));
     description_->setText(text(o.preset(o.chosen()).description));

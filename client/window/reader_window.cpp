@@ -554,9 +554,10 @@ void ReaderWindow::look() {
                 places->addAction(text(warning))->setEnabled(true);
                 all += text(warning);
             }
-            delete trust_->menu();
+            // It may be open now.
+            if (QMenu* former = trust_->menu()) former->deleteLater();
             trust_->setMenu(warnings.empty() ? nullptr : places);
-            trust_->setToolTip(all.join('\n'));
+            trust_->setToolTip(toolTipOf(all.join('\n')));
         }
         // A style sheet paints buttons: it leaves the palette out.
         const QString color =
