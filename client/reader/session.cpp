@@ -189,6 +189,8 @@ void Session::handle(const link::LinkDown& down) {
     failure_ = down.error;
     if (!lastWords_.empty()) failure_.message = "the connection was lost: " + lastWords_;
     linked_ = false;
+    for (auto& [id, state] : viewports_)
+        state.owedSince.reset();
     phase_ = down.final ? Phase::failed : Phase::lost;
 }
 
@@ -340,6 +342,14 @@ void Session::dropQuestionsOfLostLinks() {
 }
 
 void Session::handle(link::PictureDone done, Clock::time_point at) {
+    if (const auto of = viewports_.find(done.picture.viewport); of != viewports_.end()) {
+        ViewportState& state = of->second;
+        const bool answers = done.picture.sequence >= state.askedSequence;
+        if (answers)
+            state.owedSince.reset();
+        else if (state.owedSince)
+            state.owedSince = Clock::now();  // it is on its way to it
+    }
     arrivals_.push_back({std::move(done.picture), at, done.decodedAt});
     if (arrivals_.size() > 64) arrivals_.pop_front();
 }
@@ -402,7 +412,7 @@ void Session::askAgain() {
     seenShare_.reset();
     if (caseInfo_->flat && paint_.any())
         connection_.send(protocol::paintMessage(++sequence_, paint_));
-    for (const auto& [id, state] : viewports_) {
+    for (auto& [id, state] : viewports_) {
         if (state.width == 0) continue;  // spoken of before it was opened
         connection_.send(protocol::viewportMessage({++sequence_, std::uint32_t(id)}, state.view,
                                                    state.width, state.height));
@@ -456,7 +466,24 @@ std::uint64_t Session::look(int viewport, const ViewState& shown, bool moving) {
     state.moving = moving;
     const protocol::InputHeader header{++sequence_, std::uint32_t(viewport), moving};
     if (state.width > 0) sendIfOpen(protocol::stateMessage(header, shown));
+    if (state.width > 0 && phase_ == Phase::open) state.asked(sequence_);
     return sequence_;
+}
+
+void Session::ViewportState::asked(std::uint64_t sequence) {
+    askedSequence = sequence;
+    if (!owedSince) owedSince = Clock::now();
+}
+
+std::chrono::seconds Session::overdue() const {
+    if (phase_ != Phase::open) return {};
+    const auto now = Clock::now();
+    auto oldest = now;
+    for (const auto& [id, state] : viewports_)
+        if (state.owedSince) oldest = std::min(oldest, *state.owedSince);
+    for (const auto& [request, question] : questions_)
+        oldest = std::min(oldest, question.saidAt);
+    return std::chrono::duration_cast<std::chrono::seconds>(now - oldest);
 }
 
 std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
@@ -475,13 +502,15 @@ std::uint64_t Session::setTransferFunction(int viewport, const OpticsChoice& opt
     return sequence_;
 }
 
-void Session::sayWhatWaited(int viewport, const ViewportState& state) {
+void Session::sayWhatWaited(int viewport, ViewportState& state) {
     const auto header = [&] {
         return protocol::InputHeader{++sequence_, std::uint32_t(viewport), state.moving};
     };
     if (state.window) connection_.send(protocol::windowMessage(header(), *state.window));
     if (state.optics) connection_.send(opticsMessage(++sequence_, viewport, *state.optics));
-    if (state.state) connection_.send(protocol::stateMessage(header(), *state.state));
+    if (!state.state) return;
+    connection_.send(protocol::stateMessage(header(), *state.state));
+    state.asked(sequence_);
 }
 
 std::uint64_t Session::setWallPaint(const WallPaintChoice& paint) {
@@ -493,13 +522,14 @@ std::uint64_t Session::setWallPaint(const WallPaintChoice& paint) {
 // ---- the wall -------------------------------------------------------------------------------
 
 std::uint64_t Session::ask(const protocol::ClientMessage& question) {
-    questions_[request_] = {question};
+    questions_[request_] = {question, 0, Clock::now()};
     if (phase_ == Phase::open) say(request_);
     return request_;
 }
 
 // A server that does not know a message would end the session.
 void Session::say(std::uint64_t request) {
+    questions_.at(request).saidAt = Clock::now();
     const protocol::ClientMessage& question = questions_.at(request).message;
     const char* needed = neededBy(question);
     if (!needed || serverCan(needed)) return connection_.send(question);

@@ -96,6 +96,10 @@ public:
     std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
     std::uint64_t setTransferFunction(int viewport, const OpticsChoice& optics);
 
+    /// For how long the server has owed a picture or an answer that it has been asked for over this
+    /// link; 0 where it owes none.
+    std::chrono::seconds overdue() const;
+
     /// What colours the wall, in all viewports that show it. Of a case that has been flattened.
     std::uint64_t setWallPaint(const WallPaintChoice& paint);
     const WallPaintChoice& wallPaint() const { return paint_; }
@@ -178,10 +182,14 @@ private:
         std::optional<OpticsChoice> optics;
         std::optional<ViewState> state;
         bool moving = false;
+        std::uint64_t askedSequence = 0;             // of the newest look that was sent
+        std::optional<Clock::time_point> owedSince;  // no picture has answered it
+        void asked(std::uint64_t sequence);
     };
     struct Question {
         protocol::ClientMessage message;
         int lostLinks = 0;  // over which it was asked in vain
+        Clock::time_point saidAt = {};
     };
     struct Owed {
         std::string caseName;
@@ -217,7 +225,7 @@ private:
     void sayListCases();
     void askAgain();
     void giveUp(Error error);
-    void sayWhatWaited(int viewport, const ViewportState& state);
+    void sayWhatWaited(int viewport, ViewportState& state);
     void sendIfOpen(const protocol::ClientMessage& message);
 
     Phase phase_ = Phase::connecting;

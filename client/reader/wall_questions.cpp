@@ -16,6 +16,7 @@ void WallQuestions::reset() {
     bookmarkPlaces_.clear();
     bookmarksAsked_.clear();
     bookmarksSeen_.clear();
+    askedRevision_.reset();
 }
 
 void WallQuestions::update(const CaseInfo& info) {
@@ -56,7 +57,8 @@ void WallQuestions::measure(std::vector<glm::dvec2> points, bool closed) {
 }
 
 void WallQuestions::placeBookmarks(const Centerline& path) {
-    if (session_.phase() != Phase::open) return;
+    const std::uint64_t revision = session_.bookmarksRevision();
+    if (session_.phase() != Phase::open || revision == askedRevision_) return;
     const bool told = session_.serverCan(protocol::capability::marks);
     for (const Bookmark& bookmark : session_.bookmarks()) {
         if (bookmark.mark) bookmarkPlaces_[bookmark.clientKey] = *bookmark.mark;
@@ -70,6 +72,7 @@ void WallQuestions::placeBookmarks(const Centerline& path) {
             bookmark.camera.positionMm + radiusMm * glm::normalize(bookmark.camera.forward);
         bookmarksAsked_[session_.locate(ahead)] = bookmark.clientKey;
     }
+    askedRevision_ = revision;
 }
 
 }  // namespace haustra::reader

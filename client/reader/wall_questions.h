@@ -60,6 +60,7 @@ private:
     std::map<std::string, WallPlace> bookmarkPlaces_;
     std::map<std::uint64_t, std::string> bookmarksAsked_;  // client keys, by request
     std::set<std::string> bookmarksSeen_;                  // client keys
+    std::optional<std::uint64_t> askedRevision_;  // of the bookmarks: all of them are asked
 };
 
 }  // namespace haustra::reader

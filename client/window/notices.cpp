@@ -60,9 +60,16 @@ Notices::Notices(Reading& reading) : reading_(reading), rows_(new QVBoxLayout(th
 void Notices::look() {
     const reader::Session& session = reading_.reader().session();
     const reader::Phase phase = session.phase();
-    const bool wanted = phase != reader::Phase::open && phase != reader::Phase::choosing &&
-                        reading_.reader().isOpen();
-    if (wanted) {
+    const bool down = phase != reader::Phase::open && phase != reader::Phase::choosing;
+    // A server may be slow; one that says nothing of it must not look like one that is done.
+    constexpr std::chrono::seconds longWait{15};
+    const auto overdue = session.overdue();
+    const bool wanted = (down || overdue >= longWait) && reading_.reader().isOpen();
+    if (wanted && !down) {
+        const QString state =
+            tr("The server has owed a picture or an answer for %1 s.").arg(overdue.count());
+        if (link_->text() != state) link_->setText(state);
+    } else if (wanted) {
         QString state = text(session.failure());
         if (phase == reader::Phase::connecting)
             state = tr("The server opens the case. What is shown is old until then.");

@@ -22,8 +22,7 @@ void OverviewPane::addShown(Shown& shown) const {
     shown.add(under_ ? double(*under_) : -1.0);
     if (const Overview* pictured = reader().panes().shown<Overview>(View::overview))
         shown.add(pictured->camera);
-    for (const reader::Bookmark& bookmark : reader().session().bookmarks())
-        shown.add(bookmark.camera.positionMm);
+    shown.add(double(reader().session().bookmarksRevision()));
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
 }
 

@@ -46,7 +46,7 @@ double PathTrack::arcAt(double x) const {
 void PathTrack::look() {
     const reader::Flight& flight = reading_.reader().flight();
     const bool antegrade = flight.direction() == FlightDirection::antegrade;
-    const std::size_t bookmarks = reading_.reader().session().bookmarks().size();
+    const std::uint64_t bookmarks = reading_.reader().session().bookmarksRevision();
     follows_ = true;
     setRange(0, int(std::lround(lengthMm())));
     setValue(int(std::lround(flight.arcMm())));

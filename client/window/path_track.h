@@ -30,7 +30,7 @@ private:
     double lengthMm() const;
 
     Reading& reading_;
-    std::size_t bookmarks_ = 0;
+    std::uint64_t bookmarks_ = 0;  // their revision, as painted
     bool antegrade_ = true, follows_ = false;
 };
 

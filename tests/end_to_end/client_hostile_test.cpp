@@ -140,6 +140,29 @@ TEST_F(ClientOfAHostileServer, ItsReasonsAreShortLines) {
     EXPECT_EQ(refusals[0].message.find('\n'), std::string::npos);
 }
 
+TEST_F(ClientOfAHostileServer, WhatItOwesIsKnown) {
+    for (const bool owes : {false, true}) {
+        tests::Misbehaviour wrong;
+        wrong.noStills = owes;
+        const tests::FakeServer server(wrong);
+        const auto session = sessionWith(server);
+        ASSERT_TRUE(until(*session, [&] { return session->phase() == Phase::open; }));
+        EXPECT_EQ(session->overdue().count(), 0);
+        session->setViewport(0, View::endoscopic, 64, 64);
+        session->look(0, Camera{}, false);
+        const auto end = Clock::now() + std::chrono::milliseconds(1200);
+        EXPECT_TRUE(until(*session, [&] { return Clock::now() > end; }));
+        EXPECT_EQ(session->overdue().count(), owes ? 1 : 0);
+    }
+    tests::Misbehaviour silent;
+    silent.silentAboutTheWall = true;
+    const tests::FakeServer server(silent);
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(until(*session, [&] { return session->phase() == Phase::open; }));
+    session->locate(glm::dvec2(0.5, 1.0));
+    EXPECT_TRUE(until(*session, [&] { return session->overdue().count() >= 1; }));
+}
+
 TEST_F(ClientOfAHostileServer, AFloodOfRefusalsIsTakenAFewAtATime) {
     const tests::FakeServer server;
     const auto session = sessionWith(server);
