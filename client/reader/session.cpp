@@ -123,6 +123,11 @@ const char* neededBy(const protocol::ClientMessage& question) {
     return question.has_measure_scan() ? protocol::capability::scanValues : nullptr;
 }
 
+std::string reasonOf(const protocol::ErrorReport& report) {
+    const std::string reason = link::peerText(report.message());
+    return reason.find_first_not_of(' ') == std::string::npos ? "it gave no reason" : reason;
+}
+
 /// The kind of message that answers a question.
 protocol::ServerMessage::BodyCase answerOf(const protocol::ClientMessage& question) {
     switch (question.body_case()) {
@@ -288,11 +293,10 @@ void Session::opened(const protocol::CaseOpened& message) {
 void Session::refused(const protocol::ErrorReport& report) {
     // It stops, or has no room: no refusal of what was asked for, which is tried again.
     if (report.fatal() && report.code() == protocol::ErrorReport::BUSY) {
-        lastWords_ = link::peerText(report.message());
+        lastWords_ = reasonOf(report);
         return;
     }
-    const std::string reason =
-        report.message().empty() ? "it gave no reason" : link::peerText(report.message());
+    const std::string reason = reasonOf(report);
     const Error error{ErrorKind::badInput, "the server refused: " + reason, {}};
     const auto owed = std::find_if(owed_.begin(), owed_.end(), [&](const Owed& o) {
         return report.request() != 0 && o.request == report.request();

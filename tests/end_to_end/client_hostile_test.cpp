@@ -140,6 +140,22 @@ TEST_F(ClientOfAHostileServer, ItsReasonsAreShortLines) {
     EXPECT_EQ(refusals[0].message.find('\n'), std::string::npos);
 }
 
+TEST_F(ClientOfAHostileServer, AnEmptyReasonIsNone) {
+    const tests::FakeServer server(altering([](ServerMessage& message) {
+        if (!message.has_bookmark_list()) return;
+        message.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);
+        message.mutable_error()->set_message("\n\t\x07");
+    }));
+    const auto session = sessionWith(server);
+    std::vector<Error> refusals;
+    ASSERT_TRUE(until(*session, [&] {
+        for (Error& refusal : session->takeRefusals())
+            refusals.push_back(std::move(refusal));
+        return !refusals.empty();
+    }));
+    EXPECT_EQ(refusals[0].message, "the server refused: it gave no reason");
+}
+
 TEST_F(ClientOfAHostileServer, WhatItOwesIsKnown) {
     for (const bool owes : {false, true}) {
         tests::Misbehaviour wrong;
