@@ -87,6 +87,11 @@ std::optional<WallPlace> FlatReading::takePicked() {
     return place;
 }
 
+void FlatReading::forgetPicked() {
+    wall_.forgetPick();
+    picked_.reset();
+}
+
 void FlatReading::setFlyingOver(bool on) {
     flight_.setMotion(Motion::paused);
     tour_.setFlyingOver(on && hasStrip());

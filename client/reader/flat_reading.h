@@ -44,6 +44,8 @@ public:
     void goTo(glm::dvec3 placeMm);
     /// The place that was gone to last, until the camera moves on.
     const std::optional<GoneTo>& picked() const { return picked_; }
+    /// No mark, and what is still asked about is gone to no more.
+    void forgetPicked();
     WallQuestions& wall() { return wall_; }
     const WallQuestions& wall() const { return wall_; }
 

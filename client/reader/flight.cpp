@@ -88,6 +88,17 @@ void Flight::setFisheye(bool fisheye) {
     freeCamera_.lens = lens_;
 }
 
+void Flight::standAs(const Flight& other) {
+    motion_ = Motion::paused;
+    arcMm_ = other.arcMm_;
+    yawDegrees_ = other.yawDegrees_;
+    pitchDegrees_ = other.pitchDegrees_;
+    free_ = other.free_;
+    freeCamera_ = other.freeCamera_;
+    freeCamera_.fovDegrees = fovDegrees_;
+    freeCamera_.lens = lens_;
+}
+
 void Flight::look(double yawDegrees, double pitchDegrees) {
     if (free_)
         freeCamera_ = turned(freeCamera_, yawDegrees, pitchDegrees);

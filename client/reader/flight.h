@@ -64,6 +64,10 @@ public:
     /// of `arcMm`, else freely.
     void goTo(const Camera& camera, double arcMm);
 
+    /// Stands where `other` stands, and looks where it looks; pauses. Lens, field of view, speed
+    /// and direction stay.
+    void standAs(const Flight& other);
+
     /// Goes to an arc of the path and looks at a patient point from there; pauses. Without a path,
     /// or where the point is the camera's own place, only the former.
     void lookAt(double arcMm, glm::dvec3 targetMm);

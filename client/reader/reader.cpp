@@ -155,10 +155,9 @@ void Reader::goTo(glm::dvec3 placeMm, View plane) {
 }
 
 void Reader::restore(const Flight& flight, const SliceViews& slices) {
-    flight_ = flight;
-    const WindowLevel window = slices_.window();
-    slices_ = slices;
-    slices_.setWindow(window);
+    flight_.standAs(flight);
+    slices_.showAs(slices);
+    flat_.forgetPicked();
 }
 
 void Reader::addBookmark(std::string note) {
@@ -166,6 +165,10 @@ void Reader::addBookmark(std::string note) {
 }
 
 void Reader::goToBookmark(int step) {
+    if (const auto next = nextBookmark(step)) goTo(*next);
+}
+
+std::optional<Bookmark> Reader::nextBookmark(int step) const {
     const double here = flight_.arcMm();
     double nearest = std::numeric_limits<double>::max();
     std::optional<Bookmark> found;
@@ -173,7 +176,7 @@ void Reader::goToBookmark(int step) {
         const double ahead = step * (bookmark.arcMm - here);
         if (ahead > 0.5 && ahead < nearest) nearest = ahead, found = bookmark;
     }
-    if (found) goTo(*found);
+    return found;
 }
 
 }  // namespace haustra::reader

@@ -69,13 +69,15 @@ public:
     /// A click in a slice: every view shows that place. Where slices are not linked, `plane` shows
     /// it and nothing else moves.
     void goTo(glm::dvec3 placeMm, View plane);
-    /// Back where flight and slices were.
+    /// Back where flight and slices were. What has been set since stays: lens, speed and direction,
+    /// zoom, window, slab, scan. A place that the server is still asked about is gone to no more.
     void restore(const Flight& flight, const SliceViews& slices);
 
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
     /// The next (or, with −1, previous) bookmark along the centerline, if any.
     void goToBookmark(int step);
+    std::optional<Bookmark> nextBookmark(int step) const;
 
 private:
     void caseOpened();

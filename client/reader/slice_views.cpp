@@ -42,11 +42,31 @@ void SliceViews::follow(glm::dvec3 cameraMm) {
 
 void SliceViews::show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane) {
     followedMm_ = cameraMm;
-    if (linked_)
-        for (Plane& each : planes_)
-            each.focusMm = placeMm;
-    else if (plane)
-        of(*plane).focusMm = placeMm;
+    for (const View each : {View::axial, View::coronal, View::sagittal}) {
+        if (!linked_ && each != plane) continue;
+        if (each == plane)
+            showWithoutMoving(each, placeMm);
+        else
+            of(each).focusMm = placeMm, of(each).panMm = glm::dvec2(0.0);
+    }
+}
+
+// A picture that is enlarged follows its focus: here it stays where it is.
+void SliceViews::showWithoutMoving(View plane, glm::dvec3 placeMm) {
+    constexpr int side = 2;  // of any size: only its middle counts
+    const auto before = placeSlice(slice(plane), case_->grid, side, side);
+    of(plane).focusMm = placeMm;
+    const auto after = placeSlice(slice(plane), case_->grid, side, side);
+    if (!before || !after) return;
+    const glm::dvec3 moved = after->topLeftMm - before->topLeftMm;
+    pan(plane, {glm::dot(moved, glm::normalize(after->rightMm)),
+                glm::dot(moved, glm::normalize(after->downMm))});
+}
+
+void SliceViews::showAs(const SliceViews& other) {
+    for (std::size_t n = 0; n < planes_.size(); ++n)
+        planes_[n].focusMm = other.planes_[n].focusMm, planes_[n].panMm = other.planes_[n].panMm;
+    followedMm_ = other.followedMm_;
 }
 
 SliceView SliceViews::slice(View plane) const {

@@ -23,9 +23,13 @@ public:
     /// the server moves pictures (protocol::capability::slabs); else they stay centred.
     void open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm, bool canPan = true);
     void follow(glm::dvec3 cameraMm);
-    /// Shows a place until the camera leaves `cameraMm`. Of slices that are not linked, only in
-    /// `plane`, if any is given.
+    /// Shows a place until the camera leaves `cameraMm`. The picture of `plane`, where the place
+    /// was clicked, stays where it is; the others are moved to it. Of slices that are not linked,
+    /// only `plane` shows it, if any is given.
     void show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane = {});
+
+    /// The places that `other` shows; how large, and by which window, slab and scan, stays.
+    void showAs(const SliceViews& other);
 
     SliceView slice(View plane) const;
     void scroll(View plane, double mm);
@@ -63,6 +67,7 @@ private:
     Plane& of(View plane);
     const Plane& of(View plane) const { return const_cast<SliceViews*>(this)->of(plane); }
     glm::dvec3 withinScan(glm::dvec3 mm) const;
+    void showWithoutMoving(View plane, glm::dvec3 placeMm);
 
     std::shared_ptr<const CaseInfo> case_;
     std::array<Plane, 3> planes_;

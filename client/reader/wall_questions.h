@@ -32,6 +32,7 @@ public:
     void pick(glm::dvec2 flat) { pick_ = session_.locate(flat); }
     void pick(glm::dvec3 fromMm, glm::dvec3 direction) { pick_ = session_.pick(fromMm, direction); }
     void pickNear(glm::dvec3 placeMm) { pick_ = session_.locate(placeMm); }
+    void forgetPick() { pick_ = 0, picked_.reset(); }
     /// The place of the newest click, once.
     std::optional<WallPlace> takePicked() { return std::exchange(picked_, std::nullopt); }
 
