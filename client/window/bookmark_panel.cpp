@@ -20,7 +20,7 @@ namespace haustra::window {
 namespace {
 
 enum State { saved, sending, refused };
-constexpr int keyRole = Qt::UserRole, stateRole = Qt::UserRole + 1;
+constexpr int keyRole = Qt::UserRole, stateRole = Qt::UserRole + 1, noteRole = Qt::UserRole + 2;
 
 /// Of those that the server has or will have, and those that it refused; along the colon, as they
 /// are met in flight.
@@ -40,6 +40,10 @@ std::vector<Entry> entriesOf(const reader::Session& session) {
         return a.bookmark.arcMm < b.bookmark.arcMm;
     });
     return entries;
+}
+
+std::string keyOf(const QTreeWidgetItem& item) {
+    return item.data(0, keyRole).toString().toStdString();
 }
 
 QString whenText(const std::string& utc) {
@@ -82,8 +86,10 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
     column->addWidget(hint_);
     connect(note_, &QLineEdit::returnPressed, this, &BookmarkPanel::add);
     connect(addButton, &QToolButton::clicked, this, &BookmarkPanel::add);
-    connect(list_, &QTreeWidget::itemClicked, this, &BookmarkPanel::goTo);
-    connect(list_, &QTreeWidget::itemActivated, this, &BookmarkPanel::goTo);
+    connect(list_, &QTreeWidget::itemClicked, this,
+            [this](QTreeWidgetItem* item) { goTo(keyOf(*item)); });
+    connect(list_, &QTreeWidget::itemActivated, this,
+            [this](QTreeWidgetItem* item) { goTo(keyOf(*item)); });
     connect(list_, &QTreeWidget::customContextMenuRequested, this, &BookmarkPanel::showMenu);
     connect(&reading, &Reading::stepped, this, &BookmarkPanel::look);
 }
@@ -121,6 +127,7 @@ void BookmarkPanel::fill() {
         item->setTextAlignment(0, Qt::AlignRight | Qt::AlignVCenter);
         item->setData(0, keyRole, text(entry.bookmark.clientKey));
         item->setData(0, stateRole, entry.state);
+        item->setData(0, noteRole, note);
         item->setToolTip(1, toolTipOf(entry.state == refused ? note + '\n' + entry.reason : note));
         if (entry.state == refused)
             for (int column = 0; column < 3; ++column)
@@ -132,8 +139,7 @@ void BookmarkPanel::fill() {
     hint_->setVisible(list_->topLevelItemCount() == 0);
 }
 
-void BookmarkPanel::goTo(QTreeWidgetItem* item) {
-    const std::string key = item->data(0, keyRole).toString().toStdString();
+void BookmarkPanel::goTo(const std::string& key) {
     for (const Entry& entry : entriesOf(reading_.reader().session()))
         if (entry.bookmark.clientKey == key)
             return reading_.jump(tr("go to a bookmark"), [this, bookmark = entry.bookmark] {
@@ -144,11 +150,12 @@ void BookmarkPanel::goTo(QTreeWidgetItem* item) {
 void BookmarkPanel::showMenu(const QPoint& position) {
     QTreeWidgetItem* item = list_->itemAt(position);
     if (!item) return;
+    // The list may be filled anew while the menu is open: the item is not to be kept.
+    const std::string key = keyOf(*item);
     QMenu menu(this);
-    menu.addAction(tr("Go there"), this, [this, item] { goTo(item); });
+    menu.addAction(tr("Go there"), this, [this, key] { goTo(key); });
     if (item->data(0, stateRole).toInt() == refused) {
-        const std::string key = item->data(0, keyRole).toString().toStdString();
-        const QString before = item->text(1);
+        const QString before = item->data(0, noteRole).toString();
         menu.addAction(tr("Send again…"), this, [this, key, before] {
             bool wanted = false;
             const QString note =

@@ -8,7 +8,6 @@
 class QLabel;
 class QLineEdit;
 class QTreeWidget;
-class QTreeWidgetItem;
 
 namespace haustra::window {
 
@@ -26,7 +25,7 @@ private:
     void look();
     void add();
     void fill();
-    void goTo(QTreeWidgetItem* item);
+    void goTo(const std::string& clientKey);
     void showMenu(const QPoint& position);
 
     Reading& reading_;
