@@ -1,5 +1,6 @@
 #include "window/commands.h"
 
+#include "window/look_steps.h"
 #include "window/reader_window.h"
 
 #include <QCoreApplication>
@@ -65,6 +66,12 @@ void setSlab(ReaderWindow& w, int step) {
     const int next = std::clamp(int(n) + step, 0, int(thicknesses.size()) - 1);
     slab.thicknessMm = thicknesses[std::size_t(next)];
     w.setSlab(slab);
+}
+
+void goToBookmark(ReaderWindow& w, int step) {
+    if (const auto bookmark = w.reader().nextBookmark(step))
+        w.reading().jump(QCoreApplication::translate("Commands", "go to a bookmark"),
+                         [&w, bookmark] { w.reader().goTo(*bookmark); });
 }
 
 void clearAll(ReaderWindow& w) {
@@ -381,8 +388,11 @@ const std::array table = {
             .keys = "T",
             .run =
                 [](ReaderWindow& w) {
-                    auto& o = w.reader().optics();
-                    o.choose((o.chosen() + 1) % o.presets());
+                    changeOptics(w.reading(),
+                                 QCoreApplication::translate("Commands", "Next look of the wall"),
+                                 [](auto& optics) {
+                                     optics.choose((optics.chosen() + 1) % optics.presets());
+                                 });
                 }},
     Command{.id = "optics",
             .menu = Menu::wall,
@@ -449,13 +459,13 @@ const std::array table = {
             .menu = Menu::bookmarks,
             .text = QT_TRANSLATE_NOOP("Commands", "Previous bookmark"),
             .keys = "P",
-            .run = [](ReaderWindow& w) { w.reader().goToBookmark(-1); },
+            .run = [](ReaderWindow& w) { goToBookmark(w, -1); },
             .separatorBefore = true},
     Command{.id = "next-bookmark",
             .menu = Menu::bookmarks,
             .text = QT_TRANSLATE_NOOP("Commands", "Next bookmark"),
             .keys = "N",
-            .run = [](ReaderWindow& w) { w.reader().goToBookmark(+1); }},
+            .run = [](ReaderWindow& w) { goToBookmark(w, +1); }},
     Command{.id = "bookmarks-panel",
             .menu = Menu::bookmarks,
             .text = QT_TRANSLATE_NOOP("Commands", "Show the list of bookmarks"),
@@ -568,7 +578,8 @@ void CommandSet::resetKeys() {
 }
 
 void CommandSet::look() {
-    const bool open = window_.reader().isOpen();
+    // Of a case behind the list of cases nothing is to be changed unseen.
+    const bool open = window_.reader().isOpen() && !window_.showsCases();
     for (const Command& command : commands()) {
         QAction* action = actions_.at(command.id);
         action->setEnabled(open || !command.needsCase);

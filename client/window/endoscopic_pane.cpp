@@ -122,11 +122,14 @@ void EndoscopicPane::clicked(const Hand& hand) {
         vector(hand.position - QRectF(rect()).center()) / double(height());
     const auto direction = rayThrough(camera, fromMiddle);
     if (!direction) return;
-    reader().setMotion(reader::Motion::paused);
-    reader().flat().pick(camera.positionMm, *direction);
+    reading().jump(tr("go to a place of the wall"),
+                   [this, from = camera.positionMm, direction = *direction] {
+                       reader().flat().pick(from, direction);
+                   });
 }
 
 void EndoscopicPane::doubleClicked(const Hand&) {
+    takeClickBack();
     reader().flight().resetLook();
 }
 

@@ -119,7 +119,7 @@ StripLayout StripPane::layout() const {
 }
 
 std::optional<glm::dvec2> StripPane::flatAt(QPointF position) const {
-    if (!reader().flat().hasStrip()) return std::nullopt;
+    if (!reader().flat().hasStrip() || pictureSize().x < 1) return std::nullopt;
     return layout().flatFromPixel(vector(position) / widgetPerPixel(),
                                   reader().flat().tour().strip().height);
 }
@@ -129,7 +129,7 @@ void StripPane::addShown(Shown& shown) const {
 }
 
 void StripPane::paintMarks(QPainter& painter) {
-    if (!reader().flat().hasStrip()) return;
+    if (!reader().flat().hasStrip() || pictureSize().x < 1) return;
     const double pixels = widgetPerPixel();
     const StripLayout columns = layout();
     painter.setFont(smallFont(font()));

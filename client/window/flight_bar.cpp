@@ -1,6 +1,7 @@
 #include "window/flight_bar.h"
 
 #include "window/commands.h"
+#include "window/look_steps.h"
 
 #include <QComboBox>
 #include <QDoubleSpinBox>
@@ -83,13 +84,14 @@ FlightBar::FlightBar(Reading& reading, const CommandSet& commands)
         reading_.changed();
     });
     connect(optics_, &QComboBox::activated, this, [this](int n) {
-        reading_.reader().optics().choose(std::size_t(n));
-        reading_.changed();
+        changeOptics(reading_, tr("choose a preset"),
+                     [n](reader::OpticsEditor& optics) { optics.choose(std::size_t(n)); });
     });
     connect(window_, &QComboBox::activated, this, [this](int n) {
         if (std::size_t(n) < windowPresets.size())
-            reading_.reader().slices().setWindow(windowPresets[std::size_t(n)].window);
-        reading_.changed();
+            changeWindow(reading_, windowPresets[std::size_t(n)].window);
+        else
+            reading_.changed();  // the hand's own is not to be chosen: back to what it is
     });
     connect(&reading, &Reading::stepped, this, &FlightBar::look);
 }
@@ -132,7 +134,9 @@ void FlightBar::look() {
     fills_ = true;
     if (!speed_->isSliderDown()) speed_->setValue(stepOf(reader.flight().speedMmPerS()));
     speedText_->setText(tr("%1 mm/s").arg(reader.flight().speedMmPerS(), 0, 'f', 0));
-    if (!fov_->hasFocus()) fov_->setValue(reader.flight().camera().fovDegrees);
+    // A number that is set is painted anew, whether it is another or not.
+    const double fov = std::round(reader.flight().camera().fovDegrees);
+    if (!fov_->hasFocus() && fov_->value() != fov) fov_->setValue(fov);
     const reader::OpticsEditor& optics = reader.optics();
     if (optics.revision() != shownOptics_) {
         shownOptics_ = optics.revision();

@@ -1,6 +1,6 @@
 #include "window/optics_panel.h"
 
-#include "window/optics_steps.h"
+#include "window/look_steps.h"
 #include "window/theme.h"
 #include "window/transfer_graph.h"
 
@@ -13,6 +13,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
+#include <QStackedLayout>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -45,6 +46,8 @@ constexpr std::array<LightControl, 5> lightControls{{
      QT_TRANSLATE_NOOP("haustra::window::OpticsPanel", "How small highlights are"),
      &Headlight::shininess, 1.0, 200.0, 5.0, 0},
 }};
+
+constexpr QSize colorSize(28, 14);
 
 QDoubleSpinBox* spinBox(double least, double most, double step, int decimals, const QString& name) {
     auto* box = new QDoubleSpinBox;
@@ -150,18 +153,20 @@ QWidget* OpticsPanel::gradientRow() {
 }
 
 QWidget* OpticsPanel::pointRow() {
+    // As high either way: the graph above stays where it is when a point is chosen.
     auto* widget = new QWidget;
-    auto* row = rowOf(widget);
-    pointHint_ = new QLabel(
+    pointRow_ = new QStackedLayout(widget);
+    auto* hint = new QLabel(
         tr("Drag a point. Double click adds one, right click takes one. The wheel enlarges, a drag "
            "beside the points moves the axis."));
-    pointHint_->setWordWrap(true);
-    pointEditor_ = new QWidget;
-    auto* editor = rowOf(pointEditor_);
+    hint->setWordWrap(true);
+    auto* editing = new QWidget;
+    auto* editor = rowOf(editing);
     editor->addWidget(color_ = new QToolButton);
     color_->setAccessibleName(tr("Colour of the point"));
     color_->setToolTip(tr("Colour"));
     color_->setMinimumWidth(44);
+    color_->setIcon(QPixmap(colorSize));
     editor->addWidget(
         hu_ = spinBox(lowestTransferHu, highestTransferHu, 5.0, 0, tr("Value of the point, HU")));
     hu_->setSuffix(tr(" HU"));
@@ -171,8 +176,10 @@ QWidget* OpticsPanel::pointRow() {
     remove->setAccessibleName(tr("Remove the point"));
     editor->addWidget(remove);
     editor->addStretch(1);
-    row->addWidget(pointHint_, 1);
-    row->addWidget(pointEditor_, 1);
+    pointRow_->addWidget(hint);
+    pointRow_->addWidget(editing);
+    widget->setFixedHeight(
+        std::max(3 * hint->fontMetrics().lineSpacing(), editing->sizeHint().height()));
     connect(color_, &QToolButton::clicked, this, &OpticsPanel::chooseColor);
     for (QDoubleSpinBox* box : {hu_, opacity_})
         connect(box, &QDoubleSpinBox::valueChanged, this, &OpticsPanel::editPoint);
@@ -329,14 +336,13 @@ void OpticsPanel::showPoint() {
     const auto points = optics().curve().points();
     const int point = graph_->chosenPoint();
     const bool any = point >= 0 && point < int(points.size());
-    pointEditor_->setVisible(any);
-    pointHint_->setVisible(!any);
+    pointRow_->setCurrentIndex(any);
     if (!any) return;
     const TransferFunctionPoint& p = points[std::size_t(point)];
     fills_ = true;
     hu_->setValue(p.hu);
     opacity_->setValue(p.opacity);
-    QPixmap sample(28, 14);
+    QPixmap sample(colorSize);
     sample.fill(QColor::fromRgbF(float(p.color.r), float(p.color.g), float(p.color.b)));
     color_->setIcon(sample);
     fills_ = false;

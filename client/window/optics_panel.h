@@ -12,6 +12,7 @@ class QDoubleSpinBox;
 class QHBoxLayout;
 class QLabel;
 class QPushButton;
+class QStackedLayout;
 class QToolButton;
 
 namespace haustra::window {
@@ -45,10 +46,11 @@ private:
 
     Reading& reading_;
     QComboBox *preset_, *composition_;
-    QLabel *description_, *pointHint_;
+    QLabel* description_;
     QPushButton* back_;
     TransferGraph* graph_;
-    QWidget *rows_, *pointEditor_;
+    QWidget* rows_;
+    QStackedLayout* pointRow_;  // a hint, or the point that is chosen
     QToolButton* color_;
     QDoubleSpinBox *gradient_, *hu_, *opacity_;
     QCheckBox *preIntegrated_, *lit_;

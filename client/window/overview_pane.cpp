@@ -107,6 +107,7 @@ void OverviewPane::clicked(const Hand& hand) {
 }
 
 void OverviewPane::doubleClicked(const Hand&) {
+    takeClickBack();
     reader().outside().reset();
 }
 

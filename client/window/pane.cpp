@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace haustra::window {
 namespace {
@@ -57,6 +58,7 @@ double Pane::widgetPerPixel() const {
 
 void Pane::look() {
     if (!isVisible()) return;
+    tellSize();  // what lies over it may have gone
     Shown shown;
     shown.add(double(reader().panes().pictureCount(view_)));
     shown.add(double(reader().freshness(view_)));
@@ -151,9 +153,12 @@ QString Pane::provenance() const {
 
 void Pane::tellSize() {
     const double ratio = devicePixelRatioF();
-    const bool inSight = isVisible() && width() > 1 && height() > 1;
-    reader().setPaneSize(
-        view_, inSight ? glm::ivec2(int(width() * ratio), int(height() * ratio)) : glm::ivec2(0));
+    const bool inSight = isVisible() && width() > 1 && height() > 1 && !visibleRegion().isEmpty();
+    const glm::ivec2 size =
+        inSight ? glm::ivec2(int(width() * ratio), int(height() * ratio)) : glm::ivec2(0);
+    if (size == toldSize_) return;
+    toldSize_ = size;
+    reader().setPaneSize(view_, size);
     reading_.changed();
 }
 
@@ -211,9 +216,15 @@ void Pane::mouseReleaseEvent(QMouseEvent* event) {
     held_ = Qt::NoButton;
     if (wasMenu) return emit menuWanted(event->globalPosition().toPoint());
     if (!isOpen() || takesPictureOut_) return;
+    const int steps = reading_.undoStack().index();
     if (!isDrag_) clicked(hand);
     released(hand);
+    clickStep_ = !isDrag_ && reading_.undoStack().index() == steps + 1 ? steps + 1 : -1;
     reading_.changed();
+}
+
+void Pane::takeClickBack() {
+    if (std::exchange(clickStep_, -1) == reading_.undoStack().index()) reading_.undoStack().undo();
 }
 
 void Pane::mouseDoubleClickEvent(QMouseEvent* event) {

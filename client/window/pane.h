@@ -53,6 +53,8 @@ public:
     QString provenance() const;
     /// What the view shows, in words, for whoever does not see it.
     virtual QString inWords() const;
+    /// Tells the reader how large the pane is; one that is out of sight has no size.
+    void tellSize();
     /// Entries of the pane's own for its menu.
     virtual void fillMenu(QMenu& menu) { (void)menu; }
 
@@ -82,6 +84,8 @@ protected:
     virtual void released(const Hand&) {}
     virtual void clicked(const Hand&) {}
     virtual void doubleClicked(const Hand&) {}
+    /// What the first click of a double click has done is undone.
+    void takeClickBack();
     /// `steps` of the wheel, away from the hand positive.
     virtual void wheeled(const Hand&, double steps) { (void)steps; }
     virtual void hovered(const Hand&) {}
@@ -104,16 +108,17 @@ protected:
 
 private:
     void look();
-    void tellSize();
     void paintAll(QPainter& painter);
     void dragOut();
 
     Reading& reading_;
     View view_;
     QString title_;
+    glm::ivec2 toldSize_{0};
     Shown shown_;
     QPointF pressedAt_, lastAt_;
     Qt::MouseButton held_ = Qt::NoButton;
+    int clickStep_ = -1;  // that the last click made, in the undo stack
     bool isDrag_ = false, takesPictureOut_ = false, isHovered_ = false, namesItself_ = false;
 };
 

@@ -8,6 +8,7 @@
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haustra::window {
 namespace {
@@ -25,9 +26,7 @@ PathTrack::PathTrack(Reading& reading) : QSlider(Qt::Horizontal), reading_(readi
     // From the keyboard, or by what reads the screen.
     connect(this, &QSlider::valueChanged, this, [this](int mm) {
         if (follows_ || !reading_.reader().isOpen()) return;
-        reading_.reader().setMotion(reader::Motion::paused);
-        reading_.reader().flight().goTo(mm);
-        reading_.changed();
+        goTo(mm);
     });
 }
 
@@ -94,26 +93,30 @@ void PathTrack::paintEvent(QPaintEvent*) {
                                    {here - 2.5 * way, middle + 4}}));
 }
 
-void PathTrack::goTo(double x) {
+void PathTrack::goTo(double arcMm) {
     reading_.reader().setMotion(reader::Motion::paused);
-    reading_.reader().flight().goTo(arcAt(x));
+    reading_.reader().flight().goTo(arcMm);
     reading_.changed();
 }
 
 void PathTrack::mousePressEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton) return;
     setFocus(Qt::MouseFocusReason);
-    const double x = event->position().x();
-    reading_.jump(tr("go along the path"),
-                  [this, arc = arcAt(x)] { reading_.reader().flight().goTo(arc); });
+    back_ = reading_.wayBack();
+    goTo(arcAt(event->position().x()));
 }
 
 void PathTrack::mouseMoveEvent(QMouseEvent* event) {
-    if (event->buttons().testFlag(Qt::LeftButton)) return goTo(event->position().x());
+    if (event->buttons().testFlag(Qt::LeftButton)) return goTo(arcAt(event->position().x()));
     QToolTip::showText(event->globalPosition().toPoint(),
                        tr("%1 mm").arg(arcAt(event->position().x()), 0, 'f', 0), this);
 }
 
-void PathTrack::mouseReleaseEvent(QMouseEvent*) {}
+// However long the drag, it is one step back to where it began.
+void PathTrack::mouseReleaseEvent(QMouseEvent* event) {
+    if (event->button() != Qt::LeftButton || !back_) return;
+    reading_.did(tr("go along the path"), std::exchange(back_, {}),
+                 [this, arc = arcAt(event->position().x())] { goTo(arc); });
+}
 
 }  // namespace haustra::window

@@ -24,12 +24,13 @@ protected:
 
 private:
     void look();
-    void goTo(double x);
+    void goTo(double arcMm);
     double xOf(double arcMm) const;
     double arcAt(double x) const;
     double lengthMm() const;
 
     Reading& reading_;
+    std::function<void()> back_;   // while it is pressed: to where it was
     std::uint64_t bookmarks_ = 0;  // their revision, as painted
     bool antegrade_ = true, follows_ = false;
 };

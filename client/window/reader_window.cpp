@@ -2,6 +2,7 @@
 
 #include "core/raycasters.h"
 #include "protocol/capabilities.h"
+#include "window/accessible_panes.h"
 #include "window/bookmark_panel.h"
 #include "window/case_list.h"
 #include "window/endoscopic_pane.h"
@@ -9,6 +10,7 @@
 #include "window/flight_bar.h"
 #include "window/help_pages.h"
 #include "window/language.h"
+#include "window/look_steps.h"
 #include "window/notices.h"
 #include "window/optics_panel.h"
 #include "window/overview_pane.h"
@@ -66,6 +68,14 @@ bool needsKey(const QWidget* widget, const QKeyEvent& key) {
             key.key() == Qt::Key_N || key.key() == Qt::Key_P);
 }
 
+// The dialog that is open, or a new one.
+void showOne(QPointer<QDialog>& dialog, const auto& make) {
+    if (!dialog) dialog = make();
+    dialog->show();
+    dialog->raise();
+    dialog->activateWindow();
+}
+
 bool typesText(const QWidget* widget) {
     return qobject_cast<const QLineEdit*>(widget) || qobject_cast<const QAbstractSpinBox*>(widget);
 }
@@ -74,6 +84,7 @@ bool typesText(const QWidget* widget) {
 
 ReaderWindow::ReaderWindow(Reading& reading)
     : reading_(reading), commands_(*this), docks_(makeDocks()), layouts_(*this, second_, docks_) {
+    describePanes();
     setDockNestingEnabled(true);
     setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
     second_.setDockNestingEnabled(true);
@@ -104,6 +115,8 @@ ReaderWindow::ReaderWindow(Reading& reading)
     qApp->installEventFilter(this);
     setWindowTitle(QStringLiteral("Haustra"));
     second_.setWindowTitle(tr("Haustra, second window"));
+    menuBar()->setAccessibleName(tr("Menus"));
+    nameParts(*this);
     restoreGeometry(QSettings().value(geometrySetting).toByteArray());
     look();
 }
@@ -133,7 +146,10 @@ Docks ReaderWindow::makeDocks() {
         panes_.push_back(made);
         connect(made, &Pane::menuWanted, this,
                 [this, made](const QPoint& at) { showMenuOf(*made, at); });
-        return dock(made, name, made->title());
+        QDockWidget* around = dock(made, name, made->title());
+        // Behind another's tab it is not hidden, only out of sight.
+        connect(around, &QDockWidget::visibilityChanged, made, &Pane::tellSize);
+        return around;
     };
     docks.endoscopic = pane(new EndoscopicPane(reading_), "endoscopic");
     docks.axial = pane(new SlicePane(reading_, View::axial), "axial");
@@ -271,6 +287,7 @@ void ReaderWindow::makeStatus() {
     figures_->setAccessibleName(tr("Figures of the link and the pictures"));
     server_ = new QLabel;
     server_->setAccessibleName(tr("Server"));
+    statusBar()->setSizeGripEnabled(false);  // the window's frame has one
     statusBar()->addPermanentWidget(figures_);
     statusBar()->addPermanentWidget(server_);
 }
@@ -300,7 +317,7 @@ void ReaderWindow::caseOpened() {
     const QByteArray kept = QSettings().value(layoutSetting).toByteArray();
     if (kept.isEmpty() || !layouts_.restore(kept, flat || hasFlat))
         layouts_.arrange(BuiltinLayout::reading, flat || hasFlat);
-    panes_.front()->setFocus();
+    focusPane(nullptr);
     look();
 }
 
@@ -314,9 +331,25 @@ void ReaderWindow::keepLayout() {
 }
 
 void ReaderWindow::arrange(BuiltinLayout layout) {
+    Pane* pane = focusedPane();
     beforeEnlarged_.clear();
     cases_->hide();
     layouts_.arrange(layout, reader().flat().hasStrip());
+    focusPane(pane);
+}
+
+Pane* ReaderWindow::focusedPane() const {
+    for (Pane* pane : panes_)
+        if (pane->hasFocus()) return pane;
+    return nullptr;
+}
+
+// What is hidden while panes are arranged leaves the keyboard to whatever control comes next, a
+// button, which would take Space and Return: it goes to a pane.
+void ReaderWindow::focusPane(Pane* wanted) {
+    for (std::size_t n = 0; n < panes_.size() && !(wanted && wanted->isVisible()); ++n)
+        wanted = panes_[n];
+    if (wanted->isVisible()) wanted->setFocus();
 }
 
 void ReaderWindow::saveLayout() {
@@ -335,9 +368,11 @@ void ReaderWindow::fillLayoutMenu() {
     const QStringList names = Layouts::names();
     for (const QString& name : names)
         layoutMenu_->addAction(name, this, [this, name] {
+            Pane* pane = focusedPane();
             beforeEnlarged_.clear();
-            if (!layouts_.restore(name, reader().flat().hasStrip()))
-                reading_.tell(tr("The layout “%1” cannot be read.").arg(name), true);
+            const bool restored = layouts_.restore(name, reader().flat().hasStrip());
+            focusPane(pane);
+            if (!restored) reading_.tell(tr("The layout “%1” cannot be read.").arg(name), true);
         });
     if (names.isEmpty()) layoutMenu_->addAction(tr("none yet"))->setEnabled(false);
     layoutMenu_->addSeparator();
@@ -367,14 +402,13 @@ void ReaderWindow::leaveEnlarged() {
     if (!isEnlarged()) return;
     Pane* pane = currentPane();
     layouts_.restore(std::exchange(beforeEnlarged_, {}), reader().flat().hasStrip());
-    if (pane) pane->setFocus();
+    focusPane(pane);
 }
 
 Pane* ReaderWindow::currentPane() const {
     for (Pane* pane : panes_)
         if (pane->isVisible() && pane->underMouse()) return pane;
-    for (Pane* pane : panes_)
-        if (pane->isVisible() && pane->hasFocus()) return pane;
+    if (Pane* pane = focusedPane(); pane && pane->isVisible()) return pane;
     for (Pane* pane : panes_)
         if (pane->isVisible()) return pane;
     return nullptr;
@@ -439,7 +473,7 @@ void ReaderWindow::askForPlace() {
 }
 
 void ReaderWindow::setWindowPreset(std::size_t n) {
-    reader().slices().setWindow(windowPresets[n].window);
+    changeWindow(reading_, windowPresets[n].window);
 }
 
 std::size_t ReaderWindow::windowPreset() const {
@@ -474,6 +508,9 @@ void ReaderWindow::toggleOptics() {
     dock->show();
     dock->raise();
 }
+bool ReaderWindow::showsCases() const {
+    return cases_->isVisible();
+}
 bool ReaderWindow::showsOptics() const {
     return docks_.optics->isVisible();
 }
@@ -485,16 +522,17 @@ void ReaderWindow::writeNote() {
 }
 void ReaderWindow::toggleBookmarks() {
     docks_.bookmarks->setVisible(!docks_.bookmarks->isVisible());
+    if (!docks_.bookmarks->isVisible() && !focusedPane()) focusPane(nullptr);
 }
 bool ReaderWindow::showsBookmarks() const {
     return docks_.bookmarks->isVisible();
 }
 
 void ReaderWindow::showHelp() {
-    (new HelpPage(commands_, this))->show();
+    showOne(help_, [this] { return new HelpPage(commands_, this); });
 }
 void ReaderWindow::changeKeys() {
-    (new KeysDialog(commands_, this))->show();
+    showOne(keys_, [this] { return new KeysDialog(commands_, this); });
 }
 void ReaderWindow::showAbout() {
     window::showAbout(this, reading_);
@@ -620,8 +658,8 @@ bool ReaderWindow::eventFilter(QObject* object, QEvent* event) {
 
 // Free flight: keys that are held. True: the key is one of them.
 bool ReaderWindow::handleHeldKeys(QEvent* event) {
-    if (!reader().isOpen() || !reader().flight().isFree()) {
-        held_.clear();
+    if (!reader().isOpen() || !reader().flight().isFree() || cases_->isVisible()) {
+        if (!std::exchange(held_, {}).empty()) reading_.setHeldWay(glm::dvec3(0.0), false);
         return false;
     }
     const auto& key = static_cast<const QKeyEvent&>(*event);

@@ -5,7 +5,9 @@
 #include "window/layouts.h"
 #include "window/reading.h"
 
+#include <QDialog>
 #include <QMainWindow>
+#include <QPointer>
 #include <set>
 #include <vector>
 
@@ -33,6 +35,7 @@ public:
 
     // What the commands do.
     void showCases();
+    bool showsCases() const;
     void savePicture();
     void copyPicture();
     void quit();
@@ -73,6 +76,8 @@ private:
     void fillLayoutMenu();
     void showMenuOf(Pane& pane, const QPoint& globalPosition);
     Pane* currentPane() const;
+    Pane* focusedPane() const;
+    void focusPane(Pane* wanted);
     void caseOpened();
     void look();
     void keepLayout();
@@ -93,6 +98,7 @@ private:
     QToolButton* trust_ = nullptr;
     QLabel *figures_ = nullptr, *server_ = nullptr;
     QMenu* layoutMenu_ = nullptr;
+    QPointer<QDialog> help_, keys_;
     QByteArray beforeEnlarged_;
     std::set<int> held_;  // keys of free flight
     bool placedOptics_ = false;

@@ -167,19 +167,23 @@ void Reading::did(const QString& text, std::function<void()> undo, std::function
     changed();
 }
 
+std::function<void()> Reading::wayBack() {
+    reader::Reader& reader = *reader_;
+    return [&reader, flight = reader.flight(), slices = reader.slices()] {
+        reader.setMotion(reader::Motion::paused);
+        reader.restore(flight, slices);
+    };
+}
+
 void Reading::jump(const QString& text, std::function<void()> go) {
     reader::Reader& reader = *reader_;
     const auto goThere = [&reader, go = std::move(go)] {
         reader.setMotion(reader::Motion::paused);
         go();
     };
-    const auto goBack = [&reader, flight = reader.flight(), slices = reader.slices()] {
-        reader.setMotion(reader::Motion::paused);
-        reader.restore(flight, slices);
-    };
+    const auto back = wayBack();
     goThere();
-    constexpr int jumps = 1;
-    did(text, goBack, goThere, jumps);
+    did(text, back, goThere);
 }
 
 void Reading::setTool(DrawingTool tool) {

@@ -41,6 +41,8 @@ public:
     void did(const QString& text, std::function<void()> undo, std::function<void()> redo,
              int mergeId = -1);
     QUndoStack& undoStack() { return undoStack_; }
+    /// Brings flight and slices back to where they are now; what has been set since stays.
+    std::function<void()> wayBack();
     /// A jump of the flight that can be taken back, and done again by `go`.
     void jump(const QString& text, std::function<void()> go);
 

@@ -1,5 +1,6 @@
 #include "window/slice_panes.h"
 
+#include "window/look_steps.h"
 #include "window/theme.h"
 
 #include <QKeyEvent>
@@ -15,9 +16,6 @@ constexpr Qt::Alignment topLeft = Qt::AlignLeft | Qt::AlignTop,
                         topRight = Qt::AlignRight | Qt::AlignTop,
                         bottomLeft = Qt::AlignLeft | Qt::AlignBottom,
                         bottomRight = Qt::AlignRight | Qt::AlignBottom;
-
-// Undo steps of one kind that follow one another are one.
-constexpr int windowSteps = 2;
 
 QString axisOf(View view) {
     return view == View::coronal    ? QStringLiteral("y")
@@ -133,10 +131,8 @@ void GreyPane::released(const Hand&) {
             drawsEllipse_ ? tr("draw an ellipse") : tr("draw a ruler"),
             [&r, before = measuresBefore_] { r.measures().set(before); },
             [&r, after] { r.measures().set(after); });
-    } else if (!(windowBefore_ == r.slices().window())) {
-        reading().did(
-            tr("change the window"), [&r, before = windowBefore_] { r.slices().setWindow(before); },
-            [&r, after = r.slices().window()] { r.slices().setWindow(after); }, windowSteps);
+    } else {
+        changedWindow(reading(), windowBefore_);
     }
     drawnFrom_.reset();
 }

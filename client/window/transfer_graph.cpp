@@ -1,6 +1,6 @@
 #include "window/transfer_graph.h"
 
-#include "window/optics_steps.h"
+#include "window/look_steps.h"
 #include "window/theme.h"
 
 #include <QKeyEvent>
