@@ -38,11 +38,12 @@ struct FakeServer::Impl {
     asio::io_context io;
     asio::ssl::context tls{asio::ssl::context::tls_server};
     tcp::acceptor acceptor;
-    std::atomic<bool> stopping{false};
-    std::atomic<int> connections{0}, bookmarkMessages{0};
+    std::atomic<bool> stopping{false}, down{false};
+    std::atomic<int> connections{0}, bookmarkMessages{0}, seenForgotten{0};
     mutable std::mutex mutex;
     std::vector<protocol::Bookmark> bookmarks;  // guarded by mutex
     std::set<std::shared_ptr<Stream>> streams;  // guarded by mutex
+    std::map<int, AskedOfViewport> asked;       // guarded by mutex
     std::vector<std::thread> conversations;
     std::thread listener;
 
@@ -60,13 +61,16 @@ struct FakeServer::Impl {
         tcp::socket knock(io);
         knock.connect(acceptor.local_endpoint(), ignored);
         listener.join();
-        {
-            const std::lock_guard lock(mutex);
-            for (const auto& stream : streams)
-                stream->lowest_layer().shutdown(tcp::socket::shutdown_both, ignored);
-        }
+        cut();
         for (std::thread& conversation : conversations)
             conversation.join();
+    }
+
+    void cut() {
+        asio::error_code ignored;
+        const std::lock_guard lock(mutex);
+        for (const auto& stream : streams)
+            stream->lowest_layer().shutdown(tcp::socket::shutdown_both, ignored);
     }
 
     void listen() {
@@ -74,7 +78,7 @@ struct FakeServer::Impl {
             auto stream = std::make_shared<Stream>(io, tls);
             asio::error_code error;
             acceptor.accept(stream->lowest_layer(), error);
-            if (stopping || error) continue;
+            if (stopping || error || down) continue;  // closed with the stream
             {
                 const std::lock_guard lock(mutex);
                 streams.insert(stream);
@@ -119,6 +123,10 @@ struct FakeServer::Impl {
                      double shiftHu = 0.0) {
         const int id = int(input.viewport());
         const Viewport& viewport = viewports.at(id);
+        {
+            const std::lock_guard lock(mutex);
+            ++asked[id].pictures;
+        }
         asio::write(stream, asio::buffer(framesOf({id, viewport.width, viewport.height, number,
                                                    input.sequence(), !input.moving(), positionMm,
                                                    viewport.centerHu + shiftHu,
@@ -170,8 +178,21 @@ struct FakeServer::Impl {
         entry->set_confidence(0.75);
         entry->set_warnings(2);
         entry->set_readers(1);
+        {
+            const std::lock_guard lock(mutex);
+            entry->set_bookmarks(std::uint32_t(bookmarks.size()));
+        }
+        if (!misbehaviour.anotherCase) return;
+        list.add_names("second");
+        auto* second = list.add_entries();
+        second->set_name("second");
+        second->set_state(protocol::CaseEntry::READY);
+        second->set_size_z(200);
+    }
+
+    void note(const protocol::SetViewport& set) {
         const std::lock_guard lock(mutex);
-        entry->set_bookmarks(std::uint32_t(bookmarks.size()));
+        asked[int(set.viewport())].size = {int(set.width()), int(set.height())};
     }
 
     // False: the socket is to be closed.
@@ -278,24 +299,31 @@ struct FakeServer::Impl {
                             protocol::ErrorReport::Code(misbehaviour.refuseCaseWith));
                         answer.mutable_error()->set_message("the scan's file is damaged");
                         write(stream, answer);
-                    } else if (message.open_case().name() != "phantom") {
+                    } else if (message.open_case().name() != "phantom" &&
+                               !(misbehaviour.anotherCase &&
+                                 message.open_case().name() == "second")) {
                         answer.mutable_error()->set_code(protocol::ErrorReport::NO_SUCH_CASE);
                         answer.mutable_error()->set_message("there is no such case");
                         write(stream, answer);
                     } else {
-                        write(stream, caseOpened("phantom"));
+                        write(stream, caseOpened(message.open_case().name()));
                     }
                     break;
                 case ClientMessage::kSetViewport: {
                     const auto& set = message.set_viewport();
                     viewports[int(set.viewport())] = {set.view(), int(set.width()),
                                                       int(set.height()), 0.0};
+                    note(set);
                     break;
                 }
-                case ClientMessage::kSetWindowLevel:
-                    viewports[int(message.set_window_level().viewport())].centerHu =
-                        message.set_window_level().window().center_hu();
+                case ClientMessage::kSetWindowLevel: {
+                    const auto& set = message.set_window_level();
+                    viewports[int(set.viewport())].centerHu = set.window().center_hu();
+                    const std::lock_guard lock(mutex);
+                    asked[int(set.viewport())].window = {set.window().center_hu(),
+                                                         set.window().width_hu()};
                     break;
+                }
                 case ClientMessage::kSetCamera: {
                     const auto& set = message.set_camera();
                     if (!set.moving() && misbehaviour.noStills) break;
@@ -342,6 +370,7 @@ struct FakeServer::Impl {
                     write(stream, fakePick(message.pick_wall(), !misbehaviour.notFlattened));
                     break;
                 case ClientMessage::kAskSeen:
+                    seenForgotten += message.ask_seen().forget();
                     if (message.ask_seen().forget()) seen = 0.0;
                     answer.mutable_wall_seen()->set_request(message.ask_seen().request());
                     answer.mutable_wall_seen()->set_share(seen);
@@ -356,7 +385,14 @@ struct FakeServer::Impl {
                     *answer.mutable_scan_statistics() = fakeStatistics(message.measure_scan());
                     write(stream, answer);
                     break;
-                case ClientMessage::kSetTransferFunction:
+                case ClientMessage::kSetWallPaint:
+                    break;
+                case ClientMessage::kSetTransferFunction: {
+                    {
+                        const std::lock_guard lock(mutex);
+                        asked[int(message.set_transfer_function().viewport())].optics =
+                            message.set_transfer_function().preset();
+                    }
                     if (!message.set_transfer_function().has_optics() &&
                         message.set_transfer_function().preset() != "mucosa" &&
                         message.set_transfer_function().preset() != "translucent") {
@@ -365,6 +401,7 @@ struct FakeServer::Impl {
                         write(stream, answer);
                     }
                     break;
+                }
                 case ClientMessage::kAddBookmark:
                     if (!addBookmark(stream, message.add_bookmark())) return;
                     break;
@@ -399,6 +436,9 @@ std::string FakeServer::fingerprint() const {
 int FakeServer::connections() const {
     return impl_->connections;
 }
+int FakeServer::seenForgotten() const {
+    return impl_->seenForgotten;
+}
 int FakeServer::bookmarkMessages() const {
     return impl_->bookmarkMessages;
 }
@@ -409,6 +449,17 @@ std::vector<std::string> FakeServer::storedBookmarkKeys() const {
     for (const auto& bookmark : impl_->bookmarks)
         keys.push_back(bookmark.client_key());
     return keys;
+}
+
+AskedOfViewport FakeServer::askedOf(View view) const {
+    const std::lock_guard lock(impl_->mutex);
+    const auto found = impl_->asked.find(int(view));
+    return found == impl_->asked.end() ? AskedOfViewport{} : found->second;
+}
+
+void FakeServer::setDown(bool down) {
+    impl_->down = down;
+    if (down) impl_->cut();
 }
 
 Centerline FakeServer::centerline() {

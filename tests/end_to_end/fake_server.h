@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/centerline.h"
+#include "core/view.h"
 #include "end_to_end/fake_pictures.h"
 #include "protocol/haustra.pb.h"
 
@@ -42,7 +43,16 @@ struct Misbehaviour {
     int ignoreBookmarks = 0;             ///< says nothing to so many, then stores them
     /// Changes what is told, once it is right.
     std::function<void(protocol::ServerMessage&)> alters = {};
-    int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
+    int refuseCaseWith = 0;    ///< answers OpenCase with this ErrorReport::Code, which is not fatal
+    bool anotherCase = false;  ///< has "second" beside "phantom"
+};
+
+/// What a viewport was told last, and how often it was asked for a picture.
+struct AskedOfViewport {
+    glm::ivec2 size{0};
+    WindowLevel window;
+    std::string optics;  ///< the preset's name; empty of a reader's own
+    int pictures = 0;
 };
 
 class FakeServer {
@@ -56,6 +66,10 @@ public:
     std::vector<std::string> storedBookmarkKeys() const;  ///< in order of storing, each key once
     int connections() const;
     int bookmarkMessages() const;
+    int seenForgotten() const;  ///< how often what had been seen was to be forgotten
+    AskedOfViewport askedOf(View view) const;
+    /// Down: links are cut, and whoever connects is shut out, until it is up again.
+    void setDown(bool down);
     static Centerline centerline();
 
 private:
