@@ -47,7 +47,8 @@ void declare(CLI::App& app, Arguments& a) {
         "refused\n"
         "when it changes. For a physician's judgement; not a certified medical device.");
     app.footer(
-        "In the window, ? or F1 shows the keys, which can be changed. Settings, layouts and keys are\n"
+        "In the window, ? or F1 shows the keys, which can be changed. Settings, layouts and keys "
+        "are\n"
         "kept in $XDG_CONFIG_HOME/haustra.\n"
         "Scripts have one JSON object a line; \"do\" names its action, one of\n" +
         actionNames() +
@@ -69,9 +70,9 @@ void declare(CLI::App& app, Arguments& a) {
                    "open this case (default: choose in the window, or the only one)")
         ->type_name("NAME");
     app.add_flag("--list", a.list, "print the names of the server's cases, and quit");
-    app.add_option(
-           "--size", a.size,
-           "the window's size, or with --headless that of pictures (default as it was last; 512x512)")
+    app.add_option("--size", a.size,
+                   "the window's size, or with --headless that of pictures (default as it was "
+                   "last; 512x512)")
         ->type_name("WxH");
     app.add_option("--fingerprint", a.fingerprint,
                    "SHA-256 of the server's certificate, as the server prints it: must match, and "

@@ -54,11 +54,11 @@ struct MarchUniforms {
 
 /// One slice, in the volume's texture coordinates.
 struct SliceUniforms {
-    vec4 originTexture;         ///< xyz: centre of the top left pixel
-    vec4 rightTexture;          ///< xyz: one pixel to the right; w: 1 where a slab shows its maximum
-    vec3 downTexture;           ///< one pixel down
-    int firstRow;               ///< of the band
-    ivec2 bandSize;             ///< pixels
+    vec4 originTexture;  ///< xyz: centre of the top left pixel
+    vec4 rightTexture;   ///< xyz: one pixel to the right; w: 1 where a slab shows its maximum
+    vec3 downTexture;    ///< one pixel down
+    int firstRow;        ///< of the band
+    ivec2 bandSize;      ///< pixels
     float greyScale, greyBias;  ///< stored value -> grey 0…1
     vec3 alongTexture;          ///< from one sample of a slab to the next
     int samplesAside;           ///< of a slab, on each side of the plane

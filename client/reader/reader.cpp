@@ -13,6 +13,8 @@ using std::chrono::milliseconds;
 constexpr auto opticsInterval = milliseconds(50);
 // The flattened views take long: they show optics that rest.
 constexpr auto opticsRest = milliseconds(350);
+// A flight that ran on over a picture that stands would show one place and name another.
+constexpr auto longestWait = milliseconds(1500);
 
 }  // namespace
 
@@ -26,6 +28,7 @@ void Reader::update(double seconds) {
     panes_.takePictures(Clock::now());
     if (!case_) return;
     if (session_.phase() != Phase::open) setMotion(Motion::paused);
+    if (waitsForPictures()) seconds = 0.0;
     if (const auto picked = flat_.update(seconds))
         slices_.show(picked->positionMm, flight_.camera().positionMm);
     slices_.follow(flight_.camera().positionMm);
@@ -78,9 +81,15 @@ ViewState Reader::stateOf(View view) const {
     }
 }
 
+bool Reader::waitsForPictures() const {
+    return session_.overdue(int(View::endoscopic)) > longestWait ||
+           session_.overdue(int(View::flattenedZoom)) > longestWait;
+}
+
 Freshness Reader::freshness(View view) const {
     if (panes_.pictureCount(view) == 0) return Freshness::none;
-    if (session_.phase() != Phase::open) return Freshness::old;
+    if (session_.phase() != Phase::open || session_.overdue(int(view)) > 2 * longestWait)
+        return Freshness::old;
     return panes_.picture(view).exact && panes_.shownState(view) == stateOf(view)
                ? Freshness::exact
                : Freshness::moving;
@@ -160,8 +169,19 @@ void Reader::restore(const Flight& flight, const SliceViews& slices) {
     flat_.forgetPicked();
 }
 
+// Of a place that was gone to, the gaze is towards it: the bookmark means it.
 void Reader::addBookmark(std::string note) {
-    if (case_) session_.addBookmark(flight_.camera(), flight_.arcMm(), std::move(note));
+    if (!case_) return;
+    Camera camera = flight_.camera();
+    if (const auto& picked = flat_.picked()) {
+        const glm::dvec3 way = picked->positionMm - camera.positionMm;
+        const glm::dvec3 right = glm::cross(way, camera.up);
+        if (glm::length(right) > 1e-6) {
+            camera.forward = glm::normalize(way);
+            camera.up = glm::normalize(glm::cross(right, way));
+        }
+    }
+    session_.addBookmark(camera, flight_.arcMm(), std::move(note));
 }
 
 void Reader::goToBookmark(int step) {

@@ -18,7 +18,7 @@ enum class Freshness {
     none,    ///< there is no picture yet
     exact,   ///< the lossless still of it
     moving,  ///< a newer picture will come
-    old,     ///< the link is down, or the case not open over it yet: none will come until it is
+    old,     ///< none has come for long, or none will: the link is down, the case not open yet
 };
 
 /// Belongs to one thread.
@@ -33,6 +33,9 @@ public:
     /// itself: the pictures would not follow. Never blocks.
     void update(double seconds);
     bool isOpen() const { return case_ != nullptr; }
+    /// The server has owed the picture that leads for a second and a half: flights stand still
+    /// until it comes.
+    bool waitsForPictures() const;
     /// Whether the picture will change soon by itself: draw at full rate.
     bool restless() const;
 
@@ -73,6 +76,7 @@ public:
     /// zoom, window, slab, scan. A place that the server is still asked about is gone to no more.
     void restore(const Flight& flight, const SliceViews& slices);
 
+    /// Of the place that was gone to last (FlatReading::picked), else of the gaze.
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
     /// The next (or, with −1, previous) bookmark along the centerline, if any.

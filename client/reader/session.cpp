@@ -490,6 +490,12 @@ std::chrono::seconds Session::overdue() const {
     return std::chrono::duration_cast<std::chrono::seconds>(now - oldest);
 }
 
+Clock::duration Session::overdue(int viewport) const {
+    const auto state = viewports_.find(viewport);
+    if (phase_ != Phase::open || state == viewports_.end() || !state->second.owedSince) return {};
+    return Clock::now() - *state->second.owedSince;
+}
+
 std::uint64_t Session::setWindowLevel(int viewport, const WindowLevel& window) {
     ViewportState& state = viewports_[viewport];
     state.window = window;

@@ -99,6 +99,8 @@ public:
     /// For how long the server has owed a picture or an answer that it has been asked for over this
     /// link; 0 where it owes none.
     std::chrono::seconds overdue() const;
+    /// The same of one viewport's picture.
+    Clock::duration overdue(int viewport) const;
 
     /// What colours the wall, in all viewports that show it. Of a case that has been flattened.
     std::uint64_t setWallPaint(const WallPaintChoice& paint);

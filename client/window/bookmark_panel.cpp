@@ -103,6 +103,7 @@ void BookmarkPanel::add() {
     reading_.reader().addBookmark(note_->text().toStdString());
     note_->clear();
     reading_.changed();
+    emit written();
 }
 
 void BookmarkPanel::look() {

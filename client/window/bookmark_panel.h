@@ -21,6 +21,10 @@ public:
     void writeNote();
     QSize sizeHint() const override { return {300, 220}; }
 
+signals:
+    /// The note is written, or given up: the keyboard goes back to the views.
+    void written();
+
 private:
     void look();
     void add();

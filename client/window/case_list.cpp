@@ -188,7 +188,7 @@ CaseList::CaseList(Reading& reading)
     column->addWidget(table_, 1);
 
     connect(search_, &QLineEdit::textChanged, this, [this](const QString& text) {
-        found_->setFilterFixedString(text);
+        found_->setFilterFixedString(text.trimmed());
         if (found_->rowCount() > 0 && !table_->currentIndex().isValid()) table_->selectRow(0);
     });
     connect(search_, &QLineEdit::returnPressed, this, &CaseList::openCurrent);

@@ -74,10 +74,12 @@ void goToBookmark(ReaderWindow& w, int step) {
                          [&w, bookmark] { w.reader().goTo(*bookmark); });
 }
 
-void clearAll(ReaderWindow& w) {
-    w.reading().setTool(DrawingTool::none);
-    w.reader().flat().wall().clearMeasurement();
-    w.leaveEnlarged();
+// One thing at a time, the nearest first.
+void stop(ReaderWindow& w) {
+    if (w.showsCases()) return w.showCases();
+    if (w.reading().tool() != DrawingTool::none) return w.reading().setTool(DrawingTool::none);
+    if (w.isEnlarged()) return w.leaveEnlarged();
+    w.reading().clearMeasures();
 }
 
 const std::array table = {
@@ -121,9 +123,10 @@ const std::array table = {
             .run = [](ReaderWindow& w) { w.reading().undoStack().redo(); }},
     Command{.id = "stop",
             .menu = Menu::edit,
-            .text = QT_TRANSLATE_NOOP("Commands", "Stop measuring and clear it"),
+            .text = QT_TRANSLATE_NOOP("Commands", "Stop measuring, clear what was measured"),
             .keys = "Esc",
-            .run = clearAll,
+            .needsCase = false,
+            .run = stop,
             .separatorBefore = true},
     // ---- view
     Command{.id = "enlarge",

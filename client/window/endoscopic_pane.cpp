@@ -80,7 +80,7 @@ void EndoscopicPane::paintFlight(QPainter& painter) {
         line(theme().bookmarkOnPicture,
              tr("bridge of %1 mm: the colon is collapsed or filled, no wall is seen")
                  .arg(bridge->lengthMm(), 0, 'f', 0));
-    if (flight.yawDegrees() != 0.0 || flight.pitchDegrees() != 0.0)
+    if (std::abs(flight.yawDegrees()) >= 0.5 || std::abs(flight.pitchDegrees()) >= 0.5)
         outlinedText(painter, {margin, height() - margin}, Qt::AlignLeft | Qt::AlignBottom,
                      theme().dimOnPicture,
                      tr("look %1°  %2°   double-click: straight ahead")

@@ -234,8 +234,10 @@ void FlatZoomPane::paintMeasurement(QPainter& painter) {
     if (!measurement || measurement->points.size() < 2) return;
     const FlatArea flat = areaOf(*this, reader());
     const QColor color = theme().measuredOnPicture;
-    // The copy that is nearest to the window's middle.
-    const double turn = std::round(flat.window.center.x - measurement->points.front().x);
+    // Where it was drawn, or the copy that is nearest to the window's middle.
+    const double away = flat.window.center.x - measurement->points.front().x;
+    const bool inWindow = std::abs(away) * flat.window.pixelsPerUnit <= 0.5 * flat.size.x;
+    const double turn = inWindow ? 0.0 : std::round(away);
     QPolygonF points;
     for (const glm::dvec2 p : measurement->points)
         points << flat.position(p + glm::dvec2(turn, 0.0));
@@ -301,6 +303,7 @@ void FlatZoomPane::pressed(const Hand& hand) {
 // Follows the hand with a line or an outline, of at most as many points as a server measures.
 void FlatZoomPane::draw(glm::dvec2 flat, double leastStep) {
     constexpr std::size_t mostPoints = 120;
+    flat.y = std::clamp(flat.y, 0.0, reader().flat().tour().strip().height);
     if (!drawsOutline_) {
         drawing_.resize(1);
         drawing_.push_back(flat);
@@ -326,6 +329,15 @@ void FlatZoomPane::dragged(const Hand& hand) {
 }
 
 void FlatZoomPane::released(const Hand&) {
+    const auto& measurement = reader().flat().wall().measurement();
+    if (drawing_.size() >= (drawsOutline_ ? 3u : 2u) && measurement) {
+        reader::WallQuestions& wall = reader().flat().wall();
+        reading().did(
+            tr("measure on the wall"), [&wall] { wall.clearMeasurement(); },
+            [&wall, points = measurement->points, closed = measurement->closed] {
+                wall.measure(points, closed);
+            });
+    }
     drawing_.clear();
 }
 

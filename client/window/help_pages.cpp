@@ -155,7 +155,8 @@ void KeysDialog::change() {
     dialog.setWindowTitle(textOf(command));
     auto* keys = new QKeySequenceEdit;
     keys->setAccessibleName(tr("The new key"));
-    auto* hint = new QLabel(tr("Press the new key. An empty field means: no key."));
+    auto* hint = new QLabel(
+        tr("Press the new key for “%1”. An empty field means: no key.").arg(textOf(command)));
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
     auto* clear = buttons->addButton(tr("No key"), QDialogButtonBox::ActionRole);
     connect(clear, &QPushButton::clicked, keys, &QKeySequenceEdit::clear);
@@ -174,7 +175,8 @@ void KeysDialog::change() {
         const auto answer = QMessageBox::question(
             this, tr("The key is taken"),
             tr("%1 is the key of “%2”. Take it from there?")
-                .arg(chosen.toString(QKeySequence::NativeText), textOf(other)));
+                .arg(chosen.toString(QKeySequence::NativeText), textOf(other)),
+            QMessageBox::Yes | QMessageBox::No, QMessageBox::No);
         if (answer != QMessageBox::Yes) return;
         held.removeAll(chosen);
         commands_.setKeys(other, held);

@@ -34,6 +34,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenuBar>
+#include <QMessageBox>
 #include <QMimeData>
 #include <QScrollArea>
 #include <QSettings>
@@ -115,7 +116,7 @@ ReaderWindow::ReaderWindow(Reading& reading)
     qApp->installEventFilter(this);
     setWindowTitle(QStringLiteral("Haustra"));
     second_.setWindowTitle(tr("Haustra, second window"));
-    menuBar()->setAccessibleName(tr("Menus"));
+    menus_->setAccessibleName(tr("Menus"));
     nameParts(*this);
     restoreGeometry(QSettings().value(geometrySetting).toByteArray());
     look();
@@ -160,6 +161,9 @@ Docks ReaderWindow::makeDocks() {
     docks.overview = pane(new OverviewPane(reading_), "overview");
     docks.oblique = pane(new ObliquePane(reading_), "oblique");
     bookmarks_ = new BookmarkPanel(reading_);
+    connect(bookmarks_, &BookmarkPanel::written, this, [this] {
+        if (Pane* pane = currentPane()) pane->setFocus();
+    });
     docks.bookmarks = dock(bookmarks_, "bookmarks", tr("Bookmarks"));
     docks.optics = dock(new OpticsPanel(reading_), "optics", tr("Colours, opacities and light"));
     return docks;
@@ -681,6 +685,14 @@ bool ReaderWindow::handleHeldKeys(QEvent* event) {
 }
 
 void ReaderWindow::closeEvent(QCloseEvent* event) {
+    const int owed = int(reader().session().owedBookmarks());
+    if (owed > 0 && reader().session().phase() != reader::Phase::open &&
+        QMessageBox::question(
+            this, tr("Bookmarks are not sent yet"),
+            tr("%n bookmark(s) wait for the server. They are kept on this station, and sent when "
+               "the case is opened here again. Quit?",
+               nullptr, owed)) != QMessageBox::Yes)
+        return event->ignore();
     if (reader().isOpen()) keepLayout();
     QSettings().setValue(geometrySetting, saveGeometry());
     second_.close();

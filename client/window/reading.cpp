@@ -89,6 +89,8 @@ Reading::~Reading() {
     while (session.owedBookmarks() > 0 && session.phase() == reader::Phase::open &&
            Clock::now() < deadline)
         session.poll(milliseconds(50));
+    // Its thread wakes the timers: it ends before they do.
+    reader_.reset();
 }
 
 // From the connection's thread: the many pictures of one moment are one step. By a timer, since
@@ -127,6 +129,8 @@ void Reading::watchSession() {
         emit caseOpened();
     }
     if (session.phase() != phase_) {
+        if (phase_ == reader::Phase::lost && case_ && case_->flat)
+            tell(tr("The server counts what has been seen of the wall anew with this link."), true);
         phase_ = session.phase();
         if (phase_ == reader::Phase::lost)
             qCInfo(readingLog) << "lost:" << text(session.failure());
@@ -184,6 +188,26 @@ void Reading::jump(const QString& text, std::function<void()> go) {
     const auto back = wayBack();
     goThere();
     did(text, back, goThere);
+}
+
+void Reading::clearMeasures() {
+    reader::ScanMeasures& measures = reader_->measures();
+    reader::WallQuestions& wall = reader_->flat().wall();
+    const auto before = measures.measures();
+    const auto onWall = wall.measurement();
+    if (before.empty() && !onWall) return;
+    const auto clear = [&measures, &wall] {
+        measures.set({});
+        wall.clearMeasurement();
+    };
+    clear();
+    did(
+        tr("clear measurements"),
+        [&measures, &wall, before, onWall] {
+            measures.set(before);
+            if (onWall) wall.measure(onWall->points, onWall->closed);
+        },
+        clear);
 }
 
 void Reading::setTool(DrawingTool tool) {

@@ -46,6 +46,9 @@ public:
     /// A jump of the flight that can be taken back, and done again by `go`.
     void jump(const QString& text, std::function<void()> go);
 
+    /// Rulers and ellipses on slices, and what was measured on the wall.
+    void clearMeasures();
+
     DrawingTool tool() const { return tool_; }
     void setTool(DrawingTool tool);
 

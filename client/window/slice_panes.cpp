@@ -46,15 +46,7 @@ QString GreyPane::inWords() const {
 }
 
 void GreyPane::fillMenu(QMenu& menu) {
-    menu.addAction(tr("Clear rulers and ellipses"), this,
-                   [this] {
-                       reader::ScanMeasures& measures = reader().measures();
-                       const auto before = measures.measures();
-                       measures.set({});
-                       reading().did(
-                           tr("clear measurements"), [&measures, before] { measures.set(before); },
-                           [&measures] { measures.set({}); });
-                   })
+    menu.addAction(tr("Clear rulers and ellipses"), this, [this] { reading().clearMeasures(); })
         ->setEnabled(!reader().measures().measures().empty());
 }
 
@@ -148,14 +140,10 @@ void GreyPane::left() {
 }
 
 void GreyPane::paintMeasures(QPainter& painter, const SlicePlacement& placement) {
-    const glm::dvec3 normal = glm::normalize(glm::cross(placement.rightMm, placement.downMm));
-    const glm::dvec3 spacing = reader().session().caseInfo()->grid.spacingMm();
-    const double nearMm =
-        0.51 * std::max({spacing.x, spacing.y, spacing.z, reader().slices().slab().thicknessMm});
+    const glm::dvec3 normal = placement.normal();
     painter.setFont(font());
     for (const reader::ScanMeasure& measure : reader().measures().measures()) {
-        if (std::abs(glm::dot(measure.normal, normal)) < 0.999 ||
-            std::abs(glm::dot(measure.fromMm - placement.topLeftMm, normal)) > nearMm)
+        if (std::abs(glm::dot(measure.normal, normal)) < 0.999 || !isOn(placement, measure.fromMm))
             continue;
         const QPointF from = positionOf(placement, measure.fromMm),
                       to = positionOf(placement, measure.toMm);
@@ -190,20 +178,32 @@ void GreyPane::paintMeasures(QPainter& painter, const SlicePlacement& placement)
     }
 }
 
+// Within half a voxel of the plane, or within its slab.
+bool GreyPane::isOn(const SlicePlacement& placement, glm::dvec3 mm) const {
+    const glm::dvec3 spacing = reader().session().caseInfo()->grid.spacingMm();
+    const double thickMm =
+        std::max({spacing.x, spacing.y, spacing.z, reader().slices().slab().thicknessMm});
+    return std::abs(glm::dot(mm - placement.topLeftMm, placement.normal())) <= 0.51 * thickMm;
+}
+
 void GreyPane::paintTexts(QPainter& painter, const QString& place) {
     painter.setFont(smallFont(font()));
     const double margin = 8.0;
     outlinedText(painter, {margin, margin}, topLeft, theme().onPicture, heading());
     outlinedText(painter, {width() - margin, margin}, topRight, theme().dimOnPicture, place);
     const WindowLevel& window = reader().slices().window();
-    const double low =
-        outlinedText(painter, {margin, height() - margin}, bottomLeft, theme().dimOnPicture,
-                     tr("C %1  W %2 HU").arg(window.centerHu).arg(window.widthHu))
-            .top();
+    outlinedText(painter, {margin, height() - margin}, bottomLeft, theme().dimOnPicture,
+                 tr("C %1  W %2 HU").arg(window.centerHu).arg(window.widthHu));
     const auto& pointed = reader().measures().pointed();
-    if (!pointed || !underMouse()) return;
-    outlinedText(painter, {margin, low}, bottomLeft, theme().accentOnPicture,
-                 tr("%1 HU").arg(std::lround(pointed->hu)));
+    const auto placed = placement();
+    if (!pointed || !underMouse() || !placed) return;
+    // Beside the mouse, on that side of it where there is room.
+    const QPointF at = positionOf(*placed, pointed->placeMm);
+    const bool isRight = at.x() > width() - 90.0, isLow = at.y() > height() - 50.0;
+    outlinedText(
+        painter, at + QPointF(isRight ? -12 : 14, isLow ? -12 : 16),
+        (isRight ? Qt::AlignRight : Qt::AlignLeft) | (isLow ? Qt::AlignBottom : Qt::AlignTop),
+        theme().accentOnPicture, tr("%1 HU").arg(std::lround(pointed->hu)));
 }
 
 // ---- a slice ------------------------------------------------------------------------------------
@@ -263,16 +263,19 @@ void SlicePane::paintCrosshair(QPainter& painter, const SlicePlacement& placemen
     constexpr double gap = 9.0;
     QColor faint = theme().accentOnPicture;
     faint.setAlpha(theme().lineWidth > 1.0 ? 255 : 120);
-    painter.setPen(QPen(faint, theme().lineWidth));
+    // Dashed where the camera is not in this slice.
+    const bool isHere = isOn(placement, camera.positionMm);
+    painter.setPen(QPen(faint, theme().lineWidth, isHere ? Qt::SolidLine : Qt::DashLine));
     painter.setRenderHint(QPainter::Antialiasing, false);
     painter.drawLine(QPointF(0, p.y()), p - QPointF(gap, 0));
     painter.drawLine(p + QPointF(gap, 0), QPointF(width(), p.y()));
     painter.drawLine(QPointF(p.x(), 0), p - QPointF(0, gap));
     painter.drawLine(p + QPointF(0, gap), QPointF(p.x(), height()));
     painter.setRenderHint(QPainter::Antialiasing);
-    painter.setPen(Qt::NoPen);
-    painter.setBrush(theme().accentOnPicture);
+    painter.setPen(QPen(theme().accentOnPicture, 1.2));
+    painter.setBrush(isHere ? QBrush(theme().accentOnPicture) : QBrush(Qt::NoBrush));
     painter.drawEllipse(p, 2.5, 2.5);
+    painter.setBrush(theme().accentOnPicture);
     const glm::dvec2 ahead =
         placement.pixelFromPatient(camera.positionMm + camera.forward * placement.pixelMm()) -
         placement.pixelFromPatient(camera.positionMm);
@@ -290,7 +293,7 @@ void SlicePane::paintMarks(QPainter& painter) {
     const auto placed = placement();
     if (!placed) return;
     paintCrosshair(painter, *placed);
-    if (const auto& picked = reader().flat().picked())
+    if (const auto& picked = reader().flat().picked(); picked && isOn(*placed, picked->positionMm))
         paintPlaceMark(painter, positionOf(*placed, picked->positionMm));
     painter.setFont(smallFont(font()));
     paintSides(painter, rect(), glm::normalize(placed->rightMm), -glm::normalize(placed->downMm));

@@ -36,6 +36,7 @@ protected:
 
     std::optional<glm::dvec3> patientAt(QPointF position) const;
     QPointF positionOf(const SlicePlacement& placement, glm::dvec3 mm) const;
+    bool isOn(const SlicePlacement& placement, glm::dvec3 mm) const;
     void paintMeasures(QPainter& painter, const SlicePlacement& placement);
     void paintTexts(QPainter& painter, const QString& place);
 

@@ -38,9 +38,9 @@ struct Misbehaviour {
     int stopsWhileOpening = 0;           ///< says so to as many OpenCases, and closes the socket
     bool othersMarkToo = false;  ///< with each bookmark that is added, another session adds one
     double seenAtFirst = 0.0;    ///< share of the wall that each connection begins with
-    int dropAtQuestions = 0;             ///< closes the socket at so many questions about the scan
-    int refuseBookmarks = 0;             ///< refuses so many, then stores them
-    int ignoreBookmarks = 0;             ///< says nothing to so many, then stores them
+    int dropAtQuestions = 0;     ///< closes the socket at so many questions about the scan
+    int refuseBookmarks = 0;     ///< refuses so many, then stores them
+    int ignoreBookmarks = 0;     ///< says nothing to so many, then stores them
     /// Changes what is told, once it is right.
     std::function<void(protocol::ServerMessage&)> alters = {};
     int refuseCaseWith = 0;    ///< answers OpenCase with this ErrorReport::Code, which is not fatal

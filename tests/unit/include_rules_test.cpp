@@ -265,9 +265,9 @@ TEST(IncludeRules, ForeignLibrariesStayInTheirFolders) {
             if (!std::regex_match(include.header, foreign.header)) continue;
             EXPECT_TRUE(foreign.folders.count(include.folder))
                 << include.file << " must not include <" << include.header << ">";
-            const bool looseInHeaders =
-                include.header.rfind("asio", 0) == 0 || include.header.rfind("epoxy", 0) == 0 ||
-                include.folder == "client/window";  // its parts are widgets
+            const bool looseInHeaders = include.header.rfind("asio", 0) == 0 ||
+                                        include.header.rfind("epoxy", 0) == 0 ||
+                                        include.folder == "client/window";  // its parts are widgets
             if (!looseInHeaders) {
                 EXPECT_EQ(include.file.extension(), ".cpp")
                     << include.file << " shows <" << include.header << "> to its users";

@@ -36,10 +36,6 @@
         <translation>Wiederherstellen</translation>
     </message>
     <message>
-        <source>Stop measuring and clear it</source>
-        <translation>Messung beenden und löschen</translation>
-    </message>
-    <message>
         <source>Enlarge this pane, and back</source>
         <translation>Diese Ansicht vergrößern und zurück</translation>
     </message>
@@ -299,6 +295,18 @@
         <source>&amp;Help</source>
         <translation>&amp;Hilfe</translation>
     </message>
+    <message>
+        <source>go to a bookmark</source>
+        <translation>zu einem Lesezeichen gehen</translation>
+    </message>
+    <message>
+        <source>Stop measuring, clear what was measured</source>
+        <translation>Messen beenden, Gemessenes löschen</translation>
+    </message>
+    <message>
+        <source>change the window</source>
+        <translation>Fensterung ändern</translation>
+    </message>
 </context>
 <context>
     <name>Help</name>
@@ -413,6 +421,14 @@
     <message>
         <source>what else can be done there</source>
         <translation>was dort sonst noch möglich ist</translation>
+    </message>
+    <message>
+        <source>Clear the field</source>
+        <translation>Feld leeren</translation>
+    </message>
+    <message>
+        <source>What does not fit</source>
+        <translation>Was keinen Platz hat</translation>
     </message>
 </context>
 <context>
@@ -683,6 +699,10 @@
         <source>This server cannot tell where the wall is that was clicked.</source>
         <translation>Dieser Server kann die angeklickte Stelle der Wand nicht bestimmen.</translation>
     </message>
+    <message>
+        <source>go to a place of the wall</source>
+        <translation>zu einer Stelle der Wand gehen</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::FlatZoomPane</name>
@@ -729,6 +749,10 @@
     <message>
         <source>go to a place of the wall</source>
         <translation>zu einer Stelle der Wand gehen</translation>
+    </message>
+    <message>
+        <source>measure on the wall</source>
+        <translation>auf der Wand messen</translation>
     </message>
 </context>
 <context>
@@ -793,6 +817,10 @@
         <source>Flight</source>
         <translation>Flug</translation>
     </message>
+    <message>
+        <source>choose a preset</source>
+        <translation>Vorlage wählen</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::GreyPane</name>
@@ -817,20 +845,12 @@
         <translation>Strecken und Ellipsen löschen</translation>
     </message>
     <message>
-        <source>clear measurements</source>
-        <translation>Messungen löschen</translation>
-    </message>
-    <message>
         <source>draw an ellipse</source>
         <translation>Ellipse zeichnen</translation>
     </message>
     <message>
         <source>draw a ruler</source>
         <translation>Strecke zeichnen</translation>
-    </message>
-    <message>
-        <source>change the window</source>
-        <translation>Fensterung ändern</translation>
     </message>
     <message>
         <source>%1 mm</source>
@@ -931,10 +951,6 @@
         <translation>Neue Taste</translation>
     </message>
     <message>
-        <source>Press the new key. An empty field means: no key.</source>
-        <translation>Die neue Taste drücken. Ein leeres Feld bedeutet: keine Taste.</translation>
-    </message>
-    <message>
         <source>No key</source>
         <translation>Keine Taste</translation>
     </message>
@@ -945,6 +961,10 @@
     <message>
         <source>%1 is the key of “%2”. Take it from there?</source>
         <translation>%1 ist schon die Taste für „%2“. Dort entfernen?</translation>
+    </message>
+    <message>
+        <source>Press the new key for “%1”. An empty field means: no key.</source>
+        <translation>Neue Taste für „%1“ drücken. Ein leeres Feld bedeutet: keine Taste.</translation>
     </message>
 </context>
 <context>
@@ -963,6 +983,14 @@
             <numerusform>%n Lesezeichen wird gespeichert, sobald der Server wieder erreichbar ist.</numerusform>
             <numerusform>%n Lesezeichen werden gespeichert, sobald der Server wieder erreichbar ist.</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>The server has owed a picture or an answer for %1 s.</source>
+        <translation>Der Server schuldet seit %1 s ein Bild oder eine Antwort.</translation>
+    </message>
+    <message>
+        <source>The server opens the case. What is shown is old until then.</source>
+        <translation>Der Server öffnet den Fall. Bis dahin ist das Gezeigte veraltet.</translation>
     </message>
 </context>
 <context>
@@ -1281,10 +1309,6 @@
         <translation>Warten auf das Bild…</translation>
     </message>
     <message>
-        <source>old picture: the link is down</source>
-        <translation>veraltetes Bild: keine Verbindung</translation>
-    </message>
-    <message>
         <source>Case: %1</source>
         <translation>Fall: %1</translation>
     </message>
@@ -1307,6 +1331,10 @@
     <message>
         <source>For a physician&apos;s judgement; not a certified medical device.</source>
         <translation>Zur ärztlichen Beurteilung; kein zertifiziertes Medizinprodukt.</translation>
+    </message>
+    <message>
+        <source>old picture</source>
+        <translation>veraltetes Bild</translation>
     </message>
 </context>
 <context>
@@ -1371,16 +1399,8 @@
         <translation>Die Sprache wechselt mit dem nächsten Start.</translation>
     </message>
     <message>
-        <source>Case</source>
-        <translation>Fall</translation>
-    </message>
-    <message>
         <source>not cleansed</source>
         <translation>nicht gereinigt</translation>
-    </message>
-    <message>
-        <source>Notices</source>
-        <translation>Hinweise</translation>
     </message>
     <message>
         <source>Figures of the link and the pictures</source>
@@ -1485,6 +1505,21 @@
         <source>cecum</source>
         <translation>Zökum</translation>
     </message>
+    <message>
+        <source>Menus</source>
+        <translation>Menüs</translation>
+    </message>
+    <message>
+        <source>Bookmarks are not sent yet</source>
+        <translation>Lesezeichen sind noch nicht gesendet</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) wait for the server. They are kept on this station, and sent when the case is opened here again. Quit?</source>
+        <translation>
+            <numerusform>%n Lesezeichen wartet auf den Server. Es bleibt auf dieser Station und wird gesendet, wenn der Fall hier wieder geöffnet wird. Beenden?</numerusform>
+            <numerusform>%n Lesezeichen warten auf den Server. Sie bleiben auf dieser Station und werden gesendet, wenn der Fall hier wieder geöffnet wird. Beenden?</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::Reading</name>
@@ -1505,6 +1540,14 @@
             <numerusform>%n Lesezeichen nicht gespeichert: Der Server hat es abgelehnt. Es bleibt in der Liste der Lesezeichen und kann erneut gesendet oder verworfen werden.</numerusform>
             <numerusform>%n Lesezeichen nicht gespeichert: Der Server hat sie abgelehnt. Sie bleiben in der Liste der Lesezeichen und können erneut gesendet oder verworfen werden.</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>The server counts what has been seen of the wall anew with this link.</source>
+        <translation>Der Server zählt mit dieser Verbindung neu, was von der Wand gesehen wurde.</translation>
+    </message>
+    <message>
+        <source>clear measurements</source>
+        <translation>Messungen löschen</translation>
     </message>
 </context>
 <context>

@@ -44,6 +44,13 @@
             <numerusform>%n places to look at</numerusform>
         </translation>
     </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) wait for the server. They are kept on this station, and sent when the case is opened here again. Quit?</source>
+        <translation>
+            <numerusform>%n bookmark waits for the server. It is kept on this station, and sent when the case is opened here again. Quit?</numerusform>
+            <numerusform>%n bookmarks wait for the server. They are kept on this station, and sent when the case is opened here again. Quit?</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::Reading</name>
