@@ -56,6 +56,7 @@ void FlatReading::goTo(glm::dvec3 placeMm) {
     if (!case_->centerline.points.empty())
         flight_.lookAt(nearestArc(case_->centerline, placeMm), placeMm);
     stay();
+    wall_.forgetPick();
     picked_ = GoneTo{placeMm};
     if (!hasStrip()) return;
     asked_ = Asked::nearPlace;

@@ -97,6 +97,8 @@ void Flight::standAs(const Flight& other) {
     freeCamera_ = other.freeCamera_;
     freeCamera_.fovDegrees = fovDegrees_;
     freeCamera_.lens = lens_;
+    // Yaw is from the direction of flight: with another one, the same numbers look backwards.
+    if (!free_) direction_ = other.direction_;
 }
 
 void Flight::look(double yawDegrees, double pitchDegrees) {

@@ -64,8 +64,8 @@ public:
     /// of `arcMm`, else freely.
     void goTo(const Camera& camera, double arcMm);
 
-    /// Stands where `other` stands, and looks where it looks; pauses. Lens, field of view, speed
-    /// and direction stay.
+    /// Stands where `other` stands, and looks where it looks; pauses. Lens, field of view and
+    /// speed stay.
     void standAs(const Flight& other);
 
     /// Goes to an arc of the path and looks at a patient point from there; pauses. Without a path,

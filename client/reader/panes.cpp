@@ -119,9 +119,12 @@ void Panes::askForViews(const std::function<ViewState(View)>& stateOf, Clock::ti
     }
 }
 
+bool Panes::owes(View view) const {
+    return inUse(view) && pacers_[at(view)].owes();
+}
+
 bool Panes::owe() const {
-    return std::any_of(allViews.begin(), allViews.end(),
-                       [&](View view) { return inUse(view) && pacers_[at(view)].owes(); });
+    return std::any_of(allViews.begin(), allViews.end(), [&](View view) { return owes(view); });
 }
 
 }  // namespace haustra::reader

@@ -32,6 +32,7 @@ public:
     void askForViews(const std::function<ViewState(View)>& stateOf, Clock::time_point now);
     /// Whether some view will be asked for later even if nothing changes any more.
     bool owe() const;
+    bool owes(View view) const;
 
     /// The newest picture of a view, and how many there were; nothing shown: count 0.
     const tiles::Picture& picture(View view) const { return pictures_.picture(view); }

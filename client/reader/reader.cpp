@@ -90,7 +90,12 @@ Freshness Reader::freshness(View view) const {
     if (panes_.pictureCount(view) == 0) return Freshness::none;
     if (session_.phase() != Phase::open || session_.overdue(int(view)) > 2 * longestWait)
         return Freshness::old;
-    return panes_.picture(view).exact && panes_.shownState(view) == stateOf(view)
+    // Of the size and the colours that are wanted now, too.
+    const tiles::Picture& picture = panes_.picture(view);
+    return picture.exact && !panes_.owes(view) &&
+                   session_.overdue(int(view)) == Clock::duration(0) &&
+                   glm::ivec2(picture.width, picture.height) == panes_.size(view) &&
+                   panes_.shownState(view) == stateOf(view)
                ? Freshness::exact
                : Freshness::moving;
 }
@@ -154,7 +159,7 @@ void Reader::setMotion(Motion motion) {
         flight_.setMotion(motion);
 }
 
-void Reader::goTo(glm::dvec3 placeMm, View plane) {
+void Reader::goTo(glm::dvec3 placeMm, std::optional<View> plane) {
     if (!case_) return;
     if (slices_.linked()) {
         setMotion(Motion::paused);

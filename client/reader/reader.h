@@ -71,7 +71,7 @@ public:
     void setMotion(Motion motion);
     /// A click in a slice: every view shows that place. Where slices are not linked, `plane` shows
     /// it and nothing else moves.
-    void goTo(glm::dvec3 placeMm, View plane);
+    void goTo(glm::dvec3 placeMm, std::optional<View> plane);
     /// Back where flight and slices were. What has been set since stays: lens, speed and direction,
     /// zoom, window, slab, scan. A place that the server is still asked about is gone to no more.
     void restore(const Flight& flight, const SliceViews& slices);

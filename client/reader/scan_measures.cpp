@@ -9,7 +9,7 @@ namespace {
 
 bool sameEllipse(const ScanMeasure& a, const ScanMeasure& b) {
     return a.isEllipse && b.isEllipse && a.fromMm == b.fromMm && a.toMm == b.toMm &&
-           a.right == b.right && a.normal == b.normal && a.scan == b.scan;
+           a.right == b.right && a.normal == b.normal && a.scan == b.scan && a.slab == b.slab;
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ void ScanMeasures::update() {
             pointAsked_ = 0;
             pointed_.reset();
             if (values && values->samples > 0 && pointingAt_)
-                pointed_ = Pointed{pointAskedMm_, values->meanHu};
+                pointed_ = Pointed{pointAskedMm_, askedScan_, values->meanHu};
         } else if (const auto asked = asked_.find(answer.request); asked != asked_.end()) {
             for (ScanMeasure& measure : measures_)
                 if (sameEllipse(measure, asked->second)) {
@@ -45,6 +45,7 @@ void ScanMeasures::update() {
     if (pointDue_ && pointAsked_ == 0) {
         pointDue_ = false;
         pointAskedMm_ = *pointingAt_;
+        askedScan_ = pointScan_;
         ScanRegion region;
         region.centerMm = pointAskedMm_;
         region.scan = pointScan_;
@@ -59,6 +60,7 @@ void ScanMeasures::update() {
         region.halfAMm = measure.halfAMm();
         region.halfBMm = measure.halfBMm();
         region.scan = measure.scan;
+        region.slab = measure.slab;
         constexpr double leastMm = 0.05;
         if (glm::length(region.halfAMm) < leastMm || glm::length(region.halfBMm) < leastMm)
             continue;
@@ -68,6 +70,7 @@ void ScanMeasures::update() {
 }
 
 void ScanMeasures::pointAt(std::optional<glm::dvec3> placeMm, Scan scan) {
+    if (placeMm == pointingAt_ && scan == pointScan_) return;
     pointingAt_ = placeMm;
     pointScan_ = scan;
     pointDue_ = placeMm.has_value();

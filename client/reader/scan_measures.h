@@ -14,9 +14,10 @@ struct ScanMeasure {
     bool isEllipse = false;
     glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit; of the plane
     /// Of a ruler its ends; of an ellipse the opposite corners of the box around it, of which
-    /// `rightMm` is the direction of a side (unit).
+    /// `right` is the direction of a side (unit).
     glm::dvec3 fromMm{0.0}, toMm{0.0}, right{1.0, 0.0, 0.0};
     Scan scan = Scan::original;              ///< whose values an ellipse has
+    Slab slab{};                             ///< that it was drawn on, and has the values of
     std::optional<ScanStatistics> values{};  ///< of an ellipse, once the server has told them
     bool refused = false;                    ///< it will not
 
@@ -40,6 +41,7 @@ public:
     void pointAt(std::optional<glm::dvec3> placeMm, Scan scan);
     struct Pointed {
         glm::dvec3 placeMm;
+        Scan scan;
         double hu;
     };
     /// The last place that has an answer, while the mouse is over the scan.
@@ -58,7 +60,7 @@ private:
     std::optional<Pointed> pointed_;
     std::optional<glm::dvec3> pointingAt_;
     glm::dvec3 pointAskedMm_{0.0};
-    Scan pointScan_ = Scan::original;
+    Scan pointScan_ = Scan::original, askedScan_ = Scan::original;
     std::uint64_t pointAsked_ = 0;
     bool pointDue_ = false;
 };

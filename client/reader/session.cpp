@@ -276,7 +276,8 @@ void Session::opened(const protocol::CaseOpened& message) {
                        "case opened: name"});
     }
     // After a reconnection the same case keeps its address, and the reader's flight with it.
-    const bool same = caseInfo_ && caseInfo_->name == info->name && caseInfo_->scan == info->scan &&
+    const bool same = !std::exchange(choseAnew_, false) && caseInfo_ &&
+                      caseInfo_->name == info->name && caseInfo_->scan == info->scan &&
                       caseInfo_->centerline.points.size() == info->centerline.points.size() &&
                       caseInfo_->cleansed == info->cleansed &&
                       sameStrip(caseInfo_->flat, info->flat) &&
@@ -397,6 +398,7 @@ std::vector<std::string> Session::caseNames() const {
 
 void Session::openCase(const std::string& name) {
     caseName_ = name;
+    choseAnew_ = true;
     bookmarks_.clear();
     bookmarkOfId_.clear();
     ++bookmarksRevision_;

@@ -145,6 +145,8 @@ public:
     const Bookmark* acknowledgedBookmark(const std::string& clientKey) const;
     /// Of the open case, or of the one that is being opened.
     std::size_t owedBookmarks() const;
+    /// Whether those outlive this session.
+    bool keepsUnsent() const { return journal_.has_value(); }
     /// Number of the newest requestBookmarks that was answered.
     std::uint64_t answeredBookmarkRequest() const { return answeredList_; }
 
@@ -236,6 +238,7 @@ private:
     std::string lastWords_;  // why the server ends the link; it is lost next
     std::string caseName_;
     bool offersCases_ = false;
+    bool choseAnew_ = false;  // the reader chose it: its address changes, though it is the same
     std::vector<CaseEntry> cases_;
     std::uint64_t casesRevision_ = 0;
     bool linked_ = false;

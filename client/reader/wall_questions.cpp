@@ -38,7 +38,7 @@ void WallQuestions::take(const Session::WallAnswer& answer) {
     } else if (answer.request == measuring_) {
         measuring_ = 0;
         const auto* measured = answer.body ? std::get_if<FlatMeasure>(&*answer.body) : nullptr;
-        if (measurement_ && measured) measurement_->result = *measured;
+        if (measurement_) measurement_->result = measured ? std::optional(*measured) : std::nullopt;
     } else if (const auto asked = bookmarksAsked_.find(answer.request);
                asked != bookmarksAsked_.end()) {
         if (place) bookmarkPlaces_[asked->second] = *place;
@@ -52,6 +52,7 @@ void WallQuestions::measure(std::vector<glm::dvec2> points, bool closed) {
         measurement_->points = std::move(points);
     } else {
         measurement_ = Measurement{std::move(points), closed, {}};
+        measuring_ = 0;  // that answer is of another drawing
     }
     measurementChanged_ = true;
 }

@@ -38,7 +38,7 @@ public:
 
     /// Starts a measurement, or goes on drawing it; at least two points (an outline: three).
     void measure(std::vector<glm::dvec2> points, bool closed);
-    void clearMeasurement() { measurement_.reset(); }
+    void clearMeasurement() { measurement_.reset(), measuring_ = 0; }
     const std::optional<Measurement>& measurement() const { return measurement_; }
 
     /// The place of the wall that each bookmark means, by its client key: its mark, as the server

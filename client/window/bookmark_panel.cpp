@@ -92,6 +92,12 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
             [this](QTreeWidgetItem* item) { goTo(keyOf(*item)); });
     connect(list_, &QTreeWidget::customContextMenuRequested, this, &BookmarkPanel::showMenu);
     connect(&reading, &Reading::stepped, this, &BookmarkPanel::look);
+    // A note that was begun is of its patient.
+    connect(&reading, &Reading::caseOpened, this, [this] {
+        drafts_[std::exchange(draftOf_, reading_.reader().session().caseInfo()->scan)] =
+            note_->text();
+        note_->setText(drafts_[draftOf_]);
+    });
 }
 
 void BookmarkPanel::writeNote() {

@@ -34,6 +34,8 @@ private:
 
     Reading& reading_;
     QLineEdit* note_;
+    std::map<std::string, QString> drafts_;  // not sent, by scan
+    std::string draftOf_;
     QTreeWidget* list_;
     QLabel* hint_;
     std::uint64_t shownRevision_ = 0;  // of the session's bookmarks

@@ -591,7 +591,7 @@ void CommandSet::look() {
     const QUndoStack& stack = window_.reading().undoStack();
     for (const auto& [id, can, what] : {std::tuple{"undo", stack.canUndo(), stack.undoText()},
                                         std::tuple{"redo", stack.canRedo(), stack.redoText()}}) {
-        action(id)->setEnabled(can);
+        action(id)->setEnabled(open && can);
         const QString name =
             QCoreApplication::translate("Commands", id[0] == 'u' ? "Undo" : "Redo");
         action(id)->setText(can ? name + QStringLiteral(": ") + what : name);

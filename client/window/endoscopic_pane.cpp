@@ -45,7 +45,7 @@ void EndoscopicPane::addShown(Shown& shown) const {
 void EndoscopicPane::paintMarks(QPainter& painter) {
     if (const auto& picked = reader().flat().picked()) {
         // Where it is seen, or would be but for what is in front of it.
-        if (const auto seen = reader::seenAt(reader().flight().camera(), picked->positionMm))
+        if (const auto seen = reader::seenAt(shownCamera(), picked->positionMm))
             paintPlaceMark(painter, QRectF(rect()).center() + height() * point(*seen));
     }
     paintFlight(painter);
@@ -106,6 +106,12 @@ void EndoscopicPane::paintBadge(QPainter& painter) {
     painter.drawEllipse(QPointF(box.left() - 9, box.center().y()), 4, 4);
 }
 
+// The picture lags behind a flight.
+Camera EndoscopicPane::shownCamera() const {
+    const Camera* pictured = reader().panes().shown<Camera>(View::endoscopic);
+    return pictured ? *pictured : reader().flight().camera();
+}
+
 void EndoscopicPane::dragged(const Hand& hand) {
     if (hand.button != Qt::LeftButton) return;
     // A drag across the pane's height turns by the field of view, towards the hand.
@@ -117,7 +123,7 @@ void EndoscopicPane::clicked(const Hand& hand) {
     if (hand.button != Qt::LeftButton) return;
     if (!reader().session().serverCan(protocol::capability::pick))
         return reading().tell(tr("This server cannot tell where the wall is that was clicked."));
-    const Camera camera = reader().flight().camera();
+    const Camera camera = shownCamera();
     const glm::dvec2 fromMiddle =
         vector(hand.position - QRectF(rect()).center()) / double(height());
     const auto direction = rayThrough(camera, fromMiddle);

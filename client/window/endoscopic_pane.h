@@ -20,10 +20,12 @@ protected:
     void addShown(Shown& shown) const override;
     void dragged(const Hand& hand) override;
     void clicked(const Hand& hand) override;
+    bool takesDoubleClicks() const override { return true; }
     void doubleClicked(const Hand& hand) override;
     void wheeled(const Hand& hand, double steps) override;
 
 private:
+    Camera shownCamera() const;
     void paintFlight(QPainter& painter);
     void paintBadge(QPainter& painter);
 };

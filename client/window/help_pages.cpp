@@ -156,7 +156,8 @@ void KeysDialog::change() {
     auto* keys = new QKeySequenceEdit;
     keys->setAccessibleName(tr("The new key"));
     auto* hint = new QLabel(
-        tr("Press the new key for “%1”. An empty field means: no key.").arg(textOf(command)));
+        tr("Press the new key for “%1”. It takes the place of: %2. An empty field means: no key.")
+            .arg(textOf(command), keysText(*commands_.action(command))));
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
     auto* clear = buttons->addButton(tr("No key"), QDialogButtonBox::ActionRole);
     connect(clear, &QPushButton::clicked, keys, &QKeySequenceEdit::clear);

@@ -21,6 +21,7 @@ protected:
     void addShown(Shown& shown) const override;
     void dragged(const Hand& hand) override;
     void clicked(const Hand& hand) override;
+    bool takesDoubleClicks() const override { return true; }
     void doubleClicked(const Hand& hand) override;
     void wheeled(const Hand& hand, double steps) override;
     void hovered(const Hand& hand) override;

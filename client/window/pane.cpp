@@ -34,6 +34,8 @@ Pane::Pane(Reading& reading, View view, const QString& title, QWidget* parent)
     setFocusPolicy(Qt::StrongFocus);
     setAccessibleName(title);
     connect(&reading, &Reading::stepped, this, &Pane::look);
+    // A drag that was begun in another case ends with it.
+    connect(&reading, &Reading::caseOpened, this, [this] { held_ = Qt::NoButton; });
 }
 
 QString Pane::inWords() const {
@@ -170,6 +172,7 @@ void Pane::showEvent(QShowEvent*) {
     tellSize();
 }
 void Pane::hideEvent(QHideEvent*) {
+    held_ = Qt::NoButton;
     tellSize();
 }
 
@@ -228,6 +231,7 @@ void Pane::takeClickBack() {
 }
 
 void Pane::mouseDoubleClickEvent(QMouseEvent* event) {
+    if (!takesDoubleClicks()) return mousePressEvent(event);
     if (isOpen() && event->button() == Qt::LeftButton)
         doubleClicked(handOf(*event, event->position(), Qt::LeftButton));
     held_ = Qt::NoButton;

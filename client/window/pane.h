@@ -67,6 +67,8 @@ protected:
     reader::Reader& reader() { return reading_.reader(); }
     const reader::Reader& reader() const { return reading_.reader(); }
     bool isOpen() const { return reader().isOpen(); }
+    /// Where the mouse was last.
+    QPointF lastMouse() const { return lastAt_; }
     /// Logical pixels of the widget a pixel of the picture that the server makes for it.
     double widgetPerPixel() const;
     glm::ivec2 pictureSize() const { return reader().panes().size(view_); }
@@ -83,6 +85,8 @@ protected:
     virtual void dragged(const Hand&) {}
     virtual void released(const Hand&) {}
     virtual void clicked(const Hand&) {}
+    /// Else the second press of a double click is a press.
+    virtual bool takesDoubleClicks() const { return false; }
     virtual void doubleClicked(const Hand&) {}
     /// What the first click of a double click has done is undone.
     void takeClickBack();

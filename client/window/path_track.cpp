@@ -23,6 +23,7 @@ PathTrack::PathTrack(Reading& reading) : QSlider(Qt::Horizontal), reading_(readi
     setPageStep(10);
     setMouseTracking(true);
     connect(&reading, &Reading::stepped, this, &PathTrack::look);
+    connect(&reading, &Reading::caseOpened, this, [this] { back_ = nullptr; });
     // From the keyboard, or by what reads the screen.
     connect(this, &QSlider::valueChanged, this, [this](int mm) {
         if (follows_ || !reading_.reader().isOpen()) return;

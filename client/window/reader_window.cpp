@@ -46,7 +46,10 @@
 namespace haustra::window {
 namespace {
 
-const auto layoutSetting = QStringLiteral("window/layout");
+// A case that has not been flattened hides two panes: its layout is none for those that have.
+QString layoutSetting(bool flat) {
+    return flat ? QStringLiteral("window/layout") : QStringLiteral("window/layout-not-flattened");
+}
 const auto geometrySetting = QStringLiteral("window/geometry");
 
 // Keys that such a control needs for itself while it has the keyboard, though they are a command's.
@@ -85,7 +88,6 @@ bool typesText(const QWidget* widget) {
 
 ReaderWindow::ReaderWindow(Reading& reading)
     : reading_(reading), commands_(*this), docks_(makeDocks()), layouts_(*this, second_, docks_) {
-    describePanes();
     setDockNestingEnabled(true);
     setDockOptions(AnimatedDocks | AllowNestedDocks | AllowTabbedDocks);
     second_.setDockNestingEnabled(true);
@@ -142,6 +144,7 @@ QDockWidget* ReaderWindow::dock(QWidget* content, const char* name, const QStrin
 }
 
 Docks ReaderWindow::makeDocks() {
+    describePanes();  // what was made before stays unknown to what reads the screen
     Docks docks;
     const auto pane = [&](Pane* made, const char* name) {
         panes_.push_back(made);
@@ -318,7 +321,7 @@ void ReaderWindow::caseOpened() {
     const bool flat = reader().flat().hasStrip();
     // The case's reader has no strip before its first step; the server has said whether it will.
     const bool hasFlat = reader().session().caseInfo() && reader().session().caseInfo()->flat;
-    const QByteArray kept = QSettings().value(layoutSetting).toByteArray();
+    const QByteArray kept = QSettings().value(layoutSetting(flat || hasFlat)).toByteArray();
     if (kept.isEmpty() || !layouts_.restore(kept, flat || hasFlat))
         layouts_.arrange(BuiltinLayout::reading, flat || hasFlat);
     focusPane(nullptr);
@@ -329,9 +332,9 @@ void ReaderWindow::caseOpened() {
 
 void ReaderWindow::keepLayout() {
     if (isEnlarged())
-        QSettings().setValue(layoutSetting, beforeEnlarged_);
+        QSettings().setValue(layoutSetting(reader().flat().hasStrip()), beforeEnlarged_);
     else if (!cases_->isVisible())
-        QSettings().setValue(layoutSetting, layouts_.state());
+        QSettings().setValue(layoutSetting(reader().flat().hasStrip()), layouts_.state());
 }
 
 void ReaderWindow::arrange(BuiltinLayout layout) {
@@ -643,6 +646,12 @@ bool ReaderWindow::isSettled() const {
 // ---- keys ---------------------------------------------------------------------------------------
 
 bool ReaderWindow::eventFilter(QObject* object, QEvent* event) {
+    // Its panes come back into the main window: hidden ones would be out of reach.
+    if (object == &second_ && event->type() == QEvent::Close && isVisible()) {
+        event->ignore();
+        arrange(BuiltinLayout::reading);
+        return true;
+    }
     if (event->type() == QEvent::ShortcutOverride) {
         const auto& key = static_cast<const QKeyEvent&>(*event);
         if (needsKey(qobject_cast<QWidget*>(object), key)) {
@@ -669,14 +678,12 @@ bool ReaderWindow::handleHeldKeys(QEvent* event) {
     const auto& key = static_cast<const QKeyEvent&>(*event);
     const bool isWay = key.key() == Qt::Key_W || key.key() == Qt::Key_A || key.key() == Qt::Key_S ||
                        key.key() == Qt::Key_D || key.key() == Qt::Key_Q || key.key() == Qt::Key_E;
+    if (isWay && event->type() == QEvent::KeyRelease && !key.isAutoRepeat()) held_.erase(key.key());
     if (!isWay || typesText(QApplication::focusWidget()) || QApplication::activeModalWidget() ||
         (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier)))
         return false;
     if (key.isAutoRepeat()) return true;
-    if (event->type() == QEvent::KeyPress)
-        held_.insert(key.key());
-    else
-        held_.erase(key.key());
+    if (event->type() == QEvent::KeyPress) held_.insert(key.key());
     const auto held = [&](Qt::Key code) { return held_.contains(code) ? 1.0 : 0.0; };
     reading_.setHeldWay({held(Qt::Key_D) - held(Qt::Key_A), held(Qt::Key_E) - held(Qt::Key_Q),
                          held(Qt::Key_W) - held(Qt::Key_S)},
@@ -689,13 +696,17 @@ void ReaderWindow::closeEvent(QCloseEvent* event) {
     if (owed > 0 && reader().session().phase() != reader::Phase::open &&
         QMessageBox::question(
             this, tr("Bookmarks are not sent yet"),
-            tr("%n bookmark(s) wait for the server. They are kept on this station, and sent when "
-               "the case is opened here again. Quit?",
-               nullptr, owed)) != QMessageBox::Yes)
+            reader().session().keepsUnsent()
+                ? tr("%n bookmark(s) wait for the server. They are kept on this station, and sent "
+                     "when the case is opened here again. Quit?",
+                     nullptr, owed)
+                : tr("%n bookmark(s) wait for the server, and this station cannot keep them: they "
+                     "are lost with this window. Quit all the same?",
+                     nullptr, owed)) != QMessageBox::Yes)
         return event->ignore();
     if (reader().isOpen()) keepLayout();
     QSettings().setValue(geometrySetting, saveGeometry());
-    second_.close();
+    second_.hide();
     event->accept();
     QApplication::quit();
 }

@@ -129,7 +129,8 @@ void Reading::watchSession() {
         emit caseOpened();
     }
     if (session.phase() != phase_) {
-        if (phase_ == reader::Phase::lost && case_ && case_->flat)
+        if (phase_ == reader::Phase::lost && session.phase() != reader::Phase::failed && case_ &&
+            case_->flat)
             tell(tr("The server counts what has been seen of the wall anew with this link."), true);
         phase_ = session.phase();
         if (phase_ == reader::Phase::lost)
@@ -183,6 +184,7 @@ void Reading::jump(const QString& text, std::function<void()> go) {
     reader::Reader& reader = *reader_;
     const auto goThere = [&reader, go = std::move(go)] {
         reader.setMotion(reader::Motion::paused);
+        reader.flat().forgetPicked();  // an answer on its way would lead back
         go();
     };
     const auto back = wayBack();

@@ -19,7 +19,7 @@ bool hasDisplay() {
         const char* value = std::getenv(name);
         return value && *value;
     };
-    return set("DISPLAY") || set("WAYLAND_DISPLAY") || set("QT_QPA_PLATFORM");
+    return set("DISPLAY") || set("QT_QPA_PLATFORM");
 }
 
 QString settingOr(const std::string& given, const char* setting, const char* otherwise) {
@@ -39,8 +39,7 @@ Result<void> writeScreenshot(QWidget& window, const std::filesystem::path& file)
 
 Result<void> run(const WindowOptions& options) {
     if (!hasDisplay())
-        return fail(ErrorKind::device, "there is no display to open a window on",
-                    "DISPLAY, WAYLAND_DISPLAY");
+        return fail(ErrorKind::device, "there is no display to open a window on", "DISPLAY");
     // Qt looks for a GL driver at its start, though nothing here draws by it.
     qputenv("QT_XCB_GL_INTEGRATION", "none");
     if (options.scale) qputenv("QT_SCALE_FACTOR", QByteArray::number(*options.scale));
@@ -83,7 +82,6 @@ Result<void> run(const WindowOptions& options) {
         });
         due.start(50);
     }
-    // A link that fails for good before anything was open ends a window that nobody has looked at.
     application.exec();
     const reader::Session& session = reading.reader().session();
     if (!ended) return ended;

@@ -22,7 +22,7 @@ struct WindowOptions {
 };
 
 /// Opens the window and runs until the reader closes it. Must be called on the main thread. Fails
-/// where there is no display, or the link fails for good before a case was open.
+/// where there is no display, and, once it is closed, where no case could be opened.
 Result<void> run(const WindowOptions& options);
 
 }  // namespace haustra::window

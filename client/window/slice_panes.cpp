@@ -27,6 +27,10 @@ QString axisOf(View view) {
 
 // ---- what all grey panes do ---------------------------------------------------------------------
 
+GreyPane::GreyPane(Reading& reading, View view, const QString& title) : Pane(reading, view, title) {
+    connect(&reading, &Reading::stepped, this, &GreyPane::pointAgain);
+}
+
 QString GreyPane::heading() const {
     QStringList heading;
     if (namesItself()) heading += title();
@@ -104,6 +108,7 @@ void GreyPane::dragged(const Hand& hand) {
         measure.fromMm = *drawnFrom_;
         measure.toMm = *patientAt(hand.position);
         measure.scan = shownScan();
+        measure.slab = reader().slices().slab();
         reader().measures().draw(measure, !std::exchange(hasBegun_, true));
         return;
     }
@@ -127,6 +132,12 @@ void GreyPane::released(const Hand&) {
         changedWindow(reading(), windowBefore_);
     }
     drawnFrom_.reset();
+}
+
+// What lies under a mouse that rests changes with the slice.
+void GreyPane::pointAgain() {
+    if (isVisible() && underMouse() && isOpen() && reader().measures().pointed())
+        reader().measures().pointAt(patientAt(lastMouse()), shownScan());
 }
 
 void GreyPane::hovered(const Hand& hand) {
@@ -196,7 +207,9 @@ void GreyPane::paintTexts(QPainter& painter, const QString& place) {
                  tr("C %1  W %2 HU").arg(window.centerHu).arg(window.widthHu));
     const auto& pointed = reader().measures().pointed();
     const auto placed = placement();
-    if (!pointed || !underMouse() || !placed) return;
+    if (!pointed || !underMouse() || !placed || pointed->scan != shownScan() ||
+        !isOn(*placed, pointed->placeMm))
+        return;
     // Beside the mouse, on that side of it where there is room.
     const QPointF at = positionOf(*placed, pointed->placeMm);
     const bool isRight = at.x() > width() - 90.0, isLow = at.y() > height() - 50.0;
@@ -394,8 +407,7 @@ void ObliquePane::paintMarks(QPainter& painter) {
 void ObliquePane::clicked(const Hand& hand) {
     if (hand.button != Qt::LeftButton) return;
     if (const auto place = patientAt(hand.position))
-        reading().jump(tr("go to a voxel"),
-                       [this, place = *place] { reader().goTo(place, View::axial); });
+        reading().jump(tr("go to a voxel"), [this, place = *place] { reader().goTo(place, {}); });
 }
 
 void ObliquePane::wheeled(const Hand& hand, double steps) {

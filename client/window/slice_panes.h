@@ -8,15 +8,14 @@
 
 namespace haustra::window {
 
-/// What all grey panes do: a drag changes the window, the middle button moves the picture, the
-/// wheel scrolls, with Ctrl it enlarges; a tool or Shift draws a ruler, Ctrl an ellipse.
+/// What all grey panes do: a drag changes the window, the wheel scrolls, with Ctrl it enlarges; a
+/// tool or Shift draws a ruler, Ctrl an ellipse.
 class GreyPane : public Pane {
     Q_OBJECT
 public:
-    using Pane::Pane;
+    GreyPane(Reading& reading, View view, const QString& title);
     void fillMenu(QMenu& menu) override;
     QString inWords() const override;
-    /// A point of the scan under the pane's middle, which keys use where no mouse points.
     QSize sizeHint() const override { return {300, 280}; }
 
 protected:
@@ -41,6 +40,8 @@ protected:
     void paintTexts(QPainter& painter, const QString& place);
 
 private:
+    void pointAgain();
+
     std::vector<reader::ScanMeasure> measuresBefore_;
     std::optional<glm::dvec3> drawnFrom_;
     WindowLevel windowBefore_;

@@ -963,8 +963,8 @@
         <translation>%1 ist schon die Taste für „%2“. Dort entfernen?</translation>
     </message>
     <message>
-        <source>Press the new key for “%1”. An empty field means: no key.</source>
-        <translation>Neue Taste für „%1“ drücken. Ein leeres Feld bedeutet: keine Taste.</translation>
+        <source>Press the new key for “%1”. It takes the place of: %2. An empty field means: no key.</source>
+        <translation>Neue Taste für „%1“ drücken. Sie ersetzt: %2. Ein leeres Feld bedeutet: keine Taste.</translation>
     </message>
 </context>
 <context>
@@ -1518,6 +1518,13 @@
         <translation>
             <numerusform>%n Lesezeichen wartet auf den Server. Es bleibt auf dieser Station und wird gesendet, wenn der Fall hier wieder geöffnet wird. Beenden?</numerusform>
             <numerusform>%n Lesezeichen warten auf den Server. Sie bleiben auf dieser Station und werden gesendet, wenn der Fall hier wieder geöffnet wird. Beenden?</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) wait for the server, and this station cannot keep them: they are lost with this window. Quit all the same?</source>
+        <translation>
+            <numerusform>%n Lesezeichen wartet auf den Server, und diese Station kann es nicht aufbewahren: Es geht mit diesem Fenster verloren. Trotzdem beenden?</numerusform>
+            <numerusform>%n Lesezeichen warten auf den Server, und diese Station kann sie nicht aufbewahren: Sie gehen mit diesem Fenster verloren. Trotzdem beenden?</numerusform>
         </translation>
     </message>
 </context>
