@@ -79,6 +79,8 @@ public:
         return headings[std::size_t(column)];
     }
     QVariant data(const QModelIndex& index, int role) const override {
+        // Copying where nothing is chosen asks for the cell of nowhere.
+        if (!checkIndex(index, CheckIndexOption::IndexIsValid)) return {};
         const reader::CaseEntry& entry = cases_[std::size_t(index.row())];
         switch (role) {
             case Qt::DisplayRole:
