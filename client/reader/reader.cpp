@@ -189,10 +189,6 @@ void Reader::addBookmark(std::string note) {
     session_.addBookmark(camera, flight_.arcMm(), std::move(note));
 }
 
-void Reader::goToBookmark(int step) {
-    if (const auto next = nextBookmark(step)) goTo(*next);
-}
-
 std::optional<Bookmark> Reader::nextBookmark(int step) const {
     const double here = flight_.arcMm();
     double nearest = std::numeric_limits<double>::max();

@@ -80,7 +80,6 @@ public:
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
     /// The next (or, with −1, previous) bookmark along the centerline, if any.
-    void goToBookmark(int step);
     std::optional<Bookmark> nextBookmark(int step) const;
 
 private:

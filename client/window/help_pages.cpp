@@ -34,6 +34,12 @@ constexpr std::array gestures = {
             QT_TRANSLATE_NOOP("Help", "move the picture")},
     Gesture{QT_TRANSLATE_NOOP("Help", "wheel on a slice"),
             QT_TRANSLATE_NOOP("Help", "scroll; with Ctrl enlarge; with Shift ten times as far")},
+    Gesture{QT_TRANSLATE_NOOP("Help", "Page Up, Page Down on a slice"),
+            QT_TRANSLATE_NOOP("Help", "next, previous slice")},
+    Gesture{
+        QT_TRANSLATE_NOOP("Help", "keys on the transfer function"),
+        QT_TRANSLATE_NOOP(
+            "Help", "N, P: next, previous point; arrows: move it; Insert, Delete: add, take it")},
     Gesture{QT_TRANSLATE_NOOP("Help", "Shift, Ctrl drag"),
             QT_TRANSLATE_NOOP("Help", "measure a line, an ellipse or an outline")},
     Gesture{QT_TRANSLATE_NOOP("Help", "drag the overview"),

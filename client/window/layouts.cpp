@@ -89,6 +89,7 @@ void Layouts::arrange(BuiltinLayout layout, bool flat) {
                               {wide * 50 / 100, wide * 26 / 100, wide * 24 / 100}, Qt::Horizontal);
             main_.resizeDocks({d.endoscopic, d.overview, d.bookmarks},
                               {high * 38 / 100, high * 36 / 100, high * 26 / 100}, Qt::Vertical);
+            main_.resizeDocks({d.coronal, d.sagittal}, {high / 2, high / 2}, Qt::Vertical);
             break;
         case BuiltinLayout::flattened:
             main_.addDockWidget(left, d.strip);

@@ -1,6 +1,7 @@
 // What a client's session makes of a server that lies: it ends and says why, soon, or goes on.
 #include "end_to_end/fake_server.h"
 #include "end_to_end/reader_fixture.h"
+#include "end_to_end/session_fixture.h"
 #include "reader/session.h"
 #include "temporary_folder.h"
 
@@ -14,28 +15,12 @@ namespace {
 
 using protocol::ServerMessage;
 
-class ClientOfAHostileServer : public ::testing::Test {
+class ClientOfAHostileServer : public tests::SessionFixture {
 protected:
     static tests::Misbehaviour altering(std::function<void(ServerMessage&)> alters) {
         tests::Misbehaviour wrong;
         wrong.alters = std::move(alters);
         return wrong;
-    }
-    std::unique_ptr<Session> sessionWith(const tests::FakeServer& server,
-                                         const std::string& caseName = "phantom") const {
-        link::ConnectionOptions options;
-        options.address = {"127.0.0.1", server.port()};
-        options.pinning.knownServersFile =
-            temporary_.path() / ("known_servers" + std::to_string(server.port()));
-        options.reconnect = true;
-        return std::make_unique<Session>(options, caseName);
-    }
-    template <class Done>
-    static bool until(Session& session, const Done& done) {
-        const auto deadline = Clock::now() + std::chrono::seconds(30);
-        while (!done() && Clock::now() < deadline)
-            session.poll(std::chrono::milliseconds(10));
-        return done();
     }
     /// Why the session ended, of a server that alters what it says.
     std::string endOf(std::function<void(ServerMessage&)> alters,
@@ -50,8 +35,6 @@ protected:
     static bool has(const std::string& text, const std::string& part) {
         return text.find(part) != std::string::npos;
     }
-
-    const tests::TemporaryFolder temporary_;
 };
 
 TEST_F(ClientOfAHostileServer, AnotherCaseThanAskedForIsNotShown) {

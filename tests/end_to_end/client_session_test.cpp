@@ -2,6 +2,7 @@
 // closes its socket, or is an old one.
 #include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
+#include "end_to_end/session_fixture.h"
 #include "reader/session.h"
 #include "temporary_folder.h"
 
@@ -17,25 +18,8 @@ namespace {
 using tests::FakeServer;
 using tests::Misbehaviour;
 
-class ClientSession : public ::testing::Test {
+class ClientSession : public tests::SessionFixture {
 protected:
-    std::unique_ptr<Session> sessionWith(const FakeServer& server,
-                                         const std::string& caseName = "phantom") const {
-        link::ConnectionOptions options;
-        options.address = {"127.0.0.1", server.port()};
-        options.pinning.knownServersFile =
-            temporary_.path() / ("known_servers" + std::to_string(server.port()));
-        options.reconnect = true;
-        return std::make_unique<Session>(options, caseName);
-    }
-    /// False when it takes absurdly long.
-    template <class Done>
-    static bool until(Session& session, const Done& done) {
-        const auto deadline = Clock::now() + std::chrono::seconds(30);
-        while (!done() && Clock::now() < deadline)
-            session.poll(std::chrono::milliseconds(10));
-        return done();
-    }
     static bool open(Session& session) {
         return until(session, [&] { return session.phase() == Phase::open; });
     }
@@ -48,8 +32,6 @@ protected:
         }));
         return answers;
     }
-
-    const tests::TemporaryFolder temporary_;
 };
 
 TEST_F(ClientSession, ValuesOfTheScanAreAskedForAndTold) {

@@ -430,6 +430,22 @@
         <source>What does not fit</source>
         <translation>Was keinen Platz hat</translation>
     </message>
+    <message>
+        <source>Page Up, Page Down on a slice</source>
+        <translation>Bild auf, Bild ab auf einer Schicht</translation>
+    </message>
+    <message>
+        <source>next, previous slice</source>
+        <translation>nächste, vorige Schicht</translation>
+    </message>
+    <message>
+        <source>keys on the transfer function</source>
+        <translation>Tasten auf der Übertragungsfunktion</translation>
+    </message>
+    <message>
+        <source>N, P: next, previous point; arrows: move it; Insert, Delete: add, take it</source>
+        <translation>N, P: nächster, voriger Punkt; Pfeile: verschieben; Einfg, Entf: hinzufügen, wegnehmen</translation>
+    </message>
 </context>
 <context>
     <name>PictureOut</name>
