@@ -56,7 +56,7 @@ Panes::Panes(Session& session)
 
 bool Panes::setSize(View view, glm::ivec2 pixels) {
     if (pixels == glm::ivec2(0)) return close(view);
-    // A picture of the same shape within the protocol's bound; the window stretches it.
+    // A picture of the same shape within the protocol's bound; the window enlarges it.
     const double limit = double(protocol::maxViewportPixels) / std::max({pixels.x, pixels.y, 1});
     const glm::ivec2 size = scaled(pixels, std::min(1.0, limit));
     if (size == sizes_[at(view)]) return false;
@@ -115,7 +115,7 @@ void Panes::askForViews(const std::function<ViewState(View)>& stateOf, Clock::ti
         if (moving && view == View::flattened) continue;  // its still follows at once
         open(view, moving);
         const auto sequence = session_.look(int(view), toSend(view, state, moving), moving);
-        pictures_.asked(view, {sequence, now, state, moving});
+        pictures_.asked(view, {sequence, now, state, sizes_[n], moving});
     }
 }
 

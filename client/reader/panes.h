@@ -38,8 +38,15 @@ public:
     const tiles::Picture& picture(View view) const { return pictures_.picture(view); }
     std::uint64_t pictureCount(View view) const { return pictures_.count(view); }
     /// What the newest picture of a view shows, which lags behind what the view is asked to show
-    /// now; nothing before there is one. The flat window is in pixels of its pane.
+    /// now; nothing before there is one. The flat window is in pixels of
+    /// that pane.
     const std::optional<ViewState>& shownState(View view) const { return pictures_.shown(view); }
+    /// How large the pane was for which the newest picture was asked, which is what its state is in
+    /// pixels of; before there is one, how large it is.
+    glm::ivec2 shownPaneSize(View view) const {
+        const glm::ivec2 shown = pictures_.shownPaneSize(view);
+        return shown.x > 0 ? shown : size(view);
+    }
     /// The same as a view's own state; null before there is one.
     template <class State>
     const State* shown(View view) const {

@@ -8,6 +8,7 @@ void PictureLog::clear() {
     for (ViewLog& view : views_) {
         view.asked.clear();
         view.shown.reset();
+        view.shownPaneSize = glm::ivec2(0);
         view.picture = {};
         view.count = 0;
     }
@@ -31,7 +32,7 @@ void PictureLog::take(std::deque<Arrival> arrivals, Clock::time_point now) {
             answered = view.asked.front();
             view.asked.pop_front();
         }
-        if (answered) view.shown = answered->state;
+        if (answered) view.shown = answered->state, view.shownPaneSize = answered->paneSize;
         if (endoscopic) decodedAt_.push_back(arrival.decodedAt);
         if (answered && answered->moving) {
             const double ms =

@@ -19,6 +19,7 @@ public:
         std::uint64_t sequence;
         Clock::time_point at;
         ViewState state;
+        glm::ivec2 paneSize;
         bool moving;
     };
 
@@ -32,6 +33,8 @@ public:
     std::uint64_t count(View view) const { return of(view).count; }
     /// What the newest picture of a view was asked to show; it lags behind what is asked now.
     const std::optional<ViewState>& shown(View view) const { return of(view).shown; }
+    /// How large the pane was for which the newest picture was asked; 0 × 0 before there is one.
+    glm::ivec2 shownPaneSize(View view) const { return of(view).shownPaneSize; }
     /// The size at which moving pictures of a view keep up, as a share of its pane's.
     double movingScale(View view) const { return of(view).detail.scale(); }
 
@@ -44,6 +47,7 @@ private:
     struct ViewLog {
         std::deque<Asked> asked;  // without an answer, oldest first
         std::optional<ViewState> shown;
+        glm::ivec2 shownPaneSize{0};
         tiles::Picture picture;
         std::uint64_t count = 0;
         MovingDetail detail;

@@ -271,7 +271,8 @@ void Session::opened(const protocol::CaseOpened& message) {
     auto info = caseInfoFrom(message);
     if (!info) return giveUp(info.error());
     if (info->name != caseName_) {
-        if (opensAsked_ > 0) return;  // the reader has chosen another since
+        // The reader has chosen another since, or none.
+        if (opensAsked_ > 0 || caseName_.empty()) return;
         return giveUp({ErrorKind::badInput, "the server opened another case than was asked for",
                        "case opened: name"});
     }

@@ -84,7 +84,11 @@ public:
     /// Whether a case that the server refuses to open, or loses, leads back to the list of cases,
     /// with a refusal; else it ends the session.
     void setOffersCases(bool offers) { offersCases_ = offers; }
+    bool offersCases() const { return offersCases_; }
+    /// An empty name: none, back to the list of cases.
     void openCase(const std::string& name);
+    /// The case that is open or to be opened; empty: none.
+    const std::string& wantedCase() const { return caseName_; }
     /// The open case; empty before. Its address changes only when a case is opened.
     const std::shared_ptr<const CaseInfo>& caseInfo() const { return caseInfo_; }
 

@@ -5,6 +5,14 @@
 #include <algorithm>
 
 namespace haustra::reader {
+namespace {
+
+glm::dvec2 withinReach(glm::dvec2 panMm) {
+    constexpr double farthestMm = 1000.0;
+    return glm::clamp(panMm, glm::dvec2(-farthestMm), glm::dvec2(farthestMm));
+}
+
+}  // namespace
 
 glm::dvec3 sliceNormal(View view) {
     switch (view) {
@@ -28,6 +36,7 @@ void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm,
     planes_.fill({cameraMm, 1.0, glm::dvec2(0.0)});
     followedMm_ = cameraMm;
     aheadMm_ = 0.0;
+    obliquePanMm_ = glm::dvec2(0.0);
     heightMm_ = ObliqueView{}.heightMm;
     cleansed_ = false;
 }
@@ -108,9 +117,7 @@ void SliceViews::zoom(View plane, double factor, glm::dvec2 pixel, glm::ivec2 si
 
 void SliceViews::pan(View plane, glm::dvec2 mm) {
     if (!canPan_) return;
-    constexpr double farthestMm = 1000.0;
-    glm::dvec2& pan = of(plane).panMm;
-    pan = glm::clamp(pan + mm, glm::dvec2(-farthestMm), glm::dvec2(farthestMm));
+    of(plane).panMm = withinReach(of(plane).panMm + mm);
 }
 
 void SliceViews::showWhole(View plane) {
@@ -128,7 +135,9 @@ void SliceViews::setLinked(bool linked) {
 }
 
 ObliqueView SliceViews::oblique(const Camera& gaze) const {
-    return {gaze.positionMm + aheadMm_ * gaze.forward,
+    const glm::dvec3 right = glm::cross(gaze.forward, gaze.up);
+    return {gaze.positionMm + aheadMm_ * gaze.forward - obliquePanMm_.x * right +
+                obliquePanMm_.y * gaze.up,
             gaze.forward,
             gaze.up,
             heightMm_,
@@ -139,6 +148,10 @@ ObliqueView SliceViews::oblique(const Camera& gaze) const {
 
 void SliceViews::scrollOblique(double mm) {
     aheadMm_ = std::clamp(aheadMm_ + mm, -50.0, 200.0);
+}
+
+void SliceViews::panOblique(glm::dvec2 mm) {
+    obliquePanMm_ = withinReach(obliquePanMm_ + mm);
 }
 
 void SliceViews::zoomOblique(double factor) {

@@ -47,6 +47,9 @@ public:
     /// Across the gaze, so far ahead of the camera as it was scrolled to.
     ObliqueView oblique(const Camera& gaze) const;
     void scrollOblique(double mm);
+    /// As pan(), right and down of the gaze.
+    void panOblique(glm::dvec2 mm);
+    void centerOblique() { obliquePanMm_ = glm::dvec2(0.0); }
     void zoomOblique(double factor);
 
     /// Whether all four show the cleansed scan; stays false where the case has none.
@@ -72,6 +75,7 @@ private:
     std::shared_ptr<const CaseInfo> case_;
     std::array<Plane, 3> planes_;
     glm::dvec3 followedMm_{0.0};
+    glm::dvec2 obliquePanMm_{0.0};
     double aheadMm_ = 0.0, heightMm_ = ObliqueView{}.heightMm;
     bool cleansed_ = false, linked_ = true, canPan_ = true;
     WindowLevel window_;

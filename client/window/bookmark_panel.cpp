@@ -57,7 +57,8 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
     : reading_(reading),
       note_(new QLineEdit),
       list_(new QTreeWidget),
-      hint_(new QLabel(tr("B marks the place in view; Shift+B with a note."))) {
+      hint_(new QLabel(tr("B marks the place in view; Shift+B with a note."))),
+      reason_(new QLabel) {
     note_->setPlaceholderText(tr("note, then Enter"));
     note_->setAccessibleName(tr("Note of a new bookmark"));
     auto* addButton = new QToolButton;
@@ -76,12 +77,16 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
     list_->header()->setStretchLastSection(false);
     hint_->setWordWrap(true);
     hint_->setAlignment(Qt::AlignCenter);
+    reason_->setWordWrap(true);
+    reason_->setTextFormat(Qt::PlainText);
+    reason_->hide();
     auto* row = new QHBoxLayout;
     row->addWidget(note_);
     row->addWidget(addButton);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(6, 6, 6, 6);
     column->addLayout(row);
+    column->addWidget(reason_);
     column->addWidget(list_, 1);
     column->addWidget(hint_);
     connect(note_, &QLineEdit::returnPressed, this, &BookmarkPanel::add);
@@ -92,8 +97,15 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
             [this](QTreeWidgetItem* item) { goTo(keyOf(*item)); });
     connect(list_, &QTreeWidget::customContextMenuRequested, this, &BookmarkPanel::showMenu);
     connect(&reading, &Reading::stepped, this, &BookmarkPanel::look);
+    connect(note_, &QLineEdit::textEdited, this, [this](const QString& text) {
+        if (text.isEmpty()) endOffer();
+    });
+    connect(&reading, &Reading::readerReplaced, this, [this] { shownRevision_ = 0; });
     // A note that was begun is of its patient.
     connect(&reading, &Reading::caseOpened, this, [this] {
+        if (!offered_.empty()) note_->clear();  // it is in its case's list
+        endOffer();
+        deferred_.clear();
         drafts_[std::exchange(draftOf_, reading_.reader().session().caseInfo()->scan)] =
             note_->text();
         note_->setText(drafts_[draftOf_]);
@@ -101,12 +113,23 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
 }
 
 void BookmarkPanel::writeNote() {
+    // A new one, of the place in view; the other is in the list.
+    if (!offered_.empty()) {
+        endOffer();
+        note_->clear();
+    }
     note_->setFocus(Qt::ShortcutFocusReason);
 }
 
 void BookmarkPanel::add() {
     if (!reading_.reader().isOpen()) return;
-    reading_.reader().addBookmark(note_->text().toStdString());
+    const std::string note = note_->text().toStdString();
+    if (offered_.empty())
+        reading_.reader().addBookmark(note);
+    else if (reading_.reader().session().sendRefusedAgain(offered_, note).empty())
+        reading_.tell(tr("That bookmark is no longer to be sent."));
+    deferred_.erase(offered_);  // refused again, it is in the field again
+    endOffer();
     note_->clear();
     reading_.changed();
     emit written();
@@ -115,9 +138,11 @@ void BookmarkPanel::add() {
 void BookmarkPanel::look() {
     setEnabled(reading_.reader().isOpen());
     const std::uint64_t revision = reading_.reader().session().bookmarksRevision();
-    if (!isVisible() || revision == shownRevision_) return;
-    shownRevision_ = revision;
-    fill();
+    const bool writes = note_->hasFocus();
+    if (!isVisible() || (revision == shownRevision_ && writes == writes_)) return;
+    writes_ = writes;
+    if (std::exchange(shownRevision_, revision) != revision) fill();
+    offerRefused();
 }
 
 void BookmarkPanel::fill() {
@@ -144,6 +169,42 @@ void BookmarkPanel::fill() {
         if (item->data(0, keyRole).toString() == current) list_->setCurrentItem(item);
     }
     hint_->setVisible(list_->topLevelItemCount() == 0);
+}
+
+// What the server refused is in the field again, where nothing else is being written: Enter sends
+// it, at its own place; an empty field leaves it in the list.
+void BookmarkPanel::offerRefused() {
+    const auto refused = reading_.reader().session().refusedBookmarks();
+    const auto isRefused = [&](const std::string& key) {
+        return std::any_of(refused.begin(), refused.end(), [&](const reader::RefusedBookmark& r) {
+            return r.bookmark.clientKey == key;
+        });
+    };
+    if (!offered_.empty() && !isRefused(offered_)) {  // dealt with in the list
+        endOffer();
+        note_->clear();
+    }
+    // Not under a hand that is about to write of another place.
+    if (!offered_.empty() || !note_->text().isEmpty() || note_->hasFocus()) return;
+    for (const reader::RefusedBookmark& refusal : refused) {
+        const reader::Bookmark& bookmark = refusal.bookmark;
+        if (bookmark.note.empty() || !deferred_.insert(bookmark.clientKey).second) continue;
+        offered_ = bookmark.clientKey;
+        note_->setText(text(bookmark.note));
+        reason_->setText(tr("At %1 mm, not saved: %2. Enter sends it again.")
+                             .arg(bookmark.arcMm, 0, 'f', 0)
+                             .arg(text(refusal.reason)));
+        QPalette palette = this->palette();
+        palette.setColor(QPalette::WindowText, theme().trouble);
+        reason_->setPalette(palette);
+        reason_->show();
+        return;
+    }
+}
+
+void BookmarkPanel::endOffer() {
+    offered_.clear();
+    reason_->hide();
 }
 
 void BookmarkPanel::goTo(const std::string& key) {

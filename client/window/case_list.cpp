@@ -152,7 +152,9 @@ CaseList::CaseList(Reading& reading)
       table_(new QTableView),
       model_(new CaseTable(this)),
       found_(new QSortFilterProxyModel(this)),
-      open_(new QPushButton(tr("Open"))) {
+      open_(new QPushButton(tr("Open"))),
+      back_(new QPushButton(tr("Back to the list of cases"))),
+      again_(new QPushButton(tr("Connect again"))) {
     QFont large = heading_->font();
     large.setPointSizeF(large.pointSizeF() * 1.6);
     heading_->setFont(large);
@@ -186,8 +188,14 @@ CaseList::CaseList(Reading& reading)
     column->setContentsMargins(24, 24, 24, 24);
     column->addWidget(heading_);
     column->addWidget(state_);
+    auto* ways = new QHBoxLayout;
+    ways->addWidget(back_);
+    ways->addWidget(again_);
+    ways->addStretch(1);
+    column->addLayout(ways);
     column->addLayout(row);
     column->addWidget(table_, 1);
+    column->addStretch(0);
 
     connect(search_, &QLineEdit::textChanged, this, [this](const QString& text) {
         found_->setFilterFixedString(text.trimmed());
@@ -196,6 +204,12 @@ CaseList::CaseList(Reading& reading)
     connect(search_, &QLineEdit::returnPressed, this, &CaseList::openCurrent);
     connect(table_, &QTableView::activated, this, &CaseList::openCurrent);
     connect(open_, &QPushButton::clicked, this, &CaseList::openCurrent);
+    connect(back_, &QPushButton::clicked, this, [this] {
+        reading_.reader().session().openCase({});
+        reading_.changed();
+    });
+    connect(again_, &QPushButton::clicked, this, &CaseList::connectionWanted);
+    connect(&reading, &Reading::readerReplaced, this, [this] { shownRevision_ = 0; });
     connect(&reading, &Reading::stepped, this, &CaseList::look);
     connect(&askTimer_, &QTimer::timeout, this, &CaseList::ask);
     askTimer_.start(askAgain);
@@ -224,10 +238,14 @@ void CaseList::look() {
             heading =
                 session.server().fingerprint.empty() ? tr("Connecting…") : tr("Opening the case…");
             state = reading_.serverName();
+            if (!session.wantedCase().empty()) state += '\n' + text(session.wantedCase());
             break;
         case reader::Phase::lost:
             heading = tr("Waiting for the server…");
             state = text(session.failure());
+            if (!session.wantedCase().empty())
+                state +=
+                    '\n' + tr("“%1” is opened when it is back.").arg(text(session.wantedCase()));
             trouble = true;
             break;
         case reader::Phase::failed:
@@ -248,7 +266,10 @@ void CaseList::look() {
     QPalette palette = this->palette();
     if (trouble) palette.setColor(QPalette::WindowText, theme().trouble);
     state_->setPalette(palette);
-    const bool lists = phase == reader::Phase::choosing || phase == reader::Phase::open;
+    back_->setVisible(phase == reader::Phase::connecting && !session.wantedCase().empty());
+    again_->setVisible(phase == reader::Phase::failed);
+    const bool lists = phase == reader::Phase::choosing || phase == reader::Phase::open ||
+                       phase == reader::Phase::lost;
     for (QWidget* widget : {static_cast<QWidget*>(search_), static_cast<QWidget*>(table_),
                             static_cast<QWidget*>(open_)})
         widget->setVisible(lists && !session.cases().empty());

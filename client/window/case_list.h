@@ -16,7 +16,8 @@ namespace haustra::window {
 class CaseTable;
 
 /// A table with a field to search in it. While it is in sight it is asked for anew every few
-/// seconds. Without a link it says so instead.
+/// seconds. While the link is down it is as it came last, and what is chosen is opened when the
+/// link is back; what takes long to open can be left for the list.
 class CaseList : public QWidget {
     Q_OBJECT
 public:
@@ -25,6 +26,8 @@ public:
 signals:
     /// The case that is open was chosen again.
     void chosenAgain();
+    /// After the session has ended for good.
+    void connectionWanted();
 
 protected:
     void showEvent(QShowEvent*) override;
@@ -41,7 +44,7 @@ private:
     QTableView* table_;
     CaseTable* model_;
     QSortFilterProxyModel* found_;
-    QPushButton* open_;
+    QPushButton *open_, *back_, *again_;
     std::uint64_t shownRevision_ = 0;  // of the session's list
     QTimer askTimer_;
     bool listed_ = false;  // the list is in sight

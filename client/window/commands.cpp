@@ -1,6 +1,8 @@
 #include "window/commands.h"
 
+#include "protocol/capabilities.h"
 #include "window/look_steps.h"
+#include "window/pane.h"
 #include "window/reader_window.h"
 
 #include <QCoreApplication>
@@ -57,6 +59,19 @@ void setWindow(ReaderWindow& w, std::size_t n) {
     w.setWindowPreset(n);
 }
 
+void changeSlab(ReaderWindow& w, const Slab& slab) {
+    reader::SliceViews& slices = w.reader().slices();
+    if (!w.reader().session().serverCan(protocol::capability::slabs))
+        return w.reading().tell(
+            QCoreApplication::translate("Commands", "This server cannot show slabs."));
+    const Slab before = slices.slab();
+    if (slab == before) return;
+    slices.setSlab(slab);
+    w.reading().did(
+        QCoreApplication::translate("Commands", "change the slab"),
+        [&slices, before] { slices.setSlab(before); }, [&slices, slab] { slices.setSlab(slab); });
+}
+
 void setSlab(ReaderWindow& w, int step) {
     constexpr std::array thicknesses{0.0, 2.0, 5.0, 10.0, 20.0, 50.0};
     Slab slab = w.reader().slices().slab();
@@ -65,7 +80,7 @@ void setSlab(ReaderWindow& w, int step) {
         ++n;
     const int next = std::clamp(int(n) + step, 0, int(thicknesses.size()) - 1);
     slab.thicknessMm = thicknesses[std::size_t(next)];
-    w.setSlab(slab);
+    changeSlab(w, slab);
 }
 
 void goToBookmark(ReaderWindow& w, int step) {
@@ -74,10 +89,26 @@ void goToBookmark(ReaderWindow& w, int step) {
                          [&w, bookmark] { w.reader().goTo(*bookmark); });
 }
 
+void onPane(ReaderWindow& w, const auto& what) {
+    if (Pane* pane = w.keyboardPane()) what(*pane);
+}
+void dragPane(ReaderWindow& w, QPoint steps, Qt::MouseButton button) {
+    onPane(w, [&](Pane& pane) { pane.dragByKeys(steps, button); });
+}
+
+// A switch that Ctrl+Z turns back.
+void change(ReaderWindow& w, const char* text, bool before, const std::function<void(bool)>& set) {
+    set(!before);
+    w.reading().did(
+        QCoreApplication::translate("Commands", text), [set, before] { set(before); },
+        [set, before] { set(!before); });
+}
+
 // One thing at a time, the nearest first.
 void stop(ReaderWindow& w) {
     if (w.showsCases()) return w.showCases();
     if (w.reading().tool() != DrawingTool::none) return w.reading().setTool(DrawingTool::none);
+    if (w.pointsByKeys()) return w.togglePointing();
     if (w.isEnlarged()) return w.leaveEnlarged();
     w.reading().clearMeasures();
 }
@@ -92,6 +123,12 @@ const std::array table = {
             .needsCase = false,
             .run = [](ReaderWindow& w) { w.showCases(); },
             .shortText = QT_TRANSLATE_NOOP("Commands", "Cases")},
+    Command{.id = "connect-again",
+            .menu = Menu::file,
+            .text = QT_TRANSLATE_NOOP("Commands", "Connect again"),
+            .keys = "Ctrl+R",
+            .needsCase = false,
+            .run = [](ReaderWindow& w) { w.connectAgain(); }},
     Command{.id = "save-picture",
             .menu = Menu::file,
             .text = QT_TRANSLATE_NOOP("Commands", "Save the picture…"),
@@ -170,6 +207,124 @@ const std::array table = {
             .run = [](ReaderWindow& w) { w.toggleFullScreen(); },
             .isOn = [](ReaderWindow& w) { return w.isFullScreen(); },
             .separatorBefore = true},
+    // ---- pane
+    Command{.id = "next-pane",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Next pane"),
+            .keys = "F6",
+            .run = [](ReaderWindow& w) { w.focusNextPane(+1); }},
+    Command{.id = "previous-pane",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Previous pane"),
+            .keys = "Shift+F6",
+            .run = [](ReaderWindow& w) { w.focusNextPane(-1); }},
+    Command{.id = "point",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands",
+                                      "Point with the keys: arrows move, Return clicks or draws"),
+            .keys = "Z",
+            .run = [](ReaderWindow& w) { w.togglePointing(); },
+            .isOn = [](ReaderWindow& w) { return w.pointsByKeys(); },
+            .separatorBefore = true},
+    Command{.id = "scroll-on",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Scroll on: the next slice, along the path"),
+            .keys = "PgUp",
+            .run = [](ReaderWindow& w) { onPane(w, [](Pane& p) { p.scrollByKeys(+1.0, false); }); },
+            .separatorBefore = true},
+    Command{
+        .id = "scroll-back",
+        .menu = Menu::pane,
+        .text = QT_TRANSLATE_NOOP("Commands", "Scroll back"),
+        .keys = "PgDown",
+        .run = [](ReaderWindow& w) { onPane(w, [](Pane& p) { p.scrollByKeys(-1.0, false); }); }},
+    Command{.id = "scroll-far-on",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Scroll on, ten times as far"),
+            .keys = "Shift+PgUp",
+            .run = [](ReaderWindow& w) { onPane(w, [](Pane& p) { p.scrollByKeys(+1.0, true); }); }},
+    Command{.id = "scroll-far-back",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Scroll back, ten times as far"),
+            .keys = "Shift+PgDown",
+            .run = [](ReaderWindow& w) { onPane(w, [](Pane& p) { p.scrollByKeys(-1.0, true); }); }},
+    Command{.id = "zoom-in",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Enlarge the picture"),
+            .keys = "Ctrl++ Ctrl+=",
+            .run = [](ReaderWindow& w) { onPane(w, [](Pane& p) { p.zoomByKeys(+1.0); }); },
+            .separatorBefore = true},
+    Command{.id = "zoom-out",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Make the picture smaller"),
+            .keys = "Ctrl+-",
+            .run = [](ReaderWindow& w) { onPane(w, [](Pane& p) { p.zoomByKeys(-1.0); }); }},
+    Command{.id = "drag-left",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Look, turn, move or window: drag left"),
+            .keys = "Alt+Left",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {-1, 0}, Qt::LeftButton);
+                },
+            .separatorBefore = true},
+    Command{.id = "drag-right",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Look, turn, move or window: drag right"),
+            .keys = "Alt+Right",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {1, 0}, Qt::LeftButton);
+                }},
+    Command{.id = "drag-up",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Look, turn, move or window: drag up"),
+            .keys = "Alt+Up",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {0, -1}, Qt::LeftButton);
+                }},
+    Command{.id = "drag-down",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Look, turn, move or window: drag down"),
+            .keys = "Alt+Down",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {0, 1}, Qt::LeftButton);
+                }},
+    Command{.id = "move-left",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Move the slice's picture left"),
+            .keys = "Ctrl+Left",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {-1, 0}, Qt::MiddleButton);
+                },
+            .separatorBefore = true},
+    Command{.id = "move-right",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Move the slice's picture right"),
+            .keys = "Ctrl+Right",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {1, 0}, Qt::MiddleButton);
+                }},
+    Command{.id = "move-up",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Move the slice's picture up"),
+            .keys = "Ctrl+Up",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {0, -1}, Qt::MiddleButton);
+                }},
+    Command{.id = "move-down",
+            .menu = Menu::pane,
+            .text = QT_TRANSLATE_NOOP("Commands", "Move the slice's picture down"),
+            .keys = "Ctrl+Down",
+            .run =
+                [](ReaderWindow& w) {
+                    dragPane(w, {0, 1}, Qt::MiddleButton);
+                }},
     // ---- flight
     Command{.id = "fly-forward",
             .menu = Menu::flight,
@@ -272,7 +427,7 @@ const std::array table = {
                 }},
     Command{.id = "free-flight",
             .menu = Menu::flight,
-            .text = QT_TRANSLATE_NOOP("Commands", "Free flight: W A S D, Q E down and up"),
+            .text = QT_TRANSLATE_NOOP("Commands", "Free flight, off the path"),
             .keys = "F",
             .run =
                 [](ReaderWindow& w) {
@@ -280,6 +435,36 @@ const std::array table = {
                     f.isFree() ? f.returnToCenterline() : f.flyFreely();
                 },
             .isOn = [](ReaderWindow& w) { return flightOf(w).isFree(); }},
+    Command{.id = "free-forward",
+            .menu = Menu::flight,
+            .text = QT_TRANSLATE_NOOP("Commands", "Free flight: forward (held)"),
+            .keys = "W",
+            .heldWay = {0, 0, 1}},
+    Command{.id = "free-back",
+            .menu = Menu::flight,
+            .text = QT_TRANSLATE_NOOP("Commands", "Free flight: back (held)"),
+            .keys = "S",
+            .heldWay = {0, 0, -1}},
+    Command{.id = "free-left",
+            .menu = Menu::flight,
+            .text = QT_TRANSLATE_NOOP("Commands", "Free flight: left (held)"),
+            .keys = "A",
+            .heldWay = {-1, 0, 0}},
+    Command{.id = "free-right",
+            .menu = Menu::flight,
+            .text = QT_TRANSLATE_NOOP("Commands", "Free flight: right (held)"),
+            .keys = "D",
+            .heldWay = {1, 0, 0}},
+    Command{.id = "free-up",
+            .menu = Menu::flight,
+            .text = QT_TRANSLATE_NOOP("Commands", "Free flight: up (held)"),
+            .keys = "E",
+            .heldWay = {0, 1, 0}},
+    Command{.id = "free-down",
+            .menu = Menu::flight,
+            .text = QT_TRANSLATE_NOOP("Commands", "Free flight: down (held)"),
+            .keys = "Q",
+            .heldWay = {0, -1, 0}},
     Command{.id = "fisheye",
             .menu = Menu::flight,
             .text = QT_TRANSLATE_NOOP("Commands", "Fisheye, which sees all around"),
@@ -328,7 +513,15 @@ const std::array table = {
             .menu = Menu::slices,
             .text = QT_TRANSLATE_NOOP("Commands", "As scanned, or cleansed"),
             .keys = "X",
-            .run = [](ReaderWindow& w) { w.toggleCleansed(); },
+            .run =
+                [](ReaderWindow& w) {
+                    reader::SliceViews& slices = w.reader().slices();
+                    if (!w.reader().session().caseInfo()->cleansed)
+                        return w.reading().tell(QCoreApplication::translate(
+                            "Commands", "This case has no cleansed scan."));
+                    change(w, QT_TRANSLATE_NOOP("Commands", "As scanned, or cleansed"),
+                           slices.cleansed(), [&slices](bool on) { slices.setCleansed(on); });
+                },
             .isOn = [](ReaderWindow& w) { return w.reader().slices().cleansed(); },
             .separatorBefore = true,
             .shortText = QT_TRANSLATE_NOOP("Commands", "cleansed")},
@@ -361,7 +554,7 @@ const std::array table = {
                 Slab s = w.reader().slices().slab();
                 s.projection =
                     s.projection == Projection::mean ? Projection::maximum : Projection::mean;
-                w.setSlab(s);
+                changeSlab(w, s);
             },
         .isOn =
             [](ReaderWindow& w) {
@@ -514,6 +707,8 @@ QString nameOf(Menu menu) {
             return QCoreApplication::translate("Commands", "&Edit");
         case Menu::view:
             return QCoreApplication::translate("Commands", "&View");
+        case Menu::pane:
+            return QCoreApplication::translate("Commands", "&Pane");
         case Menu::flight:
             return QCoreApplication::translate("Commands", "F&light");
         case Menu::slices:
@@ -549,6 +744,7 @@ CommandSet::CommandSet(ReaderWindow& window) : QObject(&window), window_(window)
         auto* action = new QAction(iconOf(command.symbol), textOf(command), this);
         if (command.shortText)
             action->setIconText(QCoreApplication::translate("Commands", command.shortText));
+        actions_[command.id] = action;
         action->setObjectName(QString::fromLatin1(command.id));
         action->setCheckable(command.isOn != nullptr);
         action->setShortcuts(
@@ -556,12 +752,12 @@ CommandSet::CommandSet(ReaderWindow& window) : QObject(&window), window_(window)
                 ? QKeySequence::listFromString(settings.value(settingOf(command)).toString(),
                                                QKeySequence::PortableText)
                 : keysOfOld(command));
+        if (!command.run) continue;
         connect(action, &QAction::triggered, this, [this, &command] {
             command.run(window_);
             window_.reading().changed();
             look();
         });
-        actions_[command.id] = action;
     }
 }
 
@@ -588,6 +784,9 @@ void CommandSet::look() {
         action->setEnabled(open || !command.needsCase);
         if (command.isOn) action->setChecked(open && command.isOn(window_));
     }
+    // A link that is lost comes back by itself.
+    actions_.at("connect-again")
+        ->setEnabled(window_.reader().session().phase() == reader::Phase::failed);
     const QUndoStack& stack = window_.reading().undoStack();
     for (const auto& [id, can, what] : {std::tuple{"undo", stack.canUndo(), stack.undoText()},
                                         std::tuple{"redo", stack.canRedo(), stack.redoText()}}) {

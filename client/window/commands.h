@@ -12,12 +12,14 @@
 #include <span>
 #include <vector>
 
+#include <glm/glm.hpp>
+
 namespace haustra::window {
 
 class ReaderWindow;
 
-enum class Menu { file, edit, view, flight, slices, wall, bookmarks, help };
-inline constexpr std::size_t menuCount = 8;
+enum class Menu { file, edit, view, pane, flight, slices, wall, bookmarks, help };
+inline constexpr std::size_t menuCount = 9;
 QString nameOf(Menu menu);
 
 struct Command {
@@ -32,6 +34,10 @@ struct Command {
     bool (*isOn)(ReaderWindow& window) = nullptr;
     bool separatorBefore = false;
     const char* shortText = nullptr;  ///< on a button; to be translated as `text`
+    /// Of free flight, instead of `run`: right, up and forward, as long as the key is held.
+    glm::dvec3 heldWay{0.0};
+
+    bool isHeld() const { return heldWay != glm::dvec3(0.0); }
 };
 std::span<const Command> commands();
 QString textOf(const Command& command);

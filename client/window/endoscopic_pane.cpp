@@ -46,7 +46,7 @@ void EndoscopicPane::paintMarks(QPainter& painter) {
     if (const auto& picked = reader().flat().picked()) {
         // Where it is seen, or would be but for what is in front of it.
         if (const auto seen = reader::seenAt(shownCamera(), picked->positionMm))
-            paintPlaceMark(painter, QRectF(rect()).center() + height() * point(*seen));
+            paintPlaceMark(painter, pictureArea().center() + pictureArea().height() * point(*seen));
     }
     paintFlight(painter);
     paintBadge(painter);
@@ -125,7 +125,7 @@ void EndoscopicPane::clicked(const Hand& hand) {
         return reading().tell(tr("This server cannot tell where the wall is that was clicked."));
     const Camera camera = shownCamera();
     const glm::dvec2 fromMiddle =
-        vector(hand.position - QRectF(rect()).center()) / double(height());
+        vector(hand.position - pictureArea().center()) / pictureArea().height();
     const auto direction = rayThrough(camera, fromMiddle);
     if (!direction) return;
     reading().jump(tr("go to a place of the wall"),

@@ -120,8 +120,7 @@ StripLayout StripPane::layout() const {
 
 std::optional<glm::dvec2> StripPane::flatAt(QPointF position) const {
     if (!reader().flat().hasStrip() || pictureSize().x < 1) return std::nullopt;
-    return layout().flatFromPixel(vector(position) / widgetPerPixel(),
-                                  reader().flat().tour().strip().height);
+    return layout().flatFromPixel(pixelAt(position), reader().flat().tour().strip().height);
 }
 
 void StripPane::addShown(Shown& shown) const {
@@ -134,7 +133,8 @@ void StripPane::paintMarks(QPainter& painter) {
     const StripLayout columns = layout();
     painter.setFont(smallFont(font()));
     for (const StripColumn& column : columns.columns) {
-        const FlatArea flat{QRectF(column.left * pixels, 0, column.size.x * pixels, height()),
+        const FlatArea flat{QRectF(positionOf({column.left, 0.0}),
+                                   QSizeF(column.size.x * pixels, pictureArea().height())),
                             column.window, column.size};
         painter.save();
         painter.setClipRect(flat.area);
@@ -145,10 +145,11 @@ void StripPane::paintMarks(QPainter& painter) {
     }
     painter.setFont(smallFont(font()));
     constexpr double margin = 6.0;
-    outlinedText(painter, {columns.columns.front().left * pixels + margin, height() - margin},
+    outlinedText(painter,
+                 {positionOf({columns.columns.front().left, 0.0}).x() + margin, height() - margin},
                  Qt::AlignLeft | Qt::AlignBottom, theme().dimOnPicture, tr("rectum"));
     const double high = reader().flat().tour().strip().height;
-    const QPointF top = point(columns.pixelFromFlat({0.5, high}) * pixels);
+    const QPointF top = positionOf(columns.pixelFromFlat({0.5, high}));
     const double textHigh = QFontMetricsF(painter.font()).height();
     outlinedText(painter, {top.x(), std::max(margin, top.y() - textHigh - margin)},
                  Qt::AlignHCenter | Qt::AlignTop, theme().dimOnPicture, tr("cecum"));
@@ -209,13 +210,14 @@ void FlatZoomPane::addShown(Shown& shown) const {
 void FlatZoomPane::paintPicture(QPainter& painter, const QImage& picture) {
     const FlatArea flat = areaOf(*this, reader());
     const auto* window = reader().panes().shown<FlatWindow>(View::flattenedZoom);
-    if (!window || *window == flat.window) return Pane::paintPicture(painter, picture);
-    FlatArea shown = flat;
-    shown.window = *window;
-    shown.window.center.x += std::round(flat.window.center.x - shown.window.center.x);
+    if (!window || (*window == flat.window && pictureSize() == flat.size))
+        return Pane::paintPicture(painter, picture);
+    FlatWindow shown = *window;
+    shown.center.x += std::round(flat.window.center.x - shown.center.x);
+    const glm::ivec2 size = pictureSize();
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
-    painter.drawImage(QRectF(flat.position(shown.flat(flat.area.topLeft())),
-                             flat.position(shown.flat(flat.area.bottomRight()))),
+    painter.drawImage(QRectF(flat.position(shown.flatFromPixel({0.0, 0.0}, size)),
+                             flat.position(shown.flatFromPixel(glm::dvec2(size), size))),
                       picture);
 }
 
@@ -290,12 +292,17 @@ void FlatZoomPane::paintTexts(QPainter& painter) {
                                                        : tr("drag around a polyp   Esc ends"));
 }
 
+DrawingTool FlatZoomPane::toolOf(const Hand& hand) const {
+    return hand.shift() ? DrawingTool::line : hand.ctrl() ? DrawingTool::outline : reading().tool();
+}
+bool FlatZoomPane::draws(const Hand& hand) const {
+    return reader().flat().hasStrip() && toolOf(hand) != DrawingTool::none;
+}
+
 void FlatZoomPane::pressed(const Hand& hand) {
     drawing_.clear();
     if (!reader().flat().hasStrip() || hand.button != Qt::LeftButton) return;
-    const DrawingTool held = hand.shift()  ? DrawingTool::line
-                             : hand.ctrl() ? DrawingTool::outline
-                                           : reading().tool();
+    const DrawingTool held = toolOf(hand);
     drawsOutline_ = held == DrawingTool::outline;
     if (held != DrawingTool::none) drawing_.push_back(areaOf(*this, reader()).flat(hand.position));
 }

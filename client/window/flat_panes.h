@@ -39,6 +39,7 @@ protected:
     void paintMarks(QPainter& painter) override;
     void addShown(Shown& shown) const override;
     void pressed(const Hand& hand) override;
+    bool draws(const Hand& hand) const override;
     void dragged(const Hand& hand) override;
     void released(const Hand& hand) override;
     void clicked(const Hand& hand) override;
@@ -46,6 +47,7 @@ protected:
 
 private:
     void draw(glm::dvec2 flat, double leastStep);
+    DrawingTool toolOf(const Hand& hand) const;
     void paintMeasurement(QPainter& painter);
     void paintTexts(QPainter& painter);
 

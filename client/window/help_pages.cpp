@@ -3,6 +3,7 @@
 #include "window/commands.h"
 #include "window/reading.h"
 
+#include <QCheckBox>
 #include <QCoreApplication>
 #include <QDialogButtonBox>
 #include <QHeaderView>
@@ -34,8 +35,11 @@ constexpr std::array gestures = {
             QT_TRANSLATE_NOOP("Help", "move the picture")},
     Gesture{QT_TRANSLATE_NOOP("Help", "wheel on a slice"),
             QT_TRANSLATE_NOOP("Help", "scroll; with Ctrl enlarge; with Shift ten times as far")},
-    Gesture{QT_TRANSLATE_NOOP("Help", "Page Up, Page Down on a slice"),
-            QT_TRANSLATE_NOOP("Help", "next, previous slice")},
+    Gesture{
+        QT_TRANSLATE_NOOP("Help", "arrows while the keys point"),
+        QT_TRANSLATE_NOOP("Help",
+                          "move the pointer; with Shift farther, with Ctrl by one pixel; Return "
+                          "clicks, or begins and ends a line or an outline")},
     Gesture{
         QT_TRANSLATE_NOOP("Help", "keys on the transfer function"),
         QT_TRANSLATE_NOOP(
@@ -162,8 +166,11 @@ void KeysDialog::change() {
     auto* keys = new QKeySequenceEdit;
     keys->setAccessibleName(tr("The new key"));
     auto* hint = new QLabel(
-        tr("Press the new key for “%1”. It takes the place of: %2. An empty field means: no key.")
-            .arg(textOf(command), keysText(*commands_.action(command))));
+        tr("Press the new key for “%1”. An empty field means: no key.").arg(textOf(command)));
+    const QList<QKeySequence> former = commands_.action(command)->shortcuts();
+    auto* keep = new QCheckBox(
+        tr("keep the keys that it has: %1").arg(keysText(*commands_.action(command))));
+    keep->setVisible(!former.isEmpty());
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
     auto* clear = buttons->addButton(tr("No key"), QDialogButtonBox::ActionRole);
     connect(clear, &QPushButton::clicked, keys, &QKeySequenceEdit::clear);
@@ -172,6 +179,7 @@ void KeysDialog::change() {
     auto* column = new QVBoxLayout(&dialog);
     column->addWidget(hint);
     column->addWidget(keys);
+    column->addWidget(keep);
     column->addWidget(buttons);
     keys->setFocus();
     if (dialog.exec() != QDialog::Accepted) return;
@@ -188,7 +196,9 @@ void KeysDialog::change() {
         held.removeAll(chosen);
         commands_.setKeys(other, held);
     }
-    commands_.setKeys(command, chosen.isEmpty() ? QList<QKeySequence>() : QList{chosen});
+    QList<QKeySequence> wanted = keep->isChecked() ? former : QList<QKeySequence>();
+    if (!chosen.isEmpty() && !wanted.contains(chosen)) wanted += chosen;
+    commands_.setKeys(command, wanted);
     fill();
 }
 

@@ -13,10 +13,11 @@ static void initTranslations() {
 namespace haustra::window {
 
 QStringList languages() {
-    return {QStringLiteral("en"), QStringLiteral("de")};
+    return {QString(), QStringLiteral("en"), QStringLiteral("de")};
 }
 
 QString nameOfLanguage(const QString& language) {
+    if (language.isEmpty()) return QCoreApplication::translate("Language", "As the system");
     return language == QStringLiteral("de") ? QStringLiteral("Deutsch") : QStringLiteral("English");
 }
 

@@ -8,7 +8,7 @@ class QApplication;
 
 namespace haustra::window {
 
-/// Those that there are: "en", "de".
+/// Those that there are: "en", "de", and "", the system's.
 QStringList languages();
 /// "Deutsch": as its readers call it.
 QString nameOfLanguage(const QString& language);

@@ -26,11 +26,7 @@ QWidget* Notices::rowOf(const QString& text, bool dismissible) {
     label->setTextInteractionFlags(Qt::TextSelectableByMouse);
     line->addWidget(label, 1);
     row->setAutoFillBackground(true);
-    QPalette palette = this->palette();
-    palette.setColor(QPalette::Window, theme().base);
-    palette.setColor(QPalette::WindowText, theme().trouble);
-    row->setPalette(palette);
-    label->setPalette(palette);
+    paint(*row);
     if (dismissible) {
         auto* dismiss = new QToolButton;
         dismiss->setText(QStringLiteral("×"));
@@ -44,6 +40,21 @@ QWidget* Notices::rowOf(const QString& text, bool dismissible) {
         line->addWidget(dismiss);
     }
     return row;
+}
+
+void Notices::paint(QWidget& row) {
+    QPalette palette = this->palette();
+    palette.setColor(QPalette::Window, theme().base);
+    palette.setColor(QPalette::WindowText, theme().trouble);
+    row.setPalette(palette);
+    row.findChild<QLabel*>()->setPalette(palette);
+}
+
+// Another theme.
+void Notices::changeEvent(QEvent* event) {
+    if (event->type() != QEvent::PaletteChange) return;
+    for (int n = 0; n < rows_->count(); ++n)
+        paint(*rows_->itemAt(n)->widget());
 }
 
 Notices::Notices(Reading& reading) : reading_(reading), rows_(new QVBoxLayout(this)) {
@@ -75,6 +86,10 @@ void Notices::look() {
             state = tr("The server opens the case. What is shown is old until then.");
         else if (phase == reader::Phase::lost)
             state = tr("The link is down: %1. Trying again; the flight stands still.").arg(state);
+        else if (phase == reader::Phase::failed)
+            state = tr("The session has ended: %1. “Connect again” in the menu of files begins "
+                       "another.")
+                        .arg(state);
         if (session.owedBookmarks() > 0)
             state += ' ' + tr("%n bookmark(s) will be saved when the server is back.", nullptr,
                               int(session.owedBookmarks()));
@@ -91,7 +106,7 @@ void Notices::tell(const QString& text, bool trouble) {
     for (QLabel* label : findChildren<QLabel*>())
         if (label != link_ && label->text() == text) return;
     if (told_ >= mostNotices) {
-        delete rows_->takeAt(1)->widget();
+        delete rows_->itemAt(1)->widget();  // its place in the layout goes with it
         --told_;
     }
     QWidget* row = rowOf(text, true);

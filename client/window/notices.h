@@ -18,8 +18,12 @@ public:
 
     bool any() const { return linkIsDown_ || told_ > 0; }
 
+protected:
+    void changeEvent(QEvent* event) override;
+
 private:
     void look();
+    void paint(QWidget& row);
     void tell(const QString& text, bool trouble);
     QWidget* rowOf(const QString& text, bool dismissible);
 

@@ -26,14 +26,16 @@ void OverviewPane::addShown(Shown& shown) const {
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
 }
 
+QPointF OverviewPane::positionOf(const Camera& from, glm::dvec3 mm) const {
+    return pictureArea().topLeft() + point(glm::dvec2(projected(from, mm, areaSize())));
+}
+
 // The reader's camera as a cone that opens to where it looks.
 void OverviewPane::paintReader(QPainter& painter, const Camera& from) {
     const Camera camera = reader().flight().camera();
-    const double lengthMm = 20.0 * from.heightMm / height(), radiusMm = 0.42 * lengthMm;
+    const double lengthMm = 20.0 * from.heightMm / areaSize().y, radiusMm = 0.42 * lengthMm;
     const glm::dvec3 right = glm::cross(camera.forward, camera.up);
-    const auto seen = [&](glm::dvec3 mm) {
-        return point(glm::dvec2(projected(from, mm, widgetSize())));
-    };
+    const auto seen = [&](glm::dvec3 mm) { return positionOf(from, mm); };
     constexpr int sides = 24;
     QPolygonF rim;
     for (int side = 0; side < sides; ++side) {
@@ -61,8 +63,7 @@ void OverviewPane::paintMarks(QPainter& painter) {
         const Camera& from = pictured->camera;
         const auto bookmarks = reader().session().bookmarks();
         for (std::size_t n = 0; n < bookmarks.size(); ++n) {
-            const QPointF p =
-                point(glm::dvec2(projected(from, bookmarks[n].camera.positionMm, widgetSize())));
+            const QPointF p = positionOf(from, bookmarks[n].camera.positionMm);
             painter.setPen(QPen(QColor(20, 14, 4, 220), 2.4));
             painter.setBrush(theme().bookmarkOnPicture);
             const double radius = under_ == n ? 6.0 : 4.5;
@@ -70,8 +71,7 @@ void OverviewPane::paintMarks(QPainter& painter) {
         }
         paintReader(painter, from);
         if (const auto& picked = reader().flat().picked())
-            paintPlaceMark(painter,
-                           point(glm::dvec2(projected(from, picked->positionMm, widgetSize()))));
+            paintPlaceMark(painter, positionOf(from, picked->positionMm));
         painter.setFont(smallFont(font()));
         paintSides(painter, rect(), glm::cross(from.forward, from.up), from.up);
     }
@@ -84,7 +84,8 @@ std::optional<std::size_t> OverviewPane::bookmarkAt(QPointF position) const {
     std::vector<glm::dvec3> places;
     for (const reader::Bookmark& bookmark : reader().session().bookmarks())
         places.push_back(bookmark.camera.positionMm);
-    return reader::placeAt(reader().outside().orbit(), places, vector(position), widgetSize(), 9.0);
+    return reader::placeAt(reader().outside().orbit(), places,
+                           vector(position - pictureArea().topLeft()), areaSize(), 9.0);
 }
 
 void OverviewPane::dragged(const Hand& hand) {
@@ -99,8 +100,9 @@ void OverviewPane::clicked(const Hand& hand) {
         return reading().jump(tr("go to a bookmark"),
                               [this, bookmark] { reader().goTo(bookmark); });
     }
-    const auto arc = reader::arcAt(reader().outside().orbit(), reader().flight().centerline(),
-                                   vector(hand.position), widgetSize(), 40.0);
+    const auto arc =
+        reader::arcAt(reader().outside().orbit(), reader().flight().centerline(),
+                      vector(hand.position - pictureArea().topLeft()), areaSize(), 40.0);
     if (arc)
         reading().jump(tr("go along the path"),
                        [this, arc = *arc] { reader().flight().goTo(arc); });

@@ -28,7 +28,8 @@ protected:
     void left() override;
 
 private:
-    glm::dvec2 widgetSize() const { return {width(), height()}; }
+    glm::dvec2 areaSize() const { return {pictureArea().width(), pictureArea().height()}; }
+    QPointF positionOf(const Camera& from, glm::dvec3 mm) const;
     std::optional<std::size_t> bookmarkAt(QPointF position) const;
     void paintReader(QPainter& painter, const Camera& from);
 

@@ -35,7 +35,17 @@ Pane::Pane(Reading& reading, View view, const QString& title, QWidget* parent)
     setAccessibleName(title);
     connect(&reading, &Reading::stepped, this, &Pane::look);
     // A drag that was begun in another case ends with it.
-    connect(&reading, &Reading::caseOpened, this, [this] { held_ = Qt::NoButton; });
+    connect(&reading, &Reading::caseOpened, this, [this] {
+        held_ = Qt::NoButton;
+        setKeyPointer(false);
+    });
+    connect(&reading, &Reading::readerReplaced, this, [this] {
+        shown_ = {};
+        toldSize_ = glm::ivec2(0);
+        tellSizeSoon();
+    });
+    sizeDue_.setSingleShot(true);
+    connect(&sizeDue_, &QTimer::timeout, this, &Pane::tellSize);
 }
 
 QString Pane::inWords() const {
@@ -52,19 +62,35 @@ QString Pane::inWords() const {
     return tr("moving");
 }
 
+QRectF Pane::pictureArea() const {
+    const glm::ivec2 pixels = glm::max(pictureSize(), glm::ivec2(1));
+    const QSizeF own = QSizeF(pixels.x, pixels.y).scaled(size(), Qt::KeepAspectRatio);
+    // Pixels are whole: so small a difference is none.
+    if (width() - own.width() < 1.5 && height() - own.height() < 1.5) return rect();
+    return {0.5 * (width() - own.width()), 0.5 * (height() - own.height()), own.width(),
+            own.height()};
+}
+
 double Pane::widgetPerPixel() const {
-    return double(width()) / std::max(1, pictureSize().x);
+    return pictureArea().width() / std::max(1, pictureSize().x);
+}
+glm::dvec2 Pane::pixelAt(QPointF position) const {
+    return vector(position - pictureArea().topLeft()) / widgetPerPixel();
+}
+QPointF Pane::positionOf(glm::dvec2 pixel) const {
+    return pictureArea().topLeft() + point(pixel * widgetPerPixel());
 }
 
 // ---- painting -----------------------------------------------------------------------------------
 
 void Pane::look() {
     if (!isVisible()) return;
-    tellSize();  // what lies over it may have gone
+    if (!sizeDue_.isActive()) tellSize();  // what lies over it may have gone
     Shown shown;
     shown.add(double(reader().panes().pictureCount(view_)));
     shown.add(double(reader().freshness(view_)));
-    shown.add(isHovered_ + 2 * hasFocus());
+    shown.add(isHovered_ + 2 * hasFocus() + 4 * hasKeyPointer());
+    if (keyPointer_) shown.add(keyPointer_->x()), shown.add(keyPointer_->y());
     shown.add(double(reading_.tool()));
     if (isOpen()) addShown(shown);
     if (shown == shown_) return;
@@ -82,7 +108,7 @@ void Pane::paintPicture(QPainter& painter, const QImage& picture) {
         return;
     }
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
-    painter.drawImage(QRectF(rect()), picture);
+    painter.drawImage(pictureArea(), picture);
 }
 
 void Pane::paintAll(QPainter& painter) {
@@ -110,6 +136,7 @@ void Pane::paintAll(QPainter& painter) {
 void Pane::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     paintAll(painter);
+    paintKeyPointer(painter);
     painter.setRenderHint(QPainter::Antialiasing, false);
     painter.setBrush(Qt::NoBrush);
     if (hasFocus())
@@ -164,16 +191,24 @@ void Pane::tellSize() {
     reading_.changed();
 }
 
+// Panes that are arranged anew are hidden, moved and shown again, and slide to where they belong:
+// the server is told what has come of it, or every view would begin anew several times.
+void Pane::tellSizeSoon() {
+    sizeDue_.start(std::chrono::milliseconds(50));
+}
+
 void Pane::resizeEvent(QResizeEvent*) {
-    tellSize();
+    if (keyPointer_) setKeyPointer(false);
+    tellSizeSoon();
 }
 void Pane::showEvent(QShowEvent*) {
     shown_ = {};
-    tellSize();
+    tellSizeSoon();
 }
 void Pane::hideEvent(QHideEvent*) {
     held_ = Qt::NoButton;
-    tellSize();
+    setKeyPointer(false);
+    tellSizeSoon();
 }
 
 // ---- the hand -----------------------------------------------------------------------------------
@@ -260,15 +295,146 @@ void Pane::leaveEvent(QEvent*) {
 void Pane::focusInEvent(QFocusEvent*) {
     look();
 }
-void Pane::focusOutEvent(QFocusEvent*) {
+void Pane::focusOutEvent(QFocusEvent* event) {
+    if (event->reason() != Qt::PopupFocusReason) setKeyPointer(false);
     look();
 }
 
+namespace {
+
+// The way of an arrow; none: of none.
+std::optional<QPointF> wayOf(const QKeyEvent& key) {
+    if (key.modifiers() & Qt::AltModifier) return std::nullopt;
+    const bool isFine = key.modifiers().testFlag(Qt::ControlModifier),
+               isFar = key.modifiers().testFlag(Qt::ShiftModifier);
+    const double step = isFine ? 1.0 : isFar ? 24.0 : 5.0;
+    switch (key.key()) {
+        case Qt::Key_Left:
+            return QPointF(-step, 0);
+        case Qt::Key_Right:
+            return QPointF(step, 0);
+        case Qt::Key_Up:
+            return QPointF(0, -step);
+        case Qt::Key_Down:
+            return QPointF(0, step);
+        default:
+            return std::nullopt;
+    }
+}
+bool presses(const QKeyEvent& key) {
+    return key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter;
+}
+
+}  // namespace
+
 void Pane::keyPressEvent(QKeyEvent* event) {
+    if (isOpen() && needsKey(*event)) {
+        if (const auto way = wayOf(*event)) return moveKeyPointer(*way);
+        return pressKeyPointer(event->modifiers());
+    }
     if (event->key() == Qt::Key_Menu)
         emit menuWanted(mapToGlobal(rect().center()));
     else
         QWidget::keyPressEvent(event);
+}
+
+// ---- the keyboard in the place of the mouse -----------------------------------------------------
+
+std::optional<QPointF> Pane::pointedAt() const {
+    if (keyPointer_) return keyPointer_;
+    // One place is pointed at: a mouse that rests elsewhere does not count.
+    if (!underMouse() || reading_.pointsByKeys()) return std::nullopt;
+    return lastAt_;
+}
+
+Hand Pane::keyHand(Qt::KeyboardModifiers modifiers, QPointF moved) const {
+    return {keyPointer_.value_or(QRectF(rect()).center()), moved, modifiers, Qt::LeftButton};
+}
+
+void Pane::setKeyPointer(bool on) {
+    if (on == hasKeyPointer()) return;
+    if (!on) {
+        if (std::exchange(keyDraws_, false)) released(keyHand({}));
+        keyPointer_.reset();
+        if (isOpen()) left();
+    } else {
+        setFocus(Qt::ShortcutFocusReason);
+        keyPointer_ = QRectF(rect()).center();
+        if (isOpen()) hovered(keyHand({}));
+    }
+    reading_.setPointsByKeys(on);
+    reading_.changed();
+}
+
+bool Pane::needsKey(const QKeyEvent& key) const {
+    return keyPointer_ && (wayOf(key) || presses(key));
+}
+
+void Pane::moveKeyPointer(QPointF way) {
+    const QPointF before = *keyPointer_, there = before + way;
+    keyPointer_ = QPointF(std::clamp(there.x(), 0.0, width() - 1.0),
+                          std::clamp(there.y(), 0.0, height() - 1.0));
+    // The modifiers that are held are the pointer's, not a hand's.
+    const Hand hand = keyHand({}, *keyPointer_ - before);
+    keyDraws_ ? dragged(hand) : hovered(hand);
+    reading_.changed();
+}
+
+void Pane::pressKeyPointer(Qt::KeyboardModifiers modifiers) {
+    const Hand hand = keyHand(modifiers);
+    if (std::exchange(keyDraws_, false)) {
+        released(hand);
+    } else {
+        pressed(hand);
+        if (draws(hand)) {
+            keyDraws_ = true;
+        } else {
+            clicked(hand);
+            released(hand);
+        }
+    }
+    reading_.changed();
+}
+
+void Pane::paintKeyPointer(QPainter& painter) {
+    if (!keyPointer_) return;
+    painter.setRenderHint(QPainter::Antialiasing, false);
+    for (const QPen& pen : {QPen(theme().outline, 3.0), QPen(theme().onPicture, 1.0)}) {
+        painter.setPen(pen);
+        for (const QPointF way : {QPointF(1, 0), QPointF(-1, 0), QPointF(0, 1), QPointF(0, -1)})
+            painter.drawLine(*keyPointer_ + 3 * way, *keyPointer_ + 14 * way);
+    }
+}
+
+void Pane::scrollByKeys(double steps, bool far) {
+    if (!isOpen()) return;
+    Hand hand = keyHand(far ? Qt::ShiftModifier : Qt::NoModifier);
+    hand.button = Qt::NoButton;
+    wheeled(hand, steps);
+    reading_.changed();
+}
+
+void Pane::zoomByKeys(double steps) {
+    if (!isOpen()) return;
+    Hand hand = keyHand(Qt::ControlModifier);
+    hand.button = Qt::NoButton;
+    wheeled(hand, steps);
+    reading_.changed();
+}
+
+void Pane::dragByKeys(QPoint steps, Qt::MouseButton button) {
+    if (!isOpen() || held_ != Qt::NoButton || keyDraws_) return;
+    const QPointF from = QRectF(rect()).center(),
+                  way(steps.x() * width() / 20.0, steps.y() * height() / 20.0);
+    const std::optional<QPointF> pointer = std::exchange(keyPointer_, std::nullopt);
+    const DrawingTool tool = reading_.tool();
+    reading_.setTool(DrawingTool::none);
+    pressed({from, {}, {}, button});
+    dragged({from + way, way, {}, button});
+    released({from + way, {}, {}, button});
+    reading_.setTool(tool);
+    keyPointer_ = pointer;
+    reading_.changed();
 }
 
 void Pane::dragOut() {

@@ -6,6 +6,7 @@
 #include <QImage>
 #include <QPainter>
 #include <QWidget>
+#include <optional>
 #include <vector>
 
 namespace haustra::window {
@@ -35,7 +36,9 @@ struct Hand {
 };
 
 /// Belongs to the main thread; the reading must outlive it. A pane that is not in sight asks the
-/// server for nothing.
+/// server for nothing. With the keys' pointer, everything that a click or a drawing does in it can
+/// be done by the keyboard: arrows move it (Shift: farther, Ctrl: by one pixel), Return clicks, or
+/// with a tool begins and ends a drawing.
 class Pane : public QWidget {
     Q_OBJECT
 public:
@@ -53,8 +56,21 @@ public:
     QString provenance() const;
     /// What the view shows, in words, for whoever does not see it.
     virtual QString inWords() const;
-    /// Tells the reader how large the pane is; one that is out of sight has no size.
-    void tellSize();
+    /// Tells the reader how large the pane is, once it has come to rest; one that is out of sight
+    /// has no size.
+    void tellSizeSoon();
+    bool isAtRest() const { return !sizeDue_.isActive(); }
+    // What the keyboard does in the place of the mouse, at the keys' pointer or the pane's middle.
+    bool hasKeyPointer() const { return keyPointer_.has_value(); }
+    /// Whether the keys' pointer takes it, though it may be a command's.
+    bool needsKey(const QKeyEvent& key) const;
+    void setKeyPointer(bool on);
+    /// Slices: to the next; the endoscopic view: along the path. `far`: ten times as far.
+    void scrollByKeys(double steps, bool far);
+    void zoomByKeys(double steps);
+    /// As a drag by `steps` twentieths of the pane does.
+    void dragByKeys(QPoint steps, Qt::MouseButton button);
+
     /// Entries of the pane's own for its menu.
     virtual void fillMenu(QMenu& menu) { (void)menu; }
 
@@ -64,14 +80,22 @@ signals:
 
 protected:
     Reading& reading() { return reading_; }
+    const Reading& reading() const { return reading_; }
     reader::Reader& reader() { return reading_.reader(); }
     const reader::Reader& reader() const { return reading_.reader(); }
     bool isOpen() const { return reader().isOpen(); }
-    /// Where the mouse was last.
-    QPointF lastMouse() const { return lastAt_; }
-    /// Logical pixels of the widget a pixel of the picture that the server makes for it.
+    /// Where the mouse or the keys' pointer is, if it is in this pane.
+    std::optional<QPointF> pointedAt() const;
+    /// Of the picture that is shown, in the pane's pixels for which it was asked; before there is
+    /// one, of the pane.
+    glm::ivec2 pictureSize() const { return reader().panes().shownPaneSize(view_); }
+    /// Where it lies in the widget: of its own shape, in the middle. After a resize that is not the
+    /// whole pane until the next picture comes.
+    QRectF pictureArea() const;
+    /// Logical pixels of the widget a pixel of the picture.
     double widgetPerPixel() const;
-    glm::ivec2 pictureSize() const { return reader().panes().size(view_); }
+    glm::dvec2 pixelAt(QPointF position) const;
+    QPointF positionOf(glm::dvec2 pixel) const;
 
     /// The dock says what the pane shows; a picture that leaves the window says it itself.
     bool namesItself() const { return namesItself_; }
@@ -82,6 +106,8 @@ protected:
 
     // The hand. A press that moves no farther than a few pixels is a click.
     virtual void pressed(const Hand&) {}
+    /// Whether a press there begins a drawing.
+    virtual bool draws(const Hand&) const { return false; }
     virtual void dragged(const Hand&) {}
     virtual void released(const Hand&) {}
     virtual void clicked(const Hand&) {}
@@ -112,7 +138,12 @@ protected:
 
 private:
     void look();
+    void tellSize();
     void paintAll(QPainter& painter);
+    void paintKeyPointer(QPainter& painter);
+    void moveKeyPointer(QPointF way);
+    void pressKeyPointer(Qt::KeyboardModifiers modifiers);
+    Hand keyHand(Qt::KeyboardModifiers modifiers, QPointF moved = {}) const;
     void dragOut();
 
     Reading& reading_;
@@ -121,6 +152,9 @@ private:
     glm::ivec2 toldSize_{0};
     Shown shown_;
     QPointF pressedAt_, lastAt_;
+    std::optional<QPointF> keyPointer_;
+    bool keyDraws_ = false;
+    QTimer sizeDue_;
     Qt::MouseButton held_ = Qt::NoButton;
     int clickStep_ = -1;  // that the last click made, in the undo stack
     bool isDrag_ = false, takesPictureOut_ = false, isHovered_ = false, namesItself_ = false;

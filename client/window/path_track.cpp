@@ -49,7 +49,7 @@ void PathTrack::look() {
     const std::uint64_t bookmarks = reading_.reader().session().bookmarksRevision();
     follows_ = true;
     setRange(0, int(std::lround(lengthMm())));
-    setValue(int(std::lround(flight.arcMm())));
+    setValue(int(std::lround(flight.placeArcMm())));
     follows_ = false;
     setEnabled(reading_.reader().isOpen() && !flight.centerline().points.empty());
     if (antegrade != antegrade_ || bookmarks != bookmarks_) update();
@@ -68,7 +68,7 @@ void PathTrack::paintEvent(QPaintEvent*) {
     painter.drawRoundedRect(QRectF(margin, middle - thick, width() - 2 * margin, 2 * thick), thick,
                             thick);
     if (!isEnabled()) return;
-    const double here = xOf(flight.arcMm());
+    const double here = xOf(flight.placeArcMm());
     painter.setBrush(t.accent);
     painter.drawRoundedRect(QRectF(margin, middle - thick, here - margin, 2 * thick), thick, thick);
     painter.setBrush(t.trouble);

@@ -1,7 +1,6 @@
 #include "window/reader_window.h"
 
 #include "core/raycasters.h"
-#include "protocol/capabilities.h"
 #include "window/accessible_panes.h"
 #include "window/bookmark_panel.h"
 #include "window/case_list.h"
@@ -54,6 +53,7 @@ const auto geometrySetting = QStringLiteral("window/geometry");
 
 // Keys that such a control needs for itself while it has the keyboard, though they are a command's.
 bool needsKey(const QWidget* widget, const QKeyEvent& key) {
+    if (const auto* pane = qobject_cast<const Pane*>(widget)) return pane->needsKey(key);
     if (!widget || (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier))) return false;
     const bool arrows = key.key() >= Qt::Key_Home && key.key() <= Qt::Key_PageDown;
     const bool presses =
@@ -80,6 +80,11 @@ void showOne(QPointer<QDialog>& dialog, const auto& make) {
     dialog->activateWindow();
 }
 
+// An ampersand would be taken for the mark of a key.
+QString plainInMenu(QString said) {
+    return said.replace('&', QStringLiteral("&&"));
+}
+
 bool typesText(const QWidget* widget) {
     return qobject_cast<const QLineEdit*>(widget) || qobject_cast<const QAbstractSpinBox*>(widget);
 }
@@ -98,9 +103,11 @@ ReaderWindow::ReaderWindow(Reading& reading)
     cases_ = new CaseList(reading);
     setCentralWidget(cases_);
     for (const Command& command : commands())
-        for (QMainWindow* window : {static_cast<QMainWindow*>(this), &second_})
-            window->addAction(commands_.action(command));
+        if (!command.isHeld())
+            for (QMainWindow* window : {static_cast<QMainWindow*>(this), &second_})
+                window->addAction(commands_.action(command));
     connect(cases_, &CaseList::chosenAgain, this, &ReaderWindow::caseOpened);
+    connect(cases_, &CaseList::connectionWanted, this, &ReaderWindow::connectAgain);
     connect(&reading, &Reading::caseOpened, this, &ReaderWindow::caseOpened);
     connect(&reading, &Reading::phaseChanged, this, [this] {
         if (reader().session().phase() == reader::Phase::choosing && !cases_->isVisible())
@@ -152,7 +159,7 @@ Docks ReaderWindow::makeDocks() {
                 [this, made](const QPoint& at) { showMenuOf(*made, at); });
         QDockWidget* around = dock(made, name, made->title());
         // Behind another's tab it is not hidden, only out of sight.
-        connect(around, &QDockWidget::visibilityChanged, made, &Pane::tellSize);
+        connect(around, &QDockWidget::visibilityChanged, made, &Pane::tellSizeSoon);
         return around;
     };
     docks.endoscopic = pane(new EndoscopicPane(reading_), "endoscopic");
@@ -176,7 +183,7 @@ void ReaderWindow::makeMenus() {
     for (std::size_t n = 0; n < menuCount; ++n) {
         QMenu* menu = menus_->addMenu(nameOf(Menu(n)));
         for (const Command& command : commands()) {
-            if (command.menu != Menu(n)) continue;
+            if (command.menu != Menu(n) || command.isHeld()) continue;
             if (command.separatorBefore) menu->addSeparator();
             menu->addAction(commands_.action(command));
             if (std::string_view(command.id) == "layout-save") {
@@ -218,7 +225,8 @@ void ReaderWindow::makeMenus() {
                     pane->update();
             });
         choices(tr("Language"), languages(), QStringLiteral("appearance/language"),
-                QLocale().name().left(2), nameOfLanguage, [this](const QString&) {
+                QSettings().value(QStringLiteral("appearance/language")).toString(), nameOfLanguage,
+                [this](const QString&) {
                     statusBar()->showMessage(tr("The language changes with the next start."), 8000);
                 });
     }
@@ -303,9 +311,8 @@ void ReaderWindow::makeStatus() {
 
 void ReaderWindow::showCases() {
     if (cases_->isVisible()) {
-        const reader::Phase phase = reader().session().phase();
-        if (reader().isOpen() && (phase == reader::Phase::open || phase == reader::Phase::lost))
-            caseOpened();
+        const reader::Session& session = reader().session();
+        if (reader().isOpen() && session.wantedCase() == session.caseInfo()->name) caseOpened();
         return;
     }
     keepLayout();
@@ -374,7 +381,7 @@ void ReaderWindow::fillLayoutMenu() {
     layoutMenu_->clear();
     const QStringList names = Layouts::names();
     for (const QString& name : names)
-        layoutMenu_->addAction(name, this, [this, name] {
+        layoutMenu_->addAction(plainInMenu(name), this, [this, name] {
             Pane* pane = focusedPane();
             beforeEnlarged_.clear();
             const bool restored = layouts_.restore(name, reader().flat().hasStrip());
@@ -386,7 +393,7 @@ void ReaderWindow::fillLayoutMenu() {
     QMenu* remove = layoutMenu_->addMenu(tr("Remove"));
     remove->setEnabled(!names.isEmpty());
     for (const QString& name : names)
-        remove->addAction(name, this, [name] { Layouts::remove(name); });
+        remove->addAction(plainInMenu(name), this, [name] { Layouts::remove(name); });
 }
 
 void ReaderWindow::enlarge() {
@@ -419,6 +426,42 @@ Pane* ReaderWindow::currentPane() const {
     for (Pane* pane : panes_)
         if (pane->isVisible()) return pane;
     return nullptr;
+}
+
+Pane* ReaderWindow::keyboardPane() const {
+    Pane* pane = focusedPane();
+    return pane && pane->isVisible() ? pane : currentPane();
+}
+
+void ReaderWindow::focusNextPane(int step) {
+    std::vector<Pane*> shown;
+    for (Pane* pane : panes_)
+        if (pane->isVisible() && !pane->visibleRegion().isEmpty()) shown.push_back(pane);
+    if (shown.empty()) return;
+    const auto at = std::find(shown.begin(), shown.end(), focusedPane());
+    const auto count = std::ptrdiff_t(shown.size());
+    const std::ptrdiff_t next = at == shown.end() ? 0 : (at - shown.begin() + step + count) % count;
+    Pane* pane = shown[std::size_t(next)];
+    pane->window()->activateWindow();
+    pane->setFocus(Qt::TabFocusReason);
+}
+
+void ReaderWindow::togglePointing() {
+    if (Pane* pane = keyboardPane()) pane->setKeyPointer(!pane->hasKeyPointer());
+}
+
+void ReaderWindow::connectAgain() {
+    const reader::Session& session = reader().session();
+    const int owed = int(session.owedBookmarks());
+    if (owed > 0 && !session.keepsUnsent() &&
+        QMessageBox::question(
+            this, tr("Bookmarks are not sent yet"),
+            tr("%n bookmark(s) wait for the server, and this station cannot keep them: they are "
+               "lost with this session. Connect again all the same?",
+               nullptr, owed)) != QMessageBox::Yes)
+        return;
+    if (!cases_->isVisible()) showCases();  // until the case is open again
+    reading_.connectAgain();
 }
 
 void ReaderWindow::toggleFullScreen() {
@@ -489,18 +532,6 @@ std::size_t ReaderWindow::windowPreset() const {
            !(windowPresets[n].window == reading_.reader().slices().window()))
         ++n;
     return n;
-}
-
-void ReaderWindow::toggleCleansed() {
-    if (!reader().session().caseInfo()->cleansed)
-        return reading_.tell(tr("This case has no cleansed scan."));
-    reader().slices().setCleansed(!reader().slices().cleansed());
-}
-
-void ReaderWindow::setSlab(Slab slab) {
-    if (!reader().session().serverCan(protocol::capability::slabs))
-        return reading_.tell(tr("This server cannot show slabs."));
-    reader().slices().setSlab(slab);
 }
 
 void ReaderWindow::toggleOptics() {
@@ -596,7 +627,7 @@ void ReaderWindow::look() {
             QMenu* places = new QMenu(trust_);
             QStringList all;
             for (const std::string& warning : warnings) {
-                places->addAction(text(warning))->setEnabled(true);
+                places->addAction(plainInMenu(text(warning)));
                 all += text(warning);
             }
             // It may be open now.
@@ -636,6 +667,8 @@ bool ReaderWindow::isSettled() const {
     const reader::Phase phase = reader.session().phase();
     if (phase == reader::Phase::connecting) return false;
     if (phase != reader::Phase::open || reader.motion() != reader::Motion::paused) return true;
+    for (const Pane* pane : panes_)
+        if (!pane->isAtRest()) return false;
     for (const View view : allViews)
         if (reader.panes().size(view).x > 0 && (reader.flat().hasStrip() || !isFlat(view)) &&
             reader.freshness(view) != reader::Freshness::exact)
@@ -676,18 +709,21 @@ bool ReaderWindow::handleHeldKeys(QEvent* event) {
         return false;
     }
     const auto& key = static_cast<const QKeyEvent&>(*event);
-    const bool isWay = key.key() == Qt::Key_W || key.key() == Qt::Key_A || key.key() == Qt::Key_S ||
-                       key.key() == Qt::Key_D || key.key() == Qt::Key_Q || key.key() == Qt::Key_E;
-    if (isWay && event->type() == QEvent::KeyRelease && !key.isAutoRepeat()) held_.erase(key.key());
-    if (!isWay || typesText(QApplication::focusWidget()) || QApplication::activeModalWidget() ||
+    const Command* way = nullptr;
+    for (const Command& command : commands())
+        if (command.isHeld() &&
+            commands_.action(command)->shortcuts().contains(QKeySequence(key.key())))
+            way = &command;
+    if (way && event->type() == QEvent::KeyRelease && !key.isAutoRepeat()) held_.erase(way);
+    if (!way || typesText(QApplication::focusWidget()) || QApplication::activeModalWidget() ||
         (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier)))
         return false;
     if (key.isAutoRepeat()) return true;
-    if (event->type() == QEvent::KeyPress) held_.insert(key.key());
-    const auto held = [&](Qt::Key code) { return held_.contains(code) ? 1.0 : 0.0; };
-    reading_.setHeldWay({held(Qt::Key_D) - held(Qt::Key_A), held(Qt::Key_E) - held(Qt::Key_Q),
-                         held(Qt::Key_W) - held(Qt::Key_S)},
-                        key.modifiers().testFlag(Qt::ShiftModifier));
+    if (event->type() == QEvent::KeyPress) held_.insert(way);
+    glm::dvec3 sum(0.0);
+    for (const Command* command : held_)
+        sum += command->heldWay;
+    reading_.setHeldWay(sum, key.modifiers().testFlag(Qt::ShiftModifier));
     return true;
 }
 

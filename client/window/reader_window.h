@@ -42,6 +42,12 @@ public:
     /// The pane under the mouse, or that which has the keyboard; back again.
     void enlarge();
     void leaveEnlarged();
+    /// The pane that has the keyboard, else that under the mouse.
+    Pane* keyboardPane() const;
+    void focusNextPane(int step);
+    void togglePointing();
+    bool pointsByKeys() const { return reading_.pointsByKeys(); }
+    void connectAgain();
     bool isEnlarged() const { return !beforeEnlarged_.isEmpty(); }
     void arrange(BuiltinLayout layout);
     void saveLayout();
@@ -49,8 +55,6 @@ public:
     void askForPlace();
     void setWindowPreset(std::size_t n);
     std::size_t windowPreset() const;
-    void toggleCleansed();
-    void setSlab(Slab slab);
     void toggleOptics();
     bool showsOptics() const;
     void writeNote();
@@ -100,7 +104,7 @@ private:
     QMenu* layoutMenu_ = nullptr;
     QPointer<QDialog> help_, keys_;
     QByteArray beforeEnlarged_;
-    std::set<int> held_;  // keys of free flight
+    std::set<const Command*> held_;  // of free flight
     bool placedOptics_ = false;
 };
 

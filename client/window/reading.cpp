@@ -65,9 +65,11 @@ QString toolTipOf(const QString& said) {
 
 Reading::Reading(link::ConnectionOptions options, std::string caseName,
                  std::optional<reader::BookmarkJournal> journal)
-    : serverName_(text(link::toString(options.address))) {
-    options.reconnect = true;
-    options.onEvent = [this] { wakeFromThread(); };
+    : options_(std::move(options)),
+      journal_(std::move(journal)),
+      serverName_(text(link::toString(options_.address))) {
+    options_.reconnect = true;
+    options_.onEvent = [this] { wakeFromThread(); };
     steady_.setTimerType(Qt::PreciseTimer);
     soon_.setSingleShot(true);
     connect(&soon_, &QTimer::timeout, this, &Reading::step);
@@ -76,10 +78,26 @@ Reading::Reading(link::ConnectionOptions options, std::string caseName,
     connect(&steady_, &QTimer::timeout, this, &Reading::step);
     connect(&idle_, &QTimer::timeout, this, &Reading::step);
     undoStack_.setUndoLimit(100);
-    reader_ = std::make_unique<reader::Reader>(std::move(options), std::move(caseName),
-                                               std::move(journal));
+    makeReader(std::move(caseName));
     sinceStep_.start();
     idle_.start();
+}
+
+void Reading::makeReader(std::string caseName) {
+    reader_ = std::make_unique<reader::Reader>(options_, std::move(caseName), journal_);
+}
+
+void Reading::connectAgain() {
+    const std::string caseName = reader_->session().wantedCase();
+    if (case_) placeBefore_ = Place{case_->scan, reader_->flight(), reader_->slices()};
+    const bool offers = reader_->session().offersCases();
+    undoStack_.clear();  // its steps are of the former reader
+    case_.reset();
+    reader_.reset();
+    makeReader(caseName);
+    reader_->session().setOffersCases(offers);
+    emit readerReplaced();
+    changed();
 }
 
 Reading::~Reading() {
@@ -126,6 +144,9 @@ void Reading::watchSession() {
         case_ = session.caseInfo();
         undoStack_.clear();
         setTool(DrawingTool::none);
+        if (const auto before = std::exchange(placeBefore_, {});
+            before && case_->scan == before->scan)
+            reader_->restore(before->flight, before->slices);
         emit caseOpened();
     }
     if (session.phase() != phase_) {

@@ -52,6 +52,15 @@ public:
     DrawingTool tool() const { return tool_; }
     void setTool(DrawingTool tool);
 
+    /// Arrows move a pointer in one of the panes; the mouse points at nothing meanwhile.
+    bool pointsByKeys() const { return pointsByKeys_; }
+    void setPointsByKeys(bool on) { pointsByKeys_ = on; }
+
+    /// After the session has ended for good: a new one with the same server, the same case and, if
+    /// that is of the same scan, the same place. Bookmarks that are owed come back from the
+    /// journal; without one they are lost.
+    void connectAgain();
+
     /// Free flight: the way that keys are held for, right, up and forward.
     void setHeldWay(glm::dvec3 way, bool fast);
 
@@ -63,13 +72,19 @@ signals:
     void phaseChanged();
     void told(const QString& text, bool trouble);
     void toolChanged();
+    /// reader() is another one, whose session begins.
+    void readerReplaced();
 
 private:
     void step();
     void wakeFromThread();
     void watchSession();
 
+    void makeReader(std::string caseName);
+
     std::atomic<bool> stepWaits_ = false;
+    link::ConnectionOptions options_;
+    std::optional<reader::BookmarkJournal> journal_;
     QString serverName_;
     std::unique_ptr<reader::Reader> reader_;
     QTimer steady_, idle_, soon_;
@@ -78,7 +93,15 @@ private:
     DrawingTool tool_ = DrawingTool::none;
     glm::dvec3 heldWay_{0.0};
     bool heldFast_ = false, toldFirstUse_ = false;
+    bool pointsByKeys_ = false;
     std::shared_ptr<const reader::CaseInfo> case_;
+    /// Where the reader was when the former session ended, of which scan.
+    struct Place {
+        std::string scan;
+        reader::Flight flight;
+        reader::SliceViews slices;
+    };
+    std::optional<Place> placeBefore_;
     reader::Phase phase_ = reader::Phase::connecting;
 };
 

@@ -78,7 +78,7 @@ Result<void> run(const WindowOptions& options) {
                 return;
             due.stop();
             ended = writeScreenshot(window, *options.screenshot);
-            QApplication::quit();
+            QApplication::exit();  // what is set by hand stays: the window is not closed
         });
         due.start(50);
     }

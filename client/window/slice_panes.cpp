@@ -3,7 +3,6 @@
 #include "window/look_steps.h"
 #include "window/theme.h"
 
-#include <QKeyEvent>
 #include <QMenu>
 #include <QPainterPath>
 #include <algorithm>
@@ -31,6 +30,11 @@ GreyPane::GreyPane(Reading& reading, View view, const QString& title) : Pane(rea
     connect(&reading, &Reading::stepped, this, &GreyPane::pointAgain);
 }
 
+DrawingTool GreyPane::toolOf(const Hand& hand) const {
+    if (hand.button != Qt::LeftButton) return DrawingTool::none;
+    return hand.shift() ? DrawingTool::line : hand.ctrl() ? DrawingTool::outline : reading().tool();
+}
+
 QString GreyPane::heading() const {
     QStringList heading;
     if (namesItself()) heading += title();
@@ -45,8 +49,12 @@ QString GreyPane::heading() const {
 
 QString GreyPane::inWords() const {
     const WindowLevel& window = reader().slices().window();
-    return tr("window centre %1, width %2 HU").arg(window.centerHu).arg(window.widthHu) +
-           QStringLiteral(", ") + Pane::inWords();
+    QString words = tr("window centre %1, width %2 HU").arg(window.centerHu).arg(window.widthHu);
+    if (const auto& pointed = reader().measures().pointed(); pointed && pointedAt())
+        words += QStringLiteral(", ") + tr("%1 HU").arg(std::lround(pointed->hu));
+    if (const auto& measures = reader().measures().measures(); !measures.empty())
+        words += QStringLiteral(", ") + textOf(measures.back());
+    return words + QStringLiteral(", ") + Pane::inWords();
 }
 
 void GreyPane::fillMenu(QMenu& menu) {
@@ -64,7 +72,7 @@ void GreyPane::addShown(Shown& shown) const {
         shown.add(measure.values ? measure.values->meanHu : -1e9);
     }
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
-    if (const auto& pointed = reader().measures().pointed(); pointed && underMouse()) {
+    if (const auto& pointed = reader().measures().pointed(); pointed && pointedAt()) {
         shown.add(pointed->placeMm);
         shown.add(pointed->hu);
     }
@@ -73,20 +81,21 @@ void GreyPane::addShown(Shown& shown) const {
 std::optional<glm::dvec3> GreyPane::patientAt(QPointF position) const {
     const auto placed = placement();
     if (!placed) return std::nullopt;
-    return placed->patientFromPixel(vector(position) / widgetPerPixel() - 0.5);
+    return placed->patientFromPixel(pixelAt(position) - 0.5);
 }
 
 QPointF GreyPane::positionOf(const SlicePlacement& placement, glm::dvec3 mm) const {
-    return point((placement.pixelFromPatient(mm) + 0.5) * widgetPerPixel());
+    return positionOf(placement.pixelFromPatient(mm) + 0.5);
+}
+
+bool GreyPane::draws(const Hand& hand) const {
+    return toolOf(hand) != DrawingTool::none;
 }
 
 void GreyPane::pressed(const Hand& hand) {
     drawnFrom_.reset();
     windowBefore_ = reader().slices().window();
-    if (hand.button != Qt::LeftButton) return;
-    const DrawingTool tool = hand.shift()  ? DrawingTool::line
-                             : hand.ctrl() ? DrawingTool::outline
-                                           : reading().tool();
+    const DrawingTool tool = toolOf(hand);
     if (tool == DrawingTool::none) return;
     drawnFrom_ = patientAt(hand.position);
     drawsEllipse_ = tool == DrawingTool::outline;
@@ -136,8 +145,8 @@ void GreyPane::released(const Hand&) {
 
 // What lies under a mouse that rests changes with the slice.
 void GreyPane::pointAgain() {
-    if (isVisible() && underMouse() && isOpen() && reader().measures().pointed())
-        reader().measures().pointAt(patientAt(lastMouse()), shownScan());
+    if (!isVisible() || !isOpen() || !reader().measures().pointed()) return;
+    if (const auto at = pointedAt()) reader().measures().pointAt(patientAt(*at), shownScan());
 }
 
 void GreyPane::hovered(const Hand& hand) {
@@ -150,6 +159,17 @@ void GreyPane::left() {
     reading().changed();
 }
 
+QString GreyPane::textOf(const reader::ScanMeasure& measure) {
+    if (!measure.isEllipse) return tr("%1 mm").arg(decimal(measure.lengthMm()));
+    const double area = M_PI * glm::length(measure.halfAMm()) * glm::length(measure.halfBMm());
+    const QString size = tr("%1 mm²").arg(area, 0, 'f', 0);
+    if (!measure.values) return size;
+    return tr("mean %1 ± %2 HU   %3")
+        .arg(decimal(measure.values->meanHu))
+        .arg(decimal(measure.values->deviationHu))
+        .arg(size);
+}
+
 void GreyPane::paintMeasures(QPainter& painter, const SlicePlacement& placement) {
     const glm::dvec3 normal = placement.normal();
     painter.setFont(font());
@@ -159,19 +179,11 @@ void GreyPane::paintMeasures(QPainter& painter, const SlicePlacement& placement)
         const QPointF from = positionOf(placement, measure.fromMm),
                       to = positionOf(placement, measure.toMm);
         const QColor color = theme().measuredOnPicture;
-        QString text = tr("%1 mm").arg(decimal(measure.lengthMm()));
+        const QString text = textOf(measure);
         if (measure.isEllipse) {
             QPainterPath path;
             path.addEllipse(QRectF(from, to).normalized());
             outlinedPolyline(painter, path.toFillPolygon(), true, color);
-            const double area =
-                M_PI * glm::length(measure.halfAMm()) * glm::length(measure.halfBMm());
-            text = tr("%1 mm²").arg(area, 0, 'f', 0);
-            if (measure.values)
-                text = tr("mean %1 ± %2 HU   %3")
-                           .arg(decimal(measure.values->meanHu))
-                           .arg(decimal(measure.values->deviationHu))
-                           .arg(text);
         } else {
             outlinedPolyline(painter, QPolygonF({from, to}), false, color);
             painter.setPen(Qt::NoPen);
@@ -207,7 +219,7 @@ void GreyPane::paintTexts(QPainter& painter, const QString& place) {
                  tr("C %1  W %2 HU").arg(window.centerHu).arg(window.widthHu));
     const auto& pointed = reader().measures().pointed();
     const auto placed = placement();
-    if (!pointed || !underMouse() || !placed || pointed->scan != shownScan() ||
+    if (!pointed || !pointedAt() || !placed || pointed->scan != shownScan() ||
         !isOn(*placed, pointed->placeMm))
         return;
     // Beside the mouse, on that side of it where there is room.
@@ -330,29 +342,14 @@ void SlicePane::clicked(const Hand& hand) {
 
 void SlicePane::wheeled(const Hand& hand, double steps) {
     if (hand.ctrl())
-        reader().slices().zoom(view(), std::pow(1.2, steps),
-                               vector(hand.position) / widgetPerPixel() - 0.5, pictureSize());
+        reader().slices().zoom(view(), std::pow(1.2, steps), pixelAt(hand.position) - 0.5,
+                               pictureSize());
     else
         reader().slices().scroll(view(), steps * stepMm() * (hand.shift() ? 10.0 : 1.0));
 }
 
 void SlicePane::moved(glm::dvec2 mm) {
     reader().slices().pan(view(), mm);
-}
-
-void SlicePane::keyPressEvent(QKeyEvent* event) {
-    if (!isOpen()) return Pane::keyPressEvent(event);
-    switch (event->key()) {
-        case Qt::Key_PageUp:
-            reader().slices().scroll(view(), stepMm());
-            break;
-        case Qt::Key_PageDown:
-            reader().slices().scroll(view(), -stepMm());
-            break;
-        default:
-            return Pane::keyPressEvent(event);
-    }
-    reading().changed();
 }
 
 // ---- the slice across the gaze ------------------------------------------------------------------
@@ -387,21 +384,20 @@ void ObliquePane::paintMarks(QPainter& painter) {
     if (!placed) return;
     const ObliqueView shown = shownSlice();
     const Camera camera = reader().flight().camera();
-    paintCross(painter, QRectF(rect()).center(), 4.0, 9.0, theme().accentOnPicture);
+    const double ahead = glm::dot(shown.positionMm - camera.positionMm, shown.forward);
+    paintCross(painter, positionOf(*placed, camera.positionMm + ahead * shown.forward), 4.0, 9.0,
+               theme().accentOnPicture);
     if (const auto& picked = reader().flat().picked()) {
-        const double beside =
-            glm::dot(picked->positionMm - shown.positionMm, glm::normalize(shown.forward));
-        if (std::abs(beside) < 2.0)
+        if (isOn(*placed, picked->positionMm))
             paintPlaceMark(painter, positionOf(*placed, picked->positionMm));
     }
     painter.setFont(smallFont(font()));
     paintSides(painter, rect(), glm::cross(shown.forward, shown.up), shown.up);
     paintMeasures(painter, *placed);
-    const double ahead = glm::dot(shown.positionMm - camera.positionMm, shown.forward);
     paintTexts(painter, std::abs(ahead) < 0.5 ? QString()
                         : ahead > 0.0         ? tr("%1 mm ahead").arg(ahead, 0, 'f', 0)
                                               : tr("%1 mm behind").arg(-ahead, 0, 'f', 0));
-    paintScaleBar(painter, rect(), height() / shown.heightMm);
+    paintScaleBar(painter, rect(), widgetPerPixel() / placed->pixelMm());
 }
 
 void ObliquePane::clicked(const Hand& hand) {
@@ -415,6 +411,18 @@ void ObliquePane::wheeled(const Hand& hand, double steps) {
         reader().slices().zoomOblique(std::pow(1.2, steps));
     else
         reader().slices().scrollOblique(steps * (hand.shift() ? 10.0 : 1.0));
+}
+
+void ObliquePane::moved(glm::dvec2 mm) {
+    reader().slices().panOblique(mm);
+}
+
+void ObliquePane::fillMenu(QMenu& menu) {
+    menu.addAction(tr("In the middle again"), this, [this] {
+        reader().slices().centerOblique();
+        reading().changed();
+    });
+    GreyPane::fillMenu(menu);
 }
 
 }  // namespace haustra::window

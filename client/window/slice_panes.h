@@ -24,16 +24,19 @@ protected:
     virtual Scan shownScan() const = 0;
     /// In words: "Axial, cleansed".
     QString heading() const;
+    static QString textOf(const reader::ScanMeasure& measure);
 
     void addShown(Shown& shown) const override;
     void dragged(const Hand& hand) override;
     void pressed(const Hand& hand) override;
+    bool draws(const Hand& hand) const override;
     void released(const Hand& hand) override;
     void hovered(const Hand& hand) override;
     void left() override;
     virtual void moved(glm::dvec2 mm) { (void)mm; }
 
     std::optional<glm::dvec3> patientAt(QPointF position) const;
+    using Pane::positionOf;
     QPointF positionOf(const SlicePlacement& placement, glm::dvec3 mm) const;
     bool isOn(const SlicePlacement& placement, glm::dvec3 mm) const;
     void paintMeasures(QPainter& painter, const SlicePlacement& placement);
@@ -41,6 +44,7 @@ protected:
 
 private:
     void pointAgain();
+    DrawingTool toolOf(const Hand& hand) const;
 
     std::vector<reader::ScanMeasure> measuresBefore_;
     std::optional<glm::dvec3> drawnFrom_;
@@ -64,7 +68,6 @@ protected:
     void clicked(const Hand& hand) override;
     void wheeled(const Hand& hand, double steps) override;
     void moved(glm::dvec2 mm) override;
-    void keyPressEvent(QKeyEvent*) override;
 
 private:
     SliceView shownSlice() const;
@@ -77,6 +80,7 @@ class ObliquePane : public GreyPane {
     Q_OBJECT
 public:
     explicit ObliquePane(Reading& reading);
+    void fillMenu(QMenu& menu) override;
 
 protected:
     std::optional<SlicePlacement> placement() const override;
@@ -85,6 +89,7 @@ protected:
     void addShown(Shown& shown) const override;
     void clicked(const Hand& hand) override;
     void wheeled(const Hand& hand, double steps) override;
+    void moved(glm::dvec2 mm) override;
 
 private:
     ObliqueView shownSlice() const;

@@ -325,6 +325,48 @@ protected:
         slices().setWindow({10, 77});
         return [this, wanted] { return slices().window() == wanted; };
     }
+    // Another pane than the endoscopic one has the keyboard.
+    Check focuses() {
+        return [this] {
+            const auto* pane = qobject_cast<Pane*>(QApplication::focusWidget());
+            return pane && pane->view() != View::endoscopic;
+        };
+    }
+    Check scrolls(double voxels) {
+        pane(View::axial).setFocus();
+        flight().goTo(200.0);
+        settle();
+        const double from = slices().slice(View::axial).positionMm.z,
+                     mm = voxels * reader().session().caseInfo()->grid.spacingMm().z;
+        return [=, this] {
+            return std::abs(slices().slice(View::axial).positionMm.z - from - mm) < 1e-9;
+        };
+    }
+    Check zooms(double wanted) {
+        pane(View::axial).setFocus();
+        slices().showWhole(View::axial);
+        slices().zoom(View::axial, 2.0, {10, 10}, {20, 20});
+        return [=, this] { return std::abs(slices().slice(View::axial).zoom - wanted) < 1e-9; };
+    }
+    // To the right and up.
+    Check looks(glm::dvec2 way) {
+        flight().resetLook();
+        return [=, this] {
+            const glm::dvec2 turned(flight().yawDegrees(), flight().pitchDegrees());
+            return glm::dot(turned, way) > 1.0 &&
+                   std::abs(turned.x * way.y + turned.y * way.x) < 1e-9;
+        };
+    }
+    // To the right and down, a twentieth of the pane.
+    Check pans(glm::dvec2 way) {
+        pane(View::coronal).setFocus();
+        slices().showWhole(View::coronal);
+        settle();
+        const glm::dvec2 mm =
+            way * glm::dvec2(pane(View::coronal).width(), pane(View::coronal).height()) *
+            placed(View::coronal).pixelMm() / 20.0;
+        return [=, this] { return glm::distance(slices().slice(View::coronal).panMm, mm) < 1e-6; };
+    }
     // On a second press it is off again.
     Check flips(std::function<bool()> isOn) {
         return [before = isOn(), isOn] { return isOn() != before; };
@@ -423,6 +465,47 @@ protected:
              });
          }},
         {"full-screen", [this] { return flips([this] { return window_->isFullScreen(); }); }},
+        {"next-pane", [this] { return focuses(); }},
+        {"previous-pane", [this] { return focuses(); }},
+        {"point", [this] { return flips([this] { return reading_->pointsByKeys(); }); }},
+        {"scroll-on", [this] { return scrolls(1.0); }},
+        {"scroll-back", [this] { return scrolls(-1.0); }},
+        {"scroll-far-on", [this] { return scrolls(10.0); }},
+        {"scroll-far-back", [this] { return scrolls(-10.0); }},
+        {"zoom-in", [this] { return zooms(2.4); }},
+        {"zoom-out", [this] { return zooms(2.0 / 1.2); }},
+        {"drag-left",
+         [this] {
+             return looks({-1.0, 0.0});
+         }},
+        {"drag-right",
+         [this] {
+             return looks({1.0, 0.0});
+         }},
+        {"drag-up",
+         [this] {
+             return looks({0.0, 1.0});
+         }},
+        {"drag-down",
+         [this] {
+             return looks({0.0, -1.0});
+         }},
+        {"move-left",
+         [this] {
+             return pans({-1.0, 0.0});
+         }},
+        {"move-right",
+         [this] {
+             return pans({1.0, 0.0});
+         }},
+        {"move-up",
+         [this] {
+             return pans({0.0, -1.0});
+         }},
+        {"move-down",
+         [this] {
+             return pans({0.0, 1.0});
+         }},
         {"fly-forward", [this] { return motion(Motion::forward); }},
         {"fly-backward", [this] { return motion(Motion::backward); }},
         {"step-forward", [this] { return steps(1.0); }},
@@ -571,6 +654,8 @@ TEST_F(ClientWindowCommands, EachDoesByItsKeysWhatItSays) {
             const std::string what = command.id + (" by " + key.toString().toStdString());
             SCOPED_TRACE(what);
             if (std::string(command.id) == "quit") continue;  // below
+            // Those have tests of their own.
+            if (command.isHeld() || std::string(command.id) == "connect-again") continue;
             const auto found = expectations.find(command.id);
             ASSERT_NE(found, expectations.end()) << "say here how its effect is seen";
             pane(View::endoscopic).setFocus();
@@ -586,6 +671,7 @@ TEST_F(ClientWindowCommands, EachDoesByItsKeysWhatItSays) {
                 activate();
             }
             if (cases()->isVisible()) press(Qt::Key_O, Qt::ControlModifier);
+            if (reading_->pointsByKeys()) press(Qt::Key_Z);
             if (window_->isFullScreen()) press(Qt::Key_F11);
             if (window_->isEnlarged()) press(Qt::Key_Return);
             if (dock("optics")->isVisible()) press(Qt::Key_G);
@@ -621,6 +707,7 @@ TEST(ClientWindowKeys, NoKeyBelongsToTwoCommands) {
 
 TEST_F(ClientWindow, CommandsWithoutAKeyAreInTheMenus) {
     for (const Command& command : commands()) {
+        if (command.isHeld()) continue;
         bool found = false;
         for (QAction* menu : window_->findChild<QMenuBar*>()->actions())
             found = found || menu->menu()->actions().contains(action(command.id));
@@ -652,18 +739,33 @@ TEST_F(ClientWindow, FreeFlightFollowsTheKeysThatAreHeld) {
     ASSERT_TRUE(flight().isFree());
     QTest::qWait(100);
     EXPECT_EQ(flight().camera(), again);
-    // Up with Q and E, sideways with A and D; a key that was let go moves no more.
-    for (const auto& [key, way] : {std::pair{Qt::Key_E, again.up},
-                                   std::pair{Qt::Key_D, glm::cross(again.forward, again.up)}}) {
+    // Each of the table's keys its own way; a key that was let go moves no more.
+    int ways = 0;
+    for (const Command& command : commands()) {
+        if (!command.isHeld()) continue;
+        ++ways;
+        const glm::dvec3 along = command.heldWay,
+                         way = along.x * glm::cross(again.forward, again.up) + along.y * again.up +
+                               along.z * again.forward;
+        const Qt::Key key = CommandSet::keysOfOld(command).front()[0].key();
         const glm::dvec3 from = flight().camera().positionMm;
         QTest::keyPress(handleOf(*window_), key);
         EXPECT_TRUE(
             waitFor([&] { return glm::dot(flight().camera().positionMm - from, way) > 1.0; }));
         QTest::keyRelease(handleOf(*window_), key);
     }
+    EXPECT_EQ(ways, 6);
     const glm::dvec3 stands = flight().camera().positionMm;
     QTest::qWait(60);
     EXPECT_EQ(flight().camera().positionMm, stands);
+    // So does a key that the reader has chosen.
+    for (const Command& command : commands())
+        if (std::string(command.id) == "free-back")
+            window_->findChild<CommandSet*>()->setKeys(command, {QKeySequence(Qt::Key_F9)});
+    QTest::keyPress(handleOf(*window_), Qt::Key_F9);
+    EXPECT_TRUE(waitFor(
+        [&] { return glm::dot(flight().camera().positionMm - stands, again.forward) < -1.0; }));
+    QTest::keyRelease(handleOf(*window_), Qt::Key_F9);
 }
 
 // ---- keys stay with controls --------------------------------------------------------------------
@@ -863,6 +965,17 @@ TEST_F(ClientWindow, HandsAcrossTheGaze) {
     EXPECT_NEAR(slices().window().widthHu, 2150.0, 1.0);
     ASSERT_TRUE(settle());
     const glm::ivec2 size = reader().panes().size(View::oblique);
+    // What the hand moves, moves with it; the menu brings it back.
+    const auto placed = [&] { return *placeSlice(slice(), size.x, size.y); };
+    const glm::dvec3 held = placed().patientFromPixel({40, 50});
+    const auto middle = slice();
+    drag(view, {{80, 80}, {90, 100}, {110, 120}}, Qt::MiddleButton);
+    EXPECT_LT(glm::distance(placed().patientFromPixel({70, 90}), held), 1e-6);
+    ASSERT_TRUE(settle());
+    const auto menu = chooseInMenu(QStringLiteral("In the middle again"));
+    click(view, {80, 80}, Qt::RightButton);
+    ASSERT_TRUE(waitFor([&] { return *menu && slice() == middle; }));
+    ASSERT_TRUE(settle());
     const glm::dvec3 there =
         placeSlice(slice(), size.x, size.y)->patientFromPixel(glm::dvec2(60, 70) - 0.5);
     click(view, {60, 70});
@@ -1130,6 +1243,98 @@ TEST_F(ClientWindow, RulersAndEllipsesMeasureTheScan) {
     EXPECT_EQ(reader().measures().measures().size(), 3u);
 }
 
+// All that a mouse does in the views, by keys alone; the mouse rests elsewhere.
+TEST_F(ClientWindow, TheKeysPointGoAndMeasure) {
+    flight().goTo(200.0);
+    ASSERT_TRUE(settle());
+    moveTo(pane(View::overview), {3, 3});
+    Pane& axial = pane(View::axial);
+    axial.setFocus();
+    press(Qt::Key_Z);
+    for (int n = 0; n < 4; ++n)
+        press(Qt::Key_Left);
+    press(Qt::Key_Up, Qt::ShiftModifier);
+    press(Qt::Key_Down, Qt::ControlModifier);
+    const QPointF middle = QRectF(axial.rect()).center();
+    const auto placeOf = [&](QPointF at) {
+        return placed(View::axial).patientFromPixel(vector(at) - 0.5);
+    };
+    const QPointF at = middle + QPointF(-20, -24 + 1);
+    const glm::dvec3 under = placeOf(at);
+    // The value there, shown and said.
+    ASSERT_TRUE(waitFor([&] {
+        const auto& pointed = reader().measures().pointed();
+        return pointed && glm::distance(pointed->placeMm, under) < 1e-9;
+    }));
+    EXPECT_TRUE(
+        waitFor([&] { return axial.accessibleDescription().contains(QStringLiteral("HU, ")); }));
+    // A ruler from there.
+    press(Qt::Key_L);
+    press(Qt::Key_Return);
+    for (int n = 0; n < 6; ++n)
+        press(Qt::Key_Right);
+    press(Qt::Key_Return);
+    ASSERT_EQ(reader().measures().measures().size(), 1u);
+    const reader::ScanMeasure ruler = reader().measures().measures()[0];
+    EXPECT_LT(glm::distance(ruler.fromMm, under), 1e-9);
+    EXPECT_LT(glm::distance(ruler.toMm, placeOf(at + QPointF(30, 0))), 1e-9);
+    EXPECT_TRUE(axial.inWords().contains(decimal(ruler.lengthMm()) + QStringLiteral(" mm")));
+    press(Qt::Key_Right);  // it has ended
+    EXPECT_EQ(reader().measures().measures()[0].toMm, ruler.toMm);
+    // An ellipse.
+    press(Qt::Key_O);
+    press(Qt::Key_Return);
+    press(Qt::Key_Right, Qt::ShiftModifier);
+    press(Qt::Key_Down, Qt::ShiftModifier);
+    press(Qt::Key_Return);
+    ASSERT_TRUE(waitFor([&] {
+        return reader().measures().measures().size() == 2 &&
+               reader().measures().measures()[1].values.has_value();
+    }));
+    // Without a tool Return goes there, in all views.
+    press(Qt::Key_O);
+    press(Qt::Key_Return);
+    ASSERT_TRUE(answered());
+    const glm::dvec3 there = placeOf(at + QPointF(35 + 24, 24));
+    for (const View plane : {View::axial, View::coronal, View::sagittal})
+        EXPECT_LT(glm::distance(slices().slice(plane).positionMm, there), 1e-6);
+    // The arrows are the pointer's until it is gone.
+    const double arc = flight().arcMm();
+    press(Qt::Key_Right);
+    EXPECT_EQ(flight().arcMm(), arc);
+    press(Qt::Key_Escape);
+    EXPECT_FALSE(reading_->pointsByKeys());
+    press(Qt::Key_Right);
+    EXPECT_NEAR(flight().arcMm(), arc + 1.0, 1e-9);
+    // The wall in the endoscopic view, a place of the strip, a line on the flattened wall.
+    const auto goneByKeys = [&](View view) {
+        reading_->undoStack().clear();
+        reader().flat().forgetPicked();
+        pane(view).setFocus();
+        press(Qt::Key_Z);
+        press(Qt::Key_Right, Qt::ShiftModifier);
+        press(Qt::Key_Return);
+        const bool gone = waitFor([&] { return reader().flat().picked().has_value(); });
+        EXPECT_TRUE(settle());
+        return gone && reading_->undoStack().count() == 1;
+    };
+    EXPECT_TRUE(goneByKeys(View::endoscopic));
+    EXPECT_TRUE(goneByKeys(View::flattened));
+    EXPECT_TRUE(goneByKeys(View::flattenedZoom));
+    press(Qt::Key_L);
+    press(Qt::Key_Return);
+    press(Qt::Key_Right, Qt::ShiftModifier);
+    press(Qt::Key_Return);
+    EXPECT_TRUE(waitFor([&] {
+        const auto& line = reader().flat().wall().measurement();
+        return line && line->result;
+    }));
+    press(Qt::Key_L);
+    // Another pane with the keyboard: this one's pointer is gone.
+    press(Qt::Key_F6);
+    EXPECT_FALSE(reading_->pointsByKeys());
+}
+
 // ---- undo ---------------------------------------------------------------------------------------
 
 TEST_F(ClientWindow, EachThingThatIsUndoneAndRedoneLeavesNoTrace) {
@@ -1248,8 +1453,10 @@ TEST_F(ClientWindow, UndoOfAJumpLeavesWhatWasSetSince) {
     wheel(pane(View::axial), {60, 60}, 2, Qt::ControlModifier);
     const double zoom = slices().slice(View::axial).zoom;
     press(Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_FALSE(slices().cleansed());  // a step of its own
+    EXPECT_NEAR(flight().arcMm(), length(), 1e-9);
+    press(Qt::Key_Z, Qt::ControlModifier);
     EXPECT_EQ(flight().arcMm(), 0.0);
-    EXPECT_TRUE(slices().cleansed());
     EXPECT_TRUE(flight().isFisheye());
     EXPECT_EQ(flight().speedMmPerS(), speed);
     EXPECT_EQ(slices().slice(View::axial).zoom, zoom);
@@ -1555,6 +1762,144 @@ TEST_F(ClientWindow, WhileTheLinkIsDownTheReaderStands) {
     EXPECT_TRUE(waitFor([&] { return server_.storedBookmarkKeys().size() == 1; }));
 }
 
+// A picture of another shape than its pane's keeps its own, and what is marked in it its place.
+TEST_F(ClientWindow, AFormerPictureKeepsItsShapeAndItsPlaces) {
+    flight().goTo(250.0);
+    ASSERT_TRUE(settle());
+    const glm::ivec2 before = reader().panes().size(View::axial);
+    server_.setDown(true);
+    ASSERT_TRUE(waitFor([&] { return reader().session().phase() == Phase::lost; }));
+    dock("axial")->setFloating(true);
+    dock("axial")->resize(900, 300);
+    ASSERT_TRUE(laidOut());
+    const Pane& axial = pane(View::axial);
+    const QImage image = pane(View::axial).pictureWithMarks();
+    ASSERT_GT(image.width(), 2 * image.height());
+    const double high = axial.height(), wide = high * before.x / before.y;
+    const double margin = 0.5 * (axial.width() - wide);
+    const auto grey = [&](double x) {  // off the marks
+        return qGray(image.pixel(int(x), int(0.3 * high)));
+    };
+    int beside = 0, inside = 0;
+    for (double x = 20.0; x < margin - 20.0; x += 7.0)
+        beside = std::max(beside, grey(x));
+    for (double x = margin + 5.0; x < margin + wide - 5.0; x += 3.0)
+        inside = std::max(inside, grey(x));
+    EXPECT_LT(beside, 12);
+    EXPECT_GT(inside, 12);
+    // A click means what is seen there.
+    const SlicePlacement placed = *placeSlice(
+        slices().slice(View::axial), reader().session().caseInfo()->grid, before.x, before.y);
+    const QPoint at(int(margin + 0.25 * wide), int(0.4 * high));
+    const glm::dvec3 there = placed.patientFromPixel(
+        (glm::dvec2(at.x(), at.y()) - glm::dvec2(margin, 0.0)) * (double(before.y) / high) - 0.5);
+    click(axial, at);
+    EXPECT_LT(glm::distance(slices().slice(View::axial).positionMm, there), 1e-6);
+}
+
+// Where panes are only moved, the server hears of none.
+TEST_F(ClientWindow, AnotherLayoutAsksAnewForNoPaneThatIsAsLargeAsBefore) {
+    press(Qt::Key_1, Qt::ControlModifier);
+    ASSERT_TRUE(settle());
+    std::map<View, int> asked;
+    for (const auto& [view, shown] : panes_)
+        asked[view] = server_.askedOf(view).pictures;
+    press(Qt::Key_1, Qt::ControlModifier);
+    ASSERT_TRUE(settle());
+    QTest::qWait(300);
+    for (const auto& [view, shown] : panes_)
+        EXPECT_EQ(server_.askedOf(view).pictures, asked[view]) << int(view);
+}
+
+class ClientWindowOfASlowServer : public ClientWindow {
+protected:
+    static Misbehaviour slow() {
+        Misbehaviour misbehaviour;
+        misbehaviour.anotherCase = true;
+        misbehaviour.neverOpens = "second";
+        return misbehaviour;
+    }
+    ClientWindowOfASlowServer() : ClientWindow(slow()) {}
+};
+
+TEST_F(ClientWindowOfASlowServer, ACaseThatDoesNotOpenCanBeLeft) {
+    press(Qt::Key_O, Qt::ControlModifier);
+    auto& table = *cases()->findChild<QTableView*>();
+    ASSERT_TRUE(waitFor([&] { return table.isVisible() && table.model()->rowCount() == 2; }));
+    table.selectRow(1);
+    table.setFocus();
+    press(Qt::Key_Return);
+    ASSERT_TRUE(waitFor([&] { return reader().session().phase() == Phase::connecting; }));
+    QPushButton* back = nullptr;
+    for (QPushButton* button : cases()->findChildren<QPushButton*>())
+        if (button->text() == QStringLiteral("Back to the list of cases")) back = button;
+    ASSERT_TRUE(back && waitFor([&] { return back->isVisible(); }));
+    click(*back, back->rect().center());
+    ASSERT_TRUE(waitFor([&] { return reader().session().phase() == Phase::choosing; }));
+    ASSERT_TRUE(waitFor([&] { return table.isVisible(); }));
+    EXPECT_FALSE(back->isVisible());
+    table.selectRow(0);
+    table.setFocus();
+    press(Qt::Key_Return);
+    EXPECT_TRUE(waitFor([&] {
+        return reader().isOpen() && reader().session().caseInfo()->name == "phantom" &&
+               reader().session().phase() == Phase::open && settled();
+    }));
+}
+
+class ClientWindowOfALiar : public ClientWindow {
+protected:
+    ClientWindowOfALiar() : ClientWindow(liar()) {}
+    static inline std::atomic<bool> lies = false;
+
+private:
+    static Misbehaviour liar() {
+        Misbehaviour misbehaviour;
+        misbehaviour.alters = [](protocol::ServerMessage& message) {
+            if (lies && message.has_case_list())
+                message.mutable_case_list()->set_request(1'000'000);
+        };
+        return misbehaviour;
+    }
+};
+
+TEST_F(ClientWindowOfALiar, AfterASessionThatEndedForGoodAnotherBeginsAtTheSamePlace) {
+    flight().goTo(250.0);
+    press(Qt::Key_3, Qt::ControlModifier);
+    press(Qt::Key_Z);
+    ASSERT_TRUE(settle());
+    EXPECT_FALSE(action("connect-again")->isEnabled());
+    lies = true;
+    reader().session().requestCases();
+    ASSERT_TRUE(waitFor([&] { return reader().session().phase() == Phase::failed; }));
+    ASSERT_TRUE(waitFor([&] { return notices(QStringLiteral("The session has ended")); }));
+    EXPECT_EQ(reader().freshness(View::endoscopic), Freshness::old);
+    lies = false;
+    const auto docks = docksInSight();
+    ASSERT_TRUE(waitFor([&] { return action("connect-again")->isEnabled(); }));
+    press(Qt::Key_R, Qt::ControlModifier);
+    ASSERT_TRUE(waitFor([&] { return reader().session().phase() == Phase::open; }));
+    ASSERT_TRUE(settle());
+    EXPECT_EQ(flight().arcMm(), 250.0);
+    EXPECT_EQ(docksInSight(), docks);
+    EXPECT_FALSE(notices(QStringLiteral("The session has ended")));
+    EXPECT_EQ(reader().freshness(View::endoscopic), Freshness::exact);
+    // From the list as well.
+    lies = true;
+    press(Qt::Key_O, Qt::ControlModifier);
+    ASSERT_TRUE(waitFor([&] { return reader().session().phase() == Phase::failed; }));
+    lies = false;
+    QPushButton* again = nullptr;
+    for (QPushButton* button : cases()->findChildren<QPushButton*>())
+        if (button->text() == QStringLiteral("Connect again")) again = button;
+    ASSERT_TRUE(again && waitFor([&] { return again->isVisible(); }));
+    click(*again, again->rect().center());
+    ASSERT_TRUE(waitFor([&] { return reader().session().phase() == Phase::open; }));
+    EXPECT_TRUE(waitFor([&] { return !cases()->isVisible(); }));
+    EXPECT_TRUE(settle());
+    EXPECT_EQ(flight().arcMm(), 250.0);
+}
+
 class ClientWindowOfAFullDisk : public ClientWindow {
 protected:
     static Misbehaviour full() {
@@ -1600,11 +1945,46 @@ TEST_F(ClientWindowOfAFullDisk, ARefusedBookmarkStaysInTheListUntilItIsDealtWith
     });
     menuOf(0, QStringLiteral("Send again…"));
     EXPECT_EQ(*dialog, QString());  // it has no note
+    activate();
+    // The other's note is in the field again, with the reason; a new one leaves it in the list.
+    EXPECT_EQ(note().text(), QStringLiteral("x"));
+    EXPECT_TRUE(notices(QStringLiteral("Enter sends it again")));
+    press(Qt::Key_B, Qt::ShiftModifier);
+    EXPECT_EQ(note().text(), QString());
+    EXPECT_FALSE(notices(QStringLiteral("Enter sends it again")));
     ASSERT_TRUE(waitFor([&] { return server_.storedBookmarkKeys().size() == 1; }));
     ASSERT_TRUE(waitFor([&] { return row(0)->text(1) == QStringLiteral("better"); }));
     EXPECT_NE(row(0)->text(2), QStringLiteral("refused"));
     menuOf(1, QStringLiteral("Discard"));
     EXPECT_TRUE(waitFor([&] { return bookmarkList().topLevelItemCount() == 1; }));
+    EXPECT_TRUE(reader().session().refusedBookmarks().empty());
+}
+
+TEST_F(ClientWindowOfAFullDisk, ARefusedNoteIsInItsFieldUntilItIsSaved) {
+    flight().goTo(200.0);
+    press(Qt::Key_B, Qt::ShiftModifier);
+    type(QStringLiteral("polyp"));
+    press(Qt::Key_Return);
+    const auto offered = [&] {
+        return note().text() == QStringLiteral("polyp") &&
+               notices(QStringLiteral("Enter sends it again"));
+    };
+    ASSERT_TRUE(waitFor(offered));
+    // From another place it is sent of its own; refused again, it is there again.
+    flight().goTo(100.0);
+    note().setFocus();
+    press(Qt::Key_Return);
+    ASSERT_TRUE(waitFor([&] { return server_.bookmarkMessages() == 2; }));
+    ASSERT_TRUE(waitFor(offered));
+    note().setFocus();
+    press(Qt::Key_End);
+    type(QStringLiteral("s"));
+    press(Qt::Key_Return);
+    ASSERT_TRUE(waitFor([&] { return server_.storedBookmarkKeys().size() == 1; }));
+    ASSERT_TRUE(waitFor([&] { return row(0)->text(1) == QStringLiteral("polyps"); }));
+    EXPECT_EQ(row(0)->text(0), QStringLiteral("200"));
+    EXPECT_EQ(note().text(), QString());
+    EXPECT_EQ(bookmarkList().topLevelItemCount(), 1);
     EXPECT_TRUE(reader().session().refusedBookmarks().empty());
 }
 

@@ -294,6 +294,7 @@ struct FakeServer::Impl {
                         write(stream, answer);
                         return;
                     }
+                    if (message.open_case().name() == misbehaviour.neverOpens) break;
                     if (misbehaviour.refuseCaseWith != 0) {
                         answer.mutable_error()->set_code(
                             protocol::ErrorReport::Code(misbehaviour.refuseCaseWith));

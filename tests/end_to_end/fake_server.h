@@ -43,8 +43,9 @@ struct Misbehaviour {
     int ignoreBookmarks = 0;     ///< says nothing to so many, then stores them
     /// Changes what is told, once it is right.
     std::function<void(protocol::ServerMessage&)> alters = {};
-    int refuseCaseWith = 0;    ///< answers OpenCase with this ErrorReport::Code, which is not fatal
-    bool anotherCase = false;  ///< has "second" beside "phantom"
+    int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
+    std::string neverOpens = {};  ///< says nothing to who wants to open this case
+    bool anotherCase = false;     ///< has "second" beside "phantom"
 };
 
 /// What a viewport was told last, and how often it was asked for a picture.

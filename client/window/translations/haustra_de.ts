@@ -121,7 +121,7 @@
     </message>
     <message>
         <source>Free flight: W A S D, Q E down and up</source>
-        <translation>Freier Flug: W A S D, mit Q E ab und auf</translation>
+        <translation type="vanished">Freier Flug: W A S D, mit Q E ab und auf</translation>
     </message>
     <message>
         <source>Fisheye, which sees all around</source>
@@ -307,6 +307,122 @@
         <source>change the window</source>
         <translation>Fensterung ändern</translation>
     </message>
+    <message>
+        <source>This server cannot show slabs.</source>
+        <translation>Dieser Server kann keine Schichtpakete zeigen.</translation>
+    </message>
+    <message>
+        <source>change the slab</source>
+        <translation>Schichtpaket ändern</translation>
+    </message>
+    <message>
+        <source>Connect again</source>
+        <translation>Neu verbinden</translation>
+    </message>
+    <message>
+        <source>Next pane</source>
+        <translation>Nächste Ansicht</translation>
+    </message>
+    <message>
+        <source>Previous pane</source>
+        <translation>Vorige Ansicht</translation>
+    </message>
+    <message>
+        <source>Point with the keys: arrows move, Return clicks or draws</source>
+        <translation>Mit den Tasten zeigen: Pfeile bewegen, Eingabe klickt oder zeichnet</translation>
+    </message>
+    <message>
+        <source>Scroll on: the next slice, along the path</source>
+        <translation>Weiterblättern: nächste Schicht, entlang dem Pfad</translation>
+    </message>
+    <message>
+        <source>Scroll back</source>
+        <translation>Zurückblättern</translation>
+    </message>
+    <message>
+        <source>Scroll on, ten times as far</source>
+        <translation>Zehnmal so weit weiterblättern</translation>
+    </message>
+    <message>
+        <source>Scroll back, ten times as far</source>
+        <translation>Zehnmal so weit zurückblättern</translation>
+    </message>
+    <message>
+        <source>Enlarge the picture</source>
+        <translation>Bild vergrößern</translation>
+    </message>
+    <message>
+        <source>Make the picture smaller</source>
+        <translation>Bild verkleinern</translation>
+    </message>
+    <message>
+        <source>Look, turn, move or window: drag left</source>
+        <translation>Blicken, drehen, verschieben oder fenstern: nach links ziehen</translation>
+    </message>
+    <message>
+        <source>Look, turn, move or window: drag right</source>
+        <translation>Blicken, drehen, verschieben oder fenstern: nach rechts ziehen</translation>
+    </message>
+    <message>
+        <source>Look, turn, move or window: drag up</source>
+        <translation>Blicken, drehen, verschieben oder fenstern: nach oben ziehen</translation>
+    </message>
+    <message>
+        <source>Look, turn, move or window: drag down</source>
+        <translation>Blicken, drehen, verschieben oder fenstern: nach unten ziehen</translation>
+    </message>
+    <message>
+        <source>Move the slice&apos;s picture left</source>
+        <translation>Schichtbild nach links schieben</translation>
+    </message>
+    <message>
+        <source>Move the slice&apos;s picture right</source>
+        <translation>Schichtbild nach rechts schieben</translation>
+    </message>
+    <message>
+        <source>Move the slice&apos;s picture up</source>
+        <translation>Schichtbild nach oben schieben</translation>
+    </message>
+    <message>
+        <source>Move the slice&apos;s picture down</source>
+        <translation>Schichtbild nach unten schieben</translation>
+    </message>
+    <message>
+        <source>Free flight, off the path</source>
+        <translation>Freier Flug, abseits des Pfads</translation>
+    </message>
+    <message>
+        <source>Free flight: forward (held)</source>
+        <translation>Freier Flug: vorwärts (gehalten)</translation>
+    </message>
+    <message>
+        <source>Free flight: back (held)</source>
+        <translation>Freier Flug: zurück (gehalten)</translation>
+    </message>
+    <message>
+        <source>Free flight: left (held)</source>
+        <translation>Freier Flug: nach links (gehalten)</translation>
+    </message>
+    <message>
+        <source>Free flight: right (held)</source>
+        <translation>Freier Flug: nach rechts (gehalten)</translation>
+    </message>
+    <message>
+        <source>Free flight: up (held)</source>
+        <translation>Freier Flug: nach oben (gehalten)</translation>
+    </message>
+    <message>
+        <source>Free flight: down (held)</source>
+        <translation>Freier Flug: nach unten (gehalten)</translation>
+    </message>
+    <message>
+        <source>This case has no cleansed scan.</source>
+        <translation>Für diesen Fall gibt es keine gereinigten CT-Daten.</translation>
+    </message>
+    <message>
+        <source>&amp;Pane</source>
+        <translation>B&amp;ildfeld</translation>
+    </message>
 </context>
 <context>
     <name>Help</name>
@@ -432,11 +548,11 @@
     </message>
     <message>
         <source>Page Up, Page Down on a slice</source>
-        <translation>Bild auf, Bild ab auf einer Schicht</translation>
+        <translation type="vanished">Bild auf, Bild ab auf einer Schicht</translation>
     </message>
     <message>
         <source>next, previous slice</source>
-        <translation>nächste, vorige Schicht</translation>
+        <translation type="vanished">nächste, vorige Schicht</translation>
     </message>
     <message>
         <source>keys on the transfer function</source>
@@ -445,6 +561,21 @@
     <message>
         <source>N, P: next, previous point; arrows: move it; Insert, Delete: add, take it</source>
         <translation>N, P: nächster, voriger Punkt; Pfeile: verschieben; Einfg, Entf: hinzufügen, wegnehmen</translation>
+    </message>
+    <message>
+        <source>arrows while the keys point</source>
+        <translation>Pfeiltasten, während die Tasten zeigen</translation>
+    </message>
+    <message>
+        <source>move the pointer; with Shift farther, with Ctrl by one pixel; Return clicks, or begins and ends a line or an outline</source>
+        <translation>bewegen den Zeiger, mit Umschalt weiter, mit Strg um ein Pixel; Eingabe klickt oder beginnt und beendet eine Strecke oder einen Umriss</translation>
+    </message>
+</context>
+<context>
+    <name>Language</name>
+    <message>
+        <source>As the system</source>
+        <translation>Wie das System</translation>
     </message>
 </context>
 <context>
@@ -531,6 +662,14 @@
     <message>
         <source>Discard</source>
         <translation>Verwerfen</translation>
+    </message>
+    <message>
+        <source>That bookmark is no longer to be sent.</source>
+        <translation>Dieses Lesezeichen ist nicht mehr zu senden.</translation>
+    </message>
+    <message>
+        <source>At %1 mm, not saved: %2. Enter sends it again.</source>
+        <translation>Bei %1 mm, nicht gespeichert: %2. Eingabe sendet es noch einmal.</translation>
     </message>
 </context>
 <context>
@@ -647,6 +786,18 @@
     <message>
         <source>not ready</source>
         <translation>nicht bereit</translation>
+    </message>
+    <message>
+        <source>Back to the list of cases</source>
+        <translation>Zurück zur Liste der Fälle</translation>
+    </message>
+    <message>
+        <source>Connect again</source>
+        <translation>Neu verbinden</translation>
+    </message>
+    <message>
+        <source>“%1” is opened when it is back.</source>
+        <translation>„%1“ wird geöffnet, wenn er wieder da ist.</translation>
     </message>
 </context>
 <context>
@@ -980,7 +1131,15 @@
     </message>
     <message>
         <source>Press the new key for “%1”. It takes the place of: %2. An empty field means: no key.</source>
-        <translation>Neue Taste für „%1“ drücken. Sie ersetzt: %2. Ein leeres Feld bedeutet: keine Taste.</translation>
+        <translation type="vanished">Neue Taste für „%1“ drücken. Sie ersetzt: %2. Ein leeres Feld bedeutet: keine Taste.</translation>
+    </message>
+    <message>
+        <source>Press the new key for “%1”. An empty field means: no key.</source>
+        <translation>Die neue Taste für „%1“ drücken. Ein leeres Feld bedeutet: keine Taste.</translation>
+    </message>
+    <message>
+        <source>keep the keys that it has: %1</source>
+        <translation>die bisherigen Tasten behalten: %1</translation>
     </message>
 </context>
 <context>
@@ -1008,6 +1167,10 @@
         <source>The server opens the case. What is shown is old until then.</source>
         <translation>Der Server öffnet den Fall. Bis dahin ist das Gezeigte veraltet.</translation>
     </message>
+    <message>
+        <source>The session has ended: %1. “Connect again” in the menu of files begins another.</source>
+        <translation>Die Sitzung ist zu Ende: %1. „Neu verbinden“ im Menü „Datei“ beginnt eine andere.</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::ObliquePane</name>
@@ -1026,6 +1189,10 @@
     <message>
         <source>go to a voxel</source>
         <translation>zu einem Voxel gehen</translation>
+    </message>
+    <message>
+        <source>In the middle again</source>
+        <translation>Wieder in die Mitte</translation>
     </message>
 </context>
 <context>
@@ -1468,11 +1635,11 @@
     </message>
     <message>
         <source>This case has no cleansed scan.</source>
-        <translation>Für diesen Fall gibt es keine gereinigten CT-Daten.</translation>
+        <translation type="vanished">Für diesen Fall gibt es keine gereinigten CT-Daten.</translation>
     </message>
     <message>
         <source>This server cannot show slabs.</source>
-        <translation>Dieser Server kann keine Schichtpakete zeigen.</translation>
+        <translation type="vanished">Dieser Server kann keine Schichtpakete zeigen.</translation>
     </message>
     <message>
         <source>%1: no link</source>
@@ -1541,6 +1708,13 @@
         <translation>
             <numerusform>%n Lesezeichen wartet auf den Server, und diese Station kann es nicht aufbewahren: Es geht mit diesem Fenster verloren. Trotzdem beenden?</numerusform>
             <numerusform>%n Lesezeichen warten auf den Server, und diese Station kann sie nicht aufbewahren: Sie gehen mit diesem Fenster verloren. Trotzdem beenden?</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) wait for the server, and this station cannot keep them: they are lost with this session. Connect again all the same?</source>
+        <translation>
+            <numerusform>%n Lesezeichen wartet auf den Server, und diese Station kann es nicht aufbewahren: Es geht mit dieser Sitzung verloren. Trotzdem neu verbinden?</numerusform>
+            <numerusform>%n Lesezeichen warten auf den Server, und diese Station kann sie nicht aufbewahren: Sie gehen mit dieser Sitzung verloren. Trotzdem neu verbinden?</numerusform>
         </translation>
     </message>
 </context>

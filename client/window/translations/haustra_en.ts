@@ -58,6 +58,13 @@
             <numerusform>%n bookmarks wait for the server, and this station cannot keep them: they are lost with this window. Quit all the same?</numerusform>
         </translation>
     </message>
+    <message numerus="yes">
+        <source>%n bookmark(s) wait for the server, and this station cannot keep them: they are lost with this session. Connect again all the same?</source>
+        <translation>
+            <numerusform>%n bookmark waits for the server, and this station cannot keep it: it is lost with this session. Connect again all the same?</numerusform>
+            <numerusform>%n bookmarks wait for the server, and this station cannot keep them: they are lost with this session. Connect again all the same?</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::Reading</name>
