@@ -174,6 +174,11 @@ void Reader::restore(const Flight& flight, const SliceViews& slices) {
     flat_.forgetPicked();
 }
 
+void Reader::reopen(const Flight& flight, const SliceViews& slices) {
+    restore(flight, slices);
+    slices_.reopenAs(slices);
+}
+
 // Of a place that was gone to, the gaze is towards it: the bookmark means it.
 void Reader::addBookmark(std::string note) {
     if (!case_) return;

@@ -76,6 +76,9 @@ public:
     /// zoom, window, slab, scan. A place that the server is still asked about is gone to no more.
     void restore(const Flight& flight, const SliceViews& slices);
 
+    /// As restore(), and all that slices show: for a reader whose session begins anew.
+    void reopen(const Flight& flight, const SliceViews& slices);
+
     /// Of the place that was gone to last (FlatReading::picked), else of the gaze.
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }

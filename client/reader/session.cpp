@@ -184,7 +184,7 @@ void Session::handle(link::LinkUp up) {
     lastWords_.clear();
     phase_ = Phase::connecting;
     linked_ = true;
-    opensAsked_ = 0;
+    opening_.reset();
     askForCase();
     if (!caseName_.empty() && casesAsked_ > answeredCases_) sayListCases();
 }
@@ -264,17 +264,18 @@ void Session::handle(const protocol::ServerMessage& message) {
 
 void Session::opened(const protocol::CaseOpened& message) {
     // What is open must not become another patient's of itself.
-    if (opensAsked_ == 0)
+    if (!opening_)
         return giveUp({ErrorKind::badInput, "the server opened a case that was not asked for",
                        "case opened"});
-    --opensAsked_;
+    const std::string asked = *std::exchange(opening_, std::nullopt);
     auto info = caseInfoFrom(message);
     if (!info) return giveUp(info.error());
-    if (info->name != caseName_) {
-        // The reader has chosen another since, or none.
-        if (opensAsked_ > 0 || caseName_.empty()) return;
+    if (info->name != asked)
         return giveUp({ErrorKind::badInput, "the server opened another case than was asked for",
                        "case opened: name"});
+    if (asked != caseName_) {  // the reader has chosen another since, or none
+        if (!caseName_.empty()) askForCase();
+        return;
     }
     // After a reconnection the same case keeps its address, and the reader's flight with it.
     const bool same = !std::exchange(choseAnew_, false) && caseInfo_ &&
@@ -309,13 +310,20 @@ void Session::refused(const protocol::ErrorReport& report) {
         record(refused_.back());
         settle(owed, false);
     }
-    refuse(report.request(), error);
     // An input's late refusal (BAD_VALUE, BAD_STATE) does not tell of the case that is awaited.
-    const bool ofTheCase =
-        (report.request() == 0 || (caseName_.empty() && report.request() == casesAsked_)) &&
-        (report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
-         report.code() == protocol::ErrorReport::INTERNAL ||
-         report.code() == protocol::ErrorReport::BUSY);
+    const bool ofACase = report.code() == protocol::ErrorReport::NO_SUCH_CASE ||
+                         report.code() == protocol::ErrorReport::INTERNAL ||
+                         report.code() == protocol::ErrorReport::BUSY;
+    if (opening_ && report.request() == 0 && ofACase && !report.fatal()) {
+        const std::string asked = *std::exchange(opening_, std::nullopt);
+        if (asked != caseName_) {  // the reader has chosen another since, or none
+            if (!caseName_.empty()) askForCase();
+            return;
+        }
+    }
+    refuse(report.request(), error);
+    const bool ofTheCase = ofACase && (report.request() == 0 ||
+                                       (caseName_.empty() && report.request() == casesAsked_));
     const bool lost = phase_ == Phase::open && report.code() == protocol::ErrorReport::CASE_LOST;
     if (offersCases_ && !report.fatal() && ((phase_ == Phase::connecting && ofTheCase) || lost)) {
         caseName_.clear();
@@ -372,9 +380,10 @@ void Session::askForCase() {
         requestCases();
         return;
     }
+    if (opening_) return;  // a server opens one case at a time: once that is answered
     protocol::ClientMessage message;
     message.mutable_open_case()->set_name(caseName_);
-    ++opensAsked_;
+    opening_ = caseName_;
     connection_.send(message);
 }
 
@@ -623,12 +632,13 @@ std::uint64_t Session::requestBookmarks() {
 }
 
 // What is noted before any case is open is recorded, as it is sent, when one is.
-bool Session::record(const Owed& owed) {
+bool Session::record(Owed& owed) {
     if (!journal_ || !owed.scan) return true;
     JournalEntry entry{serverName_,  server_.fingerprint, owed.caseName, *owed.scan,
                        owed.notedMs, owed.bookmark,       std::nullopt};
     if (!owed.refusal.empty()) entry.refusal = owed.refusal;
     const auto written = journal_->write(entry);
+    owed.onDisk = bool(written);
     if (written) return true;
     refusals_.push_back({written.error().kind,
                          "a bookmark is not on this computer's disk, and is lost with the window "
@@ -667,7 +677,8 @@ void Session::takeFromJournal() {
                  std::none_of(refused_.begin(), refused_.end(), same))
             (entry.refusal ? refused_ : owed_)
                 .push_back({std::move(entry.caseName), std::move(entry.scan), ++request_,
-                            std::move(entry.bookmark), entry.notedMs, entry.refusal.value_or("")});
+                            std::move(entry.bookmark), entry.notedMs, entry.refusal.value_or(""),
+                            true});
     }
     if (ofAnotherCertificate > 0)
         refusals_.push_back(
@@ -763,6 +774,12 @@ std::vector<Bookmark> Session::bookmarks() const {
     for (const Owed& owed : owed_)
         if (isOfOpenCase(owed)) all.push_back(owed.bookmark);
     return all;
+}
+
+std::size_t Session::unkeptBookmarks() const {
+    const auto isUnkept = [](const Owed& owed) { return !owed.onDisk; };
+    return std::size_t(std::count_if(owed_.begin(), owed_.end(), isUnkept) +
+                       std::count_if(refused_.begin(), refused_.end(), isUnkept));
 }
 
 std::size_t Session::owedBookmarks() const {

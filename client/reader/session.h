@@ -149,8 +149,8 @@ public:
     const Bookmark* acknowledgedBookmark(const std::string& clientKey) const;
     /// Of the open case, or of the one that is being opened.
     std::size_t owedBookmarks() const;
-    /// Whether those outlive this session.
-    bool keepsUnsent() const { return journal_.has_value(); }
+    /// Owed and refused ones, of all cases, that no disk has: they are lost with this session.
+    std::size_t unkeptBookmarks() const;
     /// Number of the newest requestBookmarks that was answered.
     std::uint64_t answeredBookmarkRequest() const { return answeredList_; }
 
@@ -206,12 +206,13 @@ private:
         Bookmark bookmark;
         std::int64_t notedMs;      // since 1970
         std::string refusal = {};  // the server's reason, of those in refused_
+        bool onDisk = false;       // in the journal, as it is here
     };
 
     bool isOfOpenCase(const Owed& owed) const;
     void take(const protocol::BookmarkList& message);
     bool acknowledge(const protocol::Bookmark& message);
-    bool record(const Owed& owed);
+    bool record(Owed& owed);
     void unrecord(const std::string& clientKey);
     void takeFromJournal();
     std::deque<Owed>::iterator findRefused(const std::string& clientKey);
@@ -246,7 +247,7 @@ private:
     std::vector<CaseEntry> cases_;
     std::uint64_t casesRevision_ = 0;
     bool linked_ = false;
-    int opensAsked_ = 0;  // over this link, without an answer
+    std::optional<std::string> opening_;  // asked for over this link, without an answer
     std::shared_ptr<const CaseInfo> caseInfo_;
 
     WallPaintChoice paint_;

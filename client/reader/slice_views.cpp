@@ -78,6 +78,22 @@ void SliceViews::showAs(const SliceViews& other) {
     followedMm_ = other.followedMm_;
 }
 
+void SliceViews::reopenAs(const SliceViews& other) {
+    planes_ = other.planes_;
+    followedMm_ = other.followedMm_;
+    obliquePanMm_ = other.obliquePanMm_;
+    aheadMm_ = other.aheadMm_;
+    heightMm_ = other.heightMm_;
+    linked_ = other.linked_;
+    window_ = other.window_;
+    setCleansed(other.cleansed_);
+    if (canPan_)
+        slab_ = other.slab_;
+    else
+        for (Plane& plane : planes_)
+            plane.panMm = glm::dvec2(0.0);
+}
+
 SliceView SliceViews::slice(View plane) const {
     const Plane& shown = of(plane);
     return {plane, shown.focusMm, shown.zoom, window_, scan(), shown.panMm, slab_};

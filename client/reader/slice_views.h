@@ -31,6 +31,9 @@ public:
     /// The places that `other` shows; how large, and by which window, slab and scan, stays.
     void showAs(const SliceViews& other);
 
+    /// All that `other`, of the same scan, shows and how.
+    void reopenAs(const SliceViews& other);
+
     SliceView slice(View plane) const;
     void scroll(View plane, double mm);
     /// What is at `pixel` of a picture of `size` stays there.

@@ -98,12 +98,16 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
     connect(list_, &QTreeWidget::customContextMenuRequested, this, &BookmarkPanel::showMenu);
     connect(&reading, &Reading::stepped, this, &BookmarkPanel::look);
     connect(note_, &QLineEdit::textEdited, this, [this](const QString& text) {
-        if (text.isEmpty()) endOffer();
+        // Set anew, so that undoing does not bring it back as the note of another place.
+        if (text.isEmpty() && !offered_.empty()) {
+            endOffer();
+            note_->setText({});
+        }
     });
     connect(&reading, &Reading::readerReplaced, this, [this] { shownRevision_ = 0; });
     // A note that was begun is of its patient.
     connect(&reading, &Reading::caseOpened, this, [this] {
-        if (!offered_.empty()) note_->clear();  // it is in its case's list
+        if (!offered_.empty()) note_->setText({});  // it is in its case's list
         endOffer();
         deferred_.clear();
         drafts_[std::exchange(draftOf_, reading_.reader().session().caseInfo()->scan)] =
@@ -116,7 +120,7 @@ void BookmarkPanel::writeNote() {
     // A new one, of the place in view; the other is in the list.
     if (!offered_.empty()) {
         endOffer();
-        note_->clear();
+        note_->setText({});
     }
     note_->setFocus(Qt::ShortcutFocusReason);
 }
@@ -130,7 +134,7 @@ void BookmarkPanel::add() {
         reading_.tell(tr("That bookmark is no longer to be sent."));
     deferred_.erase(offered_);  // refused again, it is in the field again
     endOffer();
-    note_->clear();
+    note_->setText({});
     reading_.changed();
     emit written();
 }
@@ -138,7 +142,7 @@ void BookmarkPanel::add() {
 void BookmarkPanel::look() {
     setEnabled(reading_.reader().isOpen());
     const std::uint64_t revision = reading_.reader().session().bookmarksRevision();
-    const bool writes = note_->hasFocus();
+    const bool writes = window()->focusWidget() == note_;
     if (!isVisible() || (revision == shownRevision_ && writes == writes_)) return;
     writes_ = writes;
     if (std::exchange(shownRevision_, revision) != revision) fill();
@@ -182,10 +186,10 @@ void BookmarkPanel::offerRefused() {
     };
     if (!offered_.empty() && !isRefused(offered_)) {  // dealt with in the list
         endOffer();
-        note_->clear();
+        note_->setText({});
     }
     // Not under a hand that is about to write of another place.
-    if (!offered_.empty() || !note_->text().isEmpty() || note_->hasFocus()) return;
+    if (!offered_.empty() || !note_->text().isEmpty() || window()->focusWidget() == note_) return;
     for (const reader::RefusedBookmark& refusal : refused) {
         const reader::Bookmark& bookmark = refusal.bookmark;
         if (bookmark.note.empty() || !deferred_.insert(bookmark.clientKey).second) continue;
@@ -198,6 +202,7 @@ void BookmarkPanel::offerRefused() {
         palette.setColor(QPalette::WindowText, theme().trouble);
         reason_->setPalette(palette);
         reason_->show();
+        note_->setAccessibleDescription(reason_->text());
         return;
     }
 }
@@ -205,6 +210,7 @@ void BookmarkPanel::offerRefused() {
 void BookmarkPanel::endOffer() {
     offered_.clear();
     reason_->hide();
+    note_->setAccessibleDescription({});
 }
 
 void BookmarkPanel::goTo(const std::string& key) {

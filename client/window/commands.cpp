@@ -740,6 +740,16 @@ QList<QKeySequence> CommandSet::keysOfOld(const Command& command) {
 
 CommandSet::CommandSet(ReaderWindow& window) : QObject(&window), window_(window) {
     const QSettings settings;
+    // A key that the reader has given to one command is no other's of old.
+    QList<QKeySequence> chosen;
+    for (const Command& command : commands())
+        chosen += QKeySequence::listFromString(settings.value(settingOf(command)).toString(),
+                                               QKeySequence::PortableText);
+    const auto keysLeft = [&](const Command& command) {
+        QList<QKeySequence> keys = keysOfOld(command);
+        keys.removeIf([&](const QKeySequence& key) { return chosen.contains(key); });
+        return keys;
+    };
     for (const Command& command : commands()) {
         auto* action = new QAction(iconOf(command.symbol), textOf(command), this);
         if (command.shortText)
@@ -751,7 +761,7 @@ CommandSet::CommandSet(ReaderWindow& window) : QObject(&window), window_(window)
             settings.contains(settingOf(command))
                 ? QKeySequence::listFromString(settings.value(settingOf(command)).toString(),
                                                QKeySequence::PortableText)
-                : keysOfOld(command));
+                : keysLeft(command));
         if (!command.run) continue;
         connect(action, &QAction::triggered, this, [this, &command] {
             command.run(window_);

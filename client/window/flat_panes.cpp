@@ -159,8 +159,14 @@ void StripPane::dragged(const Hand& hand) {
     if (const auto flat = flatAt(hand.position)) reader().flat().tour().centerOn(*flat);
 }
 
+// From the place that is shown: so keys go along the colon.
+QPointF StripPane::dragFrom() const {
+    if (!reader().flat().hasStrip() || pictureSize().x < 1) return Pane::dragFrom();
+    return positionOf(layout().pixelFromFlat(reader().flat().tour().window().center));
+}
+
 void StripPane::released(const Hand& hand) {
-    if (hand.button == Qt::RightButton) return;
+    if (hand.button != Qt::LeftButton) return;
     if (const auto flat = flatAt(hand.position))
         reading().jump(tr("go along the flattened colon"),
                        [this, flat = *flat] { reader().flat().goTo(flat, true); });
@@ -210,7 +216,8 @@ void FlatZoomPane::addShown(Shown& shown) const {
 void FlatZoomPane::paintPicture(QPainter& painter, const QImage& picture) {
     const FlatArea flat = areaOf(*this, reader());
     const auto* window = reader().panes().shown<FlatWindow>(View::flattenedZoom);
-    if (!window || (*window == flat.window && pictureSize() == flat.size))
+    const bool isOfThisPane = pictureSize() == flat.size && pictureArea() == QRectF(rect());
+    if (!window || (*window == flat.window && isOfThisPane))
         return Pane::paintPicture(painter, picture);
     FlatWindow shown = *window;
     shown.center.x += std::round(flat.window.center.x - shown.center.x);

@@ -14,6 +14,7 @@ public:
     QSize sizeHint() const override { return {260, 600}; }
 
 protected:
+    QPointF dragFrom() const override;
     void paintMarks(QPainter& painter) override;
     void addShown(Shown& shown) const override;
     void dragged(const Hand& hand) override;

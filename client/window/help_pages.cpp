@@ -184,6 +184,13 @@ void KeysDialog::change() {
     keys->setFocus();
     if (dialog.exec() != QDialog::Accepted) return;
     const QKeySequence chosen = keys->keySequence();
+    if (command.isHeld() && !chosen.isEmpty() &&
+        (chosen.count() > 1 || chosen[0].keyboardModifiers() != Qt::NoModifier)) {
+        QMessageBox::information(
+            this, textOf(command),
+            tr("This is a key to be held: one key, without Shift, Ctrl or Alt."));
+        return;
+    }
     for (const Command& other : window::commands()) {
         QList<QKeySequence> held = commands_.action(other)->shortcuts();
         if (&other == &command || chosen.isEmpty() || !held.contains(chosen)) continue;

@@ -87,6 +87,10 @@ OpticsPanel::OpticsPanel(Reading& reading) : reading_(reading), graph_(new Trans
     column->addWidget(fileRow());
     connect(graph_, &TransferGraph::pointChosen, this, &OpticsPanel::showPoint);
     connect(&reading, &Reading::stepped, this, &OpticsPanel::look);
+    connect(&reading, &Reading::readerReplaced, this, [this] {
+        shownRevision_ = ~std::uint64_t(0);
+        graph_->choosePoint(-1);
+    });
 }
 
 // ---- what it consists of ------------------------------------------------------------------------

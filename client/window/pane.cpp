@@ -37,6 +37,7 @@ Pane::Pane(Reading& reading, View view, const QString& title, QWidget* parent)
     // A drag that was begun in another case ends with it.
     connect(&reading, &Reading::caseOpened, this, [this] {
         held_ = Qt::NoButton;
+        keyDraws_ = false;  // what was begun is of the former case
         setKeyPointer(false);
     });
     connect(&reading, &Reading::readerReplaced, this, [this] {
@@ -198,7 +199,7 @@ void Pane::tellSizeSoon() {
 }
 
 void Pane::resizeEvent(QResizeEvent*) {
-    if (keyPointer_) setKeyPointer(false);
+    if (keyPointer_) keyPointer_ = within(*keyPointer_);
     tellSizeSoon();
 }
 void Pane::showEvent(QShowEvent*) {
@@ -235,7 +236,7 @@ void Pane::mouseMoveEvent(QMouseEvent* event) {
     const Hand hand = handOf(*event, lastAt_, held_);
     if (held_ == Qt::NoButton) {
         lastAt_ = event->position();
-        if (isOpen()) hovered(hand);
+        if (isOpen() && !reading_.pointsByKeys()) hovered(hand);
         return;
     }
     const QPointF way = event->position() - pressedAt_;
@@ -289,14 +290,15 @@ void Pane::enterEvent(QEnterEvent*) {
 }
 void Pane::leaveEvent(QEvent*) {
     isHovered_ = false;
-    if (isOpen()) left();
+    if (isOpen() && !reading_.pointsByKeys()) left();
     look();
 }
 void Pane::focusInEvent(QFocusEvent*) {
     look();
 }
 void Pane::focusOutEvent(QFocusEvent* event) {
-    if (event->reason() != Qt::PopupFocusReason) setKeyPointer(false);
+    if (event->reason() != Qt::PopupFocusReason && event->reason() != Qt::MenuBarFocusReason)
+        setKeyPointer(false);
     look();
 }
 
@@ -330,7 +332,8 @@ bool presses(const QKeyEvent& key) {
 void Pane::keyPressEvent(QKeyEvent* event) {
     if (isOpen() && needsKey(*event)) {
         if (const auto way = wayOf(*event)) return moveKeyPointer(*way);
-        return pressKeyPointer(event->modifiers());
+        if (!event->isAutoRepeat()) pressKeyPointer(event->modifiers());
+        return;
     }
     if (event->key() == Qt::Key_Menu)
         emit menuWanted(mapToGlobal(rect().center()));
@@ -358,6 +361,7 @@ void Pane::setKeyPointer(bool on) {
         keyPointer_.reset();
         if (isOpen()) left();
     } else {
+        window()->activateWindow();
         setFocus(Qt::ShortcutFocusReason);
         keyPointer_ = QRectF(rect()).center();
         if (isOpen()) hovered(keyHand({}));
@@ -370,10 +374,14 @@ bool Pane::needsKey(const QKeyEvent& key) const {
     return keyPointer_ && (wayOf(key) || presses(key));
 }
 
+QPointF Pane::within(QPointF position) const {
+    return {std::clamp(position.x(), 0.0, std::max(0.0, width() - 1.0)),
+            std::clamp(position.y(), 0.0, std::max(0.0, height() - 1.0))};
+}
+
 void Pane::moveKeyPointer(QPointF way) {
     const QPointF before = *keyPointer_, there = before + way;
-    keyPointer_ = QPointF(std::clamp(there.x(), 0.0, width() - 1.0),
-                          std::clamp(there.y(), 0.0, height() - 1.0));
+    keyPointer_ = within(there);
     // The modifiers that are held are the pointer's, not a hand's.
     const Hand hand = keyHand({}, *keyPointer_ - before);
     keyDraws_ ? dragged(hand) : hovered(hand);
@@ -424,8 +432,7 @@ void Pane::zoomByKeys(double steps) {
 
 void Pane::dragByKeys(QPoint steps, Qt::MouseButton button) {
     if (!isOpen() || held_ != Qt::NoButton || keyDraws_) return;
-    const QPointF from = QRectF(rect()).center(),
-                  way(steps.x() * width() / 20.0, steps.y() * height() / 20.0);
+    const QPointF from = dragFrom(), way(steps.x() * width() / 20.0, steps.y() * height() / 20.0);
     const std::optional<QPointF> pointer = std::exchange(keyPointer_, std::nullopt);
     const DrawingTool tool = reading_.tool();
     reading_.setTool(DrawingTool::none);

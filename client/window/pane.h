@@ -105,6 +105,8 @@ protected:
     virtual void paintPicture(QPainter& painter, const QImage& picture);
 
     // The hand. A press that moves no farther than a few pixels is a click.
+    /// Where a drag by keys begins.
+    virtual QPointF dragFrom() const { return QRectF(rect()).center(); }
     virtual void pressed(const Hand&) {}
     /// Whether a press there begins a drawing.
     virtual bool draws(const Hand&) const { return false; }
@@ -142,6 +144,7 @@ private:
     void paintAll(QPainter& painter);
     void paintKeyPointer(QPainter& painter);
     void moveKeyPointer(QPointF way);
+    QPointF within(QPointF position) const;
     void pressKeyPointer(Qt::KeyboardModifiers modifiers);
     Hand keyHand(Qt::KeyboardModifiers modifiers, QPointF moved = {}) const;
     void dragOut();

@@ -54,7 +54,13 @@ const auto geometrySetting = QStringLiteral("window/geometry");
 // Keys that such a control needs for itself while it has the keyboard, though they are a command's.
 bool needsKey(const QWidget* widget, const QKeyEvent& key) {
     if (const auto* pane = qobject_cast<const Pane*>(widget)) return pane->needsKey(key);
-    if (!widget || (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier))) return false;
+    if (!widget) return false;
+    const bool upOrDown = key.key() == Qt::Key_Up || key.key() == Qt::Key_Down;
+    if (key.modifiers() & Qt::AltModifier)
+        return upOrDown && qobject_cast<const QComboBox*>(widget);
+    if (key.modifiers() & Qt::ControlModifier)
+        return upOrDown && (qobject_cast<const QAbstractSpinBox*>(widget) ||
+                            qobject_cast<const QAbstractItemView*>(widget));
     const bool arrows = key.key() >= Qt::Key_Home && key.key() <= Qt::Key_PageDown;
     const bool presses =
         key.key() == Qt::Key_Space || key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter;
@@ -447,18 +453,19 @@ void ReaderWindow::focusNextPane(int step) {
 }
 
 void ReaderWindow::togglePointing() {
-    if (Pane* pane = keyboardPane()) pane->setKeyPointer(!pane->hasKeyPointer());
+    for (Pane* pane : panes_)
+        if (pane->hasKeyPointer()) return pane->setKeyPointer(false);
+    if (Pane* pane = keyboardPane()) pane->setKeyPointer(true);
 }
 
 void ReaderWindow::connectAgain() {
-    const reader::Session& session = reader().session();
-    const int owed = int(session.owedBookmarks());
-    if (owed > 0 && !session.keepsUnsent() &&
+    const int unkept = int(reader().session().unkeptBookmarks());
+    if (unkept > 0 &&
         QMessageBox::question(
             this, tr("Bookmarks are not sent yet"),
             tr("%n bookmark(s) wait for the server, and this station cannot keep them: they are "
                "lost with this session. Connect again all the same?",
-               nullptr, owed)) != QMessageBox::Yes)
+               nullptr, unkept)) != QMessageBox::Yes)
         return;
     if (!cases_->isVisible()) showCases();  // until the case is open again
     reading_.connectAgain();
@@ -714,31 +721,33 @@ bool ReaderWindow::handleHeldKeys(QEvent* event) {
         if (command.isHeld() &&
             commands_.action(command)->shortcuts().contains(QKeySequence(key.key())))
             way = &command;
-    if (way && event->type() == QEvent::KeyRelease && !key.isAutoRepeat()) held_.erase(way);
+    if (way && event->type() == QEvent::KeyRelease && !key.isAutoRepeat()) held_.erase(key.key());
     if (!way || typesText(QApplication::focusWidget()) || QApplication::activeModalWidget() ||
         (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier)))
         return false;
     if (key.isAutoRepeat()) return true;
-    if (event->type() == QEvent::KeyPress) held_.insert(way);
+    if (event->type() == QEvent::KeyPress) held_[key.key()] = way;
     glm::dvec3 sum(0.0);
-    for (const Command* command : held_)
+    for (const auto& [held, command] : held_)
         sum += command->heldWay;
     reading_.setHeldWay(sum, key.modifiers().testFlag(Qt::ShiftModifier));
     return true;
 }
 
 void ReaderWindow::closeEvent(QCloseEvent* event) {
-    const int owed = int(reader().session().owedBookmarks());
-    if (owed > 0 && reader().session().phase() != reader::Phase::open &&
+    const int owed = int(reader().session().owedBookmarks()),
+              unkept = int(reader().session().unkeptBookmarks());
+    const bool isOpen = reader().session().phase() == reader::Phase::open;
+    if ((unkept > 0 || (owed > 0 && !isOpen)) &&
         QMessageBox::question(
             this, tr("Bookmarks are not sent yet"),
-            reader().session().keepsUnsent()
+            unkept == 0
                 ? tr("%n bookmark(s) wait for the server. They are kept on this station, and sent "
                      "when the case is opened here again. Quit?",
                      nullptr, owed)
                 : tr("%n bookmark(s) wait for the server, and this station cannot keep them: they "
                      "are lost with this window. Quit all the same?",
-                     nullptr, owed)) != QMessageBox::Yes)
+                     nullptr, unkept)) != QMessageBox::Yes)
         return event->ignore();
     if (reader().isOpen()) keepLayout();
     QSettings().setValue(geometrySetting, saveGeometry());

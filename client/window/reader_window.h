@@ -8,7 +8,7 @@
 #include <QDialog>
 #include <QMainWindow>
 #include <QPointer>
-#include <set>
+#include <map>
 #include <vector>
 
 class QLabel;
@@ -104,7 +104,7 @@ private:
     QMenu* layoutMenu_ = nullptr;
     QPointer<QDialog> help_, keys_;
     QByteArray beforeEnlarged_;
-    std::set<const Command*> held_;  // of free flight
+    std::map<int, const Command*> held_;  // of free flight, by key
     bool placedOptics_ = false;
 };
 

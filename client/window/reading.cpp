@@ -146,7 +146,7 @@ void Reading::watchSession() {
         setTool(DrawingTool::none);
         if (const auto before = std::exchange(placeBefore_, {});
             before && case_->scan == before->scan)
-            reader_->restore(before->flight, before->slices);
+            reader_->reopen(before->flight, before->slices);
         emit caseOpened();
     }
     if (session.phase() != phase_) {

@@ -119,6 +119,7 @@ void applyTheme(QApplication& application, const QString& name) {
             ? QStringLiteral(
                   "QLineEdit, QTreeView, QTableView, QPushButton, QMenu, QComboBox, "
                   "QAbstractSpinBox { border: 1px solid white; }"
+                  "QComboBox { padding: 1px 20px 1px 4px; }"
                   "QPushButton { padding: 4px 9px; } QMenuBar::item:selected, "
                   "QMenu::item:selected { background: #ffeb00; color: black; }"
                   "QSlider::groove:horizontal { height: 4px; background: #909090; }"

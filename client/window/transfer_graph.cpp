@@ -252,7 +252,7 @@ void TransferGraph::keyPressEvent(QKeyEvent* event) {
     const Scales s = scales();
     const double stepHu = s.huPerPixel() * (event->modifiers() & Qt::ShiftModifier ? 20.0 : 4.0);
     const auto move = [&](double hu, double rootOpacity) {
-        if (point_ < 0) return;
+        if (point_ < 0 || point_ >= points) return;
         const TransferFunctionPoint& p = curve.points()[std::size_t(point_)];
         const double root = std::clamp(std::sqrt(p.opacity) + rootOpacity, 0.0, 1.0);
         curve.move(std::size_t(point_), p.hu + hu, root * root);
@@ -275,7 +275,7 @@ void TransferGraph::keyPressEvent(QKeyEvent* event) {
             point_ = int(curve.add(0.5 * (lowHu_ + highHu_), 0.5));
             return change(curve);
         case Qt::Key_Delete:
-            if (point_ < 0 || !curve.remove(std::size_t(point_))) return;
+            if (point_ < 0 || point_ >= points || !curve.remove(std::size_t(point_))) return;
             point_ = -1;
             return change(curve);
         default:

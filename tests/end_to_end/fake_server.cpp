@@ -257,6 +257,7 @@ struct FakeServer::Impl {
         std::map<int, Viewport> viewports;
         std::uint32_t pictures = 0;
         double seen = misbehaviour.seenAtFirst;
+        int opensAfterLists = 0;
         if (!read(stream).has_hello()) return;
         ServerMessage welcome;
         welcome.mutable_welcome()->set_protocol_version(misbehaviour.protocolVersion);
@@ -285,6 +286,8 @@ struct FakeServer::Impl {
                     if (!misbehaviour.old)
                         answer.mutable_case_list()->set_request(message.list_cases().request());
                     write(stream, answer);
+                    if (opensAfterLists > 0 && --opensAfterLists == 0)
+                        write(stream, caseOpened(misbehaviour.opensLate));
                     break;
                 case ClientMessage::kOpenCase:
                     if (connections <= misbehaviour.stopsWhileOpening) {
@@ -294,7 +297,16 @@ struct FakeServer::Impl {
                         write(stream, answer);
                         return;
                     }
-                    if (message.open_case().name() == misbehaviour.neverOpens) break;
+                    if (opensAfterLists > 0) {
+                        answer.mutable_error()->set_code(protocol::ErrorReport::BAD_STATE);
+                        answer.mutable_error()->set_message("another case is being opened");
+                        write(stream, answer);
+                        break;
+                    }
+                    if (message.open_case().name() == misbehaviour.opensLate) {
+                        opensAfterLists = 2;
+                        break;
+                    }
                     if (misbehaviour.refuseCaseWith != 0) {
                         answer.mutable_error()->set_code(
                             protocol::ErrorReport::Code(misbehaviour.refuseCaseWith));

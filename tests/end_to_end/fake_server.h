@@ -44,8 +44,10 @@ struct Misbehaviour {
     /// Changes what is told, once it is right.
     std::function<void(protocol::ServerMessage&)> alters = {};
     int refuseCaseWith = 0;  ///< answers OpenCase with this ErrorReport::Code, which is not fatal
-    std::string neverOpens = {};  ///< says nothing to who wants to open this case
-    bool anotherCase = false;     ///< has "second" beside "phantom"
+    /// Opens this case with the second list of cases after it was asked for, and refuses to open
+    /// another meanwhile.
+    std::string opensLate = {};
+    bool anotherCase = false;  ///< has "second" beside "phantom"
 };
 
 /// What a viewport was told last, and how often it was asked for a picture.

@@ -1141,6 +1141,10 @@
         <source>keep the keys that it has: %1</source>
         <translation>die bisherigen Tasten behalten: %1</translation>
     </message>
+    <message>
+        <source>This is a key to be held: one key, without Shift, Ctrl or Alt.</source>
+        <translation>Diese Taste wird gehalten: eine Taste, ohne Umschalt, Strg oder Alt.</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::Notices</name>
