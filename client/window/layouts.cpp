@@ -5,6 +5,7 @@
 #include <QGuiApplication>
 #include <QIODevice>
 #include <QMainWindow>
+#include <QMouseEvent>
 #include <QScreen>
 #include <QSettings>
 
@@ -22,6 +23,7 @@ QString settingOf(const QString& name) {
 
 // All docks in the main window, none shown, none of the past arrangement left.
 void Layouts::gather() {
+    letGoOfEdges();
     for (QDockWidget* dock : docks_.all()) {
         dock->setFloating(false);
         dock->hide();
@@ -30,6 +32,15 @@ void Layouts::gather() {
     }
     second_.hide();
     floatOptics();
+}
+
+void Layouts::letGoOfEdges() {
+    for (QMainWindow* window : {&main_, &second_}) {
+        QMouseEvent release(QEvent::MouseButtonRelease, {-1, -1},
+                            window->mapToGlobal(QPointF(-1, -1)), Qt::LeftButton, Qt::NoButton,
+                            Qt::NoModifier);
+        QCoreApplication::sendEvent(window, &release);
+    }
 }
 
 // Beside the views, not among them, until the reader docks it.

@@ -37,6 +37,9 @@ public:
 
     /// `flat`: the case has been flattened; else its two panes are hidden, whatever the layout.
     void arrange(BuiltinLayout layout, bool flat);
+    /// Before docks are hidden or arranged: ends the drag of an edge between them, of which Qt
+    /// keeps pointers to what is gone then.
+    void letGoOfEdges();
     /// The arrangement as it is, with sizes.
     QByteArray state() const;
     /// False where it is none.

@@ -121,7 +121,7 @@ void OverviewPane::hovered(const Hand& hand) {
     under_ = bookmarkAt(hand.position);
     QString tip;
     if (under_) {
-        const std::string& note = reader().session().bookmarks()[*under_].note;
+        const std::string note = reader().session().bookmarks()[*under_].note;
         tip = note.empty() ? tr("Bookmark") : text(note);
     }
     setToolTip(tip);
