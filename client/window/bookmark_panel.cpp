@@ -46,9 +46,16 @@ std::string keyOf(const QTreeWidgetItem& item) {
     return item.data(0, keyRole).toString().toStdString();
 }
 
-QString whenText(const std::string& utc) {
-    const QDateTime when = QDateTime::fromString(text(utc), Qt::ISODate).toLocalTime();
-    return when.isValid() ? QLocale().toString(when, QLocale::ShortFormat) : QString();
+QDateTime whenOf(const std::string& utc) {
+    return QDateTime::fromString(text(utc), Qt::ISODate).toLocalTime();
+}
+
+// Short, for the note's sake: of today the time, else the day.
+QString whenText(const QDateTime& when) {
+    if (!when.isValid()) return {};
+    return when.date() == QDate::currentDate()
+               ? QLocale().toString(when.time(), QStringLiteral("HH:mm"))
+               : QLocale().toString(when.date(), QLocale::ShortFormat);
 }
 
 }  // namespace
@@ -155,7 +162,7 @@ void BookmarkPanel::fill() {
     list_->clear();
     for (const Entry& entry : entriesOf(reading_.reader().session())) {
         const QString note = text(entry.bookmark.note);
-        const QString when = entry.state == saved     ? whenText(entry.bookmark.createdUtc)
+        const QString when = entry.state == saved     ? whenText(whenOf(entry.bookmark.createdUtc))
                              : entry.state == sending ? tr("sending…")
                                                       : tr("refused");
         auto* item = new QTreeWidgetItem(list_, {QString::number(entry.bookmark.arcMm, 'f', 0),
@@ -165,6 +172,9 @@ void BookmarkPanel::fill() {
         item->setData(0, stateRole, entry.state);
         item->setData(0, noteRole, note);
         item->setToolTip(1, toolTipOf(entry.state == refused ? note + '\n' + entry.reason : note));
+        if (entry.state == saved)
+            item->setToolTip(
+                2, QLocale().toString(whenOf(entry.bookmark.createdUtc), QLocale::LongFormat));
         if (entry.state == refused)
             for (int column = 0; column < 3; ++column)
                 item->setForeground(column, theme().trouble);
