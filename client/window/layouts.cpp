@@ -23,7 +23,7 @@ QString settingOf(const QString& name) {
 
 // All docks in the main window, none shown, none of the past arrangement left.
 void Layouts::gather() {
-    letGoOfEdges();
+    letGo();
     for (QDockWidget* dock : docks_.all()) {
         dock->setFloating(false);
         dock->hide();
@@ -34,13 +34,16 @@ void Layouts::gather() {
     floatOptics();
 }
 
-void Layouts::letGoOfEdges() {
-    for (QMainWindow* window : {&main_, &second_}) {
-        QMouseEvent release(QEvent::MouseButtonRelease, {-1, -1},
-                            window->mapToGlobal(QPointF(-1, -1)), Qt::LeftButton, Qt::NoButton,
-                            Qt::NoModifier);
-        QCoreApplication::sendEvent(window, &release);
-    }
+void Layouts::letGo() {
+    const auto release = [](QWidget& widget) {
+        QMouseEvent event(QEvent::MouseButtonRelease, {-1, -1}, widget.mapToGlobal(QPointF(-1, -1)),
+                          Qt::LeftButton, Qt::NoButton, Qt::NoModifier);
+        QCoreApplication::sendEvent(&widget, &event);
+    };
+    for (QDockWidget* dock : docks_.all())
+        release(*dock);
+    release(main_);
+    release(second_);
 }
 
 // Beside the views, not among them, until the reader docks it.

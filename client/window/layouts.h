@@ -37,9 +37,9 @@ public:
 
     /// `flat`: the case has been flattened; else its two panes are hidden, whatever the layout.
     void arrange(BuiltinLayout layout, bool flat);
-    /// Before docks are hidden or arranged: ends the drag of an edge between them, of which Qt
-    /// keeps pointers to what is gone then.
-    void letGoOfEdges();
+    /// Before docks are hidden or arranged: ends the drag of one, or of an edge between them, for
+    /// which Qt keeps the former arrangement, with pointers to what is gone then.
+    void letGo();
     /// The arrangement as it is, with sizes.
     QByteArray state() const;
     /// False where it is none.

@@ -322,7 +322,7 @@ void ReaderWindow::showCases() {
         return;
     }
     keepLayout();
-    layouts_.letGoOfEdges();
+    layouts_.letGo();
     for (QDockWidget* dock : docks_.all())
         dock->hide();
     second_.hide();
@@ -409,7 +409,7 @@ void ReaderWindow::enlarge() {
     if (!pane) return;
     auto* of = qobject_cast<QDockWidget*>(pane->parentWidget());
     if (!of) return;
-    layouts_.letGoOfEdges();
+    layouts_.letGo();
     beforeEnlarged_ = layouts_.state();
     // A pane of the second window is enlarged there.
     for (QDockWidget* dock : docks_.all())

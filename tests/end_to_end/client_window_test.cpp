@@ -1812,30 +1812,6 @@ TEST_F(ClientWindow, AFormerPictureKeepsItsShapeAndItsPlaces) {
     EXPECT_LT(glm::distance(slices().slice(View::axial).positionMm, there), 1e-6);
 }
 
-// The edge between two panes is held while they are arranged anew, by a key or by a case that
-// opens.
-TEST_F(ClientWindow, AnEdgeThatIsHeldOutlivesNoLayout) {
-    for (const auto& [key, modifiers] :
-         {std::pair{Qt::Key_3, Qt::ControlModifier}, std::pair{Qt::Key_O, Qt::ControlModifier}}) {
-        press(Qt::Key_1, Qt::ControlModifier);
-        ASSERT_TRUE(settle());
-        const QPoint corner = dock("axial")->mapTo(window_.get(), QPoint(0, 0));
-        const QPoint edge = corner + QPoint(dock("axial")->width() + 2, 60);
-        const int wide = dock("axial")->width();
-        QTest::mousePress(handleOf(*window_), Qt::LeftButton, {}, edge);
-        QTest::mouseMove(handleOf(*window_), edge + QPoint(30, 0));
-        ASSERT_TRUE(waitFor([&] { return dock("axial")->width() > wide + 10; }));
-        press(key, modifiers);
-        for (int n = 0; n < 5; ++n) {
-            QTest::mouseMove(handleOf(*window_), edge + QPoint(30 - 5 * n, n));
-            QTest::qWait(20);
-        }
-        QTest::mouseRelease(handleOf(*window_), Qt::LeftButton, {}, edge);
-        if (cases()->isVisible()) press(Qt::Key_O, Qt::ControlModifier);
-        EXPECT_TRUE(settle());
-    }
-}
-
 // Where panes are only moved, the server hears of none.
 TEST_F(ClientWindow, AnotherLayoutAsksAnewForNoPaneThatIsAsLargeAsBefore) {
     press(Qt::Key_1, Qt::ControlModifier);
