@@ -175,7 +175,8 @@ void PictureStream::overtake() {
         if (!canDraw(slot) || (id != before && !slot.viewport.moving())) continue;
         if (!renderer_.replace(makeJob(id))) continue;
         slot.due = false;
-        if (id != before) slots_[before].due = true;
+        // It may have been closed while it was drawn.
+        if (id != before) slots_[before].due = slots_[before].viewport.isDrawable();
         rendering_ = lastDrawn_ = id;
         return;
     }

@@ -327,6 +327,28 @@ TEST_F(ServerTest, MovingPicturesAreCoarseOnlyForWhoTakesThemSo) {
     }
 }
 
+// A view that is closed while its picture is drawn, and whose place in the line another takes, is
+// not drawn again: it has nothing to show.
+TEST_F(ServerTest, AViewThatClosesWhileItIsDrawnIsForgotten) {
+    auto client = connected();
+    ASSERT_TRUE(client->hello()->has_welcome());
+    ASSERT_TRUE(client->openCase(smallCaseName)->has_case_opened());
+    std::uint64_t sequence = 0;
+    client->viewport(++sequence, 1, protocol::AXIAL, 64, 64);
+    for (int n = 0; n < 6; ++n) {
+        client->viewport(++sequence, 0, protocol::ENDOSCOPIC, 2048, 2048);
+        client->camera(++sequence, 0, {-1.2, 2.2, 110.0}, false);
+        std::this_thread::sleep_for(std::chrono::milliseconds(30 + 10 * n));
+        client->viewport(++sequence, 0, protocol::ENDOSCOPIC, 0, 0);
+        client->slice(++sequence, 1, {-1.2, 2.2, 110.0 + n}, 1.0, true);
+        for (;;) {
+            const auto picture = client->picture();
+            ASSERT_TRUE(picture) << "the server is gone";
+            if (picture->header.viewport == 1 && picture->header.sequence == sequence) break;
+        }
+    }
+}
+
 TEST_F(ServerTest, StillsAreTheRenderersOwnPixels) {
     const SmallCase truth = makeSmallCase();
     auto context = gpu::Context::create();
