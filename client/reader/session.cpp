@@ -185,6 +185,7 @@ void Session::handle(link::LinkUp up) {
     phase_ = Phase::connecting;
     linked_ = true;
     opening_.reset();
+    refusedOpening_ = false;
     askForCase();
     if (!caseName_.empty() && casesAsked_ > answeredCases_) sayListCases();
 }
@@ -264,6 +265,8 @@ void Session::handle(const protocol::ServerMessage& message) {
 
 void Session::opened(const protocol::CaseOpened& message) {
     // What is open must not become another patient's of itself.
+    // What was taken for its refusal may have been of something else.
+    if (!opening_ && std::exchange(refusedOpening_, false)) return;
     if (!opening_)
         return giveUp({ErrorKind::badInput, "the server opened a case that was not asked for",
                        "case opened"});
@@ -316,6 +319,7 @@ void Session::refused(const protocol::ErrorReport& report) {
                          report.code() == protocol::ErrorReport::BUSY;
     if (opening_ && report.request() == 0 && ofACase && !report.fatal()) {
         const std::string asked = *std::exchange(opening_, std::nullopt);
+        refusedOpening_ = true;
         if (asked != caseName_) {  // the reader has chosen another since, or none
             if (!caseName_.empty()) askForCase();
             return;

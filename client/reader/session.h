@@ -248,6 +248,7 @@ private:
     std::uint64_t casesRevision_ = 0;
     bool linked_ = false;
     std::optional<std::string> opening_;  // asked for over this link, without an answer
+    bool refusedOpening_ = false;         // one that was asked for over this link
     std::shared_ptr<const CaseInfo> caseInfo_;
 
     WallPaintChoice paint_;
