@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 namespace haustra::cli {
@@ -60,17 +59,6 @@ Result<Centerline> readCenterlineCsv(const std::filesystem::path& file) {
         centerline.points.push_back({{v[0], v[1], v[2]}, v[3], v[4], hasGap && v[5] != 0.0});
     }
     return centerline;
-}
-
-std::string findingsJson(const Findings& findings) {
-    auto list = nlohmann::ordered_json::array();
-    for (const Finding& f : findings.findings) {
-        list.push_back({{"position_mm", {f.positionMm.x, f.positionMm.y, f.positionMm.z}},
-                        {"diameter_mm", f.diameterMm},
-                        {"score", f.score},
-                        {"kind", f.kind}});
-    }
-    return nlohmann::ordered_json{{"findings", list}}.dump(2) + "\n";
 }
 
 }  // namespace haustra::cli

@@ -1,8 +1,7 @@
-// Centerlines, findings and reports as files that other programs read.
+// Centerlines and reports as files that other programs read.
 #pragma once
 
 #include "core/centerline.h"
-#include "core/findings.h"
 #include "core/result.h"
 
 #include <filesystem>
@@ -23,8 +22,5 @@ std::string centerlineCsv(const Centerline& centerline);
 
 /// Reads what centerlineCsv writes; the gap column may be missing.
 Result<Centerline> readCenterlineCsv(const std::filesystem::path& file);
-
-/// `{"findings":[{"position_mm":[x,y,z],"diameter_mm":d,"score":s,"kind":k}, …]}`
-std::string findingsJson(const Findings& findings);
 
 }  // namespace haustra::cli
