@@ -85,6 +85,7 @@ FilledColon makeFilledColon(const PhantomOptions& options) {
     ColonShape shape(makeColonPath(options.seed, options.preset, body, bowel), options.seed,
                      bowel.septumMm);
     addGrowths(shape, options.seed, options.preset, body);
+    addMoreGrowths(shape, options.seed, options.growths, body);
     ColonField field(shape, gridOf(options.size, options.scan.fieldOfViewMm), options.threads);
     Fluid fluid = pourFluid(shape, field, options.seed, options.preset, body, bowel);
     // The levels stay: what a polyp displaces is little beside a pool.

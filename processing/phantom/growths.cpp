@@ -17,6 +17,7 @@ Growth polypAt(const WallPlace& place, Growth::Kind kind, double diameterMm, Ran
     growth.inward = place.inward;
     growth.tangent = place.tangent;
     growth.seed = random.bits();
+    growth.root = place.at;
     const double r = 0.5 * diameterMm;
     if (kind == Growth::Kind::flat) {
         const double height = std::min(2.8, 0.4 * diameterMm);
@@ -149,7 +150,7 @@ void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const Body
         placer.add(where, [&](const WallPlace& place) {
             Growth stool;
             stool.kind = n < tagged ? Kind::taggedStool : Kind::untaggedStool;
-            stool.inward = place.inward, stool.tangent = place.tangent;
+            stool.inward = place.inward, stool.tangent = place.tangent, stool.root = place.at;
             const double x = random.uniform(0.9, 1.4), y = random.uniform(0.8, 1.2),
                          z = random.uniform(0.7, 1.0);
             stool.semiAxes = r * glm::dvec3(x, y, z);
@@ -194,6 +195,60 @@ void addSubmergedPolyps(ColonShape& shape, const Fluid& fluid, std::uint64_t see
         };
         placer.add(where, [&](const WallPlace& place) {
             return polypAt(place, kind.kind, diameter, random);
+        });
+    }
+}
+
+void addMoreGrowths(ColonShape& shape, std::uint64_t seed, const GrowthOptions& options,
+                    const BodyPlan& body) {
+    Random random(seed, 61);
+    Placer placer(shape, random);
+    for (int n = 0; n < options.morePolyps; ++n) {
+        const double draw = random.uniform(0.0, 1.0), diameter = random.uniform(4.0, 15.0);
+        const auto kind = draw < 0.45  ? Growth::Kind::sessile
+                          : draw < 0.7 ? Growth::Kind::pedunculated
+                                       : Growth::Kind::flat;
+        const double lowest = kind == Growth::Kind::sessile ? 4.0 : 6.0;
+        Wanted where;
+        where.apartMm = 18.0;
+        where.radiusAtLeastMm =
+            std::max(12.0, kind == Growth::Kind::pedunculated ? diameter + 5.0 : 0.8 * diameter);
+        if (random.chance(0.4)) where.downward = gravityDirection(body.position);
+        placer.add(where, [&](const WallPlace& place) {
+            Growth growth = polypAt(place, kind, std::max(lowest, diameter), random);
+            if (kind == Growth::Kind::sessile) {
+                // From a low dome to a head that hangs over its base.
+                const double height = random.uniform(0.4, 0.85) * diameter,
+                             half = std::min(growth.semiAxes.x, 0.62 * height);
+                growth.semiAxes.z = half;
+                growth.centre = place.at + place.inward * (height - half);
+            } else if (kind == Growth::Kind::flat) {
+                growth.semiAxes.z = std::min(random.uniform(1.8, 3.0), 0.45 * diameter);
+            } else {
+                // The stalk leans.
+                growth.centre += random.uniform(-2.0, 2.0) * place.tangent;
+            }
+            return growth;
+        });
+    }
+    for (int n = 0; n < options.moreUntaggedStool; ++n) {
+        const double r = random.uniform(2.5, 6.0);
+        Wanted where;
+        where.fromMm = 60.0, where.beforeEndMm = 15.0;
+        where.apartMm = r + 10.0;
+        where.radiusAtLeastMm = 2.2 * r + 3.0;
+        if (random.chance(0.65)) where.downward = gravityDirection(body.position);
+        placer.add(where, [&](const WallPlace& place) {
+            Growth stool;
+            stool.kind = Growth::Kind::untaggedStool;
+            stool.inward = place.inward, stool.tangent = place.tangent, stool.root = place.at;
+            const double x = random.uniform(0.9, 1.3), y = random.uniform(0.8, 1.2),
+                         z = random.uniform(0.6, 1.0);
+            stool.semiAxes = r * glm::dvec3(x, y, z);
+            stool.centre = place.at + place.inward * (random.uniform(0.5, 0.9) * stool.semiAxes.z);
+            stool.seed = random.bits();
+            stool.hu = random.uniform(5.0, 60.0);
+            return stool;
         });
     }
 }

@@ -3,6 +3,7 @@
 
 #include "phantom/colon_shape.h"
 #include "phantom/fluid.h"
+#include "phantom/growth_options.h"
 
 namespace haustra::phantom {
 
@@ -14,6 +15,10 @@ void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const Body
 /// Adds polyps that the tagged fluid covers, one of them cut by the surface; in `easy`, with its
 /// shallow pools, fewer and smaller ones. Fewer still where the pools have no room.
 void addSubmergedPolyps(ColonShape& shape, const Fluid& fluid, std::uint64_t seed, Preset preset);
+
+/// Adds what the options say beyond the preset's, as far as there is room.
+void addMoreGrowths(ColonShape& shape, std::uint64_t seed, const GrowthOptions& options,
+                    const BodyPlan& body);
 
 /// The true polyps: centre of the head, largest diameter, kind. Hyperplastic bumps and stool are
 /// not findings.

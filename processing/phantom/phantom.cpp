@@ -5,6 +5,7 @@
 #include "phantom/colon_skeleton.h"
 #include "phantom/contacts.h"
 #include "phantom/filled_colon.h"
+#include "phantom/growth_truth.h"
 #include "phantom/growths.h"
 #include "phantom/implicit.h"
 #include "phantom/random.h"
@@ -41,8 +42,12 @@ struct Slab {
 class ColonPainter {
 public:
     ColonPainter(const ColonShape& shape, const ColonField& field, const Fluid& fluid,
-                 std::uint64_t seed)
-        : shape_(shape), field_(field), fluid_(fluid), seed_(mixBits(seed + 31)) {
+                 const PhantomOptions& options)
+        : shape_(shape),
+          field_(field),
+          fluid_(fluid),
+          growths_(options.growths),
+          seed_(mixBits(options.seed + 31)) {
         const glm::dvec3 spacing = field.grid().spacingMm();
         width_ = std::cbrt(spacing.x * spacing.y * spacing.z);
         levelWidth_ = glm::dot(glm::abs(fluid.up), spacing);
@@ -134,6 +139,7 @@ private:
         }
         if (growth.kind == Growth::Kind::hyperplastic) return wallHu + 3.0;
         // Adenomas are a little denser inside, unevenly.
+        if (isPlain(growth, growths_)) return wallHu + 6.0 * valueNoise(seed_, p, 6.0);
         const double core = 1.0 - smoothstep(-2.0, -0.5, growth.distance(p));
         return wallHu + core * (22.0 + 18.0 * valueNoise(growth.seed + 9, p, 3.5));
     }
@@ -164,6 +170,7 @@ private:
     const ColonShape& shape_;
     const ColonField& field_;
     const Fluid& fluid_;
+    GrowthOptions growths_;
     std::uint64_t seed_;
     double width_ = 1.0, levelWidth_ = 1.0;
     std::vector<const Growth*> stool_;
@@ -257,6 +264,11 @@ Result<void> check(const PhantomOptions& options) {
     if (!(scan.pseudoEnhancementHu >= 0.0 && scan.pseudoEnhancementHu <= 100.0))
         return bad("pseudo-enhancement is 0 to 100 HU");
     if (!(scan.streakHu >= 0.0 && scan.streakHu <= 100.0)) return bad("streaks are 0 to 100 HU");
+    const GrowthOptions& growths = options.growths;
+    if (!share(growths.plainCores)) return bad("a share of polyps is 0 to 1");
+    if (growths.morePolyps < 0 || growths.morePolyps > 40 || growths.moreUntaggedStool < 0 ||
+        growths.moreUntaggedStool > 40)
+        return bad("there may be 0 to 40 more growths of a kind");
     if (!(bowel.ileumMm >= 0.0 && bowel.ileumMm <= 2000.0))
         return bad("an ileum is 0 to 2000 mm long");
     if (!(bowel.ileumCalibreMm >= 12.0 && bowel.ileumCalibreMm <= 30.0))
@@ -338,7 +350,7 @@ class Painter {
 public:
     Painter(const PhantomOptions& options, const BodyPlan& body, const FilledColon& filled)
         : filled_(filled),
-          colon_(filled.shape, filled.field, filled.fluid, options.seed),
+          colon_(filled.shape, filled.field, filled.fluid, options),
           solids_(makeAnatomy(options.seed, body)),
           threads_(options.threads) {
         if (options.scan.metalHip) add(makeMetalHip(options.seed));
@@ -517,6 +529,7 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
 
     phantom.centerline = trueCenterline(filled.shape, phantom.lumen, options.threads);
     phantom.polyps = polypsOf(filled.shape);
+    phantom.growths = growthTruths(filled, options.growths);
     phantom.polypVoxels = polypVoxels(filled.shape, grid);
     phantom.structure = structureOf(filled, phantom);
     ContactFinder contacts(filled.shape);

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "core/result.h"
 #include "phantom/bowel_options.h"
+#include "phantom/growth_options.h"
 #include "phantom/structure.h"
 
 #include <cstdint>
@@ -65,6 +66,7 @@ struct PhantomOptions {
     PatientPosition position = PatientPosition::supine;  ///< any but unknown
     Size size = Size::full;
     BowelOptions bowel;
+    GrowthOptions growths;
     ScanOptions scan;
     int threads = 0;
     Progress progress;
@@ -88,6 +90,19 @@ enum class Site : std::uint8_t {
     untaggedFluid = 7,  ///< in the colon's lumen: water or stool that took no tagging
 };
 
+/// One thing that grows from the wall or lies on it.
+struct GrowthTruth {
+    std::string kind;  ///< "sessile", "pedunculated", "flat"; "hyperplastic"; "untagged_stool" …
+    bool neoplastic = false;     ///< a polyp that must be found
+    glm::dvec3 positionMm{0.0};  ///< centre of the head
+    glm::dvec3 wallMm{0.0};      ///< its foot
+    double diameterMm = 0.0;     ///< largest; a stalk does not count
+    double heightMm = 0.0;       ///< above the wall, stalk included
+    double coreHu = 0.0;         ///< how much denser than the wall its middle is, about
+    bool onFold = false;
+    double submergedShare = 0.0;  ///< of the head's height, under the fluid's level, 0…1
+};
+
 struct Phantom {
     CtScan scan;
     /// The same scan and noise, with air where the colon's tagged fluid and stool were (what is
@@ -107,6 +122,8 @@ struct Phantom {
     /// Of each polyp in turn: the indices of the voxels whose centres lie in its tissue and would
     /// lie in the lumen without it, ascending.
     std::vector<std::vector<std::uint32_t>> polypVoxels;
+    /// Everything that grows on the wall or lies on it; the neoplastic ones are `polyps`, in order.
+    std::vector<GrowthTruth> growths;
     double noiseSdHu = 0.0;  ///< of both scans
     Structure structure;
 };

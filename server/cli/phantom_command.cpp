@@ -34,6 +34,7 @@ struct PhantomArguments {
     std::vector<double> collapsesMm;
     std::optional<double> untagged, layered, full;
     std::optional<int> diverticula;
+    phantom::GrowthOptions growths;
     std::optional<double> fieldOfViewMm, overshoot, noiseSdHu, grainMm, pseudoEnhancementHu,
         streakHu;
     std::vector<double> blurMm;
@@ -74,6 +75,7 @@ phantom::PhantomOptions optionsOf(const PhantomArguments& arguments) {
     if (arguments.valve) bowel.valveOpen = *arguments.valve == "open";
     if (arguments.insufflated) bowel.insufflated = *arguments.insufflated == "yes";
     if (arguments.rectalTube) bowel.rectalTube = *arguments.rectalTube == "yes";
+    options.growths = arguments.growths;
     phantom::ScanOptions& scan = options.scan;
     take(arguments.fieldOfViewMm, scan.fieldOfViewMm), take(arguments.overshoot, scan.overshoot);
     take(arguments.noiseSdHu, scan.noiseSdHu), take(arguments.grainMm, scan.grainMm);
@@ -84,6 +86,10 @@ phantom::PhantomOptions optionsOf(const PhantomArguments& arguments) {
     if (!arguments.blurMm.empty())
         scan.blurMm = {arguments.blurMm[0], arguments.blurMm[1], arguments.blurMm[2]};
     return options;
+}
+
+nlohmann::ordered_json pointJson(glm::dvec3 p) {
+    return {p.x, p.y, p.z};
 }
 
 nlohmann::ordered_json scanJson(const phantom::ScanOptions& scan) {
@@ -115,8 +121,32 @@ nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
             {"rectal_tube", bowel.rectalTube}};
 }
 
-nlohmann::ordered_json pointJson(glm::dvec3 p) {
-    return {p.x, p.y, p.z};
+// A line each: {"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm", "height_mm",
+// "core_hu", "on_fold", "submerged_share"}.
+std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
+    const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
+    std::string text = "{\"growths\": [";
+    for (std::size_t n = 0; n < growths.size(); ++n) {
+        const phantom::GrowthTruth& g = growths[n];
+        text += (n ? ",\n" : "\n") +
+                nlohmann::ordered_json{{"kind", g.kind},
+                                       {"neoplastic", g.neoplastic},
+                                       {"position_mm", pointJson(g.positionMm)},
+                                       {"wall_mm", pointJson(g.wallMm)},
+                                       {"diameter_mm", rounded(g.diameterMm)},
+                                       {"height_mm", rounded(g.heightMm)},
+                                       {"core_hu", g.coreHu},
+                                       {"on_fold", g.onFold},
+                                       {"submerged_share", rounded(g.submergedShare)}}
+                    .dump();
+    }
+    return text + "]}\n";
+}
+
+nlohmann::ordered_json growthOptionsJson(const phantom::GrowthOptions& growths) {
+    return {{"plain_cores", growths.plainCores},
+            {"more_polyps", growths.morePolyps},
+            {"more_untagged_stool", growths.moreUntaggedStool}};
 }
 
 std::string structureJson(const phantom::Structure& structure) {
@@ -191,18 +221,25 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
     }
     if (const std::string scanner = scanJson(options.scan).dump(); scanner != scanJson({}).dump())
         writing.uidSeed += " " + scanner;
+    const nlohmann::ordered_json growths = growthOptionsJson(options.growths);
+    const bool grown = growths != growthOptionsJson({});
+    if (grown) {
+        writing.uidSeed += " " + growths.dump();
+        writing.studySeed += " " + growths.dump();
+    }
     writing.feetFirst = options.scan.feetFirst;
-    const nlohmann::ordered_json facts{{"version", phantom::phantomVersion},
-                                       {"seed", arguments.seed},
-                                       {"preset", arguments.preset},
-                                       {"position", arguments.position},
-                                       {"size", arguments.size},
-                                       {"bowel", bowelJson(options.bowel)},
-                                       {"scan", scanJson(options.scan)},
-                                       {"centerline_mm", made.centerline.lengthMm()},
-                                       {"polyps", made.polyps.findings.size()},
-                                       {"noise_sd_hu", made.noiseSdHu},
-                                       {"haustra", softwareVersion}};
+    nlohmann::ordered_json facts{{"version", phantom::phantomVersion},
+                                 {"seed", arguments.seed},
+                                 {"preset", arguments.preset},
+                                 {"position", arguments.position},
+                                 {"size", arguments.size},
+                                 {"bowel", bowelJson(options.bowel)},
+                                 {"scan", scanJson(options.scan)},
+                                 {"centerline_mm", made.centerline.lengthMm()},
+                                 {"polyps", made.polyps.findings.size()},
+                                 {"noise_sd_hu", made.noiseSdHu},
+                                 {"haustra", softwareVersion}};
+    if (grown) facts["growths"] = growths;
     const fs::path truth = folder / "truth";
     return dicom::writeSeries(folder / "series", made.scan, writing)
         .and_then([&] { return nifti::writeNifti(truth / "lumen.nii.gz", made.lumen); })
@@ -211,6 +248,7 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
         .and_then(
             [&] { return writeTextFile(truth / "centerline.csv", centerlineCsv(made.centerline)); })
         .and_then([&] { return writeTextFile(truth / "polyps.json", findingsJson(made.polyps)); })
+        .and_then([&] { return writeTextFile(truth / "growths.json", growthsJson(made.growths)); })
         .and_then(
             [&] { return writeTextFile(truth / "structure.json", structureJson(made.structure)); })
         .and_then([&] { return writeTextFile(truth / "phantom.json", facts.dump(2) + "\n"); });
@@ -386,6 +424,29 @@ void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
         ->group(group);
 }
 
+/// What grows on the wall beyond the preset's; phantom/growth_options.h tells more.
+void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
+    constexpr const char* group = "Growths (each adds to the preset; wild draws none of these)";
+    command
+        .add_option("--plain-cores", arguments.growths.plainCores,
+                    "Share of the polyps that are no denser inside than the wall, 0 to 1")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("SHARE")
+        ->group(group);
+    command
+        .add_option("--more-polyps", arguments.growths.morePolyps,
+                    "More polyps of 4 to 15 mm, 0 to 40, of more shapes than the preset's")
+        ->check(CLI::Range(0, 40))
+        ->type_name("N")
+        ->group(group);
+    command
+        .add_option("--more-untagged-stool", arguments.growths.moreUntaggedStool,
+                    "More lumps of stool without tagging, 0 to 40")
+        ->check(CLI::Range(0, 40))
+        ->type_name("N")
+        ->group(group);
+}
+
 }  // namespace
 
 Command addPhantom(CLI::App& program) {
@@ -395,7 +456,8 @@ Command addPhantom(CLI::App& program) {
         "Make a synthetic abdominal CT: OUT/series/*.dcm, and beside it OUT/truth with "
         "lumen.nii.gz, sites.nii.gz (what else is where: 1 ileum, 2 other bowel, 3 lung, 4 outside "
         "the body, 5 colon wall, 6 rectal tube, 7 fluid without tagging), untagged.nii.gz, "
-        "centerline.csv, polyps.json, structure.json (segments, collapses, contacts, valve, "
+        "centerline.csv, polyps.json, growths.json (polyps and what resembles them), "
+        "structure.json (segments, collapses, contacts, valve, "
         "diverticula, volumes) and phantom.json. Equal options make equal files.");
     command->add_option("OUT", arguments->out, "The folder to make")->required();
     command->add_option("--seed", arguments->seed, "Which patient")
@@ -426,6 +488,7 @@ Command addPhantom(CLI::App& program) {
                       "Replace series and truth in a folder that is not empty");
     addThreadsOption(*command, arguments->threads);
     addBowelOptions(*command, *arguments);
+    addGrowthOptions(*command, *arguments);
     addScanOptions(*command, *arguments);
     return {command, [arguments] { return runPhantom(*arguments); }};
 }

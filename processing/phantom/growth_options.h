@@ -1,0 +1,25 @@
+// What may grow on a patient's colon beyond what a preset gives it, for polyp detection to learn
+// from and to be judged by.
+#pragma once
+
+namespace haustra::phantom {
+
+/// Each member adds one thing; the defaults add nothing, and what one adds is drawn from random
+/// numbers of its own.
+///
+/// Where the ranges come from: sessile lesions are as high as a half to nearly all of their width,
+/// flat ones (Paris 0-IIa) at most 2.5 mm, the closed cups of a biopsy forceps, or less than half
+/// their width (Endoscopic Classification Review Group, Endoscopy 2005; 37: 570); most adenomas
+/// have the wall's own density without contrast medium in the blood; stool without tagging is
+/// mottled with gas (Pickhardt & Kim, Radiographics 2009).
+struct GrowthOptions {
+    /// Of all polyps the share that is no denser inside than the wall, 0…1.
+    double plainCores = 0.0;
+    /// More polyps of 4…15 mm, of all kinds and more shapes than the presets', 0…40; fewer where
+    /// there is no room.
+    int morePolyps = 0;
+    /// More lumps of stool that took no tagging, 5…12 mm, 0…40.
+    int moreUntaggedStool = 0;
+};
+
+}  // namespace haustra::phantom

@@ -1,0 +1,65 @@
+#include "phantom/growth_truth.h"
+
+#include "phantom/filled_colon.h"
+#include "phantom/random.h"
+
+#include <algorithm>
+
+namespace haustra::phantom {
+namespace {
+
+// What painters add to the wall's HU in the middle of a dense core.
+constexpr double denseCoreHu = 22.0, bumpHu = 3.0;
+
+const char* kindOf(const Growth& growth) {
+    switch (growth.kind) {
+        case Growth::Kind::sessile:
+            return "sessile";
+        case Growth::Kind::pedunculated:
+            return "pedunculated";
+        case Growth::Kind::flat:
+            return "flat";
+        case Growth::Kind::hyperplastic:
+            return "hyperplastic";
+        case Growth::Kind::untaggedStool:
+            return "untagged_stool";
+        case Growth::Kind::taggedStool:
+            return "tagged_stool";
+    }
+    return "";
+}
+
+}  // namespace
+
+bool isPlain(const Growth& polyp, const GrowthOptions& options) {
+    return options.plainCores > 0.0 && Random(polyp.seed, 60).chance(options.plainCores);
+}
+
+std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOptions& options) {
+    std::vector<GrowthTruth> truths;
+    for (const Growth& growth : colon.shape.growths()) {
+        GrowthTruth truth;
+        truth.kind = kindOf(growth);
+        truth.neoplastic = growth.polyp();
+        truth.positionMm = growth.centre;
+        truth.wallMm = growth.root;
+        const glm::dvec3 axes = growth.semiAxes;
+        truth.diameterMm = 2.0 * std::max({axes.x, axes.y, axes.z});
+        truth.heightMm = glm::dot(growth.centre - growth.root, growth.inward) + axes.z;
+        truth.coreHu = growth.kind == Growth::Kind::hyperplastic     ? bumpHu
+                       : growth.polyp() && !isPlain(growth, options) ? denseCoreHu
+                                                                     : 0.0;
+        const auto at = colon.shape.evaluate(growth.centre);
+        const PathSample axis = colon.shape.path().at(at.arcMm);
+        truth.onFold = glm::distance(growth.root, axis.position) < 0.8 * axis.radiusMm;
+        // How much of the head's height is below the level.
+        const double height = colon.fluid.heightMm(growth.centre),
+                     level = colon.fluid.poolAt(at.arcMm).levelMm,
+                     half = std::max(0.5, std::min({axes.x, axes.y, axes.z}));
+        truth.submergedShare = std::clamp(0.5 + 0.5 * (level - height) / half, 0.0, 1.0);
+        truths.push_back(truth);
+    }
+    return truths;
+}
+
+}  // namespace haustra::phantom

@@ -1,0 +1,103 @@
+// What grows on a phantom's wall: polyps dense and plain, what resembles them, and their truth.
+#include "core/voxel_sweep.h"
+#include "phantom/phantom.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+using namespace haustra;
+
+namespace {
+
+phantom::PhantomOptions grown() {
+    phantom::PhantomOptions options;
+    options.size = phantom::Size::small;
+    options.seed = 5;
+    options.preset = phantom::Preset::easy;  // little noise
+    options.growths = {0.5, 8, 5};
+    return options;
+}
+
+const phantom::Phantom& grownPhantom() {
+    static const phantom::Phantom made = phantom::makePhantom(grown()).value();
+    return made;
+}
+
+TEST(PhantomGrowths, OptionsAddAndLeaveTheRestOfThePatient) {
+    phantom::PhantomOptions plain = grown();
+    plain.growths = {};
+    const phantom::Phantom bare = phantom::makePhantom(plain).value();
+    const phantom::Phantom& more = grownPhantom();
+    EXPECT_EQ(bare.centerline.points.size(), more.centerline.points.size());
+    EXPECT_GT(more.growths.size(), bare.growths.size() + 8);
+    // Those that the preset puts there first are where they were; only their inside may be plain.
+    std::size_t same = 0;
+    for (const phantom::GrowthTruth& growth : bare.growths)
+        same += std::any_of(more.growths.begin(), more.growths.end(), [&](const auto& other) {
+            return other.positionMm == growth.positionMm && other.kind == growth.kind &&
+                   other.diameterMm == growth.diameterMm;
+        });
+    EXPECT_GE(same + 2, bare.growths.size()) << "but for submerged ones, which look for room";
+    EXPECT_TRUE(std::none_of(bare.growths.begin(), bare.growths.end(),
+                             [](const auto& g) { return g.neoplastic && g.coreHu == 0.0; }));
+}
+
+TEST(PhantomGrowths, TheTruthTellsPolypsAndWhatResemblesThem) {
+    const phantom::Phantom& made = grownPhantom();
+    std::vector<glm::dvec3> neoplastic;
+    int stool = 0, bumps = 0;
+    for (const phantom::GrowthTruth& growth : made.growths) {
+        if (growth.neoplastic) neoplastic.push_back(growth.positionMm);
+        stool += growth.kind == "untagged_stool";
+        bumps += growth.kind == "hyperplastic";
+        EXPECT_GT(growth.diameterMm, 1.0);
+        EXPECT_LT(glm::distance(growth.positionMm, growth.wallMm), 25.0);
+        EXPECT_GE(growth.submergedShare, 0.0);
+        EXPECT_LE(growth.submergedShare, 1.0);
+        // Its foot is on the wall: lumen is as near as the growth is wide, and tissue too.
+        const Grid& grid = made.lumen.grid();
+        const glm::ivec3 foot(glm::round(grid.voxelFromPatientPoint(growth.wallMm)));
+        const int reach = int(std::ceil((0.5 * growth.diameterMm + 2.0) / grid.spacingMm().x));
+        int lumen = 0, other = 0;
+        visitBox(glm::max(foot - reach, glm::ivec3(0)), glm::min(foot + reach, grid.size - 1),
+                 [&](glm::ivec3 v) { (made.lumen.at(v) ? lumen : other) += 1; });
+        EXPECT_GT(lumen, 0) << growth.kind;
+        EXPECT_GT(other, 0) << growth.kind;
+    }
+    EXPECT_GE(stool, 3);
+    EXPECT_GE(bumps, 1);
+    ASSERT_EQ(neoplastic.size(), made.polyps.findings.size());
+    for (std::size_t n = 0; n < neoplastic.size(); ++n)
+        EXPECT_EQ(neoplastic[n], made.polyps.findings[n].positionMm);
+}
+
+TEST(PhantomGrowths, PlainPolypsHaveTheWallsDensityAndOthersMore) {
+    const phantom::Phantom& made = grownPhantom();
+    const Grid& grid = made.lumen.grid();
+    double sum[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (const phantom::GrowthTruth& growth : made.growths) {
+        if (!growth.neoplastic || growth.kind == "flat" || growth.diameterMm < 9.0) continue;
+        const glm::ivec3 middle(glm::round(grid.voxelFromPatientPoint(growth.positionMm)));
+        const bool plain = growth.coreHu == 0.0;
+        sum[plain] += made.untaggedHu.at(middle);
+        ++count[plain];
+    }
+    ASSERT_GE(count[0], 2);
+    ASSERT_GE(count[1], 2);
+    EXPECT_GT(sum[0] / count[0], sum[1] / count[1] + 10.0);
+}
+
+TEST(PhantomGrowths, WhatCannotBeIsRefused) {
+    for (const phantom::GrowthOptions& growths :
+         {phantom::GrowthOptions{1.5, 0, 0}, phantom::GrowthOptions{0.0, 41, 0},
+          phantom::GrowthOptions{0.0, 0, -1}, phantom::GrowthOptions{NAN, 0, 0}}) {
+        phantom::PhantomOptions options = grown();
+        options.growths = growths;
+        EXPECT_FALSE(phantom::makePhantom(options));
+    }
+}
+
+}  // namespace
