@@ -234,6 +234,9 @@ Result<void> readImage(DcmItem& dataset, bool enhanced, const std::string& place
     image.studyUid = printable(text(dataset, DCM_StudyInstanceUID));
     image.seriesUid = printable(text(dataset, DCM_SeriesInstanceUID));
     image.instanceUid = text(dataset, DCM_SOPInstanceUID);
+    image.frameOfReferenceUid = text(dataset, DCM_FrameOfReferenceUID);
+    image.studyDate = text(dataset, DCM_StudyDate);
+    image.studyTime = text(dataset, DCM_StudyTime);
     image.description = printable(text(dataset, DCM_SeriesDescription));
     image.position = patientPosition(text(dataset, DCM_PatientPosition));
     image.localizer = text(dataset, DCM_ImageType, 2) == "LOCALIZER";
@@ -309,6 +312,7 @@ DicomFile readHeader(const std::filesystem::path& file) try {
     DicomFile result;
     result.kind = Kind::ctImage;
     result.image.file = file;
+    result.image.sopClassUid = sopClass;
     if (auto read = readImage(*dataset, enhanced, file.string(), result.image); !read) {
         result.kind = Kind::damaged;
         result.reason = read.error();

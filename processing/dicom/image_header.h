@@ -27,8 +27,11 @@ struct ImageHeader {
     std::filesystem::path file;
     std::string studyUid;  ///< may be empty
     std::string seriesUid;
+    std::string sopClassUid;
     std::string instanceUid;
-    std::string description;  ///< printable ASCII
+    std::string frameOfReferenceUid;   ///< may be empty
+    std::string studyDate, studyTime;  ///< may be empty
+    std::string description;           ///< printable ASCII
     PatientPosition position = PatientPosition::unknown;
     bool localizer = false;  ///< a scout view: no part of a volume
     glm::ivec2 matrix{0};    ///< columns, rows

@@ -49,6 +49,44 @@ std::vector<Slice> slicesOf(const Series& series, std::vector<PlacedFrame>& fram
     return slices;
 }
 
+std::string orEmpty(const std::string& text, bool (*sound)(std::string_view)) {
+    return sound(text) ? text : std::string();
+}
+
+/// What the images agree on; empty where they do not.
+std::string common(const Series& series, std::string ImageHeader::*value,
+                   bool (*sound)(std::string_view)) {
+    const std::string& first = series.images.front().*value;
+    const bool same = std::ranges::all_of(
+        series.images, [&](const ImageHeader& image) { return image.*value == first; });
+    return same ? orEmpty(first, sound) : std::string();
+}
+
+/// `slices` and `frames` as slicesOf gives them.
+SourceSeries sourceOf(const Series& series, const std::vector<Slice>& slices,
+                      const std::vector<PlacedFrame>& frames, const SliceStack& stack) {
+    SourceSeries source;
+    source.studyUid = common(series, &ImageHeader::studyUid, isUid);
+    source.seriesUid = common(series, &ImageHeader::seriesUid, isUid);
+    source.frameOfReferenceUid = common(series, &ImageHeader::frameOfReferenceUid, isUid);
+    source.studyDate = common(series, &ImageHeader::studyDate, isDicomDate);
+    source.studyTime = common(series, &ImageHeader::studyTime, isDicomTime);
+    source.position = series.summary.position;
+    const Slice& first = slices[stack.order.front()];
+    source.rowDirection = first.rowDirection;
+    source.columnDirection = first.columnDirection;
+    source.pixelSpacingMm = first.pixelSpacingMm;
+    if (stack.order.size() > std::size_t(maxSourceImages)) return source;
+    for (const std::size_t n : stack.order) {
+        const ImageHeader& image = series.images[frames[n].image];
+        source.images.push_back({orEmpty(image.sopClassUid, isUid),
+                                 orEmpty(image.instanceUid, isUid),
+                                 image.frames.size() > 1 ? frames[n].frame + 1 : 0,
+                                 slices[n].positionMm, slices[n].thicknessMm});
+    }
+    return source;
+}
+
 /// The frames that the stack keeps, in file order, cut into batches.
 std::vector<Batch> planBatches(const SliceStack& stack, std::vector<PlacedFrame>& frames) {
     std::vector<PlacedFrame> kept;
@@ -148,6 +186,7 @@ Result<ImportedSeries> importSeries(const std::filesystem::path& path,
     const std::vector<Slice> slices = slicesOf(series, frames);
     auto stack = TRY(stackSlices(slices));
 
+    SourceSeries source = sourceOf(series, slices, frames, stack);
     Grid grid = stack.grid;
     grid.size.z = int(stack.order.size());
     Volume<std::int16_t> volume(grid);
@@ -159,6 +198,7 @@ Result<ImportedSeries> importSeries(const std::filesystem::path& path,
     result.scan.hu = std::move(volume);
     result.scan.position = series.summary.position;
     result.summary = series.summary;
+    result.source = std::move(source);
     result.notes = std::move(stack.notes);
     if (series.localizers > 0) {
         result.notes.push_back("left out " + std::to_string(series.localizers) +

@@ -4,6 +4,7 @@
 #include "core/ct_scan.h"
 #include "core/parallel.h"
 #include "core/result.h"
+#include "core/source_series.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -32,6 +33,9 @@ struct ImportOptions {
 struct ImportedSeries {
     CtScan scan;
     SeriesSummary summary;
+    /// What a report of the scan refers to. Without images where there are more than
+    /// maxSourceImages.
+    SourceSeries source;
     /// What was corrected on the way (gantry tilt sheared back, spacing resampled …), for the log.
     std::vector<std::string> notes;
 };

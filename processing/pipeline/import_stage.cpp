@@ -9,7 +9,8 @@ namespace {
 
 using store::Attributes;
 
-// Raise it whenever the scan changes for the same files.
+// Raise it whenever the scan changes for the same files. A case that lacks a product which the
+// import has come to make gets it as the series is read again, and keeps all else that it has.
 constexpr int importVersion = 1;
 
 }  // namespace
@@ -22,14 +23,18 @@ Result<ProductKey> importScan(Preparation& preparation) {
     TRY(identifyScan(options.series, options.seriesUid, source, options.threads)
             .and_then(
                 [&](const store::ScanIdentity& scan) { return preparation.bind(scan, key); }));
-    StageCase stage = preparation.open("import", key);
+    std::vector<std::string> without;
+    if (isNiftiFile(options.series)) without = {store::product::source};
+    StageCase stage = preparation.open("import", key, without);
     return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {
         const auto input =
             TRY(readScan(options.series, options.seriesUid, options.threads, progress));
         Attributes attributes{{"position", toString(input.scan.position)},
                               {"images", std::to_string(input.images)}};
         setNotes(attributes, input.notes);
-        return stage.publish(store::product::ct, input.scan.hu, attributes);
+        TRY(stage.publish(store::product::ct, input.scan.hu, attributes));
+        if (!input.source) return {};
+        return stage.publish(store::product::source, sourceSeriesJson(*input.source));
     });
 }
 

@@ -79,9 +79,9 @@ Result<ScanInput> readScan(const std::filesystem::path& series, const std::strin
                            int threads, const Progress& progress) {
     if (!isNiftiFile(series)) {
         auto imported = TRY(dicom::importSeries(series, {seriesUid, threads, progress}));
-        return inAxialOrder(
-            {std::move(imported.scan), imported.summary.images, std::move(imported.notes)},
-            threads);
+        return inAxialOrder({std::move(imported.scan), imported.summary.images,
+                             std::move(imported.notes), std::move(imported.source)},
+                            threads);
     }
     if (!seriesUid.empty()) {
         return fail(ErrorKind::badInput, "a NIfTI file has no series to choose from",

@@ -4,9 +4,11 @@
 #include "core/ct_scan.h"
 #include "core/parallel.h"
 #include "core/result.h"
+#include "core/source_series.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ struct ScanInput {
     CtScan scan;
     int images = 0;  ///< slices in the files, or 1 NIfTI file
     std::vector<std::string> notes;
+    std::optional<SourceSeries> source = {};  ///< none of a NIfTI file
 };
 
 /// A DICOM series (dicom/import_series.h), or a NIfTI file of unknown patient position; coronal,

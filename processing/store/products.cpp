@@ -14,6 +14,12 @@ const Catalogue& catalogue() {
          .endings = volume,
          .help = "the scan as it came (int16, HU)",
          .shown = true},
+        {.name = source,
+         .stage = "import",
+         .content = Content::text,
+         .endings = {".json"},
+         .help = "of a DICOM series: its UIDs, and each slice's with its place, for reports to "
+                 "refer to"},
         {.name = segmentation,
          .stage = "segmentation",
          .content = Content::uint8Volume,

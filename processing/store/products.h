@@ -18,11 +18,12 @@
 namespace haustra::store {
 
 namespace product {
-inline constexpr char ct[] = "ct", segmentation[] = "segmentation", quality[] = "quality",
-                      mixture[] = "mixture", cleansedLumen[] = "cleansed-lumen",
-                      cleansed[] = "cleansed", lumen[] = "lumen", distance[] = "distance",
-                      centerline[] = "centerline", branches[] = "branches", surface[] = "surface",
-                      flatMap[] = "flatmap", edits[] = "edits", flatImage[] = "flat-image";
+inline constexpr char ct[] = "ct", source[] = "source", segmentation[] = "segmentation",
+                      quality[] = "quality", mixture[] = "mixture",
+                      cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
+                      lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
+                      branches[] = "branches", surface[] = "surface", flatMap[] = "flatmap",
+                      edits[] = "edits", flatImage[] = "flat-image";
 }  // namespace product
 
 /// One product that a case can have.

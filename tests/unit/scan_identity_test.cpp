@@ -1,6 +1,7 @@
 // Whose case it is: a case is of one scan, and is never another's by its name.
 #include "pipeline/scan_identity.h"
 
+#include "core/source_series.h"
 #include "dicom/write_series.h"
 #include "pipeline/source_key.h"
 #include "prepared_tube.h"
@@ -89,11 +90,31 @@ TEST_F(WhoseCase, AReplacedScanTakesAllWithItAndComesBackAsItself) {
                                        Volume<float>(axisAlignedGrid({2, 2, 2}, {1, 1, 1}))));
     }
     ASSERT_TRUE(import("p", b, true));
-    EXPECT_EQ(store().openCase("p")->products()->size(), 1u);
+    EXPECT_EQ(store().openCase("p")->products()->size(), 2u);
     EXPECT_NE(scanOf("p")->key, bound->key);
     expectRefused(import("p", a), "another scan");
     ASSERT_TRUE(import("p", a, true));
     EXPECT_EQ(scanOf("p"), bound);
+}
+
+// Of a store of before cases kept their source.
+TEST_F(WhoseCase, AnOlderCaseGetsItsSourceAndKeepsAllElse) {
+    const fs::path a = series("a", "A", "1");
+    ASSERT_TRUE(import("new", a));
+    const auto made = store().openCase("new").value();
+    const auto ct = made.readVolume<std::int16_t>("ct").value();
+    {
+        auto old = store().createCase("old").value();
+        ASSERT_TRUE(old.bind(*scanOf("new")));
+        ASSERT_TRUE(old.publishVolume("ct", made.find("ct")->key, ct, *made.attributes("ct")));
+        ASSERT_TRUE(old.publishVolume("segmentation", store::makeKey("x", 1, "", {}),
+                                      Volume<std::uint8_t>(ct.grid())));
+    }
+    ASSERT_TRUE(import("old", a));
+    const auto old = store().openCase("old").value();
+    EXPECT_EQ(old.readText("source").value(), made.readText("source").value());
+    EXPECT_TRUE(old.find("segmentation"));
+    EXPECT_EQ(sourceSeriesOfJson(*old.readText("source"))->seriesUid, scanOf("old")->seriesUid);
 }
 
 TEST_F(WhoseCase, WhatFailsBeforeItsFirstProductReplacesNothing) {
@@ -138,7 +159,9 @@ TEST_F(WhoseCase, AnUnboundCaseIsAdoptedByItsOwnScanOnly) {
     expectRefused(import("p", series("b", "B", "1")), "another scan");
     const auto report = import("p", a);
     ASSERT_TRUE(report) << describe(report.error());
-    EXPECT_TRUE(report->stages.at(0).reused);
+    EXPECT_FALSE(report->stages.at(0).reused) << "its source is to be read yet";
+    EXPECT_TRUE(store().openCase("p")->has("ct", ct.key));
+    EXPECT_TRUE(store().openCase("p")->has("source", ct.key));
     EXPECT_EQ(scanOf("p")->key, ct.key) << "readers' records are under it";
     EXPECT_EQ(scanOf("p")->seriesUid, identityOf(a).seriesUid);
     EXPECT_TRUE(import("p", series("again", "A", "1", 5)));
