@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "dicom/dicom_library.h"
+#include "dicom/written_values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,28 +15,6 @@
 
 namespace haustra::dicom {
 namespace {
-
-/// A UID under 2.25, where any 128-bit number is valid (PS3.5 B.2): the FNV-1a hash of `name`.
-std::string uidOf(const std::string& name) {
-    using Wide = unsigned __int128;
-    Wide hash = (Wide(0x6c62272e07bb0142) << 64) | 0x62b821756295c58d;
-    const Wide prime = (Wide(1) << 88) | 0x13b;
-    for (unsigned char c : name)
-        hash = (hash ^ c) * prime;
-    std::string digits;
-    for (; hash != 0; hash /= 10)
-        digits.insert(digits.begin(), char('0' + int(hash % 10)));
-    return "2.25." + (digits.empty() ? "0" : digits);
-}
-
-/// A decimal string with as many digits as DICOM's 16 characters hold.
-std::string decimal(double value) {
-    char text[40];
-    for (int digits = 17; digits > 0; --digits) {
-        if (std::snprintf(text, sizeof text, "%.*g", digits, value) <= 16) break;
-    }
-    return text;
-}
 
 std::string decimals(std::initializer_list<double> values) {
     std::string text;

@@ -1,0 +1,547 @@
+#include "dicom/colon_cad_report.h"
+
+#include "core/voxel_ellipsoid.h"
+#include "dicom/dicom_library.h"
+#include "dicom/series_selection.h"
+#include "dicom/written_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <system_error>
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcostrmb.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/dcmsr/codes/dcm.h>
+#include <dcmtk/dcmsr/codes/ucum.h>
+#include <dcmtk/dcmsr/dsrdoc.h>
+#include <unistd.h>
+
+namespace haustra::dicom {
+namespace {
+
+using Code = DSRBasicCodedEntry;
+using Type = DSRTypes;
+
+// The codes that DCMTK has no names for.
+const Code percent("%", "UCUM", "Percent");
+const Code english("en", "RFC5646", "English");
+const Code polypOfColon("68496003", "SCT", "Polyp of colon");
+const Code findingSite("363698007", "SCT", "Finding Site");
+const Code diameter("81827009", "SCT", "Diameter");
+const Code computedTomography("CT", "DCM", "Computed Tomography");
+
+Code siteOf(ColonSegment segment) {
+    switch (segment) {
+        case ColonSegment::rectum:
+            return {"34402009", "SCT", "Rectum"};
+        case ColonSegment::sigmoid:
+            return {"60184004", "SCT", "Sigmoid colon"};
+        case ColonSegment::descending:
+            return {"32622004", "SCT", "Descending colon"};
+        case ColonSegment::transverse:
+            return {"485005", "SCT", "Transverse colon"};
+        case ColonSegment::ascending:
+            return {"9040008", "SCT", "Ascending colon"};
+        case ColonSegment::cecum:
+            break;
+    }
+    return {"32713005", "SCT", "Cecum"};
+}
+
+/// CID 19 and 20; none where the position is not known.
+std::optional<Code> recumbency(PatientPosition position) {
+    switch (position) {
+        case PatientPosition::supine:
+            return Code("40199007", "SCT", "supine");
+        case PatientPosition::prone:
+            return Code("1240000", "SCT", "prone");
+        case PatientPosition::leftDecubitus:
+            return Code("102536004", "SCT", "left lateral decubitus");
+        case PatientPosition::rightDecubitus:
+            return Code("102535000", "SCT", "right lateral decubitus");
+        case PatientPosition::unknown:
+            break;
+    }
+    return std::nullopt;
+}
+
+double micrometres(double mm) {
+    return std::round(mm * 1e3) / 1e3;
+}
+
+/// What DICOM's VR LO holds: 64 characters, none of which parts values.
+std::string shortText(std::string text) {
+    for (char& c : text) {
+        if (c < 0x20 || c > 0x7e || c == '\\') c = '?';
+    }
+    if (text.size() > 64) text.resize(64);
+    return text;
+}
+
+/// Adds content items, each below the one whose `children` call for it. Keeps the first failure.
+class ContentTree {
+public:
+    using Children = std::function<void()>;
+
+    ContentTree(DSRDocumentTree& tree, std::string frameOfReferenceUid)
+        : tree_(tree), frameOfReferenceUid_(std::move(frameOfReferenceUid)) {}
+
+    void container(Type::E_RelationshipType relation, const Code& name, const Children& children) {
+        item(relation, Type::VT_Container, name, children, [](DSRContentItem& content) {
+            return content.setContinuityOfContent(Type::COC_Separate);
+        });
+    }
+    void code(Type::E_RelationshipType relation, const Code& name, const Code& value,
+              const Children& children = {}) {
+        item(relation, Type::VT_Code, name, children,
+             [&](DSRContentItem& content) { return content.setCodeValue(value); });
+    }
+    void number(Type::E_RelationshipType relation, const Code& name, double value, const Code& unit,
+                const Children& children = {}) {
+        item(relation, Type::VT_Num, name, children, [&](DSRContentItem& content) {
+            return content.setNumericValue(
+                DSRNumericMeasurementValue(decimal(value).c_str(), unit));
+        });
+    }
+    /// TEXT, UIDREF, DATE or TIME.
+    void string(Type::E_RelationshipType relation, Type::E_ValueType type, const Code& name,
+                const std::string& value) {
+        item(relation, type, name, {},
+             [&](DSRContentItem& content) { return content.setStringValue(value.c_str()); });
+    }
+    void places(Type::E_RelationshipType relation, const Code& name, Type::E_GraphicType3D type,
+                std::initializer_list<glm::dvec3> placesMm) {
+        item(relation, Type::VT_SCoord3D, name, {}, [&](DSRContentItem& content) {
+            DSRSpatialCoordinates3DValue value(type);
+            value.setFrameOfReferenceUID(frameOfReferenceUid_.c_str());
+            for (glm::dvec3 p : placesMm)
+                value.getGraphicDataList().addItem(Float32(p.x), Float32(p.y), Float32(p.z));
+            return content.setSpatialCoordinates3D(value);
+        });
+    }
+    const OFCondition& condition() const { return condition_; }
+
+private:
+    template <class Fill>
+    void item(Type::E_RelationshipType relation, Type::E_ValueType type, const Code& name,
+              const Children& children, Fill fill) {
+        if (condition_.bad()) return;
+        const bool first = tree_.isEmpty();
+        // Below the item that is open; beside its last child where it has one.
+        const Type::E_AddMode where = descend_ ? Type::AM_belowCurrent : Type::AM_afterCurrent;
+        if (tree_.addContentItem(relation, type, first ? Type::AM_afterCurrent : where) == 0) {
+            condition_ = SR_EC_CannotAddContentItem;
+            return;
+        }
+        keep(tree_.getCurrentContentItem().setConceptName(name));
+        keep(fill(tree_.getCurrentContentItem()));
+        if (children) {
+            descend_ = true;
+            children();
+            // Nothing may have been added.
+            if (!descend_ && condition_.good()) tree_.goUp();
+        }
+        descend_ = false;
+    }
+    void keep(const OFCondition& condition) {
+        if (condition_.good()) condition_ = condition;
+    }
+
+    DSRDocumentTree& tree_;
+    const std::string frameOfReferenceUid_;
+    bool descend_ = false;  ///< the tree's current item is the parent of what comes next
+    OFCondition condition_ = EC_Normal;
+};
+
+/// Equally spaced slices, one after the other.
+struct SliceRun {
+    double spacingMm = 0.0;  ///< 0 of a single slice
+    double thicknessMm = 0.0;
+    bool operator==(const SliceRun&) const = default;
+};
+
+/// One where the spacing is the same throughout, by the measure of series_geometry.h: rounded
+/// positions count as equally spaced.
+std::vector<SliceRun> runsOf(const SourceSeries& source) {
+    const glm::dvec3 normal = glm::cross(source.rowDirection, source.columnDirection);
+    std::vector<double> depth;
+    for (const SourceImage& image : source.images)
+        depth.push_back(glm::dot(image.positionMm, normal));
+    const double thickness = micrometres(source.images.front().thicknessMm);
+    if (depth.size() == 1) return {{0.0, thickness}};
+    const double mean = (depth.back() - depth.front()) / double(depth.size() - 1);
+    bool uniform = true;
+    for (std::size_t k = 0; k < depth.size(); ++k)
+        uniform &= std::abs(depth[k] - depth[0] - mean * double(k)) < 0.1 * mean;
+    if (uniform) return {{micrometres(mean), thickness}};
+    std::vector<SliceRun> runs;
+    for (std::size_t k = 0; k + 1 < depth.size(); ++k) {
+        const SliceRun run{micrometres(depth[k + 1] - depth[k]),
+                           micrometres(source.images[k].thicknessMm)};
+        const bool goesOn = !runs.empty() && runs.back().thicknessMm == run.thicknessMm &&
+                            std::abs(runs.back().spacingMm - run.spacingMm) < 0.1 * run.spacingMm;
+        if (!goesOn) runs.push_back(run);
+    }
+    return runs;
+}
+
+class Report {
+public:
+    Report(DSRDocumentTree& tree, const Findings& findings, const SourceSeries& source)
+        : out_(tree, source.frameOfReferenceUid), findings_(findings), source_(source) {}
+
+    /// TID 4120.
+    OFCondition write() {
+        out_.container(Type::RT_isRoot, CODE_DCM_ColonCADReport, [&] {
+            out_.code(Type::RT_hasConceptMod, CODE_DCM_LanguageOfContentItemAndDescendants,
+                      english);
+            for (const SliceRun& run : runsOf(source_))
+                imageSetProperties(run);
+            findingsSummary();
+            summaryOfDetections();
+            out_.code(Type::RT_contains, CODE_DCM_SummaryOfAnalyses, CODE_DCM_NotAttempted);
+        });
+        return out_.condition();
+    }
+
+private:
+    bool partial() const { return !findings_.warnings.empty(); }
+
+    /// TID 4122.
+    void imageSetProperties(const SliceRun& run) {
+        const auto contains = Type::RT_contains;
+        out_.container(contains, CODE_DCM_ImageSetProperties, [&] {
+            out_.string(contains, Type::VT_UIDRef, CODE_DCM_FrameOfReferenceUID,
+                        source_.frameOfReferenceUid);
+            out_.string(contains, Type::VT_UIDRef, CODE_DCM_StudyInstanceUID, source_.studyUid);
+            if (!source_.studyDate.empty())
+                out_.string(contains, Type::VT_Date, CODE_DCM_StudyDate, source_.studyDate);
+            if (!source_.studyTime.empty())
+                out_.string(contains, Type::VT_Time, CODE_DCM_StudyTime, source_.studyTime);
+            out_.code(contains, CODE_DCM_Modality, computedTomography);
+            length(contains, CODE_DCM_HorizontalPixelSpacing, source_.pixelSpacingMm.x);
+            length(contains, CODE_DCM_VerticalPixelSpacing, source_.pixelSpacingMm.y);
+            if (run.thicknessMm > 0.0) length(contains, CODE_DCM_SliceThickness, run.thicknessMm);
+            if (run.spacingMm > 0.0) length(contains, CODE_DCM_SpacingBetweenSlices, run.spacingMm);
+            if (const auto lies = recumbency(source_.position))
+                out_.code(contains, CODE_DCM_RecumbentPatientPositionWithRespectToGravity, *lies);
+        });
+    }
+
+    /// TID 4121. Its code says whether the tree below it is empty, of candidates too.
+    void findingsSummary() {
+        const bool none = findings_.findings.empty() && findings_.candidates.empty();
+        const Code succeeded = none ? CODE_DCM_AllAlgorithmsSucceeded_withoutFindings
+                                    : CODE_DCM_AllAlgorithmsSucceeded_withFindings;
+        const Code notAll = none ? CODE_DCM_NotAllAlgorithmsSucceeded_withoutFindings
+                                 : CODE_DCM_NotAllAlgorithmsSucceeded_withFindings;
+        out_.code(Type::RT_contains, CODE_DCM_CADProcessingAndFindingsSummary,
+                  partial() ? notAll : succeeded, [&] {
+                      all(findings_.findings, "finding ",
+                          CODE_DCM_PresentationRequired_RenderingDeviceIsExpectedToPresent);
+                      all(findings_.candidates, "candidate ",
+                          CODE_DCM_PresentationOptional_RenderingDeviceMayPresent);
+                  });
+    }
+
+    void all(const std::vector<Finding>& list, const std::string& name, const Code& intent) {
+        for (std::size_t n = 0; n < list.size(); ++n)
+            feature(list[n], name + std::to_string(n + 1), intent);
+    }
+
+    /// TID 4125.
+    void feature(const Finding& finding, const std::string& name, const Code& intent) {
+        const auto properties = Type::RT_hasProperties;
+        out_.code(Type::RT_inferredFrom, CODE_DCM_CompositeFeature, polypOfColon, [&] {
+            out_.code(Type::RT_hasConceptMod, CODE_DCM_RenderingIntent, intent);
+            out_.string(Type::RT_hasObsContext, Type::VT_Text, CODE_DCM_TrackingIdentifier, name);
+            algorithm(Type::RT_hasObsContext, {});
+            // TID 4126.
+            out_.code(properties, CODE_DCM_CompositeType,
+                      CODE_DCM_TargetContentItemsAreRelatedSpatially);
+            out_.code(properties, CODE_DCM_ScopeOfFeature,
+                      CODE_DCM_FeatureDetectedonMultipleImages);
+            out_.number(properties, CODE_DCM_CertaintyOfFeature,
+                        std::round(finding.score * 1e8) / 1e6, percent);
+            geometry(finding);
+            descriptors(finding);
+        });
+    }
+
+    /// TID 4129.
+    void geometry(const Finding& finding) {
+        out_.places(Type::RT_hasProperties, CODE_DCM_Center, Type::GT3_Point, {finding.positionMm});
+        if (finding.voxels.empty()) return;
+        const Ellipsoid e = ellipsoidOf(finding.voxels, findings_.grid);
+        const auto& [a, b, c] = e.halfAxesMm;
+        out_.places(Type::RT_hasProperties, CODE_DCM_Outline, Type::GT3_Ellipsoid,
+                    {e.centreMm - a, e.centreMm + a, e.centreMm - b, e.centreMm + b, e.centreMm - c,
+                     e.centreMm + c});
+    }
+
+    /// TID 4128. Of a truth there is no more than a diameter, without its ends.
+    void descriptors(const Finding& finding) {
+        const auto properties = Type::RT_hasProperties;
+        const bool detected = !finding.voxels.empty();
+        if (finding.segment) out_.code(properties, findingSite, siteOf(*finding.segment));
+        const auto [from, to] = finding.diameterEndsMm;
+        const bool ends = detected && from != to;
+        length(properties, diameter, finding.diameterMm, [&] {
+            if (ends)
+                out_.places(Type::RT_inferredFrom, CODE_DCM_Path, Type::GT3_Polyline, {from, to});
+        });
+        if (!detected) return;
+        length(properties, CODE_DCM_Height, finding.heightMm);
+        length(properties, CODE_DCM_DistanceFromAnus, finding.arcMm);
+    }
+
+    void length(Type::E_RelationshipType relation, const Code& name, double mm,
+                const ContentTree::Children& children = {}) {
+        out_.number(relation, name, micrometres(mm), CODE_UCUM_Millimeter, children);
+    }
+
+    /// TID 4019.
+    void algorithm(Type::E_RelationshipType relation, const std::vector<std::string>& parameters) {
+        const DetectionModel& model = findings_.model;
+        out_.string(relation, Type::VT_Text, CODE_DCM_AlgorithmName,
+                    model.name.empty() ? model.software : model.name);
+        out_.string(
+            relation, Type::VT_Text, CODE_DCM_AlgorithmVersion,
+            model.software + (model.sha256.empty() ? "" : "; model's SHA-256 " + model.sha256));
+        for (const std::string& parameter : parameters)
+            out_.string(relation, Type::VT_Text, CODE_DCM_AlgorithmParameters, parameter);
+    }
+
+    void summaryOfDetections() {
+        out_.code(Type::RT_contains, CODE_DCM_SummaryOfDetections,
+                  partial() ? CODE_DCM_PartiallySucceeded : CODE_DCM_Succeeded, [&] {
+                      // TID 4015.
+                      std::vector<std::string> how{"operating point: " +
+                                                   decimal(findings_.operatingPoint)};
+                      if (!findings_.model.trainedOn.empty())
+                          how.push_back("trained on: " + findings_.model.trainedOn);
+                      detections(CODE_DCM_SuccessfulDetections, {how});
+                      if (!partial()) return;
+                      std::vector<std::vector<std::string>> failed;
+                      for (const std::string& warning : findings_.warnings)
+                          failed.push_back({"warning: " + warning});
+                      detections(CODE_DCM_FailedDetections, failed);
+                  });
+    }
+
+    void detections(const Code& name, const std::vector<std::vector<std::string>>& parameters) {
+        out_.container(Type::RT_inferredFrom, name, [&] {
+            for (const std::vector<std::string>& of : parameters) {
+                // TID 4017.
+                out_.code(Type::RT_contains, CODE_DCM_DetectionPerformed, polypOfColon, [&] {
+                    algorithm(Type::RT_hasProperties, of);
+                    out_.string(Type::RT_hasProperties, Type::VT_UIDRef, CODE_DCM_SeriesInstanceUID,
+                                source_.seriesUid);
+                });
+            }
+        });
+    }
+
+    ContentTree out_;
+    const Findings& findings_;
+    const SourceSeries& source_;
+};
+
+/// What a report takes over of its patient and study.
+const DcmTagKey identityTags[] = {
+    DCM_PatientName, DCM_PatientID,        DCM_IssuerOfPatientID,     DCM_PatientBirthDate,
+    DCM_PatientSex,  DCM_StudyID,          DCM_AccessionNumber,       DCM_StudyDate,
+    DCM_StudyTime,   DCM_StudyDescription, DCM_ReferringPhysicianName};
+
+Result<void> sameImages(const Series& series, const SourceSeries& source,
+                        const std::string& place) {
+    std::set<std::string> found, wanted;
+    bool sameStudy = true;
+    for (const ImageHeader& image : series.images) {
+        if (!image.frames.empty()) found.insert(image.instanceUid);
+        sameStudy &= image.studyUid == source.studyUid;
+    }
+    for (const SourceImage& image : source.images)
+        wanted.insert(image.sopInstanceUid);
+    if (sameStudy && found == wanted) return {};
+    return fail(ErrorKind::badInput, "these are not the very images that the case was made from",
+                place);
+}
+
+/// The identity's attributes in UTF-8, from the first image of the series.
+Result<void> readIdentity(const ColonCadReportOptions& options, const SourceSeries& source,
+                          DcmItem& identity) {
+    const std::string place = options.series.string();
+    auto found = TRY(findSeries(options.series, options.threads, {}));
+    const auto series = TRY(chooseSeries(std::move(found), source.seriesUid, options.series));
+    TRY(sameImages(series, source, place));
+    DcmFileFormat format;
+    OFCondition condition =
+        format.loadFileUntilTag(OFFilename(series.images.front().file.c_str()), EXS_Unknown,
+                                EGL_noChange, DCM_MaxReadLength, ERM_autoDetect, DCM_PixelData);
+    OFString characters;
+    if (condition.good()) {
+        format.getDataset()->findAndGetOFStringArray(DCM_SpecificCharacterSet, characters);
+        if (!characters.empty())
+            condition = identity.putAndInsertOFStringArray(DCM_SpecificCharacterSet, characters);
+    }
+    for (const DcmTagKey& tag : identityTags) {
+        if (condition.good() && format.getDataset()->tagExists(tag))
+            condition = format.getDataset()->findAndInsertCopyOfElement(tag, &identity);
+    }
+    if (condition.good()) condition = identity.convertToUTF8();
+    if (condition.bad()) {
+        return fail(ErrorKind::badInput,
+                    std::string("whose series it is cannot be read: ") + condition.text(),
+                    series.images.front().file.string());
+    }
+    return {};
+}
+
+Result<void> checkSource(const SourceSeries& source, const std::string& place) {
+    const auto refuse = [&](const char* why) { return fail(ErrorKind::badInput, why, place); };
+    if (source.images.empty() || source.seriesUid.empty())
+        return refuse("a DICOM report needs the DICOM series that the scan came from");
+    if (source.studyUid.empty()) return refuse("the scan's series is of no one DICOM study");
+    if (source.frameOfReferenceUid.empty())
+        return refuse("the scan's images do not name one DICOM frame of reference");
+    for (const SourceImage& image : source.images) {
+        if (image.sopClassUid.empty() || image.sopInstanceUid.empty())
+            return refuse("an image of the scan's series has no valid DICOM UID");
+    }
+    return {};
+}
+
+bool isAscii(std::string_view text) {
+    return std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; });
+}
+
+/// Readers that know ASCII only are served where that is all there is.
+bool needsUtf8(const Findings& findings, DcmItem& identity) {
+    const DetectionModel& model = findings.model;
+    bool ascii = isAscii(model.software) && isAscii(model.name) && isAscii(model.trainedOn) &&
+                 std::ranges::all_of(findings.warnings, isAscii);
+    for (const DcmTagKey& tag : identityTags) {
+        OFString value;
+        identity.findAndGetOFStringArray(tag, value);
+        ascii &= isAscii({value.c_str(), value.length()});
+    }
+    return !ascii;
+}
+
+/// The data set's bytes, for hashing.
+Result<std::string> bytesOf(DcmDataset& dataset) {
+    const Uint32 length = dataset.calcElementLength(EXS_LittleEndianExplicit, EET_ExplicitLength);
+    std::string bytes(std::size_t(length) + 1024, '\0');
+    DcmOutputBufferStream stream(bytes.data(), offile_off_t(bytes.size()));
+    dataset.transferInit();
+    const OFCondition written = dataset.write(stream, EXS_LittleEndianExplicit, EET_ExplicitLength,
+                                              nullptr, EGL_recalcGL, EPD_withoutPadding);
+    dataset.transferEnd();
+    if (written.bad()) return fail(ErrorKind::io, "the report cannot be written");
+    void* buffer = nullptr;
+    offile_off_t filled = 0;
+    stream.flushBuffer(buffer, filled);
+    return std::string(static_cast<const char*>(buffer), std::size_t(filled));
+}
+
+OFCondition fillHeader(DSRDocument& document, const Findings& findings,
+                       const SourceSeries& source) {
+    const DetectionModel& model = findings.model;
+    OFCondition condition = EC_Normal;
+    const auto keep = [&](const OFCondition& next) {
+        if (condition.good()) condition = next;
+    };
+    keep(document.createNewSeriesInStudy(source.studyUid.c_str()));
+    keep(document.setStudyDate(source.studyDate.c_str()));
+    keep(document.setStudyTime(source.studyTime.c_str()));
+    keep(document.setContentDate(source.studyDate.empty() ? "19000101" : source.studyDate.c_str()));
+    keep(document.setContentTime(source.studyTime.empty() ? "000000" : source.studyTime.c_str()));
+    keep(document.setSeriesDescription("Haustra colon CAD"));
+    keep(document.setManufacturer("Haustra"));
+    keep(document.setManufacturerModelName("Haustra colon CAD"));
+    keep(document.setDeviceSerialNumber(model.sha256.empty() ? "0"
+                                                             : shortText(model.sha256).c_str()));
+    keep(document.setSoftwareVersions(shortText(model.software).c_str()));
+    std::set<std::string> listed;
+    for (const SourceImage& image : source.images) {
+        if (!listed.insert(image.sopInstanceUid).second) continue;  // another frame of it
+        keep(document.getCurrentRequestedProcedureEvidence().addItem(
+            source.studyUid.c_str(), source.seriesUid.c_str(), image.sopClassUid.c_str(),
+            image.sopInstanceUid.c_str()));
+    }
+    keep(document.completeDocument());
+    return condition;
+}
+
+/// Puts what tells this document from every other in the place of what DCMTK makes up: random UIDs
+/// and the hour.
+Result<void> nameDocument(DcmDataset& dataset, const Findings& findings,
+                          const SourceSeries& source) {
+    for (const DcmTagKey& tag : {DCM_InstanceCreationDate, DCM_InstanceCreationTime,
+                                 DCM_InstanceCreatorUID, DCM_TimezoneOffsetFromUTC})
+        dataset.findAndDeleteElement(tag);
+    const DetectionModel& model = findings.model;
+    const std::string series = uidOf(source.seriesUid + "/colon CAD/" + model.software + "/" +
+                                     model.name + "/" + model.sha256);
+    dataset.putAndInsertString(DCM_SeriesInstanceUID, series.c_str());
+    dataset.putAndInsertString(DCM_SOPInstanceUID, "2.25.0");
+    const auto bytes = TRY(bytesOf(dataset));
+    dataset.putAndInsertString(DCM_SOPInstanceUID, uidOf(bytes).c_str());
+    return {};
+}
+
+Result<void> save(DcmFileFormat& format, const std::filesystem::path& file) {
+    std::filesystem::path temporary = file;
+    temporary += ".tmp-" + std::to_string(::getpid());
+    const OFCondition saved =
+        format.saveFile(OFFilename(temporary.c_str()), EXS_LittleEndianExplicit, EET_ExplicitLength,
+                        EGL_recalcGL, EPD_withoutPadding);
+    std::error_code error;
+    if (saved.good()) std::filesystem::rename(temporary, file, error);
+    if (saved.good() && !error) return {};
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    return fail(ErrorKind::io, "the report cannot be written", file.string());
+}
+
+}  // namespace
+
+Result<void> writeColonCadReport(const std::filesystem::path& file, const Findings& findings,
+                                 const SourceSeries& source,
+                                 const ColonCadReportOptions& options) try {
+    prepareDicomLibrary();
+    const std::string place = file.string();
+    TRY(checkSource(source, place));
+    if (findings.model.software.empty())
+        return fail(ErrorKind::badInput, "the findings do not say what program found them", place);
+    DcmDataset identity;
+    if (!options.series.empty()) TRY(readIdentity(options, source, identity));
+
+    DSRDocument document(Type::DT_ColonCadSR);
+    DcmFileFormat format;
+    DcmDataset& dataset = *format.getDataset();
+    if (needsUtf8(findings, identity)) document.setSpecificCharacterSetType(Type::CS_UTF8);
+    OFCondition condition = fillHeader(document, findings, source);
+    if (condition.good()) condition = Report(document.getTree(), findings, source).write();
+    if (condition.good()) condition = document.getTree().setTemplateIdentification("4120", "DCMR");
+    if (condition.good()) condition = document.write(dataset);
+    for (const DcmTagKey& tag : identityTags) {
+        if (condition.good() && identity.tagExists(tag))
+            condition = identity.findAndInsertCopyOfElement(tag, &dataset);
+    }
+    if (condition.bad()) {
+        return fail(ErrorKind::badInput,
+                    std::string("the findings make no DICOM report: ") + condition.text(), place);
+    }
+    TRY(nameDocument(dataset, findings, source));
+    return save(format, file);
+} catch (const std::exception& error) {
+    return fail(ErrorKind::io, std::string("the report cannot be written: ") + error.what(),
+                file.string());
+}
+
+}  // namespace haustra::dicom
