@@ -102,6 +102,12 @@ const Catalogue& catalogue() {
                  "the centerline that sees it, its index and arc_mm, and of each face whether it "
                  "encloses a bridge)",
          .shown = true},
+        {.name = findings,
+         .content = Content::text,
+         .endings = {".json", ".dcm"},
+         .help = "polyps that detection found, for a physician to judge: place, size, probability; "
+                 ".dcm: a Colon CAD SR (of a DICOM series)",
+         .shown = true},
         // The next segmentation is made by it, under a key that holds it; until then what it is to
         // change stands.
         {.name = edits,

@@ -23,7 +23,7 @@ inline constexpr char ct[] = "ct", source[] = "source", segmentation[] = "segmen
                       cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
                       lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
                       branches[] = "branches", surface[] = "surface", flatMap[] = "flatmap",
-                      edits[] = "edits", flatImage[] = "flat-image";
+                      findings[] = "findings", edits[] = "edits", flatImage[] = "flat-image";
 }  // namespace product
 
 /// One product that a case can have.

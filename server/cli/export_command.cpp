@@ -4,6 +4,9 @@
 #include "cli/flat_image_export.h"
 #include "cli/text_files.h"
 #include "core/bridges.h"
+#include "core/findings.h"
+#include "core/source_series.h"
+#include "dicom/colon_cad_report.h"
 #include "mesh/flat_map_file.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
@@ -28,6 +31,7 @@ namespace product = store::product;
 struct ExportArguments {
     fs::path store, file;
     std::string caseName, product;
+    fs::path series;
     FlatImageOptions flatImage;
 };
 
@@ -50,6 +54,31 @@ Result<void> exportFlatMap(const store::Case& source, const ExportArguments& arg
         bridged = bridgedTriangles(map.surface, lumen);
     }
     return mesh::writeFlatMap(arguments.file, map, bridged);
+}
+
+Result<void> exportReport(const store::Case& source, const ExportArguments& arguments) {
+    if (!source.find(product::source)) {
+        return fail(ErrorKind::noResult,
+                    "a DICOM report needs the DICOM series that the scan came from: the case has "
+                    "none, or was prepared before Haustra kept it (run prepare on the series "
+                    "again); findings are exported as .json",
+                    "case " + source.name());
+    }
+    TRY(source.verify(product::source));
+    const std::string place = "case " + source.name() + ", ";
+    const auto findings = TRY(source.readText(product::findings).and_then([&](const auto& text) {
+        return findingsOfJson(text, place + product::findings);
+    }));
+    const auto series = TRY(source.readText(product::source).and_then([&](const auto& text) {
+        return sourceSeriesOfJson(text, place + product::source);
+    }));
+    return dicom::writeColonCadReport(arguments.file, findings, series,
+                                      {.series = arguments.series});
+}
+
+bool isReport(const ExportArguments& arguments) {
+    return arguments.product == product::findings &&
+           endsIn(arguments.file.filename().string(), ".dcm");
 }
 
 // One kind of content is written in one way, whichever product it is of.
@@ -95,6 +124,7 @@ Result<void> runExport(const ExportArguments& arguments) {
         return exportFlatImage(source, arguments.file, arguments.flatImage);
     // What leaves the store for other programs has been read whole and found sound.
     TRY(source.verify(arguments.product));
+    if (isReport(arguments)) return exportReport(source, arguments);
     return exportContent(source, store::catalogue().find(arguments.product)->content.value(),
                          arguments);
 }
@@ -111,6 +141,9 @@ Command addExport(CLI::App& program) {
         ->required()
         ->check(CLI::IsMember(store::catalogue().exported()));
     command->add_option("FILE", arguments->file, "Where to; replaced in one step")->required();
+    command->add_option("--series", arguments->series,
+                        "Of findings as .dcm: the scan's own DICOM series, whose patient and "
+                        "study the report names; else it names no patient");
     addStoreOption(*command, arguments->store);
     addFlatImageOptions(*command, arguments->flatImage);
     command->callback([arguments, command] {
@@ -120,6 +153,8 @@ Command addExport(CLI::App& program) {
                 throw CLI::ValidationError(option,
                                            std::string("is an option of ") + product::flatImage);
         }
+        if (!isReport(*arguments) && command->count("--series") > 0)
+            throw CLI::ValidationError("--series", "is an option of findings as .dcm");
         const auto& endings = store::catalogue().find(arguments->product)->endings;
         const std::string name = arguments->file.filename().string();
         const bool fits = std::any_of(endings.begin(), endings.end(),

@@ -1,5 +1,7 @@
 // The command line as scripts meet it: exit codes, files, formats.
 #include "core/centerline.h"
+#include "core/findings.h"
+#include "core/source_series.h"
 #include "end_to_end/run_program.h"
 #include "mesh/mesh_file.h"
 #include "nifti/nifti_file.h"
@@ -213,12 +215,22 @@ TEST_F(PreparedPhantom, TheSurfaceIsExportedInEachFormat) {
               2);
 }
 
-// The phantom's colon has no branches, and nobody has edited it.
+// What detection says; of whatever case.
+std::string findingsText() {
+    Findings findings;
+    findings.model = {"haustra", "test", "", "nothing"};
+    findings.grid = axisAlignedGrid({8, 8, 8}, {1, 1, 1});
+    findings.findings = {{{1.234, -5.678, 9.012}, 7.5, 0.75, ""}};
+    return findingsJson(findings);
+}
+
+// The phantom's colon has no branches, and nobody has edited it or looked for polyps.
 void publishWhatIsMissing(store::Case target) {
     const auto key = store::makeKey("test", 1, "", {});
     const Centerline line = target.readCenterline().value();
     ASSERT_TRUE(target.publishCenterline(store::product::branches, key, line));
     ASSERT_TRUE(target.publishText(store::product::edits, key, "{}"));
+    ASSERT_TRUE(target.publishText(store::product::findings, key, findingsText()));
 }
 
 TEST_F(PreparedPhantom, EachProductIsExportedInEachOfItsFormatsAndInNoOther) {
@@ -248,6 +260,63 @@ TEST_F(PreparedPhantom, EachProductIsExportedInEachOfItsFormatsAndInNoOther) {
               std::string::npos);
     EXPECT_NE(haustra({"list", "--help"}).out.find(store::catalogue().keptHelp()),
               std::string::npos);
+}
+
+TEST_F(PreparedPhantom, FindingsAreExportedAsAReportOfTheScansSeries) {
+    publishWhatIsMissing(store::CaseStore::open(store(), false)->createCase("p").value());
+    const auto exported = [&](const std::string& name, const Arguments& more = {}) {
+        Arguments arguments{"export", "p", "findings", file(name), "--store", store()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return haustra(arguments);
+    };
+    ASSERT_EQ(exported("findings.json").exitCode, 0);
+    EXPECT_EQ(tests::fileContent(file("findings.json")), findingsText());
+    ASSERT_EQ(exported("nameless.dcm").exitCode, 0);
+    const auto named = exported("named.dcm", {"--series", series()});
+    ASSERT_EQ(named.exitCode, 0) << named.err;
+    EXPECT_EQ(tests::fileContent(file("nameless.dcm")).find("HAUSTRA^PHANTOM"), std::string::npos);
+    EXPECT_NE(tests::fileContent(file("named.dcm")).find("HAUSTRA^PHANTOM"), std::string::npos);
+    EXPECT_EQ(exported("x.json", {"--series", series()}).exitCode, 2);
+    const auto other = exported("x.dcm", {"--series", truth()});
+    EXPECT_EQ(other.exitCode, 1);
+    EXPECT_EQ(lineCount(other.err), 1u) << other.err;
+
+    // Every slice of the series is in the evidence.
+    const auto source = sourceSeriesOfJson(
+        store::CaseStore::open(store(), false)->openCase("p")->readText("source").value());
+    ASSERT_TRUE(source) << describe(source.error());
+    const std::string report = tests::fileContent(file("nameless.dcm"));
+    EXPECT_FALSE(source->images.empty());
+    for (const SourceImage& image : source->images)
+        EXPECT_NE(report.find(image.sopInstanceUid), std::string::npos);
+    EXPECT_NE(report.find(source->seriesUid), std::string::npos);
+}
+
+TEST(CommandLine, AReportNeedsASeriesAndASoundSource) {
+    const tests::TemporaryFolder folder;
+    const std::string store = folder.path() / "store";
+    const auto key = store::makeKey("test", 1, "", {});
+    const auto publish = [&](const char* product, const std::string& text) {
+        auto target = store::CaseStore::open(store, true)->createCase("c").value();
+        ASSERT_TRUE(target.publishText(product, key, text));
+    };
+    const auto expectRefused = [&](const std::string& why) {
+        const std::string file = folder.path() / "report.dcm";
+        const auto outcome = haustra({"export", "c", "findings", file, "--store", store});
+        EXPECT_EQ(outcome.exitCode, 1);
+        EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+        EXPECT_EQ(lineCount(outcome.err), 1u) << outcome.err;
+        EXPECT_FALSE(fs::exists(file));
+    };
+    publish(store::product::findings, findingsText());
+    expectRefused("needs the DICOM series");
+    EXPECT_EQ(
+        haustra({"export", "c", "findings", folder.path() / "x.json", "--store", store}).exitCode,
+        0);
+    publish(store::product::source, "{\"study\": \"../1\"}");
+    expectRefused("no source series");
+    publish(store::product::source, sourceSeriesJson({}));
+    expectRefused("needs the DICOM series");
 }
 
 TEST_F(PreparedPhantom, TheFlatMapIsExportedWithItsFlatCoordinates) {
