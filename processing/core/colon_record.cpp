@@ -252,4 +252,22 @@ Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text) {
     }
 }
 
+Result<std::vector<RebuiltWallRecord>> rebuiltWallsOfQuality(const std::string& text) {
+    try {
+        std::vector<RebuiltWallRecord> walls;
+        const Json json = Json::parse(text);
+        for (const Json& wall : json.at("rebuilt_walls")) {
+            const Json& at = wall.at("place_mm");
+            walls.push_back(
+                {{at.at(0).get<double>(), at.at(1).get<double>(), at.at(2).get<double>()},
+                 wall.at("area_mm2").get<double>(),
+                 wall.at("between") == "loops"});
+        }
+        return walls;
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("this tells no quality: ") + error.what(),
+                    "quality");
+    }
+}
+
 }  // namespace haustra

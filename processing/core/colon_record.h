@@ -154,5 +154,7 @@ Result<ColonTrust> trustOfQuality(const std::string& text);
 /// The pieces of such a text, with part, centre, radius and length. Fails (badInput) where it is
 /// none.
 Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text);
+/// The walls of such a text that were set up again. Fails (badInput) where it is none.
+Result<std::vector<RebuiltWallRecord>> rebuiltWallsOfQuality(const std::string& text);
 
 }  // namespace haustra

@@ -25,7 +25,7 @@ OrderedJson findingJson(const Finding& finding) {
                      {"diameter_mm", micrometres(finding.diameterMm)},
                      {"score", std::round(finding.score * 1e6) / 1e6},
                      {"kind", finding.kind}};
-    if (finding.voxels.empty()) return json;
+    if (finding.voxels.empty() && finding.features.empty()) return json;
     json["wall_mm"] = placeJson(finding.wallMm);
     json["diameter_ends_mm"] = {placeJson(finding.diameterEndsMm.first),
                                 placeJson(finding.diameterEndsMm.second)};

@@ -213,6 +213,8 @@ Result<OrganProfile> parseProfile(std::string_view text, const std::string& plac
     if (fields.has("flatten")) fields.flag("flatten", profile.flatten);
     if (profile.flatten && profile.topology != ExpectedTopology::ball)
         fields.wrong("flatten", "needs the topology ball");
+    if (fields.has("detect-polyps")) fields.flag("detect-polyps", profile.detectPolyps);
+    if (profile.detectPolyps && !profile.flatten) fields.wrong("detect-polyps", "needs flatten");
     const auto readObject = [&](const char* name, auto read) -> Result<void> {
         const json* object = fields.find(name);
         if (!object) return {};

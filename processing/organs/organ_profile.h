@@ -35,6 +35,7 @@ struct OrganProfile {
     EndPoints endPoints = EndPoints::farthest;
     bool branches = false;  ///< the centerline keeps them
     bool flatten = false;   ///< a tube between the centerline's ends: its surface is mapped flat
+    bool detectPolyps = false;  ///< of a colon: places that may be polyps are sought
 };
 
 /// A profile from its text. Fails (badInput), naming `place` and the field, where the text is not

@@ -92,7 +92,14 @@ Result<PrepareReport> runStages(Preparation& preparation) {
         preparation.note("flattening: left out, as the organ's profile does not ask for it");
         return preparation.takeReport();
     }
-    TRY(flattenSurface(preparation, surface, centerline));
+    const auto flatMap = TRY(flattenSurface(preparation, surface, centerline));
+    if (!preparation.wanted("cad")) return preparation.takeReport();
+    if (!preparation.organ().detectPolyps || !ct) {
+        preparation.note(ct ? "cad: left out, as the organ's profile does not ask for it"
+                            : "cad: left out, as there is no scan");
+        return preparation.takeReport();
+    }
+    TRY(detectPolyps(preparation, flatMap));
     return preparation.takeReport();
 }
 

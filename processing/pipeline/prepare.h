@@ -77,11 +77,11 @@ const std::vector<std::string>& stageNames();
 /// What seeds, excludes, cuts and joins say of a colon is kept as the product `edits` (JSON).
 ///
 /// Mixture and cleansing run where there is a scan and the organ's profile says so; `lumen` comes
-/// from the segmentation otherwise. Flattening runs where the profile says so. A stage that fails
-/// leaves the products before it published. Stages whose products the store holds under the same
-/// key (stage version, options, input keys; the first input is the content of the source files),
-/// with sound bytes, are skipped. Killed at any moment it continues with the next call. Holds the
-/// case's lock while it runs. The products are the same bytes for any number of threads.
+/// from the segmentation otherwise. Flattening and detection run where the profile says so. A stage
+/// that fails leaves the products before it published. Stages whose products the store holds under
+/// the same key (stage version, options, input keys; the first input is the content of the source
+/// files), with sound bytes, are skipped. Killed at any moment it continues with the next call.
+/// Holds the case's lock while it runs. The products are the same bytes for any number of threads.
 ///
 /// The case is bound to the scan (pipeline/scan_identity.h), or to the mask where there is no scan.
 /// Refused (badInput), with the case as it was: another scan than the case's without `replace`, and

@@ -65,6 +65,10 @@ Result<TriMesh> StageCase::readMesh(const std::string& product) {
     return admit(product).and_then([&] { return target_.readMesh(product); });
 }
 
+Result<FlatMap> StageCase::readFlatMap(const std::string& product) {
+    return admit(product).and_then([&] { return target_.readFlatMap(product); });
+}
+
 Result<std::string> StageCase::readText(const std::string& product) {
     return admit(product).and_then([&] { return target_.readText(product); });
 }

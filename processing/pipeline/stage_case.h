@@ -42,6 +42,7 @@ public:
     }
     Result<Centerline> readCenterline(const std::string& product);
     Result<TriMesh> readMesh(const std::string& product);
+    Result<FlatMap> readFlatMap(const std::string& product);
     Result<std::string> readText(const std::string& product);
     Result<store::Attributes> attributes(const std::string& product);
     /// The product `ct`, with its patient position.

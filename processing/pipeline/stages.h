@@ -69,4 +69,8 @@ std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const Wa
 Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& surface,
                                   const ProductKey& centerline);
 
+/// `findings`: places of the wall that may be polyps. `flatMap` is the key of the last of the
+/// products that it reads; the others are the keys that the flat map's own parents have.
+Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& flatMap);
+
 }  // namespace haustra::pipeline

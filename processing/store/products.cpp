@@ -103,10 +103,12 @@ const Catalogue& catalogue() {
                  "encloses a bridge)",
          .shown = true},
         {.name = findings,
+         .stage = "cad",
          .content = Content::text,
+         .parents = {ct, segmentation, quality, cleansed, lumen, centerline, surface, flatMap},
          .endings = {".json", ".dcm"},
-         .help = "polyps that detection found, for a physician to judge: place, size, probability; "
-                 ".dcm: a Colon CAD SR (of a DICOM series)",
+         .help = "of a colon: places that may be polyps, for a physician to judge, each with its "
+                 "size, probability and voxels; .dcm: a Colon CAD SR (of a DICOM series)",
          .shown = true},
         // The next segmentation is made by it, under a key that holds it; until then what it is to
         // change stands.
@@ -119,6 +121,12 @@ const Catalogue& catalogue() {
          .endings = {".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg"},
          .help = "the whole flattened wall seen from within, the rectum at the bottom, black where "
                  "the surface crosses air and hatched along bridges"},
+        {.name = biopsy,
+         .parents = {ct, segmentation, quality, cleansed, lumen, centerline, surface, flatMap},
+         .endings = {".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg"},
+         .help = "of a colon: what lies beneath the whole wall, as a translucent picture, from the "
+                 "rectum on the left to the cecum: blue is fat, green the wall's tissue, red what "
+                 "is denser"},
     });
     return products;
 }

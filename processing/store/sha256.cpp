@@ -101,4 +101,10 @@ Result<Digest> fileDigest(const std::filesystem::path& file) {
     return hash.finish();
 }
 
+Digest textDigest(std::string_view text) {
+    Sha256 hash;
+    hash.add(text);
+    return hash.finish();
+}
+
 }  // namespace haustra::store

@@ -42,6 +42,9 @@ private:
     std::unique_ptr<evp_md_ctx_st, Free> context_;
 };
 
+/// SHA-256 of one text.
+Digest textDigest(std::string_view text);
+
 inline constexpr std::size_t digestBlockBytes = std::size_t(4) << 20;
 
 /// SHA-256 of the SHA-256s of consecutive blocks of 4 MiB: the same value for any number of

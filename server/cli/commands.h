@@ -26,5 +26,6 @@ Command addRender(CLI::App& program);
 Command addEvaluate(CLI::App& program);
 Command addDenoise(CLI::App& program);
 Command addFlatten(CLI::App& program);
+Command addCad(CLI::App& program);
 
 }  // namespace haustra::cli

@@ -1,5 +1,6 @@
 // haustra export: a product in a format that other programs read.
 #include "cli/arguments.h"
+#include "cli/biopsy_export.h"
 #include "cli/commands.h"
 #include "cli/flat_image_export.h"
 #include "cli/text_files.h"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,7 @@ struct ExportArguments {
     std::string caseName, product;
     fs::path series;
     FlatImageOptions flatImage;
+    BiopsyImageOptions biopsy;
 };
 
 bool endsIn(const std::string& text, const std::string& ending) {
@@ -122,6 +125,11 @@ Result<void> runExport(const ExportArguments& arguments) {
         }));
     if (arguments.product == product::flatImage)
         return exportFlatImage(source, arguments.file, arguments.flatImage);
+    if (arguments.product == product::biopsy) {
+        BiopsyImageOptions options = arguments.biopsy;
+        options.threads = arguments.flatImage.threads;
+        return exportBiopsyImage(source, arguments.file, options);
+    }
     // What leaves the store for other programs has been read whole and found sound.
     TRY(source.verify(arguments.product));
     if (isReport(arguments)) return exportReport(source, arguments);
@@ -146,13 +154,21 @@ Command addExport(CLI::App& program) {
                         "study the report names; else it names no patient");
     addStoreOption(*command, arguments->store);
     addFlatImageOptions(*command, arguments->flatImage);
+    addBiopsyImageOptions(*command, arguments->biopsy);
     command->callback([arguments, command] {
-        for (const char* option :
-             {"--width", "--seam-margin", "--caption", "--transfer-function", "--threads"}) {
-            if (arguments->product != product::flatImage && command->count(option) > 0)
-                throw CLI::ValidationError(option,
-                                           std::string("is an option of ") + product::flatImage);
-        }
+        const auto belongs = [&](const char* option, const std::set<std::string>& products) {
+            if (products.contains(arguments->product) || command->count(option) == 0) return;
+            throw CLI::ValidationError(
+                option,
+                std::string("is an option of ") +
+                    CLI::detail::join(std::vector<std::string>(products.begin(), products.end()),
+                                      " and "));
+        };
+        for (const char* option : {"--width", "--seam-margin", "--caption", "--transfer-function"})
+            belongs(option, {product::flatImage});
+        for (const char* option : {"--length", "--around", "--finer", "--fixed-transfer"})
+            belongs(option, {product::biopsy});
+        belongs("--threads", {product::biopsy, product::flatImage});
         if (!isReport(*arguments) && command->count("--series") > 0)
             throw CLI::ValidationError("--series", "is an option of findings as .dcm");
         const auto& endings = store::catalogue().find(arguments->product)->endings;

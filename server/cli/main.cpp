@@ -39,7 +39,8 @@ int runProgram(int argc, char** argv) {
         haustra::cli::addPhantom(program), haustra::cli::addPrepare(program),
         haustra::cli::addExport(program),  haustra::cli::addList(program),
         haustra::cli::addRender(program),  haustra::cli::addEvaluate(program),
-        haustra::cli::addDenoise(program), haustra::cli::addFlatten(program)};
+        haustra::cli::addDenoise(program), haustra::cli::addFlatten(program),
+        haustra::cli::addCad(program)};
     try {
         program.parse(argc, argv);
         for (const auto& command : commands) {

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono;
 
-constexpr int productCount = 11;
+constexpr int productCount = 12;
 
 class PrepareKilled : public testing::Test {
 protected:

@@ -53,7 +53,7 @@ TEST_F(PrepareInputs, AMaskWithoutASeriesIsOfTheCasesScan) {
     PrepareOptions mask = options();
     mask.series.clear();
     EXPECT_EQ(reused(mask), all(false, {"segmentation", "mixture", "cleansing", "denoising",
-                                        "distance", "centerline", "surface", "flattening"}));
+                                        "distance", "centerline", "surface", "flattening", "cad"}));
     EXPECT_TRUE(store().openCase("tube")->find("ct"));
     EXPECT_EQ(reused(options()), all(true));
 }

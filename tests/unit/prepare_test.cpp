@@ -18,7 +18,7 @@ namespace {
 TEST_F(Prepare, ASecondRunReusesEverythingAndChangesNothing) {
     EXPECT_EQ(reused(options()), all(false));
     const auto before = bytesOf(store().openCase("tube").value());
-    EXPECT_EQ(before.size(), 11u);
+    EXPECT_EQ(before.size(), 12u);
     EXPECT_EQ(reused(options()), all(true));
     EXPECT_EQ(bytesOf(store().openCase("tube").value()), before);
 }
@@ -94,18 +94,19 @@ TEST_F(Prepare, ProductsAreTheStagesOutputs) {
 TEST_F(Prepare, ChangedInputsRedoWhatComesFromThemAlone) {
     reused(options());
     ASSERT_TRUE(nifti::writeNifti(maskFile(), tubeMask(5.0)));
-    EXPECT_EQ(reused(options()), redone({"segmentation", "mixture", "cleansing", "denoising",
-                                         "distance", "centerline", "surface", "flattening"}));
+    EXPECT_EQ(reused(options()),
+              redone({"segmentation", "mixture", "cleansing", "denoising", "distance", "centerline",
+                      "surface", "flattening", "cad"}));
     writeScan(5.0);
     PrepareOptions coarser = options();
     coarser.replace = true;
     EXPECT_EQ(reused(coarser), all(false));
     coarser.surfaceErrorMm = 0.3;
-    EXPECT_EQ(reused(coarser), redone({"surface", "flattening"}));
+    EXPECT_EQ(reused(coarser), redone({"surface", "flattening", "cad"}));
     coarser.threads = 1;
     EXPECT_EQ(reused(coarser), all(true));
     coarser.areaWeight = 0.5;
-    EXPECT_EQ(reused(coarser), redone({"flattening"}));
+    EXPECT_EQ(reused(coarser), redone({"flattening", "cad"}));
 }
 
 TEST_F(Prepare, ANewScanLeavesNoProductOfTheOldOne) {
@@ -123,7 +124,7 @@ TEST_F(Prepare, UntilStopsAndTheNextRunGoesOn) {
     some.until = "distance";
     EXPECT_EQ(reused(some), all(false, {"import", "segmentation", "mixture", "cleansing",
                                         "denoising", "distance"}));
-    EXPECT_EQ(reused(options()), redone({"centerline", "surface", "flattening"}));
+    EXPECT_EQ(reused(options()), redone({"centerline", "surface", "flattening", "cad"}));
 }
 
 // What a store of before this order of stages holds: the same names, made otherwise.

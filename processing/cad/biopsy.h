@@ -1,0 +1,66 @@
+// Electronic biopsy: what lies beneath the wall, as a translucent colour (dissertation §6.2.4).
+#pragma once
+
+#include "cad/smooth_scan.h"
+#include "core/optics.h"
+#include "core/volume.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra::cad {
+
+/// Rays run 0.5 mm a step, and look no deeper than about 20 mm (§6.2.4).
+inline constexpr double biopsyStepMm = 0.5;
+inline constexpr int biopsySteps = 40;
+inline constexpr double peakMm = 5.0;
+
+/// A transfer function for one step of a biopsy ray, by whole HU. Unlit: the picture is of the
+/// tissue, not of a lamp.
+class BiopsyTable {
+public:
+    explicit BiopsyTable(const TransferFunction& transferFunction);
+
+    struct Entry {
+        glm::vec3 color{0.0f};  ///< linear light, times opacity
+        float opacity = 0.0f;
+    };
+    const Entry& at(float hu) const {
+        const int n = int(hu) - lowestHu;
+        return entries_[std::size_t(n < 0                       ? 0
+                                    : n >= int(entries_.size()) ? int(entries_.size()) - 1
+                                                                : n)];
+    }
+
+private:
+    static constexpr int lowestHu = -1024;
+    std::vector<Entry> entries_;
+};
+
+/// What one ray saw.
+struct BiopsyRay {
+    glm::vec3 color{0.0f};  ///< linear light, over black
+    float opacity = 0.0f;
+    float tissueMm = 0.0f;  ///< until the lumen began again; the whole way where it did not
+    bool reenters = false;  ///< the lumen began again
+    /// The greatest on its first peakMm of tissue: a wall thinner than the scan resolves has less
+    /// than its tissue's, a thickened one all of it.
+    float peakHu = -1024.0f;
+};
+
+/// The scan, and where its lumen is, as rays see them. Both outlive it.
+struct BiopsyScan {
+    const SmoothScan& scan;
+    const Volume<std::uint8_t>& lumen;  ///< LumenLabel
+    double airBelowHu = -400.0;         ///< tissue ends where the scan is darker
+};
+
+/// Front to back from `startMm` on the wall along the unit vector `intoWall`. It ends where it
+/// would enter the lumen again after it has been in tissue, or is opaque.
+BiopsyRay castBiopsyRay(const BiopsyScan& scan, const BiopsyTable& table, glm::dvec3 startMm,
+                        glm::dvec3 intoWall);
+
+}  // namespace haustra::cad

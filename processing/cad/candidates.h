@@ -1,0 +1,48 @@
+// Places of the wall that may be polyps: by their texture (dissertation §6.2.5), and by their shape
+// (Yoshida and Näppi, IEEE TMI 2001; 20: 1261).
+#pragma once
+
+#include "cad/wall_evidence.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace haustra::cad {
+
+/// A connected patch of samples without holes, ascending.
+struct Patch {
+    std::vector<std::uint32_t> samples;
+    bool byShape = false, byTexture = false;  ///< which of the generators found it
+};
+
+/// Hysteresis on the wall's shape. A polyp bulges along both principal directions (k2 > 0) up to
+/// where its base turns into the wall; the crest of a fold, and the wall itself, bend the other way
+/// along the colon's circumference.
+struct ShapeLimits {
+    double seedCurvature = 0.05;   ///< 1/mm: a patch has a sample that k2 reaches
+    double growCurvature = 0.012;  ///< 1/mm: its samples have at least this k2
+    double seedShapeIndex = 0.8;   ///< between ridge and cap
+    double leastMm2 = 6.0;         ///< smaller patches are noise; a polyp of 4 mm has 15 mm²
+    double mostMm2 = 4000.0;       ///< larger ones are no polyps
+};
+/// Of the broad scale: the wall of a distended colon is concave there (k2 about −0.07/mm, one over
+/// two thirds of its radius), and what is low and wide only lifts it.
+inline constexpr ShapeLimits broadLimits{0.0, -0.02, 0.0, 15.0, 4000.0};
+/// `shapes`: the evidence's, at one of its scales.
+std::vector<Patch> patchesByShape(const WallEvidence& evidence, std::span<const WallShape> shapes,
+                                  const ShapeLimits& limits = {});
+
+/// Connected samples whose texture distance is below 1, at least as wide as `leastMm`: the greatest
+/// distance between two of them (§6.2.5 drops those under 5 mm).
+std::vector<Patch> patchesByTexture(const WallEvidence& evidence,
+                                    std::span<const float> textureDistance, double leastMm = 5.0);
+
+/// Greatest distance between two of the samples, to within a hundredth, and which they are.
+struct Diameter {
+    double mm = 0.0;
+    std::uint32_t from = 0, to = 0;
+};
+Diameter diameterOf(const WallSamples& wall, std::span<const std::uint32_t> samples);
+
+}  // namespace haustra::cad

@@ -1,0 +1,165 @@
+#include "cad/detect.h"
+
+#include "cad/biopsy_transfer.h"
+#include "cad/wall_frames.h"
+#include "core/parallel.h"
+#include "core/version.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+namespace haustra::cad {
+namespace {
+
+// A head on a neck of less than this share of its width has a stalk; Paris 0-II is at most 2.5 mm
+// high (the closed cups of a forceps), to which the scan adds its blur.
+constexpr double stalkNeck = 0.7, stalkHeightRatio = 0.75, flatHeightMm = 3.0, flatRatio = 0.4;
+
+double featureOf(const Candidate& candidate, std::string_view name) {
+    return candidate.features[std::size_t(
+        std::find(featureNames.begin(), featureNames.end(), name) - featureNames.begin())];
+}
+
+const char* kindOf(const Candidate& candidate) {
+    const Lesion& lesion = candidate.lesion;
+    const double ratio = lesion.heightMm / std::max(0.1, lesion.diameter.mm);
+    if (featureOf(candidate, "neck_ratio") < stalkNeck && ratio > stalkHeightRatio)
+        return "pedunculated";
+    return lesion.heightMm < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
+}
+
+std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 placeMm) {
+    std::optional<ColonSegment> segment;
+    double least = std::numeric_limits<double>::infinity();
+    for (const ColonPiece& piece : colon.pieces) {
+        const double mm = glm::distance(piece.centreMm, placeMm) - piece.radiusMm;
+        if (mm < least) least = mm, segment = segmentOf(piece.part);
+    }
+    return segment;
+}
+
+Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
+                  const Candidate& candidate) {
+    const Lesion& lesion = candidate.lesion;
+    Finding finding;
+    finding.positionMm = lesion.centreMm;
+    finding.diameterMm = lesion.diameter.mm;
+    finding.score = candidate.probability;
+    finding.kind = kindOf(candidate);
+    finding.wallMm = lesion.topMm;
+    finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
+                              evidence.samples.mesh.vertices[lesion.diameter.to]};
+    finding.heightMm = lesion.heightMm;
+    finding.arcMm =
+        colon.centerline.points.empty() ? 0.0 : nearestArc(colon.centerline, lesion.centreMm);
+    finding.segment = segmentAt(colon, lesion.centreMm);
+    for (std::size_t n = 0; n < featureNames.size(); ++n)
+        finding.features.emplace_back(std::string(featureNames[n]), candidate.features[n]);
+    finding.voxels = lesion.voxels;
+    return finding;
+}
+
+}  // namespace
+
+std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
+                                      const TextureModel* texture, const DetectOptions& options) {
+    std::vector<float> distances;
+    std::vector<Patch> patches;
+    if (texture) {
+        const auto along = stripDirections(evidence.samples, colon.flat);
+        const TextureStencil stencil(evidence.samples, evidence.shapes, along, options.threads);
+        std::vector<glm::vec3> colors(evidence.rays.size());
+        std::transform(evidence.rays.begin(), evidence.rays.end(), colors.begin(),
+                       [](const BiopsyRay& ray) { return ray.color; });
+        distances.resize(colors.size());
+        parallelFor(distances.size(), 8192, options.threads,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t v = begin; v < end; ++v)
+                            distances[v] = float(textureDistance(*texture, stencil.at(v, colors)));
+                    });
+        if (options.method.texture) patches = patchesByTexture(evidence, distances);
+    }
+    if (options.method.shape) {
+        std::ranges::move(patchesByShape(evidence, evidence.shapes), std::back_inserter(patches));
+        std::ranges::move(patchesByShape(evidence, evidence.broadShapes, broadLimits),
+                          std::back_inserter(patches));
+    }
+    const SampleTriangles triangles(evidence.samples);
+    std::vector<std::optional<Candidate>> made(patches.size());
+    parallelFor(patches.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            auto lesion =
+                standUp(evidence, triangles, std::move(patches[n]), colon.cleansed.grid());
+            if (!lesion) continue;
+            const FeatureVector features = featuresOf(colon, evidence, distances, *lesion);
+            made[n] = Candidate{*std::move(lesion), features};
+        }
+    });
+    std::vector<Candidate> candidates;
+    for (auto& candidate : made)
+        if (candidate) candidates.push_back(*std::move(candidate));
+    return candidates;
+}
+
+void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Method& method) {
+    for (Candidate& candidate : candidates) {
+        candidate.probability = method.classifier ? model.probability(candidate.features)
+                                : model.thresholds.pass(candidate.features) ? 1.0
+                                                                            : 0.0;
+    }
+    // The most probable first; of equal ones the larger.
+    std::stable_sort(
+        candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+            return a.probability != b.probability ? a.probability > b.probability
+                                                  : a.lesion.areaMm2 > b.lesion.areaMm2;
+        });
+    std::vector<Candidate> kept;
+    for (Candidate& candidate : candidates) {
+        const bool told = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
+            const double apart = glm::distance(candidate.lesion.centreMm, other.lesion.centreMm);
+            return apart < 0.5 * std::max(candidate.lesion.diameter.mm, other.lesion.diameter.mm);
+        });
+        if (!told) kept.push_back(std::move(candidate));
+    }
+    candidates = std::move(kept);
+}
+
+Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
+                    const std::vector<Candidate>& candidates, const CadModel& model) {
+    Findings findings;
+    findings.operatingPoint = model.operatingPoint;
+    findings.model.software = std::string("haustra ") + softwareVersion;
+    findings.model.name = model.name;
+    findings.model.trainedOn = model.trainedOn;
+    findings.grid = colon.ct.grid();
+    for (const Candidate& candidate : candidates) {
+        if (candidate.probability < leastProbability) continue;
+        (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)
+            .push_back(findingOf(colon, evidence, candidate));
+    }
+    for (auto* list : {&findings.findings, &findings.candidates})
+        std::stable_sort(list->begin(), list->end(),
+                         [](const Finding& a, const Finding& b) { return a.arcMm < b.arcMm; });
+    return findings;
+}
+
+Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
+                      const DetectOptions& options) {
+    const auto part = [&](double from, double to) -> Progress {
+        if (!options.progress) return {};
+        return [=, &options](double share) { options.progress(from + (to - from) * share); };
+    };
+    EvidenceOptions gathering;
+    if (!options.method.automaticTransfer) gathering.transferFunction = fixedBiopsyTransfer();
+    gathering.threads = options.threads;
+    gathering.progress = part(0.0, 0.7);
+    const WallEvidence evidence = gatherEvidence(colon, gathering);
+    auto candidates = findCandidates(colon, evidence, &model.texture, options);
+    weigh(candidates, model, options.method);
+    if (options.progress) options.progress(1.0);
+    return findingsOf(colon, evidence, candidates, model);
+}
+
+}  // namespace haustra::cad

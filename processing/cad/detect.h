@@ -1,0 +1,53 @@
+// Polyp detection on a prepared colon (dissertation chapter 6, and past it).
+#pragma once
+
+#include "cad/model.h"
+#include "cad/wall_evidence.h"
+#include "core/findings.h"
+
+#include <optional>
+#include <vector>
+
+namespace haustra::cad {
+
+/// What of the whole is used; all by default. For comparisons, which leave out one after the other.
+struct Method {
+    bool automaticTransfer = true;  ///< else the fixed transfer function
+    bool texture = true;            ///< candidates by texture
+    bool shape = true;              ///< candidates by shape
+    /// The classifier; else the thresholds of §6.2.6 decide, and all that pass are as probable.
+    bool classifier = true;
+};
+
+struct DetectOptions {
+    Method method;
+    int threads = 0;
+    Progress progress = {};
+};
+
+/// One place that was weighed.
+struct Candidate {
+    Lesion lesion;
+    FeatureVector features{};
+    double probability = 0.0;
+};
+
+/// Everything that the generators found, each with its features; several may be of one place. The
+/// same for any number of threads.
+std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
+                                      const TextureModel* texture, const DetectOptions& options);
+
+/// Gives each its probability, and of those of one place keeps the most probable.
+void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Method& method);
+
+/// Those whose probability reaches the model's operating point, from the rectum to the cecum; the
+/// others as candidates, down to `leastProbability`.
+inline constexpr double leastProbability = 0.02;
+Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
+                    const std::vector<Candidate>& candidates, const CadModel& model);
+
+/// All of it.
+Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
+                      const DetectOptions& options = {});
+
+}  // namespace haustra::cad

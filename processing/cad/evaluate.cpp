@@ -1,0 +1,178 @@
+#include "cad/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace haustra::cad {
+namespace {
+
+double namedFeature(const Candidate& candidate, std::string_view name) {
+    return candidate.features[std::size_t(
+        std::find(featureNames.begin(), featureNames.end(), name) - featureNames.begin())];
+}
+
+bool blamed(const EvaluatedCase& each, const ToldPlace& place) {
+    if (place.lesion < 0) return true;
+    const TrueLesion& lesion = each.truth[std::size_t(place.lesion)];
+    return !lesion.neoplastic && !lesion.hyperplastic();
+}
+
+// The best score that each lesion was told with; below 0: not told.
+std::vector<double> bestScores(const EvaluatedCase& each) {
+    std::vector<double> best(each.truth.size(), -1.0);
+    for (const ToldPlace& place : each.places)
+        if (place.lesion >= 0)
+            best[std::size_t(place.lesion)] =
+                std::max(best[std::size_t(place.lesion)], place.score);
+    return best;
+}
+
+void count(Share& share, bool hit) {
+    ++share.of;
+    share.hit += hit;
+}
+
+// Thresholds at which the false positives a scan are at most as asked, and the sensitivity there.
+std::vector<std::pair<double, double>> sensitivities(const std::vector<const EvaluatedCase*>& cases,
+                                                     const std::vector<double>& falsePositives) {
+    std::vector<double> wrong, right;
+    int lesions = 0;
+    for (const EvaluatedCase* each : cases) {
+        for (const ToldPlace& place : each->places)
+            if (blamed(*each, place)) wrong.push_back(place.score);
+        const std::vector<double> best = bestScores(*each);
+        for (std::size_t l = 0; l < best.size(); ++l) {
+            if (!each->truth[l].neoplastic || each->truth[l].diameterMm < 6.0) continue;
+            ++lesions;
+            if (best[l] >= 0.0) right.push_back(best[l]);
+        }
+    }
+    std::sort(wrong.rbegin(), wrong.rend());
+    std::sort(right.rbegin(), right.rend());
+    std::vector<std::pair<double, double>> points;
+    for (const double wanted : falsePositives) {
+        const auto allowed = std::size_t(wanted * double(cases.size()));
+        // What scores more than the first wrong one too many is told.
+        const double limit = allowed < wrong.size() ? wrong[allowed] : -1.0;
+        const auto told = std::partition_point(right.begin(), right.end(),
+                                               [&](double score) { return score > limit; });
+        points.emplace_back(limit, lesions > 0 ? double(told - right.begin()) / lesions : 0.0);
+    }
+    return points;
+}
+
+}  // namespace
+
+EvaluatedCase evaluateCase(std::string name, std::string group, const std::vector<Candidate>& all,
+                           const std::vector<Candidate>& weighed,
+                           const std::vector<TrueLesion>& truth) {
+    EvaluatedCase result{std::move(name), std::move(group), truth, {}, 0};
+    std::vector<glm::dvec3> places;
+    for (const Candidate& candidate : weighed)
+        places.push_back(candidate.lesion.centreMm);
+    const std::vector<int> meant = matched(places, truth);
+    for (std::size_t n = 0; n < weighed.size(); ++n) {
+        const Candidate& candidate = weighed[n];
+        const char* looks = namedFeature(candidate, "wet_share") > 0.5 ? "under fluid"
+                            : namedFeature(candidate, "reentry_share") > 0.5 ||
+                                    namedFeature(candidate, "ring_ridge_share") > 0.3
+                                ? "fold"
+                                : "wall";
+        result.places.push_back({candidate.probability, candidate.lesion.diameter.mm, meant[n],
+                                 meant[n] < 0 ? looks : ""});
+    }
+    places.clear();
+    for (const Candidate& candidate : all)
+        places.push_back(candidate.lesion.centreMm);
+    for (const int lesion : matched(places, truth))
+        result.before += lesion < 0;
+    return result;
+}
+
+Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double operatingPoint) {
+    Evaluation sum;
+    sum.cases = int(cases.size());
+    std::vector<double> errors, submerged, pedunculated;
+    double bias = 0.0;
+    for (const EvaluatedCase* each : cases) {
+        std::vector<const ToldPlace*> best(each->truth.size(), nullptr);
+        for (const ToldPlace& place : each->places) {
+            if (place.score < operatingPoint) continue;
+            if (blamed(*each, place)) {
+                ++sum.falsePositives;
+                ++sum.falseKinds[place.lesion >= 0 ? each->truth[std::size_t(place.lesion)].kind
+                                                   : place.looksLike];
+                continue;
+            }
+            const ToldPlace*& told = best[std::size_t(place.lesion)];
+            if (!told || place.score > told->score) told = &place;
+            sum.hyperplastic += !each->truth[std::size_t(place.lesion)].neoplastic;
+        }
+        sum.falseBefore += each->before;
+        for (std::size_t l = 0; l < best.size(); ++l) {
+            const TrueLesion& lesion = each->truth[l];
+            if (!lesion.neoplastic) continue;
+            const bool hit = best[l] != nullptr;
+            if (lesion.diameterMm >= 5.0 && lesion.diameterMm < 6.0) count(sum.from5To6Mm, hit);
+            if (hit) {
+                const double error = best[l]->diameterMm - lesion.diameterMm;
+                errors.push_back(std::abs(error));
+                bias += error;
+                if (lesion.submergedShare > 0.5) submerged.push_back(std::abs(error));
+                if (lesion.kind == "pedunculated") pedunculated.push_back(std::abs(error));
+            }
+            if (lesion.diameterMm < 6.0) continue;
+            count(sum.from6Mm, hit);
+            if (lesion.diameterMm >= 10.0) count(sum.from10Mm, hit);
+            count(lesion.coreHu < 5.0 ? sum.plain : sum.dense, hit);
+            if (lesion.submergedShare > 0.5) count(sum.submerged, hit);
+            count(sum.byKind[lesion.kind], hit);
+        }
+    }
+    const double scans = std::max(1, sum.cases);
+    sum.falsePositives /= scans, sum.falseBefore /= scans;
+    const auto mean = [](const std::vector<double>& values) {
+        return values.empty()
+                   ? 0.0
+                   : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+    };
+    sum.diameterMean = mean(errors);
+    sum.submergedDiameterMean = mean(submerged), sum.pedunculatedDiameterMean = mean(pedunculated);
+    if (!errors.empty()) {
+        sum.diameterBias = bias / double(errors.size());
+        std::sort(errors.begin(), errors.end());
+        sum.diameter95 = errors[std::size_t(0.95 * double(errors.size() - 1))];
+    }
+    return sum;
+}
+
+std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases, int resamples) {
+    std::vector<double> wanted;
+    for (double n = -3.0; n <= 4.0; n += 0.5)
+        wanted.push_back(std::exp2(n));
+    std::vector<FrocPoint> curve;
+    for (const auto& [threshold, sensitivity] : sensitivities(cases, wanted))
+        curve.push_back({wanted[curve.size()], sensitivity, 0.0, 0.0, threshold});
+    if (cases.empty()) return curve;
+    std::mt19937 random(1);
+    std::vector<std::vector<double>> drawn(wanted.size());
+    for (int n = 0; n < resamples; ++n) {
+        // The engine's numbers are the same everywhere; a distribution's need not be.
+        std::vector<const EvaluatedCase*> sample;
+        for (std::size_t c = 0; c < cases.size(); ++c)
+            sample.push_back(cases[random() % cases.size()]);
+        const auto points = sensitivities(sample, wanted);
+        for (std::size_t p = 0; p < points.size(); ++p)
+            drawn[p].push_back(points[p].second);
+    }
+    for (std::size_t p = 0; p < curve.size() && resamples > 0; ++p) {
+        std::sort(drawn[p].begin(), drawn[p].end());
+        curve[p].low = drawn[p][std::size_t(0.025 * double(resamples - 1))];
+        curve[p].high = drawn[p][std::size_t(0.975 * double(resamples - 1))];
+    }
+    return curve;
+}
+
+}  // namespace haustra::cad

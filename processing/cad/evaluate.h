@@ -1,0 +1,66 @@
+// How well detection does on cases whose truth is known.
+#pragma once
+
+#include "cad/detect.h"
+#include "cad/truth.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace haustra::cad {
+
+/// One place that detection told of.
+struct ToldPlace {
+    double score = 0.0;
+    double diameterMm = 0.0;
+    int lesion = -1;        ///< of the case's truth; −1: none
+    std::string looksLike;  ///< where it is no lesion: "fold", "wall", "under fluid"
+};
+
+struct EvaluatedCase {
+    std::string name, group;
+    std::vector<TrueLesion> truth;
+    std::vector<ToldPlace> places;  ///< whatever its score
+    int before = 0;                 ///< places that are no lesion before reduction
+};
+
+/// What detection made of a case. `candidates` are weighed.
+EvaluatedCase evaluateCase(std::string name, std::string group, const std::vector<Candidate>& all,
+                           const std::vector<Candidate>& weighed,
+                           const std::vector<TrueLesion>& truth);
+
+struct Share {
+    int hit = 0, of = 0;
+    double share() const { return of > 0 ? double(hit) / of : 0.0; }
+};
+
+struct Evaluation {
+    int cases = 0;
+    Share from6Mm, from5To6Mm, from10Mm;  ///< neoplastic, by diameter
+    Share plain, dense;                   ///< of those from 6 mm: no denser than the wall, denser
+    Share submerged;                      ///< likewise
+    std::map<std::string, Share> byKind;  ///< likewise
+    double falsePositives = 0.0;          ///< a scan; benign growths are none
+    double falseBefore = 0.0;             ///< a scan, before reduction
+    std::map<std::string, int> falseKinds;
+    int hyperplastic = 0;  ///< findings that are small benign growths
+    /// Absolute error of diameters of what was found, mm: mean, 95 %, and the mean error.
+    double diameterMean = 0.0, diameter95 = 0.0, diameterBias = 0.0;
+    double submergedDiameterMean = 0.0, pedunculatedDiameterMean = 0.0;
+};
+Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double operatingPoint);
+
+/// One point of the free-response ROC curve, with the 2.5 and 97.5 % of `resamples` bootstrap
+/// samples of the cases.
+struct FrocPoint {
+    double falsePositives = 0.0;                      ///< a scan
+    double sensitivity = 0.0, low = 0.0, high = 0.0;  ///< of neoplastic lesions from 6 mm
+    double threshold = 0.0;
+};
+/// At 1/8, 1/4 … 16 false positives a scan and every half between. The same for equal input.
+std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases,
+                                 int resamples = 1000);
+
+}  // namespace haustra::cad

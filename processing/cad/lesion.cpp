@@ -1,0 +1,299 @@
+#include "cad/lesion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <unordered_map>
+
+namespace haustra::cad {
+namespace {
+
+// How far beyond the patch the base is anchored: there the wall is the wall again.
+constexpr double anchorMm = 2.0;
+
+// Places of the inner vertices of a mesh so that each is the mean of its neighbours, those of the
+// others given: conjugate gradients on the graph's Laplacian, which is positive definite as each
+// part of the inside reaches the rim.
+class Membrane {
+public:
+    Membrane(const WallSamples& wall, std::span<const std::uint32_t> inside) : wall_(wall) {
+        for (std::size_t n = 0; n < inside.size(); ++n)
+            number_.emplace(inside[n], n);
+        places_.reserve(inside.size());
+        for (const std::uint32_t v : inside)
+            places_.push_back(wall.mesh.vertices[v]);
+        links_.resize(inside.size());
+        pull_.assign(inside.size(), glm::dvec3(0.0));
+        for (std::size_t n = 0; n < inside.size(); ++n) {
+            for (std::uint32_t e = wall.begin[inside[n]]; e < wall.begin[inside[n] + 1]; ++e) {
+                const auto found = number_.find(wall.neighbours[e]);
+                if (found == number_.end())
+                    pull_[n] += wall.mesh.vertices[wall.neighbours[e]];
+                else
+                    links_[n].push_back(found->second);
+                ++degree(n);
+            }
+        }
+        span();
+    }
+
+    // Nullptr: not an inner vertex.
+    const glm::dvec3* at(std::uint32_t sample) const {
+        const auto found = number_.find(sample);
+        return found == number_.end() ? nullptr : &places_[found->second];
+    }
+
+private:
+    double& degree(std::size_t n) {
+        if (degrees_.size() <= n) degrees_.resize(n + 1, 0.0);
+        return degrees_[n];
+    }
+
+    std::vector<glm::dvec3> times(const std::vector<glm::dvec3>& x) const {
+        std::vector<glm::dvec3> y(x.size());
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            y[n] = degrees_[n] * x[n];
+            for (const std::size_t m : links_[n])
+                y[n] -= x[m];
+        }
+        return y;
+    }
+
+    void span() {
+        // The three coordinates are three systems with one matrix.
+        std::vector<glm::dvec3> r = times(places_);
+        for (std::size_t n = 0; n < r.size(); ++n)
+            r[n] = pull_[n] - r[n];
+        std::vector<glm::dvec3> p = r;
+        const auto dots = [](const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b) {
+            glm::dvec3 sum(0.0);
+            for (std::size_t n = 0; n < a.size(); ++n)
+                sum += a[n] * b[n];
+            return sum;
+        };
+        glm::dvec3 squares = dots(r, r);
+        const glm::dvec3 enough = 1e-8 * squares + glm::dvec3(1e-12);
+        for (int step = 0; step < 500; ++step) {
+            if (glm::all(glm::lessThanEqual(squares, enough))) break;
+            const std::vector<glm::dvec3> ap = times(p);
+            const glm::dvec3 curvature = dots(p, ap);
+            glm::dvec3 alpha(0.0);
+            for (int c = 0; c < 3; ++c)
+                if (curvature[c] > 0.0) alpha[c] = squares[c] / curvature[c];
+            for (std::size_t n = 0; n < p.size(); ++n)
+                places_[n] += alpha * p[n], r[n] -= alpha * ap[n];
+            const glm::dvec3 next = dots(r, r);
+            glm::dvec3 beta(0.0);
+            for (int c = 0; c < 3; ++c)
+                if (squares[c] > 0.0) beta[c] = next[c] / squares[c];
+            for (std::size_t n = 0; n < p.size(); ++n)
+                p[n] = r[n] + beta * p[n];
+            squares = next;
+        }
+    }
+
+    const WallSamples& wall_;
+    std::unordered_map<std::uint32_t, std::size_t> number_;
+    std::vector<glm::dvec3> places_, pull_;
+    std::vector<std::vector<std::size_t>> links_;
+    std::vector<double> degrees_;
+};
+
+// Samples within a distance of the patch along the wall, the patch's first.
+std::vector<std::uint32_t> widened(const WallSamples& wall, const Patch& patch, double byMm) {
+    std::unordered_map<std::uint32_t, double> distance;
+    std::vector<std::uint32_t> all = patch.samples;
+    for (const std::uint32_t v : all)
+        distance.emplace(v, 0.0);
+    // Steps are short beside the width, so a breadth-first order is near enough.
+    for (std::size_t head = 0; head < all.size(); ++head) {
+        const std::uint32_t v = all[head];
+        const double so = distance.at(v);
+        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
+            const std::uint32_t next = wall.neighbours[e];
+            const double mm = so + glm::distance(wall.mesh.vertices[v], wall.mesh.vertices[next]);
+            if (mm > byMm) continue;
+            if (distance.emplace(next, mm).second) all.push_back(next);
+        }
+    }
+    return all;
+}
+
+// The voxels right beneath a patch: of a body thinner than voxels are.
+std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& patch,
+                                    const Grid& grid) {
+    const glm::dvec3 spacing = grid.spacingMm();
+    const double depth = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    std::set<std::size_t> voxels;
+    for (const std::uint32_t v : patch.samples) {
+        const glm::dvec3 p =
+            evidence.samples.mesh.vertices[v] + depth * glm::dvec3(evidence.shapes[v].intoWall);
+        const glm::ivec3 voxel(glm::floor(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)) + 0.5));
+        if (grid.contains(voxel)) voxels.insert(grid.index(voxel));
+    }
+    std::vector<VoxelRun> runs;
+    for (const std::size_t index : voxels) {
+        const glm::ivec3 voxel = grid.voxelAt(index);
+        if (!runs.empty() && runs.back().first + glm::ivec3(runs.back().count, 0, 0) == voxel)
+            ++runs.back().count;
+        else
+            runs.push_back({voxel, 1});
+    }
+    return runs;
+}
+
+}  // namespace
+
+SampleTriangles::SampleTriangles(const WallSamples& wall)
+    : begin_(wall.mesh.vertices.size() + 1, 0) {
+    for (const glm::ivec3& t : wall.mesh.triangles)
+        for (int n = 0; n < 3; ++n)
+            ++begin_[std::size_t(t[n]) + 1];
+    for (std::size_t v = 1; v < begin_.size(); ++v)
+        begin_[v] += begin_[v - 1];
+    triangles_.resize(begin_.back());
+    std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
+    for (std::size_t t = 0; t < wall.mesh.triangles.size(); ++t)
+        for (int n = 0; n < 3; ++n)
+            triangles_[at[std::size_t(wall.mesh.triangles[t][n])]++] = std::uint32_t(t);
+}
+
+std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid) {
+    // Where rows of voxels along i cross the body, in voxels.
+    std::map<std::pair<int, int>, std::vector<double>> crossings;
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    std::vector<glm::dvec3> places;
+    places.reserve(body.vertices.size());
+    for (const glm::dvec3& p : body.vertices)
+        places.push_back(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)));
+    for (const glm::ivec3& t : body.triangles) {
+        const glm::dvec3 a = places[std::size_t(t.x)], b = places[std::size_t(t.y)],
+                         c = places[std::size_t(t.z)];
+        const glm::dvec3 lo = glm::min(a, glm::min(b, c)), hi = glm::max(a, glm::max(b, c));
+        const auto edge = [](glm::dvec3 p, glm::dvec3 q, double y, double z) {
+            return (q.y - p.y) * (z - p.z) - (q.z - p.z) * (y - p.y);
+        };
+        for (int k = int(std::ceil(lo.z)); k <= int(std::floor(hi.z)); ++k) {
+            for (int j = int(std::ceil(lo.y)); j <= int(std::floor(hi.y)); ++j) {
+                // Rows pass a hair beside whole numbers, so that none meets an edge.
+                const double y = j + 1.7e-6, z = k + 2.3e-6;
+                const double ea = edge(b, c, y, z), eb = edge(c, a, y, z), ec = edge(a, b, y, z);
+                if (!((ea > 0 && eb > 0 && ec > 0) || (ea < 0 && eb < 0 && ec < 0))) continue;
+                crossings[{k, j}].push_back((ea * a.x + eb * b.x + ec * c.x) / (ea + eb + ec));
+            }
+        }
+    }
+    std::vector<VoxelRun> runs;
+    for (auto& [row, at] : crossings) {
+        const auto [k, j] = row;
+        if (k < 0 || j < 0 || k >= grid.size.z || j >= grid.size.y) continue;
+        std::sort(at.begin(), at.end());
+        for (std::size_t n = 0; n + 1 < at.size(); n += 2) {
+            const int first = std::max(0, int(std::ceil(at[n]))),
+                      last = std::min(grid.size.x - 1, int(std::floor(at[n + 1])));
+            if (first > last) continue;
+            if (!runs.empty() && runs.back().first == glm::ivec3(first - runs.back().count, j, k))
+                runs.back().count += last - first + 1;
+            else
+                runs.push_back({{first, j, k}, last - first + 1});
+        }
+    }
+    return runs;
+}
+
+std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
+                              Patch patch, const Grid& grid) {
+    const WallSamples& wall = evidence.samples;
+    Lesion lesion;
+    const std::vector<std::uint32_t> inside = widened(wall, patch, anchorMm);
+    const Membrane membrane(wall, inside);
+    std::vector<std::uint32_t> faces;
+    for (const std::uint32_t v : inside) {
+        const auto around = triangles.around(v);
+        faces.insert(faces.end(), around.begin(), around.end());
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    if (faces.empty()) return {};
+
+    // Patch and base have the same triangles; where both have the same place they cancel.
+    std::unordered_map<std::uint32_t, int> above, below;
+    const auto vertexOf = [&](std::unordered_map<std::uint32_t, int>& numbers, std::uint32_t v,
+                              glm::dvec3 place) {
+        const auto [at, fresh] = numbers.try_emplace(v, int(lesion.body.vertices.size()));
+        if (fresh) lesion.body.vertices.push_back(place);
+        return at->second;
+    };
+    glm::dvec3 normal(0.0);
+    const glm::dvec3 origin = wall.mesh.vertices[patch.samples.front()];
+    glm::dvec3 moment(0.0);
+    const auto add = [&](glm::ivec3 corners) {
+        const glm::dvec3 a = lesion.body.vertices[std::size_t(corners.x)] - origin,
+                         b = lesion.body.vertices[std::size_t(corners.y)] - origin,
+                         c = lesion.body.vertices[std::size_t(corners.z)] - origin;
+        const double volume = glm::dot(a, glm::cross(b, c)) / 6.0;
+        lesion.volumeMm3 += volume;
+        moment += volume * 0.25 * (a + b + c);
+        lesion.body.triangles.push_back(corners);
+    };
+    for (const std::uint32_t t : faces) {
+        const glm::ivec3 corners = wall.mesh.triangles[t];
+        glm::ivec3 top, base;
+        for (int n = 0; n < 3; ++n) {
+            const auto v = std::uint32_t(corners[n]);
+            const glm::dvec3* spanned = membrane.at(v);
+            top[n] = vertexOf(above, v, wall.mesh.vertices[v]);
+            // The anchors are one place of both.
+            base[n] = spanned ? vertexOf(below, v, *spanned) : top[n];
+        }
+        // The wall's outside is the tissue: seen from the lumen the patch turns the other way.
+        add({top.x, top.z, top.y});
+        add(base);
+        const glm::dvec3 a = lesion.body.vertices[std::size_t(base.x)],
+                         side = glm::cross(lesion.body.vertices[std::size_t(base.y)] - a,
+                                           lesion.body.vertices[std::size_t(base.z)] - a);
+        normal -= side;
+        lesion.baseMm2 += 0.5 * glm::length(side);
+    }
+    const double length = glm::length(normal);
+    if (!(length > 0.0)) return {};
+    lesion.axis = normal / length;
+    lesion.centreMm = lesion.volumeMm3 > 0.0 ? origin + moment / lesion.volumeMm3 : origin;
+
+    double highest = -1e30;
+    for (const std::uint32_t v : patch.samples) {
+        lesion.areaMm2 += wall.areaMm2[v];
+        const double height = glm::dot(wall.mesh.vertices[v] - *membrane.at(v), lesion.axis);
+        if (height > highest) highest = height, lesion.topMm = wall.mesh.vertices[v];
+        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
+            if (std::binary_search(patch.samples.begin(), patch.samples.end(), wall.neighbours[e]))
+                continue;
+            lesion.rim.push_back(v);
+            break;
+        }
+    }
+    lesion.heightMm = highest;
+    lesion.rimMm = std::sqrt(4.0 * std::numbers::pi * lesion.baseMm2);
+    lesion.diameter = diameterOf(wall, patch.samples);
+    const glm::dvec3 along =
+        wall.mesh.vertices[lesion.diameter.to] - wall.mesh.vertices[lesion.diameter.from];
+    const glm::dvec3 across = glm::cross(along, lesion.axis);
+    if (glm::length(across) > 1e-9) {
+        const glm::dvec3 unit = glm::normalize(across);
+        double least = 1e30, most = -1e30;
+        for (const std::uint32_t v : patch.samples) {
+            const double at = glm::dot(unit, wall.mesh.vertices[v]);
+            least = std::min(least, at), most = std::max(most, at);
+        }
+        lesion.widthMm = most - least;
+    }
+    lesion.voxels = voxelsWithin(lesion.body, grid);
+    if (lesion.voxels.empty()) lesion.voxels = voxelsBeneath(evidence, patch, grid);
+    lesion.patch = std::move(patch);
+    return lesion;
+}
+
+}  // namespace haustra::cad

@@ -1,0 +1,49 @@
+// A candidate as a body: where it ends on the wall, how large it is, which voxels are its tissue.
+#pragma once
+
+#include "cad/candidates.h"
+#include "core/findings.h"
+
+#include <vector>
+
+namespace haustra::cad {
+
+/// A patch of the wall as a body that stands on a base. The base is a membrane, spanned from the
+/// patch's rim as a soap film: the wall as it would be without the body.
+struct Lesion {
+    Patch patch;
+    std::vector<std::uint32_t> rim;  ///< samples of the patch that border on others
+    glm::dvec3 centreMm{0.0};        ///< of its volume
+    glm::dvec3 topMm{0.0};           ///< the sample farthest above the base
+    glm::dvec3 axis{0, 0, 1};        ///< unit, from the base into the lumen
+    Diameter diameter;               ///< of the patch
+    double widthMm = 0.0;            ///< the greatest extent square to diameter and axis
+    double heightMm = 0.0;           ///< of the top above the base, along the axis
+    double volumeMm3 = 0.0;          ///< between patch and base
+    double areaMm2 = 0.0;            ///< of the patch
+    double rimMm = 0.0;              ///< length around: √(4π · the base's area)
+    double baseMm2 = 0.0;            ///< of the base
+    TriMesh body;                  ///< closed: patch and base, counter-clockwise seen from outside
+    std::vector<VoxelRun> voxels;  ///< of the scan's grid whose centres the body holds
+};
+
+/// Finds the triangles of samples. Immutable.
+class SampleTriangles {
+public:
+    explicit SampleTriangles(const WallSamples& wall);
+    std::span<const std::uint32_t> around(std::uint32_t sample) const {
+        return {&triangles_[begin_[sample]], begin_[sample + 1] - begin_[sample]};
+    }
+
+private:
+    std::vector<std::uint32_t> begin_, triangles_;
+};
+
+/// Of a patch that has triangles of its own; else nothing. O(samples of the patch · their width).
+std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
+                              Patch patch, const Grid& grid);
+
+/// Runs of the voxels whose centres lie within a closed mesh (even–odd along i).
+std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid);
+
+}  // namespace haustra::cad

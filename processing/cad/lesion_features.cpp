@@ -1,0 +1,254 @@
+#include "cad/lesion_features.h"
+
+#include "core/ct_scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace haustra::cad {
+namespace {
+
+class Named {
+public:
+    void operator()(std::string_view name, double value) {
+        const auto at = std::find(featureNames.begin(), featureNames.end(), name);
+        values_[std::size_t(at - featureNames.begin())] =
+            float(std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 0.0);
+    }
+    const FeatureVector& values() const { return values_; }
+
+private:
+    FeatureVector values_{};
+};
+
+double quantile(std::vector<float>& values, double q) {
+    if (values.empty()) return 0.0;
+    const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+double mean(const std::vector<float>& values) {
+    return values.empty()
+               ? 0.0
+               : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
+
+double deviation(const std::vector<float>& values) {
+    const double m = mean(values);
+    double squares = 0.0;
+    for (const float v : values)
+        squares += (v - m) * (v - m);
+    return values.empty() ? 0.0 : std::sqrt(squares / double(values.size()));
+}
+
+// Samples around the patch, up to this far from its rim along the wall.
+constexpr double ringMm = 2.5;
+
+std::vector<std::uint32_t> ringAround(const WallSamples& wall, const Lesion& lesion) {
+    std::vector<std::uint32_t> ring = lesion.rim;
+    std::vector<std::uint32_t> taken(lesion.patch.samples);
+    for (std::size_t head = 0; head < ring.size(); ++head) {
+        const std::uint32_t v = ring[head];
+        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
+            const std::uint32_t next = wall.neighbours[e];
+            const auto at = std::lower_bound(taken.begin(), taken.end(), next);
+            if (at != taken.end() && *at == next) continue;
+            const bool near =
+                std::any_of(lesion.rim.begin(), lesion.rim.end(), [&](std::uint32_t rim) {
+                    return glm::distance(wall.mesh.vertices[rim], wall.mesh.vertices[next]) <
+                           ringMm;
+                });
+            taken.insert(at, next);
+            if (near) ring.push_back(next);
+        }
+    }
+    ring.erase(ring.begin(), ring.begin() + std::ptrdiff_t(lesion.rim.size()));
+    return ring;
+}
+
+void describeForm(const Lesion& lesion, Named& put) {
+    const double d = std::max(lesion.diameter.mm, 0.1);
+    put("diameter_mm", lesion.diameter.mm);
+    put("width_ratio", lesion.widthMm / d);
+    put("height_mm", lesion.heightMm);
+    put("height_ratio", lesion.heightMm / d);
+    put("compactness", std::cbrt(std::max(lesion.volumeMm3, 0.0) * 6.0 / std::numbers::pi) / d);
+    put("neck_ratio", std::sqrt(4.0 * lesion.baseMm2 / std::numbers::pi) / d);
+}
+
+void describeShape(const WallEvidence& evidence, const Lesion& lesion, Named& put) {
+    std::vector<float> indices, curvedness, k2;
+    double caps = 0.0, area = 0.0;
+    for (const std::uint32_t v : lesion.patch.samples) {
+        const WallShape& shape = evidence.shapes[v];
+        indices.push_back(shape.shapeIndex());
+        curvedness.push_back(shape.curvedness());
+        k2.push_back(shape.k2);
+        area += evidence.samples.areaMm2[v];
+        if (shape.shapeIndex() > 0.9f) caps += evidence.samples.areaMm2[v];
+    }
+    put("shape_index_mean", mean(indices));
+    put("shape_index_sd", deviation(indices));
+    put("shape_index_p90", quantile(indices, 0.9));
+    put("curvedness_mean", mean(curvedness));
+    put("curvedness_size", mean(curvedness) * lesion.diameter.mm);
+    put("k2_mean_size", mean(k2) * lesion.diameter.mm);
+    put("cap_share", area > 0.0 ? caps / area : 0.0);
+}
+
+void describeRing(const WallEvidence& evidence, const std::vector<std::uint32_t>& ring,
+                  Named& put) {
+    std::vector<float> k1, k2;
+    double ridge = 0.0, wetArea = 0.0, area = 0.0;
+    for (const std::uint32_t v : ring) {
+        const WallShape& shape = evidence.shapes[v];
+        k1.push_back(shape.k1), k2.push_back(shape.k2);
+        const double mm2 = evidence.samples.areaMm2[v];
+        area += mm2;
+        if (shape.k1 > 0.1f && std::abs(shape.k2) < 0.5f * shape.k1) ridge += mm2;
+        if (evidence.wet[v]) wetArea += mm2;
+    }
+    put("ring_k1_mean", mean(k1));
+    put("ring_k2_p10", quantile(k2, 0.1));
+    put("ring_k2_p90", quantile(k2, 0.9));
+    put("ring_ridge_share", area > 0.0 ? ridge / area : 0.0);
+    const double wet = area > 0.0 ? wetArea / area : 0.0;
+    put("wet_edge", 4.0 * wet * (1.0 - wet));
+}
+
+void describeGradients(const WallEvidence& evidence, const Lesion& lesion, Named& put) {
+    const double radius = 0.6 * lesion.diameter.mm + 1.0;
+    put("gradient_concentration", gradientConcentration(*evidence.smooth, lesion.centreMm, radius));
+    double most = -1.0;
+    for (const double share : {0.25, 0.5, 0.75}) {
+        const glm::dvec3 place = glm::mix(lesion.topMm, lesion.centreMm, 2.0 * share);
+        most = std::max(most, gradientConcentration(*evidence.smooth, place, radius));
+    }
+    put("gradient_concentration_max", most);
+    std::vector<float> steep;
+    for (const std::uint32_t v : lesion.patch.samples)
+        steep.push_back(evidence.shapes[v].gradient);
+    const WallStatistics& s = evidence.statistics;
+    put("gradient_sharpness", mean(steep) / std::max(1.0, s.wallHu + 1000.0));
+}
+
+void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
+                      std::span<const float> textureDistance, const Lesion& lesion,
+                      const std::vector<std::uint32_t>& ring, Named& put) {
+    const WallStatistics& s = evidence.statistics;
+    const double unit = std::max(20.0, s.wallHu - s.fatHu);
+    const Grid& grid = colon.cleansed.grid();
+    std::vector<float> density, removed, raw;
+    for (const VoxelRun& run : lesion.voxels) {
+        for (int n = 0; n < run.count; ++n) {
+            const glm::ivec3 voxel = run.first + glm::ivec3(n, 0, 0);
+            const double hu = evidence.smooth->at(grid.patientFromVoxelPoint(glm::dvec3(voxel)));
+            density.push_back(float((hu - s.wallHu) / unit));
+            const int cleansed = colon.cleansed.at(voxel);
+            raw.push_back(float((cleansed - s.wallHu) / unit));
+            removed.push_back(float(std::max(0, colon.ct.at(voxel) - cleansed) / unit));
+        }
+    }
+    if (density.empty()) density.push_back(-3.0f), raw.push_back(-3.0f), removed.push_back(0.0f);
+    put("removed_density", mean(removed));
+    put("density_median", quantile(density, 0.5));
+    put("density_p90", quantile(density, 0.9));
+    put("density_core", quantile(density, 0.98));
+    // Of what is surely tissue, beside the scan's own noise.
+    std::vector<float> core;
+    for (std::size_t n = 0; n < density.size(); ++n)
+        if (density[n] > -0.6f) core.push_back(raw[n]);
+    put("density_spread", deviation(core));
+    std::vector<float> peaks, ringPeaks, broad;
+    for (const std::uint32_t v : lesion.patch.samples) {
+        peaks.push_back(float((evidence.rays[v].peakHu - s.wallHu) / unit));
+        broad.push_back(evidence.broadShapes[v].k2);
+    }
+    for (const std::uint32_t v : ring)
+        ringPeaks.push_back(float((evidence.rays[v].peakHu - s.wallHu) / unit));
+    const double peak = quantile(peaks, 0.5);
+    put("peak_median", peak);
+    put("peak_over_ring", peak - quantile(ringPeaks, 0.5));
+    put("broad_k2_size", mean(broad) * lesion.diameter.mm);
+    if (textureDistance.empty()) return;
+    std::vector<float> distances;
+    double like = 0.0;
+    for (const std::uint32_t v : lesion.patch.samples) {
+        distances.push_back(textureDistance[v]);
+        like += textureDistance[v] < 1.0f;
+    }
+    put("texture_share", like / double(distances.size()));
+    put("texture_distance", std::min(quantile(distances, 0.25), 10.0));
+}
+
+void describeSurroundings(const PreparedColon& colon, const WallEvidence& evidence,
+                          const Lesion& lesion, Named& put) {
+    double wet = 0.0, reenters = 0.0, area = 0.0;
+    std::vector<float> behind;
+    for (const std::uint32_t v : lesion.patch.samples) {
+        const double mm2 = evidence.samples.areaMm2[v];
+        area += mm2;
+        if (evidence.wet[v]) wet += mm2;
+        if (evidence.rays[v].reenters) reenters += mm2;
+        behind.push_back(evidence.rays[v].tissueMm);
+    }
+    put("wet_share", area > 0.0 ? wet / area : 0.0);
+    put("reentry_share", area > 0.0 ? reenters / area : 0.0);
+    put("tissue_behind_mm", quantile(behind, 0.5));
+    if (!colon.centerline.points.empty()) {
+        const CenterlinePose pose =
+            poseAtArc(colon.centerline, nearestArc(colon.centerline, lesion.topMm));
+        const glm::dvec3 way = pose.point.positionMm - lesion.centreMm;
+        const double length = glm::length(way);
+        put("toward_axis", length > 0.0 ? glm::dot(way, lesion.axis) / length : 0.0);
+    }
+    // How much lumen is left above it.
+    constexpr double farthestMm = 30.0, stepMm = 0.5;
+    double clearance = 0.0;
+    for (double off = 1.5; off < farthestMm; off += stepMm) {
+        const glm::dvec3 p = lesion.topMm + off * lesion.axis;
+        if (evidence.smooth->at(p) > colon.tissue.airBelowHu) break;
+        clearance = off;
+    }
+    put("clearance_mm", clearance);
+}
+
+}  // namespace
+
+double gradientConcentration(const SmoothScan& scan, glm::dvec3 placeMm, double radiusMm) {
+    constexpr int directions = 60;
+    constexpr double fromMm = 1.0, stepMm = 0.75;
+    double sum = 0.0;
+    for (int n = 0; n < directions; ++n) {
+        const double z = 1.0 - (2.0 * n + 1.0) / directions, turn = 2.399963229728653 * n,
+                     r = std::sqrt(1.0 - z * z);
+        const glm::dvec3 way(r * std::cos(turn), r * std::sin(turn), z);
+        double cosines = 0.0, best = -1.0;
+        int count = 0;
+        for (double at = fromMm; at <= radiusMm; at += stepMm) {
+            const glm::dvec3 gradient = scan.gradient(placeMm + at * way);
+            const double steep = glm::length(gradient);
+            cosines += steep > 1e-6 ? -glm::dot(gradient, way) / steep : 0.0;
+            best = std::max(best, cosines / ++count);
+        }
+        sum += count > 0 ? best : 0.0;
+    }
+    return sum / directions;
+}
+
+FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
+                         std::span<const float> textureDistance, const Lesion& lesion) {
+    Named put;
+    describeForm(lesion, put);
+    describeShape(evidence, lesion, put);
+    const std::vector<std::uint32_t> ring = ringAround(evidence.samples, lesion);
+    describeRing(evidence, ring, put);
+    describeGradients(evidence, lesion, put);
+    describeContents(colon, evidence, textureDistance, lesion, ring, put);
+    describeSurroundings(colon, evidence, lesion, put);
+    return put.values();
+}
+
+}  // namespace haustra::cad

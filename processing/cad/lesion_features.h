@@ -1,0 +1,44 @@
+// What a candidate is like, in numbers that a classifier weighs.
+#pragma once
+
+#include "cad/lesion.h"
+
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace haustra::cad {
+
+/// In the order of featureNames. HU are relative to the scan: (HU − wall) / (wall − fat), so that a
+/// scanner's calibration and voltage do not matter; lengths are mm.
+inline constexpr std::array<std::string_view, 36> featureNames{
+    // size and form
+    "diameter_mm", "width_ratio", "height_mm", "height_ratio", "compactness", "neck_ratio",
+    // shape index and curvedness over the patch
+    "shape_index_mean", "shape_index_p90", "shape_index_sd", "curvedness_mean", "curvedness_size",
+    "k2_mean_size", "cap_share",
+    // how it goes over into the wall around it
+    "ring_k1_mean", "ring_k2_p10", "ring_k2_p90", "ring_ridge_share",
+    // gradients in 3-D
+    "gradient_concentration", "gradient_concentration_max", "gradient_sharpness",
+    // what it is made of
+    "density_median", "density_p90", "density_core", "density_spread", "texture_distance",
+    "texture_share", "peak_median", "peak_over_ring", "broad_k2_size",
+    // what it borders on
+    "wet_share", "wet_edge", "tissue_behind_mm", "reentry_share", "removed_density",
+    // where it is
+    "toward_axis", "clearance_mm"};
+inline constexpr int featureCount = int(featureNames.size());
+using FeatureVector = std::array<float, std::size_t(featureCount)>;
+
+/// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.
+/// O(samples of the patch and its voxels).
+FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
+                         std::span<const float> textureDistance, const Lesion& lesion);
+
+/// How well the gradients around a place point to it: over evenly spread directions, the greatest
+/// mean cosine between the scan's gradient and the way to the place, along stretches that begin 1
+/// mm away and end within `radiusMm` (Kobatake and Hashimoto, IEEE TIP 1999; 8: 1417). −1…1.
+double gradientConcentration(const SmoothScan& scan, glm::dvec3 placeMm, double radiusMm);
+
+}  // namespace haustra::cad

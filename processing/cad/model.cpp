@@ -1,0 +1,186 @@
+#include "cad/model.h"
+
+#include "cad/built_in_models.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+namespace haustra::cad {
+namespace {
+
+using ModelJson = nlohmann::ordered_json;
+
+// Seven significant digits read back as the same float.
+double shortened(float value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.7g", double(value));
+    return std::strtod(text, nullptr);
+}
+
+ModelJson numbers(const std::vector<float>& values) {
+    ModelJson list = ModelJson::array();
+    for (const float v : values)
+        list.push_back(shortened(v));
+    return list;
+}
+
+std::vector<float> numbersIn(const ModelJson& json, std::size_t count) {
+    if (json.size() != count) throw std::invalid_argument("a list has another length");
+    std::vector<float> values;
+    for (const ModelJson& v : json)
+        values.push_back(v.get<float>());
+    return values;
+}
+
+std::pair<double, double> rangeIn(const ModelJson& json) {
+    return {json.at(0).get<double>(), json.at(1).get<double>()};
+}
+
+double valueOf(const FeatureVector& features, std::string_view name) {
+    return features[std::size_t(std::find(featureNames.begin(), featureNames.end(), name) -
+                                featureNames.begin())];
+}
+
+}  // namespace
+
+bool ShapeThresholds::pass(const FeatureVector& features) const {
+    const auto within = [&](std::string_view name, std::pair<double, double> range) {
+        const double value = valueOf(features, name);
+        return value >= range.first && value <= range.second;
+    };
+    return within("shape_index_mean", shapeIndex) && within("curvedness_mean", curvedness) &&
+           within("gradient_concentration", gradientConcentration);
+}
+
+double logit(double share) {
+    const double s = std::clamp(share, 0.001, 0.999);
+    return std::log(s / (1.0 - s));
+}
+
+double CadModel::probability(const FeatureVector& features) const {
+    return 1.0 / (1.0 + std::exp(-(calibrationA + calibrationB * logit(forest.at(features)))));
+}
+
+std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const int> truths) {
+    double a = 0.0, b = 1.0;
+    for (int step = 0; step < 100; ++step) {
+        // Gradient and Hessian of the negative log-likelihood and of the pull.
+        constexpr double pull = 1.0;
+        double ga = pull * a, gb = pull * (b - 1.0), haa = pull, hab = 0.0, hbb = pull;
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            const double p = 1.0 / (1.0 + std::exp(-(a + b * x[n]))), off = p - truths[n],
+                         w = p * (1.0 - p);
+            ga += off, gb += off * x[n];
+            haa += w, hab += w * x[n], hbb += w * x[n] * x[n];
+        }
+        const double det = haa * hbb - hab * hab;
+        const double da = (hbb * ga - hab * gb) / det, db = (haa * gb - hab * ga) / det;
+        a -= da, b -= db;
+        if (std::abs(da) + std::abs(db) < 1e-10) break;
+    }
+    return {a, b};
+}
+
+std::string modelText(const CadModel& model) {
+    ModelJson trees = ModelJson::array();
+    for (const auto& tree : model.forest.trees) {
+        ModelJson nodes = ModelJson::array();
+        for (const TreeNode& node : tree) {
+            // A leaf is its value; a branch's left child is the next node.
+            if (node.feature < 0)
+                nodes.push_back(shortened(node.threshold));
+            else
+                nodes.push_back({node.feature, shortened(node.threshold), node.right});
+        }
+        trees.push_back(std::move(nodes));
+    }
+    const auto range = [](std::pair<double, double> r) { return ModelJson{r.first, r.second}; };
+    const ModelJson texture{{"threshold", model.texture.threshold},
+                            {"variance_share", model.texture.varianceShare},
+                            {"polyp", numbers(model.texture.polyp)},
+                            {"mean", numbers(model.texture.mean)},
+                            {"components", numbers(model.texture.components)}};
+    const ModelJson thresholds{
+        {"shape_index", range(model.thresholds.shapeIndex)},
+        {"curvedness", range(model.thresholds.curvedness)},
+        {"gradient_concentration", range(model.thresholds.gradientConcentration)}};
+    std::string text = "{";
+    const auto add = [&](const char* name, const ModelJson& value) {
+        text += '"' + std::string(name) + "\": " + value.dump() + ",\n";
+    };
+    add("haustra_cad_model", modelVersion);
+    add("name", model.name);
+    add("trained_on", model.trainedOn);
+    add("training_sha256", model.trainingSha256);
+    add("operating_point", model.operatingPoint);
+    add("calibration", {model.calibrationA, model.calibrationB});
+    ModelJson names = ModelJson::array();
+    for (const std::string_view name : featureNames)
+        names.push_back(std::string(name));
+    add("features", names);
+    add("thresholds", thresholds);
+    add("texture", texture);
+    text += "\"trees\": [";
+    for (std::size_t n = 0; n < trees.size(); ++n)
+        text += (n ? ",\n" : "\n") + trees[n].dump();
+    return text + "]}\n";
+}
+
+Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
+    try {
+        const ModelJson json = ModelJson::parse(text);
+        if (json.at("haustra_cad_model").get<int>() != modelVersion)
+            return fail(ErrorKind::unsupported, "the model is of another version", place);
+        const ModelJson& names = json.at("features");
+        bool same = names.size() == featureNames.size();
+        for (std::size_t n = 0; same && n < featureNames.size(); ++n)
+            same = names.at(n).get<std::string>() == featureNames[n];
+        if (!same)
+            return fail(ErrorKind::unsupported, "the model weighs other features than this program",
+                        place);
+        CadModel model;
+        model.name = json.at("name"), model.trainedOn = json.at("trained_on");
+        model.trainingSha256 = json.at("training_sha256");
+        model.operatingPoint = json.at("operating_point");
+        model.calibrationA = json.at("calibration").at(0).get<double>();
+        model.calibrationB = json.at("calibration").at(1).get<double>();
+        const ModelJson& thresholds = json.at("thresholds");
+        model.thresholds = {rangeIn(thresholds.at("shape_index")),
+                            rangeIn(thresholds.at("curvedness")),
+                            rangeIn(thresholds.at("gradient_concentration"))};
+        const ModelJson& texture = json.at("texture");
+        const std::size_t count = texture.at("polyp").size();
+        model.texture.threshold = texture.at("threshold");
+        model.texture.varianceShare = texture.at("variance_share");
+        model.texture.polyp = numbersIn(texture.at("polyp"), count);
+        model.texture.mean = numbersIn(texture.at("mean"), textureSize);
+        model.texture.components = numbersIn(texture.at("components"), count * textureSize);
+        for (const ModelJson& nodes : json.at("trees")) {
+            std::vector<TreeNode> tree;
+            for (const ModelJson& node : nodes) {
+                const auto next = std::int32_t(tree.size()) + 1;
+                if (node.is_number())
+                    tree.push_back({-1, node.get<float>(), 0, 0});
+                else
+                    tree.push_back({node.at(0).get<std::int32_t>(), node.at(1).get<float>(), next,
+                                    node.at(2).get<std::int32_t>()});
+                if (!node.is_number() && tree.back().feature < 0)
+                    throw std::invalid_argument("a branch has no feature");
+            }
+            model.forest.trees.push_back(std::move(tree));
+        }
+        TRY(checkForest(model.forest, featureCount));
+        return model;
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("this is no model: ") + error.what(), place);
+    }
+}
+
+std::string_view builtInModelText() {
+    return builtInModels().at("phantoms");
+}
+
+}  // namespace haustra::cad

@@ -1,0 +1,58 @@
+// What detection has learnt, as a small file.
+#pragma once
+
+#include "cad/forest.h"
+#include "cad/lesion_features.h"
+#include "cad/texture.h"
+#include "core/result.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace haustra::cad {
+
+/// Raised whenever features or candidates change so that older models no longer fit them.
+inline constexpr int modelVersion = 1;
+
+/// The reduction of false positives of the source (§6.2.6): each of its features within what
+/// training polyps had.
+struct ShapeThresholds {
+    std::pair<double, double> shapeIndex{0.0, 1.0}, curvedness{0.0, 1e9},
+        gradientConcentration{-1.0, 1.0};
+    bool pass(const FeatureVector& features) const;
+};
+
+struct CadModel {
+    std::string name;            ///< "phantoms-1"
+    std::string trainedOn;       ///< for a reader: of what, and what that means
+    std::string trainingSha256;  ///< of the training cases' scans, in order
+    TextureModel texture;
+    ShapeThresholds thresholds;
+    Forest forest;
+    /// A forest's score s becomes the probability 1/(1 + exp(−(a + b·logit s))) (Platt 1999), with
+    /// s kept within 0.001…0.999.
+    double calibrationA = 0.0, calibrationB = 1.0;
+    double operatingPoint = 0.5;  ///< probability from which on a candidate is a finding
+
+    double probability(const FeatureVector& features) const;
+};
+
+/// JSON that modelOfText reads back as it was. Ends with a new line.
+std::string modelText(const CadModel& model);
+/// Fails (badInput) where the text is no model; (unsupported) where it is of another version or of
+/// other features than this program has.
+Result<CadModel> modelOfText(std::string_view text, const std::string& place = "model");
+
+/// The one that the program carries: trained on phantoms alone.
+std::string_view builtInModelText();
+
+/// What must be known for 1/(1 + exp(−(a + b·x))) to fit `truths` (0 or 1) at x best: maximum
+/// likelihood by Newton's method, with a weak pull towards b = 1 and a = 0.
+std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const int> truths);
+/// ln(s/(1 − s)), s kept within 0.001…0.999.
+double logit(double share);
+
+}  // namespace haustra::cad

@@ -1,0 +1,133 @@
+#include "cad/texture.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/core.hpp>
+
+namespace haustra::cad {
+namespace {
+
+// In steps along and across the strip: a diamond.
+constexpr std::array<glm::ivec2, textureNeighbours> stencil{{{1, 0},
+                                                             {-1, 0},
+                                                             {0, 1},
+                                                             {0, -1},
+                                                             {1, 1},
+                                                             {1, -1},
+                                                             {-1, 1},
+                                                             {-1, -1},
+                                                             {2, 0},
+                                                             {-2, 0},
+                                                             {0, 2},
+                                                             {0, -2}}};
+
+}  // namespace
+
+TextureStencil::TextureStencil(const WallSamples& samples, std::span<const WallShape> shapes,
+                               std::span<const glm::vec3> along, int threads)
+    : neighbours_(samples.mesh.vertices.size()) {
+    parallelFor(neighbours_.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            const glm::dvec3 at = samples.mesh.vertices[v];
+            const glm::vec3 n = shapes[v].intoWall;
+            glm::vec3 up = along[v] - glm::dot(along[v], n) * n;
+            const float length = glm::length(up);
+            up = length > 1e-3f
+                     ? up / length
+                     : glm::normalize(glm::cross(
+                           n, std::abs(n.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+            const glm::vec3 aside = glm::cross(up, n);
+            for (std::size_t s = 0; s < stencil.size(); ++s) {
+                // Downhill along the mesh to where the neighbour should be.
+                const glm::vec3 wanted =
+                    float(textureStepMm) * (float(stencil[s].x) * aside + float(stencil[s].y) * up);
+                auto best = std::uint32_t(v);
+                float least = glm::dot(wanted, wanted);
+                for (bool nearer = true; nearer;) {
+                    nearer = false;
+                    const std::uint32_t from = best;
+                    for (std::uint32_t e = samples.begin[from]; e < samples.begin[from + 1]; ++e) {
+                        const glm::vec3 off =
+                            glm::vec3(samples.mesh.vertices[samples.neighbours[e]] - at) - wanted;
+                        const float squared = glm::dot(off, off);
+                        if (squared < least)
+                            least = squared, best = samples.neighbours[e], nearer = true;
+                    }
+                }
+                neighbours_[v][s] = best;
+            }
+        }
+    });
+}
+
+TextureVector TextureStencil::at(std::size_t sample, std::span<const glm::vec3> colors) const {
+    TextureVector vector;
+    const auto put = [&](int n, const glm::vec3& color) {
+        for (int c = 0; c < 3; ++c)
+            vector[std::size_t(3 * n + c)] = color[c];
+    };
+    put(0, colors[sample]);
+    for (int n = 0; n < textureNeighbours; ++n)
+        put(1 + n, colors[neighbours_[sample][std::size_t(n)]]);
+    return vector;
+}
+
+TextureModel learnTexture(std::span<const TextureVector> all, std::span<const TextureVector> polyps,
+                          bool reduce) {
+    const cv::Mat data(int(all.size()), textureSize, CV_32F,
+                       const_cast<float*>(all.front().data()));
+    const cv::PCA pca(data, cv::noArray(), cv::PCA::DATA_AS_ROW);
+    double sum = 0.0, held = 0.0;
+    for (int n = 0; n < pca.eigenvalues.rows; ++n)
+        sum += std::max(0.0f, pca.eigenvalues.at<float>(n));
+    int count = 0;
+    while (count < pca.eigenvalues.rows && (!reduce || held < textureVariance * sum || count == 0))
+        held += std::max(0.0f, pca.eigenvalues.at<float>(count++));
+    TextureModel model;
+    model.varianceShare = sum > 0.0 ? held / sum : 1.0;
+    model.mean.assign(pca.mean.ptr<float>(), pca.mean.ptr<float>() + textureSize);
+    for (int n = 0; n < count; ++n) {
+        const float* row = pca.eigenvectors.ptr<float>(n);
+        model.components.insert(model.components.end(), row, row + textureSize);
+    }
+    // Distances from zero are coordinates: V first, then what lies around it.
+    model.polyp.assign(std::size_t(count), 0.0f);
+    std::vector<double> mean(std::size_t(count), 0.0);
+    double squares = 0.0;
+    for (const TextureVector& vector : polyps) {
+        for (int n = 0; n < count; ++n) {
+            double coordinate = 0.0;
+            for (std::size_t c = 0; c < textureSize; ++c)
+                coordinate += double(model.components[std::size_t(n) * textureSize + c]) *
+                              double(vector[c] - model.mean[c]);
+            mean[std::size_t(n)] += coordinate;
+            squares += coordinate * coordinate;
+        }
+    }
+    const double size = double(polyps.size());
+    for (int n = 0; n < count; ++n) {
+        mean[std::size_t(n)] /= size;
+        squares -= size * mean[std::size_t(n)] * mean[std::size_t(n)];
+        model.polyp[std::size_t(n)] = float(mean[std::size_t(n)]);
+    }
+    model.threshold = std::sqrt(std::max(0.0, squares / size));
+    return model;
+}
+
+double textureDistance(const TextureModel& model, const TextureVector& vector) {
+    float squared = 0.0f;
+    for (int n = 0; n < model.count(); ++n) {
+        const float* row = &model.components[std::size_t(n) * textureSize];
+        float coordinate = 0.0f;
+        for (std::size_t c = 0; c < textureSize; ++c)
+            coordinate += row[c] * (vector[c] - model.mean[c]);
+        const float away = coordinate - model.polyp[std::size_t(n)];
+        squared += away * away;
+    }
+    return model.threshold > 0.0 ? std::sqrt(double(squared)) / model.threshold : 1e9;
+}
+
+}  // namespace haustra::cad

@@ -1,0 +1,189 @@
+#include "cad/train.h"
+
+#include "cad/wall_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace haustra::cad {
+namespace {
+
+constexpr std::size_t wallVectors = 6000, polypVectors = 4000;  // of one case, about
+
+std::size_t featureNumber(std::string_view name) {
+    return std::size_t(std::find(featureNames.begin(), featureNames.end(), name) -
+                       featureNames.begin());
+}
+
+std::pair<double, double> middleRange(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    // All but the outermost fortieth on either side.
+    const auto at = [&](double share) {
+        return values[std::size_t(share * double(values.size() - 1))];
+    };
+    return {at(0.025), at(0.975)};
+}
+
+Forest forestOf(const std::vector<const TrainingCase*>& cases) {
+    std::vector<float> rows, responses;
+    for (const TrainingCase* each : cases) {
+        for (const Example& example : each->examples) {
+            if (!example.weighed) continue;
+            rows.insert(rows.end(), example.features.begin(), example.features.end());
+            responses.push_back(example.polyp ? 1.0f : 0.0f);
+        }
+    }
+    return trainForest(rows, responses, featureCount);
+}
+
+// One place of a case that would be told, with its score by a forest that has not seen the case.
+struct Scored {
+    double score = 0.0;
+    int lesion = -1;
+    bool polyp = false, blamed = true;
+    std::size_t caseNumber = 0;
+};
+
+// As weigh() does: the best of those of one place.
+std::vector<Scored> scoredPlaces(const TrainingCase& each, std::size_t number,
+                                 const Forest& forest) {
+    std::vector<std::pair<double, const Example*>> order;
+    for (const Example& example : each.examples)
+        order.emplace_back(forest.at(example.features), &example);
+    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first > b.first : a.second->areaMm2 > b.second->areaMm2;
+    });
+    std::vector<const Example*> kept;
+    std::vector<Scored> places;
+    for (const auto& [score, example] : order) {
+        const bool told = std::any_of(kept.begin(), kept.end(), [&](const Example* other) {
+            return glm::distance(example->placeMm, other->placeMm) <
+                   0.5 * std::max(example->diameterMm, other->diameterMm);
+        });
+        if (told) continue;
+        kept.push_back(example);
+        const bool neoplastic =
+            example->lesion >= 0 && each.truth[std::size_t(example->lesion)].neoplastic;
+        const bool benign =
+            example->lesion >= 0 && each.truth[std::size_t(example->lesion)].hyperplastic();
+        places.push_back({score, example->lesion, neoplastic, !neoplastic && !benign, number});
+    }
+    return places;
+}
+
+}  // namespace
+
+TextureExamples textureExamples(const PreparedColon& colon, const WallEvidence& evidence,
+                                const std::vector<TrueLesion>& truth, int threads) {
+    const auto along = stripDirections(evidence.samples, colon.flat);
+    const TextureStencil stencil(evidence.samples, evidence.shapes, along, threads);
+    std::vector<glm::vec3> colors;
+    colors.reserve(evidence.rays.size());
+    for (const BiopsyRay& ray : evidence.rays)
+        colors.push_back(ray.color);
+    TextureExamples examples;
+    const std::size_t stride = std::max<std::size_t>(1, colors.size() / wallVectors);
+    for (std::size_t v = 0; v < colors.size(); v += stride)
+        examples.all.push_back(stencil.at(v, colors));
+    std::vector<std::size_t> inside;
+    for (std::size_t v = 0; v < colors.size(); ++v) {
+        const glm::dvec3 p = evidence.samples.mesh.vertices[v];
+        const bool polyp = std::any_of(truth.begin(), truth.end(), [&](const TrueLesion& lesion) {
+            return lesion.neoplastic &&
+                   glm::distance(p, lesion.positionMm) < 0.5 * lesion.diameterMm + 0.5;
+        });
+        if (polyp) inside.push_back(v);
+    }
+    const std::size_t step = std::max<std::size_t>(1, inside.size() / polypVectors);
+    for (std::size_t n = 0; n < inside.size(); n += step)
+        examples.polyps.push_back(stencil.at(inside[n], colors));
+    return examples;
+}
+
+std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
+                                const std::vector<TrueLesion>& truth) {
+    std::vector<glm::dvec3> places;
+    std::vector<Example> examples;
+    for (const Candidate& candidate : candidates) {
+        places.push_back(candidate.lesion.centreMm);
+        examples.push_back({candidate.features, candidate.lesion.centreMm,
+                            candidate.lesion.diameter.mm, candidate.lesion.areaMm2});
+    }
+    const std::vector<int> meant = matched(places, truth);
+    std::vector<double> largest(truth.size(), 0.0);
+    for (std::size_t n = 0; n < examples.size(); ++n)
+        if (meant[n] >= 0)
+            largest[std::size_t(meant[n])] =
+                std::max(largest[std::size_t(meant[n])], examples[n].areaMm2);
+    for (std::size_t n = 0; n < examples.size(); ++n) {
+        Example& example = examples[n];
+        example.lesion = meant[n];
+        if (meant[n] < 0) continue;
+        const TrueLesion& lesion = truth[std::size_t(meant[n])];
+        if (lesion.neoplastic) {
+            example.polyp = example.diameterMm >= 0.5 * lesion.diameterMm ||
+                            example.areaMm2 >= largest[std::size_t(meant[n])];
+            example.weighed = example.polyp;
+        } else {
+            example.weighed = !lesion.hyperplastic();
+        }
+    }
+    return examples;
+}
+
+Result<CadModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
+                            const TrainOptions& options) {
+    if (int(cases.size()) < options.folds)
+        return fail(ErrorKind::badInput, "there are fewer training cases than folds");
+    CadModel model;
+    model.name = options.name, model.trainedOn = options.trainedOn;
+    model.trainingSha256 = options.trainingSha256;
+    model.texture = texture;
+    std::vector<double> indices, curvedness, concentration;
+    std::vector<const TrainingCase*> all;
+    for (const TrainingCase& each : cases) {
+        all.push_back(&each);
+        for (const Example& example : each.examples) {
+            if (!example.polyp) continue;
+            indices.push_back(example.features[featureNumber("shape_index_mean")]);
+            curvedness.push_back(example.features[featureNumber("curvedness_mean")]);
+            concentration.push_back(example.features[featureNumber("gradient_concentration")]);
+        }
+    }
+    if (indices.empty())
+        return fail(ErrorKind::badInput, "no polyp of the training cases was a candidate");
+    model.thresholds = {middleRange(indices), middleRange(curvedness), middleRange(concentration)};
+    model.forest = forestOf(all);
+
+    std::vector<Scored> scored;
+    for (int fold = 0; fold < options.folds; ++fold) {
+        std::vector<const TrainingCase*> others;
+        for (std::size_t n = 0; n < cases.size(); ++n)
+            if (int(n) % options.folds != fold) others.push_back(all[n]);
+        const Forest forest = forestOf(others);
+        for (std::size_t n = std::size_t(fold); n < cases.size(); n += std::size_t(options.folds)) {
+            const auto places = scoredPlaces(cases[n], n, forest);
+            scored.insert(scored.end(), places.begin(), places.end());
+        }
+    }
+    std::vector<double> x, blamed;
+    std::vector<int> truths;
+    for (const Scored& place : scored) {
+        if (place.polyp || place.blamed) {
+            x.push_back(logit(place.score));
+            truths.push_back(place.polyp);
+        }
+        if (place.blamed) blamed.push_back(place.score);
+    }
+    std::tie(model.calibrationA, model.calibrationB) = fitLogistic(x, truths);
+    std::sort(blamed.rbegin(), blamed.rend());
+    const std::size_t allowed = std::size_t(options.falsePositives * double(cases.size()));
+    const double score = allowed < blamed.size() ? blamed[allowed] : 0.0;
+    model.operatingPoint =
+        1.0 / (1.0 + std::exp(-(model.calibrationA + model.calibrationB * logit(score))));
+    return model;
+}
+
+}  // namespace haustra::cad

@@ -1,0 +1,52 @@
+// Learning a model from cases whose truth is known.
+#pragma once
+
+#include "cad/detect.h"
+#include "cad/truth.h"
+
+#include <string>
+#include <vector>
+
+namespace haustra::cad {
+
+/// Vectors of one case's biopsy colours: of its whole wall, thinned, and of its polyps.
+struct TextureExamples {
+    std::vector<TextureVector> all, polyps;
+};
+TextureExamples textureExamples(const PreparedColon& colon, const WallEvidence& evidence,
+                                const std::vector<TrueLesion>& truth, int threads);
+
+/// What one candidate is in truth.
+struct Example {
+    FeatureVector features{};
+    glm::dvec3 placeMm{0.0};
+    double diameterMm = 0.0, areaMm2 = 0.0;
+    int lesion = -1;      ///< of the case's truth; −1: nothing
+    bool polyp = false;   ///< stands for that neoplastic lesion
+    bool weighed = true;  ///< else neither: a fragment of a polyp, or a benign growth
+};
+/// One case's candidates. A polyp is stood for by those that it is reached from and that are at
+/// least half as wide, or else by the largest.
+std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
+                                const std::vector<TrueLesion>& truth);
+
+struct TrainingCase {
+    std::string name;
+    std::vector<TrueLesion> truth;
+    std::vector<Example> examples;
+};
+
+struct TrainOptions {
+    std::string name, trainedOn, trainingSha256;
+    /// Findings a scan that are no lesion, in cross-validation, at the operating point.
+    double falsePositives = 2.0;
+    int folds = 5;
+};
+
+/// Forest, thresholds, calibration and operating point. The forest is trained on all cases;
+/// calibration and operating point are those of forests that had not seen the case (folds by case).
+/// Fails (badInput) where there are fewer cases than folds, or no polyp was found in any.
+Result<CadModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
+                            const TrainOptions& options);
+
+}  // namespace haustra::cad

@@ -1,0 +1,70 @@
+#include "cad/truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+namespace haustra::cad {
+namespace {
+
+glm::dvec3 placeOfTruth(const nlohmann::json& json) {
+    if (json.size() != 3) throw std::invalid_argument("a place has three coordinates");
+    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+}  // namespace
+
+double TrueLesion::reachMm() const {
+    return std::max(0.5 * diameterMm + 3.0, 5.0);
+}
+
+double TrueLesion::distanceMm(glm::dvec3 placeMm) const {
+    const double centre = glm::distance(placeMm, positionMm);
+    return kind == "pedunculated" ? centre : std::min(centre, glm::distance(placeMm, wallMm));
+}
+
+Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place) {
+    try {
+        const auto json = nlohmann::json::parse(text);
+        std::vector<TrueLesion> lesions;
+        for (const auto& read :
+             json.contains("growths") ? json.at("growths") : json.at("findings")) {
+            TrueLesion lesion;
+            lesion.positionMm = placeOfTruth(read.at("position_mm"));
+            lesion.wallMm =
+                read.contains("wall_mm") ? placeOfTruth(read.at("wall_mm")) : lesion.positionMm;
+            lesion.diameterMm = read.at("diameter_mm");
+            lesion.heightMm = read.value("height_mm", 0.0);
+            lesion.kind = read.value("kind", "");
+            lesion.neoplastic = read.value("neoplastic", true);
+            lesion.coreHu = read.value("core_hu", 0.0);
+            lesion.onFold = read.value("on_fold", false);
+            lesion.submergedShare = read.value("submerged_share", 0.0);
+            lesions.push_back(lesion);
+        }
+        return lesions;
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("this is no truth: ") + error.what(), place);
+    }
+}
+
+std::vector<int> matched(const std::vector<glm::dvec3>& places,
+                         const std::vector<TrueLesion>& lesions) {
+    std::vector<int> result(places.size(), -1);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        double least = 1e30;
+        for (const bool neoplastic : {true, false}) {
+            if (result[n] >= 0) break;
+            for (std::size_t l = 0; l < lesions.size(); ++l) {
+                if (lesions[l].neoplastic != neoplastic) continue;
+                const double mm = lesions[l].distanceMm(places[n]);
+                if (mm <= lesions[l].reachMm() && mm < least) least = mm, result[n] = int(l);
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace haustra::cad

@@ -1,0 +1,42 @@
+// What is truly there: lesions that somebody, or a generator, has marked.
+#pragma once
+
+#include "core/result.h"
+
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra::cad {
+
+struct TrueLesion {
+    glm::dvec3 positionMm{0.0};  ///< centre; of a pedunculated one, of its head
+    glm::dvec3 wallMm{0.0};      ///< its foot
+    double diameterMm = 0.0;
+    double heightMm = 0.0;
+    std::string kind;        ///< "sessile", "pedunculated", "flat"; or "untagged_stool" …
+    bool neoplastic = true;  ///< else what detection must not be praised nor blamed for, or a mimic
+    double coreHu = 0.0;     ///< how much denser than the wall its inside is
+    bool onFold = false;
+    double submergedShare = 0.0;
+
+    /// From how far a finding is taken to mean it: half its diameter and 3 mm, at least 5 mm.
+    double reachMm() const;
+    /// From a place to its centre, or to its foot where that is nearer and it has no stalk.
+    double distanceMm(glm::dvec3 placeMm) const;
+    /// A small benign growth of mucosa, which looks like a polyp and is one to a reader.
+    bool hyperplastic() const { return kind == "hyperplastic"; }
+};
+
+/// A list of lesions: {"growths": [{"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm",
+/// "height_mm", "core_hu", "on_fold", "submerged_share"}, …]}; or {"findings": [{"position_mm",
+/// "diameter_mm", "kind"}, …]}, which are all polyps. Fails (badInput) where it is neither.
+Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place);
+
+/// Of each place the lesion that it means: the nearest of those that it reaches, neoplastic ones
+/// before others; −1: none.
+std::vector<int> matched(const std::vector<glm::dvec3>& places,
+                         const std::vector<TrueLesion>& lesions);
+
+}  // namespace haustra::cad

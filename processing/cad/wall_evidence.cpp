@@ -1,0 +1,130 @@
+#include "cad/wall_evidence.h"
+
+#include "cad/biopsy_transfer.h"
+#include "core/bridges.h"
+#include "core/ct_scan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haustra::cad {
+namespace {
+
+// Of a rebuilt wall, what lies within this of its place is not the patient's.
+constexpr double leastRebuiltMm = 6.0;
+
+std::vector<std::uint8_t> unseenSamples(const PreparedColon& colon, const WallSamples& samples) {
+    const auto bridged = bridgedTriangles(colon.surface, colon.lumen);
+    std::vector<std::uint8_t> unseen(samples.mesh.vertices.size(), 0);
+    for (std::size_t t = 0; t < samples.mesh.triangles.size(); ++t) {
+        if (!bridged[std::size_t(samples.sourceTriangle[t])]) continue;
+        for (int n = 0; n < 3; ++n)
+            unseen[std::size_t(samples.mesh.triangles[t][n])] = 1;
+    }
+    for (const RebuiltWallRecord& wall : colon.rebuilt) {
+        const double reachMm = std::max(leastRebuiltMm, std::sqrt(wall.areaMm2 / 3.14) + 3.0);
+        for (std::size_t v = 0; v < unseen.size(); ++v)
+            if (glm::distance(samples.mesh.vertices[v], wall.placeMm) < reachMm) unseen[v] = 1;
+    }
+    return unseen;
+}
+
+// The lumen's label a little off the wall.
+std::vector<std::uint8_t> wetSamples(const PreparedColon& colon, const WallSamples& samples,
+                                     const std::vector<WallShape>& shapes, int threads) {
+    const Grid& grid = colon.lumen.grid();
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    const glm::dvec3 spacing = grid.spacingMm();
+    const double largest = std::max({spacing.x, spacing.y, spacing.z});
+    std::vector<std::uint8_t> wet(samples.mesh.vertices.size(), 0);
+    parallelFor(wet.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            for (double off = largest; off < 2.6 * largest; off += 0.5 * largest) {
+                const glm::dvec3 p =
+                    samples.mesh.vertices[v] - off * glm::dvec3(shapes[v].intoWall);
+                const glm::ivec3 voxel(
+                    glm::floor(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)) + 0.5));
+                if (!grid.contains(voxel)) break;
+                const auto label = LumenLabel(colon.lumen.at(voxel));
+                if (label == LumenLabel::outside) continue;
+                wet[v] = label == LumenLabel::tagged;
+                break;
+            }
+        }
+    });
+    return wet;
+}
+
+}  // namespace
+
+SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int threads) {
+    glm::dvec3 low(1e30), high(-1e30);
+    for (const glm::dvec3& p : colon.surface.vertices)
+        low = glm::min(low, p), high = glm::max(high, p);
+    const glm::dvec3 marginMm(biopsyStepMm * biopsySteps + 2.0);
+    return {colon.cleansed, low - marginMm, high + marginMm, sigmaMm, threads};
+}
+
+WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth) {
+    WallStatistics statistics;
+    // The wall itself is thinner than the scan resolves; its tissue is soft tissue.
+    statistics.wallHu = colon.tissue.meanHu[std::size_t(Tissue::soft)];
+    statistics.fatHu = colon.tissue.meanHu[std::size_t(Tissue::fat)];
+    // Second differences 4 mm apart, beyond the noise's grain, where all is soft tissue.
+    std::vector<double> differences;
+    const std::size_t step = std::max<std::size_t>(1, colon.surface.vertices.size() / 40000);
+    for (std::size_t v = 0; v < colon.surface.vertices.size(); v += step) {
+        const glm::dvec3 at = colon.surface.vertices[v];
+        const glm::dvec3 into(shapeOf(smooth.derivatives(at)).intoWall);
+        double value[3];
+        bool all = true;
+        for (int n = 0; n < 3 && all; ++n) {
+            value[n] = smooth.at(at + (5.0 + 4.0 * n) * into);
+            all = std::abs(value[n] - statistics.wallHu) < 60.0;
+        }
+        if (all) differences.push_back(std::abs(value[0] - 2.0 * value[1] + value[2]));
+    }
+    if (differences.size() > 100) {
+        const auto middle = differences.begin() + std::ptrdiff_t(differences.size() / 2);
+        std::nth_element(differences.begin(), middle, differences.end());
+        statistics.noiseHu = *middle / 0.6745 / std::sqrt(6.0);
+    }
+    return statistics;
+}
+
+WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options) {
+    const auto tell = [&](double share) {
+        if (options.progress) options.progress(share);
+    };
+    WallEvidence evidence;
+    evidence.samples = sampleWall(colon.surface, sampleSpacingMm);
+    tell(0.15);
+    evidence.smooth =
+        std::make_unique<const SmoothScan>(smoothedAround(colon, shapeSigmaMm, options.threads));
+    tell(0.4);
+    evidence.shapes = shapesOf(evidence.samples, *evidence.smooth, options.threads);
+    {
+        const SmoothScan broad = smoothedAround(colon, broadSigmaMm, options.threads);
+        evidence.broadShapes = shapesOf(evidence.samples, broad, options.threads);
+    }
+    tell(0.6);
+    evidence.unseen = unseenSamples(colon, evidence.samples);
+    evidence.wet = wetSamples(colon, evidence.samples, evidence.shapes, options.threads);
+    evidence.statistics = wallStatistics(colon, *evidence.smooth);
+    evidence.transferFunction = options.transferFunction
+                                    ? *options.transferFunction
+                                    : automaticBiopsyTransfer(evidence.statistics);
+    const BiopsyTable table(evidence.transferFunction);
+    const BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
+    evidence.rays.resize(evidence.samples.mesh.vertices.size());
+    parallelFor(
+        evidence.rays.size(), 4096, options.threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t v = begin; v < end; ++v)
+                evidence.rays[v] = castBiopsyRay(scan, table, evidence.samples.mesh.vertices[v],
+                                                 glm::dvec3(evidence.shapes[v].intoWall));
+        });
+    tell(1.0);
+    return evidence;
+}
+
+}  // namespace haustra::cad

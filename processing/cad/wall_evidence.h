@@ -1,0 +1,78 @@
+// What is known of the wall at each of its samples, before anything is made of it.
+#pragma once
+
+#include "cad/biopsy.h"
+#include "cad/texture.h"
+#include "cad/wall_samples.h"
+#include "cad/wall_shape.h"
+#include "core/centerline.h"
+#include "core/colon_record.h"
+#include "core/flat_map.h"
+#include "core/parallel.h"
+#include "core/tissue.h"
+#include "core/volume.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace haustra::cad {
+
+/// A prepared colon. What it points at outlives what is made of it; all volumes are on one grid.
+struct PreparedColon {
+    const Volume<std::int16_t>& ct;        ///< as it was scanned
+    const Volume<std::int16_t>& cleansed;  ///< the same volume where nothing was cleansed
+    const Volume<std::uint8_t>& lumen;     ///< LumenLabel
+    const TriMesh& surface;
+    const FlatMap& flat;
+    const Centerline& centerline;
+    TissueModel tissue;
+    std::vector<ColonPiece> pieces;          ///< empty where nobody knows the colon's parts
+    std::vector<RebuiltWallRecord> rebuilt;  ///< walls that the segmentation set up again
+};
+
+/// HU of what the electronic biopsy shows, measured on the scan itself.
+struct WallStatistics {
+    double wallHu = 0.0;   ///< of the wall's tissue
+    double fatHu = 0.0;    ///< of fat around it
+    double noiseHu = 0.0;  ///< standard deviation in the smoothed scan
+};
+
+/// At most this far apart lie neighbouring samples.
+inline constexpr double sampleSpacingMm = 0.5;
+/// Scale at which the wall's shape is measured. A polyp of 6 mm has twelve of it around; of a
+/// standard scan's noise it leaves a tenth.
+inline constexpr double shapeSigmaMm = 1.0;
+/// A second scale for what is low and wide: a flat lesion is 2 mm high and 10 mm wide.
+inline constexpr double broadSigmaMm = 2.2;
+
+struct EvidenceOptions {
+    /// The biopsy's colours; empty: derived from the scan (§7.2.5).
+    std::optional<TransferFunction> transferFunction = {};
+    int threads = 0;
+    Progress progress = {};
+};
+
+struct WallEvidence {
+    WallSamples samples;
+    std::unique_ptr<const SmoothScan> smooth;  ///< the cleansed scan at shapeSigmaMm
+    std::vector<WallShape> shapes;             ///< of each sample
+    std::vector<WallShape> broadShapes;        ///< the same at broadSigmaMm
+    std::vector<BiopsyRay> rays;
+    /// Nobody has seen the wall there: it encloses a bridge, or was set up again after a leak.
+    std::vector<std::uint8_t> unseen;
+    std::vector<std::uint8_t> wet;  ///< tagging stood before it, which was taken out
+    WallStatistics statistics;
+    TransferFunction transferFunction;  ///< that the rays were cast by
+};
+
+/// The cleansed scan at a scale, as far around the wall as biopsy rays reach.
+SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int threads);
+
+/// `smooth`: at shapeSigmaMm. From beneath the surface's vertices.
+WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth);
+
+WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options);
+
+}  // namespace haustra::cad

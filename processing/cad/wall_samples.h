@@ -1,0 +1,28 @@
+// The colon's wall as evenly spaced samples.
+#pragma once
+
+#include "core/tri_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace haustra::cad {
+
+/// Detection looks at the wall itself, not at the strip: a conformal map shrinks what stands on a
+/// stalk to a few pixels, while here neighbours are nowhere farther apart than asked.
+struct WallSamples {
+    /// The surface, its triangles divided until no edge is longer than asked; the surface's
+    /// vertices come first, and no place of the wall has moved.
+    TriMesh mesh;
+    std::vector<std::int32_t> sourceTriangle;  ///< per triangle, of the surface
+    std::vector<float> areaMm2;                ///< per vertex: a third of its triangles'
+    /// Vertices next to vertex v: neighbours[begin[v]] … neighbours[begin[v + 1] − 1], ascending.
+    std::vector<std::uint32_t> begin, neighbours;
+};
+
+/// Divides the surface. Each edge that is too long is cut in its middle, in all triangles that have
+/// it at once, until none is left: the mesh stays as closed as it was. Edges in `mostSpacingMm` >
+/// 0; indices in range. O(n log n) in the number of samples.
+WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm);
+
+}  // namespace haustra::cad

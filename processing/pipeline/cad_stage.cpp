@@ -1,0 +1,49 @@
+#include "cad/detect.h"
+#include "core/printed_text.h"
+#include "pipeline/colon_inputs.h"
+#include "pipeline/product_attributes.h"
+#include "pipeline/stages.h"
+#include "store/sha256.h"
+
+namespace haustra::pipeline {
+namespace {
+
+namespace product = store::product;
+
+// Raise it whenever the findings change for the same input and model.
+constexpr int detectionVersion = 1;
+
+}  // namespace
+
+Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& flatMapKey) {
+    const StageMeter meter;
+    const PrepareOptions& options = preparation.options();
+    const std::string hash = store::toHex(store::textDigest(cad::builtInModelText()));
+    const ProductKey key = store::makeKey("cad", detectionVersion, "model=" + hash, {flatMapKey});
+    StageCase stage = preparation.open("cad", key);
+    return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {
+        ColonProducts products;
+        products.quality = TRY(stage.holds(product::quality));
+        products.cleansed = TRY(stage.holds(product::cleansed));
+        const auto inputs = TRY(readColon(stage, products));
+        const auto model = TRY(cad::modelOfText(cad::builtInModelText(), "built-in model"));
+        cad::DetectOptions detection;
+        detection.threads = options.threads;
+        detection.progress = progress;
+        Findings findings = cad::detectPolyps(inputs.colon(), model, detection);
+        findings.model.sha256 = hash;
+        store::Attributes attributes{{"model", model.name},
+                                     {"model-sha256", hash},
+                                     {"findings", std::to_string(findings.findings.size())},
+                                     {"candidates", std::to_string(findings.candidates.size())}};
+        std::vector<std::string> notes{printed("%zu places may be polyps (%s, %s)",
+                                               findings.findings.size(), model.name.c_str(),
+                                               model.trainedOn.c_str())};
+        for (const std::string& warning : findings.warnings)
+            notes.push_back("warning: " + warning);
+        setNotes(attributes, notes);
+        return stage.publish(product::findings, findingsJson(findings), attributes);
+    });
+}
+
+}  // namespace haustra::pipeline

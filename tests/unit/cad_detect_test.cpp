@@ -1,0 +1,236 @@
+// Detection on a lumen whose wall has polyps and nothing else, all by formula.
+#include "cad/biopsy_transfer.h"
+#include "cad/detect.h"
+#include "core/ct_scan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+using namespace haustra;
+
+namespace {
+
+constexpr double lumenMm = 20.0;  // radius of a ball of gas
+
+struct Bump {
+    glm::dvec3 centreMm;  ///< of a ball of tissue
+    double radiusMm;
+};
+
+const std::vector<Bump> bumps{{{0, 0, 18.5}, 4.0}, {{-18.0, 0, -2}, 3.2}};
+
+// Negative in the lumen. The creases between ball and bumps are rounded.
+double wallMm(glm::dvec3 p) {
+    double d = glm::length(p) - lumenMm;
+    for (const Bump& bump : bumps) {
+        const double other = bump.radiusMm - glm::distance(p, bump.centreMm);
+        const double h = std::max(0.0, 1.0 - std::abs(d - other) / 1.0);
+        d = std::max(d, other) + 0.25 * h * h;
+    }
+    return d;
+}
+
+// Prepared as the pipeline would, but by formula: a surface whose vertices lie where the wall is.
+struct BallColon {
+    Volume<std::int16_t> hu;
+    Volume<std::uint8_t> lumen;
+    TriMesh surface;
+    FlatMap flat;
+    Centerline centerline;
+    TissueModel tissue;
+
+    // `turn`: a turn of the body about z; `shift`: of the grid and body by whole voxels.
+    explicit BallColon(glm::dmat3 turn = glm::dmat3(1.0), glm::ivec3 shift = glm::ivec3(0),
+                       double offsetHu = 0.0) {
+        const Grid grid = axisAlignedGrid({80, 80, 80}, {0.75, 0.75, 0.75}, {-29.5, -29.5, -29.5});
+        hu = Volume<std::int16_t>(grid), lumen = Volume<std::uint8_t>(grid);
+        const glm::dvec3 movedMm = 0.75 * glm::dvec3(shift);
+        const glm::dmat3 back = glm::transpose(turn);
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            const double d =
+                wallMm(back * (grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))) - movedMm));
+            hu.writable()[n] =
+                std::int16_t(std::lround(40.0 + offsetHu - 1030.0 / (1.0 + std::exp(d / 0.5))));
+            lumen.writable()[n] = std::uint8_t(d < 0.0 ? LumenLabel::air : LumenLabel::outside);
+        }
+        tissue.meanHu = {-990.0 + offsetHu, -100.0 + offsetHu, 40.0 + offsetHu, 600.0 + offsetHu};
+        tissue.airBelowHu = -475.0 + offsetHu;
+        makeSurface(turn, movedMm);
+        for (int n = -15; n <= 15; ++n)
+            centerline.points.push_back(
+                {turn * glm::dvec3(0, n, 0) + movedMm, double(n + 15), 5.0, false});
+        flat.height = 1.0;
+    }
+
+    // An octahedron, divided, each vertex on its ray where the wall begins.
+    void makeSurface(glm::dmat3 turn, glm::dvec3 movedMm) {
+        surface.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+        surface.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                             {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+        const cad::WallSamples fine = cad::sampleWall(surface, 0.035);
+        surface = fine.mesh;
+        for (glm::dvec3& v : surface.vertices) {
+            const glm::dvec3 way = glm::normalize(v);
+            double low = 5.0, high = lumenMm + 5.0;
+            for (int step = 0; step < 40; ++step) {
+                const double middle = 0.5 * (low + high);
+                (wallMm(middle * way) < 0.0 ? low : high) = middle;
+            }
+            v = turn * (low * way) + movedMm;
+        }
+    }
+
+    cad::PreparedColon colon() const {
+        return {hu, hu, lumen, surface, flat, centerline, tissue, {}, {}};
+    }
+};
+
+cad::DetectOptions shapeAlone(int threads = 2) {
+    cad::DetectOptions options;
+    options.method.texture = false;
+    options.threads = threads;
+    return options;
+}
+
+// The candidates by the narrow scale that stand well above the wall.
+std::vector<cad::Candidate> bodies(const BallColon& ball, int threads = 2) {
+    cad::EvidenceOptions gathering;
+    gathering.threads = threads;
+    const auto evidence = cad::gatherEvidence(ball.colon(), gathering);
+    auto all = cad::findCandidates(ball.colon(), evidence, nullptr, shapeAlone(threads));
+    std::erase_if(all, [](const cad::Candidate& c) { return c.lesion.heightMm < 1.5; });
+    std::sort(all.begin(), all.end(), [](const cad::Candidate& a, const cad::Candidate& b) {
+        return a.lesion.volumeMm3 > b.lesion.volumeMm3;
+    });
+    // Both scales may tell of one body.
+    std::vector<cad::Candidate> kept;
+    for (auto& c : all)
+        if (std::none_of(kept.begin(), kept.end(), [&](const cad::Candidate& k) {
+                return glm::distance(k.lesion.centreMm, c.lesion.centreMm) < 4.0;
+            }))
+            kept.push_back(std::move(c));
+    return kept;
+}
+
+TEST(Detect, BodiesOnTheWallAreFoundWithTheirSize) {
+    const auto found = bodies(BallColon());
+    ASSERT_EQ(found.size(), bumps.size());
+    for (std::size_t n = 0; n < bumps.size(); ++n) {
+        const cad::Lesion& lesion = found[n].lesion;
+        const Bump& bump = bumps[n];
+        EXPECT_LT(glm::distance(lesion.centreMm, bump.centreMm), 0.6 * bump.radiusMm);
+        EXPECT_NEAR(lesion.diameter.mm, 2.0 * bump.radiusMm, 0.8);
+        const glm::dvec3 outward = glm::normalize(bump.centreMm);
+        EXPECT_LT(glm::dot(lesion.axis, outward), -0.95) << "away from the wall";
+        const double height = lumenMm - (glm::length(bump.centreMm) - bump.radiusMm);
+        EXPECT_NEAR(lesion.heightMm, height, 1.0);
+        // Its voxels are tissue, and as many as its volume says.
+        const BallColon ball;
+        double tissue = 0.0, all = 0.0;
+        for (const VoxelRun& run : lesion.voxels) {
+            for (int i = 0; i < run.count; ++i) {
+                all += 1.0;
+                tissue += ball.hu.at(run.first + glm::ivec3(i, 0, 0)) > ball.tissue.airBelowHu;
+            }
+        }
+        EXPECT_GT(tissue / all, 0.9);
+        EXPECT_NEAR(all * ball.hu.grid().voxelVolumeMm3() / lesion.volumeMm3, 1.0, 0.1);
+    }
+}
+
+TEST(Detect, TurnsShiftsAndThreadsChangeNothing) {
+    const auto plain = bodies(BallColon());
+    const glm::dmat3 quarter(0, 1, 0, -1, 0, 0, 0, 0, 1);
+    const auto turned = bodies(BallColon(quarter)),
+               shifted = bodies(BallColon(glm::dmat3(1.0), {3, -2, 4}));
+    ASSERT_EQ(turned.size(), plain.size());
+    ASSERT_EQ(shifted.size(), plain.size());
+    for (std::size_t n = 0; n < plain.size(); ++n) {
+        const cad::Lesion& lesion = plain[n].lesion;
+        EXPECT_LT(glm::distance(turned[n].lesion.centreMm, quarter * lesion.centreMm), 0.05);
+        EXPECT_LT(glm::distance(shifted[n].lesion.centreMm,
+                                lesion.centreMm + 0.75 * glm::dvec3(3, -2, 4)),
+                  0.05);
+        for (const auto* other : {&turned, &shifted}) {
+            const cad::Lesion& same = (*other)[n].lesion;
+            EXPECT_NEAR(same.diameter.mm, lesion.diameter.mm, 0.1);
+            EXPECT_NEAR(same.heightMm, lesion.heightMm, 0.05);
+            EXPECT_NEAR(same.volumeMm3 / lesion.volumeMm3, 1.0, 0.02);
+        }
+    }
+    const auto alone = bodies(BallColon(), 1);
+    ASSERT_EQ(alone.size(), plain.size());
+    for (std::size_t n = 0; n < plain.size(); ++n) {
+        EXPECT_EQ(alone[n].features, plain[n].features);
+        EXPECT_EQ(alone[n].lesion.centreMm, plain[n].lesion.centreMm);
+        EXPECT_EQ(alone[n].lesion.voxels, plain[n].lesion.voxels);
+    }
+}
+
+TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
+    BallColon ball;
+    // The first bump stands on a bridge.
+    for (std::size_t n = 0; n < ball.lumen.grid().voxelCount(); ++n) {
+        const glm::dvec3 p =
+            ball.lumen.grid().patientFromVoxelPoint(glm::dvec3(ball.lumen.grid().voxelAt(n)));
+        if (ball.lumen[n] && glm::distance(p, bumps[0].centreMm) < 9.0)
+            ball.lumen.writable()[n] = std::uint8_t(LumenLabel::bridge);
+    }
+    const auto found = bodies(ball);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_LT(glm::distance(found[0].lesion.centreMm, bumps[1].centreMm), bumps[1].radiusMm);
+    // A wall that was set up again counts as little.
+    const BallColon whole;
+    cad::PreparedColon colon = whole.colon();
+    colon.rebuilt = {{bumps[1].centreMm, 20.0, true}};
+    const auto evidence = cad::gatherEvidence(colon, {});
+    for (const auto& c : cad::findCandidates(colon, evidence, nullptr, shapeAlone()))
+        EXPECT_GT(glm::distance(c.lesion.centreMm, bumps[1].centreMm), 2.0);
+}
+
+TEST(Biopsy, ARayEndsWhereTheLumenBeginsAgain) {
+    // A plate of tissue 4 mm thick between gas and gas.
+    const Grid grid = axisAlignedGrid({32, 32, 64}, {0.75, 0.75, 0.5}, {-12, -12, 0});
+    Volume<std::int16_t> hu(grid);
+    Volume<std::uint8_t> lumen(grid);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const double z = grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))).z;
+        const bool gas = z < 10.0 || z > 14.0;
+        hu.writable()[n] = gas ? -1000 : 60;
+        lumen.writable()[n] = gas;
+    }
+    const cad::SmoothScan scan(hu, {-12, -12, 0}, {12, 12, 32}, 0.5, 1);
+    const cad::BiopsyScan biopsy{scan, lumen, -470.0};
+    const cad::BiopsyTable table(cad::fixedBiopsyTransfer());
+    const cad::BiopsyRay through = cad::castBiopsyRay(biopsy, table, {0, 0, 10.1}, {0, 0, 1});
+    EXPECT_TRUE(through.reenters);
+    EXPECT_NEAR(through.tissueMm, 4.0, 0.75);
+    const cad::BiopsyRay along = cad::castBiopsyRay(biopsy, table, {-8, 0, 12.0}, {1, 0, 0});
+    EXPECT_FALSE(along.reenters);
+    EXPECT_NEAR(along.tissueMm, cad::biopsySteps * cad::biopsyStepMm, 1e-3);
+    EXPECT_GT(along.opacity, through.opacity);
+    EXPECT_GT(along.color.g, along.color.r) << "tissue of middle density is green";
+}
+
+TEST(Biopsy, TheAutomaticTransferFunctionFollowsTheScan) {
+    const cad::WallStatistics usual{40.0, -100.0, 5.0};
+    const TransferFunction fixed = cad::fixedBiopsyTransfer(),
+                           same = cad::automaticBiopsyTransfer(usual);
+    for (std::size_t n = 0; n < fixed.points.size(); ++n)
+        EXPECT_NEAR(same.points[n].hu, fixed.points[n].hu, 1e-9);
+    const TransferFunction moved = cad::automaticBiopsyTransfer({60.0, -80.0, 5.0});
+    for (std::size_t n = 0; n < fixed.points.size(); ++n)
+        EXPECT_NEAR(moved.points[n].hu, fixed.points[n].hu + 20.0, 1e-9);
+    const TransferFunction noisy = cad::automaticBiopsyTransfer({40.0, -100.0, 25.0});
+    for (std::size_t n = 0; n < fixed.points.size(); ++n) {
+        if (fixed.points[n].hu > 40.0)
+            EXPECT_GT(noisy.points[n].hu, fixed.points[n].hu + 20.0);
+        else
+            EXPECT_NEAR(noisy.points[n].hu, fixed.points[n].hu, 1e-9);
+    }
+    EXPECT_TRUE(checkTransferFunction(noisy));
+}
+
+}  // namespace

@@ -1,0 +1,228 @@
+// Samples of the wall, derivatives of the scan, and shapes whose curvatures are known.
+#include "cad/candidates.h"
+#include "cad/lesion.h"
+#include "cad/wall_shape.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+using namespace haustra;
+
+namespace {
+
+// A turned grid with voxels of three different lengths.
+Grid turnedGrid() {
+    Grid grid = axisAlignedGrid({40, 44, 36}, {0.8, 0.7, 1.1}, {0, 0, 0});
+    const double turn = 0.4;
+    const glm::dmat4 rotation(std::cos(turn), std::sin(turn), 0, 0, -std::sin(turn), std::cos(turn),
+                              0, 0, 0, 0, 1, 0, -5, 3, 12, 1);
+    grid.patientFromVoxel = rotation * grid.patientFromVoxel;
+    return grid;
+}
+
+template <class Field>
+Volume<std::int16_t> sampled(const Grid& grid, const Field& field) {
+    Volume<std::int16_t> volume(grid);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+        volume.writable()[n] = std::int16_t(
+            std::lround(field(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))))));
+    return volume;
+}
+
+glm::dvec3 middleOf(const Grid& grid) {
+    return grid.patientFromVoxelPoint(0.5 * glm::dvec3(grid.size - 1));
+}
+
+cad::SmoothScan wholeScan(const Volume<std::int16_t>& volume, double sigmaMm) {
+    glm::dvec3 low(1e9), high(-1e9);
+    for (int n = 0; n < 8; ++n) {
+        const glm::dvec3 corner = volume.grid().patientFromVoxelPoint(
+            glm::dvec3(volume.grid().size - 1) * glm::dvec3(n & 1, n >> 1 & 1, n >> 2 & 1));
+        low = glm::min(low, corner), high = glm::max(high, corner);
+    }
+    return {volume, low, high, sigmaMm, 2};
+}
+
+TEST(SmoothScan, KeepsTheDerivativesOfAQuadraticField) {
+    // Smoothing adds a constant to it and leaves gradient and Hessian.
+    const Grid grid = turnedGrid();
+    const glm::dvec3 centre = middleOf(grid);
+    const glm::dmat3 hessian(6, 1, -2, 1, -4, 3, -2, 3, 8);
+    const glm::dvec3 slope(20, -10, 15);
+    const auto field = [&](glm::dvec3 p) {
+        const glm::dvec3 q = p - centre;
+        return 10.0 * (glm::dot(slope, q) + 0.5 * glm::dot(q, hessian * q));
+    };
+    for (const double sigma : {0.0, 1.0, 1.6}) {
+        const cad::SmoothScan scan = wholeScan(sampled(grid, field), sigma);
+        for (const glm::dvec3 off : {glm::dvec3(0.0), glm::dvec3(1.3, -0.7, 0.4)}) {
+            const cad::Derivatives found = scan.derivatives(centre + off);
+            EXPECT_LT(glm::length(found.gradient - 10.0 * (slope + hessian * off)), 1.5);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_LT(glm::length(found.hessian[c] - 10.0 * hessian[c]), 1.5);
+            EXPECT_LT(glm::length(scan.gradient(centre + off) - found.gradient), 25.0);
+        }
+    }
+}
+
+// Gas inside, tissue outside, or the other way; the edge is a few millimetres wide.
+double edge(double insideMm) {
+    return 20.0 - 1000.0 / (1.0 + std::exp(insideMm / 0.7));
+}
+
+TEST(WallShape, OfBallsTubesAndSaddles) {
+    const Grid grid = axisAlignedGrid({64, 64, 64}, {0.7, 0.7, 0.7}, {-22, -22, -22});
+    const double radius = 5.0;
+    // Tissue that bulges into gas as a ball does: a cap.
+    const auto ball =
+        wholeScan(sampled(grid, [&](glm::dvec3 p) { return edge(radius - glm::length(p)); }), 0.8);
+    // A lumen: a cup seen from within.
+    const auto lumen =
+        wholeScan(sampled(grid, [&](glm::dvec3 p) { return edge(glm::length(p) - 12.0); }), 0.8);
+    // A rod of tissue: a ridge.
+    const auto rod = wholeScan(
+        sampled(grid, [&](glm::dvec3 p) { return edge(radius - std::hypot(p.x, p.y)); }), 0.8);
+    // z = (x² − y²)/16: a saddle with curvatures of ±1/8.
+    const auto saddle = wholeScan(
+        sampled(grid, [&](glm::dvec3 p) { return edge((p.x * p.x - p.y * p.y) / 16.0 - p.z); }),
+        0.8);
+    for (const glm::dvec3 direction :
+         {glm::dvec3(1, 0, 0), glm::dvec3(0.6, 0.8, 0), glm::dvec3(0.48, 0.6, 0.64)}) {
+        const cad::WallShape cap = cad::shapeOf(ball.derivatives(radius * direction));
+        EXPECT_NEAR(cap.k1, 1.0 / radius, 0.03);
+        EXPECT_NEAR(cap.k2, 1.0 / radius, 0.03);
+        EXPECT_GT(cap.shapeIndex(), 0.95);
+        EXPECT_NEAR(cap.curvedness(), 1.0 / radius, 0.03);
+        EXPECT_LT(glm::dot(glm::dvec3(cap.intoWall), direction), -0.99);
+        const cad::WallShape cup = cad::shapeOf(lumen.derivatives(12.0 * direction));
+        EXPECT_NEAR(cup.k1, -1.0 / 12.0, 0.02);
+        EXPECT_LT(cup.shapeIndex(), 0.05);
+    }
+    const cad::WallShape ridge = cad::shapeOf(rod.derivatives({radius, 0, 1.2}));
+    EXPECT_NEAR(ridge.k1, 1.0 / radius, 0.03);
+    EXPECT_NEAR(ridge.k2, 0.0, 0.01);
+    EXPECT_NEAR(ridge.shapeIndex(), 0.75, 0.03);
+    const cad::WallShape pass = cad::shapeOf(saddle.derivatives({0, 0, 0}));
+    EXPECT_NEAR(pass.k1, 0.125, 0.02);
+    EXPECT_NEAR(pass.k2, -0.125, 0.02);
+    EXPECT_NEAR(pass.shapeIndex(), 0.5, 0.03);
+    const cad::WallShape flat = cad::shapeOf({});
+    EXPECT_EQ(flat.shapeIndex(), 0.5f);
+}
+
+// Eight octahedron faces, each divided; outward.
+TriMesh sphere(double radius, int divisions) {
+    TriMesh mesh;
+    const auto add = [&](glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+        for (int i = 0; i < divisions; ++i) {
+            for (int j = 0; i + j < divisions; ++j) {
+                const auto at = [&](int u, int v) {
+                    return a + (b - a) * (double(u) / divisions) +
+                           (c - a) * (double(v) / divisions);
+                };
+                const auto triangle = [&](glm::dvec3 p, glm::dvec3 q, glm::dvec3 r) {
+                    const int first = int(mesh.vertices.size());
+                    mesh.vertices.insert(mesh.vertices.end(), {p, q, r});
+                    mesh.triangles.push_back({first, first + 1, first + 2});
+                };
+                triangle(at(i, j), at(i + 1, j), at(i, j + 1));
+                if (i + j < divisions - 1) triangle(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            }
+        }
+    };
+    for (int n = 0; n < 8; ++n) {
+        const glm::dvec3 x(n & 1 ? -1 : 1, 0, 0), y(0, n & 2 ? -1 : 1, 0), z(0, 0, n & 4 ? -1 : 1);
+        const bool flip = (n & 1) ^ (n >> 1 & 1) ^ (n >> 2 & 1);
+        flip ? add(x, z, y) : add(x, y, z);
+    }
+    for (glm::dvec3& v : mesh.vertices)
+        v = radius * glm::normalize(v);
+    return mesh;
+}
+
+TEST(WallSamples, LieCloseOnTheSurfaceItself) {
+    // One large and one narrow triangle with an edge between them, and a closed tetrahedron.
+    TriMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {4, 0, 0},  {0, 3, 0}, {4.2, 3.1, 0.3},
+                     {9, 0, 0}, {11, 0, 0}, {9, 2, 0}, {9, 0, 1.5}};
+    mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {4, 6, 5}, {4, 5, 7}, {5, 6, 7}, {6, 4, 7}};
+    const cad::WallSamples samples = cad::sampleWall(mesh, 0.5);
+    const MeshTopology before = meshTopology(mesh), after = meshTopology(samples.mesh);
+    EXPECT_EQ(after.eulerCharacteristic, before.eulerCharacteristic);
+    EXPECT_EQ(after.components, before.components);
+    EXPECT_EQ(after.nonManifoldEdges, 0);
+    double area = 0.0, areaBefore = 0.0;
+    for (const float mm2 : samples.areaMm2)
+        area += mm2;
+    for (const glm::ivec3& t : mesh.triangles)
+        areaBefore += 0.5 * glm::length(glm::cross(
+                                mesh.vertices[std::size_t(t.y)] - mesh.vertices[std::size_t(t.x)],
+                                mesh.vertices[std::size_t(t.z)] - mesh.vertices[std::size_t(t.x)]));
+    EXPECT_NEAR(area, areaBefore, 1e-4);
+    for (std::size_t n = 0; n < samples.mesh.triangles.size(); ++n) {
+        const glm::ivec3 t = samples.mesh.triangles[n],
+                         s = mesh.triangles[std::size_t(samples.sourceTriangle[n])];
+        const glm::dvec3 a = mesh.vertices[std::size_t(s.x)],
+                         normal = glm::normalize(glm::cross(mesh.vertices[std::size_t(s.y)] - a,
+                                                            mesh.vertices[std::size_t(s.z)] - a));
+        for (int c = 0; c < 3; ++c) {
+            const glm::dvec3 p = samples.mesh.vertices[std::size_t(t[c])];
+            EXPECT_LE(glm::distance(p, samples.mesh.vertices[std::size_t(t[(c + 1) % 3])]), 0.5);
+            EXPECT_NEAR(glm::dot(normal, p - a), 0.0, 1e-9);
+        }
+    }
+    for (std::uint32_t v = 0; v < samples.mesh.vertices.size(); ++v)
+        for (std::uint32_t e = samples.begin[v]; e < samples.begin[v + 1]; ++e)
+            EXPECT_NE(samples.neighbours[e], v);
+}
+
+TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {
+    const Grid grid = turnedGrid();
+    const double radius = 6.0;
+    TriMesh body = sphere(radius, 24);
+    const glm::dvec3 centre = middleOf(grid) + glm::dvec3(0.21, -0.13, 0.37);
+    for (glm::dvec3& v : body.vertices)
+        v += centre;
+    Volume<std::uint8_t> held(grid, 0);
+    for (const VoxelRun& run : cad::voxelsWithin(body, grid))
+        for (int n = 0; n < run.count; ++n)
+            ++held.writable()[grid.index(run.first + glm::ivec3(n, 0, 0))];
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const double mm =
+            glm::distance(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))), centre);
+        if (mm < radius - 0.05) {
+            EXPECT_EQ(held[n], 1) << mm;
+        }
+        if (mm > radius) {
+            EXPECT_EQ(held[n], 0) << mm;
+        }
+    }
+    // Beyond the grid there are none.
+    for (glm::dvec3& v : body.vertices)
+        v += glm::dvec3(500.0);
+    EXPECT_TRUE(cad::voxelsWithin(body, grid).empty());
+}
+
+TEST(Lesion, ADiameterIsTheGreatestDistance) {
+    cad::WallSamples wall;
+    std::vector<std::uint32_t> all;
+    for (int n = 0; n < 200; ++n) {
+        const double z = 1.0 - (2.0 * n + 1.0) / 200, r = std::sqrt(1.0 - z * z);
+        wall.mesh.vertices.push_back(
+            {5.0 * r * std::cos(2.4 * n), 3.0 * r * std::sin(2.4 * n), 2.0 * z});
+        all.push_back(std::uint32_t(n));
+    }
+    double most = 0.0;
+    for (const glm::dvec3& a : wall.mesh.vertices)
+        for (const glm::dvec3& b : wall.mesh.vertices)
+            most = std::max(most, glm::distance(a, b));
+    const cad::Diameter found = cad::diameterOf(wall, all);
+    EXPECT_LE(found.mm, most);
+    EXPECT_GT(found.mm, 0.99 * most);
+    EXPECT_DOUBLE_EQ(glm::distance(wall.mesh.vertices[found.from], wall.mesh.vertices[found.to]),
+                     found.mm);
+}
+
+}  // namespace

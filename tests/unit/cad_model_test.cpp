@@ -1,0 +1,215 @@
+// What detection learns: texture, forests, calibration; and how it is judged.
+#include "cad/evaluate.h"
+#include "cad/model.h"
+#include "cad/train.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+using namespace haustra;
+
+namespace {
+
+std::vector<cad::TextureVector> cloud(int count, float at, float spread, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<float> normal;
+    std::vector<cad::TextureVector> vectors(static_cast<std::size_t>(count));
+    for (cad::TextureVector& vector : vectors) {
+        const float common = normal(random);
+        for (float& v : vector)
+            v = at + spread * (common + 0.1f * normal(random));
+    }
+    return vectors;
+}
+
+TEST(Texture, TheThresholdIsTheRootMeanSquareDistanceOfPolyps) {
+    auto all = cloud(2000, 0.2f, 0.05f, 1);
+    const auto polyps = cloud(300, 0.6f, 0.02f, 2);
+    all.insert(all.end(), polyps.begin(), polyps.end());
+    for (const bool reduce : {true, false}) {
+        const cad::TextureModel model = cad::learnTexture(all, polyps, reduce);
+        EXPECT_EQ(model.count() == cad::textureSize, !reduce);
+        EXPECT_GE(model.varianceShare, reduce ? cad::textureVariance : 1.0 - 1e-5);
+        double squares = 0.0;
+        for (const auto& vector : polyps)
+            squares += std::pow(cad::textureDistance(model, vector), 2.0);
+        EXPECT_NEAR(squares / double(polyps.size()), 1.0, 1e-3);
+        for (const auto& vector : cloud(50, 0.2f, 0.05f, 3))
+            EXPECT_GT(cad::textureDistance(model, vector), 2.0);
+    }
+}
+
+// Responses that a tree can tell: feature 1 over a half.
+struct Taught {
+    std::vector<float> rows, responses;
+    explicit Taught(int count) {
+        std::mt19937 random(7);
+        std::uniform_real_distribution<float> share;
+        for (int n = 0; n < count; ++n) {
+            for (int f = 0; f < cad::featureCount; ++f)
+                rows.push_back(share(random));
+            responses.push_back(rows[rows.size() - std::size_t(cad::featureCount) + 1] > 0.5f);
+        }
+    }
+};
+
+cad::CadModel smallModel() {
+    const Taught taught(400);
+    cad::CadModel model;
+    model.name = "test-1", model.trainedOn = "numbers that \"nobody\" measured";
+    model.trainingSha256 = std::string(64, 'b');
+    model.texture = cad::learnTexture(cloud(200, 0.2f, 0.05f, 1), cloud(50, 0.6f, 0.02f, 2));
+    model.thresholds = {{0.8, 1.0}, {0.05, 0.4}, {0.1, 0.9}};
+    model.forest = cad::trainForest(taught.rows, taught.responses, cad::featureCount, 30);
+    model.calibrationA = -0.25, model.calibrationB = 1.5, model.operatingPoint = 0.4;
+    return model;
+}
+
+TEST(Forest, LearnsWhatTellsTheTwoApart) {
+    const cad::CadModel model = smallModel();
+    cad::FeatureVector features;
+    features.fill(0.5f);
+    features[1] = 0.95f;
+    EXPECT_GT(model.forest.at(features), 0.8);
+    features[1] = 0.05f;
+    EXPECT_LT(model.forest.at(features), 0.2);
+    const Taught taught(400);
+    const cad::Forest again =
+        cad::trainForest(taught.rows, taught.responses, cad::featureCount, 30);
+    EXPECT_EQ(again.at(features), model.forest.at(features));
+}
+
+TEST(Model, ReadsBackAsItWas) {
+    const cad::CadModel model = smallModel();
+    const std::string text = cad::modelText(model);
+    const auto read = cad::modelOfText(text);
+    ASSERT_TRUE(read) << describe(read.error());
+    EXPECT_EQ(cad::modelText(*read), text);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> share;
+    for (int n = 0; n < 200; ++n) {
+        cad::FeatureVector features;
+        for (float& f : features)
+            f = share(random);
+        EXPECT_NEAR(read->probability(features), model.probability(features), 1e-5);
+    }
+}
+
+TEST(Model, WhatIsNoneIsRefused) {
+    const std::string sound = cad::modelText(smallModel());
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = sound;
+        const std::size_t at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        return text.replace(at, from.size(), to);
+    };
+    ASSERT_TRUE(cad::modelOfText(sound));
+    for (const std::string& text :
+         {std::string(), std::string("[]"), sound.substr(0, sound.size() - 40),
+          with("\"haustra_cad_model\": 1", "\"haustra_cad_model\": 99"),
+          with("diameter_mm", "weight_kg"), with("\"trees\": [\n[[", "\"trees\": [\n[[99,0.5,1],["),
+          with("\"trees\": [\n[[", "\"trees\": [\n[[1,0.5,0],["),
+          with("\"polyp\":[", "\"polyp\":[0,")})
+        EXPECT_FALSE(cad::modelOfText(text, "m.json")) << text.substr(0, 60);
+}
+
+TEST(Model, TheBuiltInOneIsSoundAndSaysWhatItIs) {
+    const auto model = cad::modelOfText(cad::builtInModelText(), "built-in model");
+    ASSERT_TRUE(model) << describe(model.error());
+    EXPECT_NE(model->trainedOn.find("phantoms"), std::string::npos);
+    EXPECT_EQ(model->trainingSha256.size(), 64u);
+    EXPECT_GT(model->operatingPoint, cad::leastProbability);
+    EXPECT_GE(model->texture.varianceShare, cad::textureVariance);
+}
+
+TEST(Calibration, FindsTheLogisticThatDrewTheTruths) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> share;
+    std::vector<double> x;
+    std::vector<int> truths;
+    for (int n = 0; n < 20000; ++n) {
+        x.push_back(8.0 * share(random) - 4.0);
+        truths.push_back(share(random) < 1.0 / (1.0 + std::exp(-(-1.0 + 0.7 * x.back()))));
+    }
+    const auto [a, b] = cad::fitLogistic(x, truths);
+    EXPECT_NEAR(a, -1.0, 0.1);
+    EXPECT_NEAR(b, 0.7, 0.05);
+}
+
+cad::TrueLesion polypAt(glm::dvec3 place, double diameterMm, const char* kind = "sessile") {
+    cad::TrueLesion lesion;
+    lesion.positionMm = lesion.wallMm = place;
+    lesion.diameterMm = diameterMm, lesion.kind = kind;
+    lesion.neoplastic = std::string(kind) != "hyperplastic" && std::string(kind) != "lump";
+    return lesion;
+}
+
+TEST(Truth, AFindingMeansTheNearestPolypThatItReaches) {
+    const std::vector<cad::TrueLesion> truth{polypAt({0, 0, 0}, 10.0), polypAt({12, 0, 0}, 6.0),
+                                             polypAt({0, 30, 0}, 4.0, "hyperplastic")};
+    EXPECT_EQ(cad::matched({{1, 0, 0}, {7.9, 0, 0}, {8.1, 0, 0}, {0, 26, 0}, {0, 0, 20}}, truth),
+              (std::vector<int>{0, 1, 1, 2, -1}));
+}
+
+// One case with two polyps; what is told of it has these scores.
+cad::EvaluatedCase judged(std::vector<cad::ToldPlace> places) {
+    cad::EvaluatedCase each;
+    each.truth = {polypAt({0, 0, 0}, 8.0), polypAt({50, 0, 0}, 12.0),
+                  polypAt({0, 50, 0}, 3.0, "hyperplastic"), polypAt({0, 0, 50}, 7.0, "lump")};
+    each.places = std::move(places);
+    each.before = 100;
+    return each;
+}
+
+TEST(Evaluation, CountsWhatItSays) {
+    const cad::EvaluatedCase a = judged({{0.9, 8.5, 0, ""},
+                                         {0.8, 6.0, -1, "fold"},
+                                         {0.7, 3.0, 2, ""},
+                                         {0.6, 7.0, 3, ""},
+                                         {0.3, 11.0, 1, ""}});
+    const cad::Evaluation sum = cad::evaluate({&a}, 0.5);
+    EXPECT_EQ(sum.from6Mm.of, 2);
+    EXPECT_EQ(sum.from6Mm.hit, 1);
+    EXPECT_EQ(sum.from10Mm.hit, 0);
+    EXPECT_DOUBLE_EQ(sum.falsePositives, 2.0) << "a fold and a lump; a benign growth is none";
+    EXPECT_EQ(sum.hyperplastic, 1);
+    EXPECT_EQ(sum.falseKinds.at("fold"), 1);
+    EXPECT_EQ(sum.falseKinds.at("lump"), 1);
+    EXPECT_DOUBLE_EQ(sum.diameterMean, 0.5);
+    EXPECT_EQ(cad::evaluate({&a}, 0.2).from6Mm.hit, 2);
+}
+
+TEST(Evaluation, TheFrocCurveRisesAndItsBandsHoldIt) {
+    std::vector<cad::EvaluatedCase> cases;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> share;
+    for (int n = 0; n < 30; ++n) {
+        std::vector<cad::ToldPlace> places{{0.3 + 0.7 * share(random), 8.0, 0, ""},
+                                           {0.3 + 0.7 * share(random), 12.0, 1, ""}};
+        for (int f = 0; f < 12; ++f)
+            places.push_back({share(random) * share(random), 5.0, -1, "wall"});
+        cases.push_back(judged(std::move(places)));
+    }
+    std::vector<const cad::EvaluatedCase*> all;
+    for (const auto& each : cases)
+        all.push_back(&each);
+    const auto curve = cad::frocCurve(all, 200);
+    ASSERT_GT(curve.size(), 5u);
+    for (std::size_t p = 0; p < curve.size(); ++p) {
+        EXPECT_LE(curve[p].low, curve[p].sensitivity + 1e-9);
+        EXPECT_GE(curve[p].high, curve[p].sensitivity - 1e-9);
+        if (p == 0) continue;
+        EXPECT_GE(curve[p].sensitivity, curve[p - 1].sensitivity);
+        // At its threshold there are no more false positives than it says.
+        int wrong = 0;
+        for (const auto& each : cases)
+            for (const auto& place : each.places)
+                wrong += place.lesion < 0 && place.score > curve[p].threshold;
+        EXPECT_LE(wrong, curve[p].falsePositives * 30.0);
+    }
+    EXPECT_EQ(curve.back().sensitivity, 1.0);
+}
+
+}  // namespace
