@@ -287,11 +287,12 @@ private:
         const auto properties = Type::RT_hasProperties;
         const bool detected = !finding.voxels.empty();
         if (finding.segment) out_.code(properties, findingSite, siteOf(*finding.segment));
-        const auto [from, to] = finding.diameterEndsMm;
-        const bool ends = detected && from != to;
+        const auto& ends = finding.diameterEndsMm;
+        const bool haveEnds = detected && ends.first != ends.second;
         length(properties, diameter, finding.diameterMm, [&] {
-            if (ends)
-                out_.places(Type::RT_inferredFrom, CODE_DCM_Path, Type::GT3_Polyline, {from, to});
+            if (haveEnds)
+                out_.places(Type::RT_inferredFrom, CODE_DCM_Path, Type::GT3_Polyline,
+                            {ends.first, ends.second});
         });
         if (!detected) return;
         length(properties, CODE_DCM_Height, finding.heightMm);
