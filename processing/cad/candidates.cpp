@@ -1,7 +1,10 @@
 #include "cad/candidates.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace haustra::cad {
@@ -85,18 +88,34 @@ void fillHoles(const WallSamples& wall, std::vector<std::uint32_t>& patch,
         if (mark[v] == around) patch.push_back(v);
 }
 
+// Of components that are kept, by their number.
+template <class Keeps>
 std::vector<Patch> patchesOf(const WallSamples& wall,
-                             std::vector<std::vector<std::uint32_t>> components, double mostMm2) {
-    std::vector<Patch> patches;
-    std::vector<std::uint32_t> mark(wall.mesh.vertices.size(), 0);
-    std::uint32_t generation = 0;
-    for (auto& component : components) {
-        if (areaOf(wall, component) > mostMm2) continue;
-        fillHoles(wall, component, mark, generation);
-        std::sort(component.begin(), component.end());
-        patches.push_back({std::move(component)});
-    }
-    return patches;
+                             std::vector<std::vector<std::uint32_t>> components, int threads,
+                             const Keeps& keeps) {
+    std::vector<Patch> made(components.size());
+    // Each thread takes one after the other, as they differ in size by a thousand times.
+    std::atomic<std::size_t> next = 0;
+    parallelFor(std::size_t(threadCount(threads)), 1, threads, [&](std::size_t, std::size_t) {
+        std::vector<std::uint32_t> mark(wall.mesh.vertices.size(), 0);
+        std::uint32_t generation = 0;
+        for (std::size_t n; (n = next++) < components.size();) {
+            if (!keeps(components[n])) continue;
+            fillHoles(wall, components[n], mark, generation);
+            std::sort(components[n].begin(), components[n].end());
+            made[n].samples = std::move(components[n]);
+        }
+    });
+    std::erase_if(made, [](const Patch& patch) { return patch.samples.empty(); });
+    return made;
+}
+
+// The diagonal of the box around them: not less than their diameter.
+double boxMm(const WallSamples& wall, std::span<const std::uint32_t> samples) {
+    glm::dvec3 low(1e30), high(-1e30);
+    for (const std::uint32_t v : samples)
+        low = glm::min(low, wall.mesh.vertices[v]), high = glm::max(high, wall.mesh.vertices[v]);
+    return glm::distance(low, high);
 }
 
 }  // namespace
@@ -128,33 +147,42 @@ Diameter diameterOf(const WallSamples& wall, std::span<const std::uint32_t> samp
 }
 
 std::vector<Patch> patchesByShape(const WallEvidence& evidence, std::span<const WallShape> shapes,
-                                  const ShapeLimits& limits) {
+                                  const ShapeLimits& limits, int threads) {
     const WallSamples& wall = evidence.samples;
-    auto components = componentsWhere(wall, [&](std::uint32_t v) {
-        return shapes[v].k2 >= float(limits.growCurvature) && !evidence.unseen[v];
-    });
-    std::erase_if(components, [&](const std::vector<std::uint32_t>& component) {
-        return areaOf(wall, component) < limits.leastMm2 ||
-               std::none_of(component.begin(), component.end(), [&](std::uint32_t v) {
-                   return shapes[v].k2 >= float(limits.seedCurvature) &&
-                          shapes[v].shapeIndex() >= float(limits.seedShapeIndex);
-               });
-    });
-    auto patches = patchesOf(wall, std::move(components), limits.mostMm2);
+    auto patches =
+        patchesOf(wall,
+                  componentsWhere(wall,
+                                  [&](std::uint32_t v) {
+                                      return shapes[v].k2 >= float(limits.growCurvature) &&
+                                             !evidence.unseen[v];
+                                  }),
+                  threads, [&](const std::vector<std::uint32_t>& component) {
+                      const double area = areaOf(wall, component);
+                      return area >= limits.leastMm2 && area <= limits.mostMm2 &&
+                             std::any_of(component.begin(), component.end(), [&](std::uint32_t v) {
+                                 return shapes[v].k2 >= float(limits.seedCurvature) &&
+                                        shapes[v].shapeIndex() >= float(limits.seedShapeIndex);
+                             });
+                  });
     for (Patch& patch : patches)
         patch.byShape = true;
     return patches;
 }
 
 std::vector<Patch> patchesByTexture(const WallEvidence& evidence,
-                                    std::span<const float> textureDistance, double leastMm) {
+                                    std::span<const float> textureDistance, int threads,
+                                    double leastMm) {
     const WallSamples& wall = evidence.samples;
-    auto components = componentsWhere(
-        wall, [&](std::uint32_t v) { return textureDistance[v] < 1.0f && !evidence.unseen[v]; });
-    std::erase_if(components, [&](const std::vector<std::uint32_t>& component) {
-        return diameterOf(wall, component).mm < leastMm;
-    });
-    auto patches = patchesOf(wall, std::move(components), ShapeLimits().mostMm2);
+    auto patches = patchesOf(
+        wall,
+        componentsWhere(
+            wall,
+            [&](std::uint32_t v) { return textureDistance[v] < 1.0f && !evidence.unseen[v]; }),
+        threads, [&](const std::vector<std::uint32_t>& component) {
+            return boxMm(wall, component) >= leastMm &&
+                   areaOf(wall, component) <= ShapeLimits().mostMm2 &&
+                   diameterOf(wall, component).mm >= leastMm;
+        });
     for (Patch& patch : patches)
         patch.byTexture = true;
     return patches;

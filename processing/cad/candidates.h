@@ -31,12 +31,13 @@ struct ShapeLimits {
 inline constexpr ShapeLimits broadLimits{0.0, -0.02, 0.0, 15.0, 4000.0};
 /// `shapes`: the evidence's, at one of its scales.
 std::vector<Patch> patchesByShape(const WallEvidence& evidence, std::span<const WallShape> shapes,
-                                  const ShapeLimits& limits = {});
+                                  const ShapeLimits& limits, int threads);
 
 /// Connected samples whose texture distance is below 1, at least as wide as `leastMm`: the greatest
 /// distance between two of them (§6.2.5 drops those under 5 mm).
 std::vector<Patch> patchesByTexture(const WallEvidence& evidence,
-                                    std::span<const float> textureDistance, double leastMm = 5.0);
+                                    std::span<const float> textureDistance, int threads,
+                                    double leastMm = 5.0);
 
 /// Greatest distance between two of the samples, to within a hundredth, and which they are.
 struct Diameter {

@@ -6,6 +6,7 @@
 #include "core/version.h"
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -69,7 +70,10 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
     std::vector<Patch> patches;
     if (texture) {
         const auto along = stripDirections(evidence.samples, colon.flat);
-        const TextureStencil stencil(evidence.samples, evidence.shapes, along, options.threads);
+        std::vector<std::uint32_t> all(evidence.rays.size());
+        std::iota(all.begin(), all.end(), 0u);
+        const TextureStencil stencil(evidence.samples, all, evidence.shapes, along,
+                                     options.threads);
         std::vector<glm::vec3> colors(evidence.rays.size());
         std::transform(evidence.rays.begin(), evidence.rays.end(), colors.begin(),
                        [](const BiopsyRay& ray) { return ray.color; });
@@ -79,21 +83,28 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
                         for (std::size_t v = begin; v < end; ++v)
                             distances[v] = float(textureDistance(*texture, stencil.at(v, colors)));
                     });
-        if (options.method.texture) patches = patchesByTexture(evidence, distances);
+        if (options.method.texture)
+            patches = patchesByTexture(evidence, distances, options.threads);
     }
     if (options.method.shape) {
-        std::ranges::move(patchesByShape(evidence, evidence.shapes), std::back_inserter(patches));
-        std::ranges::move(patchesByShape(evidence, evidence.broadShapes, broadLimits),
+        std::ranges::move(patchesByShape(evidence, evidence.shapes, {}, options.threads),
                           std::back_inserter(patches));
+        std::ranges::move(
+            patchesByShape(evidence, evidence.broadShapes, broadLimits, options.threads),
+            std::back_inserter(patches));
     }
     const SampleTriangles triangles(evidence.samples);
     std::vector<std::optional<Candidate>> made(patches.size());
-    parallelFor(patches.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
+    // Each thread takes patch after patch, as they differ in size by a thousand times.
+    std::atomic<std::size_t> next = 0;
+    const auto threads = std::size_t(threadCount(options.threads));
+    parallelFor(threads, 1, options.threads, [&](std::size_t, std::size_t) {
+        SampleNumbers numbers(evidence.samples.mesh.vertices.size());
+        for (std::size_t n; (n = next++) < patches.size();) {
             auto lesion =
-                standUp(evidence, triangles, std::move(patches[n]), colon.cleansed.grid());
+                standUp(evidence, triangles, std::move(patches[n]), colon.cleansed.grid(), numbers);
             if (!lesion) continue;
-            const FeatureVector features = featuresOf(colon, evidence, distances, *lesion);
+            const FeatureVector features = featuresOf(colon, evidence, distances, *lesion, numbers);
             made[n] = Candidate{*std::move(lesion), features};
         }
     });

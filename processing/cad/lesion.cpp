@@ -5,7 +5,6 @@
 #include <map>
 #include <numbers>
 #include <set>
-#include <unordered_map>
 
 namespace haustra::cad {
 namespace {
@@ -13,57 +12,47 @@ namespace {
 // How far beyond the patch the base is anchored: there the wall is the wall again.
 constexpr double anchorMm = 2.0;
 
-// Places of the inner vertices of a mesh so that each is the mean of its neighbours, those of the
-// others given: conjugate gradients on the graph's Laplacian, which is positive definite as each
-// part of the inside reaches the rim.
+// Places of the numbered samples so that each is the mean of its neighbours, those of all others
+// given: conjugate gradients on the graph's Laplacian, which is positive definite as each part of
+// the inside reaches the rim.
 class Membrane {
 public:
-    Membrane(const WallSamples& wall, std::span<const std::uint32_t> inside) : wall_(wall) {
-        for (std::size_t n = 0; n < inside.size(); ++n)
-            number_.emplace(inside[n], n);
-        places_.reserve(inside.size());
-        for (const std::uint32_t v : inside)
-            places_.push_back(wall.mesh.vertices[v]);
-        links_.resize(inside.size());
-        pull_.assign(inside.size(), glm::dvec3(0.0));
-        for (std::size_t n = 0; n < inside.size(); ++n) {
-            for (std::uint32_t e = wall.begin[inside[n]]; e < wall.begin[inside[n] + 1]; ++e) {
-                const auto found = number_.find(wall.neighbours[e]);
-                if (found == number_.end())
-                    pull_[n] += wall.mesh.vertices[wall.neighbours[e]];
+    Membrane(const WallSamples& wall, const SampleNumbers& inside) {
+        const std::uint32_t count = inside.count();
+        begin_.assign(1, 0);
+        for (std::uint32_t n = 0; n < count; ++n) {
+            const std::uint32_t v = inside.sample(n);
+            glm::dvec3 pull(0.0);
+            for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
+                const std::uint32_t next = wall.neighbours[e];
+                if (inside.has(next))
+                    links_.push_back(inside.number(next));
                 else
-                    links_[n].push_back(found->second);
-                ++degree(n);
+                    pull += wall.mesh.vertices[next];
             }
+            begin_.push_back(std::uint32_t(links_.size()));
+            places_.push_back(wall.mesh.vertices[v]);
+            pull_.push_back(pull);
+            degrees_.push_back(double(wall.begin[v + 1] - wall.begin[v]));
         }
         span();
     }
-
-    // Nullptr: not an inner vertex.
-    const glm::dvec3* at(std::uint32_t sample) const {
-        const auto found = number_.find(sample);
-        return found == number_.end() ? nullptr : &places_[found->second];
-    }
+    const glm::dvec3& at(std::uint32_t number) const { return places_[number]; }
 
 private:
-    double& degree(std::size_t n) {
-        if (degrees_.size() <= n) degrees_.resize(n + 1, 0.0);
-        return degrees_[n];
-    }
-
-    std::vector<glm::dvec3> times(const std::vector<glm::dvec3>& x) const {
-        std::vector<glm::dvec3> y(x.size());
+    void times(const std::vector<glm::dvec3>& x, std::vector<glm::dvec3>& y) const {
         for (std::size_t n = 0; n < x.size(); ++n) {
-            y[n] = degrees_[n] * x[n];
-            for (const std::size_t m : links_[n])
-                y[n] -= x[m];
+            glm::dvec3 sum = degrees_[n] * x[n];
+            for (std::uint32_t l = begin_[n]; l < begin_[n + 1]; ++l)
+                sum -= x[links_[l]];
+            y[n] = sum;
         }
-        return y;
     }
 
     void span() {
         // The three coordinates are three systems with one matrix.
-        std::vector<glm::dvec3> r = times(places_);
+        std::vector<glm::dvec3> r(places_.size()), ap(places_.size());
+        times(places_, r);
         for (std::size_t n = 0; n < r.size(); ++n)
             r[n] = pull_[n] - r[n];
         std::vector<glm::dvec3> p = r;
@@ -77,7 +66,7 @@ private:
         const glm::dvec3 enough = 1e-8 * squares + glm::dvec3(1e-12);
         for (int step = 0; step < 500; ++step) {
             if (glm::all(glm::lessThanEqual(squares, enough))) break;
-            const std::vector<glm::dvec3> ap = times(p);
+            times(p, ap);
             const glm::dvec3 curvature = dots(p, ap);
             glm::dvec3 alpha(0.0);
             for (int c = 0; c < 3; ++c)
@@ -94,32 +83,10 @@ private:
         }
     }
 
-    const WallSamples& wall_;
-    std::unordered_map<std::uint32_t, std::size_t> number_;
     std::vector<glm::dvec3> places_, pull_;
-    std::vector<std::vector<std::size_t>> links_;
+    std::vector<std::uint32_t> begin_, links_;
     std::vector<double> degrees_;
 };
-
-// Samples within a distance of the patch along the wall, the patch's first.
-std::vector<std::uint32_t> widened(const WallSamples& wall, const Patch& patch, double byMm) {
-    std::unordered_map<std::uint32_t, double> distance;
-    std::vector<std::uint32_t> all = patch.samples;
-    for (const std::uint32_t v : all)
-        distance.emplace(v, 0.0);
-    // Steps are short beside the width, so a breadth-first order is near enough.
-    for (std::size_t head = 0; head < all.size(); ++head) {
-        const std::uint32_t v = all[head];
-        const double so = distance.at(v);
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            const std::uint32_t next = wall.neighbours[e];
-            const double mm = so + glm::distance(wall.mesh.vertices[v], wall.mesh.vertices[next]);
-            if (mm > byMm) continue;
-            if (distance.emplace(next, mm).second) all.push_back(next);
-        }
-    }
-    return all;
-}
 
 // The voxels right beneath a patch: of a body thinner than voxels are.
 std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& patch,
@@ -146,6 +113,29 @@ std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& p
 }
 
 }  // namespace
+
+void widen(const WallSamples& wall, std::span<const std::uint32_t> patch, double byMm,
+           SampleNumbers& numbers) {
+    numbers.clear();
+    std::vector<double> distances;
+    for (const std::uint32_t v : patch) {
+        numbers.add(v);
+        distances.push_back(0.0);
+    }
+    // Steps are short beside the width, so a breadth-first order is near enough.
+    for (std::uint32_t head = 0; head < numbers.count(); ++head) {
+        const std::uint32_t v = numbers.sample(head);
+        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
+            const std::uint32_t next = wall.neighbours[e];
+            if (numbers.has(next)) continue;
+            const double mm =
+                distances[head] + glm::distance(wall.mesh.vertices[v], wall.mesh.vertices[next]);
+            if (mm > byMm) continue;
+            numbers.add(next);
+            distances.push_back(mm);
+        }
+    }
+}
 
 SampleTriangles::SampleTriangles(const WallSamples& wall)
     : begin_(wall.mesh.vertices.size() + 1, 0) {
@@ -205,28 +195,31 @@ std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid) {
 }
 
 std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
-                              Patch patch, const Grid& grid) {
+                              Patch patch, const Grid& grid, SampleNumbers& numbers) {
     const WallSamples& wall = evidence.samples;
     Lesion lesion;
-    const std::vector<std::uint32_t> inside = widened(wall, patch, anchorMm);
-    const Membrane membrane(wall, inside);
+    widen(wall, patch.samples, anchorMm, numbers);
+    const std::uint32_t inside = numbers.count();
+    const Membrane membrane(wall, numbers);
     std::vector<std::uint32_t> faces;
-    for (const std::uint32_t v : inside) {
-        const auto around = triangles.around(v);
+    for (std::uint32_t n = 0; n < inside; ++n) {
+        const auto around = triangles.around(numbers.sample(n));
         faces.insert(faces.end(), around.begin(), around.end());
     }
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     if (faces.empty()) return {};
 
-    // Patch and base have the same triangles; where both have the same place they cancel.
-    std::unordered_map<std::uint32_t, int> above, below;
-    const auto vertexOf = [&](std::unordered_map<std::uint32_t, int>& numbers, std::uint32_t v,
-                              glm::dvec3 place) {
-        const auto [at, fresh] = numbers.try_emplace(v, int(lesion.body.vertices.size()));
-        if (fresh) lesion.body.vertices.push_back(place);
-        return at->second;
-    };
+    // Patch and base have the same triangles; where both have the same place they cancel. Samples
+    // beyond the inside anchor the base and are one place of both.
+    for (const std::uint32_t t : faces)
+        for (int n = 0; n < 3; ++n)
+            numbers.add(std::uint32_t(wall.mesh.triangles[t][n]));
+    lesion.body.vertices.reserve(numbers.count() + inside);
+    for (std::uint32_t n = 0; n < numbers.count(); ++n)
+        lesion.body.vertices.push_back(wall.mesh.vertices[numbers.sample(n)]);
+    for (std::uint32_t n = 0; n < inside; ++n)
+        lesion.body.vertices.push_back(membrane.at(n));
     glm::dvec3 normal(0.0);
     const glm::dvec3 origin = wall.mesh.vertices[patch.samples.front()];
     glm::dvec3 moment(0.0);
@@ -243,11 +236,9 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangle
         const glm::ivec3 corners = wall.mesh.triangles[t];
         glm::ivec3 top, base;
         for (int n = 0; n < 3; ++n) {
-            const auto v = std::uint32_t(corners[n]);
-            const glm::dvec3* spanned = membrane.at(v);
-            top[n] = vertexOf(above, v, wall.mesh.vertices[v]);
-            // The anchors are one place of both.
-            base[n] = spanned ? vertexOf(below, v, *spanned) : top[n];
+            const std::uint32_t number = numbers.number(std::uint32_t(corners[n]));
+            top[n] = int(number);
+            base[n] = int(number < inside ? numbers.count() + number : number);
         }
         // The wall's outside is the tissue: seen from the lumen the patch turns the other way.
         add({top.x, top.z, top.y});
@@ -264,13 +255,14 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangle
     lesion.centreMm = lesion.volumeMm3 > 0.0 ? origin + moment / lesion.volumeMm3 : origin;
 
     double highest = -1e30;
-    for (const std::uint32_t v : patch.samples) {
+    for (std::uint32_t n = 0; n < patch.samples.size(); ++n) {
+        const std::uint32_t v = patch.samples[n];
         lesion.areaMm2 += wall.areaMm2[v];
-        const double height = glm::dot(wall.mesh.vertices[v] - *membrane.at(v), lesion.axis);
+        const double height = glm::dot(wall.mesh.vertices[v] - membrane.at(n), lesion.axis);
         if (height > highest) highest = height, lesion.topMm = wall.mesh.vertices[v];
         for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            if (std::binary_search(patch.samples.begin(), patch.samples.end(), wall.neighbours[e]))
-                continue;
+            // The patch's samples have the first numbers.
+            if (numbers.number(wall.neighbours[e]) < patch.samples.size()) continue;
             lesion.rim.push_back(v);
             break;
         }

@@ -4,6 +4,9 @@
 #include "cad/candidates.h"
 #include "core/findings.h"
 
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace haustra::cad {
@@ -39,9 +42,40 @@ private:
     std::vector<std::uint32_t> begin_, triangles_;
 };
 
-/// Of a patch that has triangles of its own; else nothing. O(samples of the patch · their width).
+/// Some samples, numbered from 0 in the order in which they were added. Emptied at no cost, so that
+/// one serves for patch after patch (Briggs and Torczon, ACM LOPLAS 1993; 2: 59). Belongs to one
+/// thread.
+class SampleNumbers {
+public:
+    explicit SampleNumbers(std::size_t samples) : numberOf_(samples, 0) {}
+    void clear() { samples_.clear(); }
+    void add(std::uint32_t sample) {
+        if (has(sample)) return;
+        numberOf_[sample] = std::uint32_t(samples_.size());
+        samples_.push_back(sample);
+    }
+    bool has(std::uint32_t sample) const {
+        const std::uint32_t n = numberOf_[sample];
+        return n < samples_.size() && samples_[n] == sample;
+    }
+    /// Of a sample that has been added.
+    std::uint32_t number(std::uint32_t sample) const { return numberOf_[sample]; }
+    std::uint32_t sample(std::uint32_t number) const { return samples_[number]; }
+    std::uint32_t count() const { return std::uint32_t(samples_.size()); }
+
+private:
+    std::vector<std::uint32_t> numberOf_, samples_;
+};
+
+/// Numbers the samples within a distance of the patch along the wall: the patch's first, in their
+/// order, then the others from the nearest on. O(numbered samples).
+void widen(const WallSamples& wall, std::span<const std::uint32_t> patch, double byMm,
+           SampleNumbers& numbers);
+
+/// Of a patch that has triangles of its own; else nothing. `numbers`: of all samples, for its own
+/// use. O(samples of the patch · their width).
 std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
-                              Patch patch, const Grid& grid);
+                              Patch patch, const Grid& grid, SampleNumbers& numbers);
 
 /// Runs of the voxels whose centres lie within a closed mesh (even–odd along i).
 std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid);

@@ -46,25 +46,12 @@ double deviation(const std::vector<float>& values) {
 // Samples around the patch, up to this far from its rim along the wall.
 constexpr double ringMm = 2.5;
 
-std::vector<std::uint32_t> ringAround(const WallSamples& wall, const Lesion& lesion) {
-    std::vector<std::uint32_t> ring = lesion.rim;
-    std::vector<std::uint32_t> taken(lesion.patch.samples);
-    for (std::size_t head = 0; head < ring.size(); ++head) {
-        const std::uint32_t v = ring[head];
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            const std::uint32_t next = wall.neighbours[e];
-            const auto at = std::lower_bound(taken.begin(), taken.end(), next);
-            if (at != taken.end() && *at == next) continue;
-            const bool near =
-                std::any_of(lesion.rim.begin(), lesion.rim.end(), [&](std::uint32_t rim) {
-                    return glm::distance(wall.mesh.vertices[rim], wall.mesh.vertices[next]) <
-                           ringMm;
-                });
-            taken.insert(at, next);
-            if (near) ring.push_back(next);
-        }
-    }
-    ring.erase(ring.begin(), ring.begin() + std::ptrdiff_t(lesion.rim.size()));
+std::vector<std::uint32_t> ringAround(const WallSamples& wall, const Lesion& lesion,
+                                      SampleNumbers& numbers) {
+    widen(wall, lesion.patch.samples, ringMm, numbers);
+    std::vector<std::uint32_t> ring;
+    for (auto n = std::uint32_t(lesion.patch.samples.size()); n < numbers.count(); ++n)
+        ring.push_back(numbers.sample(n));
     return ring;
 }
 
@@ -118,8 +105,11 @@ void describeRing(const WallEvidence& evidence, const std::vector<std::uint32_t>
     put("wet_edge", 4.0 * wet * (1.0 - wet));
 }
 
+// Of a polyp of 25 mm; of what is wider, the surface is far from anything that could point at it.
+constexpr double farthestGradientMm = 16.0;
+
 void describeGradients(const WallEvidence& evidence, const Lesion& lesion, Named& put) {
-    const double radius = 0.6 * lesion.diameter.mm + 1.0;
+    const double radius = std::min(0.6 * lesion.diameter.mm + 1.0, farthestGradientMm);
     put("gradient_concentration", gradientConcentration(*evidence.smooth, lesion.centreMm, radius));
     double most = -1.0;
     for (const double share : {0.25, 0.5, 0.75}) {
@@ -239,11 +229,12 @@ double gradientConcentration(const SmoothScan& scan, glm::dvec3 placeMm, double 
 }
 
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
-                         std::span<const float> textureDistance, const Lesion& lesion) {
+                         std::span<const float> textureDistance, const Lesion& lesion,
+                         SampleNumbers& numbers) {
     Named put;
     describeForm(lesion, put);
     describeShape(evidence, lesion, put);
-    const std::vector<std::uint32_t> ring = ringAround(evidence.samples, lesion);
+    const std::vector<std::uint32_t> ring = ringAround(evidence.samples, lesion, numbers);
     describeRing(evidence, ring, put);
     describeGradients(evidence, lesion, put);
     describeContents(colon, evidence, textureDistance, lesion, ring, put);

@@ -32,9 +32,10 @@ inline constexpr int featureCount = int(featureNames.size());
 using FeatureVector = std::array<float, std::size_t(featureCount)>;
 
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.
-/// O(samples of the patch and its voxels).
+/// `numbers`: of all samples, for its own use. O(samples of the patch and its voxels).
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
-                         std::span<const float> textureDistance, const Lesion& lesion);
+                         std::span<const float> textureDistance, const Lesion& lesion,
+                         SampleNumbers& numbers);
 
 /// How well the gradients around a place point to it: over evenly spread directions, the greatest
 /// mean cosine between the scan's gradient and the way to the place, along stretches that begin 1

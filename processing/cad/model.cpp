@@ -44,7 +44,38 @@ double valueOf(const FeatureVector& features, std::string_view name) {
                                 featureNames.begin())];
 }
 
+ModelJson jsonOf(const TextureModel& texture) {
+    return {{"threshold", texture.threshold},
+            {"variance_share", texture.varianceShare},
+            {"polyp", numbers(texture.polyp)},
+            {"mean", numbers(texture.mean)},
+            {"components", numbers(texture.components)}};
+}
+
+TextureModel textureIn(const ModelJson& json) {
+    const std::size_t count = json.at("polyp").size();
+    TextureModel texture;
+    texture.threshold = json.at("threshold");
+    texture.varianceShare = json.at("variance_share");
+    texture.polyp = numbersIn(json.at("polyp"), count);
+    texture.mean = numbersIn(json.at("mean"), textureSize);
+    texture.components = numbersIn(json.at("components"), count * textureSize);
+    return texture;
+}
+
 }  // namespace
+
+std::string textureText(const TextureModel& texture) {
+    return jsonOf(texture).dump() + "\n";
+}
+
+Result<TextureModel> textureOfText(std::string_view text, const std::string& place) {
+    try {
+        return textureIn(ModelJson::parse(text));
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("this is no texture: ") + error.what(), place);
+    }
+}
 
 bool ShapeThresholds::pass(const FeatureVector& features) const {
     const auto within = [&](std::string_view name, std::pair<double, double> range) {
@@ -98,11 +129,6 @@ std::string modelText(const CadModel& model) {
         trees.push_back(std::move(nodes));
     }
     const auto range = [](std::pair<double, double> r) { return ModelJson{r.first, r.second}; };
-    const ModelJson texture{{"threshold", model.texture.threshold},
-                            {"variance_share", model.texture.varianceShare},
-                            {"polyp", numbers(model.texture.polyp)},
-                            {"mean", numbers(model.texture.mean)},
-                            {"components", numbers(model.texture.components)}};
     const ModelJson thresholds{
         {"shape_index", range(model.thresholds.shapeIndex)},
         {"curvedness", range(model.thresholds.curvedness)},
@@ -122,7 +148,7 @@ std::string modelText(const CadModel& model) {
         names.push_back(std::string(name));
     add("features", names);
     add("thresholds", thresholds);
-    add("texture", texture);
+    add("texture", jsonOf(model.texture));
     text += "\"trees\": [";
     for (std::size_t n = 0; n < trees.size(); ++n)
         text += (n ? ",\n" : "\n") + trees[n].dump();
@@ -151,13 +177,7 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         model.thresholds = {rangeIn(thresholds.at("shape_index")),
                             rangeIn(thresholds.at("curvedness")),
                             rangeIn(thresholds.at("gradient_concentration"))};
-        const ModelJson& texture = json.at("texture");
-        const std::size_t count = texture.at("polyp").size();
-        model.texture.threshold = texture.at("threshold");
-        model.texture.varianceShare = texture.at("variance_share");
-        model.texture.polyp = numbersIn(texture.at("polyp"), count);
-        model.texture.mean = numbersIn(texture.at("mean"), textureSize);
-        model.texture.components = numbersIn(texture.at("components"), count * textureSize);
+        model.texture = textureIn(json.at("texture"));
         for (const ModelJson& nodes : json.at("trees")) {
             std::vector<TreeNode> tree;
             for (const ModelJson& node : nodes) {

@@ -46,6 +46,10 @@ std::string modelText(const CadModel& model);
 /// other features than this program has.
 Result<CadModel> modelOfText(std::string_view text, const std::string& place = "model");
 
+/// The texture's part alone, as in a model, and back.
+std::string textureText(const TextureModel& texture);
+Result<TextureModel> textureOfText(std::string_view text, const std::string& place);
+
 /// The one that the program carries: trained on phantoms alone.
 std::string_view builtInModelText();
 

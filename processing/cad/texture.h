@@ -24,13 +24,19 @@ using TextureVector = std::array<float, textureSize>;
 /// be.
 class TextureStencil {
 public:
-    /// `along`: stripDirections. O(samples).
-    TextureStencil(const WallSamples& samples, std::span<const WallShape> shapes,
-                   std::span<const glm::vec3> along, int threads);
-    TextureVector at(std::size_t sample, std::span<const glm::vec3> colors) const;
+    /// Of the samples `of`, whose shapes alone are used. `along`: stripDirections. O(of).
+    TextureStencil(const WallSamples& samples, std::span<const std::uint32_t> of,
+                   std::span<const WallShape> shapes, std::span<const glm::vec3> along,
+                   int threads);
+    using Neighbours = std::array<std::uint32_t, textureNeighbours>;
+    /// Of the n-th of them.
+    const Neighbours& neighbours(std::size_t n) const { return neighbours_[n]; }
+    /// `colors`: of every sample that the n-th is made of, by the sample's number.
+    TextureVector at(std::size_t n, std::span<const glm::vec3> colors) const;
 
 private:
-    std::vector<std::array<std::uint32_t, textureNeighbours>> neighbours_;
+    std::vector<std::uint32_t> of_;
+    std::vector<Neighbours> neighbours_;
 };
 
 /// What training polyps look like: the Karhunen–Loève transformation, the representative vector V

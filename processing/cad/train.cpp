@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace haustra::cad {
 namespace {
@@ -75,30 +76,53 @@ std::vector<Scored> scoredPlaces(const TrainingCase& each, std::size_t number,
 
 }  // namespace
 
-TextureExamples textureExamples(const PreparedColon& colon, const WallEvidence& evidence,
-                                const std::vector<TrueLesion>& truth, int threads) {
-    const auto along = stripDirections(evidence.samples, colon.flat);
-    const TextureStencil stencil(evidence.samples, evidence.shapes, along, threads);
-    std::vector<glm::vec3> colors;
-    colors.reserve(evidence.rays.size());
-    for (const BiopsyRay& ray : evidence.rays)
-        colors.push_back(ray.color);
-    TextureExamples examples;
-    const std::size_t stride = std::max<std::size_t>(1, colors.size() / wallVectors);
-    for (std::size_t v = 0; v < colors.size(); v += stride)
-        examples.all.push_back(stencil.at(v, colors));
-    std::vector<std::size_t> inside;
-    for (std::size_t v = 0; v < colors.size(); ++v) {
-        const glm::dvec3 p = evidence.samples.mesh.vertices[v];
+TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOptions& options,
+                                const std::vector<TrueLesion>& truth) {
+    const WallSamples samples = sampleWall(colon.surface, sampleSpacingMm);
+    const std::size_t count = samples.mesh.vertices.size();
+    std::vector<std::uint32_t> chosen, inside;
+    for (std::size_t v = 0; v < count; v += std::max<std::size_t>(1, count / wallVectors))
+        chosen.push_back(std::uint32_t(v));
+    const std::size_t walls = chosen.size();
+    for (std::size_t v = 0; v < count; ++v) {
+        const glm::dvec3 p = samples.mesh.vertices[v];
         const bool polyp = std::any_of(truth.begin(), truth.end(), [&](const TrueLesion& lesion) {
             return lesion.neoplastic &&
                    glm::distance(p, lesion.positionMm) < 0.5 * lesion.diameterMm + 0.5;
         });
-        if (polyp) inside.push_back(v);
+        if (polyp) inside.push_back(std::uint32_t(v));
     }
     const std::size_t step = std::max<std::size_t>(1, inside.size() / polypVectors);
     for (std::size_t n = 0; n < inside.size(); n += step)
-        examples.polyps.push_back(stencil.at(inside[n], colors));
+        chosen.push_back(inside[n]);
+
+    const SmoothScan smooth = smoothedAround(colon, shapeSigmaMm, options.threads);
+    const BiopsyTable table(transferFunctionFor(options, wallStatistics(colon, smooth)));
+    const BiopsyScan scan{smooth, colon.lumen, colon.tissue.airBelowHu};
+    std::vector<WallShape> shapes(count);
+    std::vector<std::uint8_t> looked(count, 0);
+    std::vector<glm::vec3> colors(count);
+    const auto measure = [&](std::uint32_t v) {
+        shapes[v] = shapeOf(smooth.derivatives(samples.mesh.vertices[v]));
+    };
+    const auto look = [&](std::uint32_t v) {
+        if (std::exchange(looked[v], 1)) return;
+        measure(v);
+        colors[v] =
+            castBiopsyRay(scan, table, samples.mesh.vertices[v], glm::dvec3(shapes[v].intoWall))
+                .color;
+    };
+    for (const std::uint32_t v : chosen)
+        measure(v);
+    const TextureStencil stencil(samples, chosen, shapes, stripDirections(samples, colon.flat),
+                                 options.threads);
+    TextureExamples examples;
+    for (std::size_t n = 0; n < chosen.size(); ++n) {
+        look(chosen[n]);
+        for (const std::uint32_t v : stencil.neighbours(n))
+            look(v);
+        (n < walls ? examples.all : examples.polyps).push_back(stencil.at(n, colors));
+    }
     return examples;
 }
 

@@ -13,8 +13,9 @@ namespace haustra::cad {
 struct TextureExamples {
     std::vector<TextureVector> all, polyps;
 };
-TextureExamples textureExamples(const PreparedColon& colon, const WallEvidence& evidence,
-                                const std::vector<TrueLesion>& truth, int threads);
+/// Looks only at what it takes, which is faster than gathering all evidence by far.
+TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOptions& options,
+                                const std::vector<TrueLesion>& truth);
 
 /// What one candidate is in truth.
 struct Example {

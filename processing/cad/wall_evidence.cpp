@@ -92,6 +92,12 @@ WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smoo
     return statistics;
 }
 
+TransferFunction transferFunctionFor(const EvidenceOptions& options,
+                                     const WallStatistics& statistics) {
+    return options.transferFunction ? *options.transferFunction
+                                    : automaticBiopsyTransfer(statistics);
+}
+
 WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options) {
     const auto tell = [&](double share) {
         if (options.progress) options.progress(share);
@@ -111,9 +117,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
     evidence.unseen = unseenSamples(colon, evidence.samples);
     evidence.wet = wetSamples(colon, evidence.samples, evidence.shapes, options.threads);
     evidence.statistics = wallStatistics(colon, *evidence.smooth);
-    evidence.transferFunction = options.transferFunction
-                                    ? *options.transferFunction
-                                    : automaticBiopsyTransfer(evidence.statistics);
+    evidence.transferFunction = transferFunctionFor(options, evidence.statistics);
     const BiopsyTable table(evidence.transferFunction);
     const BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
     evidence.rays.resize(evidence.samples.mesh.vertices.size());

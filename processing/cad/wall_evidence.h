@@ -73,6 +73,10 @@ SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int thread
 /// `smooth`: at shapeSigmaMm. From beneath the surface's vertices.
 WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth);
 
+/// That of the options, or else derived from the scan.
+TransferFunction transferFunctionFor(const EvidenceOptions& options,
+                                     const WallStatistics& statistics);
+
 WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options);
 
 }  // namespace haustra::cad

@@ -1,20 +1,18 @@
 #include "cad/wall_samples.h"
 
 #include <algorithm>
-#include <unordered_map>
 #include <utility>
 
 namespace haustra::cad {
 namespace {
 
-std::uint64_t edgeKey(int a, int b) {
-    return (std::uint64_t(std::uint32_t(std::min(a, b))) << 32) | std::uint32_t(std::max(a, b));
-}
-
 // One division of every triangle with a long edge into two, three or four.
 class Division {
 public:
-    Division(WallSamples& samples, double mostMm) : samples_(samples), mostMm2_(mostMm * mostMm) {}
+    Division(WallSamples& samples, double mostMm)
+        : samples_(samples),
+          mostMm2_(mostMm * mostMm),
+          firstOf_(samples.mesh.vertices.size(), -1) {}
 
     // False where no edge was too long.
     bool run() {
@@ -22,7 +20,9 @@ public:
         std::vector<std::int32_t> sources;
         triangles.reserve(samples_.mesh.triangles.size() * 4);
         sources.reserve(triangles.capacity());
-        middles_.reserve(samples_.mesh.triangles.size() * 3 / 2);
+        const std::size_t edges = samples_.mesh.triangles.size() * 3 / 2;
+        middles_.reserve(edges);
+        samples_.mesh.vertices.reserve(samples_.mesh.vertices.size() + edges);
         for (std::size_t t = 0; t < samples_.mesh.triangles.size(); ++t) {
             divide(samples_.mesh.triangles[t], triangles);
             sources.resize(triangles.size(), samples_.sourceTriangle[t]);
@@ -42,13 +42,15 @@ private:
     // −1: the edge is short enough.
     int middleOf(int a, int b) {
         if (squaredMm2(a, b) <= mostMm2_) return -1;
-        const auto [at, fresh] =
-            middles_.try_emplace(edgeKey(a, b), int(samples_.mesh.vertices.size()));
-        if (fresh) {
-            samples_.mesh.vertices.push_back(0.5 * (samples_.mesh.vertices[std::size_t(a)] +
-                                                    samples_.mesh.vertices[std::size_t(b)]));
-        }
-        return at->second;
+        if (a > b) std::swap(a, b);
+        for (int n = firstOf_[std::size_t(a)]; n >= 0; n = middles_[std::size_t(n)].next)
+            if (middles_[std::size_t(n)].otherEnd == b) return middles_[std::size_t(n)].vertex;
+        const int vertex = int(samples_.mesh.vertices.size());
+        middles_.push_back({b, vertex, firstOf_[std::size_t(a)]});
+        firstOf_[std::size_t(a)] = int(middles_.size()) - 1;
+        samples_.mesh.vertices.push_back(0.5 * (samples_.mesh.vertices[std::size_t(a)] +
+                                                samples_.mesh.vertices[std::size_t(b)]));
+        return vertex;
     }
 
     void divide(glm::ivec3 t, std::vector<glm::ivec3>& out) {
@@ -82,7 +84,12 @@ private:
 
     WallSamples& samples_;
     double mostMm2_;
-    std::unordered_map<std::uint64_t, int> middles_;
+    // Of each vertex the edges to later ones that have been cut, as a list: a vertex has few.
+    struct Middle {
+        int otherEnd = 0, vertex = 0, next = -1;
+    };
+    std::vector<int> firstOf_;
+    std::vector<Middle> middles_;
 };
 
 void measureAreas(WallSamples& samples) {
@@ -125,16 +132,66 @@ void joinNeighbours(WallSamples& samples) {
     }
 }
 
+// Interleaves the bits of three numbers below 1024: what is near in space is mostly near in order.
+std::uint32_t mortonCode(glm::ivec3 cell) {
+    std::uint32_t code = 0;
+    for (int bit = 0; bit < 10; ++bit)
+        for (int axis = 0; axis < 3; ++axis)
+            code |= ((std::uint32_t(cell[axis]) >> bit) & 1u) << (3 * bit + axis);
+    return code;
+}
+
+// The surface's triangles in an order in which neighbours are near to each other.
+std::vector<std::int32_t> nearbyOrder(const TriMesh& surface) {
+    glm::dvec3 low(1e30), high(-1e30);
+    for (const glm::dvec3& p : surface.vertices)
+        low = glm::min(low, p), high = glm::max(high, p);
+    const double cellMm = std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-3}) / 1023.0;
+    std::vector<std::pair<std::uint32_t, std::int32_t>> order;
+    order.reserve(surface.triangles.size());
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+        const glm::dvec3 p = surface.vertices[std::size_t(surface.triangles[t].x)];
+        order.emplace_back(mortonCode(glm::ivec3((p - low) / cellMm)), std::int32_t(t));
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<std::int32_t> triangles;
+    triangles.reserve(order.size());
+    for (const auto& entry : order)
+        triangles.push_back(entry.second);
+    return triangles;
+}
+
+// Numbers vertices as triangles need them, so that those of one neighbourhood lie together in
+// memory: everything that walks on the wall is bound by that.
+void renumber(TriMesh& mesh) {
+    std::vector<int> numbers(mesh.vertices.size(), -1);
+    std::vector<glm::dvec3> vertices;
+    vertices.reserve(mesh.vertices.size());
+    for (glm::ivec3& t : mesh.triangles) {
+        for (int n = 0; n < 3; ++n) {
+            int& number = numbers[std::size_t(t[n])];
+            if (number < 0) {
+                number = int(vertices.size());
+                vertices.push_back(mesh.vertices[std::size_t(t[n])]);
+            }
+            t[n] = number;
+        }
+    }
+    mesh.vertices = std::move(vertices);
+}
+
 }  // namespace
 
 WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm) {
     WallSamples samples;
-    samples.mesh = surface;
-    samples.sourceTriangle.resize(surface.triangles.size());
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-        samples.sourceTriangle[t] = std::int32_t(t);
+    samples.mesh.vertices = surface.vertices;
+    samples.sourceTriangle = nearbyOrder(surface);
+    samples.mesh.triangles.reserve(surface.triangles.size());
+    for (const std::int32_t t : samples.sourceTriangle)
+        samples.mesh.triangles.push_back(surface.triangles[std::size_t(t)]);
     while (Division(samples, mostSpacingMm).run()) {
     }
+    renumber(samples.mesh);
     measureAreas(samples);
     joinNeighbours(samples);
     return samples;

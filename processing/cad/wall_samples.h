@@ -11,8 +11,8 @@ namespace haustra::cad {
 /// Detection looks at the wall itself, not at the strip: a conformal map shrinks what stands on a
 /// stalk to a few pixels, while here neighbours are nowhere farther apart than asked.
 struct WallSamples {
-    /// The surface, its triangles divided until no edge is longer than asked; the surface's
-    /// vertices come first, and no place of the wall has moved.
+    /// The surface, its triangles divided until no edge is longer than asked; no place of the
+    /// wall has moved. Samples near to each other mostly have near numbers.
     TriMesh mesh;
     std::vector<std::int32_t> sourceTriangle;  ///< per triangle, of the surface
     std::vector<float> areaMm2;                ///< per vertex: a third of its triangles'

@@ -1,17 +1,23 @@
 // haustra cad train, haustra cad evaluate: detection is learnt from cases whose truth is known, and
 // judged on others.
 #include "cad/biopsy_transfer.h"
+#include "cad/candidate_table.h"
 #include "cad/evaluate.h"
 #include "cad/train.h"
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/froc_picture.h"
 #include "cli/progress_bar.h"
+#include "cli/provenance.h"
 #include "cli/text_files.h"
+#include "pictures/picture_file.h"
 #include "pipeline/colon_inputs.h"
 #include "store/case_store.h"
 #include "store/products.h"
 #include "store/sha256.h"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -28,9 +34,9 @@ namespace fs = std::filesystem;
 namespace product = store::product;
 
 struct CadArguments {
-    fs::path store, truth, model, report, froc;
-    std::vector<std::string> cases;
-    std::string without, name = "cases";
+    fs::path store, truth, model, report, froc, kept;
+    std::vector<std::string> cases, without;
+    std::string name = "cases";
     std::string description = "cases that somebody chose";
     double falsePositives = 2.0;
     int threads = 0;
@@ -58,47 +64,117 @@ Result<std::vector<cad::TrueLesion>> readTruth(const fs::path& truths, const std
                 (truths / name).string());
 }
 
+constexpr std::array<std::string_view, 6> parts{
+    "automatic-transfer", "pca", "cleansing", "texture", "shape", "past"};
+constexpr std::string_view featurePart = "feature:";
+
+bool isWithout(const CadArguments& arguments, std::string_view part) {
+    return std::find(arguments.without.begin(), arguments.without.end(), part) !=
+           arguments.without.end();
+}
+
+Result<void> checkParts(const CadArguments& arguments) {
+    for (const std::string& part : arguments.without) {
+        if (std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
+        const bool named = part.starts_with(featurePart);
+        const std::string prefix = named ? part.substr(featurePart.size()) : "";
+        if (!named || std::none_of(cad::featureNames.begin(), cad::featureNames.end(),
+                                   [&](std::string_view name) { return name.starts_with(prefix); }))
+            return fail(ErrorKind::badInput, "detection has no such part to leave out", part);
+    }
+    return {};
+}
+
+// What of a case's evidence a variant changes: its candidates are others.
+std::string variantOf(const CadArguments& arguments) {
+    std::string variant;
+    for (const std::string_view part : {"automatic-transfer", "pca", "cleansing"})
+        if (isWithout(arguments, part)) variant += std::string(part) + ' ';
+    return variant;
+}
+
 struct LoadedCase {
-    pipeline::ColonInputs inputs;
+    store::Case source;
     std::vector<cad::TrueLesion> truth;
-    std::string scan;  // key of its scan
+    std::string scan;      // key of its scan
+    std::string prepared;  // key of its last product before detection
 };
 
 Result<LoadedCase> load(const store::CaseStore& store, const CadArguments& arguments,
                         const std::string& name) {
-    const auto source = TRY(store.openCase(name));
-    LoadedCase loaded;
-    loaded.inputs = TRY(pipeline::readColon(source, {source.find(product::quality).has_value(),
-                                                     source.find(product::cleansed).has_value()}));
+    LoadedCase loaded{TRY(store.openCase(name)), {}, {}, {}};
+    const auto key = [&](const char* wanted) -> Result<std::string> {
+        const auto entry = loaded.source.find(wanted);
+        if (!entry)
+            return fail(ErrorKind::notFound, std::string("the case has no ") + wanted, name);
+        return entry->key.hex;
+    };
     loaded.truth = TRY(readTruth(arguments.truth, name));
-    loaded.scan = store::toHex(store::textDigest(name));
-    if (const auto scan = source.find(product::ct)) loaded.scan = scan->key.hex;
+    loaded.scan = TRY(key(product::ct));
+    loaded.prepared = TRY(key(product::flatMap));
     return loaded;
+}
+
+Result<pipeline::ColonInputs> readInputs(const LoadedCase& loaded, const CadArguments& arguments) {
+    const bool cleansed =
+        loaded.source.find(product::cleansed).has_value() && !isWithout(arguments, "cleansing");
+    return pipeline::readColon(loaded.source,
+                               {loaded.source.find(product::quality).has_value(), cleansed});
 }
 
 cad::EvidenceOptions evidenceOptions(const CadArguments& arguments) {
     cad::EvidenceOptions options;
     options.threads = arguments.threads;
-    if (arguments.without == "automatic-transfer")
+    if (isWithout(arguments, "automatic-transfer"))
         options.transferFunction = cad::fixedBiopsyTransfer();
     return options;
 }
 
-cad::Method methodOf(const CadArguments& arguments) {
-    cad::Method method;
-    if (arguments.without == "automatic-transfer") method.automaticTransfer = false;
-    if (arguments.without == "texture") method.texture = false;
-    if (arguments.without == "shape") method.shape = false;
-    if (arguments.without == "past") method.shape = method.classifier = false;
-    return method;
+// All candidates of a case, which are kept for the next time where --candidates says.
+Result<std::vector<cad::Candidate>> candidatesOf(const LoadedCase& loaded,
+                                                 const CadArguments& arguments,
+                                                 const cad::TextureModel& texture) {
+    fs::path file;
+    if (!arguments.kept.empty()) {
+        const std::string key = store::toHex(store::textDigest(fmt::format(
+            "{} {} {}", loaded.prepared, variantOf(arguments), cad::textureText(texture))));
+        file = arguments.kept / fmt::format("{}.{}.json", loaded.source.name(), key.substr(0, 16));
+        std::error_code ignored;
+        if (fs::exists(file, ignored)) {
+            const auto text = TRY(readText(file));
+            return cad::candidatesOfTable(text, file.string());
+        }
+    }
+    const auto inputs = TRY(readInputs(loaded, arguments));
+    const cad::PreparedColon colon = inputs.colon();
+    const auto evidence = cad::gatherEvidence(colon, evidenceOptions(arguments));
+    cad::DetectOptions options;
+    options.threads = arguments.threads;
+    auto candidates = cad::findCandidates(colon, evidence, &texture, options);
+    if (!file.empty()) TRY(writeTextFile(file, cad::candidateTable(candidates)));
+    return candidates;
 }
 
-// Named features are as if nobody had measured them.
-void blind(cad::FeatureVector& features, const std::string& without) {
-    if (!without.starts_with("feature:")) return;
-    const std::string name = without.substr(8);
-    for (std::size_t n = 0; n < cad::featureNames.size(); ++n)
-        if (cad::featureNames[n] == name) features[n] = 0.0f;
+bool usesClassifier(const CadArguments& arguments) {
+    return !isWithout(arguments, "past");
+}
+
+// Leaves out what some generators found alone, and features as if nobody had measured them.
+void leaveOut(std::vector<cad::Candidate>& candidates, const CadArguments& arguments) {
+    const bool texture = !isWithout(arguments, "texture"),
+               shape = !isWithout(arguments, "shape") && usesClassifier(arguments);
+    std::erase_if(candidates, [&](const cad::Candidate& candidate) {
+        const cad::Patch& patch = candidate.lesion.patch;
+        return !(patch.byShape && shape) && !(patch.byTexture && texture);
+    });
+    for (const std::string& part : arguments.without) {
+        if (!part.starts_with(featurePart)) continue;
+        const std::string prefix = part.substr(featurePart.size());
+        for (std::size_t n = 0; n < cad::featureNames.size(); ++n)
+            if (cad::featureNames[n].starts_with(prefix))
+                for (cad::Candidate& candidate : candidates)
+                    candidate.features[n] = 0.0f;
+    }
 }
 
 Result<cad::CadModel> readModel(const CadArguments& arguments) {
@@ -107,43 +183,60 @@ Result<cad::CadModel> readModel(const CadArguments& arguments) {
     return cad::modelOfText(text, arguments.model.string());
 }
 
-Result<void> runTrain(const CadArguments& arguments) {
-    TRY(checkOutputFile(arguments.model));
-    const auto store = TRY(store::CaseStore::open(arguments.store, false));
-    ProgressBar bar;
-    store::Sha256 hash;
-    // Colours first: what candidates texture gives depends on what all cases look like.
+// What the cases' polyps look like in the electronic biopsy, which is kept as candidates are.
+Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
+                                       const CadArguments& arguments, ProgressBar& bar) {
+    fs::path file;
+    if (!arguments.kept.empty()) {
+        std::string key = variantOf(arguments);
+        for (const LoadedCase& each : cases)
+            key += each.prepared + ' ';
+        file = arguments.kept /
+               fmt::format("texture.{}.json", store::toHex(store::textDigest(key)).substr(0, 16));
+        std::error_code ignored;
+        if (fs::exists(file, ignored)) {
+            const auto text = TRY(readText(file));
+            return cad::textureOfText(text, file.string());
+        }
+    }
     std::vector<cad::TextureVector> walls, polyps;
-    for (std::size_t n = 0; n < arguments.cases.size(); ++n) {
-        bar.show("texture", double(n) / double(arguments.cases.size()));
-        const auto loaded = TRY(load(store, arguments, arguments.cases[n]));
-        hash.addWithLength(loaded.scan);
-        const auto colon = loaded.inputs.colon();
-        const auto evidence = cad::gatherEvidence(colon, evidenceOptions(arguments));
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        bar.show("texture", double(n) / double(cases.size()));
+        const auto inputs = TRY(readInputs(cases[n], arguments));
         const auto examples =
-            cad::textureExamples(colon, evidence, loaded.truth, arguments.threads);
+            cad::textureExamples(inputs.colon(), evidenceOptions(arguments), cases[n].truth);
         walls.insert(walls.end(), examples.all.begin(), examples.all.end());
         polyps.insert(polyps.end(), examples.polyps.begin(), examples.polyps.end());
     }
     if (polyps.empty())
         return fail(ErrorKind::badInput, "the cases hold no polyp", arguments.truth.string());
-    const cad::TextureModel texture = cad::learnTexture(walls, polyps, arguments.without != "pca");
+    const auto texture = cad::learnTexture(walls, polyps, !isWithout(arguments, "pca"));
+    if (!file.empty()) TRY(writeTextFile(file, cad::textureText(texture)));
+    return texture;
+}
+
+Result<void> runTrain(const CadArguments& arguments) {
+    TRY(checkOutputFile(arguments.model));
+    TRY(checkParts(arguments));
+    const auto store = TRY(store::CaseStore::open(arguments.store, false));
+    ProgressBar bar;
+    store::Sha256 hash;
+    std::vector<LoadedCase> loaded;
+    for (const std::string& name : arguments.cases) {
+        loaded.push_back(TRY(load(store, arguments, name)));
+        hash.addWithLength(loaded.back().scan);
+    }
+    // Colours first: what candidates texture gives depends on what all cases look like.
+    const auto texture = TRY(learnTexture(loaded, arguments, bar));
     bar.say(fmt::format("texture: {} components hold {:.1f} % of the variance; T {:.3f}",
                         texture.count(), 100.0 * texture.varianceShare, texture.threshold));
     std::vector<cad::TrainingCase> cases;
-    for (std::size_t n = 0; n < arguments.cases.size(); ++n) {
-        bar.show("candidates", double(n) / double(arguments.cases.size()));
-        auto loaded = TRY(load(store, arguments, arguments.cases[n]));
-        const auto colon = loaded.inputs.colon();
-        const auto evidence = cad::gatherEvidence(colon, evidenceOptions(arguments));
-        cad::DetectOptions options;
-        options.method = methodOf(arguments);
-        options.threads = arguments.threads;
-        const auto candidates = cad::findCandidates(colon, evidence, &texture, options);
-        auto examples = cad::examplesOf(candidates, loaded.truth);
-        for (cad::Example& example : examples)
-            blind(example.features, arguments.without);
-        cases.push_back({arguments.cases[n], std::move(loaded.truth), std::move(examples)});
+    for (std::size_t n = 0; n < loaded.size(); ++n) {
+        bar.show("candidates", double(n) / double(loaded.size()));
+        auto candidates = TRY(candidatesOf(loaded[n], arguments, texture));
+        leaveOut(candidates, arguments);
+        cases.push_back(
+            {arguments.cases[n], loaded[n].truth, cad::examplesOf(candidates, loaded[n].truth)});
     }
     cad::TrainOptions options;
     options.name = arguments.name, options.trainedOn = arguments.description;
@@ -215,23 +308,19 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         if (file.empty()) continue;
         TRY(checkOutputFile(file));
     }
+    TRY(checkParts(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     const auto model = TRY(readModel(arguments));
-    const cad::Method method = methodOf(arguments);
+    cad::Method method;
+    method.classifier = usesClassifier(arguments);
     ProgressBar bar;
     std::vector<cad::EvaluatedCase> cases;
     for (std::size_t n = 0; n < arguments.cases.size(); ++n) {
         bar.show("detect", double(n) / double(arguments.cases.size()));
         const std::string& name = arguments.cases[n];
         const auto loaded = TRY(load(store, arguments, name));
-        const auto colon = loaded.inputs.colon();
-        const auto evidence = cad::gatherEvidence(colon, evidenceOptions(arguments));
-        cad::DetectOptions options;
-        options.method = method;
-        options.threads = arguments.threads;
-        auto all = cad::findCandidates(colon, evidence, &model.texture, options);
-        for (cad::Candidate& candidate : all)
-            blind(candidate.features, arguments.without);
+        auto all = TRY(candidatesOf(loaded, arguments, model.texture));
+        leaveOut(all, arguments);
         auto weighed = all;
         cad::weigh(weighed, model, method);
         cases.push_back(cad::evaluateCase(name, groupOf(name), all, weighed, loaded.truth));
@@ -258,14 +347,18 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     const cad::Evaluation sum = cad::evaluate(every, point);
     if (groups.size() > 1) print("all", sum);
     report["all"] = jsonOf(sum);
-    std::string csv = "false_positives_per_scan,sensitivity_from_6_mm,low,high,threshold\n";
-    for (const cad::FrocPoint& p : cad::frocCurve(every)) {
-        csv += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.6f}\n", p.falsePositives, p.sensitivity,
-                           p.low, p.high, p.threshold);
+    const auto curve = cad::frocCurve(every);
+    for (const cad::FrocPoint& p : curve)
         report["froc"].push_back({p.falsePositives, p.sensitivity, p.low, p.high});
-    }
     if (!arguments.froc.empty()) {
-        TRY(writeTextFile(arguments.froc, csv));
+        if (arguments.froc.extension() == ".png") {
+            const Image picture = TRY(frocPicture(
+                curve, fmt::format("{}, {} scans: phantoms unless the cases are patients'",
+                                   model.name, every.size())));
+            TRY(pictures::writePicture(arguments.froc, picture, ownProvenance()));
+        } else {
+            TRY(writeTextFile(arguments.froc, frocCsv(curve)));
+        }
     }
     if (arguments.report.empty()) return {};
     return writeTextFile(arguments.report, report.dump(2) + "\n");
@@ -283,10 +376,17 @@ void addCases(CLI::App& command, CadArguments& arguments) {
         ->required();
     addThreadsOption(command, arguments.threads);
     command
-        .add_option("--without", arguments.without,
-                    "For comparisons leave out: automatic-transfer, pca, texture, shape, past (all "
-                    "that is not the dissertation's), or feature:NAME; give it to train and "
-                    "evaluate alike")
+        .add_option("--candidates", arguments.kept,
+                    "Keep what was found in each case in this folder, and take it from there where "
+                    "it is: to learn or judge again without measuring again")
+        ->type_name("DIR")
+        ->check(CLI::ExistingDirectory);
+    command
+        .add_option(
+            "--without", arguments.without,
+            "For comparisons leave out: automatic-transfer, pca, cleansing, texture, shape, "
+            "past (all that is not the dissertation's), or feature:NAME, those whose names "
+            "begin so; give it to train and evaluate alike; may be repeated")
         ->type_name("PART");
 }
 
@@ -325,7 +425,7 @@ Command addCad(CLI::App& program) {
     evaluate
         ->add_option("--froc", arguments->froc,
                      "Write the free-response ROC curve with 95 % bands by bootstrap over cases")
-        ->type_name("FILE.csv");
+        ->type_name("FILE.csv|FILE.png");
     return {command, [arguments, train] {
                 return train->parsed() ? runTrain(*arguments) : runEvaluate(*arguments);
             }};

@@ -1,4 +1,5 @@
 // What detection learns: texture, forests, calibration; and how it is judged.
+#include "cad/candidate_table.h"
 #include "cad/evaluate.h"
 #include "cad/model.h"
 #include "cad/train.h"
@@ -210,6 +211,50 @@ TEST(Evaluation, TheFrocCurveRisesAndItsBandsHoldIt) {
         EXPECT_LE(wrong, curve[p].falsePositives * 30.0);
     }
     EXPECT_EQ(curve.back().sensitivity, 1.0);
+}
+
+TEST(CandidateTable, ReadsBackWhatLearningAndJudgingUse) {
+    std::vector<cad::Candidate> candidates(3);
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        cad::Candidate& candidate = candidates[n];
+        candidate.lesion.centreMm = {-12.5 - double(n), 3.25, -640.0};
+        candidate.lesion.diameter.mm = 6.125 + double(n);
+        candidate.lesion.areaMm2 = 33.5;
+        candidate.lesion.patch.byShape = n != 1, candidate.lesion.patch.byTexture = n != 0;
+        for (std::size_t f = 0; f < candidate.features.size(); ++f)
+            candidate.features[f] = 0.1f * float(f) - float(n);
+    }
+    const std::string text = cad::candidateTable(candidates);
+    const auto read = cad::candidatesOfTable(text, "table");
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(read->size(), candidates.size());
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        const cad::Lesion &was = candidates[n].lesion, &is = (*read)[n].lesion;
+        EXPECT_EQ(is.centreMm, was.centreMm);
+        EXPECT_EQ(is.diameter.mm, was.diameter.mm);
+        EXPECT_EQ(is.areaMm2, was.areaMm2);
+        EXPECT_EQ(is.patch.byShape, was.patch.byShape);
+        EXPECT_EQ(is.patch.byTexture, was.patch.byTexture);
+        for (std::size_t f = 0; f < candidates[n].features.size(); ++f)
+            EXPECT_NEAR((*read)[n].features[f], candidates[n].features[f], 1e-6);
+    }
+    EXPECT_EQ(cad::candidateTable(*read), text);
+}
+
+TEST(CandidateTable, RefusesWhatIsNone) {
+    const std::string text = cad::candidateTable({cad::Candidate()});
+    const auto refused = [](const std::string& bad) {
+        const auto read = cad::candidatesOfTable(bad, "table");
+        return !read && read.error().place == "table";
+    };
+    EXPECT_TRUE(refused(""));
+    EXPECT_TRUE(refused(text.substr(0, text.size() / 2)));
+    std::string other = text;
+    other.replace(other.find("diameter_mm"), 11, "weight_kg__");
+    EXPECT_TRUE(refused(other));
+    std::string shorter = text;
+    shorter.replace(shorter.rfind(",0]"), 3, "]");
+    EXPECT_TRUE(refused(shorter));
 }
 
 }  // namespace

@@ -1,0 +1,68 @@
+#include "cad/candidate_table.h"
+
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+namespace haustra::cad {
+namespace {
+
+constexpr std::size_t ownNumbers = 7;  // before a candidate's features
+
+}  // namespace
+
+std::string candidateTable(const std::vector<Candidate>& candidates) {
+    std::string text =
+        "{\"haustra_cad_candidates\": " + std::to_string(modelVersion) + ",\n\"features\": [";
+    for (const std::string_view name : featureNames)
+        text += (name == featureNames.front() ? "\"" : ",\"") + std::string(name) + '"';
+    text += "],\n\"candidates\": [";
+    bool first = true;
+    const auto number = [](double value) {
+        char digits[32];
+        std::snprintf(digits, sizeof digits, "%.7g", value);
+        return std::string(digits);
+    };
+    for (const Candidate& candidate : candidates) {
+        const Lesion& lesion = candidate.lesion;
+        text += first ? "\n[" : ",\n[";
+        first = false;
+        for (const double value :
+             {lesion.centreMm.x, lesion.centreMm.y, lesion.centreMm.z, lesion.diameter.mm,
+              lesion.areaMm2, double(lesion.patch.byShape), double(lesion.patch.byTexture)})
+            text += number(value) + ',';
+        for (const float value : candidate.features)
+            text += number(value) + ',';
+        text.back() = ']';
+    }
+    return text + "]}\n";
+}
+
+Result<std::vector<Candidate>> candidatesOfTable(std::string_view text, const std::string& place) {
+    try {
+        const auto json = nlohmann::json::parse(text);
+        if (json.at("haustra_cad_candidates").get<int>() != modelVersion ||
+            json.at("features") != nlohmann::json(featureNames))
+            return fail(ErrorKind::unsupported, "the candidates are of other features", place);
+        std::vector<Candidate> candidates;
+        for (const auto& row : json.at("candidates")) {
+            if (row.size() != ownNumbers + featureNames.size())
+                throw std::invalid_argument("a row has another length");
+            Candidate candidate;
+            Lesion& lesion = candidate.lesion;
+            lesion.centreMm = {row[0].get<double>(), row[1].get<double>(), row[2].get<double>()};
+            lesion.diameter.mm = row[3], lesion.areaMm2 = row[4];
+            lesion.patch.byShape = row[5].get<int>() != 0;
+            lesion.patch.byTexture = row[6].get<int>() != 0;
+            for (std::size_t n = 0; n < featureNames.size(); ++n)
+                candidate.features[n] = row[ownNumbers + n];
+            candidates.push_back(std::move(candidate));
+        }
+        return candidates;
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("these are no candidates: ") + error.what(),
+                    place);
+    }
+}
+
+}  // namespace haustra::cad
