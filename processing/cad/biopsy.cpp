@@ -38,22 +38,26 @@ BiopsyTable::BiopsyTable(const TransferFunction& transferFunction) : entries_(40
 }
 
 BiopsyRay castBiopsyRay(const BiopsyScan& scan, const BiopsyTable& table, glm::dvec3 startMm,
-                        glm::dvec3 intoWall) {
+                        glm::dvec3 intoWall, RayEnd end) {
     // Within a step of the wall the scan is still half gas.
     constexpr int wallSteps = 3;
-    const Grid& grid = scan.lumen.grid();
-    const glm::dmat4 voxelFromPatient = scan.scan.voxelFromPatient();
-    glm::dvec3 voxel(voxelFromPatient * glm::dvec4(startMm, 1.0));
-    const glm::dvec3 step = biopsyStepMm * (glm::dmat3(voxelFromPatient) * intoWall);
-    const glm::dvec3 most(grid.size - 1);
+    const glm::ivec3 size = scan.lumen.grid().size;
+    const std::uint8_t* labels = scan.lumen.voxels().data();
+    const glm::dmat4& voxelFromPatient = scan.scan.voxelFromPatient();
+    glm::vec3 voxel(voxelFromPatient * glm::dvec4(startMm, 1.0));
+    const glm::vec3 step(biopsyStepMm * (glm::dmat3(voxelFromPatient) * intoWall));
+    const glm::vec3 origin(scan.scan.origin()), most(size - 1);
+    const auto airBelow = float(scan.airBelowHu);
     BiopsyRay ray;
     bool inTissue = false, opaque = false;
     for (int n = 0; n < biopsySteps; ++n, voxel += step) {
         const float hu = scan.scan.linear(voxel);
-        const glm::ivec3 nearest(glm::floor(
-            glm::clamp(voxel + 0.5 + glm::dvec3(scan.scan.origin()), glm::dvec3(0.0), most)));
-        const bool gas = hu < scan.airBelowHu,
-                   lumen = scan.lumen.at(nearest) != std::uint8_t(LumenLabel::outside);
+        const glm::ivec3 nearest(glm::clamp(voxel + origin, glm::vec3(0.0f), most) + 0.5f);
+        const bool
+            gas = hu < airBelow,
+            lumen = labels[(std::size_t(nearest.z) * std::size_t(size.y) + std::size_t(nearest.y)) *
+                               std::size_t(size.x) +
+                           std::size_t(nearest.x)] != std::uint8_t(LumenLabel::outside);
         if ((inTissue || n >= wallSteps) && (gas || lumen)) {
             ray.reenters = inTissue;
             break;
@@ -70,6 +74,7 @@ BiopsyRay castBiopsyRay(const BiopsyScan& scan, const BiopsyTable& table, glm::d
             ray.color /= ray.opacity;
             ray.opacity = 1.0f;
             opaque = true;
+            if (end == RayEnd::opaque) break;
         }
     }
     return ray;

@@ -58,9 +58,13 @@ struct BiopsyScan {
     double airBelowHu = -400.0;         ///< tissue ends where the scan is darker
 };
 
+/// What is wanted of a ray: its colour alone, or what lies behind it too.
+enum class RayEnd { opaque, lumen };
+
 /// Front to back from `startMm` on the wall along the unit vector `intoWall`. It ends where it
-/// would enter the lumen again after it has been in tissue, or is opaque.
+/// would enter the lumen again after it has been in tissue, or, where no more is wanted, where it
+/// is opaque.
 BiopsyRay castBiopsyRay(const BiopsyScan& scan, const BiopsyTable& table, glm::dvec3 startMm,
-                        glm::dvec3 intoWall);
+                        glm::dvec3 intoWall, RayEnd end = RayEnd::lumen);
 
 }  // namespace haustra::cad

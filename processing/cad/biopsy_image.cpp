@@ -49,7 +49,8 @@ Image biopsyImage(const BiopsyScan& scan, const FlatMap& flat, const BiopsyTable
                     const glm::dvec3 gradient = scan.scan.gradient(place);
                     const double steep = glm::length(gradient);
                     if (steep < 1e-6) continue;
-                    sum += castBiopsyRay(scan, table, place, gradient / steep).color;
+                    sum +=
+                        castBiopsyRay(scan, table, place, gradient / steep, RayEnd::opaque).color;
                 }
                 const glm::u8vec3 color = displayed(sum / float(finer * finer));
                 for (int c = 0; c < 3; ++c)

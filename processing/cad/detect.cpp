@@ -3,6 +3,7 @@
 #include "cad/biopsy_transfer.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
+#include "core/printed_text.h"
 #include "core/version.h"
 
 #include <algorithm>
@@ -17,6 +18,11 @@ namespace {
 // A head on a neck of less than this share of its width has a stalk; Paris 0-II is at most 2.5 mm
 // high (the closed cups of a forceps), to which the scan adds its blur.
 constexpr double stalkNeck = 0.7, stalkHeightRatio = 0.75, flatHeightMm = 3.0, flatRatio = 0.4;
+
+// Less of the wall than a polyp of 5 mm takes is no gap in an examination.
+constexpr double leastUnseenMm2 = 20.0;
+// Of the smoothed scan; four times a standard one's.
+constexpr double noisyHu = 25.0;
 
 double featureOf(const Candidate& candidate, std::string_view name) {
     return candidate.features[std::size_t(
@@ -145,6 +151,19 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     findings.model.name = model.name;
     findings.model.trainedOn = model.trainedOn;
     findings.grid = colon.ct.grid();
+    double unseenMm2 = 0.0;
+    for (std::size_t v = 0; v < evidence.unseen.size(); ++v)
+        if (evidence.unseen[v]) unseenMm2 += evidence.samples.areaMm2[v];
+    if (unseenMm2 >= leastUnseenMm2)
+        findings.warnings.push_back(printed(
+            "%.0f mm2 of the wall were not examined: they enclose a bridge over a collapse, or "
+            "were rebuilt after a leak",
+            unseenMm2));
+    if (evidence.statistics.noiseHu > noisyHu)
+        findings.warnings.push_back(
+            printed("the scan is noisier than what detection has learnt from: %.0f HU after "
+                    "smoothing to 1 mm",
+                    evidence.statistics.noiseHu));
     for (const Candidate& candidate : candidates) {
         if (candidate.probability < leastProbability) continue;
         (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)

@@ -144,14 +144,14 @@ SmoothScan::SmoothScan(const Volume<std::int16_t>& hu, glm::dvec3 lowMm, glm::dv
     turn_ = glm::dmat3(voxelFromPatient_);
 }
 
-float SmoothScan::linear(glm::dvec3 voxel) const {
+float SmoothScan::linear(glm::vec3 voxel) const {
     const glm::ivec3 size = smooth_.grid().size;
-    const glm::vec3 p =
-        glm::clamp(glm::vec3(voxel), glm::vec3(0.0f), glm::vec3(size - 1) - glm::vec3(1e-3f));
+    const glm::vec3 p = glm::clamp(voxel, glm::vec3(0.0f), glm::vec3(size - 1) - glm::vec3(1e-3f));
     const glm::ivec3 low(p);
     const glm::vec3 f = p - glm::vec3(low);
     const std::size_t row = std::size_t(size.x), slice = row * std::size_t(size.y);
-    const float* c = &smooth_.voxels()[smooth_.grid().index(low)];
+    const float* c = smooth_.voxels().data() + std::size_t(low.z) * slice +
+                     std::size_t(low.y) * row + std::size_t(low.x);
     const auto along = [&](const float* at) { return at[0] + f.x * (at[1] - at[0]); };
     const auto plane = [&](const float* at) {
         const float near = along(at);
@@ -162,11 +162,11 @@ float SmoothScan::linear(glm::dvec3 voxel) const {
 }
 
 glm::dvec3 SmoothScan::gradient(glm::dvec3 patientMm) const {
-    const glm::dvec3 voxel(voxelFromPatient_ * glm::dvec4(patientMm, 1.0));
+    const glm::vec3 voxel(voxelFromPatient_ * glm::dvec4(patientMm, 1.0));
     glm::dvec3 difference;
     for (int axis = 0; axis < 3; ++axis) {
-        glm::dvec3 off(0.0);
-        off[axis] = 0.75;
+        glm::vec3 off(0.0f);
+        off[axis] = 0.75f;
         difference[axis] = double(linear(voxel + off) - linear(voxel - off)) / 1.5;
     }
     return glm::transpose(turn_) * difference;

@@ -34,7 +34,7 @@ public:
 
     /// Of a place in voxels of grid(): linear between the smoothed voxels, clamped at the outermost
     /// ones. For long rays; without the spline's own share of the smoothing.
-    float linear(glm::dvec3 voxel) const;
+    float linear(glm::vec3 voxel) const;
     const glm::dmat4& voxelFromPatient() const { return voxelFromPatient_; }
     /// The scan's voxel that voxel (0, 0, 0) of grid() is.
     glm::ivec3 origin() const { return origin_; }

@@ -108,9 +108,9 @@ TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOption
     const auto look = [&](std::uint32_t v) {
         if (std::exchange(looked[v], 1)) return;
         measure(v);
-        colors[v] =
-            castBiopsyRay(scan, table, samples.mesh.vertices[v], glm::dvec3(shapes[v].intoWall))
-                .color;
+        colors[v] = castBiopsyRay(scan, table, samples.mesh.vertices[v],
+                                  glm::dvec3(shapes[v].intoWall), RayEnd::opaque)
+                        .color;
     };
     for (const std::uint32_t v : chosen)
         measure(v);

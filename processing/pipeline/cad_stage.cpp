@@ -5,20 +5,35 @@
 #include "pipeline/stages.h"
 #include "store/sha256.h"
 
+#include <fstream>
+#include <sstream>
+
 namespace haustra::pipeline {
 namespace {
 
 namespace product = store::product;
 
 // Raise it whenever the findings change for the same input and model.
-constexpr int detectionVersion = 1;
+constexpr int detectionVersion = 2;
+
+Result<std::string> modelText(const std::filesystem::path& file) {
+    if (file.empty()) return std::string(cad::builtInModelText());
+    std::ifstream in(file, std::ios::binary);
+    if (!in) return fail(ErrorKind::io, "cannot open the model", file.string());
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
 
 }  // namespace
 
 Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& flatMapKey) {
     const StageMeter meter;
     const PrepareOptions& options = preparation.options();
-    const std::string hash = store::toHex(store::textDigest(cad::builtInModelText()));
+    const std::string text = TRY(modelText(options.cadModel));
+    const auto model = TRY(cad::modelOfText(
+        text, options.cadModel.empty() ? "built-in model" : options.cadModel.string()));
+    const std::string hash = store::toHex(store::textDigest(text));
     const ProductKey key = store::makeKey("cad", detectionVersion, "model=" + hash, {flatMapKey});
     StageCase stage = preparation.open("cad", key);
     return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {
@@ -26,7 +41,6 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& flat
         products.quality = TRY(stage.holds(product::quality));
         products.cleansed = TRY(stage.holds(product::cleansed));
         const auto inputs = TRY(readColon(stage, products));
-        const auto model = TRY(cad::modelOfText(cad::builtInModelText(), "built-in model"));
         cad::DetectOptions detection;
         detection.threads = options.threads;
         detection.progress = progress;

@@ -192,6 +192,12 @@ void addSurface(CLI::App& command, pipeline::PrepareOptions& options) {
         ->check(checkSurfaceError, "FLOAT in [0.001 - 10]")
         ->capture_default_str();
     addAreaWeightOption(command, options.areaWeight);
+    command
+        .add_option("--cad-model", options.cadModel,
+                    "What polyp detection has learnt, as haustra cad train writes it (default: the "
+                    "built-in model, of phantoms)")
+        ->type_name("FILE.json")
+        ->check(CLI::ExistingFile);
 }
 
 }  // namespace
