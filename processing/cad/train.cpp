@@ -179,19 +179,27 @@ Result<CadModel> trainModel(const TextureModel& texture, const std::vector<Train
     if (indices.empty())
         return fail(ErrorKind::badInput, "no polyp of the training cases was a candidate");
     model.thresholds = {middleRange(indices), middleRange(curvedness), middleRange(concentration)};
-    model.forest = forestOf(all);
 
+    // The last forest has seen all cases, each other one all but those of its fold.
+    std::vector<Forest> forests(std::size_t(options.folds) + 1);
+    parallelFor(forests.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t fold = begin; fold < end; ++fold) {
+            std::vector<const TrainingCase*> seen;
+            for (std::size_t n = 0; n < cases.size(); ++n)
+                if (n % std::size_t(options.folds) != fold || fold + 1 == forests.size())
+                    seen.push_back(all[n]);
+            forests[fold] = forestOf(seen);
+        }
+    });
     std::vector<Scored> scored;
     for (int fold = 0; fold < options.folds; ++fold) {
-        std::vector<const TrainingCase*> others;
-        for (std::size_t n = 0; n < cases.size(); ++n)
-            if (int(n) % options.folds != fold) others.push_back(all[n]);
-        const Forest forest = forestOf(others);
+        const Forest& forest = forests[std::size_t(fold)];
         for (std::size_t n = std::size_t(fold); n < cases.size(); n += std::size_t(options.folds)) {
             const auto places = scoredPlaces(cases[n], n, forest);
             scored.insert(scored.end(), places.begin(), places.end());
         }
     }
+    model.forest = std::move(forests.back());
     std::vector<double> x, blamed;
     std::vector<int> truths;
     for (const Scored& place : scored) {

@@ -42,6 +42,7 @@ struct TrainOptions {
     /// Findings a scan that are no lesion, in cross-validation, at the operating point.
     double falsePositives = 2.0;
     int folds = 5;
+    int threads = 0;
 };
 
 /// Forest, thresholds, calibration and operating point. The forest is trained on all cases;

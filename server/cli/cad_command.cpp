@@ -242,6 +242,8 @@ Result<void> runTrain(const CadArguments& arguments) {
     options.name = arguments.name, options.trainedOn = arguments.description;
     options.trainingSha256 = store::toHex(hash.finish());
     options.falsePositives = arguments.falsePositives;
+    options.threads = arguments.threads;
+    bar.show("forests", 0.0);
     const auto model = TRY(cad::trainModel(texture, cases, options));
     bar.say(
         fmt::format("operating point {:.3f}, where other cases' folds had {:.1f} false "
