@@ -164,6 +164,9 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
             printed("the scan is noisier than what detection has learnt from: %.0f HU after "
                     "smoothing to 1 mm",
                     evidence.statistics.noiseHu));
+    const WallStatistics& statistics = evidence.statistics;
+    findings.biopsy = {statistics.wallHu, statistics.fatHu, statistics.noiseHu,
+                       evidence.transferFunction};
     for (const Candidate& candidate : candidates) {
         if (candidate.probability < leastProbability) continue;
         (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)

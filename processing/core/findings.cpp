@@ -11,26 +11,26 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// To a micrometre, and far below what a probability is worth: the text stays the same on every
+// Far below what a scan resolves, or a probability is worth: the text stays the same on every
 // machine.
-double micrometres(double value) {
+double thousandths(double value) {
     return std::round(value * 1e3) / 1e3;
 }
 OrderedJson placeJson(glm::dvec3 p) {
-    return {micrometres(p.x), micrometres(p.y), micrometres(p.z)};
+    return {thousandths(p.x), thousandths(p.y), thousandths(p.z)};
 }
 
 OrderedJson findingJson(const Finding& finding) {
     OrderedJson json{{"position_mm", placeJson(finding.positionMm)},
-                     {"diameter_mm", micrometres(finding.diameterMm)},
+                     {"diameter_mm", thousandths(finding.diameterMm)},
                      {"score", std::round(finding.score * 1e6) / 1e6},
                      {"kind", finding.kind}};
     if (finding.voxels.empty() && finding.features.empty()) return json;
     json["wall_mm"] = placeJson(finding.wallMm);
     json["diameter_ends_mm"] = {placeJson(finding.diameterEndsMm.first),
                                 placeJson(finding.diameterEndsMm.second)};
-    json["height_mm"] = micrometres(finding.heightMm);
-    json["arc_mm"] = micrometres(finding.arcMm);
+    json["height_mm"] = thousandths(finding.heightMm);
+    json["arc_mm"] = thousandths(finding.arcMm);
     if (finding.segment) json["segment"] = toString(*finding.segment);
     OrderedJson features = OrderedJson::object();
     for (const auto& [name, value] : finding.features)
@@ -41,6 +41,20 @@ OrderedJson findingJson(const Finding& finding) {
         voxels.push_back({run.first.x, run.first.y, run.first.z, run.count});
     json["voxels"] = voxels;
     return json;
+}
+
+OrderedJson biopsyJson(const ScanBiopsy& biopsy) {
+    OrderedJson points = OrderedJson::array();
+    for (const TransferFunctionPoint& point : biopsy.transferFunction.points)
+        points.push_back(
+            {{"hu", thousandths(point.hu)},
+             {"color",
+              {thousandths(point.color.r), thousandths(point.color.g), thousandths(point.color.b)}},
+             {"opacity", std::round(point.opacity * 1e6) / 1e6}});
+    return {{"wall_hu", thousandths(biopsy.wallHu)},
+            {"fat_hu", thousandths(biopsy.fatHu)},
+            {"noise_hu", thousandths(biopsy.noiseHu)},
+            {"transfer_function", points}};
 }
 
 // A line each.
@@ -108,6 +122,27 @@ Finding findingOf(const OrderedJson& json, const Grid& grid) {
     return finding;
 }
 
+ScanBiopsy biopsyOf(const OrderedJson& json) {
+    ScanBiopsy biopsy{numberIn(json.at("wall_hu")),
+                      numberIn(json.at("fat_hu")),
+                      numberIn(json.at("noise_hu")),
+                      {}};
+    if (biopsy.noiseHu < 0.0) throw std::invalid_argument("noise is not negative");
+    if (json.at("transfer_function").size() > mostTransferPoints)
+        throw std::invalid_argument("a transfer function has too many points");
+    for (const OrderedJson& point : json.at("transfer_function")) {
+        const OrderedJson& color = point.at("color");
+        if (color.size() != 3) throw std::invalid_argument("a colour has three numbers");
+        biopsy.transferFunction.points.push_back(
+            {numberIn(point.at("hu")),
+             {numberIn(color.at(0)), numberIn(color.at(1)), numberIn(color.at(2))},
+             numberIn(point.at("opacity"))});
+    }
+    if (const auto sound = checkTransferFunction(biopsy.transferFunction); !sound)
+        throw std::invalid_argument(describe(sound.error()));
+    return biopsy;
+}
+
 Grid gridOf(const OrderedJson& json) {
     Grid grid;
     const OrderedJson &size = json.at("size"), &affine = json.at("patient_from_voxel");
@@ -143,6 +178,7 @@ std::string findingsJson(const Findings& findings) {
         const glm::ivec3 size = findings.grid.size;
         add("grid", {{"size", {size.x, size.y, size.z}}, {"patient_from_voxel", affine}});
     }
+    if (findings.biopsy) add("biopsy", biopsyJson(*findings.biopsy));
     text += "\"findings\": " + findingLines(findings.findings);
     if (detected) text += ",\n\"candidates\": " + findingLines(findings.candidates);
     return text + "}\n";
@@ -163,6 +199,7 @@ Result<Findings> findingsOfJson(const std::string& text, const std::string& wher
             findings.operatingPoint = numberIn(json.at("operating_point"));
         findings.warnings = json.value("warnings", std::vector<std::string>());
         if (json.contains("grid")) findings.grid = gridOf(json.at("grid"));
+        if (json.contains("biopsy")) findings.biopsy = biopsyOf(json.at("biopsy"));
         const OrderedJson &list = json.at("findings"),
                           rest = json.value("candidates", OrderedJson::array());
         if (list.size() + rest.size() > std::size_t(maxFindings))

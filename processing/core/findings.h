@@ -3,6 +3,7 @@
 
 #include "core/colon_record.h"
 #include "core/grid.h"
+#include "core/optics.h"
 #include "core/result.h"
 
 #include <cstdint>
@@ -47,6 +48,15 @@ struct DetectionModel {
     std::string trainedOn;  ///< for a reader: what of, and what that means
 };
 
+/// How the electronic biopsy of one scan is coloured, and from what that was derived (§7.2.5).
+struct ScanBiopsy {
+    double wallHu = 0.0;                ///< of the wall's tissue
+    double fatHu = 0.0;                 ///< of the fat around it
+    double noiseHu = 0.0;               ///< standard deviation in the smoothed scan; not negative
+    TransferFunction transferFunction;  ///< 1-D, passes checkTransferFunction
+    bool operator==(const ScanBiopsy&) const = default;
+};
+
 struct Findings {
     /// From the rectum to the cecum; of detection, those at or above the operating point.
     std::vector<Finding> findings;
@@ -56,6 +66,7 @@ struct Findings {
     DetectionModel model = {};
     Grid grid = {};                          ///< that voxels are of
     std::vector<std::string> warnings = {};  ///< what a reader must know of how they were found
+    std::optional<ScanBiopsy> biopsy = {};   ///< by which detection looked beneath the wall
 };
 
 /// Most findings and candidates together, and most runs of voxels of one: far more than a reader
@@ -65,6 +76,8 @@ inline constexpr int maxFindings = 4096, maxFindingRuns = 1 << 16;
 /// The `findings` product, JSON:
 ///   {"software", "model": {"name", "sha256", "trained_on"}, "operating_point", "warnings",
 ///    "grid": {"size", "patient_from_voxel"},            16 numbers, rows of the affine
+///    "biopsy": {"wall_hu", "fat_hu", "noise_hu",
+///               "transfer_function": [{"hu", "color": [r,g,b], "opacity"}, …]},  as of a preset
 ///    "findings": [{"position_mm": [x,y,z], "diameter_mm", "score", "kind", "wall_mm",
 ///                  "diameter_ends_mm": [[x,y,z], [x,y,z]], "height_mm", "arc_mm", "segment",
 ///                  "features": {…}, "voxels": [[i,j,k,count], …]}, …],
@@ -73,8 +86,8 @@ inline constexpr int maxFindings = 4096, maxFindingRuns = 1 << 16;
 /// a new line.
 std::string findingsJson(const Findings& findings);
 /// Reads what findingsJson writes; of the rest, position_mm and diameter_mm of each finding are
-/// enough. Fails (badInput) where the text is none, a number is out of any body's range, or voxels
-/// do not lie in the grid.
+/// enough. Fails (badInput) where the text is none, a number is out of any body's range, voxels
+/// do not lie in the grid, or the biopsy's transfer function is not sound.
 Result<Findings> findingsOfJson(const std::string& text, const std::string& place = "findings");
 
 }  // namespace haustra

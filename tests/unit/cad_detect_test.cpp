@@ -214,6 +214,22 @@ TEST(Biopsy, ARayEndsWhereTheLumenBeginsAgain) {
     EXPECT_GT(along.color.g, along.color.r) << "tissue of middle density is green";
 }
 
+TEST(Biopsy, FindingsTellByWhichColoursTheirWallWasSeen) {
+    const BallColon ball;
+    const cad::PreparedColon colon = ball.colon();
+    const auto evidence = cad::gatherEvidence(colon, {});
+    const Findings findings = cad::findingsOf(colon, evidence, {}, {});
+    ASSERT_TRUE(findings.biopsy);
+    EXPECT_EQ(findings.biopsy->transferFunction, cad::automaticBiopsyTransfer(evidence.statistics));
+    EXPECT_EQ(findings.biopsy->wallHu, evidence.statistics.wallHu);
+    const auto read = findingsOfJson(findingsJson(findings));
+    ASSERT_TRUE(read) << describe(read.error());
+    ASSERT_TRUE(read->biopsy);
+    for (std::size_t n = 0; n < read->biopsy->transferFunction.points.size(); ++n)
+        EXPECT_NEAR(read->biopsy->transferFunction.points[n].hu,
+                    findings.biopsy->transferFunction.points[n].hu, 1e-3);
+}
+
 TEST(Biopsy, TheAutomaticTransferFunctionFollowsTheScan) {
     const cad::WallStatistics usual{40.0, -100.0, 5.0};
     const TransferFunction fixed = cad::fixedBiopsyTransfer(),

@@ -21,6 +21,8 @@ Findings twoFindings() {
     finding.features = {{"shape_index", 0.9}, {"curvedness", 0.25}};
     finding.voxels = {{{1, 2, 3}, 4}, {{60, 47, 31}, 4}};
     all.findings = {finding};
+    all.biopsy = {
+        41.5, -97.25, 12.125, {{{-249.5, {0.1, 0.2, 0.95}, 0.0}, {219.5, {1, 0, 0}, 0.3}}}};
     finding.score = 0.125, finding.segment = {};
     all.candidates = {finding};
     return all;
@@ -41,12 +43,14 @@ TEST(Findings, JsonReadsBackAsItWas) {
     EXPECT_TRUE(sameGrid(read->grid, all.grid));
     EXPECT_EQ(read->model.sha256, all.model.sha256);
     EXPECT_EQ(read->warnings, all.warnings);
+    EXPECT_EQ(read->biopsy, all.biopsy);
 }
 
 TEST(Findings, ATruthNeedsNoMoreThanPlaceAndSize) {
     const auto read = findingsOfJson(R"({"findings":[{"position_mm":[1,2,3],"diameter_mm":6.5}]})");
     ASSERT_TRUE(read) << describe(read.error());
     EXPECT_EQ(read->findings.at(0).score, 1.0);
+    EXPECT_FALSE(read->biopsy);
     EXPECT_EQ(read->findings.at(0).positionMm, glm::dvec3(1.0, 2.0, 3.0));
 }
 
@@ -62,7 +66,10 @@ TEST(Findings, WhatIsNoneIsRefused) {
     for (const std::string& text :
          {std::string(), std::string("[]"), std::string("{}"), sound.substr(0, sound.size() / 2),
           with("\"score\":0.75", "\"score\":7.5"), with("8.125", "-8.125"), with("8.125", "1e300"),
-          with("\"sigmoid\"", "\"elbow\""), with("[60,", "[61,"), with("[64", "[-64")}) {
+          with("\"sigmoid\"", "\"elbow\""), with("[60,", "[61,"), with("[64", "[-64"),
+          with("\"noise_hu\":12", "\"noise_hu\":-12"), with("\"hu\":219.5", "\"hu\":-300"),
+          with("[0.1,0.2,0.95]", "[0.1,0.2]"), with("[0.1,0.2,0.95]", "[0.1,0.2,9.5]"),
+          with("\"opacity\":0.3", "\"opacity\":3")}) {
         const auto read = findingsOfJson(text, "case/findings");
         ASSERT_FALSE(read) << text;
         EXPECT_EQ(read.error().kind, ErrorKind::badInput);
