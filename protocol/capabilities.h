@@ -14,5 +14,6 @@ inline constexpr char caseEntries[] = "case-entries";  ///< CaseList says more t
 inline constexpr char marks[] = "marks";               ///< Bookmark.mark
 inline constexpr char scanValues[] = "scan-values";    ///< MeasureScan
 inline constexpr char pick[] = "pick";                 ///< PickWall
+inline constexpr char lens[] = "lens";                 ///< viewport 8, SetViewport.lens
 
 }  // namespace haustra::protocol::capability

@@ -17,7 +17,9 @@ inline constexpr std::uint32_t maxServerControlBytes = 4 * 1024 * 1024;
 inline constexpr std::uint32_t maxTileBytes = 16 * 1024 * 1024;
 
 // ---- §4, viewports
-inline constexpr std::uint32_t maxViewports = 8;  ///< of a session: ids are 0…7
+/// Of a session: ids are 0…8, the last one only with a server that has capability::lens.
+inline constexpr std::uint32_t maxViewports = 9;
+inline constexpr std::uint32_t lensViewport = 8;  ///< the ninth, which this client has for its lens
 inline constexpr std::uint32_t minViewportPixels = 16, maxViewportPixels = 2048;  ///< of each side
 
 // ---- §4, what views show

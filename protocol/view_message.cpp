@@ -228,13 +228,15 @@ std::optional<InputHeader> inputHeader(const ClientMessage& message) {
     });
 }
 
-ClientMessage viewportMessage(InputHeader header, haustra::View view, int width, int height) {
+ClientMessage viewportMessage(InputHeader header, haustra::View view, int width, int height,
+                              bool lens) {
     ClientMessage message;
     SetViewport& body = *message.mutable_set_viewport();
     begin(body, header);
     body.set_view(codeOf(view));
     body.set_width(std::uint32_t(width));
     body.set_height(std::uint32_t(height));
+    body.set_lens(lens);
     return message;
 }
 

@@ -23,7 +23,9 @@ std::optional<InputHeader> inputHeader(const ClientMessage& message);
 
 // ---- inputs, as the client says them
 
-ClientMessage viewportMessage(InputHeader header, haustra::View view, int width, int height);
+/// `lens`: its pictures are laid over another's, of an endoscopic view.
+ClientMessage viewportMessage(InputHeader header, haustra::View view, int width, int height,
+                              bool lens = false);
 /// Where a viewport looks: SetCamera, SetSlice, SetOblique, SetOverview or SetFlat. A slice's
 /// plane is the viewport's; windows go by a message of their own.
 ClientMessage stateMessage(InputHeader header, const ViewState& state);

@@ -28,6 +28,10 @@ struct OpticsPreset {
     Optics optics;
     bool operator==(const OpticsPreset&) const = default;
 };
+/// Names of the electronic biopsy's (§6.2.4): with fixed colours, which every server has, and with
+/// those derived from one scan (§7.2.5), which its case may have.
+inline constexpr char biopsyPreset[] = "biopsy", scanBiopsyPreset[] = "biopsy-scan";
+
 bool isPresetName(std::string_view text);
 
 /// "emission-absorption", "maximum-intensity", "first-hit".

@@ -8,6 +8,7 @@
 #include "render/object_order/object_order_raycaster.h"
 #include "render/overview/overview_painter.h"
 #include "render/polygon_assisted/polygon_assisted_raycaster.h"
+#include "render/scene/beneath_wall.h"
 #include "render/scene/case_pictures.h"
 #include "render/scene/lru_cache.h"
 #include "render/wall/wall_index.h"
@@ -73,6 +74,13 @@ struct CaseRenderer::Impl {
         std::vector<WallPixel> pixels;
     };
     LruCache<SeenWall> seenWalls{4};
+    struct RayEnds {
+        Camera camera;
+        glm::ivec2 size{0};
+        double deepMm = 0.0;
+        std::shared_ptr<const Backdrop> ends;
+    };
+    LruCache<RayEnds> rayEnds{2};
 
     const Grid& grid() const { return scene->grid(); }
     CasePictures& pictures() { return picturesOnCpu(used) ? *nativePictures : *glPictures; }
@@ -147,16 +155,36 @@ struct CaseRenderer::Impl {
         return wallIndex->find(context, *flatSurface, camera, band);
     }
 
+    /// Of the whole picture; valid until the next call.
+    Result<const SeenWall*> wallOf(const Camera& camera, glm::ivec2 size) {
+        const SeenWall* seen = seenWalls.find(
+            [&](const SeenWall& kept) { return kept.camera == camera && kept.size == size; });
+        if (seen) return seen;
+        auto found = TRY(findWall(camera, Band::whole(size.x, size.y)));
+        return seenWalls.keep({camera, size, std::move(found)});
+    }
+
+    Result<std::shared_ptr<const Backdrop>> endsOf(const CameraView& view, glm::ivec2 size) {
+        const RayEnds* kept = rayEnds.find([&](const RayEnds& one) {
+            return one.camera == view.camera && one.size == size &&
+                   one.deepMm == view.beneathWallMm;
+        });
+        if (kept) return kept->ends;
+        const SeenWall* seen = TRY(wallOf(view.camera, size));
+        std::vector<float> depths;
+        depths.reserve(seen->pixels.size());
+        for (const WallPixel& pixel : seen->pixels)
+            depths.push_back(pixel.depthMm);
+        auto ends =
+            endsBeneathWall(*scene, view.camera, size, depths, view.beneathWallMm, options.threads);
+        return rayEnds.keep({view.camera, size, view.beneathWallMm, std::move(ends)})->ends;
+    }
+
     /// Tints the band of a camera's picture.
     Result<void> paintWall(const Camera& camera, const WallPaint& paint, const Band& band,
                            Image& picture) {
         const glm::ivec2 size = band.pictureSize;
-        const SeenWall* seen = seenWalls.find(
-            [&](const SeenWall& kept) { return kept.camera == camera && kept.size == size; });
-        if (!seen) {
-            auto found = TRY(findWall(camera, Band::whole(size.x, size.y)));
-            seen = seenWalls.keep({camera, size, std::move(found)});
-        }
+        const SeenWall* seen = TRY(wallOf(camera, size));
         const std::size_t row = std::size_t(size.x);
         const std::span pixels(seen->pixels);
         tint(pixels.subspan(row * std::size_t(band.firstRow), row * std::size_t(band.rows)), paint,
@@ -250,7 +278,13 @@ std::vector<PassTime> CaseRenderer::passTimes() const {
 Result<void> CaseRenderer::render(const CameraView& view, const Band& band, Image& picture) {
     Impl& my = *impl_;
     TRY(my.checkPaint(view.paint.get()));
-    TRY(my.raycasters.at(my.used)->render(view, band, picture));
+    CameraView drawn = view;
+    if (view.beneathWallMm > 0.0 && my.flatGeometry) {
+        TRY(checkBand(band, picture));
+        TRY(checkCamera(view.camera));
+        drawn.backdrop = TRY(my.endsOf(view, band.pictureSize));
+    }
+    TRY(my.raycasters.at(my.used)->render(drawn, band, picture));
     return view.paint ? my.paintWall(view.camera, *view.paint, band, picture) : Result<void>{};
 }
 

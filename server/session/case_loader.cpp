@@ -1,5 +1,6 @@
 #include "session/case_loader.h"
 
+#include "session/case_presets.h"
 #include "session/worker.h"
 
 #include <utility>
@@ -33,6 +34,11 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         else
             spdlog::warn("a case's overview has no colon: {}", surface.error().message);
     }
+    // Without them the case has the fixed colours.
+    if (auto biopsy = readScanBiopsy(source))
+        files.facts.scanBiopsy = std::move(*biopsy);
+    else
+        spdlog::warn("a case opens without its own biopsy colours: {}", describe(biopsy.error()));
     if (!files.facts.centerline.points.empty())
         prepared.path = std::make_shared<const Centerline>(files.facts.centerline);
     // Its products were read one after the other, and all must be of one scan.

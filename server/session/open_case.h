@@ -5,6 +5,7 @@
 #include "core/colon_record.h"
 #include "core/ct_scan.h"
 #include "core/histogram.h"
+#include "core/optics_preset.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
 #include "render/raycaster_choice.h"
@@ -28,8 +29,10 @@ struct OpenCase {
     PatientPosition position = PatientPosition::unknown;
     std::optional<ColonTrust> trust;  ///< where a colon was searched for
     Centerline centerline;            ///< empty where the case has none yet
-    Histogram histogram;              ///< of the scan that the endoscopic view shows
-    bool cleansed = false;            ///< the endoscopic view shows the cleansed scan, slices can
+    /// Colours of the electronic biopsy that were derived from its scan, where they were.
+    std::optional<OpticsPreset> scanBiopsy;
+    Histogram histogram;    ///< of the scan that the endoscopic view shows
+    bool cleansed = false;  ///< the endoscopic view shows the cleansed scan, slices can
     /// Memory-mapped, for questions about single values; the renderer has its own.
     std::shared_ptr<const Volume<std::int16_t>> ct;
     std::shared_ptr<const Volume<std::int16_t>> cleansedScan;  ///< empty where there is none

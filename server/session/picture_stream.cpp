@@ -1,6 +1,7 @@
 #include "session/picture_stream.h"
 
 #include "protocol/view_message.h"
+#include "session/case_presets.h"
 #include "session/worker.h"
 
 #include <algorithm>
@@ -28,11 +29,13 @@ PictureStream::PictureStream(SessionId session, asio::any_io_executor io, Render
       io_(std::move(io)),
       renderer_(renderer),
       encoders_(encoders),
+      offered_(presets),
       presets_(presets),
       outlet_(std::move(outlet)) {}
 
 void PictureStream::setCase(std::shared_ptr<const OpenCase> opened) {
     case_ = std::move(opened);
+    if (case_) presets_ = withPresetOfCase(offered_, case_->scanBiopsy);
     reading_.reset();
     ++caseNumber_;
     slots_ = {};
@@ -60,7 +63,8 @@ Result<void> PictureStream::input(const protocol::ClientMessage& message) {
     const protocol::InputHeader header = *protocol::inputHeader(message);
     TRY(takeSequence(header.sequence));
     if (header.viewport >= slots_.size())
-        return fail(ErrorKind::badInput, "viewports have numbers below 8", "viewport");
+        return fail(ErrorKind::badInput,
+                    "viewports have numbers below " + std::to_string(slots_.size()), "viewport");
     Slot& slot = slots_[header.viewport];
     if (!message.has_set_viewport() && !slot.viewport.isOpen())
         return fail(ErrorKind::wrongState, "the viewport is not open", "viewport");
@@ -87,7 +91,7 @@ Result<void> PictureStream::input(const protocol::SetWallPaint& message) {
     reading_->choose(choice);
     for (std::size_t id = 0; id < slots_.size(); ++id) {
         Slot& slot = slots_[id];
-        if (!slot.viewport.isOpen() || !showsWall(slot.viewport.kind())) continue;
+        if (!slot.viewport.isOpen() || !slot.viewport.isPainted()) continue;
         slot.sequence = message.sequence();
         changed(id);
     }
@@ -100,7 +104,7 @@ void PictureStream::repaint() {
         return slot.viewport.isDrawable() && slot.viewport.moving();
     });
     for (Slot& slot : slots_) {
-        if (moves || slot.due || !slot.viewport.isDrawable() || !showsWall(slot.viewport.kind()) ||
+        if (moves || slot.due || !slot.viewport.isDrawable() || !slot.viewport.isPainted() ||
             slot.paint == reading_->paint())
             continue;
         slot.due = true;
@@ -111,7 +115,7 @@ void PictureStream::repaint() {
 
 // Not while the paint that it is to show is being made.
 bool PictureStream::canDraw(const Slot& slot) const {
-    return slot.due && (!reading_ || reading_->ready() || !showsWall(slot.viewport.kind()));
+    return slot.due && (!reading_ || reading_->ready() || !slot.viewport.isPainted());
 }
 
 void PictureStream::changed(std::size_t id) {
@@ -188,10 +192,11 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.session = session_;
     job.of = case_;
     job.view = slot.viewport.view(presets_);
-    slot.paint = reading_ ? reading_->paint() : nullptr;
+    slot.paint = reading_ && slot.viewport.isPainted() ? reading_->paint() : nullptr;
     setPaint(job.view, slot.paint);
-    std::optional<Camera> camera;
-    if (const auto* endoscopic = std::get_if<render::CameraView>(&job.view))
+    std::optional<Camera> camera;  // of a picture that shows the wall itself
+    if (const auto* endoscopic = std::get_if<render::CameraView>(&job.view);
+        endoscopic && !slot.viewport.isLens())
         camera = endoscopic->camera;
     job.width = slot.viewport.width();
     job.height = slot.viewport.height();

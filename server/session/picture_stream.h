@@ -114,7 +114,8 @@ private:
     asio::any_io_executor io_;
     RenderThread& renderer_;
     EncoderThreads& encoders_;
-    const render::PresetLibrary& presets_;
+    const render::PresetLibrary& offered_;  // in any case
+    render::PresetLibrary presets_;         // in the open one
     Outlet outlet_;
     std::shared_ptr<const OpenCase> case_;
     std::shared_ptr<WallReading> reading_;  // null where the case has not been flattened

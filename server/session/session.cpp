@@ -2,6 +2,7 @@
 
 #include "protocol/capabilities.h"
 #include "protocol/view_message.h"
+#include "session/case_presets.h"
 #include "session/messages.h"
 #include "session/worker.h"
 
@@ -158,9 +159,10 @@ void Session::handle(const protocol::Hello& hello) {
     ServerMessage answer;
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
-    for (const char* known : {capability::jpeg, capability::lossless, capability::coarse,
-                              capability::slabs, capability::bookmarkPush, capability::marks,
-                              capability::caseEntries, capability::scanValues, capability::pick})
+    for (const char* known :
+         {capability::jpeg, capability::lossless, capability::coarse, capability::slabs,
+          capability::bookmarkPush, capability::marks, capability::caseEntries,
+          capability::scanValues, capability::pick, capability::lens})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
@@ -239,7 +241,7 @@ void Session::opened(Result<std::shared_ptr<const OpenCase>> result) {
     pictures_->setCase(case_);
     if (case_->wall) makeReading();
     spdlog::info("session {} has a case open", id_);
-    send(caseOpenedMessage(*case_, services_.presets));
+    send(caseOpenedMessage(*case_, withPresetOfCase(services_.presets, case_->scanBiopsy)));
 }
 
 void Session::handleInput(const ClientMessage& message) {

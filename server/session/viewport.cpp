@@ -18,9 +18,12 @@ struct Dressed {
     const WindowLevel& window;
     Optics optics;
     int width;
+    bool lens;
 
     AnyView operator()(const Camera& camera) {
-        return render::CameraView{camera, std::move(optics), {}};
+        render::CameraView view{camera, std::move(optics), {}};
+        if (lens) view.beneathWallMm = lensDepthMm;
+        return view;
     }
     AnyView operator()(SliceView slice) const {
         slice.window = window;
@@ -54,8 +57,11 @@ Result<void> Viewport::open(const protocol::SetViewport& message) {
         message.height() > high)
         return refused("a side is not within " + std::to_string(low) + " to " +
                        std::to_string(high) + " pixels");
-    if (view != view_) *this = Viewport{};
+    if (message.lens() && view != View::endoscopic)
+        return refused("a lens shows the endoscopic view");
+    if (view != view_ || message.lens() != lens_) *this = Viewport{};
     view_ = view;
+    lens_ = message.lens();
     width_ = int(message.width());
     height_ = int(message.height());
     return {};
@@ -82,7 +88,7 @@ Result<void> Viewport::apply(const protocol::ClientMessage& message,
 }
 
 AnyView Viewport::view(const render::PresetLibrary& presets) const {
-    Dressed dressed{window_, {}, width_};
+    Dressed dressed{window_, {}, width_, lens_};
     if (!isGrey(view_)) {
         const OpticsPreset* usual = view_ == View::overview ? presets.find(bodyPreset) : nullptr;
         if (!usual) usual = &presets.presets.front();

@@ -14,6 +14,9 @@ namespace haustra::session {
 /// The preset that an overview shows the body with, where the server has one of this name.
 inline constexpr char bodyPreset[] = "body";
 
+/// Through a lens one sees so far beneath the wall: as far as detection does (§6.2.4).
+inline constexpr double lensDepthMm = 20.0;
+
 /// A plain value. Sequence, viewport number and whether the case has what the viewport shows are
 /// the caller's.
 class Viewport {
@@ -34,6 +37,11 @@ public:
     /// called.
     bool moving() const { return moving_; }
     void rest() { moving_ = false; }
+    /// Its pictures show what lies beneath the wall, laid over another's: they have no paint, and
+    /// show nothing of the wall itself.
+    bool isLens() const { return lens_; }
+    /// Its pictures have the wall's paint.
+    bool isPainted() const { return showsWall(view_) && !lens_; }
     int width() const { return width_; }
     int height() const { return height_; }
     /// Only of one that is drawable. `presets`: what it is shown by where it was told nothing.
@@ -43,6 +51,7 @@ private:
     Result<void> open(const protocol::SetViewport& message);
 
     View view_ = haustra::View::endoscopic;
+    bool lens_ = false;
     int width_ = 0, height_ = 0;
     std::optional<ViewState> state_;
     WindowLevel window_;            ///< of views in grey

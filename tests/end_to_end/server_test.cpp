@@ -201,7 +201,7 @@ TEST_F(ServerTest, ValuesOutOfBoundsAreRefusedAndTheSessionGoesOn) {
         client->viewport(++sequence, 0, protocol::ENDOSCOPIC, width, height);
         expectError(client->answer(), ErrorReport::BAD_VALUE, false);
     }
-    client->viewport(++sequence, 8, protocol::ENDOSCOPIC, 64, 64);
+    client->viewport(++sequence, protocol::maxViewports, protocol::ENDOSCOPIC, 64, 64);
     expectError(client->answer(), ErrorReport::BAD_VALUE, false);
     client->viewport(++sequence, 0, protocol::VIEW_UNSPECIFIED, 64, 64);
     expectError(client->answer(), ErrorReport::BAD_VALUE, false);

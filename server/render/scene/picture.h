@@ -42,6 +42,10 @@ struct CameraView {
     /// Colours the wall in the finished picture (wall_paint.h), which is CaseRenderer's work; the
     /// case must have a flat map. None: no colour.
     std::shared_ptr<const WallPaint> paint = nullptr;
+    /// Over 0: rays end so far behind the wall, or where they come out of it into gas again
+    /// (beneath_wall.h); CaseRenderer's work, in place of a backdrop. Where the case has no flat
+    /// map they have no end.
+    double beneathWallMm = 0.0;
 };
 
 /// Fails (badInput) where camera, optics or sampling are out of their bounds, or the backdrop is of
