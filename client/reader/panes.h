@@ -7,7 +7,9 @@
 #include "reader/session.h"
 
 #include <array>
+#include <deque>
 #include <functional>
+#include <utility>
 
 namespace haustra::reader {
 
@@ -27,7 +29,9 @@ public:
     void clear();
     /// Asks anew, as if the view had changed: its colours have.
     void touch(View view) { pacers_[std::size_t(view)].touch(); }
-    void takePictures(Clock::time_point now) { pictures_.take(session_.takePictures(), now); }
+    void take(std::deque<Arrival> arrivals, Clock::time_point now) {
+        pictures_.take(std::move(arrivals), now);
+    }
     /// Asks for the views that show another thing than was asked for, or owe their still.
     void askForViews(const std::function<ViewState(View)>& stateOf, Clock::time_point now);
     /// Whether some view will be asked for later even if nothing changes any more.

@@ -25,7 +25,9 @@ Reader::Reader(link::ConnectionOptions options, std::string caseName,
 void Reader::update(double seconds) {
     session_.poll(milliseconds(0));
     if (session_.caseInfo() && session_.caseInfo() != case_) caseOpened();
-    panes_.takePictures(Clock::now());
+    auto arrivals = session_.takePictures();
+    lens_.take(arrivals);
+    panes_.take(std::move(arrivals), Clock::now());
     if (!case_) return;
     if (session_.phase() != Phase::open) setMotion(Motion::paused);
     if (waitsForPictures()) seconds = 0.0;
@@ -36,6 +38,8 @@ void Reader::update(double seconds) {
     sendWindow();
     sendOptics(Clock::now());
     panes_.askForViews([this](View view) { return stateOf(view); }, Clock::now());
+    lens_.update(flight_.camera(), panes_.shown<Camera>(View::endoscopic),
+                 panes_.size(View::endoscopic), Clock::now());
 }
 
 void Reader::caseOpened() {
@@ -52,6 +56,7 @@ void Reader::caseOpened() {
     slices_.open(case_, flight_.camera().positionMm,
                  session_.serverCan(protocol::capability::slabs));
     outside_.open(case_);
+    lens_.open(case_);
     measures_.reset();
     panes_.clear();
     optics_.offer(case_->presets);
@@ -145,7 +150,7 @@ void Reader::sendOptics(Clock::time_point now) {
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
     return motion() != Motion::paused || flat_.wall().waits() || measures_.waits() ||
-           opticsChangedAt_ || optics_.revision() != sentOptics_ || panes_.owe();
+           opticsChangedAt_ || optics_.revision() != sentOptics_ || panes_.owe() || lens_.owes();
 }
 
 Motion Reader::motion() const {

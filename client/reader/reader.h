@@ -2,6 +2,7 @@
 // and turns the hand's movements into calls of its parts; it holds no window itself.
 #pragma once
 
+#include "reader/biopsy_lens.h"
 #include "reader/flat_reading.h"
 #include "reader/optics_editor.h"
 #include "reader/outside_view.h"
@@ -51,6 +52,8 @@ public:
     const FlatReading& flat() const { return flat_; }
     OutsideView& outside() { return outside_; }
     const OutsideView& outside() const { return outside_; }
+    BiopsyLens& lens() { return lens_; }
+    const BiopsyLens& lens() const { return lens_; }
     ScanMeasures& measures() { return measures_; }
     const ScanMeasures& measures() const { return measures_; }
     /// How the wall is drawn: what is made of it is shown in the endoscopic view while it changes,
@@ -96,6 +99,7 @@ private:
     SliceViews slices_;
     FlatReading flat_{session_, flight_};
     OutsideView outside_;
+    BiopsyLens lens_{session_};
     ScanMeasures measures_{session_};
     OpticsEditor optics_;
     Panes panes_{session_};

@@ -434,8 +434,10 @@ void Session::askAgain() {
         connection_.send(protocol::paintMessage(++sequence_, paint_));
     for (auto& [id, state] : viewports_) {
         if (state.width == 0) continue;  // spoken of before it was opened
+        // The server may be an older one now.
+        if (state.lens && !serverCan(protocol::capability::lens)) continue;
         connection_.send(protocol::viewportMessage({++sequence_, std::uint32_t(id)}, state.view,
-                                                   state.width, state.height));
+                                                   state.width, state.height, state.lens));
         sayWhatWaited(id, state);
     }
     std::size_t kept = 0;
@@ -465,15 +467,16 @@ void Session::sendIfOpen(const protocol::ClientMessage& message) {
     if (phase_ == Phase::open) connection_.send(message);
 }
 
-std::uint64_t Session::setViewport(int viewport, View view, int width, int height) {
+std::uint64_t Session::setViewport(int viewport, View view, int width, int height, bool lens) {
     ViewportState& state = viewports_[viewport];
     const bool wasOpen = state.width > 0;
-    if (wasOpen && state.view != view) state = {};
+    if (wasOpen && (state.view != view || state.lens != lens)) state = {};
     state.view = view;
+    state.lens = lens;
     state.width = width;
     state.height = height;
-    sendIfOpen(
-        protocol::viewportMessage({++sequence_, std::uint32_t(viewport)}, view, width, height));
+    sendIfOpen(protocol::viewportMessage({++sequence_, std::uint32_t(viewport)}, view, width,
+                                         height, lens));
     if (!wasOpen && phase_ == Phase::open) sayWhatWaited(viewport, state);
     if (width == 0 || height == 0) viewports_.erase(viewport);
     return sequence_;

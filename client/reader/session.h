@@ -94,7 +94,8 @@ public:
 
     /// Each of these returns the sequence number that the answering picture will reach. They may
     /// be called in any phase: what is asked for early is sent when the case is open.
-    std::uint64_t setViewport(int viewport, View view, int width, int height);
+    /// `lens`: only of a server with protocol::capability::lens; it is not told to another.
+    std::uint64_t setViewport(int viewport, View view, int width, int height, bool lens = false);
     /// Where it looks. Windows of grey values go by setWindowLevel.
     std::uint64_t look(int viewport, const ViewState& state, bool moving);
     std::uint64_t setWindowLevel(int viewport, const WindowLevel& window);
@@ -185,6 +186,7 @@ private:
     struct ViewportState {
         View view = View::endoscopic;
         int width = 0, height = 0;
+        bool lens = false;
         // In the order in which the server hears them again.
         std::optional<WindowLevel> window;
         std::optional<OpticsChoice> optics;

@@ -151,7 +151,7 @@ View Fields::view(const char* key) {
 }
 
 int Fields::viewport() {
-    return integer("viewport", 0, int(protocol::maxViewports) - 1);
+    return integer("viewport", 0, int(protocol::lensViewport) - 1);
 }
 
 void Fields::refuse(const std::string& key, const std::string& what) {

@@ -2,6 +2,7 @@
 
 #include "core/flat_map.h"
 #include "protocol/limits.h"
+#include "reader/biopsy_lens.h"
 #include "reader/flight.h"
 #include "script/fields.h"
 
@@ -69,6 +70,21 @@ FlyAction readFly(Fields& in) {
 StillAction readStill(Fields& in) {
     StillAction action;
     if (in.has("viewport")) action.viewport = in.viewport();
+    if (in.has("png")) action.png = in.fileName("png", ".png");
+    return action;
+}
+
+LensAction readLens(Fields& in) {
+    LensAction action;
+    if (in.has("at")) {
+        const auto at = in.numbers("at", 2, -2.0, 2.0);
+        action.at = glm::dvec2(at[0], at[1]);
+    }
+    if (in.has("position_mm")) action.positionMm = in.position("position_mm");
+    if (action.at && action.positionMm)
+        Fields::refuse("position_mm", "and \"at\" exclude each other");
+    if (in.has("radius")) action.radius = in.number("radius", leastLensRadius, greatestLensRadius);
+    if (in.has("preset")) action.preset = in.text("preset");
     if (in.has("png")) action.png = in.fileName("png", ".png");
     return action;
 }
@@ -255,7 +271,7 @@ constexpr ActionKind actionKinds[] = {
     {"paint", bodyBy<readPaint>},       {"seen", bodyBy<readSeen>},
     {"window", bodyBy<readWindow>},     {"transfer", bodyBy<readTransfer>},
     {"bookmark", bodyBy<readBookmark>}, {"bookmarks", bodyBy<readBookmarks>},
-    {"wait", bodyBy<readWait>},
+    {"wait", bodyBy<readWait>},         {"lens", bodyBy<readLens>},
 };
 
 Action readAction(const std::string& line) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reader/case_info.h"
+#include "reader/lens_view.h"
 
 #include <istream>
 #include <optional>
@@ -31,6 +32,13 @@ struct FlyAction {
 struct StillAction {
     int viewport = 0;
     std::string png;  ///< may be empty: only wait for the picture
+};
+struct LensAction {
+    std::optional<glm::dvec2> at;          ///< heights of the picture from its middle
+    std::optional<glm::dvec3> positionMm;  ///< at most one of both; neither: in its middle
+    double radius = LensPlace{}.radius;
+    std::optional<std::string> preset;  ///< default: the case's electronic biopsy
+    std::string png;
 };
 struct SliceAction {
     View view = View::axial;
@@ -117,9 +125,9 @@ struct WaitAction {
 };
 
 using ActionBody =
-    std::variant<ViewAction, GoAction, FlyAction, StillAction, SliceAction, ObliqueAction,
-                 OverviewAction, FlatAction, StripAction, FlyOverAction, LocateAction,
-                 MeasureAction, PaintAction, SeenAction, WindowAction, TransferAction,
+    std::variant<ViewAction, GoAction, FlyAction, StillAction, LensAction, SliceAction,
+                 ObliqueAction, OverviewAction, FlatAction, StripAction, FlyOverAction,
+                 LocateAction, MeasureAction, PaintAction, SeenAction, WindowAction, TransferAction,
                  BookmarkAction, BookmarksAction, WaitAction>;
 
 struct Action {

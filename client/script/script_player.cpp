@@ -1,7 +1,9 @@
 #include "script/script_player.h"
 
 #include "core/raycasters.h"
+#include "protocol/capabilities.h"
 #include "protocol/limits.h"
+#include "reader/biopsy_lens.h"
 #include "reader/overview_map.h"
 #include "reader/strip_tour.h"
 #include "tiles/png_file.h"
@@ -66,6 +68,7 @@ private:
     Status run(const GoAction&, ActionReport&);
     Status run(const FlyAction&, ActionReport&);
     Status run(const StillAction&, ActionReport&);
+    Status run(const LensAction&, ActionReport&);
     Status run(const SliceAction&, ActionReport&);
     Status run(const ObliqueAction&, ActionReport&);
     Status run(const OverviewAction&, ActionReport&);
@@ -287,6 +290,42 @@ Status Player::run(const GoAction& action, ActionReport&) {
 Status Player::run(const StillAction& action, ActionReport& report) {
     TRY(mustBeOpen(action.viewport));
     return still(action.viewport, action.png, report);
+}
+
+// The exact picture of viewport 0, and over it what the lens shows there.
+Status Player::run(const LensAction& action, ActionReport& report) {
+    TRY(mustBeOpen(0));
+    if (viewports_[0].view != View::endoscopic)
+        return fail(ErrorKind::badInput, "viewport 0 does not show the endoscopic view");
+    if (!session_.serverCan(protocol::capability::lens))
+        return fail(ErrorKind::unsupported, "this server cannot show a lens");
+    const auto preset = action.preset ? action.preset : BiopsyLens::presetOf(*session_.caseInfo());
+    if (!preset) return fail(ErrorKind::notFound, "the server has no electronic biopsy");
+    const Camera beneath = flight_.camera();
+    LensPlace place{action.at.value_or(glm::dvec2(0.0)), action.radius};
+    if (action.positionMm) {
+        const auto seen = seenAt(beneath, *action.positionMm);
+        if (!seen) return fail(ErrorKind::noResult, "the camera does not show this place");
+        place.center = *seen;
+    }
+    const auto camera = cameraOfLens(beneath, place);
+    if (!camera) return fail(ErrorKind::noResult, "the camera shows nothing there");
+    const auto start = Clock::now();
+    auto picture = TRY(awaitPicture(0, ask(0, false), true)).picture;
+    const int viewport = int(protocol::lensViewport);
+    session_.setViewport(viewport, View::endoscopic, mostLensPixels, mostLensPixels, true);
+    session_.setTransferFunction(viewport, *preset);
+    const auto askedAt = Clock::now();
+    const auto arrival = TRY(awaitPicture(viewport, session_.look(viewport, *camera, false), true));
+    session_.setViewport(viewport, View::endoscopic, 0, 0, true);
+    count(report, arrival, askedAt);
+    report.seconds = msBetween(start, arrival.decodedAt) / 1000.0;
+    if (action.png.empty()) return {};
+    report.file = action.png;
+    layOver(picture,
+            throughLens(arrival.picture, *camera, beneath, place, {picture.width, picture.height}));
+    return tiles::writePng(options_.outFolder / action.png, tiles::rgbOf(picture), picture.width,
+                           picture.height);
 }
 
 Status Player::run(const SliceAction& action, ActionReport& report) {

@@ -104,11 +104,25 @@ void change(ReaderWindow& w, const char* text, bool before, const std::function<
         [set, before] { set(!before); });
 }
 
+void toggleLens(ReaderWindow& w) {
+    reader::BiopsyLens& lens = w.reader().lens();
+    if (lens.isOn() || lens.isAvailable()) return lens.setOn(!lens.isOn());
+    w.reading().tell(
+        w.reader().session().serverCan(protocol::capability::lens)
+            ? QCoreApplication::translate("Commands", "This server has no electronic biopsy.")
+            : QCoreApplication::translate("Commands", "This server cannot show a lens."));
+}
+void resizeLens(ReaderWindow& w, double factor) {
+    reader::BiopsyLens& lens = w.reader().lens();
+    if (lens.isOn()) lens.setRadius(lens.place().radius * factor);
+}
+
 // One thing at a time, the nearest first.
 void stop(ReaderWindow& w) {
     if (w.showsCases()) return w.showCases();
     if (w.reading().tool() != DrawingTool::none) return w.reading().setTool(DrawingTool::none);
     if (w.pointsByKeys()) return w.togglePointing();
+    if (w.reader().lens().isOn()) return w.reader().lens().setOn(false);
     if (w.isEnlarged()) return w.leaveEnlarged();
     w.reading().clearMeasures();
 }
@@ -597,6 +611,24 @@ const std::array table = {
             .run = [](ReaderWindow& w) { w.toggleOptics(); },
             .isOn = [](ReaderWindow& w) { return w.showsOptics(); },
             .shortText = QT_TRANSLATE_NOOP("Commands", "…")},
+    Command{.id = "lens",
+            .menu = Menu::wall,
+            .text = QT_TRANSLATE_NOOP(
+                "Commands", "Lens over the endoscopic view: electronic biopsy beneath the wall"),
+            .keys = "Shift+T",
+            .run = toggleLens,
+            .isOn = [](ReaderWindow& w) { return w.reader().lens().isOn(); },
+            .shortText = QT_TRANSLATE_NOOP("Commands", "lens")},
+    Command{.id = "lens-larger",
+            .menu = Menu::wall,
+            .text = QT_TRANSLATE_NOOP("Commands", "Larger lens"),
+            .keys = "Alt+PgUp",
+            .run = [](ReaderWindow& w) { resizeLens(w, reader::lensGrowth); }},
+    Command{.id = "lens-smaller",
+            .menu = Menu::wall,
+            .text = QT_TRANSLATE_NOOP("Commands", "Smaller lens"),
+            .keys = "Alt+PgDown",
+            .run = [](ReaderWindow& w) { resizeLens(w, 1.0 / reader::lensGrowth); }},
     Command{.id = "fly-over",
             .menu = Menu::wall,
             .text = QT_TRANSLATE_NOOP("Commands", "Fly over the flattened wall"),

@@ -11,7 +11,9 @@
 namespace haustra::window {
 
 EndoscopicPane::EndoscopicPane(Reading& reading)
-    : Pane(reading, View::endoscopic, tr("Endoscopic view")) {}
+    : Pane(reading, View::endoscopic, tr("Endoscopic view")) {
+    connect(&reading, &Reading::stepped, this, &EndoscopicPane::lensFollows);
+}
 
 QString EndoscopicPane::inWords() const {
     const reader::Flight& flight = reader().flight();
@@ -23,7 +25,8 @@ QString EndoscopicPane::inWords() const {
                   .arg(flight.centerline().lengthMm(), 0, 'f', 0)
                   .arg(flight.direction() == FlightDirection::antegrade ? tr("towards the cecum")
                                                                         : tr("towards the rectum"));
-    return where + QStringLiteral(", ") + Pane::inWords();
+    const QString lens = reader().lens().isOn() ? QStringLiteral(", ") + lensInWords() : QString();
+    return where + QStringLiteral(", ") + Pane::inWords() + lens;
 }
 
 void EndoscopicPane::fillMenu(QMenu& menu) {
@@ -40,9 +43,15 @@ void EndoscopicPane::addShown(Shown& shown) const {
     shown.add(flight.isFree() + 2 * int(flight.direction()));
     shown.add(flight.yawDegrees()), shown.add(flight.pitchDegrees());
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
+    const reader::BiopsyLens& lens = reader().lens();
+    shown.add(lens.isOn() + 2 * lens.isAvailable() + 4 * lens.isExact());
+    if (!lens.isOn()) return;
+    shown.add(lens.place().center.x), shown.add(lens.place().center.y);
+    shown.add(lens.place().radius), shown.add(double(lens.pictureCount()));
 }
 
 void EndoscopicPane::paintMarks(QPainter& painter) {
+    paintLens(painter);
     if (const auto& picked = reader().flat().picked()) {
         // Where it is seen, or would be but for what is in front of it.
         if (const auto seen = reader::seenAt(shownCamera(), picked->positionMm))
@@ -106,6 +115,96 @@ void EndoscopicPane::paintBadge(QPainter& painter) {
     painter.drawEllipse(QPointF(box.left() - 9, box.center().y()), 4, 4);
 }
 
+// ---- the lens -----------------------------------------------------------------------------------
+
+void EndoscopicPane::lensFollows() {
+    if (!isOpen() || !isVisible()) return;
+    reader::BiopsyLens& lens = reader().lens();
+    const auto at = pointedAt();
+    if (!lens.isOn() || !at) return;
+    const glm::dvec2 place = vector(*at - pictureArea().center()) / pictureArea().height();
+    if (place == lens.place().center) return;
+    lens.moveTo(place);
+    reading().changed();
+}
+
+void EndoscopicPane::hovered(const Hand&) {
+    lensFollows();
+}
+
+QString EndoscopicPane::lensInWords() const {
+    const reader::BiopsyLens& lens = reader().lens();
+    if (!lens.isAvailable()) return tr("this server cannot show a lens");
+    return lens.showsOwnColors() ? tr("electronic biopsy, colours of this scan")
+                                 : tr("electronic biopsy, fixed colours");
+}
+
+void EndoscopicPane::paintLens(QPainter& painter) {
+    const reader::BiopsyLens& lens = reader().lens();
+    if (!lens.isOn()) return;
+    const QRectF area = pictureArea();
+    const double radius = area.height() * lens.place().radius;
+    const QPointF middle = area.center() + area.height() * point(lens.place().center);
+    // Never a picture of another place over this one: while the camera moves there is none.
+    const Camera beneath = shownCamera();
+    const tiles::Picture* picture = lens.isAvailable() ? lens.pictureOver(beneath) : nullptr;
+    if (picture) {
+        const double ratio = devicePixelRatioF();
+        const glm::ivec2 size(std::lround(area.width() * ratio),
+                              std::lround(area.height() * ratio));
+        const reader::LensDisc disc =
+            throughLens(*picture, lens.pictureCamera(), beneath, lens.place(), size);
+        QImage image(reinterpret_cast<const uchar*>(disc.pixels.data()), disc.side, disc.side,
+                     4 * disc.side, QImage::Format_ARGB32_Premultiplied);
+        image.setDevicePixelRatio(ratio);
+        painter.drawImage(area.topLeft() + QPointF(disc.corner.x, disc.corner.y) / ratio, image);
+    }
+    const QRectF ring(middle - QPointF(radius, radius), QSizeF(2 * radius, 2 * radius));
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(theme().outline, 3.5 * theme().lineWidth));
+    painter.drawEllipse(ring);
+    painter.setPen(QPen(!picture         ? theme().dimOnPicture
+                        : lens.isExact() ? theme().accentOnPicture
+                                         : theme().bookmarkOnPicture,
+                        1.5 * theme().lineWidth, picture ? Qt::SolidLine : Qt::DashLine));
+    painter.drawEllipse(ring);
+    paintLensCaption(painter, ring);
+}
+
+// Beneath the ring, or above it where there is no room; what the colours mean, and whose they are.
+void EndoscopicPane::paintLensCaption(QPainter& painter, const QRectF& ring) {
+    const reader::BiopsyLens& lens = reader().lens();
+    const QFont usual = painter.font();
+    painter.setFont(smallFont(usual));
+    const double line = painter.fontMetrics().height(), gap = 5.0;
+    double y = ring.bottom() + gap;
+    if (y + 2 * line > height()) y = ring.top() - gap - 2 * line;
+    y = std::clamp(y, 0.0, std::max(0.0, height() - 2 * line));
+    const QString words = lensInWords();
+    const double half = 0.5 * painter.fontMetrics().horizontalAdvance(words) + gap;
+    const double x = std::clamp(ring.center().x(), std::min(half, 0.5 * width()),
+                                std::max(width() - half, 0.5 * width()));
+    outlinedText(painter, {x, y}, Qt::AlignHCenter | Qt::AlignTop, theme().onPicture, words);
+    if (lens.isAvailable()) {
+        constexpr double bar = 60.0, thick = 6.0;
+        const QRectF colors(x - 0.5 * bar, y + line + 0.5 * (line - thick), bar, thick);
+        QLinearGradient scale(colors.topLeft(), colors.topRight());
+        scale.setColorAt(0.0, QColor(26, 64, 242));
+        scale.setColorAt(0.5, QColor(40, 224, 56));
+        scale.setColorAt(1.0, QColor(242, 32, 20));
+        painter.setPen(QPen(theme().outline, 1.0));
+        painter.setBrush(scale);
+        painter.drawRect(colors);
+        outlinedText(painter, {colors.left() - gap, y + line}, Qt::AlignRight | Qt::AlignTop,
+                     theme().dimOnPicture, tr("less dense"));
+        outlinedText(painter, {colors.right() + gap, y + line}, Qt::AlignLeft | Qt::AlignTop,
+                     theme().dimOnPicture, tr("denser"));
+    }
+    painter.setFont(usual);
+}
+
+// ---- the hand -----------------------------------------------------------------------------------
+
 // The picture lags behind a flight.
 Camera EndoscopicPane::shownCamera() const {
     const Camera* pictured = reader().panes().shown<Camera>(View::endoscopic);
@@ -141,6 +240,10 @@ void EndoscopicPane::doubleClicked(const Hand&) {
 
 void EndoscopicPane::wheeled(const Hand& hand, double steps) {
     reader::Flight& flight = reader().flight();
+    if (hand.alt() && reader().lens().isOn()) {
+        reader::BiopsyLens& lens = reader().lens();
+        return lens.setRadius(lens.place().radius * std::pow(reader::lensGrowth, steps));
+    }
     if (hand.ctrl()) return flight.setFov(flight.camera().fovDegrees - 5.0 * steps);
     const double stepMm = steps * (hand.shift() ? 10.0 : 3.0);
     if (flight.isFree())

@@ -6,7 +6,8 @@
 namespace haustra::window {
 
 /// A drag looks around, a click goes to the wall there in all views, a double click looks straight
-/// ahead, the wheel moves along the path; with Ctrl it sets the field of view.
+/// ahead, the wheel moves along the path; with Ctrl it sets the field of view. A lens that is on
+/// follows the pointer, the mouse's or the keys'; the wheel with Alt sets its size.
 class EndoscopicPane : public Pane {
     Q_OBJECT
 public:
@@ -23,9 +24,14 @@ protected:
     bool takesDoubleClicks() const override { return true; }
     void doubleClicked(const Hand& hand) override;
     void wheeled(const Hand& hand, double steps) override;
+    void hovered(const Hand& hand) override;
 
 private:
     Camera shownCamera() const;
+    void lensFollows();
+    QString lensInWords() const;
+    void paintLens(QPainter& painter);
+    void paintLensCaption(QPainter& painter, const QRectF& ring);
     void paintFlight(QPainter& painter);
     void paintBadge(QPainter& painter);
 };

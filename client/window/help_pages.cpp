@@ -29,6 +29,8 @@ constexpr std::array gestures = {
     Gesture{QT_TRANSLATE_NOOP("Help", "wheel on the endoscopic view"),
             QT_TRANSLATE_NOOP(
                 "Help", "move along the path; with Shift farther; with Ctrl the field of view")},
+    Gesture{QT_TRANSLATE_NOOP("Help", "Alt wheel on the endoscopic view"),
+            QT_TRANSLATE_NOOP("Help", "size of the lens, where it is on")},
     Gesture{QT_TRANSLATE_NOOP("Help", "drag a slice"),
             QT_TRANSLATE_NOOP("Help", "window (across) and centre (up, down)")},
     Gesture{QT_TRANSLATE_NOOP("Help", "middle or right drag on a slice"),

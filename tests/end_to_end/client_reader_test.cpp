@@ -86,7 +86,7 @@ TEST_F(ClientReader, TheOverviewStandsStillWhileTheReaderFliesAndTurnsByHand) {
 TEST_F(ClientReader, OpticsAreShownWhileTheHandChangesThem) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     OpticsEditor& optics = reader_->optics();
-    ASSERT_EQ(optics.presets(), 2u);
+    ASSERT_EQ(optics.presets(), 3u);
     EXPECT_EQ(optics.preset(optics.chosen()).name, "mucosa");
     EXPECT_EQ(optics.curve().points().front().hu, -700.0);  // the server's own
     for (int n = 0; n < 30; ++n) {

@@ -4,6 +4,7 @@
 #include "core/strip_layout.h"
 #include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
+#include "protocol/limits.h"
 #include "reader/overview_map.h"
 #include "temporary_folder.h"
 #include "window/pane.h"
@@ -28,6 +29,7 @@
 #include <QPointer>
 #include <QPushButton>
 #include <QSettings>
+#include <QStatusBar>
 #include <QTableView>
 #include <QTest>
 #include <QToolBar>
@@ -595,9 +597,24 @@ protected:
         {"next-optics",
          [this]() -> Check {
              const std::size_t before = reader().optics().chosen();
-             return [=, this] { return reader().optics().chosen() == (before + 1) % 2; };
+             return [=, this] {
+                 return reader().optics().chosen() == (before + 1) % reader().optics().presets();
+             };
          }},
         {"optics", [this] { return flips([this] { return dock("optics")->isVisible(); }); }},
+        {"lens", [this] { return flips([this] { return reader().lens().isOn(); }); }},
+        {"lens-larger",
+         [this]() -> Check {
+             reader().lens().setOn(true);
+             const double before = reader().lens().place().radius;
+             return [=, this] { return reader().lens().place().radius > before; };
+         }},
+        {"lens-smaller",
+         [this]() -> Check {
+             reader().lens().setOn(true);
+             const double before = reader().lens().place().radius;
+             return [=, this] { return reader().lens().place().radius < before; };
+         }},
         {"fly-over",
          [this] { return flips([this] { return reader().flat().tour().flyingOver(); }); }},
         {"paint-marks", [this] { return flips([this] { return reader().flat().paint().marks; }); }},
@@ -856,6 +873,85 @@ TEST_F(ClientWindow, HandsInTheEndoscopicView) {
     EXPECT_LT(glm::distance(reader().flat().picked()->positionMm, wall), 1e-9);
     EXPECT_EQ(flight().camera(), camera);
     EXPECT_LT(glm::distance(slices().slice(View::coronal).positionMm, wall), 1e-9);
+}
+
+TEST_F(ClientWindow, TheLensFollowsTheMouseAndTheKeysPointer) {
+    Pane& view = pane(View::endoscopic);
+    flight().goTo(200.0);
+    ASSERT_TRUE(settle());
+    const int stills = server_.askedOf(View::endoscopic).pictures;
+    const auto placeAt = [&](QPointF at) {
+        return (vector(at) - 0.5 * glm::dvec2(view.width(), view.height())) / double(view.height());
+    };
+    const auto& lens = reader().lens();
+    const auto shown = [&] {
+        return lens.isExact() && lens.pictureOver(flight().camera()) != nullptr;
+    };
+    view.setFocus();
+    moveTo(view, {120, 150});
+    press(Qt::Key_T, Qt::ShiftModifier);
+    ASSERT_TRUE(waitFor([&] { return shown() && settled(); }));
+    EXPECT_LT(glm::distance(lens.place().center, placeAt({120, 150})), 1e-9);
+    const int viewport = int(protocol::lensViewport);
+    EXPECT_TRUE(server_.askedOf(viewport).lens);
+    EXPECT_EQ(server_.askedOf(viewport).optics, "biopsy");
+    EXPECT_LE(server_.askedOf(viewport).size.x, reader::mostLensPixels);
+    EXPECT_TRUE(view.accessibleDescription().contains(QStringLiteral("electronic biopsy")));
+    EXPECT_TRUE(view.provenance().contains(QStringLiteral("electronic biopsy")));
+    // Within the ring another picture, beyond it the one beneath, which has not been asked anew.
+    const QImage with = view.pictureWithMarks();
+    moveTo(view, {200, 180});
+    ASSERT_TRUE(waitFor([&] {
+        return glm::distance(lens.place().center, placeAt({200, 180})) < 1e-9;
+    }));
+    ASSERT_TRUE(waitFor([&] { return shown() && settled(); }));
+    EXPECT_NE(with, view.pictureWithMarks());
+    EXPECT_EQ(server_.askedOf(View::endoscopic).pictures, stills);
+    const double radius = lens.place().radius;
+    wheel(view, {200, 180}, 1, Qt::AltModifier);
+    EXPECT_NEAR(lens.place().radius, radius * reader::lensGrowth, 1e-9);
+    EXPECT_EQ(flight().arcMm(), 200.0);
+    // Of another place of the camera its picture is not shown, until there is one.
+    const Camera before = flight().camera();
+    flight().goTo(220.0);
+    EXPECT_EQ(lens.pictureOver(flight().camera()), nullptr);
+    EXPECT_NE(lens.pictureOver(before), nullptr);
+    reading_->changed();
+    ASSERT_TRUE(waitFor([&] { return shown() && settled(); }));
+    // The keys' pointer, and away with it.
+    moveTo(pane(View::axial), {5, 5});
+    press(Qt::Key_Z);
+    press(Qt::Key_Right, Qt::ShiftModifier);
+    const QPointF keys = QRectF(view.rect()).center() + QPointF(24, 0);
+    ASSERT_TRUE(waitFor([&] { return glm::distance(lens.place().center, placeAt(keys)) < 1e-9; }));
+    press(Qt::Key_Escape);
+    EXPECT_FALSE(reading_->pointsByKeys());
+    EXPECT_TRUE(lens.isOn());
+    press(Qt::Key_Escape);
+    EXPECT_FALSE(lens.isOn());
+    ASSERT_TRUE(waitFor([&] { return server_.askedOf(viewport).size == glm::ivec2(0); }));
+}
+
+class ClientWindowOfAnOldServer : public ClientWindow {
+protected:
+    ClientWindowOfAnOldServer() : ClientWindow({.old = true}) {}
+};
+
+TEST_F(ClientWindowOfAnOldServer, IsNotAskedForALens) {
+    press(Qt::Key_T, Qt::ShiftModifier);
+    EXPECT_TRUE(waitFor([&] {
+        return window_->statusBar()->currentMessage().contains(QStringLiteral("lens")) ||
+               notices(QStringLiteral("lens"));
+    }));
+    EXPECT_FALSE(reader().lens().isOn());
+    // Nor where it was on before a newer one was exchanged for it.
+    reader().lens().setOn(true);
+    reading_->changed();
+    QTest::qWait(50);
+    EXPECT_EQ(server_.askedOf(int(protocol::lensViewport)).size, glm::ivec2(0));
+    EXPECT_TRUE(pane(View::endoscopic)
+                    .inWords()
+                    .contains(QStringLiteral("this server cannot show a lens")));
 }
 
 TEST_F(ClientWindow, HandsOnASlice) {

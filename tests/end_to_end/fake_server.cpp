@@ -153,7 +153,7 @@ struct FakeServer::Impl {
         for (std::uint32_t n = 200; n < 220; ++n)
             opened->add_gap_samples(n);
         opened->set_patient_position("supine");
-        for (const char* offered : {"mucosa", "translucent"}) {
+        for (const char* offered : {"mucosa", "translucent", "biopsy"}) {
             haustra::OpticsPreset preset{offered, "as a test has it", {}};
             preset.optics.transferFunction.points = {{-700.0, {0.9, 0.6, 0.5}, 0.0},
                                                      {-500.0, {0.9, 0.6, 0.5}, 1.0}};
@@ -193,6 +193,7 @@ struct FakeServer::Impl {
     void note(const protocol::SetViewport& set) {
         const std::lock_guard lock(mutex);
         asked[int(set.viewport())].size = {int(set.width()), int(set.height())};
+        asked[int(set.viewport())].lens = set.lens();
     }
 
     // False: the socket is to be closed.
@@ -267,7 +268,8 @@ struct FakeServer::Impl {
             for (const char* known :
                  {protocol::capability::caseEntries, protocol::capability::bookmarkPush,
                   protocol::capability::marks, protocol::capability::slabs,
-                  protocol::capability::scanValues, protocol::capability::pick})
+                  protocol::capability::scanValues, protocol::capability::pick,
+                  protocol::capability::lens})
                 welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
             std::vector<std::uint8_t> frame;
@@ -408,7 +410,8 @@ struct FakeServer::Impl {
                     }
                     if (!message.set_transfer_function().has_optics() &&
                         message.set_transfer_function().preset() != "mucosa" &&
-                        message.set_transfer_function().preset() != "translucent") {
+                        message.set_transfer_function().preset() != "translucent" &&
+                        message.set_transfer_function().preset() != "biopsy") {
                         answer.mutable_error()->set_code(protocol::ErrorReport::BAD_VALUE);
                         answer.mutable_error()->set_message("no such transfer function");
                         write(stream, answer);
@@ -464,9 +467,9 @@ std::vector<std::string> FakeServer::storedBookmarkKeys() const {
     return keys;
 }
 
-AskedOfViewport FakeServer::askedOf(View view) const {
+AskedOfViewport FakeServer::askedOf(int viewport) const {
     const std::lock_guard lock(impl_->mutex);
-    const auto found = impl_->asked.find(int(view));
+    const auto found = impl_->asked.find(viewport);
     return found == impl_->asked.end() ? AskedOfViewport{} : found->second;
 }
 

@@ -56,6 +56,7 @@ struct AskedOfViewport {
     WindowLevel window;
     std::string optics;  ///< the preset's name; empty of a reader's own
     int pictures = 0;
+    bool lens = false;
 };
 
 class FakeServer {
@@ -70,7 +71,8 @@ public:
     int connections() const;
     int bookmarkMessages() const;
     int seenForgotten() const;  ///< how often what had been seen was to be forgotten
-    AskedOfViewport askedOf(View view) const;
+    AskedOfViewport askedOf(View view) const { return askedOf(int(view)); }
+    AskedOfViewport askedOf(int viewport) const;
     /// Down: links are cut, and whoever connects is shut out, until it is up again.
     void setDown(bool down);
     static Centerline centerline();

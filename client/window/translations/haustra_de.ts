@@ -423,6 +423,30 @@
         <source>&amp;Pane</source>
         <translation>B&amp;ildfeld</translation>
     </message>
+    <message>
+        <source>This server has no electronic biopsy.</source>
+        <translation>Dieser Server hat keine elektronische Biopsie.</translation>
+    </message>
+    <message>
+        <source>This server cannot show a lens.</source>
+        <translation>Dieser Server kann keine Lupe zeigen.</translation>
+    </message>
+    <message>
+        <source>Lens over the endoscopic view: electronic biopsy beneath the wall</source>
+        <translation>Lupe über der endoskopischen Ansicht: elektronische Biopsie unter der Wand</translation>
+    </message>
+    <message>
+        <source>lens</source>
+        <translation>Lupe</translation>
+    </message>
+    <message>
+        <source>Larger lens</source>
+        <translation>Größere Lupe</translation>
+    </message>
+    <message>
+        <source>Smaller lens</source>
+        <translation>Kleinere Lupe</translation>
+    </message>
 </context>
 <context>
     <name>Help</name>
@@ -569,6 +593,14 @@
     <message>
         <source>move the pointer; with Shift farther, with Ctrl by one pixel; Return clicks, or begins and ends a line or an outline</source>
         <translation>bewegen den Zeiger, mit Umschalt weiter, mit Strg um ein Pixel; Eingabe klickt oder beginnt und beendet eine Strecke oder einen Umriss</translation>
+    </message>
+    <message>
+        <source>Alt wheel on the endoscopic view</source>
+        <translation>Alt und Mausrad in der endoskopischen Ansicht</translation>
+    </message>
+    <message>
+        <source>size of the lens, where it is on</source>
+        <translation>Größe der Lupe, wenn sie an ist</translation>
     </message>
 </context>
 <context>
@@ -869,6 +901,26 @@
     <message>
         <source>go to a place of the wall</source>
         <translation>zu einer Stelle der Wand gehen</translation>
+    </message>
+    <message>
+        <source>this server cannot show a lens</source>
+        <translation>dieser Server kann keine Lupe zeigen</translation>
+    </message>
+    <message>
+        <source>electronic biopsy, colours of this scan</source>
+        <translation>elektronische Biopsie, Farben aus dieser Aufnahme</translation>
+    </message>
+    <message>
+        <source>electronic biopsy, fixed colours</source>
+        <translation>elektronische Biopsie, feste Farben</translation>
+    </message>
+    <message>
+        <source>less dense</source>
+        <translation>weniger dicht</translation>
+    </message>
+    <message>
+        <source>denser</source>
+        <translation>dichter</translation>
     </message>
 </context>
 <context>
