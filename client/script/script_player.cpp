@@ -9,6 +9,7 @@
 #include "tiles/png_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -305,11 +306,13 @@ Status Player::run(const LensAction& action, ActionReport& report) {
     LensPlace place{action.at.value_or(glm::dvec2(0.0)), action.radius};
     if (action.positionMm) {
         const auto seen = seenAt(beneath, *action.positionMm);
-        if (!seen) return fail(ErrorKind::noResult, "the camera does not show this place");
+        if (!seen) return fail(ErrorKind::noResult, "the picture does not show this place");
         place.center = *seen;
     }
     const auto camera = cameraOfLens(beneath, place);
-    if (!camera) return fail(ErrorKind::noResult, "the camera shows nothing there");
+    const double halfWidth = 0.5 * viewports_[0].width / viewports_[0].height;
+    if (!camera || std::abs(place.center.x) > halfWidth || std::abs(place.center.y) > 0.5)
+        return fail(ErrorKind::noResult, "the picture does not show this place");
     const auto start = Clock::now();
     auto picture = TRY(awaitPicture(0, ask(0, false), true)).picture;
     const int viewport = int(protocol::lensViewport);

@@ -3,6 +3,7 @@
 #include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
 #include "picture_files.h"
+#include "protocol/limits.h"
 #include "reader/overview_map.h"
 #include "script/script_player.h"
 #include "temporary_folder.h"
@@ -75,6 +76,44 @@ TEST_F(ClientHeadless, StillsAreTheServersPixels) {
     EXPECT_EQ(slice, tests::syntheticPicture(150, 130, {1, 2, 3}, 40.0));
     EXPECT_EQ(readPng("cleansed.png", width, height),
               tests::syntheticPicture(150, 130, {1, 2, 3}, 40.0 + tests::cleansedShiftHu));
+}
+
+TEST_F(ClientHeadless, ALensLiesOverTheStill) {
+    FakeServer server;
+    const auto report = play(optionsFor(server), R"({"do":"go","arc_mm":120}
+{"do":"still","png":"still.png"}
+{"do":"lens","at":[0.2,-0.1],"radius":0.25,"png":"lens.png"})");
+    ASSERT_FALSE(report.failure) << describe(*report.failure);
+    int width = 0, height = 0;
+    const auto still = readPng("still.png", width, height),
+               lens = readPng("lens.png", width, height);
+    ASSERT_EQ(still.size(), lens.size());
+    int changed = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const std::size_t n = 3 * std::size_t(y * width + x);
+            const bool same = std::equal(&still[n], &still[n] + 3, &lens[n]);
+            changed += !same;
+            const double away = glm::distance(glm::dvec2(x, y) + 0.5, glm::dvec2(140.0, 80.0));
+            EXPECT_TRUE(same || away < 50.6) << x << ' ' << y;
+        }
+    EXPECT_GT(changed, 3000);
+    const int viewport = int(protocol::lensViewport);
+    EXPECT_TRUE(server.askedOf(viewport).pictures == 1);
+    const auto failureOf = [&](const Misbehaviour& wrong, const char* script) {
+        FakeServer other(wrong);
+        auto options = optionsFor(other);
+        options.pinning.knownServersFile = folder_ / ("known-" + std::to_string(other.port()));
+        const auto played = play(options, script);
+        EXPECT_EQ(other.askedOf(viewport).pictures, 0);
+        return played.failure ? describe(*played.failure) : std::string();
+    };
+    Misbehaviour old;
+    old.old = true;
+    EXPECT_NE(failureOf(old, R"({"do":"lens"})").find("this server cannot show a lens"),
+              std::string::npos);
+    EXPECT_NE(failureOf({}, R"({"do":"lens","at":[0.9,0]})").find("does not show this place"),
+              std::string::npos);
 }
 
 TEST_F(ClientHeadless, AFlightMeasuresEachPosition) {

@@ -83,6 +83,26 @@ TEST(Script, ReadsEveryActionWithItsLine) {
     EXPECT_EQ(std::get<WaitAction>((*actions)[9].body).ms, 12.5);
 }
 
+TEST(Script, ReadsALens) {
+    const auto actions =
+        parse(R"({"do":"lens","at":[0.25,-0.1],"radius":0.2,"preset":"biopsy","png":"l.png"})"
+              "\n"
+              R"({"do":"lens","position_mm":[1,2,3]})");
+    ASSERT_TRUE(actions) << describe(actions.error());
+    const auto& lens = std::get<LensAction>((*actions)[0].body);
+    EXPECT_EQ(lens.at, glm::dvec2(0.25, -0.1));
+    EXPECT_EQ(lens.radius, 0.2);
+    EXPECT_EQ(lens.preset, "biopsy");
+    EXPECT_EQ(lens.png, "l.png");
+    const auto& there = std::get<LensAction>((*actions)[1].body);
+    EXPECT_EQ(there.positionMm, glm::dvec3(1, 2, 3));
+    EXPECT_FALSE(there.at || there.preset);
+    for (const char* bad :
+         {R"({"do":"lens","radius":0.6})", R"({"do":"lens","at":[0,0],"position_mm":[1,2,3]})",
+          R"({"do":"lens","at":[0]})", R"({"do":"view","view":"endoscopic","viewport":8})"})
+        EXPECT_FALSE(parse(bad)) << bad;
+}
+
 TEST(Script, ReadsTheActionsOnTheFlattenedWall) {
     const auto actions = parse(
         R"({"do":"flat","center":[0.25,3.5],"pixels_per_circumference":900,"size":[640,480],"png":"f.png"})"

@@ -141,7 +141,7 @@ TEST(TileHeader, ATileOutsideItsPictureIsRefused) {
         return !parseTileHeader(tileBytes(header));
     };
     EXPECT_FALSE(refused([](TileHeader&) {}));
-    EXPECT_TRUE(refused([](TileHeader& h) { h.viewport = 8; }));
+    EXPECT_TRUE(refused([](TileHeader& h) { h.viewport = maxViewports; }));
     EXPECT_TRUE(refused([](TileHeader& h) { h.codec = TileCodec(0); }));
     EXPECT_TRUE(refused([](TileHeader& h) { h.codec = TileCodec(3); }));
     EXPECT_TRUE(refused([](TileHeader& h) { h.pictureWidth = 2049; }));

@@ -111,7 +111,11 @@ TEST(ViewMessage, ViewsWindowsAndPaintComeBackAsTheyWereSent) {
         EXPECT_EQ(*viewFrom(message.set_viewport().view()), view);
         EXPECT_EQ(message.set_viewport().width(), 640u);
         EXPECT_EQ(inputHeader(message)->viewport, 3u);
+        EXPECT_FALSE(message.set_viewport().lens());
     }
+    EXPECT_TRUE(overTheWire(viewportMessage({6, 8}, haustra::View::endoscopic, 64, 64, true))
+                    .set_viewport()
+                    .lens());
     EXPECT_FALSE(viewFrom(VIEW_UNSPECIFIED));
     EXPECT_FALSE(viewFrom(View(99)));
     const haustra::WindowLevel window{40.0, 400.0};
