@@ -74,13 +74,6 @@ struct CaseRenderer::Impl {
         std::vector<WallPixel> pixels;
     };
     LruCache<SeenWall> seenWalls{4};
-    struct RayEnds {
-        Camera camera;
-        glm::ivec2 size{0};
-        double deepMm = 0.0;
-        std::shared_ptr<const Backdrop> ends;
-    };
-    LruCache<RayEnds> rayEnds{2};
 
     const Grid& grid() const { return scene->grid(); }
     CasePictures& pictures() { return picturesOnCpu(used) ? *nativePictures : *glPictures; }
@@ -164,20 +157,17 @@ struct CaseRenderer::Impl {
         return seenWalls.keep({camera, size, std::move(found)});
     }
 
-    Result<std::shared_ptr<const Backdrop>> endsOf(const CameraView& view, glm::ivec2 size) {
-        const RayEnds* kept = rayEnds.find([&](const RayEnds& one) {
-            return one.camera == view.camera && one.size == size &&
-                   one.deepMm == view.beneathWallMm;
-        });
-        if (kept) return kept->ends;
-        const SeenWall* seen = TRY(wallOf(view.camera, size));
+    Result<std::shared_ptr<const Backdrop>> endsOf(const CameraView& view, const Band& band) {
+        const SeenWall* seen = TRY(wallOf(view.camera, band.pictureSize));
+        const std::size_t row = std::size_t(band.pictureSize.x);
         std::vector<float> depths;
-        depths.reserve(seen->pixels.size());
-        for (const WallPixel& pixel : seen->pixels)
+        depths.reserve(row * std::size_t(band.rows));
+        for (const WallPixel& pixel :
+             std::span(seen->pixels)
+                 .subspan(row * std::size_t(band.firstRow), row * std::size_t(band.rows)))
             depths.push_back(pixel.depthMm);
-        auto ends =
-            endsBeneathWall(*scene, view.camera, size, depths, view.beneathWallMm, options.threads);
-        return rayEnds.keep({view.camera, size, view.beneathWallMm, std::move(ends)})->ends;
+        return endsBeneathWall(*scene, view.camera, band, depths, view.beneathWallMm,
+                               options.threads);
     }
 
     /// Tints the band of a camera's picture.
@@ -282,7 +272,7 @@ Result<void> CaseRenderer::render(const CameraView& view, const Band& band, Imag
     if (view.beneathWallMm > 0.0 && my.flatGeometry) {
         TRY(checkBand(band, picture));
         TRY(checkCamera(view.camera));
-        drawn.backdrop = TRY(my.endsOf(view, band.pictureSize));
+        drawn.backdrop = TRY(my.endsOf(view, band));
     }
     TRY(my.raycasters.at(my.used)->render(drawn, band, picture));
     return view.paint ? my.paintWall(view.camera, *view.paint, band, picture) : Result<void>{};

@@ -46,9 +46,12 @@ TEST(BeneathWall, RaysEndInTheDepthOrWhereTheyLeaveTheTissue) {
     for (const Lens lens : {Lens::perspective, Lens::fisheye, Lens::orthographic}) {
         const Camera camera = ahead(lens);
         const auto wall = wallOf(camera);
-        const auto ends = endsBeneathWall(scene, camera, size, wall, 10.0, 2);
+        const auto ends =
+            endsBeneathWall(scene, camera, Band::whole(size.x, size.y), wall, 10.0, 2);
         ASSERT_EQ(ends->size, size);
-        EXPECT_EQ(ends->pixels, endsBeneathWall(scene, camera, size, wall, 10.0, 1)->pixels);
+        EXPECT_EQ(
+            ends->pixels,
+            endsBeneathWall(scene, camera, Band::whole(size.x, size.y), wall, 10.0, 1)->pixels);
         int plate = 0, block = 0;
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) {
@@ -72,11 +75,25 @@ TEST(BeneathWall, RaysEndInTheDepthOrWhereTheyLeaveTheTissue) {
     }
 }
 
+TEST(BeneathWall, BandsHaveTheEndsOfTheWhole) {
+    const Scene scene = plateAndBlock();
+    const Camera camera = ahead(Lens::perspective);
+    const auto wall = wallOf(camera);
+    const auto whole = endsBeneathWall(scene, camera, Band::whole(size.x, size.y), wall, 10.0, 1);
+    const std::size_t first = 40 * 7, count = 40 * 5;
+    const auto part = endsBeneathWall(scene, camera, {size, 7, 5},
+                                      std::span(wall).subspan(first, count), 10.0, 1);
+    ASSERT_EQ(part->pixels.size(), whole->pixels.size());
+    for (std::size_t n = 0; n < count; ++n)
+        EXPECT_EQ(part->pixels[first + n], whole->pixels[first + n]);
+}
+
 TEST(BeneathWall, ARayThatSeesNoWallHasNoEnd) {
     const Camera camera = ahead(Lens::perspective);
     auto wall = wallOf(camera);
     wall[7] = -1.0f;
-    const auto ends = endsBeneathWall(plateAndBlock(), camera, size, wall, 10.0, 1);
+    const auto ends =
+        endsBeneathWall(plateAndBlock(), camera, Band::whole(size.x, size.y), wall, 10.0, 1);
     EXPECT_GT(ends->pixels[7].w, 1e6f);
     EXPECT_LT(ends->pixels[8].w, 60.0f);
 }

@@ -11,9 +11,10 @@ constexpr float noEnd = 1e30f;
 }  // namespace
 
 std::shared_ptr<const Backdrop> endsBeneathWall(const Scene& scene, const Camera& camera,
-                                                glm::ivec2 size, std::span<const float> wallMm,
+                                                const Band& band, std::span<const float> wallMm,
                                                 double deepMm, int threads) {
     auto ends = std::make_shared<Backdrop>();
+    const glm::ivec2 size = band.pictureSize;
     ends->size = size;
     ends->pixels.assign(std::size_t(size.x) * std::size_t(size.y), {0.0f, 0.0f, 0.0f, noEnd});
     const glm::dmat4 voxelFromPatient = scene.grid().voxelFromPatient();
@@ -37,12 +38,14 @@ std::shared_ptr<const Backdrop> endsBeneathWall(const Scene& scene, const Camera
         }
         return wall + deepMm;
     };
-    parallelFor(std::size_t(size.y), 4, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y)
+    parallelFor(std::size_t(band.rows), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row)
             for (int x = 0; x < size.x; ++x) {
-                const std::size_t n = y * std::size_t(size.x) + std::size_t(x);
-                if (wallMm[n] >= 0.0f)
-                    ends->pixels[n].w = float(endOf(x, int(y), double(wallMm[n])));
+                const float wall = wallMm[row * std::size_t(size.x) + std::size_t(x)];
+                const std::size_t y = row + std::size_t(band.firstRow);
+                if (wall >= 0.0f)
+                    ends->pixels[y * std::size_t(size.x) + std::size_t(x)].w =
+                        float(endOf(x, int(y), double(wall)));
             }
     });
     return ends;
