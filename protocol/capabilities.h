@@ -15,5 +15,6 @@ inline constexpr char marks[] = "marks";               ///< Bookmark.mark
 inline constexpr char scanValues[] = "scan-values";    ///< MeasureScan
 inline constexpr char pick[] = "pick";                 ///< PickWall
 inline constexpr char lens[] = "lens";                 ///< viewport 8, SetViewport.lens
+inline constexpr char findings[] = "findings";         ///< SetDetection, ListFindings
 
 }  // namespace haustra::protocol::capability

@@ -2,6 +2,7 @@
 // values that views are made of stand with the values, and have their names here too.
 #pragma once
 
+#include "core/findings.h"
 #include "core/flat_map.h"
 #include "core/scan_values.h"
 #include "core/view.h"
@@ -61,6 +62,13 @@ inline constexpr std::size_t maxListedCases = 100'000;
 // ---- §4, the trust in a colon
 inline constexpr int maxWarnings = 200;
 inline constexpr std::size_t maxWarningBytes = 400;
+
+// ---- §4, findings
+using haustra::maxFindings;  ///< of a list
+/// Runs of voxels of all findings of a list together, so that it fits in one message.
+inline constexpr std::size_t maxListedRuns = 150'000;
+inline constexpr std::size_t maxFindingKindBytes = 40, maxModelNameBytes = 200,
+                             maxTrainedOnBytes = 2000;
 
 // ---- §7, requests without an answer: at most so much weight of them at a time
 inline constexpr int maxUnanswered = 256, listWeight = 64, measurementWeight = 16;

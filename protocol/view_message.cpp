@@ -24,6 +24,15 @@ constexpr ViewCode viewCodes[] = {
 };
 static_assert(std::size(viewCodes) == viewCount);
 
+struct DetectionCode {
+    DetectionMode mode;
+    SetDetection::Mode code;
+};
+constexpr DetectionCode detectionModes[] = {
+    {DetectionMode::off, SetDetection::OFF},
+    {DetectionMode::secondReader, SetDetection::SECOND_READER},
+    {DetectionMode::concurrent, SetDetection::CONCURRENT}};
+
 View codeOf(haustra::View view) {
     for (const ViewCode& one : viewCodes)
         if (one.view == view) return one.code;
@@ -265,6 +274,17 @@ ClientMessage paintMessage(std::uint64_t sequence, const WallPaintChoice& paint)
     return message;
 }
 
+ClientMessage detectionMessage(std::uint64_t sequence, const DetectionChoice& choice) {
+    ClientMessage message;
+    SetDetection& body = *message.mutable_set_detection();
+    body.set_sequence(sequence);
+    for (const auto& [mode, code] : detectionModes)
+        if (mode == choice.mode) body.set_mode(code);
+    body.set_first_pass_done(choice.firstPassDone);
+    if (choice.leastProbability) body.set_least_probability(*choice.leastProbability);
+    return message;
+}
+
 Result<haustra::View> viewFrom(View view) {
     for (const ViewCode& one : viewCodes)
         if (one.code == view) return one.view;
@@ -293,6 +313,21 @@ Result<WallPaintChoice> paintFrom(const SetWallPaint& message) {
     if (!(radius >= minMarkRadiusMm && radius <= maxMarkRadiusMm))
         return refuseView("a mark's radius is not within 1 to 20 mm", "wall paint");
     choice.markRadiusMm = radius;
+    return choice;
+}
+
+Result<DetectionChoice> detectionFrom(const SetDetection& message) {
+    DetectionChoice choice;
+    bool known = false;
+    for (const auto& [mode, code] : detectionModes)
+        if (code == message.mode()) choice.mode = mode, known = true;
+    if (!known) return refuseView("there is no such mode", "detection");
+    choice.firstPassDone = message.first_pass_done();
+    if (!message.has_least_probability()) return choice;
+    const double least = message.least_probability();
+    if (!(least >= 0.0 && least <= 1.0))
+        return refuseView("a probability is not within 0 to 1", "detection");
+    choice.leastProbability = least;
     return choice;
 }
 

@@ -3,6 +3,7 @@
 // is badInput and names no patient.
 #pragma once
 
+#include "core/detection_choice.h"
 #include "core/result.h"
 #include "core/view.h"
 #include "protocol/haustra.pb.h"
@@ -31,6 +32,7 @@ ClientMessage viewportMessage(InputHeader header, haustra::View view, int width,
 ClientMessage stateMessage(InputHeader header, const ViewState& state);
 ClientMessage windowMessage(InputHeader header, const haustra::WindowLevel& window);
 ClientMessage paintMessage(std::uint64_t sequence, const WallPaintChoice& paint);
+ClientMessage detectionMessage(std::uint64_t sequence, const DetectionChoice& choice);
 
 // ---- and as the server understands them
 
@@ -41,6 +43,8 @@ Result<ViewState> stateFrom(const ClientMessage& message, haustra::View view);
 Result<haustra::WindowLevel> windowFrom(const WindowLevel& message);
 /// A radius of 0 is the usual one.
 Result<WallPaintChoice> paintFrom(const SetWallPaint& message);
+/// Fails on a mode that there is not, or what is no probability.
+Result<DetectionChoice> detectionFrom(const SetDetection& message);
 
 // ---- what they are made of
 

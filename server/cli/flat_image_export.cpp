@@ -89,6 +89,15 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
         ->capture_default_str();
     group->add_flag("--caption", options.caption,
                     "Draw the strip's ends and a scale of millimetres along the centerline");
+    auto* findings = group->add_flag("--findings", options.findings,
+                                     "Colour the case's findings, as the server does");
+    group
+        ->add_option("--least-probability", options.leastProbability,
+                     "And the candidates below the operating point that are so probable to be a "
+                     "polyp")
+        ->type_name("P")
+        ->check(CLI::Range(0.0, 1.0))
+        ->needs(findings);
     addThreadsOption(*group, options.threads);
 }
 
@@ -115,6 +124,7 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     addProduct(provenance, source,
                scans.cleansed.voxels().empty() ? product::ct : product::cleansed);
     addProduct(provenance, source, product::flatMap);
+    if (options.findings) addProduct(provenance, source, product::findings);
     provenance.facts.insert(provenance.facts.end(),
                             {{"pixels_per_circumference", std::to_string(options.width)},
                              {"seam_margin", fmt::format("{}", options.seamMargin)},
@@ -123,7 +133,9 @@ Result<void> exportFlatImage(const store::Case& source, const std::filesystem::p
     const auto marks = options.caption ? stripCaption(map, size) : pictures::Marks{};
     auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, options.threads));
     prepared.flatMap = std::make_shared<const FlatMap>(std::move(map));
-    auto paint = TRY(paintBridges(source, prepared.flatMap, nullptr));
+    auto paint =
+        TRY(options.findings ? paintFindings(source, prepared.flatMap, options.leastProbability)
+                             : paintBridges(source, prepared.flatMap, nullptr));
     picture.paint = std::move(paint);
     auto context = TRY(gpu::Context::create());
     auto renderer = TRY(

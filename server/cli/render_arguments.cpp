@@ -175,8 +175,15 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
     command
         .add_option("--paint", my.paint,
                     "A picture of the whole strip, as flat-image is without a seam margin, that "
-                    "colours the endoscopic view's wall")
-        ->type_name("FILE.png|.tif");
+                    "colours the endoscopic view's wall; or findings: the case's own, in all views "
+                    "of the wall")
+        ->type_name("FILE.png|.tif|findings");
+    command
+        .add_option("--least-probability", my.leastProbability,
+                    "Of --paint findings: the candidates below the operating point, too, that are "
+                    "so probable to be a polyp")
+        ->type_name("P")
+        ->check(CLI::Range(0.0, 1.0));
     addPointsOption(command, "--mark", my.marksMm,
                     "A ball in the overview (LPS, mm); may be given again and again");
     command.add_flag_callback(
@@ -282,6 +289,10 @@ bool RenderArguments::isFlattened() const {
     return shown() == View::flattened || shown() == View::flattenedZoom;
 }
 
+bool RenderArguments::paintsFindings() const {
+    return paint == store::product::findings;
+}
+
 bool RenderArguments::castsRays() const {
     return !isSlice() && shown() != View::oblique;
 }
@@ -361,8 +372,12 @@ void checkUsage(const RenderArguments& my) {
     if (my.fovDegrees && my.lens == Lens::perspective && *my.fovDegrees > 170.0)
         wrong("--fov", "a perspective sees 170 degrees at most");
     if (!my.marksMm.empty() && view != View::overview) wrong("--mark", "is for the overview");
-    if (!my.paint.empty() && (my.view != "endoscopic" && !my.view.empty()))
-        wrong("--paint", "is for the endoscopic view");
+    if (my.leastProbability && !my.paintsFindings())
+        wrong("--least-probability", "needs --paint findings");
+    if (my.paintsFindings() && (my.isScan() || !showsWall(view)))
+        wrong("--paint", "findings colours a case's views of the wall");
+    if (!my.paint.empty() && !my.paintsFindings() && my.view != "endoscopic" && !my.view.empty())
+        wrong("--paint", "of a file is for the endoscopic view");
     checkPlace(my);
 }
 

@@ -40,8 +40,9 @@ struct RenderArguments {
     std::vector<glm::dvec3> marksMm;
     bool body = true;
 
-    std::string optics;  ///< a preset's name or a file; empty: the view's own
-    std::filesystem::path paint;
+    std::string optics;                      ///< a preset's name or a file; empty: the view's own
+    std::filesystem::path paint;             ///< a picture's file, or "findings"
+    std::optional<double> leastProbability;  ///< of candidates that are painted, too
     RaycasterKind raycaster = RaycasterKind::singlePass;
     double gpuBudgetMb = 0.0;
     std::filesystem::path labels;      ///< of a colour volume's voxels
@@ -61,7 +62,8 @@ struct RenderArguments {
     View shown() const;
     bool isSlice() const;  ///< axial, coronal or sagittal
     bool isFlattened() const;
-    bool castsRays() const;  ///< the raycaster draws at least a part of it
+    bool paintsFindings() const;  ///< the case's own, not a picture
+    bool castsRays() const;       ///< the raycaster draws at least a part of it
 };
 
 /// Adds all options to `command`; wrong usage throws CLI's errors when it is parsed, or when

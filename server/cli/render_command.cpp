@@ -280,9 +280,13 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
     if (arguments.isFlattened() || onWall || !arguments.paint.empty() || bridged) {
         TRY(keep(source.readFlatMap(), products.flatMap));
     }
-    if (!arguments.paint.empty())
+    if (arguments.paintsFindings())
+        TRY(keep(paintFindings(source, products.flatMap, arguments.leastProbability),
+                 products.paint));
+    else if (!arguments.paint.empty())
         TRY(keep(readWallPaint(arguments.paint, products.flatMap->height), products.paint));
-    if (bridged) TRY(keep(paintBridges(source, products.flatMap, products.paint), products.paint));
+    if (bridged && !arguments.paintsFindings())
+        TRY(keep(paintBridges(source, products.flatMap, products.paint), products.paint));
     if (view == View::overview ||
         (arguments.castsRays() && raycasterEntry(arguments.raycaster).needsWallMesh))
         TRY(keep(source.readMesh(), products.wall));
@@ -333,6 +337,7 @@ void addProducts(Provenance& provenance, const RenderArguments& arguments, const
     if (!products.centerline.points.empty()) addProduct(provenance, source, product::centerline);
     if (products.flatMap) addProduct(provenance, source, product::flatMap);
     if (products.wall) addProduct(provenance, source, product::surface);
+    if (arguments.paintsFindings()) addProduct(provenance, source, product::findings);
 }
 
 Result<Image> drawCase(const RenderArguments& arguments, Notes& notes) {

@@ -2,7 +2,9 @@
 
 #include "core/bridges.h"
 #include "core/ct_scan.h"
+#include "core/findings.h"
 #include "pictures/picture_file.h"
+#include "render/wall/finding_paint.h"
 #include "render/wall/strip_painter.h"
 #include "store/products.h"
 
@@ -28,6 +30,37 @@ Result<bool> hasBridges(const store::Case& source) {
             const auto labels = lumen.voxels();
             return std::memchr(labels.data(), int(LumenLabel::bridge), labels.size()) != nullptr;
         });
+}
+
+Result<std::shared_ptr<const render::WallPaint>> paintFindings(
+    const store::Case& source, std::shared_ptr<const FlatMap> map,
+    std::optional<double> leastProbability) {
+    if (!source.find(store::product::findings))
+        return fail(ErrorKind::noResult,
+                    "the case has no findings: prepare looks for polyps in a colon", source.name());
+    TRY(source.verify(store::product::findings));
+    const std::string text = TRY(source.readText(store::product::findings));
+    auto findings = TRY(findingsOfJson(text, store::product::findings));
+    const auto ct = TRY(source.readVolume<std::int16_t>(store::product::ct));
+    if (findings.grid.size == glm::ivec3(0)) findings.grid = ct.grid();
+    if (!sameGrid(findings.grid, ct.grid()))
+        return fail(ErrorKind::badInput, "findings are of another grid than the scan",
+                    source.name());
+    std::vector<std::uint8_t> bridged;
+    if (TRY(hasBridges(source))) {
+        const auto lumen = TRY(source.readVolume<std::uint8_t>(store::product::lumen));
+        bridged = bridgedTriangles(map->surface, lumen);
+    }
+    auto sight = TRY(render::WallSight::of(std::move(map), std::move(bridged)));
+    const auto painter = TRY(render::StripPainter::of(std::move(sight)));
+    std::vector<render::FindingShade> shades(findings.findings.size(),
+                                             render::FindingShade::finding);
+    for (const Finding& candidate : findings.candidates)
+        shades.push_back(leastProbability && candidate.score >= *leastProbability
+                             ? render::FindingShade::candidate
+                             : render::FindingShade::none);
+    return painter->paint({}, {},
+                          render::colorFindings(render::findingPixels(*painter, findings), shades));
 }
 
 Result<std::shared_ptr<const render::WallPaint>> paintBridges(

@@ -1,4 +1,4 @@
-// Colours of the wall in pictures of a case: a given picture, and its bridges.
+// Colours of the wall in pictures of a case: a given picture, its findings, and its bridges.
 #pragma once
 
 #include "core/flat_map.h"
@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace haustra::cli {
 
@@ -17,6 +18,13 @@ Result<std::shared_ptr<const render::WallPaint>> readWallPaint(const std::filesy
 
 /// Whether the case's lumen has a bridge, on its path or off it. False where it has no lumen.
 Result<bool> hasBridges(const store::Case& source);
+
+/// The case's findings, coloured as the server does, and its hatched bridges; with
+/// `leastProbability` its candidates from that on, too. Fails where the case has no findings, or
+/// they are not of its scan.
+Result<std::shared_ptr<const render::WallPaint>> paintFindings(
+    const store::Case& source, std::shared_ptr<const FlatMap> map,
+    std::optional<double> leastProbability);
 
 /// The hatched bridges of the case's flat map over `below`, which may be missing; `below` itself
 /// where there is none. Fails where the case has no sound lumen.

@@ -39,6 +39,15 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         files.facts.scanBiopsy = std::move(*biopsy);
     else
         spdlog::warn("a case opens without its own biopsy colours: {}", describe(biopsy.error()));
+    if (files.findings) {
+        if (auto findings = readFindings(source, files.facts.grid, files.facts.centerline,
+                                         files.facts.wall.get())) {
+            files.facts.findings = std::move(*findings);
+        } else {
+            files.facts.findingsDamaged = true;
+            spdlog::warn("a case opens without its findings: {}", findings.error().message);
+        }
+    }
     if (!files.facts.centerline.points.empty())
         prepared.path = std::make_shared<const Centerline>(files.facts.centerline);
     // Its products were read one after the other, and all must be of one scan.

@@ -195,6 +195,9 @@ protocol::ServerMessage caseOpenedMessage(const OpenCase& opened,
     for (const OpticsPreset& preset : presets.presets)
         fill(*message->add_presets(), preset);
     message->set_cleansed(opened.cleansed);
+    message->set_detection(opened.findings          ? protocol::CaseOpened::THERE
+                           : opened.findingsDamaged ? protocol::CaseOpened::DAMAGED
+                                                    : protocol::CaseOpened::NONE);
     if (opened.trust) fill(*message->mutable_trust(), *opened.trust);
     message->set_raycaster(toString(opened.raycaster));
     for (const render::RaycasterTrial& trial : opened.trials) {
@@ -300,6 +303,68 @@ protocol::ServerMessage bookmarkAddedMessage(const MarkedBookmark& bookmark,
     protocol::ServerMessage message;
     message.mutable_bookmark_added()->set_request(request);
     fill(*message.mutable_bookmark_added()->mutable_bookmark(), bookmark);
+    return message;
+}
+
+namespace {
+
+void fill(protocol::Finding& message, const CaseFindings::Entry& entry, const Finding& finding) {
+    message.set_number(std::uint32_t(entry.number));
+    protocol::fill(*message.mutable_position_mm(), finding.positionMm);
+    fill(*message.mutable_wall(), entry.wall);
+    message.set_diameter_mm(finding.diameterMm);
+    protocol::fill(*message.mutable_diameter_from_mm(), finding.diameterEndsMm.first);
+    protocol::fill(*message.mutable_diameter_to_mm(), finding.diameterEndsMm.second);
+    message.set_height_mm(finding.heightMm);
+    message.set_arc_mm(finding.arcMm);
+    // The wire's segments are core's, after one that is not known.
+    if (finding.segment) message.set_segment(protocol::Finding::Segment(int(*finding.segment) + 1));
+    message.set_kind(shortened(finding.kind, protocol::maxFindingKindBytes));
+    message.set_probability(finding.score);
+    message.set_below_operating_point(entry.candidate);
+}
+
+}  // namespace
+
+protocol::ServerMessage findingListMessage(const OpenCase& of, const DetectionChoice& choice,
+                                           std::uint64_t request) {
+    using protocol::FindingList;
+    protocol::ServerMessage message;
+    FindingList& list = *message.mutable_finding_list();
+    list.set_request(request);
+    list.set_state(of.findingsDamaged                  ? FindingList::DAMAGED
+                   : !of.findings                      ? FindingList::NONE
+                   : choice.shows()                    ? FindingList::SHOWN
+                   : choice.mode == DetectionMode::off ? FindingList::OFF
+                                                       : FindingList::FIRST_PASS);
+    if (!of.findings) return message;
+    const CaseFindings& findings = *of.findings;
+    list.set_operating_point(findings.product.operatingPoint);
+    list.set_model(shortened(findings.product.model.name, protocol::maxModelNameBytes));
+    list.set_trained_on(shortened(findings.product.model.trainedOn, protocol::maxTrainedOnBytes));
+    if (list.state() != FindingList::SHOWN) return message;
+    for (const std::string& warning : findings.product.warnings) {
+        if (list.warnings_size() == protocol::maxWarnings) break;
+        list.add_warnings(shortened(warning, protocol::maxWarningBytes));
+    }
+    std::vector<std::pair<protocol::Finding*, const Finding*>> told;
+    for (const int n : findings.alongColon) {
+        if (!findings.isShown(n, choice)) continue;
+        protocol::Finding& one = *list.add_findings();
+        fill(one, findings.entries[std::size_t(n)], findings.finding(n));
+        told.emplace_back(&one, &findings.finding(n));
+    }
+    std::size_t runs = 0;
+    for (const bool candidates : {false, true}) {
+        for (const auto& [one, finding] : told) {
+            if (one->below_operating_point() != candidates) continue;
+            if (runs + finding->voxels.size() > protocol::maxListedRuns) continue;
+            runs += finding->voxels.size();
+            for (const VoxelRun& run : finding->voxels)
+                for (const int number : {run.first.x, run.first.y, run.first.z, run.count})
+                    one->add_voxels(std::uint32_t(number));
+        }
+    }
     return message;
 }
 

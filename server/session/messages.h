@@ -76,6 +76,12 @@ protocol::ServerMessage caseListMessage(const std::vector<CaseSummary>& cases,
 void fill(protocol::Bookmark& message, const MarkedBookmark& bookmark);
 protocol::ServerMessage bookmarkAddedMessage(const MarkedBookmark& bookmark, std::uint64_t request);
 
+/// Those that a reader who has made this choice is shown, along the colon; where none may be shown,
+/// why. Voxels of findings come before those of candidates, as far as the protocol has room. Some
+/// microseconds each.
+protocol::ServerMessage findingListMessage(const OpenCase& of, const DetectionChoice& choice,
+                                           std::uint64_t request);
+
 protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t request);
 
 }  // namespace haustra::session

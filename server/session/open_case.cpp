@@ -42,6 +42,7 @@ Result<CaseFiles> readCase(const store::Case& source) {
     if (held.contains(product::quality)) files.facts.trust = TRY(store::readTrust(source));
     files.flattened = held.contains(product::flatMap);
     files.surface = held.contains(product::surface);
+    files.findings = held.contains(product::findings);
     return files;
 }
 

@@ -9,6 +9,7 @@
 #include "core/tri_mesh.h"
 #include "core/volume.h"
 #include "render/raycaster_choice.h"
+#include "session/case_findings.h"
 #include "session/wall.h"
 #include "store/case_store.h"
 
@@ -36,8 +37,10 @@ struct OpenCase {
     /// Memory-mapped, for questions about single values; the renderer has its own.
     std::shared_ptr<const Volume<std::int16_t>> ct;
     std::shared_ptr<const Volume<std::int16_t>> cleansedScan;  ///< empty where there is none
-    std::shared_ptr<const TriMesh> surface;  ///< the wall's mesh, where the case has it
-    std::shared_ptr<const Wall> wall;        ///< empty where the case has not been flattened
+    std::shared_ptr<const TriMesh> surface;        ///< the wall's mesh, where the case has it
+    std::shared_ptr<const Wall> wall;              ///< empty where the case has not been flattened
+    std::shared_ptr<const CaseFindings> findings;  ///< empty where detection found nothing to read
+    bool findingsDamaged = false;                  ///< there are some, which cannot be read
     /// What draws it, and what was measured to choose it (nothing where it was not).
     RaycasterKind raycaster = RaycasterKind::singlePass;
     std::vector<render::RaycasterTrial> trials;
@@ -50,6 +53,7 @@ struct CaseFiles {
     Volume<std::int16_t> cleansed;  ///< empty where the case has none yet
     bool flattened = false;         ///< there is a flat map
     bool surface = false;           ///< there is the wall's mesh
+    bool findings = false;          ///< there is what detection found
 };
 
 /// Reads product "ct" of a case and, where they are there, "cleansed", "centerline" and "quality".

@@ -89,13 +89,26 @@ Result<void> PictureStream::input(const protocol::SetWallPaint& message) {
                     "wall paint");
     const auto choice = TRY(protocol::paintFrom(message));
     reading_->choose(choice);
+    wallChanged(message.sequence());
+    return {};
+}
+
+Result<DetectionChoice> PictureStream::input(const protocol::SetDetection& message) {
+    TRY(takeSequence(message.sequence()));
+    const auto choice = TRY(protocol::detectionFrom(message));
+    if (!reading_) return choice;  // its views have no paint
+    reading_->chooseFindings(choice);
+    wallChanged(message.sequence());
+    return choice;
+}
+
+void PictureStream::wallChanged(std::uint64_t sequence) {
     for (std::size_t id = 0; id < slots_.size(); ++id) {
         Slot& slot = slots_[id];
         if (!slot.viewport.isOpen() || !slot.viewport.isPainted()) continue;
-        slot.sequence = message.sequence();
+        slot.sequence = sequence;
         changed(id);
     }
-    return {};
 }
 
 void PictureStream::repaint() {

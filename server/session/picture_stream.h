@@ -67,11 +67,12 @@ public:
     /// one moves, only that one shows it.
     void repaint();
 
-    /// An input of one viewport, or SetWallPaint, which is for all views of the wall. Fails
-    /// (badInput) and changes nothing but the sequence where the message is out of bounds,
-    /// (wrongState) where the viewport is not open.
+    /// An input of one viewport, or SetWallPaint or SetDetection, which are for all views of the
+    /// wall. Fails (badInput) and changes nothing but the sequence where the message is out of
+    /// bounds, (wrongState) where the viewport is not open.
     Result<void> input(const protocol::ClientMessage& message);
     Result<void> input(const protocol::SetWallPaint& message);
+    Result<DetectionChoice> input(const protocol::SetDetection& message);
 
     void pictureSent();
     /// After a fault in what was posted here (postTo).
@@ -92,6 +93,7 @@ private:
 
     Result<void> takeSequence(std::uint64_t sequence);
     void changed(std::size_t id);
+    void wallChanged(std::uint64_t sequence);
     bool canDraw(const Slot& slot) const;
     void awaitRest(const protocol::TileHeader& sent);
     void atRest(std::size_t id);

@@ -106,6 +106,10 @@ void Session::dispatch(const ClientMessage& message) {
             return handle(message.set_wall_paint());
         case ClientMessage::kAskSeen:
             return handle(message.ask_seen());
+        case ClientMessage::kSetDetection:
+            return handle(message.set_detection());
+        case ClientMessage::kListFindings:
+            return handle(message.list_findings());
         case ClientMessage::kPing:
             return handle(message.ping());
         default:
@@ -162,7 +166,7 @@ void Session::handle(const protocol::Hello& hello) {
     for (const char* known :
          {capability::jpeg, capability::lossless, capability::coarse, capability::slabs,
           capability::bookmarkPush, capability::marks, capability::caseEntries,
-          capability::scanValues, capability::pick, capability::lens})
+           capability::scanValues, capability::pick, capability::lens, capability::findings})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
@@ -214,6 +218,7 @@ void Session::leaveCase() {
     case_.reset();
     counted_.reset();
     reading_.reset();
+    detection_ = {};
     pictures_->setCase(nullptr);
 }
 
@@ -339,6 +344,21 @@ void Session::tellSeen(std::uint64_t request, double share) {
     message.mutable_wall_seen()->set_request(request);
     message.mutable_wall_seen()->set_share(share);
     send(message);
+}
+
+// ---- findings -----------------------------------------------------------------------------------
+
+void Session::handle(const protocol::SetDetection& message) {
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open");
+    const auto choice = pictures_->input(message);
+    if (!choice) return report(choice.error());
+    detection_ = *choice;
+}
+
+void Session::handle(const protocol::ListFindings& message) {
+    const std::uint64_t request = message.request();
+    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
+    send(findingListMessage(*case_, detection_, request));
 }
 
 // ---- bookmarks ----------------------------------------------------------------------------------

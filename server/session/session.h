@@ -96,6 +96,8 @@ private:
     void handle(const protocol::ListBookmarks& message);
     void handle(const protocol::SetWallPaint& message);
     void handle(const protocol::AskSeen& message);
+    void handle(const protocol::SetDetection& message);
+    void handle(const protocol::ListFindings& message);
     void handle(const protocol::Ping& message);
     void handleInput(const protocol::ClientMessage& message);
     template <class Question>
@@ -136,6 +138,7 @@ private:
     std::shared_ptr<PictureStream> pictures_;
     std::shared_ptr<WallReading> reading_;  // where the open case has been flattened
     std::uint64_t readings_ = 0;
+    DetectionChoice detection_;  // of the open case
     int unanswered_ = 0;
 
     std::deque<CaseRequest> questions_;  // not yet asked

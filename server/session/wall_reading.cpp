@@ -1,6 +1,7 @@
 #include "session/wall_reading.h"
 
 #include "protocol/limits.h"
+#include "render/wall/finding_paint.h"
 #include "render/wall/strip_painter.h"
 #include "render/wall/wall_coverage.h"
 #include "session/worker.h"
@@ -44,16 +45,19 @@ struct WallReading::Work {
             if (const auto mark = markOf(*of->wall, gaze.positionMm, gaze.forward))
                 marks.push_back({mark->flat, mark->positionMm});
     }
-    Paint paint(const WallPaintChoice& choice) {
+    Paint paint(const WallPaintChoice& choice, const DetectionChoice& detection) {
         const render::StripPainter& painter = *of->wall->painter;
         if (choice.marks && discsRadiusMm != choice.markRadiusMm) {
             discs = painter.discs(marks, choice.markRadiusMm);
             discsRadiusMm = choice.markRadiusMm;
         }
+        std::vector<render::TintedPixel> findings;
+        if (of->findings && detection.shows())
+            findings = render::colorFindings(of->findings->paint, of->findings->shades(detection));
         using Marked = std::span<const render::MarkedPixel>;
         using Seen = std::span<const std::uint8_t>;
         return painter.paint(choice.marks ? Marked(discs) : Marked(),
-                             choice.unseen ? Seen(seen().seenTriangles()) : Seen());
+                             choice.unseen ? Seen(seen().seenTriangles()) : Seen(), findings);
     }
 };
 
@@ -68,12 +72,22 @@ WallReading::WallReading(asio::any_io_executor io, PaintThread& painting,
 // ---- paint --------------------------------------------------------------------------------------
 
 bool WallReading::paints() const {
-    return choice_.any() || work_->of->wall->painter->sight().hasBridges();
+    return choice_.any() || (work_->of->findings && detection_.shows()) ||
+           work_->of->wall->painter->sight().hasBridges();
 }
 
 void WallReading::choose(const WallPaintChoice& choice) {
     choice_ = choice;
     listed_ = !choice.marks;
+    chosen();
+}
+
+void WallReading::chooseFindings(const DetectionChoice& choice) {
+    detection_ = choice;
+    chosen();
+}
+
+void WallReading::chosen() {
     chosen_ = ++wanted_;
     ready_ = !paints();
     if (ready_)
@@ -133,10 +147,10 @@ void WallReading::startPainting() {
     std::optional<std::vector<Gaze>> gazes;
     if (choice_.marks && std::exchange(gazesAreNew_, false)) gazes = gazes_;
     painting_.push([weak = weak_from_this(), io = io_, work = work_, choice = choice_,
-                    gazes = std::move(gazes), number = wanted_] {
+                    detection = detection_, gazes = std::move(gazes), number = wanted_] {
         auto paint = guarded([&]() -> Result<Paint> {
             if (gazes) work->mark(*gazes);
-            return work->paint(choice);
+            return work->paint(choice, detection);
         });
         postTo(io, weak, [number, paint = std::move(paint)](WallReading& self) mutable {
             self.painted(number, std::move(paint));

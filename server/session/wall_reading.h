@@ -55,6 +55,9 @@ public:
     /// Bridges are hatched whatever the choice; a session chooses once to have them so.
     void choose(const WallPaintChoice& choice);
     const WallPaintChoice& choice() const { return choice_; }
+    /// Which of the case's findings are painted, whatever else is; likewise.
+    void chooseFindings(const DetectionChoice& choice);
+    const DetectionChoice& detection() const { return detection_; }
     /// All bookmarks of the case, and one more, or one that is known already.
     void setBookmarks(const std::vector<records::Bookmark>& bookmarks);
     void addBookmark(const records::Bookmark& bookmark);
@@ -83,6 +86,7 @@ private:
     };
     using Paint = std::shared_ptr<const render::WallPaint>;
     bool paints() const;
+    void chosen();
     void keep(const records::Bookmark& bookmark);
     void repaint(bool soon);
     void startPainting();
@@ -97,13 +101,14 @@ private:
     Outlet outlet_;
 
     WallPaintChoice choice_;
+    DetectionChoice detection_;
     bool listed_ = false;  // the bookmarks of this choice are known
     std::vector<Gaze> gazes_;
     bool gazesAreNew_ = false;  // to work_
     bool ready_ = true;
     Paint paint_;
     std::uint64_t wanted_ = 0;  // counts what changed the paint; the newest is to be shown
-    std::uint64_t chosen_ = 0;  // its number when choice_ was made
+    std::uint64_t chosen_ = 0;  // its number when the newest choice was made
     bool isPainting_ = false, paintAgain_ = false, paintAgainSoon_ = false;
     std::optional<std::chrono::steady_clock::time_point> paintedAt_;
     asio::steady_timer later_;

@@ -68,6 +68,13 @@ glm::dvec3 StripPainter::placeOf(glm::ivec2 pixel) const {
     return place(0) + v * (place(1) - place(0)) + w * (place(2) - place(0));
 }
 
+std::optional<WallSight::Place> StripPainter::placeAt(std::int32_t pixel) const {
+    const int triangle = triangle_[std::size_t(pixel)];
+    if (triangle < 0) return std::nullopt;
+    const glm::ivec2 at(pixel % size_.x, pixel / size_.x);
+    return WallSight::Place{triangle, flatOf(at), placeOf(at)};
+}
+
 std::vector<MarkedPixel> StripPainter::discs(std::span<const WallMark> marks,
                                              double radiusMm) const {
     const double rimMm = std::min(radiusMm, std::max(leastRimMm, rimShare * radiusMm));
@@ -129,8 +136,9 @@ std::shared_ptr<const WallPaint> StripPainter::bridgesOver(const WallPaint& pain
     return both;
 }
 
-std::shared_ptr<const WallPaint> StripPainter::paint(
-    std::span<const MarkedPixel> marks, std::span<const std::uint8_t> seenTriangles) const {
+std::shared_ptr<const WallPaint> StripPainter::paint(std::span<const MarkedPixel> marks,
+                                                     std::span<const std::uint8_t> seenTriangles,
+                                                     std::span<const TintedPixel> findings) const {
     auto paint = std::make_shared<WallPaint>();
     paint->size = size_;
     paint->height = double(size_.y) / size_.x;
@@ -140,6 +148,10 @@ std::shared_ptr<const WallPaint> StripPainter::paint(
         for (std::size_t n = 0; n < triangle_.size(); ++n)
             if (triangle_[n] >= 0 && !seenTriangles[std::size_t(triangle_[n])])
                 paint->pixels[n] = glm::u8vec4(unseenColor, unseenCover);
+    for (const TintedPixel& tinted : findings) {
+        glm::u8vec4& pixel = paint->pixels[std::size_t(tinted.pixel)];
+        pixel = over(glm::u8vec3(tinted.color), tinted.color.a, pixel);
+    }
     hatch(*paint);
     for (const MarkedPixel& marked : marks) {
         glm::u8vec4& pixel = paint->pixels[std::size_t(marked.pixel)];

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct WallMark {
 struct MarkedPixel {
     std::int32_t pixel = 0;
     std::uint8_t cover = 0;
+};
+
+/// A pixel of a strip's paint and its colour; a: how much it covers.
+struct TintedPixel {
+    std::int32_t pixel = 0;
+    glm::u8vec4 color{0};
 };
 
 /// A picture of the strip that knows each pixel's place of the wall. Immutable; any number of
@@ -44,12 +51,17 @@ public:
     /// and their insides leave more of the wall's own colour. The radius is within its bounds.
     std::vector<MarkedPixel> discs(std::span<const WallMark> marks, double radiusMm) const;
 
+    /// The place of the wall that a pixel shows; empty where it shows none. Pixels are counted in
+    /// rows, as paint's. A tenth of a microsecond.
+    std::optional<WallSight::Place> placeAt(std::int32_t pixel) const;
+
     /// Bridges are hatched in grey, whatever else is painted, so that nobody takes one for mucosa.
     /// `seenTriangles` (0 or 1 each; empty: nothing is said of what has been seen) gives triangles
-    /// that have not been seen one colour, and marks have another, over it. Smooth (WallPaint). A
-    /// few milliseconds.
+    /// that have not been seen one colour; `findings` have theirs over it, and marks another over
+    /// both. Smooth (WallPaint). A few milliseconds.
     std::shared_ptr<const WallPaint> paint(std::span<const MarkedPixel> marks,
-                                           std::span<const std::uint8_t> seenTriangles) const;
+                                           std::span<const std::uint8_t> seenTriangles,
+                                           std::span<const TintedPixel> findings = {}) const;
     /// The hatched bridges over another paint of this strip, as fine as this painter is.
     std::shared_ptr<const WallPaint> bridgesOver(const WallPaint& paint) const;
 

@@ -1,0 +1,94 @@
+#include "session/case_findings.h"
+
+#include "protocol/limits.h"
+#include "store/products.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace haustra::session {
+namespace {
+
+namespace product = store::product;
+
+bool isPlace(glm::dvec3 mm) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(mm[axis]) <= protocol::maxCoordinateMm)) return false;
+    return true;
+}
+
+// What can be told (PROTOCOL.md §4).
+bool isSound(const Finding& finding) {
+    const auto isLength = [](double mm) { return mm >= 0.0 && mm <= protocol::maxCoordinateMm; };
+    return isPlace(finding.positionMm) && isPlace(finding.wallMm) &&
+           isPlace(finding.diameterEndsMm.first) && isPlace(finding.diameterEndsMm.second) &&
+           isLength(finding.diameterMm) && isLength(finding.heightMm) &&
+           std::abs(finding.arcMm) <= protocol::maxCoordinateMm && finding.score >= 0.0 &&
+           finding.score <= 1.0;
+}
+
+}  // namespace
+
+bool CaseFindings::isShown(int index, const DetectionChoice& choice) const {
+    if (!choice.shows()) return false;
+    if (!entries[std::size_t(index)].candidate) return true;
+    return choice.leastProbability && finding(index).score >= *choice.leastProbability;
+}
+
+std::vector<render::FindingShade> CaseFindings::shades(const DetectionChoice& choice) const {
+    std::vector<render::FindingShade> shades;
+    for (int n = 0; n < int(entries.size()); ++n)
+        shades.push_back(!isShown(n, choice)                 ? render::FindingShade::none
+                         : entries[std::size_t(n)].candidate ? render::FindingShade::candidate
+                                                             : render::FindingShade::finding);
+    return shades;
+}
+
+std::shared_ptr<const CaseFindings> placeFindings(Findings findings, const Centerline& centerline,
+                                                  const Wall* wall) {
+    auto made = std::make_shared<CaseFindings>();
+    made->product = std::move(findings);
+    const auto above = int(made->product.findings.size()),
+               all = above + int(made->product.candidates.size());
+    for (int n = 0; n < all; ++n) {
+        CaseFindings::Entry entry{n + 1, n >= above, {}};
+        const Finding& finding = made->finding(n);
+        if (wall) {
+            entry.wall = wall->lookup.nearest(finding.wallMm);
+        } else {
+            entry.wall.positionMm = entry.wall.cameraMm = finding.wallMm;
+            if (!centerline.points.empty()) {
+                entry.wall.arcMm = nearestArc(centerline, finding.wallMm);
+                entry.wall.cameraMm = poseAtArc(centerline, entry.wall.arcMm).point.positionMm;
+            }
+        }
+        made->entries.push_back(entry);
+    }
+    made->alongColon.resize(std::size_t(all));
+    std::iota(made->alongColon.begin(), made->alongColon.end(), 0);
+    std::stable_sort(made->alongColon.begin(), made->alongColon.end(),
+                     [&](int a, int b) { return made->finding(a).arcMm < made->finding(b).arcMm; });
+    if (wall) made->paint = render::findingPixels(*wall->painter, made->product);
+    return made;
+}
+
+Result<std::shared_ptr<const CaseFindings>> readFindings(const store::Case& source,
+                                                         const Grid& grid,
+                                                         const Centerline& centerline,
+                                                         const Wall* wall) {
+    TRY(source.verify(product::findings));
+    const std::string text = TRY(source.readText(product::findings));
+    auto findings = TRY(findingsOfJson(text, product::findings));
+    const auto refuse = [](const char* what) {
+        return fail(ErrorKind::badInput, what, product::findings);
+    };
+    if (findings.grid.size == glm::ivec3(0)) findings.grid = grid;  // they have no voxels
+    if (!sameGrid(findings.grid, grid)) return refuse("findings are of another grid than the scan");
+    for (const auto* list : {&findings.findings, &findings.candidates})
+        if (!std::all_of(list->begin(), list->end(), isSound))
+            return refuse("a finding lies nowhere");
+    return placeFindings(std::move(findings), centerline, wall);
+}
+
+}  // namespace haustra::session
