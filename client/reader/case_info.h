@@ -18,6 +18,9 @@
 
 namespace haustra::reader {
 
+/// Whether the case has findings: none, some, or some that cannot be read.
+enum class Detection { none, there, damaged };
+
 struct CaseInfo {
     std::string name;
     std::string scan;  ///< which the case is of; bookmarks belong to it
@@ -29,6 +32,7 @@ struct CaseInfo {
     bool cleansed = false;              ///< there is a cleansed scan
     std::optional<ColonTrust> trust;    ///< how sure the colon is, where one was searched for
     std::optional<FlatStrip> flat;      ///< where the case has been flattened
+    Detection detection = Detection::none;
 };
 
 /// A case of the server's list. An old server tells its name alone.

@@ -63,6 +63,15 @@ void FlatReading::goTo(glm::dvec3 placeMm) {
     wall_.pickNear(placeMm);
 }
 
+void FlatReading::goTo(const WallPlace& place) {
+    tour_.setMotion(Motion::paused);
+    if (!case_->centerline.points.empty()) flight_.lookAt(place.arcMm, place.positionMm);
+    if (hasStrip() && place.flat) tour_.centerOn(*place.flat);
+    stay();
+    wall_.forgetPick();
+    picked_ = GoneTo{place.positionMm, place};
+}
+
 // The camera's new place is not followed: slices and window show what was picked.
 void FlatReading::stay() {
     followedArcMm_ = flight_.placeArcMm();

@@ -42,6 +42,9 @@ public:
     /// Goes to a place of the scan: the camera looks at it from the nearest place of the path, and
     /// the zoom view shows the wall nearest to it.
     void goTo(glm::dvec3 placeMm);
+    /// Goes to a place of the wall that the server has told: the camera looks at it, and the zoom
+    /// view has it in its middle.
+    void goTo(const WallPlace& place);
     /// The place that was gone to last, until the camera moves on.
     const std::optional<GoneTo>& picked() const { return picked_; }
     /// No mark, and what is still asked about is gone to no more.

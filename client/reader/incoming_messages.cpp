@@ -201,6 +201,8 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
           info.histogram.huPerBin <= maxBinHu && info.histogram.voxels.size() <= maxBins))
         return fail(ErrorKind::badInput, "its bins are none", "case opened: histogram");
     info.cleansed = message.cleansed();
+    if (message.detection() == protocol::CaseOpened::THERE) info.detection = Detection::there;
+    if (message.detection() == protocol::CaseOpened::DAMAGED) info.detection = Detection::damaged;
     if (message.has_trust()) {
         auto trust = TRY(trustFrom(message.trust()));
         info.trust = std::move(trust);
@@ -322,6 +324,99 @@ Result<ScanStatistics> statisticsFrom(const protocol::ScanStatistics& message) {
         if (!isWithin(figure, -most, most))
             return fail(ErrorKind::badInput, "the server sent a value that is none", "scan");
     return values;
+}
+
+namespace {
+
+tl::unexpected<Error> refuseFinding(const char* what) {
+    return fail(ErrorKind::badInput, what, "findings");
+}
+
+Result<ListedFinding> findingFrom(const protocol::Finding& message, const Grid& grid) {
+    ListedFinding listed;
+    constexpr std::uint32_t greatestNumber = 1'000'000;
+    if (message.number() == 0 || message.number() > greatestNumber)
+        return refuseFinding("the server sent one without a number");
+    listed.number = int(message.number());
+    listed.candidate = message.below_operating_point();
+    listed.wall = TRY(placeFrom(message.wall()));
+    Finding& finding = listed.finding;
+    finding.positionMm = protocol::vectorFrom(message.position_mm());
+    finding.wallMm = listed.wall.positionMm;
+    finding.diameterEndsMm = {protocol::vectorFrom(message.diameter_from_mm()),
+                              protocol::vectorFrom(message.diameter_to_mm())};
+    finding.diameterMm = message.diameter_mm();
+    finding.heightMm = message.height_mm();
+    finding.arcMm = message.arc_mm();
+    finding.score = message.probability();
+    for (const glm::dvec3 place :
+         {finding.positionMm, finding.diameterEndsMm.first, finding.diameterEndsMm.second})
+        if (!isPlace(place)) return refuseFinding("the server sent one that lies nowhere");
+    if (!isArc(finding.arcMm) || !isWithin(finding.diameterMm, 0.0, maxCoordinateMm) ||
+        !isWithin(finding.heightMm, 0.0, maxCoordinateMm) || !isWithin(finding.score, 0.0, 1.0))
+        return refuseFinding("the server sent one whose figures are none");
+    if (message.segment() > protocol::Finding::UNKNOWN &&
+        message.segment() <= protocol::Finding::CECUM)
+        finding.segment = ColonSegment(int(message.segment()) - 1);
+    if (message.kind().size() > protocol::maxFindingKindBytes)
+        return refuseFinding("the server sent one whose kind is too long");
+    finding.kind = peerText(message.kind(), protocol::maxFindingKindBytes);
+    constexpr int perRun = 4;  // i, j, k, count
+    if (message.voxels_size() % perRun != 0)
+        return refuseFinding("its voxels do not come in fours");
+    for (int n = 0; n < message.voxels_size(); n += perRun) {
+        constexpr std::uint32_t most = 1U << 30;
+        for (int number = 0; number < perRun; ++number)
+            if (message.voxels(n + number) > most)
+                return refuseFinding("its voxels lie outside the scan");
+        const VoxelRun run{
+            {int(message.voxels(n)), int(message.voxels(n + 1)), int(message.voxels(n + 2))},
+            int(message.voxels(n + 3))};
+        if (!grid.contains(run.first) || run.count < 1 || run.count > grid.size.x - run.first.x)
+            return refuseFinding("its voxels lie outside the scan");
+        finding.voxels.push_back(run);
+    }
+    return listed;
+}
+
+}  // namespace
+
+Result<FindingList> findingsFrom(const protocol::FindingList& message, const Grid& grid) {
+    FindingList list;
+    if (message.state() < protocol::FindingList::NONE ||
+        message.state() > protocol::FindingList::SHOWN)
+        return refuseFinding("the server sent a list that is none");
+    list.state = FindingList::State(int(message.state()));
+    list.operatingPoint = message.operating_point();
+    if (!isWithin(list.operatingPoint, 0.0, 1.0))
+        return refuseFinding("the operating point is no probability");
+    if (message.model().size() > protocol::maxModelNameBytes ||
+        message.trained_on().size() > protocol::maxTrainedOnBytes)
+        return refuseFinding("what made them is told at too great length");
+    list.model = peerText(message.model(), protocol::maxModelNameBytes);
+    list.trainedOn = peerText(message.trained_on(), protocol::maxTrainedOnBytes);
+    if (message.warnings_size() > protocol::maxWarnings) return refuseFinding("too many warnings");
+    for (const std::string& warning : message.warnings()) {
+        if (warning.size() > protocol::maxWarningBytes)
+            return refuseFinding("a warning is too long");
+        list.warnings.push_back(peerText(warning, protocol::maxWarningBytes));
+    }
+    if (message.findings_size() > protocol::maxFindings)
+        return refuseFinding("the server sent more than a case can have");
+    if (list.state != FindingList::State::shown && !message.findings().empty())
+        return refuseFinding("the server sent some that are to be hidden");
+    std::set<int> numbers;
+    std::size_t runs = 0;
+    for (const protocol::Finding& one : message.findings()) {
+        runs += std::size_t(one.voxels_size()) / 4;
+        if (runs > protocol::maxListedRuns) return refuseFinding("they have too many voxels");
+        auto sound = TRY(findingFrom(one, grid));
+        if (!numbers.insert(sound.number).second) return refuseFinding("two have the same number");
+        if (!list.findings.empty() && sound.finding.arcMm < list.findings.back().finding.arcMm)
+            return refuseFinding("they are not in the order of the colon");
+        list.findings.push_back(std::move(sound));
+    }
+    return list;
 }
 
 }  // namespace haustra::reader

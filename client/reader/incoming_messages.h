@@ -7,6 +7,7 @@
 #include "protocol/haustra.pb.h"
 #include "protocol/limits.h"
 #include "reader/case_info.h"
+#include "reader/finding_list.h"
 
 namespace haustra::reader {
 
@@ -24,5 +25,8 @@ inline constexpr std::size_t maxScanBookmarks =
 Result<WallPlace> placeFrom(const protocol::WallPlace& message);
 Result<FlatMeasure> measureFrom(const protocol::FlatMeasure& message);
 Result<ScanStatistics> statisticsFrom(const protocol::ScanStatistics& message);
+/// Fails where a finding lies nowhere, its voxels are none of the case's grid, they are not in the
+/// order of their arcs, two have the same number, or there are any that should be hidden.
+Result<FindingList> findingsFrom(const protocol::FindingList& message, const Grid& grid);
 
 }  // namespace haustra::reader

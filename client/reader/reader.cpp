@@ -35,6 +35,7 @@ void Reader::update(double seconds) {
         slices_.show(picked->positionMm, flight_.camera().positionMm);
     slices_.follow(flight_.camera().positionMm);
     measures_.update();
+    rulers_.update();
     sendWindow();
     sendOptics(Clock::now());
     panes_.askForViews([this](View view) { return stateOf(view); }, Clock::now());
@@ -58,6 +59,8 @@ void Reader::caseOpened() {
     outside_.open(case_);
     lens_.open(case_);
     measures_.reset();
+    findings_.open();
+    rulers_.reset();
     panes_.clear();
     optics_.offer(case_->presets);
     sentOptics_ = seenOptics_ = optics_.revision();
@@ -150,7 +153,8 @@ void Reader::sendOptics(Clock::time_point now) {
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
     return motion() != Motion::paused || flat_.wall().waits() || measures_.waits() ||
-           opticsChangedAt_ || optics_.revision() != sentOptics_ || panes_.owe() || lens_.owes();
+           rulers_.waits() || opticsChangedAt_ || optics_.revision() != sentOptics_ ||
+           panes_.owe() || lens_.owes();
 }
 
 Motion Reader::motion() const {
@@ -171,6 +175,14 @@ void Reader::goTo(glm::dvec3 placeMm, std::optional<View> plane) {
         flat_.goTo(placeMm);
     }
     slices_.show(placeMm, flight_.camera().positionMm, plane);
+}
+
+void Reader::goTo(const ListedFinding& finding) {
+    if (!case_) return;
+    findings_.setCurrent(finding.number);
+    setMotion(Motion::paused);
+    flat_.goTo(finding.wall);
+    slices_.show(finding.wall.positionMm, flight_.camera().positionMm);
 }
 
 void Reader::restore(const Flight& flight, const SliceViews& slices) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "reader/biopsy_lens.h"
+#include "reader/findings_reading.h"
 #include "reader/flat_reading.h"
 #include "reader/optics_editor.h"
 #include "reader/outside_view.h"
 #include "reader/panes.h"
+#include "reader/place_rulers.h"
 #include "reader/scan_measures.h"
 #include "reader/slice_views.h"
 
@@ -56,6 +58,11 @@ public:
     const BiopsyLens& lens() const { return lens_; }
     ScanMeasures& measures() { return measures_; }
     const ScanMeasures& measures() const { return measures_; }
+    FindingsReading& findings() { return findings_; }
+    const FindingsReading& findings() const { return findings_; }
+    /// Lengths between two clicked places, and findings' diameters.
+    PlaceRulers& rulers() { return rulers_; }
+    const PlaceRulers& rulers() const { return rulers_; }
     /// How the wall is drawn: what is made of it is shown in the endoscopic view while it changes,
     /// and in the flattened ones when it rests.
     OpticsEditor& optics() { return optics_; }
@@ -85,6 +92,8 @@ public:
     /// Of the place that was gone to last (FlatReading::picked), else of the gaze.
     void addBookmark(std::string note);
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
+    /// To its top: the camera looks at it, slices and zoom view show it. It is the current one.
+    void goTo(const ListedFinding& finding);
     /// The next (or, with −1, previous) bookmark along the centerline, if any.
     std::optional<Bookmark> nextBookmark(int step) const;
 
@@ -101,6 +110,8 @@ private:
     OutsideView outside_;
     BiopsyLens lens_{session_};
     ScanMeasures measures_{session_};
+    FindingsReading findings_{session_};
+    PlaceRulers rulers_{session_, flat_.wall()};
     OpticsEditor optics_;
     Panes panes_{session_};
 

@@ -120,6 +120,7 @@ protocol::ClientMessage scanMessage(std::uint64_t request, const ScanRegion& reg
 /// knows.
 const char* neededBy(const protocol::ClientMessage& question) {
     if (question.has_pick_wall()) return protocol::capability::pick;
+    if (question.has_list_findings()) return protocol::capability::findings;
     return question.has_measure_scan() ? protocol::capability::scanValues : nullptr;
 }
 
@@ -137,6 +138,8 @@ protocol::ServerMessage::BodyCase answerOf(const protocol::ClientMessage& questi
             return protocol::ServerMessage::kScanStatistics;
         case protocol::ClientMessage::kAskSeen:
             return protocol::ServerMessage::kWallSeen;
+        case protocol::ClientMessage::kListFindings:
+            return protocol::ServerMessage::kFindingList;
         default:
             return protocol::ServerMessage::kWallPlace;
     }
@@ -147,6 +150,7 @@ std::uint64_t requestOf(const protocol::ServerMessage& answer) {
            : answer.has_flat_measure()    ? answer.flat_measure().request()
            : answer.has_scan_statistics() ? answer.scan_statistics().request()
            : answer.has_wall_seen()       ? answer.wall_seen().request()
+           : answer.has_finding_list()    ? answer.finding_list().request()
                                           : 0;
 }
 
@@ -255,6 +259,9 @@ void Session::handle(const protocol::ServerMessage& message) {
             questions_.erase(message.wall_seen().request());
             answeredSeen_ = std::max(answeredSeen_, message.wall_seen().request());
             break;
+        case protocol::ServerMessage::kFindingList:
+            take(message.finding_list());
+            break;
         case protocol::ServerMessage::kError:
             refused(message.error());
             break;
@@ -281,12 +288,12 @@ void Session::opened(const protocol::CaseOpened& message) {
         return;
     }
     // After a reconnection the same case keeps its address, and the reader's flight with it.
-    const bool same = !std::exchange(choseAnew_, false) && caseInfo_ &&
-                      caseInfo_->name == info->name && caseInfo_->scan == info->scan &&
-                      caseInfo_->centerline.points.size() == info->centerline.points.size() &&
-                      caseInfo_->cleansed == info->cleansed &&
-                      sameStrip(caseInfo_->flat, info->flat) &&
-                      sameGrid(caseInfo_->grid, info->grid);
+    const bool same =
+        !std::exchange(choseAnew_, false) && caseInfo_ && caseInfo_->name == info->name &&
+        caseInfo_->scan == info->scan &&
+        caseInfo_->centerline.points.size() == info->centerline.points.size() &&
+        caseInfo_->cleansed == info->cleansed && caseInfo_->detection == info->detection &&
+        sameStrip(caseInfo_->flat, info->flat) && sameGrid(caseInfo_->grid, info->grid);
     if (!same) {
         caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
         ++bookmarksRevision_;
@@ -421,6 +428,9 @@ void Session::openCase(const std::string& name) {
     wallAnswers_.clear();
     scanAnswers_.clear();
     paint_ = {};
+    detection_ = {};
+    findings_.reset();
+    ++findingsRevision_;
     seenShare_.reset();
     if (phase_ == Phase::failed || phase_ == Phase::lost) return;
     phase_ = Phase::connecting;
@@ -432,6 +442,9 @@ void Session::askAgain() {
     seenShare_.reset();
     if (caseInfo_->flat && paint_.any())
         connection_.send(protocol::paintMessage(++sequence_, paint_));
+    // Its views are opened with the paint that they are to have; the list is asked for after it.
+    if (serverCan(protocol::capability::findings) && detection_.mode != DetectionMode::off)
+        connection_.send(protocol::detectionMessage(++sequence_, detection_));
     for (auto& [id, state] : viewports_) {
         if (state.width == 0) continue;  // spoken of before it was opened
         // The server may be an older one now.
@@ -460,6 +473,8 @@ void Session::askAgain() {
     for (const std::uint64_t request : unanswered)
         say(request);
     if (caseInfo_->flat) askSeen(false);
+    if (serverCan(protocol::capability::findings) && caseInfo_->detection == Detection::there)
+        requestFindings();
     requestBookmarks();
 }
 
@@ -548,6 +563,36 @@ std::uint64_t Session::setWallPaint(const WallPaintChoice& paint) {
     return sequence_;
 }
 
+std::uint64_t Session::setDetection(const DetectionChoice& choice) {
+    detection_ = choice;
+    ++sequence_;
+    if (phase_ == Phase::open && serverCan(protocol::capability::findings))
+        connection_.send(protocol::detectionMessage(sequence_, choice));
+    ++findingsRevision_;  // what was listed may be hidden now
+    requestFindings();
+    return sequence_;
+}
+
+std::uint64_t Session::requestFindings() {
+    // One list is enough: an answer to an earlier question tells of a mode that is past.
+    std::erase_if(questions_,
+                  [](const auto& asked) { return asked.second.message.has_list_findings(); });
+    protocol::ClientMessage message;
+    message.mutable_list_findings()->set_request(++request_);
+    return ask(message);
+}
+
+void Session::take(const protocol::FindingList& message) {
+    if (questions_.erase(message.request()) == 0) return;  // of a mode or a case that is left
+    auto list = findingsFrom(message, caseInfo_->grid);
+    if (!list) return giveUp(list.error());
+    // What is not to be seen yet is not kept either.
+    if (!detection_.shows()) list->findings.clear();
+    findings_ = std::move(*list);
+    ++findingsRevision_;
+    answeredFindings_ = std::max(answeredFindings_, message.request());
+}
+
 // ---- the wall -------------------------------------------------------------------------------
 
 std::uint64_t Session::ask(const protocol::ClientMessage& question) {
@@ -569,7 +614,9 @@ void Session::say(std::uint64_t request) {
 bool Session::refuseQuestion(std::uint64_t request, const Error& error) {
     const auto asked = questions_.find(request);
     if (asked == questions_.end()) return false;
-    if (asked->second.message.has_measure_scan())
+    if (asked->second.message.has_list_findings())
+        answeredFindings_ = std::max(answeredFindings_, request);
+    else if (asked->second.message.has_measure_scan())
         scanAnswers_.push_back({request, tl::make_unexpected(error)});
     else
         wallAnswers_.push_back({request, tl::make_unexpected(error)});

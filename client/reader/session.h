@@ -1,10 +1,12 @@
 // The reader's session with a server: what is asked for, what has come, what is still owed.
 #pragma once
 
+#include "core/detection_choice.h"
 #include "core/scan_values.h"
 #include "link/connection.h"
 #include "reader/bookmark_journal.h"
 #include "reader/case_info.h"
+#include "reader/finding_list.h"
 #include "reader/latency.h"
 #include "tiles/picture.h"
 
@@ -110,6 +112,21 @@ public:
     /// What colours the wall, in all viewports that show it. Of a case that has been flattened.
     std::uint64_t setWallPaint(const WallPaintChoice& paint);
     const WallPaintChoice& wallPaint() const { return paint_; }
+    /// When findings are listed and painted, of the open case: `off` when it is opened. Asks for
+    /// the list anew. Returns a sequence as setWallPaint does. Of a server that has
+    /// protocol::capability::findings.
+    std::uint64_t setDetection(const DetectionChoice& choice);
+    const DetectionChoice& detection() const { return detection_; }
+    /// As the server told it last; empty before it has. It is asked for when a case with findings
+    /// is open, and at each choice.
+    const std::optional<FindingList>& findings() const { return findings_; }
+    std::uint64_t findingsRevision() const {
+        return findingsRevision_;
+    }  ///< of another list another
+    /// Returns the request's number.
+    std::uint64_t requestFindings();
+    std::uint64_t answeredFindingsRequest() const { return answeredFindings_; }
+
     /// How much of the wall's area this session's pictures have shown, 0…1, as the server told
     /// last. None before it has: it is asked when a case is open, and again after a lost link,
     /// where it begins anew.
@@ -213,6 +230,7 @@ private:
 
     bool isOfOpenCase(const Owed& owed) const;
     void take(const protocol::BookmarkList& message);
+    void take(const protocol::FindingList& message);
     bool acknowledge(const protocol::Bookmark& message);
     bool record(Owed& owed);
     void unrecord(const std::string& clientKey);
@@ -254,6 +272,9 @@ private:
     std::shared_ptr<const CaseInfo> caseInfo_;
 
     WallPaintChoice paint_;
+    DetectionChoice detection_;
+    std::optional<FindingList> findings_;
+    std::uint64_t findingsRevision_ = 0, answeredFindings_ = 0;
     std::optional<double> seenShare_;
     std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0,
                   casesAsked_ = 0, answeredCases_ = 0;

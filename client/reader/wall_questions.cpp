@@ -17,6 +17,21 @@ void WallQuestions::reset() {
     bookmarksAsked_.clear();
     bookmarksSeen_.clear();
     askedRevision_.reset();
+    expected_.clear();
+}
+
+std::uint64_t WallQuestions::expect(std::uint64_t request) {
+    expected_[request];
+    return request;
+}
+
+std::optional<std::optional<WallPlace>> WallQuestions::takeTold(std::uint64_t request) {
+    const auto found = expected_.find(request);
+    // What another case has forgotten has no answer.
+    if (found == expected_.end()) return std::optional<WallPlace>();
+    const auto told = found->second;
+    if (told) expected_.erase(found);
+    return told;
 }
 
 void WallQuestions::update(const CaseInfo& info) {
@@ -39,6 +54,8 @@ void WallQuestions::take(const Session::WallAnswer& answer) {
         measuring_ = 0;
         const auto* measured = answer.body ? std::get_if<FlatMeasure>(&*answer.body) : nullptr;
         if (measurement_) measurement_->result = measured ? std::optional(*measured) : std::nullopt;
+    } else if (const auto expected = expected_.find(answer.request); expected != expected_.end()) {
+        expected->second = place ? std::optional(*place) : std::nullopt;
     } else if (const auto asked = bookmarksAsked_.find(answer.request);
                asked != bookmarksAsked_.end()) {
         if (place) bookmarkPlaces_[asked->second] = *place;

@@ -41,6 +41,11 @@ public:
     void clearMeasurement() { measurement_.reset(), measuring_ = 0; }
     const std::optional<Measurement>& measurement() const { return measurement_; }
 
+    /// The answer to this question about a place is kept for takeTold(). Returns the request.
+    std::uint64_t expect(std::uint64_t request);
+    /// Empty while there is no answer; no place where it was refused. Once.
+    std::optional<std::optional<WallPlace>> takeTold(std::uint64_t request);
+
     /// The place of the wall that each bookmark means, by its client key: its mark, as the server
     /// tells it and paints it. Of an old server's, which tells none, the place nearest to the point
     /// that lies the lumen's radius in front of its camera.
@@ -58,6 +63,7 @@ private:
     std::optional<WallPlace> picked_;
     std::optional<Measurement> measurement_;
     bool measurementChanged_ = false;
+    std::map<std::uint64_t, std::optional<std::optional<WallPlace>>> expected_;  // by request
     std::map<std::string, WallPlace> bookmarkPlaces_;
     std::map<std::uint64_t, std::string> bookmarksAsked_;  // client keys, by request
     std::set<std::string> bookmarksSeen_;                  // client keys

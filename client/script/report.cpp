@@ -43,6 +43,49 @@ ordered_json jsonOf(const FlatMeasure& measure) {
             {"largest_diameter_mm", measure.largestDiameterMm}};
 }
 
+const char* nameOf(FindingList::State state) {
+    switch (state) {
+        case FindingList::State::damaged:
+            return "damaged";
+        case FindingList::State::off:
+            return "off";
+        case FindingList::State::firstPass:
+            return "first-pass";
+        case FindingList::State::shown:
+            return "shown";
+        default:
+            return "none";
+    }
+}
+
+ordered_json jsonOf(const FindingList& list) {
+    ordered_json out = {{"state", nameOf(list.state)}, {"operating_point", list.operatingPoint},
+                        {"model", list.model},         {"trained_on", list.trainedOn},
+                        {"warnings", list.warnings},   {"findings", ordered_json::array()}};
+    for (const ListedFinding& one : list.findings) {
+        const Finding& finding = one.finding;
+        std::int64_t voxels = 0;
+        for (const VoxelRun& run : finding.voxels)
+            voxels += run.count;
+        out["findings"].push_back(
+            {{"number", one.number},
+             {"candidate", one.candidate},
+             {"probability", finding.score},
+             {"kind", finding.kind},
+             {"arc_mm", finding.arcMm},
+             {"segment",
+              finding.segment ? ordered_json(toString(*finding.segment)) : ordered_json(nullptr)},
+             {"position_mm", jsonOf(finding.positionMm)},
+             {"diameter_mm", finding.diameterMm},
+             {"diameter_ends_mm",
+              {jsonOf(finding.diameterEndsMm.first), jsonOf(finding.diameterEndsMm.second)}},
+             {"height_mm", finding.heightMm},
+             {"wall", jsonOf(one.wall)},
+             {"voxels", voxels}});
+    }
+    return out;
+}
+
 ordered_json jsonOf(const ActionReport& action) {
     ordered_json out = {
         {"line", action.line}, {"do", action.name}, {"seconds", rounded(action.seconds)}};
@@ -78,6 +121,7 @@ ordered_json jsonOf(const ActionReport& action) {
     if (action.place) out["place"] = jsonOf(*action.place);
     if (action.measure) out["measure"] = jsonOf(*action.measure);
     if (action.seenShare) out["seen_share"] = *action.seenShare;
+    if (action.findings) out["findings"] = jsonOf(*action.findings);
     return out;
 }
 
@@ -89,6 +133,11 @@ std::string toJson(const WallPlace& place) {
 
 std::string toJson(const FlatMeasure& measure) {
     return jsonOf(measure).dump(2) + "\n";
+}
+
+// What a server tells as text may be no UTF-8 once it is cut.
+std::string toJson(const FindingList& findings) {
+    return jsonOf(findings).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string seenShareJson(double share) {

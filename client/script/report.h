@@ -4,6 +4,7 @@
 #include "core/bridges.h"
 #include "core/colon_record.h"
 #include "core/result.h"
+#include "reader/finding_list.h"
 #include "reader/flat_strip.h"
 
 #include <cstdint>
@@ -38,6 +39,7 @@ struct ActionReport {
     std::optional<WallPlace> place;
     std::optional<FlatMeasure> measure;
     std::optional<double> seenShare;  ///< of the wall
+    std::optional<FindingList> findings;
 };
 
 struct PlayReport {
@@ -54,6 +56,7 @@ struct PlayReport {
 std::string toJson(const PlayReport& report);
 std::string toJson(const WallPlace& place);
 std::string toJson(const FlatMeasure& measure);
+std::string toJson(const FindingList& findings);
 std::string seenShareJson(double share);
 
 }  // namespace haustra::reader

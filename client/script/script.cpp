@@ -211,6 +211,33 @@ SeenAction readSeen(Fields& in) {
     return action;
 }
 
+DetectionAction readDetection(Fields& in) {
+    DetectionAction action;
+    const std::string mode = in.text("mode");
+    if (mode == "off")
+        action.choice.mode = DetectionMode::off;
+    else if (mode == "second-reader")
+        action.choice.mode = DetectionMode::secondReader;
+    else if (mode == "concurrent")
+        action.choice.mode = DetectionMode::concurrent;
+    else
+        Fields::refuse("mode", "must be off, second-reader or concurrent");
+    if (in.has("first_pass_done")) action.choice.firstPassDone = in.flag("first_pass_done");
+    if (in.has("least_probability"))
+        action.choice.leastProbability = in.number("least_probability", 0.0, 1.0);
+    return action;
+}
+
+FindingsAction readFindings(Fields& in) {
+    FindingsAction action;
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+FindingAction readFinding(Fields& in) {
+    return {in.integer("number", 1, 1'000'000)};
+}
+
 WindowAction readWindow(Fields& in) {
     WindowAction action;
     if (in.has("viewport")) action.viewport = in.viewport();
@@ -262,16 +289,29 @@ ActionBody bodyBy(Fields& in) {
 }
 
 constexpr ActionKind actionKinds[] = {
-    {"view", bodyBy<readView>},         {"go", bodyBy<readGo>},
-    {"fly", bodyBy<readFly>},           {"still", bodyBy<readStill>},
-    {"slice", bodyBy<readSlice>},       {"oblique", bodyBy<readOblique>},
-    {"overview", bodyBy<readOverview>}, {"flat", bodyBy<readFlat>},
-    {"strip", bodyBy<readStrip>},       {"flyover", bodyBy<readFlyOver>},
-    {"locate", bodyBy<readLocate>},     {"measure", bodyBy<readMeasure>},
-    {"paint", bodyBy<readPaint>},       {"seen", bodyBy<readSeen>},
-    {"window", bodyBy<readWindow>},     {"transfer", bodyBy<readTransfer>},
-    {"bookmark", bodyBy<readBookmark>}, {"bookmarks", bodyBy<readBookmarks>},
-    {"wait", bodyBy<readWait>},         {"lens", bodyBy<readLens>},
+    {"view", bodyBy<readView>},
+    {"go", bodyBy<readGo>},
+    {"fly", bodyBy<readFly>},
+    {"still", bodyBy<readStill>},
+    {"slice", bodyBy<readSlice>},
+    {"oblique", bodyBy<readOblique>},
+    {"overview", bodyBy<readOverview>},
+    {"flat", bodyBy<readFlat>},
+    {"strip", bodyBy<readStrip>},
+    {"flyover", bodyBy<readFlyOver>},
+    {"locate", bodyBy<readLocate>},
+    {"measure", bodyBy<readMeasure>},
+    {"paint", bodyBy<readPaint>},
+    {"seen", bodyBy<readSeen>},
+    {"detection", bodyBy<readDetection>},
+    {"findings", bodyBy<readFindings>},
+    {"finding", bodyBy<readFinding>},
+    {"window", bodyBy<readWindow>},
+    {"transfer", bodyBy<readTransfer>},
+    {"bookmark", bodyBy<readBookmark>},
+    {"bookmarks", bodyBy<readBookmarks>},
+    {"wait", bodyBy<readWait>},
+    {"lens", bodyBy<readLens>},
 };
 
 Action readAction(const std::string& line) {

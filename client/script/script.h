@@ -1,6 +1,7 @@
 // Scripts of the headless client: one JSON object a line. client/SCRIPT.md describes the actions.
 #pragma once
 
+#include "core/detection_choice.h"
 #include "reader/case_info.h"
 #include "reader/lens_view.h"
 
@@ -98,6 +99,15 @@ struct MeasureAction {
     bool closed = false;
     std::string json;
 };
+struct DetectionAction {
+    DetectionChoice choice;
+};
+struct FindingsAction {
+    std::string json;
+};
+struct FindingAction {
+    int number = 1;
+};
 struct WindowAction {
     int viewport = 1;
     WindowLevel window;
@@ -124,11 +134,11 @@ struct WaitAction {
     double ms = 0.0;
 };
 
-using ActionBody =
-    std::variant<ViewAction, GoAction, FlyAction, StillAction, LensAction, SliceAction,
-                 ObliqueAction, OverviewAction, FlatAction, StripAction, FlyOverAction,
-                 LocateAction, MeasureAction, PaintAction, SeenAction, WindowAction, TransferAction,
-                 BookmarkAction, BookmarksAction, WaitAction>;
+using ActionBody = std::variant<ViewAction, GoAction, FlyAction, StillAction, LensAction,
+                                SliceAction, ObliqueAction, OverviewAction, FlatAction, StripAction,
+                                FlyOverAction, LocateAction, MeasureAction, PaintAction, SeenAction,
+                                DetectionAction, FindingsAction, FindingAction, WindowAction,
+                                TransferAction, BookmarkAction, BookmarksAction, WaitAction>;
 
 struct Action {
     int line = 0;

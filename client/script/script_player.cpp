@@ -4,6 +4,7 @@
 #include "protocol/capabilities.h"
 #include "protocol/limits.h"
 #include "reader/biopsy_lens.h"
+#include "reader/findings_reading.h"
 #include "reader/overview_map.h"
 #include "reader/strip_tour.h"
 #include "tiles/png_file.h"
@@ -80,6 +81,9 @@ private:
     Status run(const MeasureAction&, ActionReport&);
     Status run(const PaintAction&, ActionReport&);
     Status run(const SeenAction&, ActionReport&);
+    Status run(const DetectionAction&, ActionReport&);
+    Status run(const FindingsAction&, ActionReport&);
+    Status run(const FindingAction&, ActionReport&);
     Status run(const WindowAction&, ActionReport&);
     Status run(const TransferAction&, ActionReport&);
     Status run(const BookmarkAction&, ActionReport&);
@@ -576,6 +580,45 @@ Status Player::run(const SeenAction& action, ActionReport& report) {
     report.seenShare = session_.seenShare();
     return action.json.empty() ? Status{}
                                : writeJson(action.json, seenShareJson(*report.seenShare), report);
+}
+
+// ---- findings -------------------------------------------------------------------------------
+
+Status Player::run(const DetectionAction& action, ActionReport&) {
+    FindingsReading findings(session_);
+    TRY(findings.choose(action.choice));
+    return awaitBookmarkList();
+}
+
+Status Player::run(const FindingsAction& action, ActionReport& report) {
+    const auto askedAt = Clock::now();
+    const auto request = session_.requestFindings();
+    TRY(awaitThat([&] { return session_.answeredFindingsRequest() >= request; },
+                  "the list of findings"));
+    report.seconds = msBetween(askedAt, Clock::now()) / 1000.0;
+    if (!session_.findings())
+        return fail(ErrorKind::unsupported, "this server cannot list findings");
+    report.findings = *session_.findings();
+    return action.json.empty() ? Status{}
+                               : writeJson(action.json, toJson(*report.findings), report);
+}
+
+// The list comes first, so that a script need not ask for it.
+Status Player::run(const FindingAction& action, ActionReport& report) {
+    TRY(run(FindingsAction{}, report));
+    report.findings.reset();
+    FindingsReading findings(session_);
+    const ListedFinding* found = findings.find(action.number);
+    if (!found)
+        return fail(ErrorKind::notFound,
+                    "finding " + std::to_string(action.number) +
+                        (findings.choice().shows()
+                             ? " is not listed"
+                             : ": findings are not shown in the mode that was chosen"));
+    if (!flight_.centerline().points.empty())
+        flight_.lookAt(found->wall.arcMm, found->wall.positionMm);
+    report.place = found->wall;
+    return {};
 }
 
 // ---- across the gaze, and from outside ------------------------------------------------------

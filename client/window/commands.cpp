@@ -1,6 +1,7 @@
 #include "window/commands.h"
 
 #include "protocol/capabilities.h"
+#include "window/findings_panel.h"
 #include "window/look_steps.h"
 #include "window/pane.h"
 #include "window/reader_window.h"
@@ -591,6 +592,13 @@ const std::array table = {
             .symbol = Symbol::outline,
             .run = [](ReaderWindow& w) { toggle(w, DrawingTool::outline); },
             .isOn = [](ReaderWindow& w) { return w.reading().tool() == DrawingTool::outline; }},
+    Command{.id = "ruler",
+            .menu = Menu::slices,
+            .text = QT_TRANSLATE_NOOP(
+                "Commands", "Measure between two places that are clicked, in whichever views"),
+            .keys = "Shift+L",
+            .run = [](ReaderWindow& w) { toggle(w, DrawingTool::ruler); },
+            .isOn = [](ReaderWindow& w) { return w.reading().tool() == DrawingTool::ruler; }},
     // ---- wall
     Command{.id = "next-optics",
             .menu = Menu::wall,
@@ -671,6 +679,54 @@ const std::array table = {
                 },
             .isOn = [](ReaderWindow& w) { return w.reader().outside().showsBody(); },
             .separatorBefore = true},
+    // ---- findings
+    Command{
+        .id = "detection-mode",
+        .menu = Menu::findings,
+        .text =
+            QT_TRANSLATE_NOOP("Commands", "Findings: not shown, after the first reading, at once"),
+        .keys = "Ctrl+F",
+        .run =
+            [](ReaderWindow& w) {
+                const auto mode = w.reader().findings().choice().mode;
+                chooseDetection(w.reading(),
+                                mode == DetectionMode::off            ? DetectionMode::secondReader
+                                : mode == DetectionMode::secondReader ? DetectionMode::concurrent
+                                                                      : DetectionMode::off);
+            },
+        .isOn =
+            [](ReaderWindow& w) {
+                return w.reader().findings().choice().mode != DetectionMode::off;
+            }},
+    Command{.id = "first-pass-done",
+            .menu = Menu::findings,
+            .text = QT_TRANSLATE_NOOP("Commands", "First reading done: show findings"),
+            .keys = "Ctrl+Shift+F",
+            .run = [](ReaderWindow& w) { finishFirstPass(w.reading()); }},
+    Command{.id = "previous-finding",
+            .menu = Menu::findings,
+            .text = QT_TRANSLATE_NOOP("Commands", "Previous finding"),
+            .keys = "Shift+N",
+            .run = [](ReaderWindow& w) { goToNextFinding(w.reading(), -1); },
+            .separatorBefore = true},
+    Command{.id = "next-finding",
+            .menu = Menu::findings,
+            .text = QT_TRANSLATE_NOOP("Commands", "Next finding"),
+            .keys = "Shift+M",
+            .run = [](ReaderWindow& w) { goToNextFinding(w.reading(), +1); }},
+    Command{.id = "measure-finding",
+            .menu = Menu::findings,
+            .text = QT_TRANSLATE_NOOP("Commands", "Measure the finding"),
+            .keys = "Shift+K",
+            .run = [](ReaderWindow& w) { measureFinding(w.reading()); }},
+    Command{.id = "findings-panel",
+            .menu = Menu::findings,
+            .text = QT_TRANSLATE_NOOP("Commands", "Show the list of findings"),
+            .keys = "Shift+F",
+            .run = [](ReaderWindow& w) { w.toggleFindings(); },
+            .isOn = [](ReaderWindow& w) { return w.showsFindings(); },
+            .separatorBefore = true,
+            .shortText = QT_TRANSLATE_NOOP("Commands", "Findings")},
     // ---- bookmarks
     Command{.id = "bookmark",
             .menu = Menu::bookmarks,
@@ -747,6 +803,8 @@ QString nameOf(Menu menu) {
             return QCoreApplication::translate("Commands", "&Slices");
         case Menu::wall:
             return QCoreApplication::translate("Commands", "&Wall");
+        case Menu::findings:
+            return QCoreApplication::translate("Commands", "F&indings");
         case Menu::bookmarks:
             return QCoreApplication::translate("Commands", "&Bookmarks");
         case Menu::help:

@@ -18,8 +18,8 @@ namespace haustra::window {
 
 class ReaderWindow;
 
-enum class Menu { file, edit, view, pane, flight, slices, wall, bookmarks, help };
-inline constexpr std::size_t menuCount = 9;
+enum class Menu { file, edit, view, pane, flight, slices, wall, findings, bookmarks, help };
+inline constexpr std::size_t menuCount = 10;
 QString nameOf(Menu menu);
 
 struct Command {

@@ -26,7 +26,7 @@ QString EndoscopicPane::inWords() const {
                   .arg(flight.direction() == FlightDirection::antegrade ? tr("towards the cecum")
                                                                         : tr("towards the rectum"));
     const QString lens = reader().lens().isOn() ? QStringLiteral(", ") + lensInWords() : QString();
-    return where + QStringLiteral(", ") + Pane::inWords() + lens;
+    return where + rulerInWords() + QStringLiteral(", ") + Pane::inWords() + lens;
 }
 
 void EndoscopicPane::fillMenu(QMenu& menu) {
@@ -43,6 +43,8 @@ void EndoscopicPane::addShown(Shown& shown) const {
     shown.add(flight.isFree() + 2 * int(flight.direction()));
     shown.add(flight.yawDegrees()), shown.add(flight.pitchDegrees());
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
+    addRulersAndFindings(shown);
+    shown.add(int(reading().tool()));
     const reader::BiopsyLens& lens = reader().lens();
     shown.add(lens.isOn() + 2 * lens.isAvailable() + 4 * lens.isExact());
     if (!lens.isOn()) return;
@@ -57,8 +59,30 @@ void EndoscopicPane::paintMarks(QPainter& painter) {
         if (const auto seen = reader::seenAt(shownCamera(), picked->positionMm))
             paintPlaceMark(painter, pictureArea().center() + pictureArea().height() * point(*seen));
     }
+    paintRulers(painter);
     paintFlight(painter);
     paintBadge(painter);
+}
+
+// Of what is far away the wall hides most, and a length says little.
+void EndoscopicPane::paintRulers(QPainter& painter) {
+    constexpr double farMm = 80.0;
+    const Camera camera = shownCamera();
+    const auto positionOf = [&](glm::dvec3 placeMm) -> std::optional<QPointF> {
+        if (glm::distance(camera.positionMm, placeMm) > farMm) return std::nullopt;
+        const auto seen = reader::seenAt(camera, placeMm);
+        if (!seen) return std::nullopt;
+        return pictureArea().center() + pictureArea().height() * point(*seen);
+    };
+    painter.setFont(font());
+    for (const reader::PlaceRuler& ruler : reader().rulers().rulers()) {
+        const auto from = positionOf(ruler.from.positionMm), to = positionOf(ruler.to.positionMm);
+        if (from && to && (rect().contains(from->toPoint()) || rect().contains(to->toPoint())))
+            paintRuler(painter, rect(), *from, *to, false, textOf(ruler));
+    }
+    if (const auto& begun = reader().rulers().begun())
+        if (const auto at = positionOf(begun->positionMm))
+            paintCross(painter, *at, 3.0, 8.0, theme().measuredOnPicture);
 }
 
 void EndoscopicPane::paintFlight(QPainter& painter) {
@@ -227,6 +251,10 @@ void EndoscopicPane::clicked(const Hand& hand) {
         vector(hand.position - pictureArea().center()) / pictureArea().height();
     const auto direction = rayThrough(camera, fromMiddle);
     if (!direction) return;
+    if (reading().tool() == DrawingTool::ruler) {
+        reader().rulers().addEnd(camera.positionMm, *direction);
+        return reading().changed();
+    }
     reading().jump(tr("go to a place of the wall"),
                    [this, from = camera.positionMm, direction = *direction] {
                        reader().flat().pick(from, direction);

@@ -33,6 +33,7 @@ private:
     void paintLens(QPainter& painter);
     void paintLensCaption(QPainter& painter, const QRectF& ring);
     void paintFlight(QPainter& painter);
+    void paintRulers(QPainter& painter);
     void paintBadge(QPainter& painter);
 };
 

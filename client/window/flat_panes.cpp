@@ -75,6 +75,39 @@ void paintPlaces(QPainter& painter, const reader::Reader& reader, const FlatArea
         flat.forEachCopy(*picked->wall->flat, [&](QPointF p) { paintPlaceMark(painter, p); });
 }
 
+// Findings by their numbers, and rulers whose ends lie on the wall, by the shorter way round.
+void paintFindings(QPainter& painter, const reader::Reader& reader, const FlatArea& flat) {
+    const double mm =
+        flat.pixels() * flat.window.pixelsPerUnit / reader.flat().tour().strip().circumferenceMm;
+    constexpr double leastPixels = 5.0;
+    for (const reader::ListedFinding& one : reader.findings().shown())
+        if (one.wall.flat)
+            flat.forEachCopy(*one.wall.flat, [&](QPointF p) {
+                paintFindingRing(painter, p,
+                                 std::max(leastPixels, 0.5 * one.finding.diameterMm * mm + 4.0),
+                                 one);
+            });
+}
+
+void paintRulers(QPainter& painter, const reader::Reader& reader, const FlatArea& flat,
+                 bool withText) {
+    for (const reader::PlaceRuler& ruler : reader.rulers().rulers()) {
+        if (!ruler.from.flat || !ruler.to.flat) continue;
+        glm::dvec2 way = *ruler.to.flat - *ruler.from.flat;
+        way.x -= std::round(way.x);
+        const QPointF across =
+            flat.position(*ruler.from.flat + way) - flat.position(*ruler.from.flat);
+        flat.forEachCopy(*ruler.from.flat, [&](QPointF from) {
+            paintRuler(painter, flat.area, from, from + across, false,
+                       withText && flat.area.contains(from) ? textOf(ruler) : QString());
+        });
+    }
+    if (const auto& begun = reader.rulers().begun(); begun && begun->flat)
+        flat.forEachCopy(*begun->flat, [&](QPointF p) {
+            paintCross(painter, p, 3.0, 8.0, theme().measuredOnPicture);
+        });
+}
+
 // What the zoom view shows of the strip.
 void paintZoomFrame(QPainter& painter, const reader::Reader& reader, const FlatArea& flat) {
     const reader::StripTour& tour = reader.flat().tour();
@@ -125,6 +158,7 @@ std::optional<glm::dvec2> StripPane::flatAt(QPointF position) const {
 
 void StripPane::addShown(Shown& shown) const {
     if (reader().flat().hasStrip()) addPlaces(shown, reader());
+    addRulersAndFindings(shown);
 }
 
 void StripPane::paintMarks(QPainter& painter) {
@@ -141,6 +175,8 @@ void StripPane::paintMarks(QPainter& painter) {
         paintZoomFrame(painter, reader(), flat);
         paintBridges(painter, reader(), flat);
         paintPlaces(painter, reader(), flat);
+        paintFindings(painter, reader(), flat);
+        paintRulers(painter, reader(), flat, false);
         painter.restore();
     }
     painter.setFont(smallFont(font()));
@@ -167,6 +203,10 @@ QPointF StripPane::dragFrom() const {
 
 void StripPane::released(const Hand& hand) {
     if (hand.button != Qt::LeftButton) return;
+    if (reading().tool() == DrawingTool::ruler) {
+        if (const auto flat = flatAt(hand.position)) reader().rulers().addEnd(*flat);
+        return reading().changed();
+    }
     if (const auto flat = flatAt(hand.position))
         reading().jump(tr("go along the flattened colon"),
                        [this, flat = *flat] { reader().flat().goTo(flat, true); });
@@ -205,6 +245,8 @@ void FlatZoomPane::fillMenu(QMenu& menu) {
 void FlatZoomPane::addShown(Shown& shown) const {
     if (!reader().flat().hasStrip()) return;
     addPlaces(shown, reader());
+    addRulersAndFindings(shown);
+    shown.add(int(reading().tool()));
     const auto& measurement = reader().flat().wall().measurement();
     if (!measurement) return;
     shown.add(measurement->result ? measurement->result->lengthMm : -1.0);
@@ -234,6 +276,9 @@ void FlatZoomPane::paintMarks(QPainter& painter) {
     painter.setFont(smallFont(font()));
     paintBridges(painter, reader(), flat);
     paintPlaces(painter, reader(), flat);
+    paintFindings(painter, reader(), flat);
+    painter.setFont(font());
+    paintRulers(painter, reader(), flat, true);
     paintMeasurement(painter);
     paintTexts(painter);
 }
@@ -296,11 +341,15 @@ void FlatZoomPane::paintTexts(QPainter& painter) {
     outlinedText(painter, {margin, height() - 8.0}, Qt::AlignLeft | Qt::AlignBottom,
                  theme().measuredOnPicture,
                  reading().tool() == DrawingTool::line ? tr("drag a line to measure it   Esc ends")
-                                                       : tr("drag around a polyp   Esc ends"));
+                 : reading().tool() == DrawingTool::ruler
+                     ? tr("click two places to measure between them   Esc ends")
+                     : tr("drag around a polyp   Esc ends"));
 }
 
 DrawingTool FlatZoomPane::toolOf(const Hand& hand) const {
-    return hand.shift() ? DrawingTool::line : hand.ctrl() ? DrawingTool::outline : reading().tool();
+    if (hand.shift()) return DrawingTool::line;
+    if (hand.ctrl()) return DrawingTool::outline;
+    return reading().tool() == DrawingTool::ruler ? DrawingTool::none : reading().tool();
 }
 bool FlatZoomPane::draws(const Hand& hand) const {
     return reader().flat().hasStrip() && toolOf(hand) != DrawingTool::none;
@@ -357,6 +406,12 @@ void FlatZoomPane::released(const Hand&) {
 
 void FlatZoomPane::clicked(const Hand& hand) {
     if (hand.button != Qt::LeftButton || !drawing_.empty() || !reader().flat().hasStrip()) return;
+    if (reading().tool() == DrawingTool::ruler) {
+        glm::dvec2 flat = areaOf(*this, reader()).flat(hand.position);
+        flat.y = std::clamp(flat.y, 0.0, reader().flat().tour().strip().height);
+        reader().rulers().addEnd(flat);
+        return reading().changed();
+    }
     reader().flat().wall().clearMeasurement();
     const glm::dvec2 flat = areaOf(*this, reader()).flat(hand.position);
     reading().jump(tr("go to a place of the wall"),

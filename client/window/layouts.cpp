@@ -78,7 +78,8 @@ void Layouts::arrange(BuiltinLayout layout, bool flat) {
             split(d.overview, d.oblique, Qt::Vertical);
             split(d.oblique, d.bookmarks, Qt::Vertical);
             for (QDockWidget* dock : d.all())
-                dock->setVisible(dock != d.optics && (flat || !d.isFlat(dock)));
+                dock->setVisible(dock != d.optics && dock != d.findings &&
+                                 (flat || !d.isFlat(dock)));
             main_.resizeDocks({d.axial, d.endoscopic, d.strip, d.overview},
                               {wide * 20 / 100, wide * 41 / 100, wide * 20 / 100, wide * 19 / 100},
                               Qt::Horizontal);
@@ -133,6 +134,14 @@ void Layouts::arrange(BuiltinLayout layout, bool flat) {
             fillSecond();
             break;
     }
+    placeFindings();
+}
+
+// A tab beside the bookmarks once it is shown.
+void Layouts::placeFindings() {
+    QMainWindow& window = docks_.bookmarks->parentWidget() == &second_ ? second_ : main_;
+    window.tabifyDockWidget(docks_.bookmarks, docks_.findings);
+    docks_.findings->hide();
 }
 
 void Layouts::fillSecond() {

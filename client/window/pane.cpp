@@ -147,6 +147,23 @@ void Pane::paintEvent(QPaintEvent*) {
     painter.drawRect(QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5));
 }
 
+void Pane::addRulersAndFindings(Shown& shown) const {
+    for (const reader::PlaceRuler& ruler : reader().rulers().rulers()) {
+        for (const reader::PlaceRuler::End* end : {&ruler.from, &ruler.to}) {
+            shown.add(end->positionMm);
+            shown.add(end->flat ? end->flat->x : -1.0);
+        }
+    }
+    if (const auto& begun = reader().rulers().begun()) shown.add(begun->positionMm);
+    for (const reader::ListedFinding& finding : reader().findings().shown())
+        shown.add(finding.number);
+}
+
+QString Pane::rulerInWords() const {
+    const auto& rulers = reader().rulers().rulers();
+    return rulers.empty() ? QString() : QStringLiteral(", ") + textOf(rulers.back());
+}
+
 QImage Pane::pictureWithMarks() {
     if (!isOpen() || reader().freshness(view_) == reader::Freshness::none) return {};
     const double ratio = devicePixelRatioF();
@@ -508,6 +525,45 @@ void paintPlaceMark(QPainter& painter, QPointF at) {
         painter.setPen(QPen(theme().accentOnPicture, 1.6 * wide));
         painter.drawLine(at + 4 * way, at + 10 * way);
     }
+}
+
+void paintRuler(QPainter& painter, const QRectF& area, QPointF from, QPointF to, bool dashed,
+                const QString& text) {
+    const QColor color = theme().measuredOnPicture;
+    painter.setPen(QPen(theme().outline, 3.5));
+    painter.drawLine(from, to);
+    painter.setPen(QPen(color, 1.6 * theme().lineWidth, dashed ? Qt::DashLine : Qt::SolidLine));
+    painter.drawLine(from, to);
+    painter.setPen(Qt::NoPen);
+    painter.setBrush(color);
+    for (const QPointF end : {from, to})
+        painter.drawEllipse(end, 2.5, 2.5);
+    if (text.isEmpty()) return;
+    const double wide = QFontMetricsF(painter.font()).horizontalAdvance(text) / 2 + 4;
+    const QPointF low((from.x() + to.x()) / 2, std::max(from.y(), to.y()) + 4);
+    outlinedText(
+        painter,
+        {std::clamp(low.x(), area.left() + wide, std::max(area.left() + wide, area.right() - wide)),
+         std::min(low.y(), area.bottom() - 24.0)},
+        Qt::AlignHCenter | Qt::AlignTop, color, text);
+}
+
+QString textOf(const reader::PlaceRuler& ruler) {
+    const QString length = Pane::tr("%1 mm").arg(decimal(ruler.lengthMm()));
+    return ruler.finding > 0 ? Pane::tr("finding %1: %2").arg(ruler.finding).arg(length) : length;
+}
+
+void paintFindingRing(QPainter& painter, QPointF middle, double radius,
+                      const reader::ListedFinding& finding) {
+    const QColor color = finding.candidate ? theme().dimOnPicture : theme().accentOnPicture;
+    painter.setBrush(Qt::NoBrush);
+    painter.setPen(QPen(theme().outline, 3.0));
+    painter.drawEllipse(middle, radius, radius);
+    painter.setPen(
+        QPen(color, 1.3 * theme().lineWidth, finding.candidate ? Qt::DashLine : Qt::SolidLine));
+    painter.drawEllipse(middle, radius, radius);
+    outlinedText(painter, middle + QPointF(0.75 * radius + 3, -0.75 * radius),
+                 Qt::AlignLeft | Qt::AlignBottom, color, QString::number(finding.number));
 }
 
 void paintBookmarkFlag(QPainter& painter, QPointF foot) {

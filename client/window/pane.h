@@ -103,6 +103,10 @@ protected:
     virtual void paintMarks(QPainter& painter) = 0;
     virtual void addShown(Shown& shown) const = 0;
     virtual void paintPicture(QPainter& painter, const QImage& picture);
+    /// What rulers and findings change.
+    void addRulersAndFindings(Shown& shown) const;
+    /// Of the newest ruler, where there is one: ", 8.2 mm".
+    QString rulerInWords() const;
 
     // The hand. A press that moves no farther than a few pixels is a click.
     /// Where a drag by keys begins.
@@ -177,6 +181,15 @@ void paintPlaceMark(QPainter& painter, QPointF at);
 void paintBookmarkFlag(QPainter& painter, QPointF foot);
 /// A line with a dark outline.
 void outlinedPolyline(QPainter& painter, const QPolygonF& line, bool closed, const QColor& color);
+/// A line between two places, with its ends; dashed where it does not lie in the picture's plane.
+/// `text`, which may be empty, stands below it, within `area`.
+void paintRuler(QPainter& painter, const QRectF& area, QPointF from, QPointF to, bool dashed,
+                const QString& text);
+/// "8.2 mm", of a finding's diameter with its number.
+QString textOf(const reader::PlaceRuler& ruler);
+/// A finding's ring, with its number beside it.
+void paintFindingRing(QPainter& painter, QPointF middle, double radius,
+                      const reader::ListedFinding& finding);
 /// The letters of the patient's sides at the picture's edges, for its directions right and up.
 void paintSides(QPainter& painter, const QRectF& area, glm::dvec3 right, glm::dvec3 up);
 /// A bar of a round length, at the picture's lower right; returns its top.

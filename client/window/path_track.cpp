@@ -46,15 +46,17 @@ double PathTrack::arcAt(double x) const {
 void PathTrack::look() {
     const reader::Flight& flight = reading_.reader().flight();
     const bool antegrade = flight.direction() == FlightDirection::antegrade;
-    const std::uint64_t bookmarks = reading_.reader().session().bookmarksRevision();
+    const std::uint64_t bookmarks = reading_.reader().session().bookmarksRevision(),
+                        findings = reading_.reader().session().findingsRevision();
     follows_ = true;
     setRange(0, int(std::lround(lengthMm())));
     setValue(int(std::lround(flight.placeArcMm())));
     follows_ = false;
     setEnabled(reading_.reader().isOpen() && !flight.centerline().points.empty());
-    if (antegrade != antegrade_ || bookmarks != bookmarks_) update();
+    if (antegrade != antegrade_ || bookmarks != bookmarks_ || findings != findings_) update();
     antegrade_ = antegrade;
     bookmarks_ = bookmarks;
+    findings_ = findings;
 }
 
 void PathTrack::paintEvent(QPaintEvent*) {
@@ -82,6 +84,12 @@ void PathTrack::paintEvent(QPaintEvent*) {
         painter.setPen(Qt::NoPen);
         painter.setBrush(t.bookmark);
         painter.drawPolygon(QPolygonF({{x, middle - 11}, {x + 7, middle - 8}, {x, middle - 5}}));
+    }
+    for (const reader::ListedFinding& one : reading_.reader().findings().shown()) {
+        const double x = xOf(one.wall.arcMm);
+        painter.setPen(QPen(one.candidate ? t.muted : t.text, 1.0));
+        painter.setBrush(one.candidate ? QBrush(Qt::NoBrush) : QBrush(t.accentOnPicture));
+        painter.drawEllipse(QPointF(x, middle + 9), 3, 3);
     }
     painter.setPen(hasFocus() ? QPen(t.text, 2) : QPen(t.window, 1));
     painter.setBrush(underMouse() ? t.text : t.accentOnPicture);

@@ -30,8 +30,8 @@ private:
     double lengthMm() const;
 
     Reading& reading_;
-    std::function<void()> back_;   // while it is pressed: to where it was
-    std::uint64_t bookmarks_ = 0;  // their revision, as painted
+    std::function<void()> back_;                  // while it is pressed: to where it was
+    std::uint64_t bookmarks_ = 0, findings_ = 0;  // their revisions, as painted
     bool antegrade_ = true, follows_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include "window/bookmark_panel.h"
 #include "window/case_list.h"
 #include "window/endoscopic_pane.h"
+#include "window/findings_panel.h"
 #include "window/flat_panes.h"
 #include "window/flight_bar.h"
 #include "window/help_pages.h"
@@ -181,6 +182,7 @@ Docks ReaderWindow::makeDocks() {
         if (Pane* pane = currentPane()) pane->setFocus();
     });
     docks.bookmarks = dock(bookmarks_, "bookmarks", tr("Bookmarks"));
+    docks.findings = dock(new FindingsPanel(reading_), "findings", tr("Findings"));
     docks.optics = dock(new OpticsPanel(reading_), "optics", tr("Colours, opacities and light"));
     return docks;
 }
@@ -275,6 +277,7 @@ void ReaderWindow::makeHeader() {
         row->addSpacing(8);
     }
     row->addStretch(1);
+    button("findings-panel", Qt::ToolButtonTextOnly);
     button("bookmarks-panel", Qt::ToolButtonTextOnly);
     button("help", Qt::ToolButtonTextOnly);
     lines->addWidget(menus_);
@@ -573,6 +576,17 @@ void ReaderWindow::toggleBookmarks() {
 }
 bool ReaderWindow::showsBookmarks() const {
     return docks_.bookmarks->isVisible();
+}
+
+// Beside the list of bookmarks, as its tab, until the reader moves it.
+void ReaderWindow::toggleFindings() {
+    QDockWidget* dock = docks_.findings;
+    if (dock->isVisible() && !dock->visibleRegion().isEmpty()) return dock->hide();
+    dock->show();
+    dock->raise();
+}
+bool ReaderWindow::showsFindings() const {
+    return docks_.findings->isVisible();
 }
 
 void ReaderWindow::showHelp() {

@@ -60,6 +60,8 @@ public:
     void writeNote();
     void toggleBookmarks();
     bool showsBookmarks() const;
+    void toggleFindings();
+    bool showsFindings() const;
     void showHelp();
     void changeKeys();
     void showAbout();

@@ -133,6 +133,7 @@ void Reading::step() {
         flight.moveFreely(heldWay_ * flight.speedMmPerS() * seconds * (heldFast_ ? 3.0 : 1.0));
     reader_->update(seconds);
     watchSession();
+    watchRulers();
     const bool steadily = holds || reader_->restless();
     if (steadily != steady_.isActive()) steadily ? steady_.start() : steady_.stop();
     emit stepped();
@@ -174,6 +175,16 @@ void Reading::watchSession() {
                 "bookmarks, to be sent again or discarded.",
                 nullptr, refused),
              true);
+}
+
+// The second end of one may have come from the server.
+void Reading::watchRulers() {
+    reader::PlaceRulers& rulers = reader_->rulers();
+    const auto before = rulers.takeBefore();
+    if (!before) return;
+    did(
+        tr("measure between two places"), [&rulers, before = *before] { rulers.set(before); },
+        [&rulers, after = rulers.rulers()] { rulers.set(after); });
 }
 
 void Reading::tell(const QString& text, bool trouble) {
@@ -218,23 +229,30 @@ void Reading::clearMeasures() {
     reader::WallQuestions& wall = reader_->flat().wall();
     const auto before = measures.measures();
     const auto onWall = wall.measurement();
-    if (before.empty() && !onWall) return;
-    const auto clear = [&measures, &wall] {
+    reader::PlaceRulers& rulers = reader_->rulers();
+    const auto between = rulers.rulers();
+    rulers.giveUp();
+    if (before.empty() && between.empty() && !onWall) return;
+    const auto clear = [&measures, &wall, &rulers] {
         measures.set({});
+        rulers.set({});
         wall.clearMeasurement();
     };
     clear();
     did(
         tr("clear measurements"),
-        [&measures, &wall, before, onWall] {
+        [&measures, &wall, &rulers, before, between, onWall] {
             measures.set(before);
+            rulers.set(between);
             if (onWall) wall.measure(onWall->points, onWall->closed);
         },
         clear);
 }
 
 void Reading::setTool(DrawingTool tool) {
-    if (std::exchange(tool_, tool) != tool) emit toolChanged();
+    if (std::exchange(tool_, tool) == tool) return;
+    reader_->rulers().giveUp();
+    emit toolChanged();
 }
 
 void Reading::setHeldWay(glm::dvec3 way, bool fast) {

@@ -14,8 +14,9 @@
 
 namespace haustra::window {
 
-/// What a drag in a pane does. `none`: it turns, moves or windows the picture.
-enum class DrawingTool { none, line, outline };
+/// What a drag in a pane does. `none`: it turns, moves or windows the picture. `ruler`: so it does,
+/// and two clicks, in whichever panes, measure how far their places are apart.
+enum class DrawingTool { none, line, outline, ruler };
 
 /// Belongs to the main thread. Steps when the server sent something, when a part of the window has
 /// changed the reader (changed()), and steadily while something moves by itself.
@@ -79,6 +80,7 @@ private:
     void step();
     void wakeFromThread();
     void watchSession();
+    void watchRulers();
 
     void makeReader(std::string caseName);
 

@@ -32,7 +32,16 @@ GreyPane::GreyPane(Reading& reading, View view, const QString& title) : Pane(rea
 
 DrawingTool GreyPane::toolOf(const Hand& hand) const {
     if (hand.button != Qt::LeftButton) return DrawingTool::none;
-    return hand.shift() ? DrawingTool::line : hand.ctrl() ? DrawingTool::outline : reading().tool();
+    if (hand.shift()) return DrawingTool::line;
+    if (hand.ctrl()) return DrawingTool::outline;
+    return reading().tool() == DrawingTool::ruler ? DrawingTool::none : reading().tool();
+}
+
+bool GreyPane::addsEnd(const Hand& hand) {
+    if (reading().tool() != DrawingTool::ruler) return false;
+    if (const auto place = patientAt(hand.position)) reader().rulers().addEnd(*place);
+    reading().changed();
+    return true;
 }
 
 QString GreyPane::heading() const {
@@ -54,12 +63,14 @@ QString GreyPane::inWords() const {
         words += QStringLiteral(", ") + tr("%1 HU").arg(std::lround(pointed->hu));
     if (const auto& measures = reader().measures().measures(); !measures.empty())
         words += QStringLiteral(", ") + textOf(measures.back());
+    words += rulerInWords();
     return words + QStringLiteral(", ") + Pane::inWords();
 }
 
 void GreyPane::fillMenu(QMenu& menu) {
     menu.addAction(tr("Clear rulers and ellipses"), this, [this] { reading().clearMeasures(); })
-        ->setEnabled(!reader().measures().measures().empty());
+        ->setEnabled(!reader().measures().measures().empty() ||
+                     !reader().rulers().rulers().empty());
 }
 
 void GreyPane::addShown(Shown& shown) const {
@@ -72,6 +83,7 @@ void GreyPane::addShown(Shown& shown) const {
         shown.add(measure.values ? measure.values->meanHu : -1e9);
     }
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
+    addRulersAndFindings(shown);
     if (const auto& pointed = reader().measures().pointed(); pointed && pointedAt()) {
         shown.add(pointed->placeMm);
         shown.add(pointed->hu);
@@ -172,7 +184,10 @@ QString GreyPane::textOf(const reader::ScanMeasure& measure) {
 
 void GreyPane::paintMeasures(QPainter& painter, const SlicePlacement& placement) {
     const glm::dvec3 normal = placement.normal();
+    painter.setFont(smallFont(font()));
+    paintFindings(painter, placement);
     painter.setFont(font());
+    paintRulers(painter, placement);
     for (const reader::ScanMeasure& measure : reader().measures().measures()) {
         if (std::abs(glm::dot(measure.normal, normal)) < 0.999 || !isOn(placement, measure.fromMm))
             continue;
@@ -198,6 +213,38 @@ void GreyPane::paintMeasures(QPainter& painter, const SlicePlacement& placement)
             {std::clamp(low.x(), wide / 2 + 4, std::max(wide / 2 + 4, width() - wide / 2 - 4)),
              std::min(low.y(), height() - 24.0)},
             Qt::AlignHCenter | Qt::AlignTop, color, text);
+    }
+}
+
+// What lies beside the plane is shown on it, dashed, where the plane passes through it or near it.
+void GreyPane::paintRulers(QPainter& painter, const SlicePlacement& placement) {
+    constexpr double nearMm = 5.0;
+    const glm::dvec3 normal = placement.normal();
+    const auto above = [&](glm::dvec3 mm) { return glm::dot(mm - placement.topLeftMm, normal); };
+    for (const reader::PlaceRuler& ruler : reader().rulers().rulers()) {
+        const double from = above(ruler.from.positionMm), to = above(ruler.to.positionMm);
+        if (std::min(from, to) > nearMm || std::max(from, to) < -nearMm) continue;
+        const bool lies =
+            isOn(placement, ruler.from.positionMm) && isOn(placement, ruler.to.positionMm);
+        paintRuler(painter, rect(), positionOf(placement, ruler.from.positionMm),
+                   positionOf(placement, ruler.to.positionMm), !lies, window::textOf(ruler));
+    }
+    if (const auto& begun = reader().rulers().begun(); begun && isOn(placement, begun->positionMm))
+        paintCross(painter, positionOf(placement, begun->positionMm), 3.0, 8.0,
+                   theme().measuredOnPicture);
+}
+
+// Where the plane passes through a finding, a ring around its section as of a ball.
+void GreyPane::paintFindings(QPainter& painter, const SlicePlacement& placement) {
+    for (const reader::ListedFinding& one : reader().findings().shown()) {
+        const double aside =
+            std::abs(glm::dot(one.finding.positionMm - placement.topLeftMm, placement.normal()));
+        constexpr double aroundMm = 2.0;
+        const double radiusMm = 0.5 * one.finding.diameterMm + aroundMm;
+        if (aside >= radiusMm) continue;
+        const double sectionMm = std::sqrt(radiusMm * radiusMm - aside * aside);
+        paintFindingRing(painter, positionOf(placement, one.finding.positionMm),
+                         sectionMm / placement.pixelMm() * widgetPerPixel(), one);
     }
 }
 
@@ -334,7 +381,7 @@ void SlicePane::paintMarks(QPainter& painter) {
 }
 
 void SlicePane::clicked(const Hand& hand) {
-    if (hand.button != Qt::LeftButton) return;
+    if (hand.button != Qt::LeftButton || addsEnd(hand)) return;
     if (const auto place = patientAt(hand.position))
         reading().jump(tr("go to a voxel"),
                        [this, place = *place] { reader().goTo(place, view()); });
@@ -401,7 +448,7 @@ void ObliquePane::paintMarks(QPainter& painter) {
 }
 
 void ObliquePane::clicked(const Hand& hand) {
-    if (hand.button != Qt::LeftButton) return;
+    if (hand.button != Qt::LeftButton || addsEnd(hand)) return;
     if (const auto place = patientAt(hand.position))
         reading().jump(tr("go to a voxel"), [this, place = *place] { reader().goTo(place, {}); });
 }

@@ -40,10 +40,14 @@ protected:
     QPointF positionOf(const SlicePlacement& placement, glm::dvec3 mm) const;
     bool isOn(const SlicePlacement& placement, glm::dvec3 mm) const;
     void paintMeasures(QPainter& painter, const SlicePlacement& placement);
+    /// The ruler's end that a click with that tool means; false: another tool is in hand.
+    bool addsEnd(const Hand& hand);
     void paintTexts(QPainter& painter, const QString& place);
 
 private:
     void pointAgain();
+    void paintRulers(QPainter& painter, const SlicePlacement& placement);
+    void paintFindings(QPainter& painter, const SlicePlacement& placement);
     DrawingTool toolOf(const Hand& hand) const;
 
     std::vector<reader::ScanMeasure> measuresBefore_;

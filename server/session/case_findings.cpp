@@ -85,6 +85,8 @@ Result<std::shared_ptr<const CaseFindings>> readFindings(const store::Case& sour
     };
     if (findings.grid.size == glm::ivec3(0)) findings.grid = grid;  // they have no voxels
     if (!sameGrid(findings.grid, grid)) return refuse("findings are of another grid than the scan");
+    if (!(findings.operatingPoint >= 0.0 && findings.operatingPoint <= 1.0))
+        return refuse("the operating point is no probability");
     for (const auto* list : {&findings.findings, &findings.candidates})
         if (!std::all_of(list->begin(), list->end(), isSound))
             return refuse("a finding lies nowhere");

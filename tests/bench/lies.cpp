@@ -380,6 +380,20 @@ void addAnswerLies(std::vector<Lie>& all) {
         m.mutable_scan_statistics()->set_samples(r());
         m.mutable_scan_statistics()->set_area_mm2(wildNumber(r));
     });
+    add("wild findings", ServerMessage::kFindingList, [](Random& r, ServerMessage& m) {
+        auto* list = m.mutable_finding_list();
+        list->set_state(protocol::FindingList::State(pick(r, 7)));
+        list->set_operating_point(wildNumber(r));
+        list->set_trained_on(wildText(r));
+        for (auto& finding : *list->mutable_findings()) {
+            if (chance(r, 0.3)) finding.set_number(wildCount(r));
+            if (chance(r, 0.3)) finding.set_arc_mm(wildNumber(r));
+            if (chance(r, 0.3)) finding.set_diameter_mm(wildNumber(r));
+            if (chance(r, 0.3)) finding.mutable_position_mm()->set_x(wildNumber(r));
+            if (chance(r, 0.3)) finding.add_voxels(wildCount(r));
+            if (chance(r, 0.3)) finding.set_kind(wildText(r));
+        }
+    });
     add("wild share", ServerMessage::kWallSeen, [](Random& r, ServerMessage& m) {
         m.mutable_wall_seen()->set_share(wildNumber(r));
         if (chance(r, 0.5)) m.mutable_wall_seen()->set_request(pick(r, 40));

@@ -1,10 +1,13 @@
 // What a client's session makes of a server that lies: it ends and says why, soon, or goes on.
 #include "end_to_end/fake_server.h"
+#include "end_to_end/fake_wall.h"
 #include "end_to_end/reader_fixture.h"
 #include "end_to_end/session_fixture.h"
+#include "protocol/limits.h"
 #include "reader/session.h"
 #include "temporary_folder.h"
 
+#include <cmath>
 #include <functional>
 #include <memory>
 
@@ -73,6 +76,69 @@ TEST_F(ClientOfAHostileServer, APlaceFarAwayIsNone) {
         },
         [](Session& session) { session.locate(glm::dvec2(0.5, 1.0)); });
     EXPECT_TRUE(has(end, "nowhere")) << end;
+}
+
+TEST_F(ClientOfAHostileServer, FindingsThatAreNoneEndTheSession) {
+    using Alters = std::function<void(protocol::FindingList&)>;
+    const auto first = [](protocol::FindingList& list) { return list.mutable_findings(0); };
+    const std::vector<std::pair<std::string, Alters>> lies = {
+        {"nowhere", [&](auto& list) { first(list)->mutable_position_mm()->set_x(2e6); }},
+        {"nowhere", [&](auto& list) { first(list)->mutable_diameter_to_mm()->set_y(NAN); }},
+        {"nowhere", [&](auto& list) { first(list)->mutable_wall()->set_arc_mm(1e9); }},
+        {"figures", [&](auto& list) { first(list)->set_probability(1.5); }},
+        {"figures", [&](auto& list) { first(list)->set_diameter_mm(-1.0); }},
+        {"figures", [&](auto& list) { first(list)->set_arc_mm(INFINITY); }},
+        {"without a number", [&](auto& list) { first(list)->set_number(0); }},
+        {"same number", [&](auto& list) { first(list)->set_number(2); }},
+        {"order", [&](auto& list) { first(list)->set_arc_mm(9e5); }},
+        {"kind", [&](auto& list) { first(list)->set_kind(std::string(100, 'x')); }},
+        {"fours", [&](auto& list) { first(list)->add_voxels(1); }},
+        {"outside", [&](auto& list) { first(list)->set_voxels(0, 256); }},
+        {"outside", [&](auto& list) { first(list)->set_voxels(3, 4'000'000'000u); }},
+        {"hidden", [](auto& list) { list.set_state(protocol::FindingList::FIRST_PASS); }},
+        {"list that is none", [](auto& list) { list.set_state(protocol::FindingList::State(9)); }},
+        {"operating point", [](auto& list) { list.set_operating_point(-0.1); }},
+        {"length", [](auto& list) { list.set_trained_on(std::string(5000, 'x')); }},
+        {"warning", [](auto& list) { list.add_warnings(std::string(500, 'x')); }},
+        {"more than a case",
+         [](auto& list) {
+             while (list.findings_size() <= haustra::maxFindings)
+                 list.add_findings()->set_number(1);
+         }},
+        {"too many voxels",
+         [&](auto& list) {
+             for (std::size_t n = 0; n < 4 * protocol::maxListedRuns; ++n)
+                 first(list)->add_voxels(1);
+         }},
+    };
+    for (const auto& [reason, lie] : lies) {
+        const auto tell = lie;
+        const auto end = endOf(
+            [tell](ServerMessage& message) {
+                if (message.has_finding_list() && message.finding_list().findings_size() > 0)
+                    tell(*message.mutable_finding_list());
+            },
+            [](Session& session) { session.setDetection({DetectionMode::concurrent}); });
+        EXPECT_TRUE(has(end, reason)) << reason << ": " << end;
+    }
+}
+
+// It may have crossed a change of the mode on its way: it is not an end, but nothing is shown.
+TEST_F(ClientOfAHostileServer, FindingsThatAreNotToBeSeenYetAreNotKept) {
+    const tests::FakeServer server(altering([](ServerMessage& message) {
+        if (!message.has_finding_list()) return;
+        protocol::SetDetection concurrent;
+        concurrent.set_mode(protocol::SetDetection::CONCURRENT);
+        const auto request = message.finding_list().request();
+        *message.mutable_finding_list() = tests::fakeFindings(concurrent);
+        message.mutable_finding_list()->set_request(request);
+    }));
+    const auto session = sessionWith(server);
+    session->setDetection({DetectionMode::secondReader});
+    const auto request = session->requestFindings();
+    ASSERT_TRUE(until(*session, [&] { return session->answeredFindingsRequest() >= request; }));
+    ASSERT_TRUE(session->findings());
+    EXPECT_TRUE(session->findings()->findings.empty());
 }
 
 void fillBookmarks(protocol::BookmarkList& list, std::uint64_t count) {

@@ -3,6 +3,7 @@
 #include "end_to_end/fake_server.h"
 #include "end_to_end/fake_wall.h"
 #include "end_to_end/session_fixture.h"
+#include "reader/findings_reading.h"
 #include "reader/session.h"
 #include "temporary_folder.h"
 
@@ -229,6 +230,48 @@ TEST_F(ClientSession, ACaseThatIsRefusedLeadsBackToTheListWhereThereIsOne) {
     }
 }
 
+TEST_F(ClientSession, FindingsComeWhenTheModeShowsThemAndAgainAfterALostLink) {
+    FakeServer server;
+    const auto session = sessionWith(server);
+    ASSERT_TRUE(open(*session));
+    FindingsReading findings(*session);
+    ASSERT_TRUE(until(*session, [&] { return session->findings().has_value(); }));
+    EXPECT_EQ(session->findings()->state, FindingList::State::off);
+    EXPECT_EQ(session->findings()->trainedOn, "nothing: this is a test");
+    EXPECT_FALSE(findings.finishFirstPass()) << "nobody waits for it";
+    ASSERT_TRUE(findings.choose(DetectionMode::secondReader));
+    ASSERT_TRUE(until(*session,
+                      [&] { return session->findings()->state == FindingList::State::firstPass; }));
+    EXPECT_TRUE(findings.shown().empty());
+    ASSERT_TRUE(findings.finishFirstPass());
+    ASSERT_TRUE(until(*session, [&] { return findings.shown().size() == 2; }));
+    DetectionChoice choice = findings.choice();
+    choice.leastProbability = 0.25;
+    ASSERT_TRUE(findings.choose(choice));
+    ASSERT_TRUE(until(*session, [&] { return findings.shown().size() == 3; }));
+    const std::vector<int> order = {findings.shown()[0].number, findings.shown()[1].number,
+                                    findings.shown()[2].number};
+    EXPECT_EQ(order, (std::vector{1, 3, 2}));
+    EXPECT_TRUE(findings.shown()[1].candidate);
+    EXPECT_EQ(findings.shown()[0].finding.segment, ColonSegment::sigmoid);
+    EXPECT_EQ(findings.shown()[0].finding.voxels.size(), 1u);
+    // From one to the next, also of those at one arc.
+    EXPECT_EQ(findings.next(1, 0.0)->number, 1);
+    EXPECT_EQ(findings.next(-1, 0.0), nullptr);
+    findings.setCurrent(3);
+    EXPECT_EQ(findings.next(1, findings.current()->wall.arcMm)->number, 2);
+    EXPECT_EQ(findings.next(-1, findings.current()->wall.arcMm)->number, 1);
+    // The server hears the mode again before it is asked for the list.
+    const int heard = server.detectionMessages();
+    server.setDown(true);
+    ASSERT_TRUE(until(*session, [&] { return session->phase() == Phase::lost; }));
+    server.setDown(false);
+    const auto revision = session->findingsRevision();
+    ASSERT_TRUE(until(*session, [&] { return session->findingsRevision() != revision; }));
+    EXPECT_EQ(server.detectionMessages(), heard + 1);
+    EXPECT_EQ(findings.shown().size(), 3u);
+}
+
 TEST_F(ClientSession, AnOldServerIsNotAskedWhatItDoesNotKnow) {
     Misbehaviour wrong;
     wrong.old = true;
@@ -246,6 +289,13 @@ TEST_F(ClientSession, AnOldServerIsNotAskedWhatItDoesNotKnow) {
         ASSERT_FALSE(answer.values);
         EXPECT_EQ(answer.values.error().kind, ErrorKind::unsupported);
     }
+    FindingsReading findings(*session);
+    EXPECT_FALSE(findings.has());
+    EXPECT_FALSE(findings.choose(DetectionMode::concurrent));
+    session->setDetection({DetectionMode::concurrent});
+    const auto asked = session->requestFindings();
+    EXPECT_TRUE(until(*session, [&] { return session->answeredFindingsRequest() >= asked; }));
+    EXPECT_FALSE(session->findings());
     // The session is as it was.
     const auto list = session->requestBookmarks();
     ASSERT_TRUE(until(*session, [&] { return session->answeredBookmarkRequest() >= list; }));

@@ -17,6 +17,7 @@
 #include <QAbstractSpinBox>
 #include <QAccessible>
 #include <QApplication>
+#include <QCheckBox>
 #include <QClipboard>
 #include <QComboBox>
 #include <QDialog>
@@ -373,6 +374,18 @@ protected:
     Check flips(std::function<bool()> isOn) {
         return [before = isOn(), isOn] { return isOn() != before; };
     }
+    bool showFindings() {
+        reader().findings().setCurrent(0);
+        return reader().findings().choose(DetectionMode::concurrent) &&
+               waitFor([&] { return reader().findings().shown().size() == 2; });
+    }
+    bool isAtFinding(int number) {
+        const auto* current = reader().findings().current();
+        return current && current->number == number &&
+               std::abs(flight().arcMm() - current->wall.arcMm) < 1e-6 &&
+               reader().flat().picked() &&
+               reader().flat().picked()->positionMm == current->wall.positionMm;
+    }
     Check fov(double change) {
         const double before = flight().camera().fovDegrees;
         return
@@ -594,6 +607,47 @@ protected:
          [this] { return flips([this] { return reading_->tool() == DrawingTool::line; }); }},
         {"outline",
          [this] { return flips([this] { return reading_->tool() == DrawingTool::outline; }); }},
+        {"ruler",
+         [this] { return flips([this] { return reading_->tool() == DrawingTool::ruler; }); }},
+        {"detection-mode",
+         [this]() -> Check {
+             EXPECT_TRUE(reader().findings().choose(DetectionMode::off));
+             return [this] {
+                 return reader().findings().choice().mode == DetectionMode::secondReader;
+             };
+         }},
+        {"first-pass-done",
+         [this]() -> Check {
+             EXPECT_TRUE(reader().findings().choose(DetectionMode::off));
+             EXPECT_TRUE(reader().findings().choose(DetectionMode::secondReader));
+             QTest::qWait(50);
+             return [this] { return reader().findings().shown().size() == 2; };
+         }},
+        {"next-finding",
+         [this]() -> Check {
+             EXPECT_TRUE(showFindings());
+             flight().goTo(0.0);
+             return [this] { return isAtFinding(1); };
+         }},
+        {"previous-finding",
+         [this]() -> Check {
+             EXPECT_TRUE(showFindings());
+             flight().goTo(length());
+             return [this] { return isAtFinding(2); };
+         }},
+        {"measure-finding",
+         [this]() -> Check {
+             EXPECT_TRUE(showFindings());
+             reader().goTo(reader().findings().shown()[0]);
+             reader().rulers().set({});
+             return [this] {
+                 const auto& rulers = reader().rulers().rulers();
+                 return rulers.size() == 1 && rulers[0].finding == 1 &&
+                        std::abs(rulers[0].lengthMm() - 8.0) < 1e-9;
+             };
+         }},
+        {"findings-panel",
+         [this] { return flips([this] { return dock("findings")->isVisible(); }); }},
         {"next-optics",
          [this]() -> Check {
              const std::size_t before = reader().optics().chosen();
@@ -1340,6 +1394,106 @@ TEST_F(ClientWindow, RulersAndEllipsesMeasureTheScan) {
 }
 
 // All that a mouse does in the views, by keys alone; the mouse rests elsewhere.
+// Two clicks, each in whichever pane, are the ends of one length.
+TEST_F(ClientWindow, TwoClicksInAnyViewsMeasureBetweenTheirPlaces) {
+    flight().goTo(200.0);
+    ASSERT_TRUE(settle());
+    press(Qt::Key_L, Qt::ShiftModifier);
+    ASSERT_EQ(reading_->tool(), DrawingTool::ruler);
+    const auto& rulers = reader().rulers().rulers();
+    // Both ends on a slice.
+    Pane& axial = pane(View::axial);
+    const QPoint from(axial.width() / 3, axial.height() / 2), to(axial.width() / 2, from.y() + 20);
+    const double arc = flight().arcMm();
+    const glm::dvec3 a = patientAt(View::axial, from), b = patientAt(View::axial, to);
+    click(axial, from);
+    EXPECT_TRUE(reader().rulers().begun());
+    click(axial, to);
+    ASSERT_TRUE(waitFor([&] { return rulers.size() == 1; }));
+    EXPECT_LT(glm::distance(rulers[0].from.positionMm, a), 1e-6);
+    EXPECT_NEAR(rulers[0].lengthMm(), glm::distance(a, b), 1e-6);
+    EXPECT_EQ(flight().arcMm(), arc) << "a click that measures goes nowhere";
+    EXPECT_TRUE(axial.inWords().contains(QStringLiteral("mm")));
+    // From the wall before the camera to the flattened one.
+    Pane &endoscopic = pane(View::endoscopic), &zoom = pane(View::flattenedZoom);
+    click(endoscopic, endoscopic.rect().center());
+    ASSERT_TRUE(waitFor([&] { return reader().rulers().begun().has_value(); }));
+    const glm::dvec3 ahead = flight().camera().positionMm +
+                             tests::fakeRadiusMm * glm::normalize(flight().camera().forward);
+    EXPECT_LT(glm::distance(reader().rulers().begun()->positionMm, ahead), 0.2);
+    click(zoom, zoom.rect().center());
+    ASSERT_TRUE(waitFor([&] { return rulers.size() == 2; }));
+    const auto place = tests::fakePlace(reader().flat().tour().window().center);
+    const glm::dvec3 there(place.position_mm().x(), place.position_mm().y(),
+                           place.position_mm().z());
+    EXPECT_LT(glm::distance(rulers[1].to.positionMm, there), 0.5);
+    // From end to end along the strip, which the whole of it measures, too.
+    Pane& strip = pane(View::flattened);
+    click(strip, {strip.width() / 2, strip.height() / 2});
+    ASSERT_TRUE(waitFor([&] { return reader().rulers().begun().has_value(); }));
+    // The tool that is put away gives up what was begun; what is measured can be taken back.
+    press(Qt::Key_Escape);
+    EXPECT_EQ(reading_->tool(), DrawingTool::none);
+    EXPECT_FALSE(reader().rulers().begun());
+    press(Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(rulers.size(), 1u);
+    press(Qt::Key_Y, Qt::ControlModifier);
+    EXPECT_EQ(rulers.size(), 2u);
+    press(Qt::Key_Escape);
+    EXPECT_TRUE(rulers.empty());
+    press(Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_EQ(rulers.size(), 2u);
+}
+
+TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList) {
+    press(Qt::Key_F, Qt::ShiftModifier);
+    ASSERT_TRUE(waitFor([&] { return dock("findings")->isVisible(); }));
+    auto& list = *named<QTreeWidget>(QStringLiteral("Findings along the colon"));
+    auto& mode = *named<QComboBox>(QStringLiteral("When findings are shown"));
+    EXPECT_EQ(mode.currentIndex(), int(DetectionMode::off));
+    EXPECT_EQ(list.topLevelItemCount(), 0);
+    EXPECT_TRUE(notices(QStringLiteral("nothing: this is a test")));
+    EXPECT_TRUE(notices(QStringLiteral("For a physician to judge")));
+    // A second reader sees nothing before the first reading is done.
+    press(Qt::Key_F, Qt::ControlModifier);
+    ASSERT_TRUE(waitFor([&] { return mode.currentIndex() == int(DetectionMode::secondReader); }));
+    ASSERT_TRUE(waitFor([&] { return notices(QStringLiteral("once the first reading is done")); }));
+    EXPECT_EQ(list.topLevelItemCount(), 0);
+    press(Qt::Key_M, Qt::ShiftModifier);
+    EXPECT_FALSE(reader().findings().current());
+    QPushButton* done = nullptr;
+    for (auto* button : window_->findChildren<QPushButton*>())
+        if (button->text() == QStringLiteral("First reading done: show findings")) done = button;
+    ASSERT_TRUE(done && done->isVisible() && done->isEnabled());
+    click(*done, done->rect().center());
+    ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 2; }));
+    EXPECT_FALSE(done->isEnabled());
+    EXPECT_EQ(list.topLevelItem(0)->text(0), QStringLiteral("1"));
+    EXPECT_EQ(list.topLevelItem(0)->text(2), QStringLiteral("sigmoid"));
+    EXPECT_EQ(list.topLevelItem(1)->text(4), QStringLiteral("70 %"));
+    // Less probable ones stand among them.
+    auto& least =
+        *named<QAbstractSpinBox>(QStringLiteral("Least probability of less probable findings"));
+    for (auto* box : window_->findChildren<QCheckBox*>())
+        if (box->text().startsWith(QStringLiteral("less probable"))) box->click();
+    ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 3; }));
+    EXPECT_EQ(list.topLevelItem(1)->text(0), QStringLiteral("3"));
+    EXPECT_TRUE(least.isEnabled());
+    // A click leads all views there.
+    flight().goTo(0.0);
+    list.scrollToItem(list.topLevelItem(1));
+    click(*list.viewport(), list.visualItemRect(list.topLevelItem(1)).center());
+    const auto* third = reader().findings().find(3);
+    ASSERT_TRUE(third);
+    ASSERT_TRUE(waitFor([&] { return std::abs(flight().arcMm() - third->wall.arcMm) < 1e-6; }));
+    EXPECT_LT(glm::distance(slices().slice(View::axial).positionMm, third->wall.positionMm), 1.0);
+    EXPECT_LT(glm::distance(reader().flat().tour().window().center, *third->wall.flat), 1e-6);
+    // Off again, nothing is left of them.
+    EXPECT_TRUE(reader().findings().choose(DetectionMode::off));
+    ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 0; }));
+    EXPECT_FALSE(reader().findings().current());
+}
+
 TEST_F(ClientWindow, TheKeysPointGoAndMeasure) {
     flight().goTo(200.0);
     ASSERT_TRUE(settle());

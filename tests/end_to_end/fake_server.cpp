@@ -39,7 +39,7 @@ struct FakeServer::Impl {
     asio::ssl::context tls{asio::ssl::context::tls_server};
     tcp::acceptor acceptor;
     std::atomic<bool> stopping{false}, down{false};
-    std::atomic<int> connections{0}, bookmarkMessages{0}, seenForgotten{0};
+    std::atomic<int> connections{0}, bookmarkMessages{0}, seenForgotten{0}, detectionMessages{0};
     mutable std::mutex mutex;
     std::vector<protocol::Bookmark> bookmarks;  // guarded by mutex
     std::set<std::shared_ptr<Stream>> streams;  // guarded by mutex
@@ -160,6 +160,7 @@ struct FakeServer::Impl {
             fill(*opened->add_presets(), preset);
         }
         if (!misbehaviour.notFlattened) *opened->mutable_flat() = fakeStrip();
+        if (!misbehaviour.old) opened->set_detection(protocol::CaseOpened::THERE);
         return message;
     }
 
@@ -259,6 +260,7 @@ struct FakeServer::Impl {
         std::uint32_t pictures = 0;
         double seen = misbehaviour.seenAtFirst;
         int opensAfterLists = 0;
+        protocol::SetDetection detection;
         if (!read(stream).has_hello()) return;
         ServerMessage welcome;
         welcome.mutable_welcome()->set_protocol_version(misbehaviour.protocolVersion);
@@ -269,7 +271,7 @@ struct FakeServer::Impl {
                  {protocol::capability::caseEntries, protocol::capability::bookmarkPush,
                   protocol::capability::marks, protocol::capability::slabs,
                   protocol::capability::scanValues, protocol::capability::pick,
-                  protocol::capability::lens})
+                  protocol::capability::lens, protocol::capability::findings})
                 welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
             std::vector<std::uint8_t> frame;
@@ -402,6 +404,18 @@ struct FakeServer::Impl {
                     break;
                 case ClientMessage::kSetWallPaint:
                     break;
+                case ClientMessage::kSetDetection: {
+                    if (misbehaviour.old) return;
+                    detection = message.set_detection();
+                    ++detectionMessages;
+                    break;
+                }
+                case ClientMessage::kListFindings:
+                    if (misbehaviour.old) return;
+                    *answer.mutable_finding_list() = fakeFindings(detection);
+                    answer.mutable_finding_list()->set_request(message.list_findings().request());
+                    write(stream, answer);
+                    break;
                 case ClientMessage::kSetTransferFunction: {
                     {
                         const std::lock_guard lock(mutex);
@@ -454,6 +468,9 @@ int FakeServer::connections() const {
 }
 int FakeServer::seenForgotten() const {
     return impl_->seenForgotten;
+}
+int FakeServer::detectionMessages() const {
+    return impl_->detectionMessages;
 }
 int FakeServer::bookmarkMessages() const {
     return impl_->bookmarkMessages;

@@ -70,6 +70,7 @@ public:
     std::vector<std::string> storedBookmarkKeys() const;  ///< in order of storing, each key once
     int connections() const;
     int bookmarkMessages() const;
+    int detectionMessages() const;
     int seenForgotten() const;  ///< how often what had been seen was to be forgotten
     AskedOfViewport askedOf(View view) const { return askedOf(int(view)); }
     AskedOfViewport askedOf(int viewport) const;

@@ -150,4 +150,40 @@ protocol::ServerMessage aboutFakeWall(const protocol::ClientMessage& question) {
     return answer;
 }
 
+protocol::FindingList fakeFindings(const protocol::SetDetection& choice) {
+    using protocol::FindingList, protocol::SetDetection;
+    FindingList list;
+    const bool shows = choice.mode() == SetDetection::CONCURRENT ||
+                       (choice.mode() == SetDetection::SECOND_READER && choice.first_pass_done());
+    list.set_state(shows                                ? FindingList::SHOWN
+                   : choice.mode() == SetDetection::OFF ? FindingList::OFF
+                                                        : FindingList::FIRST_PASS);
+    list.set_operating_point(0.5);
+    list.set_model("fake-1");
+    list.set_trained_on("nothing: this is a test");
+    if (!shows) return list;
+    const auto add = [&](std::uint32_t number, double part, double probability) {
+        protocol::Finding& finding = *list.add_findings();
+        finding.set_number(number);
+        *finding.mutable_wall() = fakePlace({0.25, part * fakeStripHeight});
+        const auto& p = finding.wall().position_mm();
+        set(finding.mutable_position_mm(), {p.x(), p.y(), p.z()});
+        set(finding.mutable_diameter_from_mm(), {p.x() - 4.0, p.y(), p.z()});
+        set(finding.mutable_diameter_to_mm(), {p.x() + 4.0, p.y(), p.z()});
+        finding.set_diameter_mm(8.0);
+        finding.set_height_mm(3.0);
+        finding.set_arc_mm(finding.wall().arc_mm());
+        finding.set_segment(protocol::Finding::SIGMOID);
+        finding.set_kind("sessile");
+        finding.set_probability(probability);
+        finding.set_below_operating_point(probability < list.operating_point());
+        for (const std::uint32_t n : {100u, 100u, 50u, 3u})
+            finding.add_voxels(n);
+    };
+    add(1, 1.0 / 3.0, 0.9);
+    if (choice.has_least_probability() && choice.least_probability() <= 0.3) add(3, 0.5, 0.3);
+    add(2, 2.0 / 3.0, 0.7);
+    return list;
+}
+
 }  // namespace haustra::tests

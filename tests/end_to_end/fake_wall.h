@@ -25,6 +25,10 @@ protocol::WallPlace fakeMark(double arcMm);
 /// The wall is fakeRadiusMm from the camera wherever it looks; a ray straight down (−z) meets
 /// nothing, and is refused.
 protocol::ServerMessage fakePick(const protocol::PickWall& question, bool flattened);
+/// What is told of the case's findings after this choice: two and, between them along the colon, a
+/// candidate (number 3, 0.3 probable) at the places of fakePlace where x = ¼, a third, a half and
+/// two thirds of the way up the strip.
+protocol::FindingList fakeFindings(const protocol::SetDetection& choice);
 /// Of a scan whose value at (x, y, z) mm is 2x + 3y + z HU, 1000 more where it is cleansed: what
 /// is known of it without sampling.
 protocol::ScanStatistics fakeStatistics(const protocol::MeasureScan& question);

@@ -447,6 +447,42 @@
         <source>Smaller lens</source>
         <translation>Kleinere Lupe</translation>
     </message>
+    <message>
+        <source>Measure between two places that are clicked, in whichever views</source>
+        <translation>Zwischen zwei Orten messen, die angeklickt werden, in beliebigen Ansichten</translation>
+    </message>
+    <message>
+        <source>Findings: not shown, after the first reading, at once</source>
+        <translation>Befunde: nicht gezeigt, nach der eigenen Befundung, sofort</translation>
+    </message>
+    <message>
+        <source>First reading done: show findings</source>
+        <translation>Eigene Befundung beendet: Befunde zeigen</translation>
+    </message>
+    <message>
+        <source>Previous finding</source>
+        <translation>Voriger Befund</translation>
+    </message>
+    <message>
+        <source>Next finding</source>
+        <translation>Nächster Befund</translation>
+    </message>
+    <message>
+        <source>Measure the finding</source>
+        <translation>Den Befund messen</translation>
+    </message>
+    <message>
+        <source>Show the list of findings</source>
+        <translation>Die Liste der Befunde zeigen</translation>
+    </message>
+    <message>
+        <source>Findings</source>
+        <translation>Befunde</translation>
+    </message>
+    <message>
+        <source>F&amp;indings</source>
+        <translation>Bef&amp;unde</translation>
+    </message>
 </context>
 <context>
     <name>Help</name>
@@ -924,6 +960,172 @@
     </message>
 </context>
 <context>
+    <name>haustra::window::FindingsPanel</name>
+    <message>
+        <source>rectum</source>
+        <translation>Rektum</translation>
+    </message>
+    <message>
+        <source>sigmoid</source>
+        <translation>Sigma</translation>
+    </message>
+    <message>
+        <source>descending</source>
+        <translation>Descendens</translation>
+    </message>
+    <message>
+        <source>transverse</source>
+        <translation>Transversum</translation>
+    </message>
+    <message>
+        <source>ascending</source>
+        <translation>Ascendens</translation>
+    </message>
+    <message>
+        <source>cecum</source>
+        <translation>Zäkum</translation>
+    </message>
+    <message>
+        <source>%1 %</source>
+        <translation>%1 %</translation>
+    </message>
+    <message>
+        <source>go to a finding</source>
+        <translation>zu einem Befund gehen</translation>
+    </message>
+    <message>
+        <source>After my own reading (second reader)</source>
+        <translation>Nach der eigenen Befundung (Zweitbefunder)</translation>
+    </message>
+    <message>
+        <source>From the start (concurrent)</source>
+        <translation>Von Anfang an (gleichzeitig)</translation>
+    </message>
+    <message>
+        <source>Not shown</source>
+        <translation>Nicht gezeigt</translation>
+    </message>
+    <message>
+        <source>Findings: %1</source>
+        <translation>Befunde: %1</translation>
+    </message>
+    <message>
+        <source>Findings are not shown in this mode.</source>
+        <translation>In diesem Modus werden Befunde nicht gezeigt.</translation>
+    </message>
+    <message>
+        <source>No finding further along the colon.</source>
+        <translation>Weiter im Kolon ist kein Befund.</translation>
+    </message>
+    <message>
+        <source>No finding before this place.</source>
+        <translation>Vor diesem Ort ist kein Befund.</translation>
+    </message>
+    <message>
+        <source>Go to a finding first.</source>
+        <translation>Zuerst zu einem Befund gehen.</translation>
+    </message>
+    <message>
+        <source>First reading done: show findings</source>
+        <translation>Eigene Befundung beendet: Befunde zeigen</translation>
+    </message>
+    <message>
+        <source>Measure the finding</source>
+        <translation>Den Befund messen</translation>
+    </message>
+    <message>
+        <source>less probable ones, from</source>
+        <translation>weniger wahrscheinliche, ab</translation>
+    </message>
+    <message>
+        <source>When findings are shown</source>
+        <translation>Wann Befunde gezeigt werden</translation>
+    </message>
+    <message>
+        <source>Places that scored below the operating point, in another colour</source>
+        <translation>Orte unter dem Arbeitspunkt, in anderer Farbe</translation>
+    </message>
+    <message>
+        <source> %</source>
+        <translation> %</translation>
+    </message>
+    <message>
+        <source>Least probability of less probable findings</source>
+        <translation>Kleinste Wahrscheinlichkeit weniger wahrscheinlicher Befunde</translation>
+    </message>
+    <message>
+        <source>Findings along the colon</source>
+        <translation>Befunde entlang des Kolons</translation>
+    </message>
+    <message>
+        <source>No.</source>
+        <translation>Nr.</translation>
+    </message>
+    <message>
+        <source>mm</source>
+        <translation>mm</translation>
+    </message>
+    <message>
+        <source>Segment</source>
+        <translation>Segment</translation>
+    </message>
+    <message>
+        <source>Size</source>
+        <translation>Größe</translation>
+    </message>
+    <message>
+        <source>Probability</source>
+        <translation>Wahrscheinlichkeit</translation>
+    </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>%1, %2 mm high</source>
+        <translation>%1, %2 mm hoch</translation>
+    </message>
+    <message>
+        <source>The findings of this case cannot be read.</source>
+        <translation>Die Befunde dieses Falls sind nicht lesbar.</translation>
+    </message>
+    <message>
+        <source>Findings are not shown.</source>
+        <translation>Befunde werden nicht gezeigt.</translation>
+    </message>
+    <message>
+        <source>Findings are shown once the first reading is done.</source>
+        <translation>Befunde werden gezeigt, sobald die eigene Befundung beendet ist.</translation>
+    </message>
+    <message>
+        <source>asking…</source>
+        <translation>wird gefragt …</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n place(s) to judge</source>
+        <translation>
+            <numerusform>%n Ort zu beurteilen</numerusform>
+            <numerusform>%n Orte zu beurteilen</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>For a physician to judge. Found by %1, which has learnt from: %2. Operating point %3.</source>
+        <translation>Vom Arzt zu beurteilen. Gefunden von %1, das gelernt hat aus: %2. Arbeitspunkt %3.</translation>
+    </message>
+    <message>
+        <source>This server cannot show findings.</source>
+        <translation>Dieser Server kann keine Befunde zeigen.</translation>
+    </message>
+    <message>
+        <source>This case has not been searched for polyps.</source>
+        <translation>In diesem Fall wurde nicht nach Polypen gesucht.</translation>
+    </message>
+    <message>
+        <source>No findings wait for the first reading in this mode.</source>
+        <translation>In diesem Modus warten keine Befunde auf die eigene Befundung.</translation>
+    </message>
+</context>
+<context>
     <name>haustra::window::FlatZoomPane</name>
     <message>
         <source>Flattened wall</source>
@@ -972,6 +1174,10 @@
     <message>
         <source>measure on the wall</source>
         <translation>auf der Wand messen</translation>
+    </message>
+    <message>
+        <source>click two places to measure between them   Esc ends</source>
+        <translation>zwei Orte anklicken, um dazwischen zu messen   Esc beendet</translation>
     </message>
 </context>
 <context>
@@ -1575,6 +1781,14 @@
         <source>old picture</source>
         <translation>veraltetes Bild</translation>
     </message>
+    <message>
+        <source>%1 mm</source>
+        <translation>%1 mm</translation>
+    </message>
+    <message>
+        <source>finding %1: %2</source>
+        <translation>Befund %1: %2</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::PathTrack</name>
@@ -1773,6 +1987,10 @@
             <numerusform>%n Lesezeichen warten auf den Server, und diese Station kann sie nicht aufbewahren: Sie gehen mit dieser Sitzung verloren. Trotzdem neu verbinden?</numerusform>
         </translation>
     </message>
+    <message>
+        <source>Findings</source>
+        <translation>Befunde</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::Reading</name>
@@ -1801,6 +2019,10 @@
     <message>
         <source>clear measurements</source>
         <translation>Messungen löschen</translation>
+    </message>
+    <message>
+        <source>measure between two places</source>
+        <translation>zwischen zwei Orten messen</translation>
     </message>
 </context>
 <context>

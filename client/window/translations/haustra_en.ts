@@ -26,6 +26,16 @@
     </message>
 </context>
 <context>
+    <name>haustra::window::FindingsPanel</name>
+    <message numerus="yes">
+        <source>%n place(s) to judge</source>
+        <translation>
+            <numerusform>%n place to judge</numerusform>
+            <numerusform>%n places to judge</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>haustra::window::Notices</name>
     <message numerus="yes">
         <source>%n bookmark(s) will be saved when the server is back.</source>

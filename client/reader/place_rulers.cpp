@@ -1,0 +1,100 @@
+#include "reader/place_rulers.h"
+
+#include <algorithm>
+
+namespace haustra::reader {
+namespace {
+
+// Farther from the wall than this, a place is not drawn on the flattened one.
+constexpr double onWallMm = 4.0;
+
+}  // namespace
+
+void PlaceRulers::reset() {
+    rulers_.clear();
+    flatless_.clear();
+    begun_.reset();
+    before_.reset();
+    end_ = flatOf_ = 0;
+}
+
+void PlaceRulers::update() {
+    if (end_ != 0) {
+        if (const auto told = wall_.takeTold(end_)) {
+            end_ = 0;
+            if (*told) add(PlaceRuler::End{(*told)->positionMm, (*told)->flat});
+        }
+    }
+    if (flatOf_ != 0) {
+        const auto told = wall_.takeTold(flatOf_);
+        if (!told) return;
+        flatOf_ = 0;
+        const bool near =
+            *told && (*told)->flat && glm::distance((*told)->positionMm, flatOfMm_) <= onWallMm;
+        if (near) {
+            for (PlaceRuler& ruler : rulers_)
+                for (PlaceRuler::End* end : {&ruler.from, &ruler.to})
+                    if (end->positionMm == flatOfMm_) end->flat = (*told)->flat;
+        } else {
+            flatless_.push_back(flatOfMm_);
+        }
+    }
+    if (session_.phase() != Phase::open || !session_.caseInfo()->flat) return;
+    if (const PlaceRuler::End* end = withoutFlat()) {
+        flatOfMm_ = end->positionMm;
+        flatOf_ = wall_.expect(session_.locate(flatOfMm_));
+    }
+}
+
+PlaceRuler::End* PlaceRulers::withoutFlat() {
+    for (PlaceRuler& ruler : rulers_)
+        for (PlaceRuler::End* end : {&ruler.from, &ruler.to})
+            if (!end->flat &&
+                std::find(flatless_.begin(), flatless_.end(), end->positionMm) == flatless_.end())
+                return end;
+    return nullptr;
+}
+
+void PlaceRulers::addEnd(glm::dvec3 placeMm) {
+    end_ = 0;
+    add(PlaceRuler::End{placeMm});
+}
+void PlaceRulers::addEnd(glm::dvec2 flat) {
+    end_ = wall_.expect(session_.locate(flat));
+}
+void PlaceRulers::addEnd(glm::dvec3 fromMm, glm::dvec3 direction) {
+    end_ = wall_.expect(session_.pick(fromMm, direction));
+}
+
+void PlaceRulers::add(const PlaceRuler::End& end) {
+    if (!begun_) {
+        begun_ = end;
+        return;
+    }
+    add(PlaceRuler{*std::exchange(begun_, std::nullopt), end});
+}
+
+void PlaceRulers::add(const PlaceRuler& ruler) {
+    before_ = rulers_;
+    rulers_.push_back(ruler);
+}
+
+void PlaceRulers::measure(const ListedFinding& finding) {
+    const bool isMeasured =
+        std::any_of(rulers_.begin(), rulers_.end(),
+                    [&](const PlaceRuler& ruler) { return ruler.finding == finding.number; });
+    if (isMeasured) return;
+    const auto& [from, to] = finding.finding.diameterEndsMm;
+    add(PlaceRuler{{from}, {to}, finding.number});
+}
+
+void PlaceRulers::set(std::vector<PlaceRuler> rulers) {
+    rulers_ = std::move(rulers);
+}
+
+void PlaceRulers::giveUp() {
+    begun_.reset();
+    end_ = 0;
+}
+
+}  // namespace haustra::reader

@@ -1,0 +1,298 @@
+#include "window/findings_panel.h"
+
+#include "protocol/capabilities.h"
+#include "window/theme.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QPushButton>
+#include <QSettings>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <cmath>
+
+namespace haustra::window {
+namespace {
+
+constexpr int numberRole = Qt::UserRole;
+constexpr auto modeSetting = "reading/detection";
+constexpr DetectionMode modes[] = {DetectionMode::off, DetectionMode::secondReader,
+                                   DetectionMode::concurrent};
+
+QString nameOfSegment(const std::optional<ColonSegment>& segment) {
+    if (!segment) return QStringLiteral("–");
+    switch (*segment) {
+        case ColonSegment::rectum:
+            return FindingsPanel::tr("rectum");
+        case ColonSegment::sigmoid:
+            return FindingsPanel::tr("sigmoid");
+        case ColonSegment::descending:
+            return FindingsPanel::tr("descending");
+        case ColonSegment::transverse:
+            return FindingsPanel::tr("transverse");
+        case ColonSegment::ascending:
+            return FindingsPanel::tr("ascending");
+        case ColonSegment::cecum:
+            break;
+    }
+    return FindingsPanel::tr("cecum");
+}
+
+QString percent(double probability) {
+    return FindingsPanel::tr("%1 %").arg(std::lround(100.0 * probability));
+}
+
+// Empty where there are some.
+QString whyNone(const reader::Session& session) {
+    if (!session.caseInfo()) return {};
+    if (!session.serverCan(protocol::capability::findings))
+        return FindingsPanel::tr("This server cannot show findings.");
+    switch (session.caseInfo()->detection) {
+        case reader::Detection::damaged:
+            return FindingsPanel::tr("The findings of this case cannot be read.");
+        case reader::Detection::none:
+            return FindingsPanel::tr("This case has not been searched for polyps.");
+        default:
+            return {};
+    }
+}
+
+void tellRefusal(Reading& reading, const Result<void>& done) {
+    const QString why = whyNone(reading.reader().session());
+    if (!done) reading.tell(why.isEmpty() ? text(done.error().message) : why);
+    reading.changed();
+}
+
+void jumpTo(Reading& reading, const reader::ListedFinding& finding) {
+    reading.jump(FindingsPanel::tr("go to a finding"),
+                 [&reading, finding] { reading.reader().goTo(finding); });
+}
+
+}  // namespace
+
+QString nameOf(DetectionMode mode) {
+    switch (mode) {
+        case DetectionMode::secondReader:
+            return FindingsPanel::tr("After my own reading (second reader)");
+        case DetectionMode::concurrent:
+            return FindingsPanel::tr("From the start (concurrent)");
+        case DetectionMode::off:
+            break;
+    }
+    return FindingsPanel::tr("Not shown");
+}
+
+void chooseDetection(Reading& reading, DetectionMode mode) {
+    const auto done = reading.reader().findings().choose(mode);
+    if (done) {
+        QSettings().setValue(QLatin1String(modeSetting), int(mode));
+        reading.tell(FindingsPanel::tr("Findings: %1").arg(nameOf(mode)));
+    }
+    tellRefusal(reading, done);
+}
+
+void finishFirstPass(Reading& reading) {
+    const reader::FindingsReading& findings = reading.reader().findings();
+    if (findings.has() && findings.choice().mode != DetectionMode::secondReader)
+        return reading.tell(
+            FindingsPanel::tr("No findings wait for the first reading in this mode."));
+    tellRefusal(reading, reading.reader().findings().finishFirstPass());
+}
+
+void goToNextFinding(Reading& reading, int step) {
+    const reader::Reader& reader = reading.reader();
+    if (const auto* finding = reader.findings().next(step, reader.flight().placeArcMm()))
+        return jumpTo(reading, *finding);
+    reading.tell(!reader.findings().choice().shows()
+                     ? FindingsPanel::tr("Findings are not shown in this mode.")
+                 : step > 0 ? FindingsPanel::tr("No finding further along the colon.")
+                            : FindingsPanel::tr("No finding before this place."));
+}
+
+void measureFinding(Reading& reading) {
+    const reader::ListedFinding* finding = reading.reader().findings().current();
+    if (!finding) return reading.tell(FindingsPanel::tr("Go to a finding first."));
+    reading.reader().rulers().measure(*finding);
+    reading.changed();
+}
+
+FindingsPanel::FindingsPanel(Reading& reading)
+    : reading_(reading),
+      mode_(new QComboBox),
+      firstPass_(new QPushButton(tr("First reading done: show findings"))),
+      measure_(new QPushButton(tr("Measure the finding"))),
+      candidates_(new QCheckBox(tr("less probable ones, from"))),
+      least_(new QSpinBox),
+      list_(new QTreeWidget),
+      state_(new QLabel),
+      origin_(new QLabel) {
+    for (const DetectionMode mode : modes)
+        mode_->addItem(nameOf(mode));
+    mode_->setAccessibleName(tr("When findings are shown"));
+    mode_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    candidates_->setToolTip(tr("Places that scored below the operating point, in another colour"));
+    least_->setRange(0, 100);
+    least_->setValue(30);
+    least_->setSuffix(tr(" %"));
+    least_->setAccessibleName(tr("Least probability of less probable findings"));
+    list_->setAccessibleName(tr("Findings along the colon"));
+    list_->setColumnCount(5);
+    list_->setHeaderLabels({tr("No."), tr("mm"), tr("Segment"), tr("Size"), tr("Probability")});
+    list_->setRootIsDecorated(false);
+    list_->setAllColumnsShowFocus(true);
+    for (int column = 0; column < 5; ++column)
+        list_->header()->setSectionResizeMode(
+            column, column == 2 ? QHeaderView::Stretch : QHeaderView::ResizeToContents);
+    list_->header()->setStretchLastSection(false);
+    for (QLabel* label : {state_, origin_}) {
+        label->setWordWrap(true);
+        label->setTextFormat(Qt::PlainText);
+    }
+    auto* row = new QHBoxLayout;
+    row->addWidget(candidates_);
+    row->addWidget(least_);
+    row->addStretch(1);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(6, 6, 6, 6);
+    column->addWidget(mode_);
+    column->addWidget(firstPass_);
+    column->addLayout(row);
+    column->addWidget(state_);
+    column->addWidget(list_, 1);
+    column->addWidget(measure_);
+    column->addWidget(origin_);
+    connect(mode_, &QComboBox::activated, this,
+            [this](int n) { chooseDetection(reading_, modes[n]); });
+    connect(firstPass_, &QPushButton::clicked, this, [this] { finishFirstPass(reading_); });
+    connect(measure_, &QPushButton::clicked, this, [this] { measureFinding(reading_); });
+    const auto threshold = [this] {
+        if (looks_) return;
+        DetectionChoice choice = reading_.reader().findings().choice();
+        choice.leastProbability.reset();
+        if (candidates_->isChecked()) choice.leastProbability = 0.01 * least_->value();
+        choose(choice);
+    };
+    connect(candidates_, &QCheckBox::toggled, this, threshold);
+    connect(least_, &QSpinBox::valueChanged, this, threshold);
+    for (const auto signal : {&QTreeWidget::itemClicked, &QTreeWidget::itemActivated})
+        connect(list_, signal, this,
+                [this](QTreeWidgetItem* item) { goTo(item->data(0, numberRole).toInt()); });
+    connect(&reading, &Reading::stepped, this, &FindingsPanel::look);
+    connect(&reading, &Reading::readerReplaced, this, [this] { shownRevision_ = 0; });
+    connect(&reading, &Reading::caseOpened, this, [this] {
+        const int kept = QSettings().value(QLatin1String(modeSetting)).toInt();
+        if (reading_.reader().findings().has() && kept > 0 && kept < int(std::size(modes)))
+            (void)reading_.reader().findings().choose(modes[kept]);
+        shownRevision_ = 0;
+    });
+    look();
+}
+
+void FindingsPanel::choose(const DetectionChoice& choice) {
+    tellRefusal(reading_, reading_.reader().findings().choose(choice));
+}
+
+void FindingsPanel::look() {
+    const reader::FindingsReading& findings = reading_.reader().findings();
+    const bool has = reading_.reader().isOpen() && findings.has();
+    for (QWidget* control : {static_cast<QWidget*>(mode_), static_cast<QWidget*>(candidates_)})
+        control->setEnabled(has);
+    const DetectionChoice& choice = findings.choice();
+    least_->setEnabled(has && candidates_->isChecked());
+    firstPass_->setVisible(choice.mode == DetectionMode::secondReader);
+    firstPass_->setEnabled(has && !choice.firstPassDone);
+    list_->setEnabled(has);
+    const bool measures = has && findings.current();
+    if (measure_->isEnabled() != measures) measure_->setEnabled(measures);
+    if (!isVisible()) return;
+    const std::uint64_t revision = reading_.reader().session().findingsRevision();
+    if (shownChoice_ != choice || mode_->currentIndex() != int(choice.mode)) {
+        shownChoice_ = choice;
+        looks_ = true;
+        mode_->setCurrentIndex(int(choice.mode));
+        candidates_->setChecked(choice.leastProbability.has_value());
+        if (choice.leastProbability)
+            least_->setValue(int(std::lround(100.0 * *choice.leastProbability)));
+        looks_ = false;
+        shownRevision_ = 0;
+    }
+    // Revisions grow from 1 on, where there is a case.
+    if (shownRevision_ != revision || revision == 0) {
+        shownRevision_ = revision;
+        fill();
+    }
+    markCurrent();
+}
+
+void FindingsPanel::fill() {
+    list_->clear();
+    for (const reader::ListedFinding& one : reading_.reader().findings().shown()) {
+        const Finding& finding = one.finding;
+        auto* item = new QTreeWidgetItem(
+            list_, {QString::number(one.number), QString::number(finding.arcMm, 'f', 0),
+                    nameOfSegment(finding.segment), tr("%1 mm").arg(decimal(finding.diameterMm)),
+                    percent(finding.score)});
+        for (const int column : {0, 1, 3, 4})
+            item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
+        item->setData(0, numberRole, one.number);
+        item->setToolTip(
+            2,
+            toolTipOf(tr("%1, %2 mm high").arg(text(finding.kind)).arg(decimal(finding.heightMm))));
+        if (!one.candidate) continue;
+        QFont slanted = list_->font();
+        slanted.setItalic(true);
+        for (int column = 0; column < 5; ++column) {
+            item->setFont(column, slanted);
+            item->setForeground(column, theme().muted);
+        }
+    }
+    shownCurrent_ = 0;
+    state_->setText(stateText());
+    origin_->setText(originText());
+    origin_->setVisible(!origin_->text().isEmpty());
+}
+
+void FindingsPanel::markCurrent() {
+    const reader::ListedFinding* current = reading_.reader().findings().current();
+    const int number = current ? current->number : 0;
+    if (number == shownCurrent_) return;
+    shownCurrent_ = number;
+    for (int n = 0; n < list_->topLevelItemCount(); ++n)
+        if (list_->topLevelItem(n)->data(0, numberRole).toInt() == number)
+            list_->setCurrentItem(list_->topLevelItem(n));
+}
+
+void FindingsPanel::goTo(int number) {
+    if (const reader::ListedFinding* finding = reading_.reader().findings().find(number))
+        jumpTo(reading_, *finding);
+}
+
+QString FindingsPanel::stateText() const {
+    const reader::Session& session = reading_.reader().session();
+    if (!session.caseInfo()) return {};
+    if (const QString why = whyNone(session); !why.isEmpty()) return why;
+    const DetectionChoice& choice = session.detection();
+    if (choice.mode == DetectionMode::off) return tr("Findings are not shown.");
+    if (!choice.shows()) return tr("Findings are shown once the first reading is done.");
+    const auto& list = session.findings();
+    if (!list || list->state != reader::FindingList::State::shown) return tr("asking…");
+    QStringList lines{tr("%n place(s) to judge", nullptr, int(list->findings.size()))};
+    for (const std::string& warning : list->warnings)
+        lines += text(warning);
+    return lines.join('\n');
+}
+
+QString FindingsPanel::originText() const {
+    const auto& list = reading_.reader().session().findings();
+    if (!list || list->model.empty()) return {};
+    return tr("For a physician to judge. Found by %1, which has learnt from: %2. Operating point "
+              "%3.")
+        .arg(text(list->model), text(list->trainedOn), percent(list->operatingPoint));
+}
+
+}  // namespace haustra::window
