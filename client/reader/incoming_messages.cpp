@@ -353,7 +353,8 @@ Result<ListedFinding> findingFrom(const protocol::Finding& message, const Grid& 
          {finding.positionMm, finding.diameterEndsMm.first, finding.diameterEndsMm.second})
         if (!isPlace(place)) return refuseFinding("the server sent one that lies nowhere");
     if (!isArc(finding.arcMm) || !isWithin(finding.diameterMm, 0.0, maxCoordinateMm) ||
-        !isWithin(finding.heightMm, 0.0, maxCoordinateMm) || !isWithin(finding.score, 0.0, 1.0))
+        !isWithin(finding.heightMm, -maxCoordinateMm, maxCoordinateMm) ||
+        !isWithin(finding.score, 0.0, 1.0))
         return refuseFinding("the server sent one whose figures are none");
     if (message.segment() > protocol::Finding::UNKNOWN &&
         message.segment() <= protocol::Finding::CECUM)

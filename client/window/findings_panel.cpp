@@ -1,6 +1,7 @@
 #include "window/findings_panel.h"
 
 #include "protocol/capabilities.h"
+#include "window/pane.h"
 #include "window/theme.h"
 
 #include <QCheckBox>
@@ -125,7 +126,7 @@ FindingsPanel::FindingsPanel(Reading& reading)
     : reading_(reading),
       mode_(new QComboBox),
       firstPass_(new QPushButton(tr("First reading done: show findings"))),
-      measure_(new QPushButton(tr("Measure the finding"))),
+      measure_(new QPushButton(tr("Measure"))),
       candidates_(new QCheckBox(tr("less probable ones, from"))),
       least_(new QSpinBox),
       list_(new QTreeWidget),
@@ -136,6 +137,8 @@ FindingsPanel::FindingsPanel(Reading& reading)
     mode_->setAccessibleName(tr("When findings are shown"));
     mode_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     candidates_->setToolTip(tr("Places that scored below the operating point, in another colour"));
+    measure_->setToolTip(tr("The finding's largest diameter, as a ruler in all views"));
+    origin_->setFont(smallFont(font()));
     least_->setRange(0, 100);
     least_->setValue(30);
     least_->setSuffix(tr(" %"));
@@ -153,18 +156,23 @@ FindingsPanel::FindingsPanel(Reading& reading)
         label->setWordWrap(true);
         label->setTextFormat(Qt::PlainText);
     }
+    // Some of them are in sight, however low the panel is.
+    constexpr int leastRows = 5;
+    list_->setMinimumHeight(leastRows * (QFontMetrics(list_->font()).height() + 6));
     auto* row = new QHBoxLayout;
     row->addWidget(candidates_);
     row->addWidget(least_);
     row->addStretch(1);
+    auto* said = new QHBoxLayout;
+    said->addWidget(state_, 1);
+    said->addWidget(measure_);
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(6, 6, 6, 6);
     column->addWidget(mode_);
     column->addWidget(firstPass_);
     column->addLayout(row);
-    column->addWidget(state_);
+    column->addLayout(said);
     column->addWidget(list_, 1);
-    column->addWidget(measure_);
     column->addWidget(origin_);
     connect(mode_, &QComboBox::activated, this,
             [this](int n) { chooseDetection(reading_, modes[n]); });
@@ -204,7 +212,7 @@ void FindingsPanel::look() {
         control->setEnabled(has);
     const DetectionChoice& choice = findings.choice();
     least_->setEnabled(has && candidates_->isChecked());
-    firstPass_->setVisible(choice.mode == DetectionMode::secondReader);
+    firstPass_->setVisible(choice.mode == DetectionMode::secondReader && !choice.firstPassDone);
     firstPass_->setEnabled(has && !choice.firstPassDone);
     list_->setEnabled(has);
     const bool measures = has && findings.current();

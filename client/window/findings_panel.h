@@ -22,7 +22,7 @@ class FindingsPanel : public QWidget {
     Q_OBJECT
 public:
     explicit FindingsPanel(Reading& reading);
-    QSize sizeHint() const override { return {320, 300}; }
+    QSize sizeHint() const override { return {320, 400}; }
 
 private:
     void look();

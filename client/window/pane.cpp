@@ -529,6 +529,8 @@ void paintPlaceMark(QPainter& painter, QPointF at) {
 
 void paintRuler(QPainter& painter, const QRectF& area, QPointF from, QPointF to, bool dashed,
                 const QString& text) {
+    const QRectF around = QRectF(from, to).normalized().adjusted(-1, -1, 1, 1);
+    if (!around.intersects(area)) return;
     const QColor color = theme().measuredOnPicture;
     painter.setPen(QPen(theme().outline, 3.5));
     painter.drawLine(from, to);

@@ -584,6 +584,11 @@ void ReaderWindow::toggleFindings() {
     if (dock->isVisible() && !dock->visibleRegion().isEmpty()) return dock->hide();
     dock->show();
     dock->raise();
+    // The list of bookmarks, whose place it shares, needs less.
+    const int high = dock->widget()->sizeHint().height();
+    if (auto* window = qobject_cast<QMainWindow*>(dock->parentWidget());
+        window && !dock->isFloating() && dock->height() < high)
+        window->resizeDocks({dock}, {std::min(high, window->height() * 45 / 100)}, Qt::Vertical);
 }
 bool ReaderWindow::showsFindings() const {
     return docks_.findings->isVisible();

@@ -23,7 +23,8 @@ bool isSound(const Finding& finding) {
     const auto isLength = [](double mm) { return mm >= 0.0 && mm <= protocol::maxCoordinateMm; };
     return isPlace(finding.positionMm) && isPlace(finding.wallMm) &&
            isPlace(finding.diameterEndsMm.first) && isPlace(finding.diameterEndsMm.second) &&
-           isLength(finding.diameterMm) && isLength(finding.heightMm) &&
+           isLength(finding.diameterMm) &&
+           std::abs(finding.heightMm) <= protocol::maxCoordinateMm &&
            std::abs(finding.arcMm) <= protocol::maxCoordinateMm && finding.score >= 0.0 &&
            finding.score <= 1.0;
 }

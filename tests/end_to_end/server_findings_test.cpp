@@ -24,18 +24,18 @@ protected:
         const auto plain = store.openCase(smallCaseName).value();
         const auto ct = plain.readVolume<std::int16_t>("ct").value();
         made() = findings(ct);
-        for (const auto& [name, text] : {std::pair("found", findingsJson(made())),
-                                         {"broken", std::string("no findings")},
-                                         {"elsewhere", findingsJson(moved(made()))}}) {
-            auto found = store.createCase(name).value();
+        for (const auto& named : {std::pair("found", findingsJson(made())),
+                                  {"broken", std::string("no findings")},
+                                  {"elsewhere", findingsJson(moved(made()))}}) {
+            auto found = store.createCase(named.first).value();
             const auto key = [&](const char* stage) {
-                return store::makeKey(stage, 1, std::string("of ") + stage + text, {});
+                return store::makeKey(stage, 1, std::string("of ") + stage + named.second, {});
             };
             ASSERT_TRUE(found.publishVolume("ct", store::makeKey("ct", 1, "", {}), ct));
             ASSERT_TRUE(
                 found.publishCenterline("centerline", key("centerline"), tube().centerline()));
             ASSERT_TRUE(found.publishFlatMap("flatmap", key("flatmap"), tube().map()));
-            ASSERT_TRUE(found.publishText("findings", key("findings"), text));
+            ASSERT_TRUE(found.publishText("findings", key("findings"), named.second));
         }
     }
 
@@ -77,6 +77,7 @@ protected:
         all.grid = ct.grid();
         all.findings = {ball(ct, tube().positionMm({0.5, 0.2}), 0.7), ball(ct, facing(0.3), 0.9)};
         all.candidates = {ball(ct, facing(0.75), 0.3)};
+        all.candidates[0].heightMm = -0.25;  // a dent
         all.candidates[0].arcMm = 0.5 * (all.findings[0].arcMm + all.findings[1].arcMm);
         // As it comes back from its text.
         return findingsOfJson(findingsJson(all)).value();
@@ -188,6 +189,7 @@ TEST_F(ServerFindingsTest, ListsWhatTheProductHasAlongTheColonWhereItMayBeShown)
     ASSERT_EQ(all.findings_size(), 3);
     EXPECT_EQ(all.findings(1).number(), 3u);
     EXPECT_TRUE(all.findings(1).below_operating_point());
+    EXPECT_EQ(all.findings(1).height_mm(), -0.25);
     choose(*client, 11, {DetectionMode::concurrent, false, 0.31});
     EXPECT_EQ(list(*client).findings_size(), 2);
     // Each session chooses for itself, and anew for each case that it opens.

@@ -38,6 +38,28 @@ TEST(Script, PaintsTheWallWithinBounds) {
         EXPECT_FALSE(parse(bad)) << bad;
 }
 
+TEST(Script, ChoosesTheModeOfFindingsAndGoesToOne) {
+    const auto actions = parse(R"({"do":"detection","mode":"second-reader"})"
+                               "\n"
+                               R"({"do":"detection","mode":"concurrent","least_probability":0.3})"
+                               "\n"
+                               R"({"do":"findings","json":"findings.json"})"
+                               "\n"
+                               R"({"do":"finding","number":3})");
+    ASSERT_TRUE(actions) << describe(actions.error());
+    EXPECT_EQ(std::get<DetectionAction>((*actions)[0].body).choice,
+              DetectionChoice{DetectionMode::secondReader});
+    EXPECT_EQ(std::get<DetectionAction>((*actions)[1].body).choice,
+              (DetectionChoice{DetectionMode::concurrent, false, 0.3}));
+    EXPECT_EQ(std::get<FindingsAction>((*actions)[2].body).json, "findings.json");
+    EXPECT_EQ(std::get<FindingAction>((*actions)[3].body).number, 3);
+    for (const char* bad :
+         {R"({"do":"detection"})", R"({"do":"detection","mode":"third-reader"})",
+          R"({"do":"detection","mode":"off","least_probability":1.5})", R"({"do":"finding"})",
+          R"({"do":"finding","number":0})", R"({"do":"findings","png":"a.png"})"})
+        EXPECT_FALSE(parse(bad)) << bad;
+}
+
 TEST(Script, ReadsEveryActionWithItsLine) {
     const auto actions = parse(
         "# a tour\n"

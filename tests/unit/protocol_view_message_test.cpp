@@ -127,6 +127,28 @@ TEST(ViewMessage, ViewsWindowsAndPaintComeBackAsTheyWereSent) {
     EXPECT_EQ(*paintFrom(usual), WallPaintChoice{});
 }
 
+TEST(ViewMessage, TheDetectionChoiceComesBackAsItWasSent) {
+    for (const DetectionChoice& choice :
+         {DetectionChoice{}, DetectionChoice{DetectionMode::secondReader},
+          DetectionChoice{DetectionMode::secondReader, true, 0.0},
+          DetectionChoice{DetectionMode::concurrent, false, 1.0}}) {
+        const auto message = detectionMessage(7, choice);
+        EXPECT_EQ(message.set_detection().sequence(), 7u);
+        const auto back = detectionFrom(message.set_detection());
+        ASSERT_TRUE(back);
+        EXPECT_EQ(*back, choice);
+    }
+    SetDetection wrong;
+    for (const double least : {1.01, -0.01, std::nan("")}) {
+        wrong.set_least_probability(least);
+        EXPECT_FALSE(detectionFrom(wrong));
+    }
+    wrong.set_least_probability(0.5);
+    EXPECT_TRUE(detectionFrom(wrong));
+    wrong.set_mode(SetDetection::Mode(3));
+    EXPECT_FALSE(detectionFrom(wrong));
+}
+
 TEST(ViewMessage, MessagesThatAreNoInputOfAViewportHaveNoHeader) {
     ClientMessage message;
     EXPECT_FALSE(inputHeader(message));

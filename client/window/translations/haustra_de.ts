@@ -1030,10 +1030,6 @@
         <translation>Eigene Befundung beendet: Befunde zeigen</translation>
     </message>
     <message>
-        <source>Measure the finding</source>
-        <translation>Den Befund messen</translation>
-    </message>
-    <message>
         <source>less probable ones, from</source>
         <translation>weniger wahrscheinliche, ab</translation>
     </message>
@@ -1123,6 +1119,14 @@
     <message>
         <source>No findings wait for the first reading in this mode.</source>
         <translation>In diesem Modus warten keine Befunde auf die eigene Befundung.</translation>
+    </message>
+    <message>
+        <source>Measure</source>
+        <translation>Messen</translation>
+    </message>
+    <message>
+        <source>The finding&apos;s largest diameter, as a ruler in all views</source>
+        <translation>Der größte Durchmesser des Befunds, als Maß in allen Ansichten</translation>
     </message>
 </context>
 <context>
