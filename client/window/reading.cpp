@@ -89,7 +89,9 @@ void Reading::makeReader(std::string caseName) {
 
 void Reading::connectAgain() {
     const std::string caseName = reader_->session().wantedCase();
-    if (case_) placeBefore_ = Place{case_->scan, reader_->flight(), reader_->slices()};
+    if (case_)
+        placeBefore_ =
+            Place{case_->scan, reader_->flight(), reader_->slices(), reader_->findings().choice()};
     const bool offers = reader_->session().offersCases();
     undoStack_.clear();  // its steps are of the former reader
     case_.reset();
@@ -146,8 +148,10 @@ void Reading::watchSession() {
         undoStack_.clear();
         setTool(DrawingTool::none);
         if (const auto before = std::exchange(placeBefore_, {});
-            before && case_->scan == before->scan)
+            before && case_->scan == before->scan) {
             reader_->reopen(before->flight, before->slices);
+            if (reader_->findings().has()) (void)reader_->findings().choose(before->detection);
+        }
         emit caseOpened();
     }
     if (session.phase() != phase_) {

@@ -58,8 +58,8 @@ public:
     void setPointsByKeys(bool on) { pointsByKeys_ = on; }
 
     /// After the session has ended for good: a new one with the same server, the same case and, if
-    /// that is of the same scan, the same place. Bookmarks that are owed come back from the
-    /// journal; without one they are lost.
+    /// that is of the same scan, the same place, its first reading as far done. Bookmarks that are
+    /// owed come back from the journal; without one they are lost.
     void connectAgain();
 
     /// Free flight: the way that keys are held for, right, up and forward.
@@ -102,6 +102,7 @@ private:
         std::string scan;
         reader::Flight flight;
         reader::SliceViews slices;
+        DetectionChoice detection;
     };
     std::optional<Place> placeBefore_;
     reader::Phase phase_ = reader::Phase::connecting;

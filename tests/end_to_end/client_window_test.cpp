@@ -2136,6 +2136,10 @@ TEST_F(ClientWindowOfALiar, AfterASessionThatEndedForGoodAnotherBeginsAtTheSameP
     flight().goTo(250.0);
     press(Qt::Key_3, Qt::ControlModifier);
     press(Qt::Key_Z);
+    // A second reader who has done the first reading.
+    press(Qt::Key_F, Qt::ControlModifier);
+    press(Qt::Key_F, Qt::ControlModifier | Qt::ShiftModifier);
+    ASSERT_TRUE(waitFor([&] { return reader().findings().shown().size() == 2; }));
     ASSERT_TRUE(settle());
     EXPECT_FALSE(action("connect-again")->isEnabled());
     lies = true;
@@ -2151,6 +2155,8 @@ TEST_F(ClientWindowOfALiar, AfterASessionThatEndedForGoodAnotherBeginsAtTheSameP
     ASSERT_TRUE(settle());
     EXPECT_EQ(flight().arcMm(), 250.0);
     EXPECT_EQ(docksInSight(), docks);
+    EXPECT_TRUE(reader().findings().choice().firstPassDone);
+    EXPECT_TRUE(waitFor([&] { return reader().findings().shown().size() == 2; }));
     EXPECT_FALSE(notices(QStringLiteral("The session has ended")));
     EXPECT_EQ(reader().freshness(View::endoscopic), Freshness::exact);
     // From the list as well.

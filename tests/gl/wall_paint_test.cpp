@@ -1,7 +1,11 @@
 // The wall's places in a picture, and its paint.
 #include "cli/wall_paint.h"
 
+#include "core/findings.h"
+#include "flat_tube.h"
 #include "pictures/picture_file.h"
+#include "render/wall/finding_paint.h"
+#include "store/case_store.h"
 #include "temporary_folder.h"
 #include "wall_scene.h"
 
@@ -199,6 +203,54 @@ TEST_F(WallOfTube, RefusesPaintThatFitsNothing) {
     view.paint = std::make_shared<const WallPaint>(WallPaint{{2, 2}, four, 1.0});
     EXPECT_FALSE(bare->render(view, 16, 16));
     EXPECT_TRUE(renderer->render(view, 16, 16));
+}
+
+TEST(WallPaintOfACase, ColoursItsFindingsAndTheCandidatesThatAreProbableEnough) {
+    const TemporaryFolder folder;
+    const FlatTube tube;
+    const auto map = std::make_shared<const FlatMap>(tube.map());
+    auto store = store::CaseStore::open(folder.path(), true).value();
+    auto made = store.createCase("tube").value();
+    const auto key = [](const char* stage) { return store::makeKey(stage, 1, "", {}); };
+    const auto ct = tube.scan(1.2);
+    ASSERT_TRUE(made.publishVolume("ct", key("ct"), ct));
+    const auto none = cli::paintFindings(made, map, {});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().kind, ErrorKind::noResult);
+    Findings findings;
+    findings.model.software = "a test";
+    findings.operatingPoint = 0.5;
+    findings.grid = ct.grid();
+    for (const double part : {0.3, 0.6}) {
+        Finding finding;
+        finding.positionMm = tube.positionMm({0.4, part * tube.height()});
+        finding.diameterMm = 6.0;
+        finding.score = 1.2 - 1.5 * part;
+        (part < 0.5 ? findings.findings : findings.candidates).push_back(finding);
+    }
+    ASSERT_TRUE(made.publishText("findings", key("findings"), findingsJson(findings)));
+    const auto few = cli::paintFindings(made, map, {}), still = cli::paintFindings(made, map, 0.31),
+               all = cli::paintFindings(made, map, 0.3);
+    ASSERT_TRUE(few && still && all);
+    EXPECT_EQ((*few)->pixels, (*still)->pixels);
+    const auto painter = StripPainter::of(WallSight::of(map).value()).value();
+    std::map<std::int32_t, int> of;
+    for (const FindingPixel& pixel : findingPixels(*painter, findings))
+        of[pixel.pixel] = pixel.finding;
+    int both[2] = {0, 0};
+    for (std::int32_t n = 0; n < std::int32_t((*all)->pixels.size()); ++n) {
+        const auto found = of.find(n);
+        ASSERT_EQ((*few)->pixels[std::size_t(n)].a > 0, found != of.end() && found->second == 0);
+        ASSERT_EQ((*all)->pixels[std::size_t(n)].a > 0, found != of.end());
+        if (found != of.end()) ++both[found->second];
+    }
+    EXPECT_GT(both[0], 100);
+    EXPECT_GT(both[1], 100);
+    // Of another scan's grid they are not painted.
+    findings.grid.patientFromVoxel[3].z += 2.0;
+    ASSERT_TRUE(
+        made.publishText("findings", store::makeKey("moved", 1, "", {}), findingsJson(findings)));
+    EXPECT_FALSE(cli::paintFindings(made, map, {}));
 }
 
 TEST(WallPaintFile, IsAPictureOfTheStripWithTheCecumUp) {

@@ -31,7 +31,10 @@ Grid grid() {
 /// Voxels of the grid in a ball beyond the wall.
 Finding lump(glm::dvec2 flat, double radiusMm, double score) {
     const glm::dvec3 place = tube().positionMm(flat);
-    Finding finding{place, 2.0 * radiusMm, score};
+    Finding finding;
+    finding.positionMm = place;
+    finding.diameterMm = 2.0 * radiusMm;
+    finding.score = score;
     for (std::size_t n = 0; n < grid().voxelCount(); ++n) {
         const glm::ivec3 voxel = grid().voxelAt(n);
         const glm::dvec3 mm = grid().patientFromVoxelPoint(glm::dvec3(voxel));
@@ -89,7 +92,9 @@ TEST(FindingPaint, APlaceBelongsWhereTissueIsBeneathIt) {
 }
 
 TEST(FindingPaint, WithoutVoxelsItIsTheBallOfTheDiameter) {
-    Finding truth{tube().positionMm({0.5, 0.5}), 6.0};
+    Finding truth;
+    truth.positionMm = tube().positionMm({0.5, 0.5});
+    truth.diameterMm = 6.0;
     const FindingTissue tissue(grid(), std::vector{truth});
     for (double x = 0.3; x < 0.7; x += 0.003) {
         const glm::dvec3 place = tube().positionMm({x, 0.5});
