@@ -166,7 +166,7 @@ void Session::handle(const protocol::Hello& hello) {
     for (const char* known :
          {capability::jpeg, capability::lossless, capability::coarse, capability::slabs,
           capability::bookmarkPush, capability::marks, capability::caseEntries,
-           capability::scanValues, capability::pick, capability::lens, capability::findings})
+          capability::scanValues, capability::pick, capability::lens, capability::findings})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
