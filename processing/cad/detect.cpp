@@ -21,7 +21,7 @@ constexpr double stalkNeck = 0.7, stalkHeightRatio = 0.75, flatHeightMm = 3.0, f
 
 // Less of the wall than a polyp of 5 mm takes is no gap in an examination.
 constexpr double leastUnseenMm2 = 20.0;
-// Of the smoothed scan; four times a standard one's.
+// Of the smoothed scan; the noisiest training phantoms have 15.
 constexpr double noisyHu = 25.0;
 
 double featureOf(const Candidate& candidate, std::string_view name) {

@@ -86,20 +86,24 @@ bool ShapeThresholds::pass(const FeatureVector& features) const {
            within("gradient_concentration", gradientConcentration);
 }
 
-double logit(double share) {
-    const double s = std::clamp(share, 0.001, 0.999);
-    return std::log(s / (1.0 - s));
-}
-
 double CadModel::probability(const FeatureVector& features) const {
-    return 1.0 / (1.0 + std::exp(-(calibrationA + calibrationB * logit(forest.at(features)))));
+    return 1.0 / (1.0 + std::exp(-(calibrationA + calibrationB * boosted.at(features))));
 }
 
 std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const int> truths) {
-    double a = 0.0, b = 1.0;
+    constexpr double pull = 1.0;
+    // Negative log-likelihood and the pull's share.
+    const auto loss = [&](double a, double b) {
+        double sum = 0.5 * pull * (a * a + (b - 1.0) * (b - 1.0));
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            // ln(1 + exp(-t)), t > 0 where the truth is likely.
+            const double t = (truths[n] ? 1.0 : -1.0) * (a + b * x[n]);
+            sum += t > 0.0 ? std::log1p(std::exp(-t)) : std::log1p(std::exp(t)) - t;
+        }
+        return sum;
+    };
+    double a = 0.0, b = 1.0, least = loss(a, b);
     for (int step = 0; step < 100; ++step) {
-        // Gradient and Hessian of the negative log-likelihood and of the pull.
-        constexpr double pull = 1.0;
         double ga = pull * a, gb = pull * (b - 1.0), haa = pull, hab = 0.0, hbb = pull;
         for (std::size_t n = 0; n < x.size(); ++n) {
             const double p = 1.0 / (1.0 + std::exp(-(a + b * x[n]))), off = p - truths[n],
@@ -108,8 +112,12 @@ std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const
             haa += w, hab += w * x[n], hbb += w * x[n] * x[n];
         }
         const double det = haa * hbb - hab * hab;
-        const double da = (hbb * ga - hab * gb) / det, db = (haa * gb - hab * ga) / det;
-        a -= da, b -= db;
+        double da = (hbb * ga - hab * gb) / det, db = (haa * gb - hab * ga) / det;
+        double next = loss(a - da, b - db);
+        for (int half = 0; half < 50 && !(next <= least); ++half)
+            da *= 0.5, db *= 0.5, next = loss(a - da, b - db);
+        if (!(next <= least)) break;
+        a -= da, b -= db, least = next;
         if (std::abs(da) + std::abs(db) < 1e-10) break;
     }
     return {a, b};
@@ -117,7 +125,7 @@ std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const
 
 std::string modelText(const CadModel& model) {
     ModelJson trees = ModelJson::array();
-    for (const auto& tree : model.forest.trees) {
+    for (const auto& tree : model.boosted.trees) {
         ModelJson nodes = ModelJson::array();
         for (const TreeNode& node : tree) {
             // A leaf is its value; a branch's left child is the next node.
@@ -190,9 +198,9 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
                 if (!node.is_number() && tree.back().feature < 0)
                     throw std::invalid_argument("a branch has no feature");
             }
-            model.forest.trees.push_back(std::move(tree));
+            model.boosted.trees.push_back(std::move(tree));
         }
-        TRY(checkForest(model.forest, featureCount));
+        TRY(checkTrees(model.boosted, featureCount));
         return model;
     } catch (const std::exception& error) {
         return fail(ErrorKind::badInput, std::string("this is no model: ") + error.what(), place);

@@ -1,7 +1,7 @@
 // What detection has learnt, as a small file.
 #pragma once
 
-#include "cad/forest.h"
+#include "cad/boosted_trees.h"
 #include "cad/lesion_features.h"
 #include "cad/texture.h"
 #include "core/result.h"
@@ -15,7 +15,7 @@
 namespace haustra::cad {
 
 /// Raised whenever features or candidates change so that older models no longer fit them.
-inline constexpr int modelVersion = 1;
+inline constexpr int modelVersion = 2;
 
 /// The reduction of false positives of the source (§6.2.6): each of its features within what
 /// training polyps had.
@@ -31,9 +31,8 @@ struct CadModel {
     std::string trainingSha256;  ///< of the training cases' scans, in order
     TextureModel texture;
     ShapeThresholds thresholds;
-    Forest forest;
-    /// A forest's score s becomes the probability 1/(1 + exp(−(a + b·logit s))) (Platt 1999), with
-    /// s kept within 0.001…0.999.
+    BoostedTrees boosted;
+    /// The trees' sum s becomes the probability 1/(1 + exp(−(a + b·s))) (Platt 1999).
     double calibrationA = 0.0, calibrationB = 1.0;
     double operatingPoint = 0.5;  ///< probability from which on a candidate is a finding
 
@@ -54,9 +53,8 @@ Result<TextureModel> textureOfText(std::string_view text, const std::string& pla
 std::string_view builtInModelText();
 
 /// What must be known for 1/(1 + exp(−(a + b·x))) to fit `truths` (0 or 1) at x best: maximum
-/// likelihood by Newton's method, with a weak pull towards b = 1 and a = 0.
+/// likelihood by Newton's method, a step halved until it is one downhill, with a weak pull towards
+/// b = 1 and a = 0.
 std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const int> truths);
-/// ln(s/(1 − s)), s kept within 0.001…0.999.
-double logit(double share);
 
 }  // namespace haustra::cad

@@ -1,6 +1,7 @@
 #include "cad/train.h"
 
 #include "cad/wall_frames.h"
+#include "core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,7 @@ std::pair<double, double> middleRange(std::vector<double> values) {
     return {at(0.025), at(0.975)};
 }
 
-Forest forestOf(const std::vector<const TrainingCase*>& cases) {
+BoostedTrees boostedOn(const std::vector<const TrainingCase*>& cases) {
     std::vector<float> rows, responses;
     for (const TrainingCase* each : cases) {
         for (const Example& example : each->examples) {
@@ -36,42 +37,31 @@ Forest forestOf(const std::vector<const TrainingCase*>& cases) {
             responses.push_back(example.polyp ? 1.0f : 0.0f);
         }
     }
-    return trainForest(rows, responses, featureCount);
+    return boostTrees(rows, responses, featureCount);
 }
 
-// One place of a case that would be told, with its score by a forest that has not seen the case.
-struct Scored {
-    double score = 0.0;
-    int lesion = -1;
-    bool polyp = false, blamed = true;
-    std::size_t caseNumber = 0;
-};
-
-// As weigh() does: the best of those of one place.
-std::vector<Scored> scoredPlaces(const TrainingCase& each, std::size_t number,
-                                 const Forest& forest) {
+// What would be told of a case, as weigh() does: the best of those of one place. Scores are the
+// trees' sums.
+EvaluatedCase told(const TrainingCase& each, const BoostedTrees& boosted) {
     std::vector<std::pair<double, const Example*>> order;
     for (const Example& example : each.examples)
-        order.emplace_back(forest.at(example.features), &example);
+        order.emplace_back(boosted.at(example.features), &example);
     std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
         return a.first != b.first ? a.first > b.first : a.second->areaMm2 > b.second->areaMm2;
     });
     std::vector<const Example*> kept;
-    std::vector<Scored> places;
-    for (const auto& [score, example] : order) {
-        const bool told = std::any_of(kept.begin(), kept.end(), [&](const Example* other) {
+    EvaluatedCase result{each.name, each.name, each.truth, {}, 0};
+    for (const auto& entry : order) {
+        const Example* example = entry.second;
+        const bool isTold = std::any_of(kept.begin(), kept.end(), [&](const Example* other) {
             return glm::distance(example->placeMm, other->placeMm) <
                    0.5 * std::max(example->diameterMm, other->diameterMm);
         });
-        if (told) continue;
+        if (isTold) continue;
         kept.push_back(example);
-        const bool neoplastic =
-            example->lesion >= 0 && each.truth[std::size_t(example->lesion)].neoplastic;
-        const bool benign =
-            example->lesion >= 0 && each.truth[std::size_t(example->lesion)].hyperplastic();
-        places.push_back({score, example->lesion, neoplastic, !neoplastic && !benign, number});
+        result.places.push_back({entry.first, example->diameterMm, example->lesion, ""});
     }
-    return places;
+    return result;
 }
 
 }  // namespace
@@ -157,8 +147,8 @@ std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
     return examples;
 }
 
-Result<CadModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
-                            const TrainOptions& options) {
+Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
+                                const TrainOptions& options) {
     if (int(cases.size()) < options.folds)
         return fail(ErrorKind::badInput, "there are fewer training cases than folds");
     CadModel model;
@@ -180,42 +170,44 @@ Result<CadModel> trainModel(const TextureModel& texture, const std::vector<Train
         return fail(ErrorKind::badInput, "no polyp of the training cases was a candidate");
     model.thresholds = {middleRange(indices), middleRange(curvedness), middleRange(concentration)};
 
-    // The last forest has seen all cases, each other one all but those of its fold.
-    std::vector<Forest> forests(std::size_t(options.folds) + 1);
-    parallelFor(forests.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+    // The last trees have seen all cases, each others all but those of a fold.
+    std::vector<BoostedTrees> boosted(std::size_t(options.folds) + 1);
+    parallelFor(boosted.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t fold = begin; fold < end; ++fold) {
             std::vector<const TrainingCase*> seen;
             for (std::size_t n = 0; n < cases.size(); ++n)
-                if (n % std::size_t(options.folds) != fold || fold + 1 == forests.size())
+                if (n % std::size_t(options.folds) != fold || fold + 1 == boosted.size())
                     seen.push_back(all[n]);
-            forests[fold] = forestOf(seen);
+            boosted[fold] = boostedOn(seen);
         }
     });
-    std::vector<Scored> scored;
-    for (int fold = 0; fold < options.folds; ++fold) {
-        const Forest& forest = forests[std::size_t(fold)];
-        for (std::size_t n = std::size_t(fold); n < cases.size(); n += std::size_t(options.folds)) {
-            const auto places = scoredPlaces(cases[n], n, forest);
-            scored.insert(scored.end(), places.begin(), places.end());
-        }
-    }
-    model.forest = std::move(forests.back());
-    std::vector<double> x, blamed;
+    TrainedModel trained;
+    std::vector<double> x, blamedScores;
     std::vector<int> truths;
-    for (const Scored& place : scored) {
-        if (place.polyp || place.blamed) {
-            x.push_back(logit(place.score));
-            truths.push_back(place.polyp);
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        trained.crossValidated.push_back(told(cases[n], boosted[n % std::size_t(options.folds)]));
+        for (const ToldPlace& place : trained.crossValidated.back().places) {
+            const TrueLesion* lesion =
+                place.lesion < 0 ? nullptr : &cases[n].truth[std::size_t(place.lesion)];
+            const bool polyp = lesion && lesion->neoplastic,
+                       blamed = !lesion || (!lesion->neoplastic && !lesion->hyperplastic());
+            if (polyp || blamed) x.push_back(place.score), truths.push_back(polyp);
+            if (blamed) blamedScores.push_back(place.score);
         }
-        if (place.blamed) blamed.push_back(place.score);
     }
+    model.boosted = std::move(boosted.back());
     std::tie(model.calibrationA, model.calibrationB) = fitLogistic(x, truths);
-    std::sort(blamed.rbegin(), blamed.rend());
+    const auto probability = [&](double score) {
+        return 1.0 / (1.0 + std::exp(-(model.calibrationA + model.calibrationB * score)));
+    };
+    std::sort(blamedScores.rbegin(), blamedScores.rend());
     const std::size_t allowed = std::size_t(options.falsePositives * double(cases.size()));
-    const double score = allowed < blamed.size() ? blamed[allowed] : 0.0;
-    model.operatingPoint =
-        1.0 / (1.0 + std::exp(-(model.calibrationA + model.calibrationB * logit(score))));
-    return model;
+    model.operatingPoint = allowed < blamedScores.size() ? probability(blamedScores[allowed]) : 0.0;
+    for (EvaluatedCase& each : trained.crossValidated)
+        for (ToldPlace& place : each.places)
+            place.score = probability(place.score);
+    trained.model = std::move(model);
+    return trained;
 }
 
 }  // namespace haustra::cad

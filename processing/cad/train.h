@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cad/detect.h"
+#include "cad/evaluate.h"
 #include "cad/truth.h"
 
 #include <string>
@@ -45,10 +46,16 @@ struct TrainOptions {
     int threads = 0;
 };
 
-/// Forest, thresholds, calibration and operating point. The forest is trained on all cases;
-/// calibration and operating point are those of forests that had not seen the case (folds by case).
+struct TrainedModel {
+    CadModel model;
+    /// Each case as it was told by trees that had not seen it; scores are probabilities.
+    std::vector<EvaluatedCase> crossValidated;
+};
+
+/// Trees, thresholds, calibration and operating point. The trees have learnt from all cases;
+/// calibration and operating point are those of trees that had not seen the case (folds by case).
 /// Fails (badInput) where there are fewer cases than folds, or no polyp was found in any.
-Result<CadModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
-                            const TrainOptions& options);
+Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
+                                const TrainOptions& options);
 
 }  // namespace haustra::cad

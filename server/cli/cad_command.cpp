@@ -243,13 +243,19 @@ Result<void> runTrain(const CadArguments& arguments) {
     options.trainingSha256 = store::toHex(hash.finish());
     options.falsePositives = arguments.falsePositives;
     options.threads = arguments.threads;
-    bar.show("forests", 0.0);
-    const auto model = TRY(cad::trainModel(texture, cases, options));
-    bar.say(
-        fmt::format("operating point {:.3f}, where other cases' folds had {:.1f} false "
-                    "positives a scan",
-                    model.operatingPoint, arguments.falsePositives));
-    return writeTextFile(arguments.model, cad::modelText(model));
+    bar.show("trees", 0.0);
+    const auto trained = TRY(cad::trainModel(texture, cases, options));
+    std::vector<const cad::EvaluatedCase*> every;
+    for (const cad::EvaluatedCase& each : trained.crossValidated)
+        every.push_back(&each);
+    for (const cad::FrocPoint& point : cad::frocCurve(every))
+        bar.say(
+            fmt::format("cross-validation by case: {:.2f} false positives a scan, {:.1f} % of "
+                        "polyps from 6 mm ({:.1f} to {:.1f})",
+                        point.falsePositives, 100.0 * point.sensitivity, 100.0 * point.low,
+                        100.0 * point.high));
+    bar.say(fmt::format("operating point {:.3f}", trained.model.operatingPoint));
+    return writeTextFile(arguments.model, cad::modelText(trained.model));
 }
 
 // What a group of phantoms is called: a case's name up to its first hyphen.

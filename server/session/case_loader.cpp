@@ -34,15 +34,16 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         else
             spdlog::warn("a case's overview has no colon: {}", surface.error().message);
     }
-    // Without them the case has the fixed colours.
-    if (auto biopsy = readScanBiopsy(source))
-        files.facts.scanBiopsy = std::move(*biopsy);
-    else
-        spdlog::warn("a case opens without its own biopsy colours: {}", describe(biopsy.error()));
     if (files.findings) {
         if (auto findings = readFindings(source, files.facts.grid, files.facts.centerline,
                                          files.facts.wall.get())) {
             files.facts.findings = std::move(*findings);
+            // Without it the case has the fixed colours.
+            if (auto biopsy = scanBiopsyOf(files.facts.findings->product))
+                files.facts.scanBiopsy = std::move(*biopsy);
+            else
+                spdlog::warn("a case opens without its own biopsy colours: {}",
+                             describe(biopsy.error()));
         } else {
             files.facts.findingsDamaged = true;
             spdlog::warn("a case opens without its findings: {}", findings.error().message);

@@ -1,17 +1,12 @@
 #include "session/case_presets.h"
 
-#include "core/findings.h"
 #include "core/printed_text.h"
-#include "store/products.h"
 
 #include <algorithm>
 
 namespace haustra::session {
 
-Result<std::optional<OpticsPreset>> readScanBiopsy(const store::Case& source) {
-    if (!source.find(store::product::findings)) return std::optional<OpticsPreset>();
-    const auto text = TRY(source.readText(store::product::findings));
-    const Findings findings = TRY(findingsOfJson(text));
+Result<std::optional<OpticsPreset>> scanBiopsyOf(const Findings& findings) {
     if (!findings.biopsy) return std::optional<OpticsPreset>();
     const ScanBiopsy& biopsy = *findings.biopsy;
     OpticsPreset preset{

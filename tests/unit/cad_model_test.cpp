@@ -1,4 +1,4 @@
-// What detection learns: texture, forests, calibration; and how it is judged.
+// What detection learns: texture, trees, calibration; and how it is judged.
 #include "cad/candidate_table.h"
 #include "cad/evaluate.h"
 #include "cad/model.h"
@@ -63,23 +63,23 @@ cad::CadModel smallModel() {
     model.trainingSha256 = std::string(64, 'b');
     model.texture = cad::learnTexture(cloud(200, 0.2f, 0.05f, 1), cloud(50, 0.6f, 0.02f, 2));
     model.thresholds = {{0.8, 1.0}, {0.05, 0.4}, {0.1, 0.9}};
-    model.forest = cad::trainForest(taught.rows, taught.responses, cad::featureCount, 30);
+    model.boosted = cad::boostTrees(taught.rows, taught.responses, cad::featureCount, 30);
     model.calibrationA = -0.25, model.calibrationB = 1.5, model.operatingPoint = 0.4;
     return model;
 }
 
-TEST(Forest, LearnsWhatTellsTheTwoApart) {
+TEST(BoostedTrees, LearnsWhatTellsTheTwoApart) {
     const cad::CadModel model = smallModel();
     cad::FeatureVector features;
     features.fill(0.5f);
     features[1] = 0.95f;
-    EXPECT_GT(model.forest.at(features), 0.8);
+    EXPECT_GT(model.boosted.at(features), 1.0);
     features[1] = 0.05f;
-    EXPECT_LT(model.forest.at(features), 0.2);
+    EXPECT_LT(model.boosted.at(features), -1.0);
     const Taught taught(400);
-    const cad::Forest again =
-        cad::trainForest(taught.rows, taught.responses, cad::featureCount, 30);
-    EXPECT_EQ(again.at(features), model.forest.at(features));
+    const cad::BoostedTrees again =
+        cad::boostTrees(taught.rows, taught.responses, cad::featureCount, 30);
+    EXPECT_EQ(again.at(features), model.boosted.at(features));
 }
 
 TEST(Model, ReadsBackAsItWas) {
@@ -109,7 +109,7 @@ TEST(Model, WhatIsNoneIsRefused) {
     ASSERT_TRUE(cad::modelOfText(sound));
     for (const std::string& text :
          {std::string(), std::string("[]"), sound.substr(0, sound.size() - 40),
-          with("\"haustra_cad_model\": 1", "\"haustra_cad_model\": 99"),
+          with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
           with("diameter_mm", "weight_kg"), with("\"trees\": [\n[[", "\"trees\": [\n[[99,0.5,1],["),
           with("\"trees\": [\n[[", "\"trees\": [\n[[1,0.5,0],["),
           with("\"polyp\":[", "\"polyp\":[0,")})

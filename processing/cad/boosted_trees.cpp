@@ -1,4 +1,4 @@
-#include "cad/forest.h"
+#include "cad/boosted_trees.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace haustra::cad {
 
-double Forest::at(std::span<const float> features) const {
+double BoostedTrees::at(std::span<const float> features) const {
     double sum = 0.0;
     for (const std::vector<TreeNode>& tree : trees) {
         const TreeNode* node = &tree.front();
@@ -18,13 +18,13 @@ double Forest::at(std::span<const float> features) const {
                                          : node->right)];
         sum += node->threshold;
     }
-    return sum / double(trees.size());
+    return sum;
 }
 
-Result<void> checkForest(const Forest& forest, int features) {
+Result<void> checkTrees(const BoostedTrees& boosted, int features) {
     const auto refuse = [](const char* what) { return fail(ErrorKind::badInput, what, "model"); };
-    if (forest.trees.empty()) return refuse("there is no tree");
-    for (const std::vector<TreeNode>& tree : forest.trees) {
+    if (boosted.trees.empty()) return refuse("there is no tree");
+    for (const std::vector<TreeNode>& tree : boosted.trees) {
         if (tree.empty()) return refuse("a tree has no root");
         for (std::size_t n = 0; n < tree.size(); ++n) {
             const TreeNode& node = tree[n];
@@ -39,25 +39,26 @@ Result<void> checkForest(const Forest& forest, int features) {
     return {};
 }
 
-Forest trainForest(std::span<const float> rows, std::span<const float> responses, int features,
-                   int trees, int depth, int leastRows) {
+BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> responses, int features,
+                        int trees, int depth, int leastRows) {
     const int count = int(responses.size());
-    const cv::Mat samples(count, features, CV_32F, const_cast<float*>(rows.data())),
-        wanted(count, 1, CV_32F, const_cast<float*>(responses.data()));
-    const auto forest = cv::ml::RTrees::create();
-    forest->setMaxDepth(depth);
-    forest->setMinSampleCount(leastRows);
-    forest->setRegressionAccuracy(1e-4f);
-    forest->setActiveVarCount(0);  // the root of their number
-    forest->setTermCriteria({cv::TermCriteria::MAX_ITER, trees, 0.0});
-    cv::theRNG().state = 20061123;
-    forest->train(cv::ml::TrainData::create(samples, cv::ml::ROW_SAMPLE, wanted));
+    const cv::Mat samples(count, features, CV_32F, const_cast<float*>(rows.data()));
+    cv::Mat classes(count, 1, CV_32S);
+    for (int n = 0; n < count; ++n)
+        classes.at<int>(n) = responses[std::size_t(n)] > 0.5f;
+    const auto boost = cv::ml::Boost::create();
+    boost->setBoostType(cv::ml::Boost::GENTLE);
+    boost->setWeakCount(trees);
+    boost->setWeightTrimRate(0.95);
+    boost->setMaxDepth(depth);
+    boost->setMinSampleCount(leastRows);
+    boost->train(cv::ml::TrainData::create(samples, cv::ml::ROW_SAMPLE, classes));
 
     // Its trees lie one after the other in lists of nodes and splits.
-    const auto& nodes = forest->getNodes();
-    const auto& splits = forest->getSplits();
-    Forest result;
-    for (const int root : forest->getRoots()) {
+    const auto& nodes = boost->getNodes();
+    const auto& splits = boost->getSplits();
+    BoostedTrees result;
+    for (const int root : boost->getRoots()) {
         std::vector<TreeNode> tree;
         const auto add = [&](const auto& self, int at) -> std::int32_t {
             const auto& node = nodes[std::size_t(at)];

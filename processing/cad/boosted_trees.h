@@ -1,0 +1,37 @@
+// Boosted regression trees: the sum of what small trees say, each of which mends those before it.
+#pragma once
+
+#include "core/result.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace haustra::cad {
+
+struct TreeNode {
+    std::int32_t feature = -1;         ///< −1: a leaf
+    float threshold = 0.0f;            ///< not above: the left branch; of a leaf, its value
+    std::int32_t left = 0, right = 0;  ///< nodes of the same tree, after this one
+};
+
+/// Immutable once it is made; any number of threads.
+struct BoostedTrees {
+    std::vector<std::vector<TreeNode>> trees;
+    /// Sum of the leaves that the features lead to: above 0 where a polyp is more likely. They must
+    /// have passed checkTrees.
+    double at(std::span<const float> features) const;
+};
+
+/// Fails (badInput) where there is no tree, a branch leads back or nowhere, or a feature does not
+/// exist.
+Result<void> checkTrees(const BoostedTrees& boosted, int features);
+
+/// `rows`: `features` numbers each, as many rows as responses (0 or 1, both kinds). Gentle AdaBoost
+/// (Friedman, Hastie and Tibshirani, Annals of Statistics 2000; 28: 337; cv::ml::Boost): `trees` of
+/// `depth` splits at most, whose leaves hold at least `leastRows` rows; rows that together have
+/// less than a twentieth of the weight sit a round out. The same for equal input.
+BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> responses, int features,
+                        int trees = 200, int depth = 4, int leastRows = 10);
+
+}  // namespace haustra::cad
