@@ -27,19 +27,24 @@ Result<std::string> modelText(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& flatMapKey) {
+Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surfaceKey,
+                                const ProductKey& centerlineKey,
+                                const std::optional<ProductKey>& flatMapKey) {
     const StageMeter meter;
     const PrepareOptions& options = preparation.options();
     const std::string text = TRY(modelText(options.cadModel));
     const auto model = TRY(cad::modelOfText(
         text, options.cadModel.empty() ? "built-in model" : options.cadModel.string()));
     const std::string hash = store::toHex(store::textDigest(text));
-    const ProductKey key = store::makeKey("cad", detectionVersion, "model=" + hash, {flatMapKey});
+    const ProductKey key = store::makeKey(
+        "cad", detectionVersion, "model=" + hash,
+        flatMapKey ? std::vector{*flatMapKey} : std::vector{surfaceKey, centerlineKey});
     StageCase stage = preparation.open("cad", key);
     return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {
         ColonProducts products;
         products.quality = TRY(stage.holds(product::quality));
         products.cleansed = TRY(stage.holds(product::cleansed));
+        products.flatMap = flatMapKey.has_value();
         const auto inputs = TRY(readColon(stage, products));
         cad::DetectOptions detection;
         detection.threads = options.threads;

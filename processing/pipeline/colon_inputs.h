@@ -28,6 +28,7 @@ struct ColonInputs {
 struct ColonProducts {
     bool quality = false;   ///< of a colon that was found; else of a mask
     bool cleansed = false;  ///< else the scan as it came stands for it
+    bool flatMap = true;    ///< else it is empty
 };
 
 /// From a StageCase or a store::Case. Fails where a product is missing or damaged.
@@ -40,7 +41,7 @@ Result<ColonInputs> readColon(Source& source, const ColonProducts& products) {
         products.cleansed ? product::cleansed : product::ct));
     inputs.lumen = TRY(source.template readVolume<std::uint8_t>(product::lumen));
     inputs.surface = TRY(source.readMesh(product::surface));
-    inputs.flat = TRY(source.readFlatMap(product::flatMap));
+    if (products.flatMap) inputs.flat = TRY(source.readFlatMap(product::flatMap));
     inputs.centerline = TRY(source.readCenterline(product::centerline));
     inputs.tissue = TRY(source.attributes(product::segmentation).and_then(tissueModelOf));
     if (products.quality) {

@@ -92,14 +92,20 @@ Result<PrepareReport> runStages(Preparation& preparation) {
         preparation.note("flattening: left out, as the organ's profile does not ask for it");
         return preparation.takeReport();
     }
-    const auto flatMap = TRY(flattenSurface(preparation, surface, centerline));
-    if (!preparation.wanted("cad")) return preparation.takeReport();
-    if (!preparation.organ().detectPolyps || !ct) {
-        preparation.note(ct ? "cad: left out, as the organ's profile does not ask for it"
-                            : "cad: left out, as there is no scan");
-        return preparation.takeReport();
+    const auto flatMap = flattenSurface(preparation, surface, centerline);
+    // A colon that cannot be flattened is searched for polyps all the same: the map only tells
+    // detection which way the strip runs.
+    if (!flatMap && flatMap.error().kind != ErrorKind::noResult)
+        return tl::make_unexpected(flatMap.error());
+    if (preparation.wanted("cad")) {
+        if (preparation.organ().detectPolyps && ct)
+            TRY(detectPolyps(preparation, surface, centerline,
+                             flatMap ? std::optional(*flatMap) : std::nullopt));
+        else
+            preparation.note(ct ? "cad: left out, as the organ's profile does not ask for it"
+                                : "cad: left out, as there is no scan");
     }
-    TRY(detectPolyps(preparation, flatMap));
+    if (!flatMap) return tl::make_unexpected(flatMap.error());
     return preparation.takeReport();
 }
 

@@ -80,7 +80,8 @@ const std::vector<std::string>& stageNames();
 ///
 /// Mixture and cleansing run where there is a scan and the organ's profile says so; `lumen` comes
 /// from the segmentation otherwise. Flattening and detection run where the profile says so. A stage
-/// that fails leaves the products before it published. Stages whose products the store holds under
+/// that fails leaves the products before it published. A colon that cannot be flattened is searched
+/// for polyps before that is told. Stages whose products the store holds under
 /// the same key (stage version, options, input keys; the first input is the content of the source
 /// files), with sound bytes, are skipped. Killed at any moment it continues with the next call.
 /// Holds the case's lock while it runs. The products are the same bytes for any number of threads.

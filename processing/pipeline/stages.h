@@ -69,8 +69,10 @@ std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const Wa
 Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& surface,
                                   const ProductKey& centerline);
 
-/// `findings`: places of the wall that may be polyps. `flatMap` is the key of the last of the
-/// products that it reads; the others are the keys that the flat map's own parents have.
-Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& flatMap);
+/// `findings`: places of the wall that may be polyps. Without `flatMap`, for a colon that could not
+/// be flattened; surface and centerline are then the last of the products that it reads.
+Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surface,
+                                const ProductKey& centerline,
+                                const std::optional<ProductKey>& flatMap);
 
 }  // namespace haustra::pipeline

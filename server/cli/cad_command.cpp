@@ -111,7 +111,8 @@ Result<LoadedCase> load(const store::CaseStore& store, const CadArguments& argum
     };
     loaded.truth = TRY(readTruth(arguments.truth, name));
     loaded.scan = TRY(key(product::ct));
-    loaded.prepared = TRY(key(product::flatMap));
+    loaded.prepared =
+        TRY(key(loaded.source.find(product::flatMap) ? product::flatMap : product::surface));
     return loaded;
 }
 
@@ -119,7 +120,8 @@ Result<pipeline::ColonInputs> readInputs(const LoadedCase& loaded, const CadArgu
     const bool cleansed =
         loaded.source.find(product::cleansed).has_value() && !isWithout(arguments, "cleansing");
     return pipeline::readColon(loaded.source,
-                               {loaded.source.find(product::quality).has_value(), cleansed});
+                               {loaded.source.find(product::quality).has_value(), cleansed,
+                                loaded.source.find(product::flatMap).has_value()});
 }
 
 cad::EvidenceOptions evidenceOptions(const CadArguments& arguments) {
@@ -322,16 +324,19 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     cad::Method method;
     method.classifier = usesClassifier(arguments);
     ProgressBar bar;
+    // A case that is not there is told of before the first is measured.
+    std::vector<LoadedCase> loaded;
+    for (const std::string& name : arguments.cases)
+        loaded.push_back(TRY(load(store, arguments, name)));
     std::vector<cad::EvaluatedCase> cases;
-    for (std::size_t n = 0; n < arguments.cases.size(); ++n) {
-        bar.show("detect", double(n) / double(arguments.cases.size()));
+    for (std::size_t n = 0; n < loaded.size(); ++n) {
+        bar.show("detect", double(n) / double(loaded.size()));
         const std::string& name = arguments.cases[n];
-        const auto loaded = TRY(load(store, arguments, name));
-        auto all = TRY(candidatesOf(loaded, arguments, model.texture));
+        auto all = TRY(candidatesOf(loaded[n], arguments, model.texture));
         leaveOut(all, arguments);
         auto weighed = all;
         cad::weigh(weighed, model, method);
-        cases.push_back(cad::evaluateCase(name, groupOf(name), all, weighed, loaded.truth));
+        cases.push_back(cad::evaluateCase(name, groupOf(name), all, weighed, loaded[n].truth));
     }
     std::map<std::string, std::vector<const cad::EvaluatedCase*>> groups;
     std::vector<const cad::EvaluatedCase*> every;
