@@ -41,52 +41,136 @@ double areaOf(const WallSamples& wall, std::span<const std::uint32_t> samples) {
     return area;
 }
 
-// What the patch encloses is part of it: what is around it, as far as it is wide, is walked
-// through, and what cannot be left is inside.
-void fillHoles(const WallSamples& wall, std::vector<std::uint32_t>& patch,
-               std::vector<std::uint32_t>& mark, std::uint32_t& generation) {
-    const std::uint32_t inPatch = ++generation, around = ++generation, outside = ++generation;
-    for (const std::uint32_t v : patch)
-        mark[v] = inPatch;
-    const double reachMm = 0.6 * diameterOf(wall, patch).mm + 1.0;
-    glm::dvec3 middle(0.0);
-    for (const std::uint32_t v : patch)
-        middle += wall.mesh.vertices[v];
-    middle /= double(patch.size());
-    double farthest = 0.0;
-    for (const std::uint32_t v : patch)
-        farthest = std::max(farthest, glm::distance(middle, wall.mesh.vertices[v]));
-    std::vector<std::uint32_t> ring, open;
-    const auto visit = [&](std::uint32_t v) {
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            const std::uint32_t next = wall.neighbours[e];
-            if (mark[next] == inPatch || mark[next] == around) continue;
-            mark[next] = around;
-            ring.push_back(next);
+// What the patch encloses is part of it. From each of its rims a flood goes out over the wall, all
+// at one pace; floods that meet are one. One that dries up has filled a hole; one that gets as far
+// as the patch is wide is outside, and so is the last that still goes on. Belongs to one thread.
+class HoleFiller {
+public:
+    explicit HoleFiller(const WallSamples& wall) : wall_(wall), mark_(wall.mesh.vertices.size()) {}
+
+    void fill(std::vector<std::uint32_t>& patch) {
+        inPatch_ = marks_ + 1, beside_ = marks_ + 2, firstFlood_ = marks_ + 3;
+        for (const std::uint32_t v : patch)
+            mark_[v] = inPatch_;
+        findRims(patch);
+        marks_ += 2 + std::uint32_t(floods_.size());
+        if (floods_.size() < 2) return;
+        measure(patch);
+        while (goesOn())
+            for (std::size_t f = 0; f < floods_.size(); ++f)
+                step(f);
+        // The last of all is outside.
+        const bool anyOpen = std::any_of(floods_.begin(), floods_.end(),
+                                         [](const Flood& flood) { return flood.open; });
+        for (std::size_t f = 0; f < floods_.size(); ++f) {
+            const std::size_t root = rootOf(f);
+            if (floods_[root].open || (!anyOpen && root == rootOf(last_))) continue;
+            patch.insert(patch.end(), floods_[f].samples.begin(), floods_[f].samples.end());
         }
+    }
+
+private:
+    struct Flood {
+        std::vector<std::uint32_t> samples;
+        std::size_t head = 0, joined = 0;  // samples before the head are done with; union–find
+        bool open = false;                 // of a root
     };
-    for (const std::uint32_t v : patch)
-        visit(v);
-    for (std::size_t head = 0; head < ring.size(); ++head) {
-        if (glm::distance(middle, wall.mesh.vertices[ring[head]]) > farthest + reachMm)
-            open.push_back(ring[head]);
-        else
-            visit(ring[head]);
+
+    std::size_t rootOf(std::size_t flood) {
+        while (floods_[flood].joined != flood)
+            flood = floods_[flood].joined = floods_[floods_[flood].joined].joined;
+        return flood;
     }
-    for (const std::uint32_t v : open)
-        mark[v] = outside;
-    for (std::size_t head = 0; head < open.size(); ++head) {
-        for (std::uint32_t e = wall.begin[open[head]]; e < wall.begin[open[head] + 1]; ++e) {
-            const std::uint32_t next = wall.neighbours[e];
-            if (mark[next] != around) continue;
-            mark[next] = outside;
-            open.push_back(next);
+
+    // Samples beside the patch, those that hang together as one flood's first.
+    void findRims(const std::vector<std::uint32_t>& patch) {
+        std::vector<std::uint32_t> beside;
+        for (const std::uint32_t v : patch) {
+            for (std::uint32_t e = wall_.begin[v]; e < wall_.begin[v + 1]; ++e) {
+                const std::uint32_t next = wall_.neighbours[e];
+                if (mark_[next] == inPatch_ || mark_[next] == beside_) continue;
+                mark_[next] = beside_;
+                beside.push_back(next);
+            }
+        }
+        floods_.clear();
+        for (const std::uint32_t first : beside) {
+            if (mark_[first] != beside_) continue;
+            const auto own = firstFlood_ + std::uint32_t(floods_.size());
+            Flood flood;
+            flood.joined = floods_.size();
+            flood.samples.push_back(first);
+            mark_[first] = own;
+            for (std::size_t head = 0; head < flood.samples.size(); ++head) {
+                const std::uint32_t v = flood.samples[head];
+                for (std::uint32_t e = wall_.begin[v]; e < wall_.begin[v + 1]; ++e) {
+                    const std::uint32_t next = wall_.neighbours[e];
+                    if (mark_[next] != beside_) continue;
+                    mark_[next] = own;
+                    flood.samples.push_back(next);
+                }
+            }
+            floods_.push_back(std::move(flood));
         }
     }
-    if (open.empty()) return;  // all the wall there is
-    for (const std::uint32_t v : ring)
-        if (mark[v] == around) patch.push_back(v);
-}
+
+    void measure(const std::vector<std::uint32_t>& patch) {
+        middle_ = glm::dvec3(0.0);
+        for (const std::uint32_t v : patch)
+            middle_ += wall_.mesh.vertices[v];
+        middle_ /= double(patch.size());
+        double farthest = 0.0;
+        for (const std::uint32_t v : patch)
+            farthest = std::max(farthest, glm::distance(middle_, wall_.mesh.vertices[v]));
+        reachMm_ = 2.0 * farthest + 1.0;
+    }
+
+    // Whether it is still to be seen which of the floods are outside.
+    bool goesOn() {
+        std::size_t going = 0;
+        bool anyOpen = false;
+        for (std::size_t f = 0; f < floods_.size(); ++f) {
+            const std::size_t root = rootOf(f);
+            anyOpen |= floods_[root].open;
+            if (floods_[root].open || floods_[f].head == floods_[f].samples.size()) continue;
+            if (going == 0 || root != last_) ++going;
+            last_ = root;
+        }
+        return going > 1 || (going == 1 && anyOpen);
+    }
+
+    void step(std::size_t f) {
+        if (floods_[rootOf(f)].open || floods_[f].head == floods_[f].samples.size()) return;
+        const std::uint32_t v = floods_[f].samples[floods_[f].head++];
+        if (glm::distance(middle_, wall_.mesh.vertices[v]) > reachMm_) {
+            floods_[rootOf(f)].open = true;
+            return;
+        }
+        for (std::uint32_t e = wall_.begin[v]; e < wall_.begin[v + 1]; ++e) {
+            const std::uint32_t next = wall_.neighbours[e];
+            if (mark_[next] == inPatch_) continue;
+            if (mark_[next] < firstFlood_) {
+                mark_[next] = firstFlood_ + std::uint32_t(f);
+                floods_[f].samples.push_back(next);
+                continue;
+            }
+            const std::size_t mine = rootOf(f), other = rootOf(mark_[next] - firstFlood_);
+            if (mine == other) continue;
+            floods_[other].joined = mine;
+            floods_[mine].open |= floods_[other].open;
+        }
+    }
+
+    const WallSamples& wall_;
+    // Of each sample: in the patch, beside it, or in which flood. Marks only grow from patch to
+    // patch, so that those of earlier ones need not be taken off.
+    std::vector<std::uint32_t> mark_;
+    std::uint32_t marks_ = 0, inPatch_ = 0, beside_ = 0, firstFlood_ = 0;
+    std::vector<Flood> floods_;
+    std::size_t last_ = 0;
+    glm::dvec3 middle_{0.0};
+    double reachMm_ = 0.0;
+};
 
 // Of components that are kept, by their number.
 template <class Keeps>
@@ -97,11 +181,10 @@ std::vector<Patch> patchesOf(const WallSamples& wall,
     // Each thread takes one after the other, as they differ in size by a thousand times.
     std::atomic<std::size_t> next = 0;
     parallelFor(std::size_t(threadCount(threads)), 1, threads, [&](std::size_t, std::size_t) {
-        std::vector<std::uint32_t> mark(wall.mesh.vertices.size(), 0);
-        std::uint32_t generation = 0;
+        HoleFiller holes(wall);
         for (std::size_t n; (n = next++) < components.size();) {
             if (!keeps(components[n])) continue;
-            fillHoles(wall, components[n], mark, generation);
+            holes.fill(components[n]);
             std::sort(components[n].begin(), components[n].end());
             made[n].samples = std::move(components[n]);
         }

@@ -15,9 +15,9 @@
 namespace haustra::cad {
 namespace {
 
-// A head on a neck of less than this share of its width has a stalk; Paris 0-II is at most 2.5 mm
-// high (the closed cups of a forceps), to which the scan adds its blur.
-constexpr double stalkNeck = 0.7, stalkHeightRatio = 0.75, flatHeightMm = 3.0, flatRatio = 0.4;
+// What has a stalk is nearly as high as wide; Paris 0-II is at most 2.5 mm high (the closed cups of
+// a forceps), to which the scan adds its blur.
+constexpr double stalkHeightRatio = 0.75, flatHeightMm = 3.0, flatRatio = 0.4;
 
 // Less of the wall than a polyp of 5 mm takes is no gap in an examination.
 constexpr double leastUnseenMm2 = 20.0;
@@ -58,7 +58,7 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.wallMm = lesion.topMm;
     finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
-    finding.heightMm = lesion.heightMm;
+    finding.heightMm = std::max(0.0, lesion.heightMm);
     finding.arcMm =
         colon.centerline.points.empty() ? 0.0 : nearestArc(colon.centerline, lesion.centreMm);
     finding.segment = segmentAt(colon, lesion.centreMm);
@@ -66,6 +66,38 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
         finding.features.emplace_back(std::string(featureNames[n]), candidate.features[n]);
     finding.voxels = lesion.voxels;
     return finding;
+}
+
+// Of every sample, in T. Samples lie denser than the stencil's steps, so texture is measured at a
+// maximal independent set of them, and each of the others has the distance of its lowest-numbered
+// neighbour in the set.
+std::vector<float> textureDistances(const WallEvidence& evidence, const TextureStencil& stencil,
+                                    std::span<const glm::vec3> colors, const TextureModel& texture,
+                                    int threads) {
+    const WallSamples& wall = evidence.samples;
+    std::vector<std::uint32_t> measuredAt(colors.size()), measured;
+    std::iota(measuredAt.begin(), measuredAt.end(), 0u);
+    for (std::uint32_t v = 0; v < measuredAt.size(); ++v) {
+        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1] && wall.neighbours[e] < v;
+             ++e) {
+            const std::uint32_t next = wall.neighbours[e];
+            if (measuredAt[next] != next) continue;
+            measuredAt[v] = next;
+            break;
+        }
+        if (measuredAt[v] == v) measured.push_back(v);
+    }
+    std::vector<float> distances(colors.size());
+    parallelFor(measured.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m) {
+            const std::uint32_t v = measured[m];
+            const auto neighbours = stencil.around(v, evidence.shapes[v].intoWall);
+            distances[v] = float(textureDistance(texture, textureVector(v, neighbours, colors)));
+        }
+    });
+    for (std::size_t v = 0; v < distances.size(); ++v)
+        distances[v] = distances[measuredAt[v]];
+    return distances;
 }
 
 }  // namespace
@@ -76,19 +108,11 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
     std::vector<Patch> patches;
     if (texture) {
         const auto along = stripDirections(evidence.samples, colon.flat);
-        std::vector<std::uint32_t> all(evidence.rays.size());
-        std::iota(all.begin(), all.end(), 0u);
-        const TextureStencil stencil(evidence.samples, all, evidence.shapes, along,
-                                     options.threads);
+        const TextureStencil stencil(evidence.samples, along);
         std::vector<glm::vec3> colors(evidence.rays.size());
         std::transform(evidence.rays.begin(), evidence.rays.end(), colors.begin(),
                        [](const BiopsyRay& ray) { return ray.color; });
-        distances.resize(colors.size());
-        parallelFor(distances.size(), 8192, options.threads,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t v = begin; v < end; ++v)
-                            distances[v] = float(textureDistance(*texture, stencil.at(v, colors)));
-                    });
+        distances = textureDistances(evidence, stencil, colors, *texture, options.threads);
         if (options.method.texture)
             patches = patchesByTexture(evidence, distances, options.threads);
     }

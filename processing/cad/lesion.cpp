@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 namespace haustra::cad {
@@ -11,81 +12,98 @@ namespace {
 
 // How far beyond the patch the base is anchored: there the wall is the wall again.
 constexpr double anchorMm = 2.0;
+// Where a body's foot is: it has this share of the body's height there. Tuned on eight training
+// phantoms: least error of the diameter of sessile and flat polyps alike.
+constexpr double footShare = 0.15;
 
 // Places of the numbered samples so that each is the mean of its neighbours, those of all others
 // given: conjugate gradients on the graph's Laplacian, which is positive definite as each part of
-// the inside reaches the rim.
+// the inside reaches the rim. In single precision and about the first sample: heights are asked for
+// to a hundredth of a millimetre.
 class Membrane {
 public:
-    Membrane(const WallSamples& wall, const SampleNumbers& inside) {
+    Membrane(const WallSamples& wall, const SampleNumbers& inside)
+        : origin_(wall.mesh.vertices[inside.sample(0)]) {
         const std::uint32_t count = inside.count();
-        begin_.assign(1, 0);
+        begin_.reserve(count + 1);
+        begin_.push_back(0);
+        places_.reserve(count), pull_.reserve(count), degrees_.reserve(count);
+        const auto placeOf = [&](std::uint32_t v) {
+            return glm::vec4(wall.mesh.vertices[v] - origin_, 0.0);
+        };
         for (std::uint32_t n = 0; n < count; ++n) {
             const std::uint32_t v = inside.sample(n);
-            glm::dvec3 pull(0.0);
+            glm::vec4 pull(0.0f);
             for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
                 const std::uint32_t next = wall.neighbours[e];
                 if (inside.has(next))
                     links_.push_back(inside.number(next));
                 else
-                    pull += wall.mesh.vertices[next];
+                    pull += placeOf(next);
             }
             begin_.push_back(std::uint32_t(links_.size()));
-            places_.push_back(wall.mesh.vertices[v]);
+            places_.push_back(placeOf(v));
             pull_.push_back(pull);
-            degrees_.push_back(double(wall.begin[v + 1] - wall.begin[v]));
+            degrees_.push_back(float(wall.begin[v + 1] - wall.begin[v]));
         }
         span();
     }
-    const glm::dvec3& at(std::uint32_t number) const { return places_[number]; }
+    glm::dvec3 at(std::uint32_t number) const { return origin_ + glm::dvec3(places_[number]); }
 
 private:
-    void times(const std::vector<glm::dvec3>& x, std::vector<glm::dvec3>& y) const {
+    using Field = std::vector<glm::vec4>;  // the fourth of each is 0
+
+    // y = A x; returns x · y of each coordinate.
+    glm::vec4 times(const Field& x, Field& y) const {
+        glm::dvec4 product(0.0);
         for (std::size_t n = 0; n < x.size(); ++n) {
-            glm::dvec3 sum = degrees_[n] * x[n];
+            glm::vec4 sum = degrees_[n] * x[n];
             for (std::uint32_t l = begin_[n]; l < begin_[n + 1]; ++l)
                 sum -= x[links_[l]];
             y[n] = sum;
+            product += glm::dvec4(x[n] * sum);
         }
+        return glm::vec4(product);
     }
 
     void span() {
         // The three coordinates are three systems with one matrix.
-        std::vector<glm::dvec3> r(places_.size()), ap(places_.size());
+        Field r(places_.size()), ap(places_.size());
         times(places_, r);
-        for (std::size_t n = 0; n < r.size(); ++n)
+        glm::dvec4 sum(0.0);
+        for (std::size_t n = 0; n < r.size(); ++n) {
             r[n] = pull_[n] - r[n];
-        std::vector<glm::dvec3> p = r;
-        const auto dots = [](const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b) {
-            glm::dvec3 sum(0.0);
-            for (std::size_t n = 0; n < a.size(); ++n)
-                sum += a[n] * b[n];
-            return sum;
-        };
-        glm::dvec3 squares = dots(r, r);
-        const glm::dvec3 enough = 1e-8 * squares + glm::dvec3(1e-12);
+            sum += glm::dvec4(r[n] * r[n]);
+        }
+        Field p = r;
+        glm::vec4 squares(sum);
+        const glm::vec4 enough = 1e-6f * squares + glm::vec4(1e-12f);
         for (int step = 0; step < 500; ++step) {
             if (glm::all(glm::lessThanEqual(squares, enough))) break;
-            times(p, ap);
-            const glm::dvec3 curvature = dots(p, ap);
-            glm::dvec3 alpha(0.0);
+            const glm::vec4 curvature = times(p, ap);
+            glm::vec4 alpha(0.0f);
             for (int c = 0; c < 3; ++c)
-                if (curvature[c] > 0.0) alpha[c] = squares[c] / curvature[c];
-            for (std::size_t n = 0; n < p.size(); ++n)
-                places_[n] += alpha * p[n], r[n] -= alpha * ap[n];
-            const glm::dvec3 next = dots(r, r);
-            glm::dvec3 beta(0.0);
+                if (curvature[c] > 0.0f) alpha[c] = squares[c] / curvature[c];
+            sum = glm::dvec4(0.0);
+            for (std::size_t n = 0; n < p.size(); ++n) {
+                places_[n] += alpha * p[n];
+                r[n] -= alpha * ap[n];
+                sum += glm::dvec4(r[n] * r[n]);
+            }
+            const glm::vec4 next(sum);
+            glm::vec4 beta(0.0f);
             for (int c = 0; c < 3; ++c)
-                if (squares[c] > 0.0) beta[c] = next[c] / squares[c];
+                if (squares[c] > 0.0f) beta[c] = next[c] / squares[c];
             for (std::size_t n = 0; n < p.size(); ++n)
                 p[n] = r[n] + beta * p[n];
             squares = next;
         }
     }
 
-    std::vector<glm::dvec3> places_, pull_;
+    glm::dvec3 origin_;
+    Field places_, pull_;
     std::vector<std::uint32_t> begin_, links_;
-    std::vector<double> degrees_;
+    std::vector<float> degrees_;
 };
 
 // The voxels right beneath a patch: of a body thinner than voxels are.
@@ -254,22 +272,45 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangle
     lesion.axis = normal / length;
     lesion.centreMm = lesion.volumeMm3 > 0.0 ? origin + moment / lesion.volumeMm3 : origin;
 
+    const auto heightAt = [&](std::uint32_t number) {
+        return glm::dot(wall.mesh.vertices[numbers.sample(number)] - membrane.at(number),
+                        lesion.axis);
+    };
     double highest = -1e30;
-    for (std::uint32_t n = 0; n < patch.samples.size(); ++n) {
+    const auto patchSize = std::uint32_t(patch.samples.size());
+    for (std::uint32_t n = 0; n < patchSize; ++n) {
         const std::uint32_t v = patch.samples[n];
         lesion.areaMm2 += wall.areaMm2[v];
-        const double height = glm::dot(wall.mesh.vertices[v] - membrane.at(n), lesion.axis);
+        const double height = heightAt(n);
         if (height > highest) highest = height, lesion.topMm = wall.mesh.vertices[v];
         for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
             // The patch's samples have the first numbers.
-            if (numbers.number(wall.neighbours[e]) < patch.samples.size()) continue;
+            if (numbers.number(wall.neighbours[e]) < patchSize) continue;
             lesion.rim.push_back(v);
             break;
         }
     }
     lesion.heightMm = highest;
     lesion.rimMm = std::sqrt(4.0 * std::numbers::pi * lesion.baseMm2);
+    // A patch ends where the body's side turns from convex to concave; its foot is farther out.
+    std::vector<std::uint32_t> footprint = patch.samples;
+    std::vector<std::uint8_t> taken(inside, 0);
+    std::vector<std::uint32_t> reached(patchSize);
+    std::iota(reached.begin(), reached.end(), 0u);
+    for (std::size_t head = 0; head < reached.size(); ++head) {
+        const std::uint32_t v = numbers.sample(reached[head]);
+        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
+            const std::uint32_t next = numbers.number(wall.neighbours[e]);
+            if (next < patchSize || next >= inside || taken[next]) continue;
+            if (heightAt(next) < footShare * highest) continue;
+            taken[next] = 1;
+            reached.push_back(next);
+            footprint.push_back(wall.neighbours[e]);
+        }
+    }
     lesion.diameter = diameterOf(wall, patch.samples);
+    const double base = std::sqrt(4.0 * lesion.baseMm2 / std::numbers::pi);
+    if (base >= stalkNeck * lesion.diameter.mm) lesion.diameter = diameterOf(wall, footprint);
     const glm::dvec3 along =
         wall.mesh.vertices[lesion.diameter.to] - wall.mesh.vertices[lesion.diameter.from];
     const glm::dvec3 across = glm::cross(along, lesion.axis);

@@ -11,6 +11,9 @@
 
 namespace haustra::cad {
 
+/// A head whose base is narrower than this share of its width stands on a stalk.
+inline constexpr double stalkNeck = 0.7;
+
 /// A patch of the wall as a body that stands on a base. The base is a membrane, spanned from the
 /// patch's rim as a soap film: the wall as it would be without the body.
 struct Lesion {
@@ -19,13 +22,14 @@ struct Lesion {
     glm::dvec3 centreMm{0.0};        ///< of its volume
     glm::dvec3 topMm{0.0};           ///< the sample farthest above the base
     glm::dvec3 axis{0, 0, 1};        ///< unit, from the base into the lumen
-    Diameter diameter;               ///< of the patch
-    double widthMm = 0.0;            ///< the greatest extent square to diameter and axis
-    double heightMm = 0.0;           ///< of the top above the base, along the axis
-    double volumeMm3 = 0.0;          ///< between patch and base
-    double areaMm2 = 0.0;            ///< of the patch
-    double rimMm = 0.0;              ///< length around: √(4π · the base's area)
-    double baseMm2 = 0.0;            ///< of the base
+    /// Of the patch and of what rises around it up to the foot; of a head on a stalk, the patch.
+    Diameter diameter;
+    double widthMm = 0.0;          ///< the greatest extent square to diameter and axis
+    double heightMm = 0.0;         ///< of the top above the base, along the axis
+    double volumeMm3 = 0.0;        ///< between patch and base
+    double areaMm2 = 0.0;          ///< of the patch
+    double rimMm = 0.0;            ///< length around: √(4π · the base's area)
+    double baseMm2 = 0.0;          ///< of the base
     TriMesh body;                  ///< closed: patch and base, counter-clockwise seen from outside
     std::vector<VoxelRun> voxels;  ///< of the scan's grid whose centres the body holds
 };

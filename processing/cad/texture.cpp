@@ -1,7 +1,5 @@
 #include "cad/texture.h"
 
-#include "core/parallel.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -29,59 +27,53 @@ constexpr std::array<int, textureNeighbours> onTheWay{-1, -1, -1, -1, 0, 0, 1, 1
 
 }  // namespace
 
-TextureStencil::TextureStencil(const WallSamples& samples, std::span<const std::uint32_t> of,
-                               std::span<const WallShape> shapes, std::span<const glm::vec3> along,
-                               int threads)
-    : of_(of.begin(), of.end()), neighbours_(of.size()) {
-    // Half as many bytes to go through; a body's places to within 1e-5 mm.
-    const std::vector<glm::vec3> places(samples.mesh.vertices.begin(), samples.mesh.vertices.end());
-    parallelFor(neighbours_.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t m = begin; m < end; ++m) {
-            const std::uint32_t v = of_[m];
-            const glm::vec3 at = places[v];
-            const glm::vec3 n = shapes[v].intoWall;
-            glm::vec3 up = along[v] - glm::dot(along[v], n) * n;
-            const float length = glm::length(up);
-            up = length > 1e-3f
-                     ? up / length
-                     : glm::normalize(glm::cross(
-                           n, std::abs(n.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
-            const glm::vec3 aside = glm::cross(up, n);
-            for (std::size_t s = 0; s < stencil.size(); ++s) {
-                // Downhill along the mesh to where the neighbour should be, from a nearer one.
-                const glm::vec3 wanted = at + float(textureStepMm) * (float(stencil[s].x) * aside +
-                                                                      float(stencil[s].y) * up);
-                std::uint32_t best =
-                    onTheWay[s] < 0 ? std::uint32_t(v) : neighbours_[m][std::size_t(onTheWay[s])];
-                const auto squaredTo = [&](std::uint32_t sample) {
-                    const glm::vec3 off = places[sample] - wanted;
-                    return glm::dot(off, off);
-                };
-                float least = squaredTo(best);
-                for (bool nearer = true; nearer;) {
-                    nearer = false;
-                    const std::uint32_t from = best;
-                    for (std::uint32_t e = samples.begin[from]; e < samples.begin[from + 1]; ++e) {
-                        const float squared = squaredTo(samples.neighbours[e]);
-                        if (squared < least)
-                            least = squared, best = samples.neighbours[e], nearer = true;
-                    }
-                }
-                neighbours_[m][s] = best;
+TextureStencil::TextureStencil(const WallSamples& samples, std::span<const glm::vec3> along)
+    : samples_(samples),
+      along_(along),
+      places_(samples.mesh.vertices.begin(), samples.mesh.vertices.end()) {}
+
+TextureStencil::Neighbours TextureStencil::around(std::uint32_t sample, glm::vec3 intoWall) const {
+    const glm::vec3 at = places_[sample], n = intoWall;
+    glm::vec3 up = along_[sample] - glm::dot(along_[sample], n) * n;
+    const float length = glm::length(up);
+    up = length > 1e-3f ? up / length
+                        : glm::normalize(glm::cross(
+                              n, std::abs(n.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+    const glm::vec3 aside = glm::cross(up, n);
+    Neighbours neighbours;
+    for (std::size_t s = 0; s < stencil.size(); ++s) {
+        // Downhill along the mesh to where the neighbour should be, from a nearer one.
+        const glm::vec3 wanted =
+            at + float(textureStepMm) * (float(stencil[s].x) * aside + float(stencil[s].y) * up);
+        std::uint32_t best = onTheWay[s] < 0 ? sample : neighbours[std::size_t(onTheWay[s])];
+        const auto squaredTo = [&](std::uint32_t other) {
+            const glm::vec3 off = places_[other] - wanted;
+            return glm::dot(off, off);
+        };
+        float least = squaredTo(best);
+        for (bool nearer = true; nearer;) {
+            nearer = false;
+            const std::uint32_t from = best;
+            for (std::uint32_t e = samples_.begin[from]; e < samples_.begin[from + 1]; ++e) {
+                const float squared = squaredTo(samples_.neighbours[e]);
+                if (squared < least) least = squared, best = samples_.neighbours[e], nearer = true;
             }
         }
-    });
+        neighbours[s] = best;
+    }
+    return neighbours;
 }
 
-TextureVector TextureStencil::at(std::size_t n, std::span<const glm::vec3> colors) const {
+TextureVector textureVector(std::uint32_t sample, const TextureStencil::Neighbours& neighbours,
+                            std::span<const glm::vec3> colors) {
     TextureVector vector;
-    const auto put = [&](int place, const glm::vec3& color) {
+    const auto put = [&](std::size_t place, const glm::vec3& color) {
         for (int c = 0; c < 3; ++c)
-            vector[std::size_t(3 * place + c)] = color[c];
+            vector[3 * place + std::size_t(c)] = color[c];
     };
-    put(0, colors[of_[n]]);
-    for (int place = 0; place < textureNeighbours; ++place)
-        put(1 + place, colors[neighbours_[n][std::size_t(place)]]);
+    put(0, colors[sample]);
+    for (std::size_t place = 0; place < neighbours.size(); ++place)
+        put(1 + place, colors[neighbours[place]]);
     return vector;
 }
 

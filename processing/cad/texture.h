@@ -3,7 +3,6 @@
 #pragma once
 
 #include "cad/wall_samples.h"
-#include "cad/wall_shape.h"
 
 #include <array>
 #include <cstdint>
@@ -21,23 +20,25 @@ inline constexpr double textureStepMm = 0.5;
 using TextureVector = std::array<float, textureSize>;
 
 /// Which samples are the twelve neighbours of each: the nearest on the wall to where each should
-/// be.
+/// be. What it is made of outlives it.
 class TextureStencil {
 public:
-    /// Of the samples `of`, whose shapes alone are used. `along`: stripDirections. O(of).
-    TextureStencil(const WallSamples& samples, std::span<const std::uint32_t> of,
-                   std::span<const WallShape> shapes, std::span<const glm::vec3> along,
-                   int threads);
+    /// `along`: stripDirections.
+    TextureStencil(const WallSamples& samples, std::span<const glm::vec3> along);
     using Neighbours = std::array<std::uint32_t, textureNeighbours>;
-    /// Of the n-th of them.
-    const Neighbours& neighbours(std::size_t n) const { return neighbours_[n]; }
-    /// `colors`: of every sample that the n-th is made of, by the sample's number.
-    TextureVector at(std::size_t n, std::span<const glm::vec3> colors) const;
+    /// `intoWall`: the sample's, as its shape has it.
+    Neighbours around(std::uint32_t sample, glm::vec3 intoWall) const;
 
 private:
-    std::vector<std::uint32_t> of_;
-    std::vector<Neighbours> neighbours_;
+    const WallSamples& samples_;
+    std::span<const glm::vec3> along_;
+    // Half as many bytes to go through; a body's places to within 1e-5 mm.
+    std::vector<glm::vec3> places_;
 };
+
+/// `colors`: of every sample that the vector is made of, by the sample's number.
+TextureVector textureVector(std::uint32_t sample, const TextureStencil::Neighbours& neighbours,
+                            std::span<const glm::vec3> colors);
 
 /// What training polyps look like: the Karhunen–Loève transformation, the representative vector V
 /// and the threshold T of the source, in the transformed domain.

@@ -68,7 +68,7 @@ EvaluatedCase told(const TrainingCase& each, const BoostedTrees& boosted) {
 
 TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOptions& options,
                                 const std::vector<TrueLesion>& truth) {
-    const WallSamples samples = sampleWall(colon.surface, sampleSpacingMm);
+    const WallSamples samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
     const std::size_t count = samples.mesh.vertices.size();
     std::vector<std::uint32_t> chosen, inside;
     for (std::size_t v = 0; v < count; v += std::max<std::size_t>(1, count / wallVectors))
@@ -92,26 +92,23 @@ TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOption
     std::vector<WallShape> shapes(count);
     std::vector<std::uint8_t> looked(count, 0);
     std::vector<glm::vec3> colors(count);
-    const auto measure = [&](std::uint32_t v) {
-        shapes[v] = shapeOf(smooth.derivatives(samples.mesh.vertices[v]));
-    };
     const auto look = [&](std::uint32_t v) {
         if (std::exchange(looked[v], 1)) return;
-        measure(v);
+        shapes[v] = shapeOf(smooth.derivatives(samples.mesh.vertices[v]));
         colors[v] = castBiopsyRay(scan, table, samples.mesh.vertices[v],
                                   glm::dvec3(shapes[v].intoWall), RayEnd::opaque)
                         .color;
     };
-    for (const std::uint32_t v : chosen)
-        measure(v);
-    const TextureStencil stencil(samples, chosen, shapes, stripDirections(samples, colon.flat),
-                                 options.threads);
+    const auto along = stripDirections(samples, colon.flat);
+    const TextureStencil stencil(samples, along);
     TextureExamples examples;
     for (std::size_t n = 0; n < chosen.size(); ++n) {
         look(chosen[n]);
-        for (const std::uint32_t v : stencil.neighbours(n))
+        const auto neighbours = stencil.around(chosen[n], shapes[chosen[n]].intoWall);
+        for (const std::uint32_t v : neighbours)
             look(v);
-        (n < walls ? examples.all : examples.polyps).push_back(stencil.at(n, colors));
+        (n < walls ? examples.all : examples.polyps)
+            .push_back(textureVector(chosen[n], neighbours, colors));
     }
     return examples;
 }

@@ -10,10 +10,14 @@
 namespace haustra::cad {
 namespace {
 
-// Of a rebuilt wall, what lies within this of its place is not the patient's.
-constexpr double leastRebuiltMm = 6.0;
+// Of a rebuilt wall, what lies within this of its place is not the patient's; farther out, as far
+// as a disc of its area reaches, what has no more tissue beneath it than such a wall has.
+constexpr double leastRebuiltMm = 6.0, rebuiltVoxels = 2.5;
 
-std::vector<std::uint8_t> unseenSamples(const PreparedColon& colon, const WallSamples& samples) {
+std::vector<std::uint8_t> unseenSamples(const PreparedColon& colon, const WallSamples& samples,
+                                        const std::vector<BiopsyRay>& rays) {
+    const glm::dvec3 spacing = colon.lumen.grid().spacingMm();
+    const double thinMm = rebuiltVoxels * std::max({spacing.x, spacing.y, spacing.z});
     const auto bridged = bridgedTriangles(colon.surface, colon.lumen);
     std::vector<std::uint8_t> unseen(samples.mesh.vertices.size(), 0);
     for (std::size_t t = 0; t < samples.mesh.triangles.size(); ++t) {
@@ -23,8 +27,10 @@ std::vector<std::uint8_t> unseenSamples(const PreparedColon& colon, const WallSa
     }
     for (const RebuiltWallRecord& wall : colon.rebuilt) {
         const double reachMm = std::max(leastRebuiltMm, std::sqrt(wall.areaMm2 / 3.14) + 3.0);
-        for (std::size_t v = 0; v < unseen.size(); ++v)
-            if (glm::distance(samples.mesh.vertices[v], wall.placeMm) < reachMm) unseen[v] = 1;
+        for (std::size_t v = 0; v < unseen.size(); ++v) {
+            const double mm = glm::distance(samples.mesh.vertices[v], wall.placeMm);
+            if (mm < leastRebuiltMm || (mm < reachMm && rays[v].tissueMm < thinMm)) unseen[v] = 1;
+        }
     }
     return unseen;
 }
@@ -103,7 +109,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
         if (options.progress) options.progress(share);
     };
     WallEvidence evidence;
-    evidence.samples = sampleWall(colon.surface, sampleSpacingMm);
+    evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
     tell(0.15);
     evidence.smooth =
         std::make_unique<const SmoothScan>(smoothedAround(colon, shapeSigmaMm, options.threads));
@@ -114,7 +120,6 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
         evidence.broadShapes = shapesOf(evidence.samples, broad, options.threads);
     }
     tell(0.6);
-    evidence.unseen = unseenSamples(colon, evidence.samples);
     evidence.wet = wetSamples(colon, evidence.samples, evidence.shapes, options.threads);
     evidence.statistics = wallStatistics(colon, *evidence.smooth);
     evidence.transferFunction = transferFunctionFor(options, evidence.statistics);
@@ -127,6 +132,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
                 evidence.rays[v] = castBiopsyRay(scan, table, evidence.samples.mesh.vertices[v],
                                                  glm::dvec3(evidence.shapes[v].intoWall));
         });
+    evidence.unseen = unseenSamples(colon, evidence.samples, evidence.rays);
     tell(1.0);
     return evidence;
 }

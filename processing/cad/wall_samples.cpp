@@ -1,6 +1,9 @@
 #include "cad/wall_samples.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace haustra::cad {
@@ -39,17 +42,21 @@ private:
         return glm::dot(edge, edge);
     }
 
-    // −1: the edge is short enough.
+    // −1: the edge is short enough. One that takes an odd number of pieces is cut beside its
+    // middle, where whole pieces lie on either side: three of 0.5 mm instead of four of 0.37 mm.
     int middleOf(int a, int b) {
-        if (squaredMm2(a, b) <= mostMm2_) return -1;
+        const double mm2 = squaredMm2(a, b);
+        if (mm2 <= mostMm2_) return -1;
         if (a > b) std::swap(a, b);
         for (int n = firstOf_[std::size_t(a)]; n >= 0; n = middles_[std::size_t(n)].next)
             if (middles_[std::size_t(n)].otherEnd == b) return middles_[std::size_t(n)].vertex;
         const int vertex = int(samples_.mesh.vertices.size());
         middles_.push_back({b, vertex, firstOf_[std::size_t(a)]});
         firstOf_[std::size_t(a)] = int(middles_.size()) - 1;
-        samples_.mesh.vertices.push_back(0.5 * (samples_.mesh.vertices[std::size_t(a)] +
-                                                samples_.mesh.vertices[std::size_t(b)]));
+        const double pieces = std::max(2.0, std::ceil(std::sqrt(mm2 / mostMm2_) - 1e-9));
+        samples_.mesh.vertices.push_back(glm::mix(samples_.mesh.vertices[std::size_t(a)],
+                                                  samples_.mesh.vertices[std::size_t(b)],
+                                                  std::floor(0.5 * pieces) / pieces));
         return vertex;
     }
 
@@ -105,7 +112,7 @@ void measureAreas(WallSamples& samples) {
     }
 }
 
-void joinNeighbours(WallSamples& samples) {
+void joinNeighbours(WallSamples& samples, int threads) {
     const std::size_t count = samples.mesh.vertices.size();
     // Each edge from both triangles and both ends; doubles go once sorted.
     std::vector<std::uint32_t> begin(count + 1, 0);
@@ -122,14 +129,21 @@ void joinNeighbours(WallSamples& samples) {
         }
     }
     samples.begin.assign(count + 1, 0);
-    samples.neighbours.clear();
-    samples.neighbours.reserve(all.size() / 2);
-    for (std::size_t v = 0; v < count; ++v) {
-        const auto first = all.begin() + begin[v], last = all.begin() + begin[v + 1];
-        std::sort(first, last);
-        samples.neighbours.insert(samples.neighbours.end(), first, std::unique(first, last));
-        samples.begin[v + 1] = std::uint32_t(samples.neighbours.size());
-    }
+    parallelFor(count, 16384, threads, [&](std::size_t from, std::size_t to) {
+        for (std::size_t v = from; v < to; ++v) {
+            const auto first = all.begin() + begin[v], last = all.begin() + begin[v + 1];
+            std::sort(first, last);
+            samples.begin[v + 1] = std::uint32_t(std::unique(first, last) - first);
+        }
+    });
+    for (std::size_t v = 0; v < count; ++v)
+        samples.begin[v + 1] += samples.begin[v];
+    samples.neighbours.resize(samples.begin[count]);
+    parallelFor(count, 16384, threads, [&](std::size_t from, std::size_t to) {
+        for (std::size_t v = from; v < to; ++v)
+            std::copy_n(all.begin() + begin[v], samples.begin[v + 1] - samples.begin[v],
+                        samples.neighbours.begin() + samples.begin[v]);
+    });
 }
 
 // Interleaves the bits of three numbers below 1024: what is near in space is mostly near in order.
@@ -182,7 +196,7 @@ void renumber(TriMesh& mesh) {
 
 }  // namespace
 
-WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm) {
+WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm, int threads) {
     WallSamples samples;
     samples.mesh.vertices = surface.vertices;
     samples.sourceTriangle = nearbyOrder(surface);
@@ -193,7 +207,7 @@ WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm) {
     }
     renumber(samples.mesh);
     measureAreas(samples);
-    joinNeighbours(samples);
+    joinNeighbours(samples, threads);
     return samples;
 }
 

@@ -22,9 +22,9 @@ struct Bump {
 const std::vector<Bump> bumps{{{0, 0, 18.5}, 4.0}, {{-18.0, 0, -2}, 3.2}};
 
 // Negative in the lumen. The creases between ball and bumps are rounded.
-double wallMm(glm::dvec3 p) {
+double wallMm(glm::dvec3 p, const std::vector<Bump>& onIt) {
     double d = glm::length(p) - lumenMm;
-    for (const Bump& bump : bumps) {
+    for (const Bump& bump : onIt) {
         const double other = bump.radiusMm - glm::distance(p, bump.centreMm);
         const double h = std::max(0.0, 1.0 - std::abs(d - other) / 1.0);
         d = std::max(d, other) + 0.25 * h * h;
@@ -43,21 +43,21 @@ struct BallColon {
 
     // `turn`: a turn of the body about z; `shift`: of the grid and body by whole voxels.
     explicit BallColon(glm::dmat3 turn = glm::dmat3(1.0), glm::ivec3 shift = glm::ivec3(0),
-                       double offsetHu = 0.0) {
+                       double offsetHu = 0.0, const std::vector<Bump>& onIt = bumps) {
         const Grid grid = axisAlignedGrid({80, 80, 80}, {0.75, 0.75, 0.75}, {-29.5, -29.5, -29.5});
         hu = Volume<std::int16_t>(grid), lumen = Volume<std::uint8_t>(grid);
         const glm::dvec3 movedMm = 0.75 * glm::dvec3(shift);
         const glm::dmat3 back = glm::transpose(turn);
         for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
-            const double d =
-                wallMm(back * (grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))) - movedMm));
+            const double d = wallMm(
+                back * (grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))) - movedMm), onIt);
             hu.writable()[n] =
                 std::int16_t(std::lround(40.0 + offsetHu - 1030.0 / (1.0 + std::exp(d / 0.5))));
             lumen.writable()[n] = std::uint8_t(d < 0.0 ? LumenLabel::air : LumenLabel::outside);
         }
         tissue.meanHu = {-990.0 + offsetHu, -100.0 + offsetHu, 40.0 + offsetHu, 600.0 + offsetHu};
         tissue.airBelowHu = -475.0 + offsetHu;
-        makeSurface(turn, movedMm);
+        makeSurface(turn, movedMm, onIt);
         for (int n = -15; n <= 15; ++n)
             centerline.points.push_back(
                 {turn * glm::dvec3(0, n, 0) + movedMm, double(n + 15), 5.0, false});
@@ -65,18 +65,18 @@ struct BallColon {
     }
 
     // An octahedron, divided, each vertex on its ray where the wall begins.
-    void makeSurface(glm::dmat3 turn, glm::dvec3 movedMm) {
+    void makeSurface(glm::dmat3 turn, glm::dvec3 movedMm, const std::vector<Bump>& onIt) {
         surface.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
         surface.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                              {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-        const cad::WallSamples fine = cad::sampleWall(surface, 0.035);
+        const cad::WallSamples fine = cad::sampleWall(surface, 0.025);
         surface = fine.mesh;
         for (glm::dvec3& v : surface.vertices) {
             const glm::dvec3 way = glm::normalize(v);
             double low = 5.0, high = lumenMm + 5.0;
             for (int step = 0; step < 40; ++step) {
                 const double middle = 0.5 * (low + high);
-                (wallMm(middle * way) < 0.0 ? low : high) = middle;
+                (wallMm(middle * way, onIt) < 0.0 ? low : high) = middle;
             }
             v = turn * (low * way) + movedMm;
         }
@@ -121,7 +121,8 @@ TEST(Detect, BodiesOnTheWallAreFoundWithTheirSize) {
         const cad::Lesion& lesion = found[n].lesion;
         const Bump& bump = bumps[n];
         EXPECT_LT(glm::distance(lesion.centreMm, bump.centreMm), 0.6 * bump.radiusMm);
-        EXPECT_NEAR(lesion.diameter.mm, 2.0 * bump.radiusMm, 0.8);
+        // The rounded crease belongs to the foot.
+        EXPECT_NEAR(lesion.diameter.mm, 2.0 * bump.radiusMm, 1.0);
         const glm::dvec3 outward = glm::normalize(bump.centreMm);
         EXPECT_LT(glm::dot(lesion.axis, outward), -0.95) << "away from the wall";
         const double height = lumenMm - (glm::length(bump.centreMm) - bump.radiusMm);
@@ -137,6 +138,24 @@ TEST(Detect, BodiesOnTheWallAreFoundWithTheirSize) {
         }
         EXPECT_GT(tissue / all, 0.9);
         EXPECT_NEAR(all * ball.hu.grid().voxelVolumeMm3() / lesion.volumeMm3, 1.0, 0.1);
+    }
+}
+
+TEST(Detect, AFlatLesionIsAsWideAsItsFoot) {
+    // Where a ball of 8 mm, most of it outside, stands 3 mm into the lumen.
+    const Bump lens{{0, 0, 25}, 8.0};
+    const double along = (25.0 * 25.0 + lumenMm * lumenMm - 64.0) / (2.0 * 25.0),
+                 footMm = 2.0 * std::sqrt(lumenMm * lumenMm - along * along);
+    const BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, {lens});
+    const auto evidence = cad::gatherEvidence(ball.colon(), {});
+    auto found = cad::findCandidates(ball.colon(), evidence, nullptr, shapeAlone());
+    std::erase_if(found, [](const cad::Candidate& c) { return c.lesion.topMm.z < 15.0; });
+    ASSERT_FALSE(found.empty());
+    for (const cad::Candidate& c : found) {
+        // It rises so gently that the outermost twelfth all around is beneath the foot's height.
+        EXPECT_GT(c.lesion.diameter.mm, 0.8 * footMm);
+        EXPECT_LT(c.lesion.diameter.mm, 1.05 * footMm);
+        EXPECT_NEAR(c.lesion.topMm.z, 17.0, 0.7);
     }
 }
 

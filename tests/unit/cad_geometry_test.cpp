@@ -3,6 +3,7 @@
 #include "cad/lesion.h"
 #include "cad/wall_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -142,6 +143,21 @@ TriMesh sphere(double radius, int divisions) {
     return mesh;
 }
 
+TEST(WallSamples, AnEdgeIsCutIntoNoMorePiecesThanItTakes) {
+    // 1.05 mm takes three pieces of at most 0.5 mm, where halves of halves would be four.
+    TriMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1.05, 0, 0}, {0.5, 0.1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    const cad::WallSamples samples = cad::sampleWall(mesh, 0.5);
+    std::vector<double> along;
+    for (const glm::dvec3& v : samples.mesh.vertices)
+        if (v.y == 0.0) along.push_back(v.x);
+    std::sort(along.begin(), along.end());
+    ASSERT_EQ(along.size(), 4u);
+    for (std::size_t n = 1; n < along.size(); ++n)
+        EXPECT_NEAR(along[n] - along[n - 1], 0.35, 1e-9);
+}
+
 TEST(WallSamples, LieCloseOnTheSurfaceItself) {
     // One large and one narrow triangle with an edge between them, and a closed tetrahedron.
     TriMesh mesh;
@@ -176,6 +192,67 @@ TEST(WallSamples, LieCloseOnTheSurfaceItself) {
     for (std::uint32_t v = 0; v < samples.mesh.vertices.size(); ++v)
         for (std::uint32_t e = samples.begin[v]; e < samples.begin[v + 1]; ++e)
             EXPECT_NE(samples.neighbours[e], v);
+}
+
+// A closed wall 120 mm long and 20 mm wide, a cigar, each sample of which bulges where asked.
+struct Cigar {
+    cad::WallEvidence evidence;
+    template <class Bulges>
+    explicit Cigar(const Bulges& bulges) {
+        TriMesh mesh;
+        mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+        mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                          {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+        mesh = cad::sampleWall(mesh, 0.05).mesh;
+        for (glm::dvec3& v : mesh.vertices)
+            v = glm::dvec3(10, 10, 60) * glm::normalize(v);
+        evidence.samples = cad::sampleWall(mesh, 0.5);
+        const std::size_t count = evidence.samples.mesh.vertices.size();
+        evidence.unseen.resize(count, 0);
+        for (const glm::dvec3& v : evidence.samples.mesh.vertices) {
+            const float k = bulges(v) ? 0.1f : -0.1f;
+            evidence.shapes.push_back({.k1 = k, .k2 = k});
+        }
+    }
+    // Whether the only patch has the place.
+    bool holds(const std::vector<cad::Patch>& patches, glm::dvec3 place) const {
+        EXPECT_EQ(patches.size(), 1u);
+        if (patches.empty()) return false;
+        std::uint32_t nearest = 0;
+        const auto& places = evidence.samples.mesh.vertices;
+        for (std::uint32_t v = 0; v < places.size(); ++v)
+            if (glm::distance(places[v], place) < glm::distance(places[nearest], place))
+                nearest = v;
+        return std::ranges::binary_search(patches[0].samples, nearest);
+    }
+};
+
+TEST(Candidates, WhatAPatchEnclosesIsPartOfIt) {
+    const auto fromSide = [](glm::dvec3 p) { return glm::length(glm::dvec2(p.y, p.z)); };
+    // A ring on one side has its middle, and not the other side; so has one with two holes.
+    const Cigar ring([&](glm::dvec3 p) { return p.x > 0 && fromSide(p) > 2 && fromSide(p) < 5; });
+    const auto filled = cad::patchesByShape(ring.evidence, ring.evidence.shapes, {}, 2);
+    EXPECT_TRUE(ring.holds(filled, {10, 0, 0}));
+    EXPECT_FALSE(ring.holds(filled, {-10, 0, 0}));
+    EXPECT_FALSE(ring.holds(filled, {0, 0, 60}));
+    const Cigar eight([&](glm::dvec3 p) {
+        return p.x > 0 && fromSide(p) < 6 && glm::length(glm::dvec2(p.y, p.z - 3)) > 1.5 &&
+               glm::length(glm::dvec2(p.y, p.z + 3)) > 1.5;
+    });
+    const auto both = cad::patchesByShape(eight.evidence, eight.evidence.shapes, {}, 2);
+    EXPECT_TRUE(eight.holds(both, {9.5, 0, 3}));
+    EXPECT_TRUE(eight.holds(both, {9.5, 0, -3}));
+    EXPECT_FALSE(eight.holds(both, {-10, 0, 0}));
+    // A belt encloses nothing: the wall goes on at both its sides.
+    const Cigar belt([](glm::dvec3 p) { return std::abs(p.z) < 3; });
+    const auto round = cad::patchesByShape(belt.evidence, belt.evidence.shapes, {}, 2);
+    EXPECT_FALSE(belt.holds(round, {0, 0, 60}));
+    EXPECT_FALSE(belt.holds(round, {0, 0, -60}));
+    // One around the tip does.
+    const Cigar cap([](glm::dvec3 p) { return p.z > 50 && p.z < 58; });
+    const auto tip = cad::patchesByShape(cap.evidence, cap.evidence.shapes, {}, 2);
+    EXPECT_TRUE(cap.holds(tip, {0, 0, 60}));
+    EXPECT_FALSE(cap.holds(tip, {0, 0, -60}));
 }
 
 TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {

@@ -1,0 +1,128 @@
+// What polyp detection costs on a prepared case, stage by stage, beside the dissertation's shape
+// features over the whole mucosa (its §6.3 compares the two), the biopsy image, and how many
+// samples and pixels of the strip a polyp has where the truth is given. usage: cad_table STORE CASE
+// [TRUTH.json]
+#include "cad/biopsy_image.h"
+#include "cad/detect.h"
+#include "cad/lesion_features.h"
+#include "cad/strip_raster.h"
+#include "cad/truth.h"
+#include "core/parallel.h"
+#include "pipeline/colon_inputs.h"
+#include "stopwatch.h"
+#include "store/case_store.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace {
+
+using namespace haustra;
+using bench::cpuMilliseconds, bench::milliseconds;
+
+template <class Work>
+auto timed(const char* what, const Work& work) {
+    const double start = milliseconds(), cpuStart = cpuMilliseconds();
+    auto result = work();
+    std::printf("%-44s %8.2f s, processor time %8.2f s\n", what, (milliseconds() - start) / 1e3,
+                (cpuMilliseconds() - cpuStart) / 1e3);
+    return result;
+}
+
+/// At every sample; the gradient concentration, of a lesion of 6 mm, at every `stride`-th.
+void timeWholeMucosa(const cad::WallEvidence& evidence) {
+    timed("shape index and curvedness everywhere",
+          [&] { return cad::shapesOf(evidence.samples, *evidence.smooth, 0); });
+    constexpr std::size_t stride = 200;
+    const auto& places = evidence.samples.mesh.vertices;
+    const double start = milliseconds();
+    std::vector<double> concentration(places.size() / stride + 1);
+    parallelFor(concentration.size(), 64, 0, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end && n * stride < places.size(); ++n)
+            concentration[n] =
+                cad::gradientConcentration(*evidence.smooth, places[n * stride], 4.6);
+    });
+    std::printf("%-44s %8.0f s (one in %zu took %.2f s)\n", "gradient concentration everywhere",
+                (milliseconds() - start) / 1e3 * double(stride), stride,
+                (milliseconds() - start) / 1e3);
+}
+
+Result<void> countOnPolyps(const cad::PreparedColon& colon, const cad::WallSamples& samples,
+                           const std::string& file) {
+    std::ifstream in(file);
+    std::ostringstream text;
+    text << in.rdbuf();
+    const auto truth = TRY(cad::truthOfJson(text.str(), file));
+    const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200});
+    std::vector<double> onWall, onStrip;
+    for (const cad::TrueLesion& lesion : truth) {
+        if (!lesion.neoplastic || lesion.diameterMm < 5.0) continue;
+        const auto isOn = [&](glm::dvec3 p) {
+            return glm::distance(p, lesion.positionMm) < 0.5 * lesion.diameterMm + 0.5;
+        };
+        const auto held = std::count_if(samples.mesh.vertices.begin(), samples.mesh.vertices.end(),
+                                        [&](const glm::dvec3& p) { return isOn(p); });
+        if (held == 0) continue;  // no wall was found there
+        onWall.push_back(double(held));
+        onStrip.push_back(double(
+            std::count_if(raster.pixels.begin(), raster.pixels.end(), [&](const auto& pixel) {
+                return pixel.triangle >= 0 && isOn(raster.placeOf(pixel, colon.flat));
+            })));
+    }
+    std::printf(
+        "%zu polyps: samples of the wall on each: least %.0f, median %.0f; pixels of the "
+        "4000 x 200 strip: least %.0f, median %.0f\n",
+        onWall.size(), bench::quantile(onWall, 0), bench::median(onWall),
+        bench::quantile(onStrip, 0), bench::median(onStrip));
+    return {};
+}
+
+Result<void> run(const std::string& root, const std::string& name, const char* truth) {
+    const auto store = TRY(store::CaseStore::open(root, false));
+    const auto source = TRY(store.openCase(name));
+    const auto inputs =
+        TRY(pipeline::readColon(source, {source.find(store::product::quality).has_value(),
+                                         source.find(store::product::cleansed).has_value(),
+                                         source.find(store::product::flatMap).has_value()}));
+    const cad::PreparedColon colon = inputs.colon();
+    const cad::CadModel model =
+        TRY(cad::modelOfText(std::string(cad::builtInModelText()), "the built-in model"));
+    const double start = milliseconds();
+    const auto evidence =
+        timed("samples, shapes and rays", [&] { return cad::gatherEvidence(colon, {}); });
+    auto candidates = timed("candidates and their features", [&] {
+        return cad::findCandidates(colon, evidence, &model.texture, {});
+    });
+    const std::size_t before = candidates.size();
+    cad::weigh(candidates, model, {});
+    const auto findings = cad::findingsOf(colon, evidence, candidates, model);
+    std::printf("%zu samples, %zu candidates, %zu findings: %.2f s in all\n", evidence.rays.size(),
+                before, findings.findings.size(), (milliseconds() - start) / 1e3);
+    const cad::BiopsyTable table(evidence.transferFunction);
+    const cad::BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
+    if (inputs.flat.height > 0.0) {
+        timed("biopsy image, 4000 x 200, 1 ray a pixel", [&] {
+            return cad::biopsyImage(scan, colon.flat, table, {4000, 200}, 1, 0);
+        });
+        timed("biopsy image, 4000 x 200, 4 rays a pixel", [&] {
+            return cad::biopsyImage(scan, colon.flat, table, {4000, 200}, 2, 0);
+        });
+    }
+    timeWholeMucosa(evidence);
+    return truth ? countOnPolyps(colon, evidence.samples, truth) : Result<void>();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 3) {
+        std::fprintf(stderr, "usage: cad_table STORE CASE [TRUTH.json]\n");
+        return 2;
+    }
+    const auto done = run(argv[1], argv[2], argc > 3 ? argv[3] : nullptr);
+    if (!done) std::fprintf(stderr, "%s\n", done.error().message.c_str());
+    return done ? 0 : 1;
+}
