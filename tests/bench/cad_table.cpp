@@ -8,13 +8,16 @@
 #include "cad/strip_raster.h"
 #include "cad/truth.h"
 #include "core/parallel.h"
+#include "pictures/picture_file.h"
 #include "pipeline/colon_inputs.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -50,6 +53,34 @@ void timeWholeMucosa(const cad::WallEvidence& evidence) {
                 (milliseconds() - start) / 1e3);
 }
 
+/// Colours the pixels that lie on a candidate's patch.
+void tint(Image& image, const cad::StripRaster& raster, const FlatMap& flat,
+          const cad::WallEvidence& evidence, const cad::Candidate& candidate, glm::u8vec3 color) {
+    constexpr double cellMm = 0.35;  // and the cells around it: samples are at most 0.5 mm apart
+    std::set<std::array<int, 3>> cells;
+    const auto cellOf = [&](glm::dvec3 p) {
+        const glm::ivec3 c(glm::floor(p / cellMm));
+        return std::array{c.x, c.y, c.z};
+    };
+    glm::dvec3 low(1e30), high(-1e30);
+    for (const std::uint32_t v : candidate.lesion.patch.samples) {
+        const glm::dvec3 p = evidence.samples.mesh.vertices[v];
+        low = glm::min(low, p), high = glm::max(high, p);
+        for (int n = 0; n < 27; ++n)
+            cells.insert(cellOf(p + cellMm * glm::dvec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
+    }
+    for (std::size_t n = 0; n < raster.pixels.size(); ++n) {
+        if (raster.pixels[n].triangle < 0) continue;
+        const glm::dvec3 p = raster.placeOf(raster.pixels[n], flat);
+        if (glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high)) ||
+            !cells.contains(cellOf(p)))
+            continue;
+        for (std::size_t c = 0; c < 3; ++c)
+            image.rgb[3 * n + c] =
+                std::uint8_t((image.rgb[3 * n + c] + 3 * color[glm::length_t(c)]) / 4);
+    }
+}
+
 Result<void> countOnPolyps(const cad::PreparedColon& colon, const cad::WallSamples& samples,
                            const std::string& file) {
     std::ifstream in(file);
@@ -80,7 +111,8 @@ Result<void> countOnPolyps(const cad::PreparedColon& colon, const cad::WallSampl
     return {};
 }
 
-Result<void> run(const std::string& root, const std::string& name, const char* truth) {
+Result<void> run(const std::string& root, const std::string& name, const std::string& truth,
+                 const char* clusters) {
     const auto store = TRY(store::CaseStore::open(root, false));
     const auto source = TRY(store.openCase(name));
     const auto inputs =
@@ -97,6 +129,7 @@ Result<void> run(const std::string& root, const std::string& name, const char* t
         return cad::findCandidates(colon, evidence, &model.texture, {});
     });
     const std::size_t before = candidates.size();
+    const auto all = clusters ? candidates : std::vector<cad::Candidate>();
     cad::weigh(candidates, model, {});
     const auto findings = cad::findingsOf(colon, evidence, candidates, model);
     std::printf("%zu samples, %zu candidates, %zu findings: %.2f s in all\n", evidence.rays.size(),
@@ -107,22 +140,38 @@ Result<void> run(const std::string& root, const std::string& name, const char* t
         timed("biopsy image, 4000 x 200, 1 ray a pixel", [&] {
             return cad::biopsyImage(scan, colon.flat, table, {4000, 200}, 1, 0);
         });
-        timed("biopsy image, 4000 x 200, 4 rays a pixel", [&] {
+        Image image = timed("biopsy image, 4000 x 200, 4 rays a pixel", [&] {
             return cad::biopsyImage(scan, colon.flat, table, {4000, 200}, 2, 0);
         });
+        if (clusters) {
+            const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200});
+            for (const cad::Candidate& c : all)
+                tint(image, raster, colon.flat, evidence, c,
+                     c.lesion.patch.byTexture ? glm::u8vec3(255, 0, 255)
+                                              : glm::u8vec3(255, 255, 255));
+            for (const cad::Candidate& c : candidates)
+                if (c.probability >= model.operatingPoint)
+                    tint(image, raster, colon.flat, evidence, c, {255, 255, 0});
+            const auto texture = std::count_if(
+                all.begin(), all.end(), [](const auto& c) { return c.lesion.patch.byTexture; });
+            std::printf("%zd candidates by texture, %zd by shape\n", std::ptrdiff_t(texture),
+                        std::ptrdiff_t(all.size()) - std::ptrdiff_t(texture));
+            TRY(pictures::writePicture(clusters, image, {}));
+        }
     }
     timeWholeMucosa(evidence);
-    return truth ? countOnPolyps(colon, evidence.samples, truth) : Result<void>();
+    if (truth.empty() || truth == "-") return {};
+    return countOnPolyps(colon, evidence.samples, truth);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     if (argc < 3) {
-        std::fprintf(stderr, "usage: cad_table STORE CASE [TRUTH.json]\n");
+        std::fprintf(stderr, "usage: cad_table STORE CASE [TRUTH.json|- [CLUSTERS.png]]\n");
         return 2;
     }
-    const auto done = run(argv[1], argv[2], argc > 3 ? argv[3] : nullptr);
+    const auto done = run(argv[1], argv[2], argc > 3 ? argv[3] : "", argc > 4 ? argv[4] : nullptr);
     if (!done) std::fprintf(stderr, "%s\n", done.error().message.c_str());
     return done ? 0 : 1;
 }
