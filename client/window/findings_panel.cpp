@@ -10,6 +10,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSettings>
 #include <QSignalBlocker>
 #include <QSpinBox>
@@ -166,7 +167,17 @@ FindingsPanel::FindingsPanel(Reading& reading)
     auto* said = new QHBoxLayout;
     said->addWidget(state_, 1);
     said->addWidget(measure_);
-    auto* column = new QVBoxLayout(this);
+    // In a panel lower than all this, one scrolls; words that wrap would lie over the list.
+    auto* inside = new QWidget;
+    auto* scroll = new QScrollArea;
+    scroll->setWidget(inside);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setFocusPolicy(Qt::NoFocus);
+    auto* whole = new QVBoxLayout(this);
+    whole->setContentsMargins(0, 0, 0, 0);
+    whole->addWidget(scroll);
+    auto* column = new QVBoxLayout(inside);
     column->setContentsMargins(6, 6, 6, 6);
     column->addWidget(mode_);
     column->addWidget(firstPass_);
