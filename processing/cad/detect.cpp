@@ -192,7 +192,12 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     findings.biopsy = {statistics.wallHu, statistics.fatHu, statistics.noiseHu,
                        evidence.transferFunction};
     for (const Candidate& candidate : candidates) {
-        if (candidate.probability < leastProbability) continue;
+        if (candidate.probability < std::min(leastProbability, model.operatingPoint)) continue;
+        if (findings.findings.size() + findings.candidates.size() == std::size_t(maxFindings)) {
+            findings.warnings.push_back(printed(
+                "more than %d places may be polyps; the least probable are left out", maxFindings));
+            break;
+        }
         (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)
             .push_back(findingOf(colon, evidence, candidate));
     }

@@ -65,10 +65,10 @@ std::vector<std::pair<double, double>> sensitivities(const std::vector<const Eva
 
 }  // namespace
 
-EvaluatedCase evaluateCase(std::string name, std::string group, const std::vector<Candidate>& all,
+EvaluatedCase evaluateCase(std::string name, std::string group,
                            const std::vector<Candidate>& weighed,
                            const std::vector<TrueLesion>& truth) {
-    EvaluatedCase result{std::move(name), std::move(group), truth, {}, 0};
+    EvaluatedCase result{std::move(name), std::move(group), truth, {}};
     std::vector<glm::dvec3> places;
     for (const Candidate& candidate : weighed)
         places.push_back(candidate.lesion.centreMm);
@@ -83,11 +83,6 @@ EvaluatedCase evaluateCase(std::string name, std::string group, const std::vecto
         result.places.push_back({candidate.probability, candidate.lesion.diameter.mm, meant[n],
                                  meant[n] < 0 ? looks : ""});
     }
-    places.clear();
-    for (const Candidate& candidate : all)
-        places.push_back(candidate.lesion.centreMm);
-    for (const int lesion : matched(places, truth))
-        result.before += lesion < 0;
     return result;
 }
 
@@ -99,6 +94,7 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
     for (const EvaluatedCase* each : cases) {
         std::vector<const ToldPlace*> best(each->truth.size(), nullptr);
         for (const ToldPlace& place : each->places) {
+            sum.falseBefore += blamed(*each, place);
             if (place.score < operatingPoint) continue;
             if (blamed(*each, place)) {
                 ++sum.falsePositives;
@@ -110,7 +106,6 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
             if (!told || place.score > told->score) told = &place;
             sum.hyperplastic += !each->truth[std::size_t(place.lesion)].neoplastic;
         }
-        sum.falseBefore += each->before;
         for (std::size_t l = 0; l < best.size(); ++l) {
             const TrueLesion& lesion = each->truth[l];
             if (!lesion.neoplastic) continue;

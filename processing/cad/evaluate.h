@@ -23,11 +23,10 @@ struct EvaluatedCase {
     std::string name, group;
     std::vector<TrueLesion> truth;
     std::vector<ToldPlace> places;  ///< whatever its score
-    int before = 0;                 ///< places that are no lesion before reduction
 };
 
 /// What detection made of a case. `candidates` are weighed.
-EvaluatedCase evaluateCase(std::string name, std::string group, const std::vector<Candidate>& all,
+EvaluatedCase evaluateCase(std::string name, std::string group,
                            const std::vector<Candidate>& weighed,
                            const std::vector<TrueLesion>& truth);
 
@@ -43,7 +42,7 @@ struct Evaluation {
     Share submerged;                      ///< likewise
     std::map<std::string, Share> byKind;  ///< likewise
     double falsePositives = 0.0;          ///< a scan; benign growths are none
-    double falseBefore = 0.0;             ///< a scan, before reduction
+    double falseBefore = 0.0;             ///< a scan: the same with no candidate rejected
     std::map<std::string, int> falseKinds;
     int hyperplastic = 0;  ///< findings that are small benign growths
     /// Absolute error of diameters of what was found, mm: mean, 95 %, and the mean error.

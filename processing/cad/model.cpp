@@ -13,7 +13,7 @@ namespace {
 
 using ModelJson = nlohmann::ordered_json;
 
-// Seven significant digits read back as the same float.
+// To seven significant digits: a model is what is written, and a fifth shorter than with nine.
 double shortened(float value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.7g", double(value));
@@ -143,12 +143,14 @@ std::string modelText(const CadModel& model) {
         {"gradient_concentration", range(model.thresholds.gradientConcentration)}};
     std::string text = "{";
     const auto add = [&](const char* name, const ModelJson& value) {
-        text += '"' + std::string(name) + "\": " + value.dump() + ",\n";
+        text += '"' + std::string(name) +
+                "\": " + value.dump(-1, ' ', false, ModelJson::error_handler_t::replace) + ",\n";
     };
     add("haustra_cad_model", modelVersion);
     add("name", model.name);
     add("trained_on", model.trainedOn);
     add("training_sha256", model.trainingSha256);
+    add("training_scans", model.trainingScans);
     add("operating_point", model.operatingPoint);
     add("calibration", {model.calibrationA, model.calibrationB});
     ModelJson names = ModelJson::array();
@@ -178,6 +180,7 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         CadModel model;
         model.name = json.at("name"), model.trainedOn = json.at("trained_on");
         model.trainingSha256 = json.at("training_sha256");
+        model.trainingScans = json.at("training_scans").get<std::vector<std::string>>();
         model.operatingPoint = json.at("operating_point");
         model.calibrationA = json.at("calibration").at(0).get<double>();
         model.calibrationB = json.at("calibration").at(1).get<double>();
@@ -200,7 +203,14 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
             }
             model.boosted.trees.push_back(std::move(tree));
         }
-        TRY(checkTrees(model.boosted, featureCount));
+        if (!(model.operatingPoint >= 0.0 && model.operatingPoint <= 1.0))
+            throw std::invalid_argument("the operating point is no probability");
+        if (!(std::abs(model.calibrationA) < 1e6 && model.calibrationB > 0.0 &&
+              model.calibrationB < 1e6))
+            throw std::invalid_argument("the calibration does not rise with the score");
+        if (model.texture.count() == 0) throw std::invalid_argument("the texture has no component");
+        if (const auto sound = checkTrees(model.boosted, featureCount); !sound)
+            throw std::invalid_argument(sound.error().message);
         return model;
     } catch (const std::exception& error) {
         return fail(ErrorKind::badInput, std::string("this is no model: ") + error.what(), place);

@@ -15,7 +15,7 @@
 namespace haustra::cad {
 
 /// Raised whenever features or candidates change so that older models no longer fit them.
-inline constexpr int modelVersion = 2;
+inline constexpr int modelVersion = 3;
 
 /// The reduction of false positives of the source (§6.2.6): each of its features within what
 /// training polyps had.
@@ -29,6 +29,8 @@ struct CadModel {
     std::string name;            ///< "phantoms-1"
     std::string trainedOn;       ///< for a reader: of what, and what that means
     std::string trainingSha256;  ///< of the training cases' scans, in order
+    /// Of each training case the beginning of its scan's key: what the model must not be judged by.
+    std::vector<std::string> trainingScans;
     TextureModel texture;
     ShapeThresholds thresholds;
     BoostedTrees boosted;
@@ -39,7 +41,8 @@ struct CadModel {
     double probability(const FeatureVector& features) const;
 };
 
-/// JSON that modelOfText reads back as it was. Ends with a new line.
+/// JSON that modelOfText reads back; single-precision numbers with seven significant digits, so
+/// that they may come back as their neighbour. Ends with a new line.
 std::string modelText(const CadModel& model);
 /// Fails (badInput) where the text is no model; (unsupported) where it is of another version or of
 /// other features than this program has.

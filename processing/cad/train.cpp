@@ -50,7 +50,7 @@ EvaluatedCase told(const TrainingCase& each, const BoostedTrees& boosted) {
         return a.first != b.first ? a.first > b.first : a.second->areaMm2 > b.second->areaMm2;
     });
     std::vector<const Example*> kept;
-    EvaluatedCase result{each.name, each.name, each.truth, {}, 0};
+    EvaluatedCase result{each.name, each.name, each.truth, {}};
     for (const auto& entry : order) {
         const Example* example = entry.second;
         const bool isTold = std::any_of(kept.begin(), kept.end(), [&](const Example* other) {
@@ -147,10 +147,11 @@ std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
                                 const TrainOptions& options) {
     if (int(cases.size()) < options.folds)
-        return fail(ErrorKind::badInput, "there are fewer training cases than folds");
+        return fail(ErrorKind::badInput, "there are fewer training cases than parts of them");
     CadModel model;
     model.name = options.name, model.trainedOn = options.trainedOn;
     model.trainingSha256 = options.trainingSha256;
+    model.trainingScans = options.trainingScans;
     model.texture = texture;
     std::vector<double> indices, curvedness, concentration;
     std::vector<const TrainingCase*> all;
@@ -194,12 +195,19 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
     }
     model.boosted = std::move(boosted.back());
     std::tie(model.calibrationA, model.calibrationB) = fitLogistic(x, truths);
+    if (!(model.calibrationB > 0.0))
+        return fail(ErrorKind::badInput,
+                    "nothing was learnt: polyps that the trees had not seen score no higher than "
+                    "other places; more training cases, or ones with more polyps, are needed");
     const auto probability = [&](double score) {
         return 1.0 / (1.0 + std::exp(-(model.calibrationA + model.calibrationB * score)));
     };
     std::sort(blamedScores.rbegin(), blamedScores.rend());
     const std::size_t allowed = std::size_t(options.falsePositives * double(cases.size()));
-    model.operatingPoint = allowed < blamedScores.size() ? probability(blamedScores[allowed]) : 0.0;
+    // What scores more than the first wrong one too many is told.
+    model.operatingPoint = allowed < blamedScores.size()
+                               ? std::nextafter(probability(blamedScores[allowed]), 1.0)
+                               : 0.0;
     for (EvaluatedCase& each : trained.crossValidated)
         for (ToldPlace& place : each.places)
             place.score = probability(place.score);

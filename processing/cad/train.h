@@ -40,6 +40,7 @@ struct TrainingCase {
 
 struct TrainOptions {
     std::string name, trainedOn, trainingSha256;
+    std::vector<std::string> trainingScans = {};  ///< as CadModel has them
     /// Findings a scan that are no lesion, in cross-validation, at the operating point.
     double falsePositives = 2.0;
     int folds = 5;

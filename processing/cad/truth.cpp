@@ -36,6 +36,7 @@ Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::
             lesion.wallMm =
                 read.contains("wall_mm") ? placeOfTruth(read.at("wall_mm")) : lesion.positionMm;
             lesion.diameterMm = read.at("diameter_mm");
+            if (!(lesion.diameterMm >= 0.0)) throw std::invalid_argument("a diameter is negative");
             lesion.heightMm = read.value("height_mm", 0.0);
             lesion.kind = read.value("kind", "");
             lesion.neoplastic = read.value("neoplastic", true);
@@ -47,6 +48,23 @@ Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::
         return lesions;
     } catch (const std::exception& error) {
         return fail(ErrorKind::badInput, std::string("this is no truth: ") + error.what(), place);
+    }
+}
+
+Result<std::optional<TrueLesion>> valveOfJson(const std::string& text, const std::string& place) {
+    constexpr double lipsMm = 20.0;
+    try {
+        const auto json = nlohmann::json::parse(text);
+        if (!json.contains("valve") || json.at("valve").is_null()) return std::nullopt;
+        TrueLesion valve;
+        valve.positionMm = valve.wallMm = placeOfTruth(json.at("valve").at("position_mm"));
+        valve.diameterMm = lipsMm;
+        valve.kind = "valve";
+        valve.neoplastic = false;
+        return valve;
+    } catch (const std::exception& error) {
+        return fail(ErrorKind::badInput, std::string("this is no structure: ") + error.what(),
+                    place);
     }
 }
 

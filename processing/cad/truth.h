@@ -3,6 +3,7 @@
 
 #include "core/result.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ struct TrueLesion {
 /// "height_mm", "core_hu", "on_fold", "submerged_share"}, …]}; or {"findings": [{"position_mm",
 /// "diameter_mm", "kind"}, …]}, which are all polyps. Fails (badInput) where it is neither.
 Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place);
+
+/// Of a phantom's structure.json the ileocecal valve, as something that is no lesion: {"valve":
+/// {"position_mm"}}, or null where there is none.
+Result<std::optional<TrueLesion>> valveOfJson(const std::string& text, const std::string& place);
 
 /// Of each place the lesion that it means: the nearest of those that it reaches, neoplastic ones
 /// before others; −1: none.

@@ -20,9 +20,10 @@ struct WallSamples {
     std::vector<std::uint32_t> begin, neighbours;
 };
 
-/// Divides the surface. Each edge that is too long is cut in its middle, in all triangles that have
-/// it at once, until none is left: the mesh stays as closed as it was. Edges in `mostSpacingMm` >
-/// 0; indices in range. O(n log n) in the number of samples.
+/// Divides the surface. Each edge that is too long is cut in its middle, or beside it where it
+/// takes an odd number of pieces, in all triangles that have it at once, until none is left: the
+/// mesh stays as closed as it was. Edges in `mostSpacingMm` > 0; indices in range. O(n log n) in
+/// the number of samples.
 WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm, int threads = 0);
 
 }  // namespace haustra::cad

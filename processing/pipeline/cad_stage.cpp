@@ -14,7 +14,7 @@ namespace {
 namespace product = store::product;
 
 // Raise it whenever the findings change for the same input and model.
-constexpr int detectionVersion = 2;
+constexpr int detectionVersion = 3;
 
 Result<std::string> modelText(const std::filesystem::path& file) {
     if (file.empty()) return std::string(cad::builtInModelText());
@@ -25,7 +25,19 @@ Result<std::string> modelText(const std::filesystem::path& file) {
     return text.str();
 }
 
+Result<cad::CadModel> modelOf(const PrepareOptions& options, const std::string& text) {
+    return cad::modelOfText(
+        text, options.cadModel.empty() ? "built-in model" : options.cadModel.string());
+}
+
 }  // namespace
+
+Result<void> checkCadModel(const PrepareOptions& options) {
+    if (options.cadModel.empty()) return {};
+    const std::string text = TRY(modelText(options.cadModel));
+    TRY(modelOf(options, text));
+    return {};
+}
 
 Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surfaceKey,
                                 const ProductKey& centerlineKey,
@@ -33,8 +45,7 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surf
     const StageMeter meter;
     const PrepareOptions& options = preparation.options();
     const std::string text = TRY(modelText(options.cadModel));
-    const auto model = TRY(cad::modelOfText(
-        text, options.cadModel.empty() ? "built-in model" : options.cadModel.string()));
+    const auto model = TRY(modelOf(options, text));
     const std::string hash = store::toHex(store::textDigest(text));
     const ProductKey key = store::makeKey(
         "cad", detectionVersion, "model=" + hash,

@@ -144,6 +144,7 @@ const std::vector<std::string>& stageNames() {
 Result<PrepareReport> prepare(const store::CaseStore& store, const std::string& caseName,
                               const PrepareOptions& options) {
     TRY(checkOptions(options));
+    TRY(checkCadModel(options));
     auto organ = TRY(organs::readProfile(options.organ));
     const std::string name = options.scan.empty() ? caseName : caseName + "." + options.scan;
     std::string study;

@@ -69,6 +69,9 @@ std::future<Result<WallSurface>> beginSurface(Preparation& preparation, const Wa
 Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& surface,
                                   const ProductKey& centerline);
 
+/// Fails where the options name a model that detection cannot use, before the first stage has run.
+Result<void> checkCadModel(const PrepareOptions& options);
+
 /// `findings`: places of the wall that may be polyps. Without `flatMap`, for a colon that could not
 /// be flattened; surface and centerline are then the last of the products that it reads.
 Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surface,

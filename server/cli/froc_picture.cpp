@@ -13,37 +13,42 @@ namespace {
 constexpr glm::ivec2 pictureSize{900, 640};
 // Of the field between the axes.
 constexpr glm::ivec2 upperLeft{90, 60}, lowerRight{870, 560};
-constexpr double leastSensitivity = 0.5;
 constexpr glm::u8vec3 bandColor{120, 150, 200}, gridColor{70, 70, 70}, curveColor{255, 200, 60};
 
 class Axes {
 public:
     explicit Axes(const std::vector<cad::FrocPoint>& curve)
         : first_(std::log2(curve.front().falsePositives)),
-          last_(std::log2(curve.back().falsePositives)) {}
+          last_(std::log2(curve.back().falsePositives)) {
+        // From the tenth below all of it.
+        for (const cad::FrocPoint& point : curve)
+            leastPercent_ = std::min(leastPercent_, 10 * int(std::floor(10.0 * point.low)));
+    }
 
     glm::ivec2 at(double falsePositives, double sensitivity) const {
         const double x = (std::log2(falsePositives) - first_) / std::max(1e-9, last_ - first_),
-                     y = (1.0 - std::max(sensitivity, leastSensitivity)) / (1.0 - leastSensitivity);
+                     y = (1.0 - sensitivity) / (1.0 - 0.01 * leastPercent_);
         const glm::dvec2 extent(lowerRight - upperLeft);
         return upperLeft + glm::ivec2(glm::dvec2(x, y) * extent + 0.5);
     }
     double first() const { return first_; }
     double last() const { return last_; }
+    int leastPercent() const { return leastPercent_; }
 
 private:
     double first_, last_;
+    int leastPercent_ = 90;
 };
 
 void drawGrid(const Axes& axes, pictures::Marks& marks) {
     for (double n = std::ceil(axes.first()); n <= axes.last(); n += 1.0) {
         const double falsePositives = std::exp2(n);
-        const glm::ivec2 low = axes.at(falsePositives, leastSensitivity);
+        const glm::ivec2 low = axes.at(falsePositives, 0.01 * axes.leastPercent());
         marks.lines.push_back({low, axes.at(falsePositives, 1.0), gridColor});
         marks.words.push_back(
             {fmt::format("{:g}", falsePositives), low + glm::ivec2(0, 8), {0.5, 0.0}});
     }
-    for (int percent = int(100 * leastSensitivity); percent <= 100; percent += 10) {
+    for (int percent = axes.leastPercent(); percent <= 100; percent += 10) {
         const glm::ivec2 left = axes.at(std::exp2(axes.first()), percent / 100.0);
         marks.lines.push_back({left, {lowerRight.x, left.y}, gridColor});
         marks.words.push_back({fmt::format("{} %", percent), left - glm::ivec2(8, 0), {1.0, 0.5}});

@@ -160,7 +160,6 @@ cad::EvaluatedCase judged(std::vector<cad::ToldPlace> places) {
     each.truth = {polypAt({0, 0, 0}, 8.0), polypAt({50, 0, 0}, 12.0),
                   polypAt({0, 50, 0}, 3.0, "hyperplastic"), polypAt({0, 0, 50}, 7.0, "lump")};
     each.places = std::move(places);
-    each.before = 100;
     return each;
 }
 
@@ -175,6 +174,9 @@ TEST(Evaluation, CountsWhatItSays) {
     EXPECT_EQ(sum.from6Mm.hit, 1);
     EXPECT_EQ(sum.from10Mm.hit, 0);
     EXPECT_DOUBLE_EQ(sum.falsePositives, 2.0) << "a fold and a lump; a benign growth is none";
+    EXPECT_DOUBLE_EQ(sum.falseBefore, 2.0) << "whatever their score";
+    EXPECT_DOUBLE_EQ(cad::evaluate({&a}, 0.75).falsePositives, 1.0);
+    EXPECT_DOUBLE_EQ(cad::evaluate({&a}, 0.75).falseBefore, 2.0);
     EXPECT_EQ(sum.hyperplastic, 1);
     EXPECT_EQ(sum.falseKinds.at("fold"), 1);
     EXPECT_EQ(sum.falseKinds.at("lump"), 1);
