@@ -15,15 +15,20 @@ void PlaceRulers::reset() {
     flatless_.clear();
     begun_.reset();
     before_.reset();
-    end_ = flatOf_ = 0;
+    ends_.clear();
+    flatOf_ = 0;
 }
 
 void PlaceRulers::update() {
-    if (end_ != 0) {
-        if (const auto told = wall_.takeTold(end_)) {
-            end_ = 0;
+    while (!ends_.empty()) {
+        if (ends_.front().request != 0) {
+            const auto told = wall_.takeTold(ends_.front().request);
+            if (!told) break;
             if (*told) add(PlaceRuler::End{(*told)->positionMm, (*told)->flat});
+        } else {
+            add(ends_.front().known);
         }
+        ends_.pop_front();
     }
     if (flatOf_ != 0) {
         const auto told = wall_.takeTold(flatOf_);
@@ -56,14 +61,16 @@ PlaceRuler::End* PlaceRulers::withoutFlat() {
 }
 
 void PlaceRulers::addEnd(glm::dvec3 placeMm) {
-    end_ = 0;
-    add(PlaceRuler::End{placeMm});
+    if (ends_.empty())
+        add(PlaceRuler::End{placeMm});
+    else
+        ends_.push_back({0, PlaceRuler::End{placeMm}});
 }
 void PlaceRulers::addEnd(glm::dvec2 flat) {
-    end_ = wall_.expect(session_.locate(flat));
+    ends_.push_back({wall_.expect(session_.locate(flat)), {}});
 }
 void PlaceRulers::addEnd(glm::dvec3 fromMm, glm::dvec3 direction) {
-    end_ = wall_.expect(session_.pick(fromMm, direction));
+    ends_.push_back({wall_.expect(session_.pick(fromMm, direction)), {}});
 }
 
 void PlaceRulers::add(const PlaceRuler::End& end) {
@@ -94,7 +101,7 @@ void PlaceRulers::set(std::vector<PlaceRuler> rulers) {
 
 void PlaceRulers::giveUp() {
     begun_.reset();
-    end_ = 0;
+    ends_.clear();
 }
 
 }  // namespace haustra::reader

@@ -4,6 +4,7 @@
 #include "reader/session.h"
 #include "reader/wall_questions.h"
 
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -47,7 +48,7 @@ public:
     std::optional<std::vector<PlaceRuler>> takeBefore() {
         return std::exchange(before_, std::nullopt);
     }
-    bool waits() const { return end_ != 0 || flatOf_ != 0; }
+    bool waits() const { return !ends_.empty() || flatOf_ != 0; }
 
 private:
     void add(const PlaceRuler::End& end);
@@ -59,7 +60,13 @@ private:
     std::vector<PlaceRuler> rulers_;
     std::optional<PlaceRuler::End> begun_;
     std::optional<std::vector<PlaceRuler>> before_;
-    std::uint64_t end_ = 0, flatOf_ = 0;  // requests without an answer, or 0
+    // Ends in the order of their clicks, from the first that the server has not told of on.
+    struct AwaitedEnd {
+        std::uint64_t request = 0;  // 0: it is known
+        PlaceRuler::End known;
+    };
+    std::deque<AwaitedEnd> ends_;
+    std::uint64_t flatOf_ = 0;  // a request without an answer, or 0
     glm::dvec3 flatOfMm_{0.0};
     std::vector<glm::dvec3> flatless_;  // places that are not near the flattened wall
 };

@@ -63,7 +63,7 @@ Result<void> exportBiopsyImage(const store::Case& source, const std::filesystem:
                              {"noise_hu", fmt::format("{:.1f}", statistics.noiseHu)}});
     TRY(pictures::writePicture(file, image, provenance));
     fmt::print(
-        "{} x {} pixels of {} rays each in {:.2f} s; wall {:.0f} HU, fat {:.0f} HU, noise "
+        "{} x {} pixels, {} ray(s) each, in {:.2f} s; wall {:.0f} HU, fat {:.0f} HU, noise "
         "{:.0f} HU\n",
         options.length, options.around, options.finer * options.finer, took.count(),
         statistics.wallHu, statistics.fatHu, statistics.noiseHu);

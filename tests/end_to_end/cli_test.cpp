@@ -110,6 +110,36 @@ TEST(CommandLine, FailuresEndWithOneAndOneLineThatNamesThePlace) {
     EXPECT_TRUE(fs::is_empty(folder.path() / "store" / "cases"));  // no half-made case stays
 }
 
+TEST(CommandLine, LearningAndJudgingRefuseBeforeTheWork) {
+    const tests::TemporaryFolder folder;
+    const std::string store = folder.path() / "store", truth = folder.path();
+    fs::create_directories(folder.path() / "store" / "cases");
+    std::ofstream(folder.path() / "broken.json") << "{\"haustra_cad_model\": 1}";
+    const auto refusal = [&](Arguments arguments) {
+        arguments.insert(arguments.end(), {"--store", store});
+        const auto outcome = haustra(arguments);
+        EXPECT_EQ(outcome.exitCode, 1) << outcome.err;
+        return outcome.err;
+    };
+    const std::string model = folder.path() / "m.json";
+    EXPECT_NE(
+        refusal({"cad", "train", "a", "b", "--truth", truth, "--model", model}).find("at least 5"),
+        std::string::npos);
+    EXPECT_NE(refusal({"cad", "train", "a", "b", "c", "d", "a", "--truth", truth, "--model", model})
+                  .find("given twice"),
+              std::string::npos);
+    EXPECT_FALSE(fs::exists(model));
+    EXPECT_NE(refusal({"cad", "evaluate", "a", "--truth", truth, "--froc", folder.path() / "x.gif"})
+                  .find(".png or .csv"),
+              std::string::npos);
+    // A model that detection cannot use, before the scan is looked at.
+    const std::string told =
+        refusal({"prepare", folder.path(), "--cad-model", folder.path() / "broken.json"});
+    EXPECT_NE(told.find("broken.json"), std::string::npos) << told;
+    EXPECT_EQ(told.find("import"), std::string::npos) << told;
+    EXPECT_TRUE(fs::is_empty(folder.path() / "store" / "cases"));
+}
+
 TEST(CommandLine, TheStoreMayComeFromTheEnvironment) {
     const tests::TemporaryFolder folder;
     fs::create_directories(folder.path() / "cases");

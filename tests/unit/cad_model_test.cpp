@@ -112,7 +112,10 @@ TEST(Model, WhatIsNoneIsRefused) {
           with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
           with("diameter_mm", "weight_kg"), with("\"trees\": [\n[[", "\"trees\": [\n[[99,0.5,1],["),
           with("\"trees\": [\n[[", "\"trees\": [\n[[1,0.5,0],["),
-          with("\"polyp\":[", "\"polyp\":[0,")})
+          with("\"polyp\":[", "\"polyp\":[0,"),
+          with("\"operating_point\": ", "\"operating_point\": 2"),
+          with("\"calibration\": [", "\"calibration\": [0.5,-"),
+          with("\"training_scans\": ", "\"training_scans\": 7, \"x\": ")})
         EXPECT_FALSE(cad::modelOfText(text, "m.json")) << text.substr(0, 60);
 }
 
@@ -161,6 +164,20 @@ cad::EvaluatedCase judged(std::vector<cad::ToldPlace> places) {
                   polypAt({0, 50, 0}, 3.0, "hyperplastic"), polypAt({0, 0, 50}, 7.0, "lump")};
     each.places = std::move(places);
     return each;
+}
+
+TEST(Truth, APhantomsValveIsNoLesion) {
+    const auto valve = cad::valveOfJson(R"({"valve":{"position_mm":[1,2,3]}})", "structure.json");
+    ASSERT_TRUE(valve && *valve);
+    EXPECT_FALSE((*valve)->neoplastic);
+    EXPECT_FALSE((*valve)->hyperplastic());
+    // A polyp on it is a polyp.
+    const std::vector<cad::TrueLesion> truth{**valve, polypAt({1, 2, 8}, 8.0)};
+    EXPECT_EQ(cad::matched({{1, 2, 4}, {1, -8, 3}, {30, 0, 0}}, truth),
+              (std::vector<int>{1, 0, -1}));
+    const auto none = cad::valveOfJson(R"({"valve":null})", "structure.json");
+    EXPECT_TRUE(none && !*none);
+    EXPECT_FALSE(cad::valveOfJson("{\"valve\":{}}", "structure.json"));
 }
 
 TEST(Evaluation, CountsWhatItSays) {
