@@ -1,6 +1,7 @@
 #include "cad/detect.h"
 
 #include "cad/biopsy_transfer.h"
+#include "cad/places.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
@@ -145,25 +146,23 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
 }
 
 void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Method& method) {
-    for (Candidate& candidate : candidates) {
-        candidate.probability = method.classifier ? model.probability(candidate.features)
-                                : model.thresholds.pass(candidate.features) ? 1.0
-                                                                            : 0.0;
+    std::vector<PlaceWitness> witnesses;
+    for (const Candidate& candidate : candidates) {
+        const double probability = method.classifier ? model.probability(candidate.features)
+                                   : model.thresholds.pass(candidate.features) ? 1.0
+                                                                               : 0.0;
+        witnesses.push_back({candidate.lesion.centreMm, candidate.lesion.diameter.mm,
+                             candidate.lesion.areaMm2, probability});
     }
-    // The most probable first; of equal ones the larger.
-    std::stable_sort(
-        candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-            return a.probability != b.probability ? a.probability > b.probability
-                                                  : a.lesion.areaMm2 > b.lesion.areaMm2;
-        });
     std::vector<Candidate> kept;
-    for (Candidate& candidate : candidates) {
-        const bool told = std::any_of(kept.begin(), kept.end(), [&](const Candidate& other) {
-            const double apart = glm::distance(candidate.lesion.centreMm, other.lesion.centreMm);
-            return apart < 0.5 * std::max(candidate.lesion.diameter.mm, other.lesion.diameter.mm);
-        });
-        if (!told) kept.push_back(std::move(candidate));
+    for (const WitnessedPlace& place : placesOf(witnesses)) {
+        kept.push_back(std::move(candidates[place.best]));
+        kept.back().probability = method.classifier ? model.placeProbability(place.score)
+                                                    : witnesses[place.best].probability;
     }
+    std::stable_sort(kept.begin(), kept.end(), [](const Candidate& a, const Candidate& b) {
+        return a.probability > b.probability;
+    });
     candidates = std::move(kept);
 }
 

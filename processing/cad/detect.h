@@ -37,7 +37,7 @@ struct Candidate {
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
                                       const TextureModel* texture, const DetectOptions& options);
 
-/// Gives each its probability, and of those of one place keeps the most probable.
+/// Of those of one place keeps the most probable, with the place's probability (places.h).
 void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Method& method);
 
 /// Those whose probability reaches the model's operating point, from the rectum to the cecum; the

@@ -1,6 +1,7 @@
 #include "cad/model.h"
 
 #include "cad/built_in_models.h"
+#include "cad/places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,7 +88,11 @@ bool ShapeThresholds::pass(const FeatureVector& features) const {
 }
 
 double CadModel::probability(const FeatureVector& features) const {
-    return 1.0 / (1.0 + std::exp(-(calibrationA + calibrationB * boosted.at(features))));
+    return logistic(calibrationA + calibrationB * boosted.at(features));
+}
+
+double CadModel::placeProbability(double score) const {
+    return logistic(placeA + placeB * logit(score));
 }
 
 std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const int> truths) {
@@ -153,6 +158,7 @@ std::string modelText(const CadModel& model) {
     add("training_scans", model.trainingScans);
     add("operating_point", model.operatingPoint);
     add("calibration", {model.calibrationA, model.calibrationB});
+    add("place_calibration", {model.placeA, model.placeB});
     ModelJson names = ModelJson::array();
     for (const std::string_view name : featureNames)
         names.push_back(std::string(name));
@@ -184,6 +190,8 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         model.operatingPoint = json.at("operating_point");
         model.calibrationA = json.at("calibration").at(0).get<double>();
         model.calibrationB = json.at("calibration").at(1).get<double>();
+        model.placeA = json.at("place_calibration").at(0).get<double>();
+        model.placeB = json.at("place_calibration").at(1).get<double>();
         const ModelJson& thresholds = json.at("thresholds");
         model.thresholds = {rangeIn(thresholds.at("shape_index")),
                             rangeIn(thresholds.at("curvedness")),
@@ -205,8 +213,10 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         }
         if (!(model.operatingPoint >= 0.0 && model.operatingPoint <= 1.0))
             throw std::invalid_argument("the operating point is no probability");
-        if (!(std::abs(model.calibrationA) < 1e6 && model.calibrationB > 0.0 &&
-              model.calibrationB < 1e6))
+        const auto rises = [](double a, double b) {
+            return std::abs(a) < 1e6 && b > 0.0 && b < 1e6;
+        };
+        if (!rises(model.calibrationA, model.calibrationB) || !rises(model.placeA, model.placeB))
             throw std::invalid_argument("the calibration does not rise with the score");
         if (model.texture.count() == 0) throw std::invalid_argument("the texture has no component");
         if (const auto sound = checkTrees(model.boosted, featureCount); !sound)

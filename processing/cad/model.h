@@ -36,9 +36,14 @@ struct CadModel {
     BoostedTrees boosted;
     /// The trees' sum s becomes the probability 1/(1 + exp(−(a + b·s))) (Platt 1999).
     double calibrationA = 0.0, calibrationB = 1.0;
+    /// A place's score s (places.h) becomes the probability 1/(1 + exp(−(a + b·logit s))).
+    double placeA = 0.0, placeB = 1.0;
     double operatingPoint = 0.5;  ///< probability from which on a candidate is a finding
 
+    /// Of a candidate by itself.
     double probability(const FeatureVector& features) const;
+    /// Of a place with this score: what a finding tells.
+    double placeProbability(double score) const;
 };
 
 /// JSON that modelOfText reads back; single-precision numbers with seven significant digits, so

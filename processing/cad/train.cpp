@@ -1,5 +1,6 @@
 #include "cad/train.h"
 
+#include "cad/places.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
 
@@ -40,28 +41,22 @@ BoostedTrees boostedOn(const std::vector<const TrainingCase*>& cases) {
     return boostTrees(rows, responses, featureCount);
 }
 
-// What would be told of a case, as weigh() does: the best of those of one place. Scores are the
-// trees' sums.
-EvaluatedCase told(const TrainingCase& each, const BoostedTrees& boosted) {
-    std::vector<std::pair<double, const Example*>> order;
+// Examples as witnesses, each with what `probability` makes of its features.
+template <class Probability>
+std::vector<PlaceWitness> witnessesOf(const TrainingCase& each, const Probability& probability) {
+    std::vector<PlaceWitness> witnesses;
     for (const Example& example : each.examples)
-        order.emplace_back(boosted.at(example.features), &example);
-    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
-        return a.first != b.first ? a.first > b.first : a.second->areaMm2 > b.second->areaMm2;
-    });
-    std::vector<const Example*> kept;
-    EvaluatedCase result{each.name, each.name, each.truth, {}};
-    for (const auto& entry : order) {
-        const Example* example = entry.second;
-        const bool isTold = std::any_of(kept.begin(), kept.end(), [&](const Example* other) {
-            return glm::distance(example->placeMm, other->placeMm) <
-                   0.5 * std::max(example->diameterMm, other->diameterMm);
-        });
-        if (isTold) continue;
-        kept.push_back(example);
-        result.places.push_back({entry.first, example->diameterMm, example->lesion, ""});
-    }
-    return result;
+        witnesses.push_back(
+            {example.placeMm, example.diameterMm, example.areaMm2, probability(example.features)});
+    return witnesses;
+}
+
+// Whether it is a polyp; empty where it is neither to be praised nor blamed.
+std::optional<bool> truthOf(const TrainingCase& each, int lesion) {
+    if (lesion < 0) return false;
+    const TrueLesion& is = each.truth[std::size_t(lesion)];
+    if (is.hyperplastic()) return std::nullopt;
+    return is.neoplastic;
 }
 
 }  // namespace
@@ -179,38 +174,58 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
             boosted[fold] = boostedOn(seen);
         }
     });
-    TrainedModel trained;
-    std::vector<double> x, blamedScores;
-    std::vector<int> truths;
+    // By themselves first, the best of each place; then what places make of them.
+    std::vector<double> sums, scores;
+    std::vector<int> truths, placeTruths;
+    const auto ofFold = [&](std::size_t n) -> const BoostedTrees& {
+        return boosted[n % std::size_t(options.folds)];
+    };
     for (std::size_t n = 0; n < cases.size(); ++n) {
-        trained.crossValidated.push_back(told(cases[n], boosted[n % std::size_t(options.folds)]));
-        for (const ToldPlace& place : trained.crossValidated.back().places) {
-            const TrueLesion* lesion =
-                place.lesion < 0 ? nullptr : &cases[n].truth[std::size_t(place.lesion)];
-            const bool polyp = lesion && lesion->neoplastic,
-                       blamed = !lesion || (!lesion->neoplastic && !lesion->hyperplastic());
-            if (polyp || blamed) x.push_back(place.score), truths.push_back(polyp);
-            if (blamed) blamedScores.push_back(place.score);
+        const auto witnesses = witnessesOf(
+            cases[n], [&](const FeatureVector& features) { return ofFold(n).at(features); });
+        for (const WitnessedPlace& place : placesOf(witnesses)) {
+            const auto polyp = truthOf(cases[n], cases[n].examples[place.best].lesion);
+            if (!polyp) continue;
+            sums.push_back(witnesses[place.best].probability);
+            truths.push_back(*polyp);
         }
     }
-    model.boosted = std::move(boosted.back());
-    std::tie(model.calibrationA, model.calibrationB) = fitLogistic(x, truths);
+    std::tie(model.calibrationA, model.calibrationB) = fitLogistic(sums, truths);
     if (!(model.calibrationB > 0.0))
         return fail(ErrorKind::badInput,
                     "nothing was learnt: polyps that the trees had not seen score no higher than "
                     "other places; more training cases, or ones with more polyps, are needed");
-    const auto probability = [&](double score) {
-        return 1.0 / (1.0 + std::exp(-(model.calibrationA + model.calibrationB * score)));
-    };
+    TrainedModel trained;
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        const auto witnesses = witnessesOf(cases[n], [&](const FeatureVector& features) {
+            return logistic(model.calibrationA + model.calibrationB * ofFold(n).at(features));
+        });
+        EvaluatedCase told{cases[n].name, cases[n].name, cases[n].truth, {}};
+        for (const WitnessedPlace& place : placesOf(witnesses)) {
+            const Example& best = cases[n].examples[place.best];
+            told.places.push_back({place.score, best.diameterMm, best.lesion, ""});
+            const auto polyp = truthOf(cases[n], best.lesion);
+            if (!polyp) continue;
+            scores.push_back(logit(place.score));
+            placeTruths.push_back(*polyp);
+        }
+        trained.crossValidated.push_back(std::move(told));
+    }
+    model.boosted = std::move(boosted.back());
+    std::tie(model.placeA, model.placeB) = fitLogistic(scores, placeTruths);
+    if (!(model.placeB > 0.0)) return fail(ErrorKind::badInput, "nothing was learnt of places");
+    std::vector<double> blamedScores;
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        for (ToldPlace& place : trained.crossValidated[n].places) {
+            place.score = model.placeProbability(place.score);
+            if (truthOf(cases[n], place.lesion) == false) blamedScores.push_back(place.score);
+        }
+    }
     std::sort(blamedScores.rbegin(), blamedScores.rend());
     const std::size_t allowed = std::size_t(options.falsePositives * double(cases.size()));
     // What scores more than the first wrong one too many is told.
-    model.operatingPoint = allowed < blamedScores.size()
-                               ? std::nextafter(probability(blamedScores[allowed]), 1.0)
-                               : 0.0;
-    for (EvaluatedCase& each : trained.crossValidated)
-        for (ToldPlace& place : each.places)
-            place.score = probability(place.score);
+    model.operatingPoint =
+        allowed < blamedScores.size() ? std::nextafter(blamedScores[allowed], 1.0) : 0.0;
     trained.model = std::move(model);
     return trained;
 }

@@ -2,6 +2,7 @@
 #include "cad/candidate_table.h"
 #include "cad/evaluate.h"
 #include "cad/model.h"
+#include "cad/places.h"
 #include "cad/train.h"
 
 #include <cmath>
@@ -115,6 +116,7 @@ TEST(Model, WhatIsNoneIsRefused) {
           with("\"polyp\":[", "\"polyp\":[0,"),
           with("\"operating_point\": ", "\"operating_point\": 2"),
           with("\"calibration\": [", "\"calibration\": [0.5,-"),
+          with("\"place_calibration\": [", "\"place_calibration\": [0.5,-"),
           with("\"training_scans\": ", "\"training_scans\": 7, \"x\": ")})
         EXPECT_FALSE(cad::modelOfText(text, "m.json")) << text.substr(0, 60);
 }
@@ -164,6 +166,27 @@ cad::EvaluatedCase judged(std::vector<cad::ToldPlace> places) {
                   polypAt({0, 50, 0}, 3.0, "hyperplastic"), polypAt({0, 0, 50}, 7.0, "lump")};
     each.places = std::move(places);
     return each;
+}
+
+TEST(Places, ArePairedByTheirTwoMostProbableWitnesses) {
+    // Two of one place, one of another, one so far that only its own width joins it to the first.
+    const std::vector<cad::PlaceWitness> witnesses{{{0, 0, 0}, 6.0, 20.0, 0.8},
+                                                   {{2.9, 0, 0}, 4.0, 10.0, 0.6},
+                                                   {{3.1, 0, 0}, 4.0, 10.0, 0.4},
+                                                   {{0, 9.0, 0}, 20.0, 200.0, 0.7}};
+    const auto places = cad::placesOf(witnesses);
+    ASSERT_EQ(places.size(), 2u);
+    EXPECT_EQ(places[0].best, 0u);
+    // The wide one is the first that seconds it; the third is no part of it, and alone.
+    EXPECT_DOUBLE_EQ(places[0].score, 0.5 * (0.8 + 0.7));
+    EXPECT_EQ(places[1].best, 2u);
+    EXPECT_DOUBLE_EQ(places[1].score, 0.5 * 0.4);
+    // Of equal ones the larger; the order in which they come is nothing.
+    std::vector<cad::PlaceWitness> equal{{{0, 0, 0}, 6.0, 10.0, 0.5}, {{1, 0, 0}, 6.0, 30.0, 0.5}};
+    EXPECT_EQ(cad::placesOf(equal)[0].best, 1u);
+    std::swap(equal[0], equal[1]);
+    EXPECT_EQ(cad::placesOf(equal)[0].best, 0u);
+    EXPECT_NEAR(cad::logistic(cad::logit(0.3)), 0.3, 1e-12);
 }
 
 TEST(Truth, APhantomsValveIsNoLesion) {

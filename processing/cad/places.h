@@ -1,0 +1,36 @@
+// Which candidates are of one place, and how sure they make it together.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace haustra::cad {
+
+/// What a place is told by: a candidate's centre, its diameter, its area and how probable it is by
+/// itself.
+struct PlaceWitness {
+    glm::dvec3 centreMm{0.0};
+    double diameterMm = 0.0, areaMm2 = 0.0, probability = 0.0;
+};
+
+/// A place, its most probable witness (of equal ones the larger), and its score: the mean of its
+/// two most probable witnesses, where a missing one counts nothing. A polyp is seen at both scales
+/// and often by its texture too; noise is seen once.
+struct WitnessedPlace {
+    std::size_t best = 0;
+    double score = 0.0;
+};
+
+/// The most probable witness first; one whose centre is nearer to an earlier place's than half the
+/// larger of the two diameters is of that place. O(witnesses · places).
+std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses);
+
+/// ln(p / (1 − p)), of probabilities from 1e-6 to 1 − 1e-6.
+double logit(double probability);
+/// 1 / (1 + e^−x).
+double logistic(double x);
+
+}  // namespace haustra::cad
