@@ -1,5 +1,6 @@
 #include "cad/candidates.h"
 
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -63,8 +64,8 @@ public:
         const bool anyOpen = std::any_of(floods_.begin(), floods_.end(),
                                          [](const Flood& flood) { return flood.open; });
         for (std::size_t f = 0; f < floods_.size(); ++f) {
-            const std::size_t root = rootOf(f);
-            if (floods_[root].open || (!anyOpen && root == rootOf(last_))) continue;
+            const std::size_t root = rootOf(met_, f);
+            if (floods_[root].open || (!anyOpen && root == rootOf(met_, last_))) continue;
             patch.insert(patch.end(), floods_[f].samples.begin(), floods_[f].samples.end());
         }
     }
@@ -72,15 +73,9 @@ public:
 private:
     struct Flood {
         std::vector<std::uint32_t> samples;
-        std::size_t head = 0, joined = 0;  // samples before the head are done with; union–find
-        bool open = false;                 // of a root
+        std::size_t head = 0;  // samples before it are done with
+        bool open = false;     // of the one that stands for all that met
     };
-
-    std::size_t rootOf(std::size_t flood) {
-        while (floods_[flood].joined != flood)
-            flood = floods_[flood].joined = floods_[floods_[flood].joined].joined;
-        return flood;
-    }
 
     // Samples beside the patch, those that hang together as one flood's first.
     void findRims(const std::vector<std::uint32_t>& patch) {
@@ -93,12 +88,11 @@ private:
                 beside.push_back(next);
             }
         }
-        floods_.clear();
+        floods_.clear(), met_.clear();
         for (const std::uint32_t first : beside) {
             if (mark_[first] != beside_) continue;
             const auto own = firstFlood_ + std::uint32_t(floods_.size());
             Flood flood;
-            flood.joined = floods_.size();
             flood.samples.push_back(first);
             mark_[first] = own;
             for (std::size_t head = 0; head < flood.samples.size(); ++head) {
@@ -110,6 +104,7 @@ private:
                     flood.samples.push_back(next);
                 }
             }
+            met_.push_back(floods_.size());
             floods_.push_back(std::move(flood));
         }
     }
@@ -130,7 +125,7 @@ private:
         std::size_t going = 0;
         bool anyOpen = false;
         for (std::size_t f = 0; f < floods_.size(); ++f) {
-            const std::size_t root = rootOf(f);
+            const std::size_t root = rootOf(met_, f);
             anyOpen |= floods_[root].open;
             if (floods_[root].open || floods_[f].head == floods_[f].samples.size()) continue;
             if (going == 0 || root != last_) ++going;
@@ -140,10 +135,10 @@ private:
     }
 
     void step(std::size_t f) {
-        if (floods_[rootOf(f)].open || floods_[f].head == floods_[f].samples.size()) return;
+        if (floods_[rootOf(met_, f)].open || floods_[f].head == floods_[f].samples.size()) return;
         const std::uint32_t v = floods_[f].samples[floods_[f].head++];
         if (glm::distance(middle_, wall_.mesh.vertices[v]) > reachMm_) {
-            floods_[rootOf(f)].open = true;
+            floods_[rootOf(met_, f)].open = true;
             return;
         }
         for (std::uint32_t e = wall_.begin[v]; e < wall_.begin[v + 1]; ++e) {
@@ -154,10 +149,11 @@ private:
                 floods_[f].samples.push_back(next);
                 continue;
             }
-            const std::size_t mine = rootOf(f), other = rootOf(mark_[next] - firstFlood_);
+            const std::size_t mine = rootOf(met_, f),
+                              other = rootOf(met_, std::size_t(mark_[next] - firstFlood_));
             if (mine == other) continue;
-            floods_[other].joined = mine;
-            floods_[mine].open |= floods_[other].open;
+            unite(met_, mine, other);
+            floods_[rootOf(met_, f)].open = floods_[mine].open || floods_[other].open;
         }
     }
 
@@ -167,6 +163,7 @@ private:
     std::vector<std::uint32_t> mark_;
     std::uint32_t marks_ = 0, inPatch_ = 0, beside_ = 0, firstFlood_ = 0;
     std::vector<Flood> floods_;
+    std::vector<std::size_t> met_;  // floods that are one, as disjoint sets
     std::size_t last_ = 0;
     glm::dvec3 middle_{0.0};
     double reachMm_ = 0.0;

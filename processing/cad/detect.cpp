@@ -25,15 +25,10 @@ constexpr double leastUnseenMm2 = 20.0;
 // Of the smoothed scan; the noisiest training phantoms have 15.
 constexpr double noisyHu = 25.0;
 
-double featureOf(const Candidate& candidate, std::string_view name) {
-    return candidate.features[std::size_t(
-        std::find(featureNames.begin(), featureNames.end(), name) - featureNames.begin())];
-}
-
 const char* kindOf(const Candidate& candidate) {
     const Lesion& lesion = candidate.lesion;
     const double ratio = lesion.heightMm / std::max(0.1, lesion.diameter.mm);
-    if (featureOf(candidate, "neck_ratio") < stalkNeck && ratio > stalkHeightRatio)
+    if (candidate.features[featureNumber("neck_ratio")] < stalkNeck && ratio > stalkHeightRatio)
         return "pedunculated";
     return lesion.heightMm < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
 }

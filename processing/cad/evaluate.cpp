@@ -8,11 +8,6 @@
 namespace haustra::cad {
 namespace {
 
-double namedFeature(const Candidate& candidate, std::string_view name) {
-    return candidate.features[std::size_t(
-        std::find(featureNames.begin(), featureNames.end(), name) - featureNames.begin())];
-}
-
 bool blamed(const EvaluatedCase& each, const ToldPlace& place) {
     if (place.lesion < 0) return true;
     const TrueLesion& lesion = each.truth[std::size_t(place.lesion)];
@@ -75,9 +70,9 @@ EvaluatedCase evaluateCase(std::string name, std::string group,
     const std::vector<int> meant = matched(places, truth);
     for (std::size_t n = 0; n < weighed.size(); ++n) {
         const Candidate& candidate = weighed[n];
-        const char* looks = namedFeature(candidate, "wet_share") > 0.5 ? "under fluid"
-                            : namedFeature(candidate, "reentry_share") > 0.5 ||
-                                    namedFeature(candidate, "ring_ridge_share") > 0.3
+        const char* looks = candidate.features[featureNumber("wet_share")] > 0.5 ? "under fluid"
+                            : candidate.features[featureNumber("reentry_share")] > 0.5 ||
+                                    candidate.features[featureNumber("ring_ridge_share")] > 0.3
                                 ? "fold"
                                 : "wall";
         result.places.push_back({candidate.probability, candidate.lesion.diameter.mm, meant[n],

@@ -12,8 +12,7 @@ namespace {
 class Named {
 public:
     void operator()(std::string_view name, double value) {
-        const auto at = std::find(featureNames.begin(), featureNames.end(), name);
-        values_[std::size_t(at - featureNames.begin())] =
+        values_[featureNumber(name)] =
             float(std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 0.0);
     }
     const FeatureVector& values() const { return values_; }

@@ -3,6 +3,7 @@
 
 #include "cad/lesion.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string_view>
@@ -29,6 +30,10 @@ inline constexpr std::array<std::string_view, 36> featureNames{
     // where it is
     "toward_axis", "clearance_mm"};
 inline constexpr int featureCount = int(featureNames.size());
+/// A name's place in featureNames; featureCount where there is none of that name.
+constexpr std::size_t featureNumber(std::string_view name) {
+    return std::size_t(std::ranges::find(featureNames, name) - featureNames.begin());
+}
 using FeatureVector = std::array<float, std::size_t(featureCount)>;
 
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.

@@ -40,11 +40,6 @@ std::pair<double, double> rangeIn(const ModelJson& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>()};
 }
 
-double valueOf(const FeatureVector& features, std::string_view name) {
-    return features[std::size_t(std::find(featureNames.begin(), featureNames.end(), name) -
-                                featureNames.begin())];
-}
-
 ModelJson jsonOf(const TextureModel& texture) {
     return {{"threshold", texture.threshold},
             {"variance_share", texture.varianceShare},
@@ -80,7 +75,7 @@ Result<TextureModel> textureOfText(std::string_view text, const std::string& pla
 
 bool ShapeThresholds::pass(const FeatureVector& features) const {
     const auto within = [&](std::string_view name, std::pair<double, double> range) {
-        const double value = valueOf(features, name);
+        const double value = features[featureNumber(name)];
         return value >= range.first && value <= range.second;
     };
     return within("shape_index_mean", shapeIndex) && within("curvedness_mean", curvedness) &&

@@ -15,11 +15,6 @@ namespace {
 
 constexpr std::size_t wallVectors = 6000, polypVectors = 4000;  // of one case, about
 
-std::size_t featureNumber(std::string_view name) {
-    return std::size_t(std::find(featureNames.begin(), featureNames.end(), name) -
-                       featureNames.begin());
-}
-
 std::pair<double, double> middleRange(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     // All but the outermost fortieth on either side.
