@@ -35,9 +35,11 @@ Image biopsyImage(const BiopsyScan& scan, const FlatMap& flat, const BiopsyTable
                   glm::ivec2 size, int finer, int threads) {
     const StripRaster raster = rasterStrip(flat, size * finer);
     Image image = blankImage(size);
-    parallelFor(std::size_t(size.y), 2, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            for (int column = 0; column < size.x; ++column) {
+    // Ring after ring of the colon, whose rays pass through the same voxels.
+    constexpr std::size_t ring = 16;
+    parallelFor(std::size_t(size.x), ring, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = 0; row < std::size_t(size.y); ++row) {
+            for (int column = int(begin); column < int(end); ++column) {
                 glm::vec3 sum(0.0f);
                 for (int n = 0; n < finer * finer; ++n) {
                     const auto& pixel =

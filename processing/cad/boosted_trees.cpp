@@ -8,22 +8,53 @@
 
 namespace haustra::cad {
 
+namespace {
+
+// What of a tree's branch and below it counts.
+double below(const std::vector<TreeNode>& tree, std::int32_t at, std::span<const float> features,
+             std::span<const float> widths) {
+    const TreeNode* node = &tree[std::size_t(at)];
+    while (node->feature >= 0) {
+        const auto feature = std::size_t(node->feature);
+        const float above = features[feature] - node->threshold, half = 0.5f * widths[feature];
+        if (above > -half && above < half) {
+            const double right = 0.5 * (1.0 + double(above) / half);
+            return (1.0 - right) * below(tree, node->left, features, widths) +
+                   right * below(tree, node->right, features, widths);
+        }
+        node = &tree[std::size_t(above > 0.0f ? node->right : node->left)];
+    }
+    return node->threshold;
+}
+
+std::vector<float> deviations(std::span<const float> rows, std::size_t features) {
+    std::vector<double> sum(features, 0.0), squares(features, 0.0);
+    for (std::size_t n = 0; n < rows.size(); ++n)
+        sum[n % features] += rows[n], squares[n % features] += double(rows[n]) * rows[n];
+    const double count = double(rows.size() / features);
+    std::vector<float> result;
+    for (std::size_t f = 0; f < features; ++f) {
+        const double mean = sum[f] / count;
+        result.push_back(float(std::sqrt(std::max(0.0, squares[f] / count - mean * mean))));
+    }
+    return result;
+}
+
+}  // namespace
+
 double BoostedTrees::at(std::span<const float> features) const {
     double sum = 0.0;
-    for (const std::vector<TreeNode>& tree : trees) {
-        const TreeNode* node = &tree.front();
-        while (node->feature >= 0)
-            node = &tree[std::size_t(features[std::size_t(node->feature)] <= node->threshold
-                                         ? node->left
-                                         : node->right)];
-        sum += node->threshold;
-    }
+    for (const std::vector<TreeNode>& tree : trees)
+        sum += below(tree, 0, features, widths);
     return sum;
 }
 
 Result<void> checkTrees(const BoostedTrees& boosted, int features) {
     const auto refuse = [](const char* what) { return fail(ErrorKind::badInput, what, "model"); };
     if (boosted.trees.empty()) return refuse("there is no tree");
+    if (int(boosted.widths.size()) != features) return refuse("features have no widths");
+    for (const float width : boosted.widths)
+        if (!(width >= 0.0f && std::isfinite(width))) return refuse("a width is no length");
     for (const std::vector<TreeNode>& tree : boosted.trees) {
         if (tree.empty()) return refuse("a tree has no root");
         for (std::size_t n = 0; n < tree.size(); ++n) {
@@ -40,7 +71,7 @@ Result<void> checkTrees(const BoostedTrees& boosted, int features) {
 }
 
 BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> responses, int features,
-                        int trees, int depth, int leastRows) {
+                        int trees, int depth, int leastRows, double softness) {
     const int count = int(responses.size());
     const cv::Mat samples(count, features, CV_32F, const_cast<float*>(rows.data()));
     cv::Mat classes(count, 1, CV_32S);
@@ -58,6 +89,8 @@ BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> resp
     const auto& nodes = boost->getNodes();
     const auto& splits = boost->getSplits();
     BoostedTrees result;
+    for (const float deviation : deviations(rows, std::size_t(features)))
+        result.widths.push_back(float(softness) * deviation);
     for (const int root : boost->getRoots()) {
         std::vector<TreeNode> tree;
         const auto add = [&](const auto& self, int at) -> std::int32_t {

@@ -18,20 +18,25 @@ struct TreeNode {
 /// Immutable once it is made; any number of threads.
 struct BoostedTrees {
     std::vector<std::vector<TreeNode>> trees;
-    /// Sum of the leaves that the features lead to: above 0 where a polyp is more likely. They must
-    /// have passed checkTrees.
+    /// Of each feature, 0 and more: a feature is known no better than within ± half of this.
+    std::vector<float> widths;
+    /// Sum of the leaves that the features lead to: above 0 where a polyp is more likely. Of a
+    /// feature within half its width of a branch's threshold both sides count, each by its share of
+    /// what the feature may truly be: the expected sum where each branch sees an error of its own,
+    /// uniform over the width. They must have passed checkTrees.
     double at(std::span<const float> features) const;
 };
 
-/// Fails (badInput) where there is no tree, a branch leads back or nowhere, or a feature does not
-/// exist.
+/// Fails (badInput) where there is no tree, a width for each feature is missing or below 0, a
+/// branch leads back or nowhere, or a feature does not exist.
 Result<void> checkTrees(const BoostedTrees& boosted, int features);
 
 /// `rows`: `features` numbers each, as many rows as responses (0 or 1, both kinds). Gentle AdaBoost
 /// (Friedman, Hastie and Tibshirani, Annals of Statistics 2000; 28: 337; cv::ml::Boost): `trees` of
 /// `depth` splits at most, whose leaves hold at least `leastRows` rows; rows that together have
-/// less than a twentieth of the weight sit a round out. The same for equal input.
+/// less than a twentieth of the weight sit a round out. Widths are `softness` standard deviations
+/// of the rows. The same for equal input.
 BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> responses, int features,
-                        int trees = 200, int depth = 4, int leastRows = 10);
+                        int trees = 200, int depth = 4, int leastRows = 10, double softness = 0.2);
 
 }  // namespace haustra::cad

@@ -104,6 +104,25 @@ void describeRing(const WallEvidence& evidence, const std::vector<std::uint32_t>
     put("wet_edge", 4.0 * wet * (1.0 - wet));
 }
 
+// What an empty scanner measures.
+constexpr double emptyHu = -1000.0;
+
+// The ileocecal valve opens into the colon where the cecum ends, some 6 cm above its blind end; a
+// rectal tube and its balloon lie in the last 10 cm. Along the centerline, with what they span.
+constexpr double valveFromMm = 15.0, valveToMm = 120.0, tubeToMm = 110.0;
+
+// 1 where such a thing can be, so that what else is known of a place is weighed otherwise there.
+// Where the colon's parts are known and the first or the last is missing, nowhere.
+void describeRegion(const PreparedColon& colon, double arcMm, Named& put) {
+    const bool rectum =
+        colon.pieces.empty() || segmentOf(colon.pieces.front().part) == ColonSegment::rectum;
+    const bool cecum =
+        colon.pieces.empty() || segmentOf(colon.pieces.back().part) == ColonSegment::cecum;
+    const double aboveEndMm = colon.centerline.points.back().arcMm - arcMm;
+    put("valve_region", cecum && aboveEndMm >= valveFromMm && aboveEndMm <= valveToMm);
+    put("tube_region", rectum && arcMm <= tubeToMm);
+}
+
 // Of a polyp of 25 mm; of what is wider, the surface is far from anything that could point at it.
 constexpr double farthestGradientMm = 16.0;
 
@@ -130,16 +149,28 @@ void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
     const double unit = std::max(20.0, s.wallHu - s.fatHu);
     const Grid& grid = colon.cleansed.grid();
     std::vector<float> density, removed, raw;
+    double fat = 0.0, gas = 0.0;
+    // Gas that is surely inside; and what is as light as fat without being the blur between tissue
+    // and gas, which is several times as steep as that between tissue and fat.
+    const double gasBelowHu = 0.5 * (colon.tissue.airBelowHu + emptyHu);
+    const double steepestFat = 0.75 * unit;
     for (const VoxelRun& run : lesion.voxels) {
         for (int n = 0; n < run.count; ++n) {
             const glm::ivec3 voxel = run.first + glm::ivec3(n, 0, 0);
-            const double hu = evidence.smooth->at(grid.patientFromVoxelPoint(glm::dvec3(voxel)));
+            const glm::dvec3 at = grid.patientFromVoxelPoint(glm::dvec3(voxel));
+            const double hu = evidence.smooth->at(at);
+            gas += hu < gasBelowHu;
+            fat += std::abs(hu - s.fatHu) < 0.5 * unit &&
+                   glm::length(evidence.smooth->gradient(at)) < steepestFat;
             density.push_back(float((hu - s.wallHu) / unit));
             const int cleansed = colon.cleansed.at(voxel);
             raw.push_back(float((cleansed - s.wallHu) / unit));
             removed.push_back(float(std::max(0, colon.ct.at(voxel) - cleansed) / unit));
         }
     }
+    const double voxels = std::max(1.0, double(density.size()));
+    put("fat_share", fat / voxels);
+    put("gas_share", gas / voxels);
     if (density.empty()) density.push_back(-3.0f), raw.push_back(-3.0f), removed.push_back(0.0f);
     put("removed_density", mean(removed));
     put("density_median", quantile(density, 0.5));
@@ -183,12 +214,14 @@ void describeSurroundings(const PreparedColon& colon, const WallEvidence& eviden
         if (evidence.rays[v].reenters) reenters += mm2;
         behind.push_back(evidence.rays[v].tissueMm);
     }
+    put("former_fluid_mm", evidence.formerFluid.distanceMm(lesion.topMm));
     put("wet_share", area > 0.0 ? wet / area : 0.0);
     put("reentry_share", area > 0.0 ? reenters / area : 0.0);
     put("tissue_behind_mm", quantile(behind, 0.5));
     if (!colon.centerline.points.empty()) {
-        const CenterlinePose pose =
-            poseAtArc(colon.centerline, nearestArc(colon.centerline, lesion.topMm));
+        const double arcMm = nearestArc(colon.centerline, lesion.topMm);
+        describeRegion(colon, arcMm, put);
+        const CenterlinePose pose = poseAtArc(colon.centerline, arcMm);
         const glm::dvec3 way = pose.point.positionMm - lesion.centreMm;
         const double length = glm::length(way);
         put("toward_axis", length > 0.0 ? glm::dot(way, lesion.axis) / length : 0.0);

@@ -12,7 +12,7 @@ namespace haustra::cad {
 
 /// In the order of featureNames. HU are relative to the scan: (HU − wall) / (wall − fat), so that a
 /// scanner's calibration and voltage do not matter; lengths are mm.
-inline constexpr std::array<std::string_view, 36> featureNames{
+inline constexpr std::array<std::string_view, 41> featureNames{
     // size and form
     "diameter_mm", "width_ratio", "height_mm", "height_ratio", "compactness", "neck_ratio",
     // shape index and curvedness over the patch
@@ -26,9 +26,12 @@ inline constexpr std::array<std::string_view, 36> featureNames{
     "density_median", "density_p90", "density_core", "density_spread", "texture_distance",
     "texture_share", "peak_median", "peak_over_ring", "broad_k2_size",
     // what it borders on
-    "wet_share", "wet_edge", "tissue_behind_mm", "reentry_share", "removed_density",
+    "wet_share", "wet_edge", "former_fluid_mm", "tissue_behind_mm", "reentry_share",
+    "removed_density",
+    // what else has fat or gas inside: lips of the ileocecal valve, a rectal tube
+    "fat_share", "gas_share",
     // where it is
-    "toward_axis", "clearance_mm"};
+    "toward_axis", "clearance_mm", "valve_region", "tube_region"};
 inline constexpr int featureCount = int(featureNames.size());
 /// A name's place in featureNames; featureCount where there is none of that name.
 constexpr std::size_t featureNumber(std::string_view name) {

@@ -158,6 +158,10 @@ std::string modelText(const CadModel& model) {
     for (const std::string_view name : featureNames)
         names.push_back(std::string(name));
     add("features", names);
+    ModelJson widths = ModelJson::array();
+    for (const float width : model.boosted.widths)
+        widths.push_back(shortened(width));
+    add("widths", widths);
     add("thresholds", thresholds);
     add("texture", jsonOf(model.texture));
     text += "\"trees\": [";
@@ -192,6 +196,7 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
                             rangeIn(thresholds.at("curvedness")),
                             rangeIn(thresholds.at("gradient_concentration"))};
         model.texture = textureIn(json.at("texture"));
+        model.boosted.widths = json.at("widths").get<std::vector<float>>();
         for (const ModelJson& nodes : json.at("trees")) {
             std::vector<TreeNode> tree;
             for (const ModelJson& node : nodes) {

@@ -140,25 +140,9 @@ SmoothScan::SmoothScan(const Volume<std::int16_t>& hu, glm::dvec3 lowMm, glm::dv
     smooth_ = Volume<float>(cropped(grid, box));
     smoothSlices(hu, box, kernels, smooth_, threads);
     smoothAcross(kernels[2], smooth_, threads);
+    row_ = std::size_t(box.size.x), slice_ = row_ * std::size_t(box.size.y);
     voxelFromPatient_ = smooth_.grid().voxelFromPatient();
     turn_ = glm::dmat3(voxelFromPatient_);
-}
-
-float SmoothScan::linear(glm::vec3 voxel) const {
-    const glm::ivec3 size = smooth_.grid().size;
-    const glm::vec3 p = glm::clamp(voxel, glm::vec3(0.0f), glm::vec3(size - 1) - glm::vec3(1e-3f));
-    const glm::ivec3 low(p);
-    const glm::vec3 f = p - glm::vec3(low);
-    const std::size_t row = std::size_t(size.x), slice = row * std::size_t(size.y);
-    const float* c = smooth_.voxels().data() + std::size_t(low.z) * slice +
-                     std::size_t(low.y) * row + std::size_t(low.x);
-    const auto along = [&](const float* at) { return at[0] + f.x * (at[1] - at[0]); };
-    const auto plane = [&](const float* at) {
-        const float near = along(at);
-        return near + f.y * (along(at + row) - near);
-    };
-    const float near = plane(c);
-    return near + f.z * (plane(c + slice) - near);
 }
 
 glm::dvec3 SmoothScan::gradient(glm::dvec3 patientMm) const {

@@ -34,7 +34,30 @@ public:
 
     /// Of a place in voxels of grid(): linear between the smoothed voxels, clamped at the outermost
     /// ones. For long rays; without the spline's own share of the smoothing.
-    float linear(glm::vec3 voxel) const;
+    float linear(glm::vec3 voxel) const {
+        const glm::vec3 most(smooth_.grid().size - 1);
+        return linearWithin(glm::clamp(voxel, glm::vec3(0.0f), most - glm::vec3(1e-3f)));
+    }
+    /// The same of a place that is known to lie within it.
+    float linearWithin(glm::vec3 voxel) const {
+        const glm::ivec3 low(voxel);
+        const glm::vec3 f = voxel - glm::vec3(low);
+        const float* c = smooth_.voxels().data() + std::size_t(low.z) * slice_ +
+                         std::size_t(low.y) * row_ + std::size_t(low.x);
+        const auto along = [&](const float* at) { return at[0] + f.x * (at[1] - at[0]); };
+        const auto plane = [&](const float* at) {
+            const float near = along(at);
+            return near + f.y * (along(at + row_) - near);
+        };
+        const float near = plane(c);
+        return near + f.z * (plane(c + slice_) - near);
+    }
+    /// Whether linear() clamps nothing there.
+    bool within(glm::vec3 voxel) const {
+        const glm::vec3 most = glm::vec3(smooth_.grid().size - 1) - glm::vec3(1e-3f);
+        return glm::all(glm::greaterThanEqual(voxel, glm::vec3(0.0f))) &&
+               glm::all(glm::lessThanEqual(voxel, most));
+    }
     const glm::dmat4& voxelFromPatient() const { return voxelFromPatient_; }
     /// The scan's voxel that voxel (0, 0, 0) of grid() is.
     glm::ivec3 origin() const { return origin_; }
@@ -44,6 +67,7 @@ private:
     glm::ivec3 origin_{0};
     glm::dmat4 voxelFromPatient_{1.0};
     glm::dmat3 turn_{1.0};  // voxelFromPatient's linear part
+    std::size_t row_ = 0, slice_ = 0;
 };
 
 }  // namespace haustra::cad

@@ -51,17 +51,30 @@ Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::
     }
 }
 
-Result<std::optional<TrueLesion>> valveOfJson(const std::string& text, const std::string& place) {
+Result<std::vector<TrueLesion>> mimicsOfJson(const std::string& text, const std::string& place) {
     constexpr double lipsMm = 20.0;
     try {
         const auto json = nlohmann::json::parse(text);
-        if (!json.contains("valve") || json.at("valve").is_null()) return std::nullopt;
-        TrueLesion valve;
-        valve.positionMm = valve.wallMm = placeOfTruth(json.at("valve").at("position_mm"));
-        valve.diameterMm = lipsMm;
-        valve.kind = "valve";
-        valve.neoplastic = false;
-        return valve;
+        std::vector<TrueLesion> mimics;
+        const auto add = [&](const char* kind, const nlohmann::json& at, double diameterMm) {
+            TrueLesion mimic;
+            mimic.positionMm = mimic.wallMm = placeOfTruth(at);
+            mimic.diameterMm = diameterMm;
+            mimic.kind = kind;
+            mimic.neoplastic = false;
+            mimics.push_back(mimic);
+        };
+        if (json.contains("valve") && !json.at("valve").is_null())
+            add("valve", json.at("valve").at("position_mm"), lipsMm);
+        if (json.contains("rectal_tube")) {
+            const auto& tube = json.at("rectal_tube");
+            const double shaftMm = 2.0 * tube.at("shaft_radius_mm").get<double>(),
+                         balloonMm = 2.0 * tube.at("balloon_radius_mm").get<double>();
+            for (const auto& point : tube.at("axis_mm"))
+                add("tube", point, shaftMm);
+            add("tube", tube.at("balloon_mm"), balloonMm);
+        }
+        return mimics;
     } catch (const std::exception& error) {
         return fail(ErrorKind::badInput, std::string("this is no structure: ") + error.what(),
                     place);

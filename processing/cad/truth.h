@@ -35,9 +35,11 @@ struct TrueLesion {
 /// "diameter_mm", "kind"}, …]}, which are all polyps. Fails (badInput) where it is neither.
 Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place);
 
-/// Of a phantom's structure.json the ileocecal valve, as something that is no lesion: {"valve":
-/// {"position_mm"}}, or null where there is none.
-Result<std::optional<TrueLesion>> valveOfJson(const std::string& text, const std::string& place);
+/// Of a phantom's structure.json what may be taken for polyps and is no lesion: the ileocecal valve
+/// ({"valve": {"position_mm"}}, or null) and the tube in the rectum ({"rectal_tube": {"axis_mm",
+/// "shaft_radius_mm", "balloon_mm", "balloon_radius_mm"}}, or missing), as balls along its shaft
+/// and one for the balloon, of kinds "valve" and "tube". Fails (badInput) where it is neither.
+Result<std::vector<TrueLesion>> mimicsOfJson(const std::string& text, const std::string& place);
 
 /// Of each place the lesion that it means: the nearest of those that it reaches, neoplastic ones
 /// before others; −1: none.

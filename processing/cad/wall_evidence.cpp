@@ -121,6 +121,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
     }
     tell(0.6);
     evidence.wet = wetSamples(colon, evidence.samples, evidence.shapes, options.threads);
+    evidence.formerFluid = FormerFluid(evidence.samples.mesh.vertices, evidence.wet);
     evidence.statistics = wallStatistics(colon, *evidence.smooth);
     evidence.transferFunction = transferFunctionFor(options, evidence.statistics);
     const BiopsyTable table(evidence.transferFunction);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cad/biopsy.h"
+#include "cad/former_fluid.h"
 #include "cad/texture.h"
 #include "cad/wall_samples.h"
 #include "cad/wall_shape.h"
@@ -63,6 +64,7 @@ struct WallEvidence {
     /// Nobody has seen the wall there: it encloses a bridge, or was set up again after a leak.
     std::vector<std::uint8_t> unseen;
     std::vector<std::uint8_t> wet;  ///< tagging stood before it, which was taken out
+    FormerFluid formerFluid;        ///< where that was
     WallStatistics statistics;
     TransferFunction transferFunction;  ///< that the rays were cast by
 };

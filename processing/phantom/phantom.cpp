@@ -287,7 +287,8 @@ Result<void> check(const PhantomOptions& options) {
     return {};
 }
 
-Structure structureOf(const FilledColon& colon, const Phantom& phantom) {
+Structure structureOf(const FilledColon& colon, const PhantomOptions& options,
+                      const Phantom& phantom) {
     Structure structure;
     const ColonShape& shape = colon.shape;
     const ColonPath& path = shape.path();
@@ -302,6 +303,7 @@ Structure structureOf(const FilledColon& colon, const Phantom& phantom) {
     }
     if (const auto& valve = shape.valve())
         structure.valve = {valve->at, valve->inward, valve->arcMm, valve->open};
+    if (options.bowel.rectalTube) structure.rectalTube = RectalTube(path, options.seed).structure();
     for (const Diverticulum& pouch : shape.diverticula())
         structure.diverticula.push_back({pouch.centre, 2.0 * pouch.sacRadiusMm});
     structure.segmentEndsMm = {path.rectumEndMm,
@@ -531,7 +533,7 @@ Result<Phantom> makePhantom(const PhantomOptions& options) {
     phantom.polyps = polypsOf(filled.shape);
     phantom.growths = growthTruths(filled, options.growths);
     phantom.polypVoxels = polypVoxels(filled.shape, grid);
-    phantom.structure = structureOf(filled, phantom);
+    phantom.structure = structureOf(filled, options, phantom);
     ContactFinder contacts(filled.shape);
     contacts.look(phantom.lumen, phantom.sites, filled.field, 0,
                   filled.ileum ? &*filled.ileum : nullptr, 0, grid.size.z, options.threads);

@@ -51,4 +51,12 @@ RectalTube::Point RectalTube::at(glm::dvec3 p, double colonLumenMm) const {
     return point;
 }
 
+Structure::RectalTube RectalTube::structure() const {
+    Structure::RectalTube tube{
+        {}, shaftRadiusMm, balloonAt_, balloonRadiusMm_, balloonHalfLengthMm_};
+    for (const Tube::Node& node : shaft_.nodes())
+        tube.axisMm.push_back(node.position);
+    return tube;
+}
+
 }  // namespace haustra::phantom

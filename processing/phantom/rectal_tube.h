@@ -2,6 +2,7 @@
 #pragma once
 
 #include "phantom/colon_path.h"
+#include "phantom/structure.h"
 #include "phantom/tube.h"
 
 #include <optional>
@@ -23,6 +24,7 @@ public:
     /// No part lies beyond.
     glm::dvec3 lowMm() const { return lowMm_; }
     glm::dvec3 highMm() const { return highMm_; }
+    Structure::RectalTube structure() const;
 
 private:
     Tube shaft_;

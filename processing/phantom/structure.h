@@ -33,6 +33,13 @@ struct Structure {
         double arcMm = 0.0;
         bool open = false;
     };
+    /// The tube through which gas was blown in: a shaft along an axis, and a balloon about it.
+    struct RectalTube {
+        std::vector<glm::dvec3> axisMm;  ///< from below the anus to the tip
+        double shaftRadiusMm = 0.0;
+        glm::dvec3 balloonMm{0.0};  ///< its middle
+        double balloonRadiusMm = 0.0, balloonHalfLengthMm = 0.0;
+    };
     struct Pouch {
         glm::dvec3 positionMm{0.0};
         double diameterMm = 0.0;
@@ -41,6 +48,7 @@ struct Structure {
     std::vector<Collapse> collapses;
     std::vector<Contact> contacts;  ///< the largest first
     std::optional<Valve> valve;
+    std::optional<RectalTube> rectalTube;
     std::vector<Pouch> diverticula;
     /// Where rectum, sigmoid, descending, transverse, ascending colon and cecum end.
     std::array<double, 6> segmentEndsMm{};

@@ -62,9 +62,9 @@ Result<std::vector<cad::TrueLesion>> readTruth(const fs::path& truths, const std
             // What else a false finding may be on.
             if (fs::exists(folder / "structure.json", ignored)) {
                 const auto structure = TRY(readText(folder / "structure.json"));
-                const auto valve =
-                    TRY(cad::valveOfJson(structure, (folder / "structure.json").string()));
-                if (valve) lesions.push_back(*valve);
+                const auto mimics =
+                    TRY(cad::mimicsOfJson(structure, (folder / "structure.json").string()));
+                lesions.insert(lesions.end(), mimics.begin(), mimics.end());
             }
             return lesions;
         }
@@ -82,16 +82,14 @@ bool isWithout(const CadArguments& arguments, std::string_view part) {
            arguments.without.end();
 }
 
-Result<void> checkParts(const CadArguments& arguments) {
-    for (const std::string& part : arguments.without) {
-        if (std::find(parts.begin(), parts.end(), part) != parts.end()) continue;
-        const bool named = part.starts_with(featurePart);
-        const std::string prefix = named ? part.substr(featurePart.size()) : "";
-        if (!named || std::none_of(cad::featureNames.begin(), cad::featureNames.end(),
-                                   [&](std::string_view name) { return name.starts_with(prefix); }))
-            return fail(ErrorKind::badInput, "detection has no such part to leave out", part);
-    }
-    return {};
+std::string checkPart(const std::string& part) {
+    if (std::find(parts.begin(), parts.end(), part) != parts.end()) return {};
+    const bool named = part.starts_with(featurePart);
+    const std::string prefix = named ? part.substr(featurePart.size()) : "";
+    if (named && std::any_of(cad::featureNames.begin(), cad::featureNames.end(),
+                             [&](std::string_view name) { return name.starts_with(prefix); }))
+        return {};
+    return "detection has no part \"" + part + "\" to leave out";
 }
 
 // What of a case's evidence a variant changes: its candidates are others.
@@ -242,7 +240,6 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
 
 Result<void> runTrain(const CadArguments& arguments) {
     TRY(checkOutputFile(arguments.model));
-    TRY(checkParts(arguments));
     TRY(checkCases(arguments));
     cad::TrainOptions options;
     if (int(arguments.cases.size()) < options.folds)
@@ -352,7 +349,6 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     if (!arguments.froc.empty() && ending != ".png" && ending != ".csv")
         return fail(ErrorKind::unsupported, "a curve is written as .png or .csv",
                     arguments.froc.string());
-    TRY(checkParts(arguments));
     TRY(checkCases(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     const auto model = TRY(readModel(arguments));
@@ -443,7 +439,8 @@ void addCases(CLI::App& command, CadArguments& arguments) {
             "For comparisons leave out: automatic-transfer, pca, cleansing, texture, shape, "
             "past (all that is not the dissertation's), or feature:NAME, those whose names "
             "begin so; give it to train and evaluate alike; may be repeated")
-        ->type_name("PART");
+        ->type_name("PART")
+        ->check(checkPart);
 }
 
 }  // namespace

@@ -186,18 +186,29 @@ std::string structureJson(const phantom::Structure& structure) {
                  {"arc_mm", structure.valve->arcMm},
                  {"open", structure.valve->open}};
     }
-    return ordered_json{{"segments", segments},
-                        {"collapses", collapses},
-                        {"contacts", contacts},
-                        {"valve", valve},
-                        {"diverticula", diverticula},
-                        {"ileum_mm", structure.ileumMm},
-                        {"ileum_ml", structure.ileumMl},
-                        {"air_ml", structure.airMl},
-                        {"tagged_ml", structure.taggedMl},
-                        {"untagged_ml", structure.untaggedMl}}
-               .dump(2) +
-           "\n";
+    ordered_json tube;
+    if (const auto& device = structure.rectalTube) {
+        ordered_json axis = ordered_json::array();
+        for (const glm::dvec3& point : device->axisMm)
+            axis.push_back(pointJson(point));
+        tube = {{"axis_mm", axis},
+                {"shaft_radius_mm", device->shaftRadiusMm},
+                {"balloon_mm", pointJson(device->balloonMm)},
+                {"balloon_radius_mm", device->balloonRadiusMm},
+                {"balloon_half_length_mm", device->balloonHalfLengthMm}};
+    }
+    ordered_json json{{"segments", segments},
+                      {"collapses", collapses},
+                      {"contacts", contacts},
+                      {"valve", valve},
+                      {"diverticula", diverticula},
+                      {"ileum_mm", structure.ileumMm},
+                      {"ileum_ml", structure.ileumMl},
+                      {"air_ml", structure.airMl},
+                      {"tagged_ml", structure.taggedMl},
+                      {"untagged_ml", structure.untaggedMl}};
+    if (!tube.is_null()) json["rectal_tube"] = tube;
+    return json.dump(2) + "\n";
 }
 
 Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
@@ -457,7 +468,7 @@ Command addPhantom(CLI::App& program) {
         "lumen.nii.gz, sites.nii.gz (what else is where: 1 ileum, 2 other bowel, 3 lung, 4 outside "
         "the body, 5 colon wall, 6 rectal tube, 7 fluid without tagging), untagged.nii.gz, "
         "centerline.csv, polyps.json, growths.json (polyps and what resembles them), "
-        "structure.json (segments, collapses, contacts, valve, "
+        "structure.json (segments, collapses, contacts, valve, rectal tube, "
         "diverticula, volumes) and phantom.json. Equal options make equal files.");
     command->add_option("OUT", arguments->out, "The folder to make")->required();
     command->add_option("--seed", arguments->seed, "Which patient")
