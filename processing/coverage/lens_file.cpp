@@ -14,7 +14,7 @@ using nlohmann::json, nlohmann::ordered_json;
 
 constexpr const char* projectionNames[] = {"equidistance", "stereographic", "equisolid",
                                            "orthogonal", "perspective"};
-constexpr std::size_t mostBytes = std::size_t(4) << 20;
+constexpr std::size_t mostBytes = std::size_t(1) << 20;
 constexpr int mostPixels = 1 << 16;
 
 /// Takes numbers out of a lens file and remembers the first thing that is wrong.

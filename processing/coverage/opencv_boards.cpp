@@ -118,9 +118,10 @@ std::vector<LatticePoint> saddles(const cv::Mat& grey, double sigma) {
 }
 
 /// The saddle of the quadric that fits the brightness around best, by Gaussian weights that stay
-/// within the squares around it [Placht 2014]; from where it is, until it settles there.
+/// within the squares around it [Placht 2014]; from where it is, until it settles there. Corners
+/// whose surroundings the picture cuts are taken out.
 void refineCorners(const cv::Mat& grey, std::vector<LatticeCell>& cells) {
-    std::vector<glm::dvec2> refined;
+    std::vector<LatticeCell> refined;
     for (const LatticeCell& cell : cells) {
         double nearest = 1e9;
         for (const LatticeCell& other : cells)
@@ -128,6 +129,9 @@ void refineCorners(const cv::Mat& grey, std::vector<LatticeCell>& cells) {
         const double sigma = std::max(1.0, 0.12 * nearest);
         const int reach = int(std::ceil(2.5 * sigma));
         glm::dvec2 at = cell.at;
+        if (glm::any(glm::lessThan(at, glm::dvec2(reach))) || at.x > grey.cols - 1 - reach ||
+            at.y > grey.rows - 1 - reach)
+            continue;
         for (int step = 0; step < 20; ++step) {
             const glm::ivec2 middle(glm::round(at));
             cv::Matx66d normal = cv::Matx66d::zeros();
@@ -152,10 +156,10 @@ void refineCorners(const cv::Mat& grey, std::vector<LatticeCell>& cells) {
             at += move;
             if (glm::length(move) < 1e-3) break;
         }
-        refined.push_back(glm::distance(at, cell.at) < 0.25 * nearest ? at : cell.at);
+        refined.push_back(cell);
+        if (glm::distance(at, cell.at) < 0.25 * nearest) refined.back().at = at;
     }
-    for (std::size_t n = 0; n < cells.size(); ++n)
-        cells[n].at = refined[n];
+    cells = std::move(refined);
 }
 
 // ---- dots

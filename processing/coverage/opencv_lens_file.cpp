@@ -148,10 +148,11 @@ Result<std::string> openCvText(const Colonoscope& scope, const std::string& endi
                                           lens.k[3] / f, lens.k[4] / f)
                                        : (cv::Mat_<double>(5, 1) << lens.k[1] / f, lens.k[2] / f,
                                           lens.decentring[0], lens.decentring[1], lens.k[3] / f);
-    cv::FileStorage storage(ending, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-    if (!storage.isOpened())
+    // It writes YAML by any other name.
+    if (ending != ".xml" && ending != ".yml" && ending != ".yaml" && ending != ".json")
         return fail(ErrorKind::badInput, "OpenCV's files end in .xml, .yml, .yaml or .json",
                     ending);
+    cv::FileStorage storage(ending, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     storage << "image_width" << scope.pictureSize.x << "image_height" << scope.pictureSize.y
             << "fisheye_model" << int(fisheye) << "camera_matrix" << matrix
             << "distortion_coefficients" << distortion;
@@ -165,6 +166,8 @@ Result<std::string> openCvText(const Colonoscope& scope, const std::string& endi
 extern "C" const haustra::coverage::CalibrationLibraries haustraCalibrationLibraries = [] {
     using namespace haustra::coverage;
     cv::setNumThreads(1);  // no threads of its own
+    // What it throws is told in one sentence, where it is caught: not on stderr too.
+    cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
     return CalibrationLibraries{&module::findBoard, &module::findField, &module::calibrate,
                                 &module::lensOfOpenCvText, &module::openCvText};
 }();

@@ -48,6 +48,26 @@ public:
         return result;
     }
 
+    /// Steps change little from one to the next, by less than an eighth of their length in half of
+    /// all places: those between points strewn at random, each of which may lie a third of a step
+    /// off, change by more.
+    bool isEven() const {
+        std::vector<double> changes;
+        for (const auto& [key, point] : cells_) {
+            const glm::ivec2 cell(key.first, key.second);
+            for (const glm::ivec2 step : {glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
+                const auto before = at(cell - step), after = at(cell + step);
+                if (before && after)
+                    changes.push_back(glm::distance(0.5 * (*before + *after), points_[point].at) *
+                                      4.0 / glm::distance(*before, *after));
+            }
+        }
+        if (changes.empty()) return false;
+        const auto middle = changes.begin() + std::ptrdiff_t(changes.size() / 2);
+        std::nth_element(changes.begin(), middle, changes.end());
+        return *middle < 0.125;
+    }
+
 private:
     std::optional<glm::dvec2> at(glm::ivec2 cell) const {
         const auto found = cells_.find(keyOf(cell));
@@ -161,9 +181,11 @@ std::vector<std::vector<LatticeCell>> growLattices(const std::vector<LatticePoin
     for (std::size_t n = 0; n < std::min(mostSeeds, seeds.size()); ++n) {
         const auto steps = stepsAround(points, seeds[n]);
         if (!steps) continue;
-        auto cells = Growth(points, seeds[n], steps->first, steps->second).cells();
+        const Growth growth(points, seeds[n], steps->first, steps->second);
+        if (!growth.isEven()) continue;
+        auto cells = growth.cells();
         const std::size_t size = cells.size();
-        if (size >= 4) found.emplace(size, std::move(cells));
+        found.emplace(size, std::move(cells));
         if (size == enough) break;
     }
     std::vector<std::vector<LatticeCell>> lattices;

@@ -63,9 +63,9 @@ Result<std::vector<Picture>> readPictures(const std::vector<fs::path>& files) {
 
 void tellNumber(const char* name, double value, double error, bool held) {
     if (held)
-        fmt::print("{:<6}{:14.6g}   held\n", name, value);
+        fmt::print("{:<6}{:14.7g}   held\n", name, value);
     else
-        fmt::print("{:<6}{:14.6g} ± {:.2g}\n", name, value, error);
+        fmt::print("{:<6}{:14.7g} ± {:.2g}\n", name, value, error);
 }
 
 /// What does not reach the printed page is told as 0: what a model leaves out.
@@ -78,7 +78,7 @@ void tellLens(const coverage::FisheyeLens& lens, const coverage::Calibration* ca
         if (calibration && (held || error > 0.0))
             tellNumber(name, numbers[n], error, held);
         else if (numbers[n] != 0.0)
-            fmt::print("{:<6}{:14.6g}\n", name, numbers[n]);
+            fmt::print("{:<6}{:14.7g}\n", name, numbers[n]);
     }
 }
 
