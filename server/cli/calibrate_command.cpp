@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Longest side of a calibration's picture, pixels.
-constexpr int maxSide = 8192;
+constexpr int maxSide = 4096;
 
 struct CalibrateArguments {
     std::vector<fs::path> images;
@@ -146,6 +146,11 @@ Result<coverage::CalibrationOptions> optionsOf(const CalibrateArguments& argumen
 
 void tellPictures(const std::vector<Picture>& pictures, const Boards& boards,
                   const coverage::Calibration& calibration, int points) {
+    std::vector<double> rms;
+    for (const coverage::ViewFit& fit : calibration.views)
+        rms.push_back(fit.rmsPixels);
+    std::sort(rms.begin(), rms.end());
+    const double middle = 0.5 * (rms[(rms.size() - 1) / 2] + rms[rms.size() / 2]);
     std::size_t view = 0;
     for (std::size_t n = 0; n < pictures.size(); ++n) {
         const std::string name = pictures[n].file.filename().string();
@@ -154,8 +159,9 @@ void tellPictures(const std::vector<Picture>& pictures, const Boards& boards,
             continue;
         }
         const coverage::ViewFit& fit = calibration.views[view++];
-        fmt::print("  {}: {} of {} points, RMS {:.3f} px, largest {:.3f} px\n", name,
-                   fit.residuals.size(), points, fit.rmsPixels, fit.largestPixels);
+        fmt::print("  {}: {} of {} points, RMS {:.3f} px, largest {:.3f} px{}\n", name,
+                   fit.residuals.size(), points, fit.rmsPixels, fit.largestPixels,
+                   fit.rmsPixels > 2.0 * middle ? ": stands out; is its board flat?" : "");
     }
 }
 
