@@ -281,6 +281,18 @@ void checkUse(const CLI::App& command, const CalibrateArguments& arguments) {
     } else {
         if (arguments.images.empty()) wrong("IMAGES", "are needed: pictures of the board");
         if (!given("--spacing")) wrong("--spacing", "is needed: mm between the board's points");
+        const coverage::LensModel& model = *coverage::findLensModel(arguments.model);
+        for (const char* option : {"--focal", "--pixels-per-mm"})
+            if (model.firstIsOne && given(option))
+                wrong(option, "is of no use to " + arguments.model + ", whose k1 is 1");
+        if (given("--focal") && given("--pixels-per-mm"))
+            wrong("--focal", "and --pixels-per-mm would each fix the scale");
+        const bool polynomial =
+            model.coefficients > 1 && model.projection == coverage::Projection::equidistance;
+        if (given("--nominal") && (!polynomial || given("--lens")))
+            wrong("--nominal", "is of no use to " +
+                                   (polynomial ? std::string("--lens") : arguments.model) +
+                                   ", which has a beginning of its own");
     }
     for (const fs::path& file : {arguments.residuals, arguments.undistorted})
         if (!file.empty() && !pictures::isPictureFile(file))

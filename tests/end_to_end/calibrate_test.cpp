@@ -148,6 +148,9 @@ TEST_F(Calibrate, WhatFailsIsOneLineAndLeavesNothing) {
     refused(with(boards({"--model", "zoom"})), 2, "--model");
     refused(with(boards({"--focal", "-2"})), 2, "--focal");
     refused(with(boards({"--depth-mm", "100", "3"})), 2, "--depth-mm");
+    refused(with(boards({"--model", "brown", "--focal", "2"})), 2, "--focal");
+    refused(with(boards({"--pixels-per-mm", "15", "--focal", "2"})), 2, "--focal");
+    refused(with(boards({"--model", "equisolid", "--nominal", "orthogonal"})), 2, "--nominal");
     refused(with(boards({"--undistorted", at("new.txt")})), 2, "new.txt");
     refused(boards({"--out", at("board1.png")}), 2, "board1.png");
     refused(boards({"--out", at("new.json"), "--opencv", at("new.json")}), 2, "new.json");
