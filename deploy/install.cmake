@@ -15,8 +15,8 @@ function(haustra_install component program)
     endforeach()
 endfunction()
 
-# haustra loads it with its first picture; it looks for it beside its own folder.
-install(TARGETS haustra-pictures LIBRARY DESTINATION lib/haustra COMPONENT tools)
+# haustra loads them with its first picture and its first board; it looks beside its own folder.
+install(TARGETS haustra-pictures haustra-calibration LIBRARY DESTINATION lib/haustra COMPONENT tools)
 haustra_install(tools haustra README.md processing/METHODS.md processing/organs/README.md)
 haustra_install(server haustra-server deploy/OPERATIONS.md protocol/PROTOCOL.md protocol/ADDING.md
     server/THREADS.md)

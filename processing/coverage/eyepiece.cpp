@@ -9,6 +9,26 @@ namespace {
 
 /// Rounding in floats, of directions and of pixels.
 constexpr float roundingRadians = 1e-4f, roundingPixels = 0.05f;
+constexpr double stepRadians = 1e-4;
+
+glm::dvec3 directionAt(double theta, double phi) {
+    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+}
+
+/// The most pixels that a small turn of a direction moves its pixel by, for each radian.
+float scaleAt(const FisheyeLens& lens, double theta, double phi) {
+    const auto at = [&](double t, double p) {
+        return pixelOf(lens, directionAt(t, p)).value_or(glm::dvec2(INFINITY));
+    };
+    const glm::dvec2 along = (at(theta + stepRadians, phi) - at(theta - stepRadians, phi)) /
+                             (2.0 * stepRadians),
+                     around = (at(theta, phi + stepRadians) - at(theta, phi - stepRadians)) /
+                              (2.0 * stepRadians * std::sin(theta));
+    // The greater singular value of the two columns.
+    const double sum = glm::dot(along, along) + glm::dot(around, around),
+                 area = along.x * around.y - along.y * around.x;
+    return float(std::sqrt(0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4.0 * area * area)))));
+}
 
 }  // namespace
 
@@ -40,23 +60,14 @@ Eyepiece Eyepiece::of(const Colonoscope& scope) {
     widest += roundingRadians;
     made.cosHalfField_ = std::cos(widest);
     made.sinHalfField_ = std::sin(widest);
-    // Beyond the field no pixel is open, so that there the lens may go on in any way: straight.
-    made.fieldEnd_ = std::min(widest, float(largestAngle(scope.lens)));
-    const double pixelsPerMm = std::max(scope.lens.mu, scope.lens.mv), end = made.fieldEnd_;
-    const double endRadius = radiusOf(scope.lens, end),
-                 endSlope = (endRadius - radiusOf(scope.lens, end - 1e-4)) / 1e-4;
-    made.endSlope_ = float(endSlope);
-    const auto radius = [&](double theta) {
-        return theta <= end ? radiusOf(scope.lens, theta) : endRadius + endSlope * (theta - end);
-    };
+    made.fieldEnd_ = std::min(widest, float(largestAngle(scope.lens)) - 2.0f * float(stepRadians));
     float most = 0.0f;
-    for (int degree = 0; degree < int(made.mostScale_.size()); ++degree) {
-        // Along the radius and around the axis; between degrees neither changes by a hundredth.
-        const double theta = glm::radians(std::max(0.5, double(degree)));
-        const double along = (radius(theta + 1e-4) - radius(theta - 1e-4)) / 2e-4,
-                     around = radius(theta) / std::sin(theta);
-        most = std::max(most, float(1.02 * pixelsPerMm * std::max(std::abs(along), around)));
-        made.mostScale_[std::size_t(degree)] = most;
+    for (int degree = 0; float(degree) <= glm::degrees(made.fieldEnd_) + 1.0f; ++degree) {
+        const double theta =
+            std::min(glm::radians(std::max(0.5, double(degree))), double(made.fieldEnd_));
+        for (int turn = 0; turn < 24; ++turn)
+            most = std::max(most, scaleAt(scope.lens, theta, glm::radians(15.0 * turn)));
+        made.mostScale_.push_back(1.02f * most);  // what lies between the samples
     }
     return made;
 }
@@ -115,32 +126,30 @@ PixelBox Eyepiece::boxOf(const std::array<glm::vec3, 3>& corners) const {
                     middle = 0.5f * float(size_.x) - 0.5f;
         return clipped(low * pixels + middle, high * pixels + middle);
     }
-    // The triangle's directions lie within `spread` of one of them. From there to any of them the
-    // lens moves by at most its greatest scale within reach times that angle.
+    // The triangle's directions lie within `spread` of one of them. From there to any of them that
+    // is in the field, the lens moves by at most its greatest scale within reach times that angle.
     const glm::vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0f;
     const float distance = glm::length(middle);
     float farthest = 0.0f;
     for (const glm::vec3& corner : corners)
         farthest = std::max(farthest, glm::distance(corner, middle));
     if (!(farthest < 0.5f * distance)) return whole;
-    const float sine = farthest / distance,
-                spread = sine * (1.0f + 0.2f * sine * sine) + roundingRadians;  // ≥ its arcsine
+    const float sine = farthest / distance;
+    float spread = sine * (1.0f + 0.2f * sine * sine) + roundingRadians;  // ≥ its arcsine
     const float aside = glm::length(glm::vec2(middle)), theta = std::atan2(aside, middle.z);
-    const float reach = glm::degrees(theta + spread) + 1.0f;
-    if (reach >= float(mostScale_.size())) return whole;
+    if (theta - spread > fieldEnd_) return {};
     const float end = std::min(theta, fieldEnd_);
-    const auto& k = lens_.k;
-    const auto radius = [&](float t) {
-        const float s = t * t;
-        return t * (float(k[0]) + s * (float(k[1]) + s * (float(k[2]) + s * float(k[3]))));
-    };
-    float r = radius(end);
-    if (theta > end) r += endSlope_ * (theta - end);
-    const glm::vec2 toward = aside > 0.0f ? glm::vec2(middle) / aside : glm::vec2(0.0f);
-    const glm::vec2 at(float(lens_.mu) * r * toward.x + float(lens_.u0),
-                       float(lens_.mv) * r * toward.y + float(lens_.v0));
-    const float pixels = spread * mostScale_[std::size_t(std::max(0.0f, reach))];
-    return clipped(at - pixels, at + pixels);
+    // From the field's border, where the middle is beyond it: that is no farther from the middle.
+    if (theta > fieldEnd_) spread *= 2.0f;
+    // Around a field of more than a half space the way within it is an arc, not the straight one.
+    if (fieldEnd_ > 1.55f) spread *= 1.6f;
+    const glm::vec2 toward = aside > 0.0f ? glm::vec2(middle) / aside : glm::vec2(1.0f, 0.0f);
+    const auto pixel = pixelOf(
+        lens_, glm::dvec3(glm::dvec2(toward) * std::sin(double(end)), std::cos(double(end))));
+    if (!pixel) return whole;
+    const float reach = glm::degrees(end + spread) + 1.0f;
+    const float pixels = spread * mostScale_[std::min(std::size_t(reach), mostScale_.size() - 1)];
+    return clipped(glm::vec2(*pixel) - pixels, glm::vec2(*pixel) + pixels);
 }
 
 }  // namespace haustra::coverage

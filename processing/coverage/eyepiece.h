@@ -52,10 +52,9 @@ private:
     float cosHalfField_ = 0.0f, sinHalfField_ = 1.0f;
     float tangent_ = 0.0f;  // of a pinhole; 0: a fisheye
     FisheyeLens lens_;
-    // From this angle on the lens is straightened: r(fieldEnd) + endSlope · (θ − fieldEnd).
-    float fieldEnd_ = 0.0f, endSlope_ = 0.0f;
-    // Most pixels that a radian spans anywhere within n degrees of a fisheye's axis.
-    std::array<float, 151> mostScale_{};
+    float fieldEnd_ = 0.0f;  // no ray of a fisheye is farther from its axis, radians
+    // Most pixels that a radian spans anywhere within n degrees of its axis.
+    std::vector<float> mostScale_;
 };
 
 /// A camera's place and axes as rays start from it, in floats that count from `originMm`.

@@ -1,8 +1,8 @@
 #include "pictures/image_libraries.h"
 
-#include <algorithm>
+#include "core/program_module.h"
 
-#include <dlfcn.h>
+#include <algorithm>
 
 namespace haustra::pictures {
 
@@ -10,25 +10,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Loaded once, and for good: from ../lib/haustra beside the program, installed or not.
-Result<const ImageLibraries*> load() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    const fs::path module =
-        program.parent_path().parent_path() / "lib" / "haustra" / "haustra-pictures.so";
-    void* loaded = error ? nullptr : ::dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    const void* symbol = loaded ? ::dlsym(loaded, "haustraImageLibraries") : nullptr;
-    if (symbol) return static_cast<const ImageLibraries*>(symbol);
-    const char* why = error ? "this program's own folder is not known" : ::dlerror();
-    return fail(ErrorKind::io,
-                std::string("what reads and writes pictures cannot be loaded: ") +
-                    (why ? why : "it is of another version"),
-                module.string());
-}
-
 Result<const ImageLibraries*> libraries() {
-    static const Result<const ImageLibraries*> loaded = load();
-    return loaded;
+    static const auto loaded = loadModule("haustra-pictures.so", "haustraImageLibraries",
+                                          "what reads and writes pictures");
+    return loaded.map(
+        [](const void* symbol) { return static_cast<const ImageLibraries*>(symbol); });
 }
 
 }  // namespace

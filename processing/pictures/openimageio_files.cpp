@@ -205,7 +205,7 @@ private:
 // ---- in
 
 /// By its first bytes: OpenImageIO would try all the formats it knows on a hostile file.
-const char* formatWithin(std::ifstream& in) {
+const char* formatWithin(std::ifstream& in, bool lossy) {
     std::array<char, 8> first{};
     in.read(first.data(), first.size());
     const auto begins = [&](const char* with, std::size_t count) {
@@ -214,18 +214,21 @@ const char* formatWithin(std::ifstream& in) {
     if (begins("\x89PNG\r\n\x1a\n", 8)) return "png";
     if (begins("II*\0", 4) || begins("MM\0*", 4) || begins("II+\0", 4) || begins("MM\0+", 4))
         return "tiff";
+    if (lossy && begins("\xff\xd8\xff", 3)) return "jpeg";
     return nullptr;
 }
 
 class InputFile {
 public:
     /// Opened, its pixels not yet read: of at most four channels, and with sides in bounds.
-    static Result<InputFile> open(const fs::path& file, int maxSide) {
+    static Result<InputFile> open(const fs::path& file, int maxSide, bool lossy) {
         InputFile my(file);
         std::ifstream in(file, std::ios::binary);
         if (!in) return fail(ErrorKind::io, "the file cannot be read", file.string());
-        const char* format = formatWithin(in);
-        if (!format) return my.refuse("this is no PNG or TIFF picture");
+        const char* format = formatWithin(in, lossy);
+        if (!format)
+            return my.refuse(lossy ? "this is no PNG, TIFF or JPEG picture"
+                                   : "this is no PNG or TIFF picture");
         my.input_ = OIIO::ImageInput::create(format);
         OIIO::ImageSpec wanted;
         wanted.attribute("oiio:UnassociatedAlpha", 1);  // bytes as they are
@@ -309,7 +312,7 @@ Result<std::unique_ptr<PictureFile>> createPicture(const fs::path& file, int wid
 }
 
 Result<GreyPicture> readGreyPicture(const fs::path& file) try {
-    auto input = TRY(InputFile::open(file, maxGreySide));
+    auto input = TRY(InputFile::open(file, maxGreySide, false));
     const OIIO::ImageSpec& spec = input.spec();
     if (spec.nchannels != 1) return input.refuse("the picture is not grey");
     const int bits = spec.get_int_attribute("oiio:BitsPerSample", 8 * int(spec.format.size()));
@@ -322,7 +325,7 @@ Result<GreyPicture> readGreyPicture(const fs::path& file) try {
 }
 
 Result<ColorPicture> readColorPicture(const fs::path& file, int maxSide) try {
-    auto input = TRY(InputFile::open(file, maxSide));
+    auto input = TRY(InputFile::open(file, maxSide, true));
     const auto values = TRY(input.read<std::uint8_t>());
     const std::size_t channels = std::size_t(input.spec().nchannels);
     ColorPicture picture{{input.spec().width, input.spec().height}, {}};

@@ -69,8 +69,8 @@ struct ColorPicture {
     glm::ivec2 size{0};
     std::vector<glm::u8vec4> pixels;  ///< rows from the top; sRGB, and how much it covers
 };
-/// A PNG or TIFF file of any kind of pixel, in 8 bits: without an alpha channel it covers all.
-/// Fails naming the file, likewise, and where a side is over `maxSide`.
+/// A PNG, TIFF or JPEG file of any kind of pixel, in 8 bits: without an alpha channel it covers
+/// all. Fails naming the file, likewise, and where a side is over `maxSide`.
 Result<ColorPicture> readColorPicture(const std::filesystem::path& file, int maxSide);
 
 }  // namespace haustra::pictures

@@ -27,5 +27,6 @@ Command addEvaluate(CLI::App& program);
 Command addDenoise(CLI::App& program);
 Command addFlatten(CLI::App& program);
 Command addCad(CLI::App& program);
+Command addCalibrate(CLI::App& program);
 
 }  // namespace haustra::cli

@@ -38,7 +38,7 @@ foreach(program IN LISTS PROGRAMS)
     list(APPEND expected bin/${program} share/doc/${program}/LICENSE)
 endforeach()
 list(APPEND expected
-    lib/haustra/haustra-pictures.so share/doc/haustra/README.md share/doc/haustra/processing/METHODS.md
+    lib/haustra/haustra-calibration.so lib/haustra/haustra-pictures.so share/doc/haustra/README.md share/doc/haustra/processing/METHODS.md
     share/doc/haustra/processing/organs/README.md
     share/doc/haustra-server/deploy/OPERATIONS.md share/doc/haustra-server/protocol/ADDING.md
     share/doc/haustra-server/protocol/PROTOCOL.md
