@@ -482,8 +482,7 @@ Command addCoverage(CLI::App& program) {
             "--report", arguments->report,
             "Write shares by area and by triangle, of each segment, and the missed patches "
             "with area, centre (LPS, mm) and arc")
-        ->type_name("FILE.json")
-        ->required();
+        ->type_name("FILE.json");
     command
         ->add_option("--pictures", arguments->pictures,
                      "Write pictures into this folder, the wall green where it was seen: front.png "
