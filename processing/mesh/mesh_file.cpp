@@ -54,18 +54,22 @@ Result<TriMesh> meshOf(const std::string& bytes, Format format, const std::strin
 
 // --------------------------------------------------------------------------------------- writing
 
-std::string plyBytes(const TriMesh& mesh) {
-    std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment LPS mm\nelement vertex " +
-                        std::to_string(mesh.vertices.size()) +
-                        "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-                        std::to_string(mesh.triangles.size()) +
-                        "\nproperty list uchar int vertex_indices\nend_header\n";
+// With `values`, of the faces' property of that name.
+std::string plyBytes(const TriMesh& mesh, const std::string& property = {},
+                     const std::vector<std::uint8_t>& values = {}) {
+    std::string bytes =
+        "ply\nformat binary_little_endian 1.0\ncomment LPS mm\nelement vertex " +
+        std::to_string(mesh.vertices.size()) +
+        "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+        std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\n" +
+        (values.empty() ? "" : "property uchar " + property + "\n") + "end_header\n";
     bytes.reserve(bytes.size() + 24 * mesh.vertices.size() + 13 * mesh.triangles.size());
     for (const glm::dvec3& v : mesh.vertices)
         appendRaw(bytes, v);
-    for (const glm::ivec3& t : mesh.triangles) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         bytes.push_back(3);
-        appendRaw(bytes, t);
+        appendRaw(bytes, mesh.triangles[t]);
+        if (!values.empty()) bytes.push_back(char(values[t]));
     }
     return bytes;
 }
@@ -130,6 +134,11 @@ Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh) {
                               : *format == Format::off ? offBytes(mesh)
                                                        : stlBytes(mesh);
     return replaceFile(file, bytes);
+}
+
+Result<void> writePly(const std::filesystem::path& file, const TriMesh& mesh,
+                      const std::string& property, const std::vector<std::uint8_t>& values) {
+    return replaceFile(file, plyBytes(mesh, property, values));
 }
 
 }  // namespace haustra::mesh

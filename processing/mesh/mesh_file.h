@@ -4,7 +4,10 @@
 #include "core/result.h"
 #include "core/tri_mesh.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace haustra::mesh {
 
@@ -23,5 +26,10 @@ Result<TriMesh> readMesh(const std::filesystem::path& file);
 /// its definition) by the name's ending, coordinates in LPS mm, under a temporary name beside
 /// `file` that is renamed. The same mesh gives the same bytes. Fails (io) naming the file.
 Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh);
+
+/// Writes a binary PLY as writeMesh does, whose faces have a number each besides (uchar, of the
+/// name `property`). `values` are as many as triangles.
+Result<void> writePly(const std::filesystem::path& file, const TriMesh& mesh,
+                      const std::string& property, const std::vector<std::uint8_t>& values);
 
 }  // namespace haustra::mesh

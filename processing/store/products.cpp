@@ -110,6 +110,14 @@ const Catalogue& catalogue() {
          .help = "of a colon: places that may be polyps, for a physician to judge, each with its "
                  "size, probability and voxels; .dcm: a Colon CAD SR (of a DICOM series)",
          .shown = true},
+        // `haustra coverage` makes it.
+        {.name = coverage,
+         .content = Content::text,
+         .parents = {quality, lumen, distance, centerline, surface, flatMap},
+         .endings = {".json", ".ply"},
+         .help = "what a simulated colonoscopy has shown of the wall (haustra coverage): .json: "
+                 "shares and missed patches; .ply: the surface in triangles of at most 1 mm², each "
+                 "with its visibility (0 unseen, 1 partly seen, 2 fully seen, 3 a bridge)"},
         // The next segmentation is made by it, under a key that holds it; until then what it is to
         // change stands.
         {.name = edits,

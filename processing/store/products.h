@@ -23,7 +23,7 @@ inline constexpr char ct[] = "ct", source[] = "source", segmentation[] = "segmen
                       cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
                       lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
                       branches[] = "branches", surface[] = "surface", flatMap[] = "flatmap",
-                      findings[] = "findings", edits[] = "edits", flatImage[] = "flat-image",
+                      findings[] = "findings", coverage[] = "coverage", edits[] = "edits", flatImage[] = "flat-image",
                       biopsy[] = "biopsy";
 }  // namespace product
 

@@ -28,5 +28,6 @@ Command addDenoise(CLI::App& program);
 Command addFlatten(CLI::App& program);
 Command addCad(CLI::App& program);
 Command addCalibrate(CLI::App& program);
+Command addCoverage(CLI::App& program);
 
 }  // namespace haustra::cli

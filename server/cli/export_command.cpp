@@ -7,6 +7,8 @@
 #include "core/bridges.h"
 #include "core/findings.h"
 #include "core/source_series.h"
+#include "coverage/coverage_report.h"
+#include "coverage/fine_wall.h"
 #include "dicom/colon_cad_report.h"
 #include "mesh/flat_map_file.h"
 #include "mesh/mesh_file.h"
@@ -79,6 +81,13 @@ Result<void> exportReport(const store::Case& source, const ExportArguments& argu
                                       {.series = arguments.series});
 }
 
+Result<void> exportCoverageWall(const store::Case& source, const ExportArguments& arguments) {
+    const std::string text = TRY(source.readText(product::coverage));
+    const auto fine = coverage::fineWall(TRY(source.readMesh()));
+    const auto flags = TRY(coverage::triangleFlagsOf(text, fine.mesh.triangles.size()));
+    return mesh::writePly(arguments.file, fine.mesh, "visibility", flags);
+}
+
 bool isReport(const ExportArguments& arguments) {
     return arguments.product == product::findings &&
            endsIn(arguments.file.filename().string(), ".dcm");
@@ -133,6 +142,9 @@ Result<void> runExport(const ExportArguments& arguments) {
     // What leaves the store for other programs has been read whole and found sound.
     TRY(source.verify(arguments.product));
     if (isReport(arguments)) return exportReport(source, arguments);
+    if (arguments.product == product::coverage &&
+        endsIn(arguments.file.filename().string(), ".ply"))
+        return exportCoverageWall(source, arguments);
     return exportContent(source, store::catalogue().find(arguments.product)->content.value(),
                          arguments);
 }

@@ -3,6 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/caption.h"
 #include "cli/case_scans.h"
+#include "cli/interruption.h"
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/wall_paint.h"
@@ -15,60 +16,10 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <signal.h>
 
 namespace haustra::cli {
-namespace {
 
 namespace product = store::product;
-
-constexpr int signals[] = {SIGINT, SIGTERM};
-
-// What a signal's handler may write to is a variable of the whole program.
-volatile sig_atomic_t noted = 0;
-
-void note(int signal) {
-    noted = signal;
-}
-
-/// While it lives, SIGINT and SIGTERM are noted instead of ending the program, so that the work at
-/// hand can end by itself and clear up; at its end they take their usual course. One at a time.
-class Interruption {
-public:
-    Interruption();
-    ~Interruption();
-    Interruption(const Interruption&) = delete;
-    Interruption& operator=(const Interruption&) = delete;
-
-    bool came() const;
-
-private:
-    struct sigaction before_[2];
-};
-
-Interruption::Interruption() {
-    noted = 0;
-    struct sigaction noting {};
-    noting.sa_handler = note;
-    noting.sa_flags = SA_RESTART;
-    for (int n = 0; n < 2; ++n) {
-        sigaction(signals[n], nullptr, &before_[n]);
-        // Who ignores a signal, as behind nohup, goes on doing so.
-        if (before_[n].sa_handler != SIG_IGN) sigaction(signals[n], &noting, nullptr);
-    }
-}
-
-Interruption::~Interruption() {
-    for (int n = 0; n < 2; ++n)
-        sigaction(signals[n], &before_[n], nullptr);
-    if (came()) raise(noted);
-}
-
-bool Interruption::came() const {
-    return noted != 0;
-}
-
-}  // namespace
 
 void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
     options.transferFunction = render::opticsPresets().front();

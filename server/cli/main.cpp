@@ -40,7 +40,8 @@ int runProgram(int argc, char** argv) {
         haustra::cli::addExport(program),  haustra::cli::addList(program),
         haustra::cli::addRender(program),  haustra::cli::addEvaluate(program),
         haustra::cli::addDenoise(program), haustra::cli::addFlatten(program),
-        haustra::cli::addCad(program),     haustra::cli::addCalibrate(program)};
+        haustra::cli::addCad(program),     haustra::cli::addCalibrate(program),
+        haustra::cli::addCoverage(program)};
     try {
         program.parse(argc, argv);
         for (const auto& command : commands) {

@@ -76,6 +76,10 @@ StorageBuffer& StorageBuffer::operator=(StorageBuffer&& other) noexcept {
     return *this;
 }
 
+void StorageBuffer::read(void* items, std::size_t bytes) const {
+    glGetNamedBufferSubData(id_, 0, GLsizeiptr(bytes), items);
+}
+
 void StorageBuffer::bind(unsigned binding) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
 }

@@ -34,9 +34,9 @@ private:
     unsigned id_ = 0;
 };
 
-/// An array that never changes, for shaders to read as a storage block or for a raster program as
-/// its triangles' indices. Belongs to the thread of the context in which it was made, which must be
-/// current when it dies. Move-only.
+/// An array that the CPU writes once, for shaders to read, or to write, as a storage block or for a
+/// raster program as its triangles' indices. Belongs to the thread of the context in which it was
+/// made, which must be current when it dies. Move-only.
 class StorageBuffer {
 public:
     /// Copies `items`, of which there must be at least one, to the device. Fails where it has no
@@ -53,6 +53,8 @@ public:
     /// As a block with layout(std430, binding = binding).
     void bind(unsigned binding) const;
     std::size_t bytes() const { return bytes_; }
+    /// Copies it back, once the GPU has done what it was told before. `bytes` must be bytes().
+    void read(void* items, std::size_t bytes) const;
 
 private:
     friend class RasterProgram;

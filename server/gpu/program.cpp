@@ -150,17 +150,29 @@ void RasterProgram::draw(const Texture& target, glm::ivec2 background, const Sto
 
 void RasterProgram::drawNearest(const RasterTarget& target, const StorageBuffer& indices, int first,
                                 int count) const {
+    glEnable(GL_DEPTH_TEST);
+    drawInto(target, indices, first, count);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void RasterProgram::drawAll(const RasterTarget& target, const StorageBuffer& indices, int first,
+                            int count) const {
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    drawInto(target, indices, first, count);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void RasterProgram::drawInto(const RasterTarget& target, const StorageBuffer& indices, int first,
+                             int count) const {
     glVertexArrayElementBuffer(vertexArray_, indices.id_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer_);
     glBindVertexArray(vertexArray_);
     glUseProgram(program_);
     glViewport(0, 0, target.size().x, target.size().y);
-    glEnable(GL_DEPTH_TEST);
     if (count > 0) {
         const auto* offset = reinterpret_cast<const void*>(std::size_t(first) * 3 * sizeof(GLuint));
         glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, offset);
     }
-    glDisable(GL_DEPTH_TEST);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     glBindVertexArray(0);

@@ -71,9 +71,15 @@ public:
     /// `first`.
     void drawNearest(const RasterTarget& target, const StorageBuffer& indices, int first,
                      int count) const;
+    /// Runs the fragment shader for every pixel of `target` that each of the triangles covers,
+    /// whatever stands before it, and leaves the target as it is: for shaders that count.
+    void drawAll(const RasterTarget& target, const StorageBuffer& indices, int first,
+                 int count) const;
 
 private:
     RasterProgram() = default;
+    void drawInto(const RasterTarget& target, const StorageBuffer& indices, int first,
+                  int count) const;
     unsigned program_ = 0, vertexArray_ = 0, framebuffer_ = 0;
 };
 

@@ -137,7 +137,7 @@ const std::vector<Foreign>& foreignHeaders() {
             of("^sqlite3.h$", {"server/records"}),
             of("^turbojpeg.h$", {"server/encode", "client/tiles"}),
             of("^(EGL|GL|GLES.?|epoxy)/.*", {"server/gpu", "server/render"}),
-            of("^embree3/.*", {"server/render/wall"}),
+            of("^embree3/.*", {"server/render/wall", "processing/coverage"}),
             of("^Q[A-Z].*", {"client/window"}),
             of("^(asio|openssl)[./].*", {"server/net", "server/session", "client/link",
                                          "processing/store", "processing/pipeline"}),

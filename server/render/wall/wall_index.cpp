@@ -20,19 +20,6 @@ int cubeSidePixels(const Camera& camera, const Band& band) {
 
 constexpr int trianglesOfRun = 1024;
 
-/// Whether a ball, given from the eye, shows nothing in a pass.
-bool isOutside(const shaders::WallUniforms& pass, glm::vec3 middle, float radius) {
-    const bool parallel = pass.lens == int(Lens::orthographic);
-    radius += 0.01f + 1e-4f * glm::length(middle);  // rounding
-    if (glm::dot(pass.forward, middle) < -radius) return true;
-    for (const glm::vec3 side : {pass.right, -pass.right, pass.down, -pass.down}) {
-        const glm::vec3 outward = parallel ? side : side - pass.forward;
-        if (glm::dot(outward, middle) - (parallel ? 1.0f : 0.0f) > radius * glm::length(outward))
-            return true;
-    }
-    return false;
-}
-
 }  // namespace
 
 Result<WallIndex> WallIndex::create() {
@@ -100,7 +87,7 @@ void WallIndex::drawSeen(const FlatSurface& surface, shaders::WallUniforms& pass
         draw = {};
     };
     for (const Run& run : runs_) {
-        if (isOutside(pass, run.middleMm - pass.eyeMm, run.radiusMm)) continue;
+        if (!mayShow(pass, run.middleMm - pass.eyeMm, run.radiusMm)) continue;
         if (draw.count > 0 && draw.first + draw.count != run.triangles.first) flush();
         if (draw.count == 0) draw.first = run.triangles.first;
         draw.count += run.triangles.count;

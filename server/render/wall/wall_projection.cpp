@@ -75,4 +75,16 @@ shaders::WallUniforms cubeSide(const Camera& camera, const Band& band, glm::dvec
     return u;
 }
 
+bool mayShow(const shaders::WallUniforms& pass, glm::vec3 middle, float radius) {
+    const bool parallel = pass.lens == int(Lens::orthographic);
+    radius += 0.01f + 1e-4f * glm::length(middle);  // rounding
+    if (glm::dot(pass.forward, middle) < -radius) return false;
+    for (const glm::vec3 side : {pass.right, -pass.right, pass.down, -pass.down}) {
+        const glm::vec3 outward = parallel ? side : side - pass.forward;
+        if (glm::dot(outward, middle) - (parallel ? 1.0f : 0.0f) > radius * glm::length(outward))
+            return false;
+    }
+    return true;
+}
+
 }  // namespace haustra::render

@@ -17,4 +17,7 @@ shaders::WallUniforms wallProjection(const Camera& camera, const Band& band, glm
 shaders::WallUniforms cubeSide(const Camera& camera, const Band& band, glm::dvec3 originMm,
                                int side);
 
+/// False only where a ball, `middle` of it given from the eye, shows nothing in a pass.
+bool mayShow(const shaders::WallUniforms& pass, glm::vec3 middle, float radius);
+
 }  // namespace haustra::render

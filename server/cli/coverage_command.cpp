@@ -1,0 +1,508 @@
+// haustra coverage: how much of a colon's wall a simulated colonoscopy shows (dissertation
+// §2.3–2.5).
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/interruption.h"
+#include "cli/progress_bar.h"
+#include "cli/provenance.h"
+#include "cli/text_files.h"
+#include "core/bridges.h"
+#include "coverage/corner_path.h"
+#include "coverage/coverage_pictures.h"
+#include "coverage/coverage_report.h"
+#include "coverage/fine_wall.h"
+#include "coverage/lens_file.h"
+#include "coverage/path_planning.h"
+#include "gpu/context.h"
+#include "pictures/picture_file.h"
+#include "render/wall/item_buffer.h"
+#include "store/case_store.h"
+#include "store/products.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace haustra::cli {
+namespace {
+
+namespace fs = std::filesystem;
+namespace product = store::product;
+
+using namespace haustra::coverage;
+
+// Raise it whenever the product changes for the same input and options.
+constexpr int coverageVersion = 1;
+
+struct CoverageArguments {
+    fs::path store, report, pictures;
+    std::string caseName, mode, direction, visibility = "auto", lens = "olympus-cf-q160l";
+    int cameras = 1000, side = PinholePicture{}.side, threads = 0;
+
+    bool isOptical() const { return mode == "oc"; }
+};
+
+/// The case, as far as coverage needs it, and what it was read under.
+struct Inputs {
+    CoverageWall wall;
+    Volume<float> distance;
+    std::vector<ColonPiece> pieces;                      ///< empty: not known
+    std::vector<std::int32_t> sourceTriangle;            ///< of each fine one
+    std::optional<std::vector<std::int32_t>> flattened;  ///< source triangles of the flat map
+    std::vector<store::ProductKey> keys;
+};
+
+Result<Inputs> readInputs(const store::Case& source, bool optical) {
+    Inputs inputs;
+    const auto note = [&](const char* name) -> Result<void> {
+        const auto entry = source.find(name);
+        if (!entry)
+            return fail(ErrorKind::noResult,
+                        std::string("the case has no ") + name + ": prepare it first",
+                        "case " + source.name());
+        inputs.keys.push_back(entry->key);
+        return source.verify(name);
+    };
+    TRY(note(product::surface));
+    TRY(note(product::centerline));
+    TRY(note(product::lumen));
+    auto fine = fineWall(TRY(source.readMesh()));
+    inputs.sourceTriangle = std::move(fine.sourceTriangle);
+    inputs.wall.mesh = std::move(fine.mesh);
+    inputs.wall.neighbours = neighboursOf(inputs.wall.mesh);
+    inputs.wall.centerline = TRY(source.readCenterline());
+    if (inputs.wall.centerline.points.empty())
+        return fail(ErrorKind::noResult, "the centerline is empty", "case " + source.name());
+    const auto lumen = TRY(source.readVolume<std::uint8_t>(product::lumen));
+    inputs.wall.bridged = bridgedTriangles(inputs.wall.mesh, lumen);
+    if (optical) {
+        TRY(note(product::distance));
+        inputs.distance = TRY(source.readVolume<float>(product::distance));
+    }
+    if (source.find(product::quality)) {
+        TRY(note(product::quality));
+        inputs.pieces = TRY(source.readText(product::quality).and_then(piecesOfQuality));
+    }
+    if (source.find(product::flatMap)) {
+        TRY(note(product::flatMap));
+        inputs.flattened = TRY(source.readFlatMap()).sourceTriangle;
+    }
+    return inputs;
+}
+
+double millisecondsNow() {
+    return std::chrono::duration<double, std::milli>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+/// One way to see: rays, or a GPU's item buffer.
+class Looker {
+public:
+    Looker(const CoverageArguments& arguments, const SightTree& tree, const CoverageWall& wall,
+           const Eyepiece& eyepiece, const PinholePicture& picture, SightOptions options)
+        : arguments_(arguments),
+          tree_(tree),
+          wall_(wall),
+          eyepiece_(eyepiece),
+          picture_(picture),
+          options_(std::move(options)) {}
+
+    /// --visibility; auto takes the faster on this machine, by the same pictures of those that are
+    /// to be taken.
+    Result<void> choose(const std::vector<CenterlineCamera>& cameras, ProgressBar& bar) {
+        if (arguments_.isOptical() || arguments_.visibility == "rays") return {};
+        auto made = makeItems();
+        if (!made) {
+            if (arguments_.visibility == "gpu") return made;
+            bar.say("visibility: rays, as there is no GPU to use: " + describe(made.error()));
+            return {};
+        }
+        useGpu_ = true;
+        if (arguments_.visibility == "gpu") return {};
+        const auto trial = [&](std::size_t count) {
+            std::vector<CenterlineCamera> some;
+            for (std::size_t n = 0; n < count; ++n)
+                some.push_back(cameras[n * cameras.size() / count]);
+            return some;
+        };
+        // The first pictures of rays cost the most, and the GPU's all the same: so many of both
+        // that both have got into their stride, and less of what is plainly slow.
+        const auto few = trial(std::min<std::size_t>(2, cameras.size())),
+                   many = trial(std::min<std::size_t>(48, cameras.size()));
+        bar.show("visibility", 0.0);
+        double start = millisecondsNow();
+        std::vector<Visibility> ignored = TRY(byItems(few, {}));
+        const double gpuMs = (millisecondsNow() - start) / double(few.size());
+        SightOptions quiet = options_;
+        quiet.progress = {};
+        std::fill(ignored.begin(), ignored.end(), Visibility::unseen);
+        start = millisecondsNow();
+        TRY(coverage::look(tree_, eyepiece_, many, ignored, quiet));
+        const double raysMs = (millisecondsNow() - start) / double(many.size());
+        useGpu_ = gpuMs < raysMs;
+        bar.say(fmt::format("visibility: {}; a picture takes {:.2f} ms by rays, {:.2f} ms by {}",
+                            name(), raysMs, gpuMs, context_->renderer()));
+        return {};
+    }
+
+    const char* name() const { return useGpu_ ? "gpu" : "rays"; }
+
+    Result<void> look(const std::vector<CenterlineCamera>& cameras, std::vector<Visibility>& seen,
+                      const Progress& progress) {
+        if (useGpu_) {
+            addSeen(seen, TRY(byItems(cameras, progress)));
+            return {};
+        }
+        SightOptions options = options_;
+        options.progress = progress;
+        return coverage::look(tree_, eyepiece_, cameras, seen, options);
+    }
+
+private:
+    Result<void> makeItems() {
+        context_ = TRY(gpu::Context::create());
+        items_ = TRY(render::ItemBuffer::create(*context_, wall_.mesh, wall_.bridged, picture_,
+                                                options_.tellFully));
+        return {};
+    }
+    Result<std::vector<Visibility>> byItems(const std::vector<CenterlineCamera>& cameras,
+                                            const Progress& progress) {
+        for (std::size_t n = 0; n < cameras.size(); ++n) {
+            if (options_.cancelled && options_.cancelled())
+                return fail(ErrorKind::wrongState, "interrupted");
+            TRY(items_->look(cameras[n]));
+            if (progress) progress(double(n + 1) / double(cameras.size()));
+        }
+        return items_->seen();
+    }
+
+    const CoverageArguments& arguments_;
+    const SightTree& tree_;
+    const CoverageWall& wall_;
+    const Eyepiece& eyepiece_;
+    PinholePicture picture_;
+    SightOptions options_;
+    bool useGpu_ = false;
+    std::unique_ptr<gpu::Context> context_;
+    std::unique_ptr<render::ItemBuffer> items_;  // before the context
+};
+
+/// `count` on the centerline, half of them looking each way.
+std::vector<CenterlineCamera> bothWays(const Centerline& line, int there, int back) {
+    auto cameras = flightCameras(line, there, FlightDirection::antegrade);
+    const auto others = flightCameras(line, back, FlightDirection::retrograde);
+    cameras.insert(cameras.end(), others.begin(), others.end());
+    return cameras;
+}
+
+std::vector<CenterlineCamera> camerasAlong(const CoverageArguments& arguments,
+                                           const Centerline& path) {
+    const auto along = arguments.isOptical() ? scopeCameras : flightCameras;
+    std::vector<CenterlineCamera> cameras;
+    for (const auto& [name, direction] : {std::pair("antegrade", FlightDirection::antegrade),
+                                          std::pair("retrograde", FlightDirection::retrograde)}) {
+        if (arguments.direction != name && arguments.direction != "both") continue;
+        const auto more = along(path, arguments.cameras, direction);
+        cameras.insert(cameras.end(), more.begin(), more.end());
+    }
+    return cameras;
+}
+
+/// Of the wall's area, what the flat map has: it leaves out a hole at either end.
+double flattenedPercent(const Inputs& inputs) {
+    std::vector<std::uint8_t> has;
+    for (const std::int32_t triangle : *inputs.flattened) {
+        if (std::size_t(triangle) >= has.size()) has.resize(std::size_t(triangle) + 1, 0);
+        has[std::size_t(triangle)] = 1;
+    }
+    double all = 0.0, flat = 0.0;
+    for (std::size_t n = 0; n < inputs.sourceTriangle.size(); ++n) {
+        if (inputs.wall.bridged[n]) continue;
+        const auto source = std::size_t(inputs.sourceTriangle[n]);
+        const double areaMm2 = inputs.wall.areaMm2(n);
+        all += areaMm2;
+        if (source < has.size() && has[source]) flat += areaMm2;
+    }
+    return all > 0.0 ? 100.0 * flat / all : 0.0;
+}
+
+/// Figure 2.6: the colon from the front and from behind, and four views from among the cameras.
+Result<void> writePictures(const CoverageArguments& arguments, const Inputs& inputs,
+                           const WallRays& rays, const Eyepiece& eyepiece, const Centerline& path,
+                           const std::vector<CenterlineCamera>& cameras,
+                           const std::vector<Visibility>& seen, ProgressBar& bar,
+                           const Interruption& interruption) {
+    constexpr glm::ivec2 outsideSize(768, 768);
+    constexpr int views = 4;
+    pictures::Provenance provenance = ownProvenance();
+    provenance.facts = {{"case", arguments.caseName},
+                        {"view", "coverage"},
+                        {"mode", arguments.mode},
+                        {"cameras", std::to_string(arguments.cameras)}};
+    if (!arguments.direction.empty())
+        provenance.facts.emplace_back("direction", arguments.direction);
+    int done = 0;
+    const auto write = [&](const std::string& name, const Image& image,
+                           const CenterlineCamera* camera) -> Result<void> {
+        if (interruption.came()) return fail(ErrorKind::wrongState, "interrupted");
+        pictures::Provenance own = provenance;
+        if (camera) {
+            own.facts.emplace_back("camera.position_mm", toText(camera->positionMm));
+            own.facts.emplace_back("camera.forward", toText(camera->forward));
+        }
+        TRY(pictures::writePicture(arguments.pictures / name, image, own));
+        bar.show("pictures", double(++done) / (views + 2));
+        return {};
+    };
+    bar.show("pictures", 0.0);
+    for (const auto& [name, azimuth] : {std::pair("front.png", 0.0), {"back.png", 180.0}})
+        TRY(write(
+            name,
+            paintedOutside(rays, inputs.wall, seen, path, outsideSize, azimuth, arguments.threads),
+            nullptr));
+    for (int n = 0; n < views; ++n) {
+        const CenterlineCamera& camera =
+            cameras[cameras.size() * std::size_t(2 * n + 1) / (2 * views)];
+        TRY(write(fmt::format("view-{}.png", n + 1),
+                  paintedView(rays, inputs.wall, seen, eyepiece, camera, arguments.threads),
+                  &camera));
+    }
+    return {};
+}
+
+void print(const CoverageReport& report, double seconds) {
+    fmt::print(
+        "{} {} {} cameras, {} pictures by {}: {:.2f} % of the wall's area, {:.2f} % of its "
+        "triangles, in {:.1f} s\n",
+        report.mode, report.direction, report.cameras, report.pictures, report.visibility,
+        report.share.areaPercent(), report.share.trianglePercent(), seconds);
+    if (report.clearanceMm > 0.0)
+        fmt::print("path: {:.0f} mm, {:.0f} mm of it nearer to the wall than {:.1f} mm\n",
+                   report.pathMm, report.narrowMm, report.clearanceMm);
+    if (report.segments) {
+        for (int n = 0; n < colonSegments; ++n) {
+            const Share& share = (*report.segments)[std::size_t(n)];
+            if (share.triangles > 0)
+                fmt::print("  {:<12} {:8.0f} mm2  {:6.2f} %\n", toString(ColonSegment(n)),
+                           share.areaMm2, share.areaPercent());
+        }
+    }
+    const auto large = std::ranges::count_if(
+        report.missed, [](const MissedPatch& patch) { return patch.areaMm2 >= leastReviewedMm2; });
+    fmt::print("missed: {} patches, {} of {:.0f} mm2 and more\n", report.missed.size(), large,
+               leastReviewedMm2);
+    if (report.review)
+        fmt::print("after review of those: {:.2f} % of the area ({} pictures)\n",
+                   report.reviewed.areaPercent(), report.review->patches);
+    if (report.flattenedPercent)
+        fmt::print("flattened view: {:.2f} % of the area\n", *report.flattenedPercent);
+    if (report.centerlineShare)
+        fmt::print("as many pictures on the centerline, both ways: {:.2f} % of the area\n",
+                   report.centerlineShare->areaPercent());
+}
+
+Result<void> runCoverage(const CoverageArguments& arguments) {
+    TRY(checkOutputFile(arguments.report));
+    std::error_code error;
+    if (!arguments.pictures.empty() && !fs::is_directory(arguments.pictures, error))
+        return fail(ErrorKind::notFound, "there is no such folder", arguments.pictures.string());
+    const Colonoscope scope = TRY(readColonoscope(arguments.lens));
+    const auto store = TRY(store::CaseStore::open(arguments.store, false));
+    const auto source = TRY(store.openCase(arguments.caseName));
+
+    const Interruption interruption;
+    ProgressBar bar;
+    const auto began = millisecondsNow();
+    const auto stage = [&](const char* name) {
+        bar.show(name, 0.0);
+        return [&bar, name](double fraction) { bar.show(name, fraction); };
+    };
+    SightOptions options;
+    options.tellFully = !arguments.isOptical();
+    options.threads = arguments.threads;
+    options.cancelled = [&] { return interruption.came(); };
+
+    bar.show("surface", 0.0);
+    const Inputs inputs = TRY(readInputs(source, arguments.isOptical()));
+    bar.show("surface", 0.5);
+    const CoverageWall& wall = inputs.wall;
+    const auto rays = TRY(WallRays::of(wall.mesh, wall.bridged));
+    const SightTree tree(rays);
+
+    CoverageReport report;
+    report.mode = arguments.mode;
+    report.direction = arguments.direction;
+    report.cameras = arguments.cameras;
+    report.tellsFully = options.tellFully;
+    PinholePicture picture;
+    picture.side = arguments.side;
+    const Eyepiece eyepiece = arguments.isOptical() ? Eyepiece::of(scope) : Eyepiece::of(picture);
+    report.lens = arguments.isOptical()
+                      ? scope.name
+                      : fmt::format("pinhole {:.0f} degrees, {} x {}", picture.fovDegrees,
+                                    picture.side, picture.side);
+    report.nearestMm = arguments.isOptical() ? scope.nearestMm : picture.nearestMm;
+    report.farthestMm = arguments.isOptical() ? scope.farthestMm : picture.farthestMm;
+
+    Centerline path = wall.centerline;
+    std::vector<CenterlineCamera> cameras;
+    if (arguments.isOptical()) {
+        bar.show("path", 0.0);
+        auto corner = TRY(cornerPath(inputs.distance, wall.centerline, scope.tipRadiusMm));
+        path = std::move(corner.path);
+        report.narrowMm = corner.narrowMm;
+        report.clearanceMm = scope.tipRadiusMm;
+    }
+    report.pathMm = path.lengthMm();
+    if (arguments.mode == "planned") {
+        PlanOptions plan;
+        plan.threads = arguments.threads;
+        plan.cancelled = options.cancelled;
+        plan.progress = stage("planning");
+        cameras = TRY(plannedCameras(tree, wall, picture, arguments.cameras, plan));
+    } else {
+        cameras = camerasAlong(arguments, path);
+    }
+    report.pictures = int(cameras.size());
+
+    std::vector<Visibility> seen(wall.mesh.triangles.size(), Visibility::unseen);
+    {
+        Looker looker(arguments, tree, wall, eyepiece, picture, options);
+        TRY(looker.choose(cameras, bar));
+        report.visibility = looker.name();
+        TRY(looker.look(cameras, seen, stage("visibility")));
+    }
+    report.share = shareOf(wall, seen);
+    report.missed = wall.missed(seen);
+    for (std::size_t n = 0; n < seen.size(); ++n)
+        if (wall.bridged[n]) report.bridgedMm2 += wall.areaMm2(n);
+    report.segmentOfTriangle = segmentsOf(wall, inputs.pieces, arguments.threads);
+    if (!report.segmentOfTriangle.empty())
+        report.segments = sharesBySegment(wall, seen, report.segmentOfTriangle);
+    if (inputs.flattened) report.flattenedPercent = flattenedPercent(inputs);
+    if (arguments.mode == "planned") {
+        std::vector<Visibility> onLine(seen.size(), Visibility::unseen);
+        SightOptions plain = options;
+        plain.tellFully = false;
+        plain.progress = stage("centerline");
+        const int count = int(cameras.size());
+        TRY(look(tree, eyepiece, bothWays(wall.centerline, (count + 1) / 2, count / 2), onLine,
+                 plain));
+        report.centerlineShare = shareOf(wall, onLine);
+    }
+    {
+        std::vector<Visibility> reviewed = seen;
+        SightOptions review = options;
+        review.tellFully = false;
+        review.progress = stage("review");
+        report.review = TRY(
+            reviewMissed(tree, wall, Eyepiece::of(picture), leastReviewedMm2, reviewed, review));
+        report.reviewed = shareOf(wall, reviewed);
+    }
+    if (!arguments.pictures.empty())
+        TRY(writePictures(arguments, inputs, *rays, eyepiece, path, cameras, seen, bar,
+                          interruption));
+    if (interruption.came()) return fail(ErrorKind::wrongState, "interrupted");
+
+    const std::string said =
+        fmt::format("mode={} direction={} cameras={} side={} visibility={} lens={}", arguments.mode,
+                    arguments.direction, arguments.cameras, arguments.side, report.visibility,
+                    arguments.isOptical() ? lensText(scope) : "pinhole");
+    auto target = TRY(store.createCase(arguments.caseName));
+    for (const char* name : {product::surface, product::centerline, product::lumen}) {
+        const auto entry = target.find(name);
+        if (!entry || std::ranges::find(inputs.keys, entry->key) == inputs.keys.end())
+            return fail(ErrorKind::wrongState,
+                        "the case has been prepared anew meanwhile: run this again",
+                        "case " + arguments.caseName);
+    }
+    TRY(target.publishText(product::coverage,
+                           store::makeKey("coverage", coverageVersion, said, inputs.keys),
+                           coverageJson(report, wall, seen)));
+    if (!arguments.report.empty()) TRY(writeTextFile(arguments.report, coverageJson(report)));
+    bar.show("done", 1.0);
+    print(report, (millisecondsNow() - began) / 1e3);
+    return {};
+}
+
+}  // namespace
+
+Command addCoverage(CLI::App& program) {
+    auto arguments = std::make_shared<CoverageArguments>();
+    CLI::App* command = program.add_subcommand(
+        "coverage",
+        "How much of a colon's wall a simulated colonoscopy shows, and what it misses. It is kept "
+        "as "
+        "the case's product coverage. A prepared mask will do (prepare --lumen).");
+    command->add_option("CASE", arguments->caseName, "The case's name")->required();
+    addStoreOption(*command, arguments->store);
+    command
+        ->add_option("--mode", arguments->mode,
+                     "oc: an optical colonoscope, whose lens keeps its distance from the wall and "
+                     "hugs the corners; vc: a virtual flight along the centerline, 90 degrees; "
+                     "planned: cameras beside the centerline, placed so that they miss little, and "
+                     "as many on the centerline for comparison")
+        ->required()
+        ->check(CLI::IsMember({"oc", "vc", "planned"}));
+    command
+        ->add_option("--cameras", arguments->cameras,
+                     "Places on the path, a picture at each for each direction; planned: pictures")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--direction", arguments->direction,
+            "Where the cameras look: antegrade, towards the cecum, as a colonoscope does on "
+            "its way in and out (default of oc); retrograde, towards the rectum; both "
+            "(default of vc)")
+        ->check(CLI::IsMember({"antegrade", "retrograde", "both"}));
+    command
+        ->add_option("--lens", arguments->lens,
+                     "Of oc: olympus-cf-q160l, or a file that calibrate writes")
+        ->type_name("NAME|FILE")
+        ->capture_default_str();
+    command->add_option("--side", arguments->side, "Of vc and planned: pixels of a picture's side")
+        ->type_name("PIXELS")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
+    command
+        ->add_option("--visibility", arguments->visibility,
+                     "Of vc and planned: by rays on the CPU, by an item buffer on the GPU, or by "
+                     "whichever takes less time for the first pictures; of oc by rays")
+        ->check(CLI::IsMember({"auto", "rays", "gpu"}))
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--report", arguments->report,
+            "Write shares by area and by triangle, of each segment, and the missed patches "
+            "with area, centre (LPS, mm) and arc")
+        ->type_name("FILE.json");
+    command
+        ->add_option("--pictures", arguments->pictures,
+                     "Write pictures into this folder, the wall green where it was seen: front.png "
+                     "and back.png from outside, view-1.png to view-4.png through the lens")
+        ->type_name("FOLDER");
+    addThreadsOption(*command, arguments->threads);
+    command->callback([arguments, command] {
+        if (arguments->mode != "oc" && command->count("--lens") > 0)
+            throw CLI::ValidationError("--lens", "is an option of oc");
+        if (arguments->mode == "oc" && command->count("--side") > 0)
+            throw CLI::ValidationError("--side", "is an option of vc and planned");
+        if (arguments->mode == "oc" && arguments->visibility == "gpu")
+            throw CLI::ValidationError("--visibility gpu",
+                                       "a raster draws straight edges, which oc's lens bends");
+        if (arguments->mode == "planned" && command->count("--direction") > 0)
+            throw CLI::ValidationError("--direction", "is an option of oc and vc");
+        if (arguments->direction.empty() && arguments->mode != "planned")
+            arguments->direction = arguments->mode == "oc" ? "antegrade" : "both";
+    });
+    return {command, [arguments] { return runCoverage(*arguments); }};
+}
+
+}  // namespace haustra::cli
