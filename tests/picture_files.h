@@ -12,7 +12,8 @@
 
 namespace haustra::tests {
 
-/// The file's pixels; a failure of the test, and no pixels, where it is no PNG or TIFF picture.
+/// The file's pixels; a failure of the test, and no pixels, where it is no PNG, TIFF or JPEG
+/// picture.
 inline Image readPicture(const std::string& file) {
     const auto read = pictures::readColorPicture(file, 1 << 20);
     if (!read) {

@@ -8,6 +8,7 @@
 #include <Eigen/Dense>
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
+#include <glog/logging.h>
 
 namespace haustra::coverage::module {
 namespace {
@@ -523,6 +524,8 @@ private:
 Result<Calibration> calibrate(const std::vector<BoardView>& views,
                               const CalibrationOptions& options) try {
     const auto wrong = [](const char* what) { return fail(ErrorKind::badInput, what); };
+    // What Ceres refuses is told in one sentence, here: not on stderr too.
+    FLAGS_minloglevel = google::GLOG_FATAL;
     if (!options.model) return wrong("a calibration needs a lens model");
     if (views.empty()) return wrong("a calibration needs a picture of a board");
     for (const BoardView& view : views) {

@@ -320,7 +320,7 @@ Result<BoardView> findBoard(const Image& picture, const Board& board) try {
     } else {
         const cv::Mat negative = 255.0 - grey;
         for (const cv::Mat* ground : {static_cast<const cv::Mat*>(&grey), &negative})
-            for (const int reach : {15, 25, 45, 80})
+            for (const int reach : {15, 25, 45, 80, 150})
                 if (best.pixels.size() < all) look(clusters(*ground, reach));
     }
     if (2 * best.pixels.size() < all || best.pixels.size() < 6) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -28,11 +29,12 @@ bool canBeNeighbours(const LatticePoint& a, const LatticePoint& b) {
 
 class Growth {
 public:
+    /// `points` are sorted by x.
     Growth(const std::vector<LatticePoint>& points, std::size_t seed, glm::dvec2 across,
-           glm::dvec2 down)
+           glm::dvec2 down, std::size_t most)
         : points_(points), used_(points.size(), false), across_(across), down_(down) {
         put({0, 0}, seed);
-        while (!open_.empty()) {
+        while (!open_.empty() && cells_.size() < most) {
             const glm::ivec2 cell = open_.front();
             open_.pop_front();
             for (const glm::ivec2 step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
@@ -48,27 +50,54 @@ public:
         return result;
     }
 
-    /// Steps change little from one to the next, by less than an eighth of their length in half of
-    /// all places: those between points strewn at random, each of which may lie a third of a step
-    /// off, change by more.
+    /// Points strewn at random have such lattices too, with others in between, and each up to a
+    /// third of a step off.
+    bool isChance() const { return !isEven() || 2 * strangers() > cells_.size(); }
+
+private:
+    /// Each fourth place in a row is where the three before it foretell it, to less than an eighth
+    /// of a step in half of all rows.
     bool isEven() const {
-        std::vector<double> changes;
+        std::vector<double> off;
         for (const auto& [key, point] : cells_) {
             const glm::ivec2 cell(key.first, key.second);
             for (const glm::ivec2 step : {glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
-                const auto before = at(cell - step), after = at(cell + step);
-                if (before && after)
-                    changes.push_back(glm::distance(0.5 * (*before + *after), points_[point].at) *
-                                      4.0 / glm::distance(*before, *after));
+                const auto b = at(cell + step), c = at(cell + 2 * step), d = at(cell + 3 * step);
+                if (!b || !c || !d) continue;
+                const glm::dvec2 a = points_[point].at;
+                off.push_back(3.0 * glm::distance(a + 3.0 * *c, *d + 3.0 * *b) /
+                              glm::distance(a, *d));
             }
         }
-        if (changes.empty()) return false;
-        const auto middle = changes.begin() + std::ptrdiff_t(changes.size() / 2);
-        std::nth_element(changes.begin(), middle, changes.end());
+        if (off.empty()) return true;  // three a side
+        const auto middle = off.begin() + std::ptrdiff_t(off.size() / 2);
+        std::nth_element(off.begin(), middle, off.end());
         return *middle < 0.125;
     }
-
-private:
+    /// How many points that are no cells lie nearer to one than its neighbours do.
+    std::size_t strangers() const {
+        std::vector<bool> isCell(points_.size(), false), isStranger(points_.size(), false);
+        for (const auto& [key, point] : cells_)
+            isCell[point] = true;
+        for (const auto& [key, point] : cells_) {
+            const glm::dvec2 here = points_[point].at;
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const glm::ivec2 step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}})
+                if (const auto beside = at(glm::ivec2(key.first, key.second) + step))
+                    nearest = std::min(nearest, glm::distance(*beside, here));
+            for (std::size_t n = firstFrom(here.x - 0.8 * nearest);
+                 n < points_.size() && points_[n].at.x < here.x + 0.8 * nearest; ++n)
+                if (!isCell[n] && glm::distance(points_[n].at, here) < 0.8 * nearest)
+                    isStranger[n] = true;
+        }
+        return std::size_t(std::count(isStranger.begin(), isStranger.end(), true));
+    }
+    std::size_t firstFrom(double x) const {
+        const auto first =
+            std::partition_point(points_.begin(), points_.end(),
+                                 [&](const LatticePoint& point) { return point.at.x < x; });
+        return std::size_t(first - points_.begin());
+    }
     std::optional<glm::dvec2> at(glm::ivec2 cell) const {
         const auto found = cells_.find(keyOf(cell));
         if (found == cells_.end()) return std::nullopt;
@@ -101,8 +130,10 @@ private:
         const glm::dvec2 by = stepFrom(cell, step);
         double nearest = glm::length(by) / 3.0;
         std::optional<std::size_t> next;
-        for (std::size_t n = 0; n < points_.size(); ++n) {
-            const double distance = glm::distance(points_[n].at, here.at + by);
+        const glm::dvec2 foretold = here.at + by;
+        for (std::size_t n = firstFrom(foretold.x - nearest);
+             n < points_.size() && points_[n].at.x < foretold.x + nearest; ++n) {
+            const double distance = glm::distance(points_[n].at, foretold);
             if (used_[n] || distance >= nearest || !canBeNeighbours(here, points_[n])) continue;
             nearest = distance, next = n;
         }
@@ -165,8 +196,10 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> stepsAround(
 
 }  // namespace
 
-std::vector<std::vector<LatticeCell>> growLattices(const std::vector<LatticePoint>& points,
+std::vector<std::vector<LatticeCell>> growLattices(std::vector<LatticePoint> points,
                                                    std::size_t enough) {
+    std::stable_sort(points.begin(), points.end(),
+                     [](const LatticePoint& a, const LatticePoint& b) { return a.at.x < b.at.x; });
     // From the middle outwards, where a board most likely has neighbours on all sides.
     glm::dvec2 middle(0.0);
     for (const LatticePoint& point : points)
@@ -181,8 +214,8 @@ std::vector<std::vector<LatticeCell>> growLattices(const std::vector<LatticePoin
     for (std::size_t n = 0; n < std::min(mostSeeds, seeds.size()); ++n) {
         const auto steps = stepsAround(points, seeds[n]);
         if (!steps) continue;
-        const Growth growth(points, seeds[n], steps->first, steps->second);
-        if (!growth.isEven()) continue;
+        const Growth growth(points, seeds[n], steps->first, steps->second, 4 * enough);
+        if (growth.isChance()) continue;
         auto cells = growth.cells();
         const std::size_t size = cells.size();
         found.emplace(size, std::move(cells));

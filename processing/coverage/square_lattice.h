@@ -24,10 +24,11 @@ struct LatticeCell {
 
 /// Lattices that grow from points and their nearest neighbours: each next place is foretold from up
 /// to three before it in its row, or from the step beside it, and the point nearest to it within a
-/// third of a step taken. A cell stays where its neighbours agree with it on where it is. The
-/// largest first, of different sizes; ends at the first with `enough` cells. Cost: points² per
-/// lattice.
-std::vector<std::vector<LatticeCell>> growLattices(const std::vector<LatticePoint>& points,
+/// third of a step taken. A cell stays where its neighbours agree with it on where it is. Lattices
+/// that are at random are none, and growth ends at four times `enough`. The largest
+/// first, of different sizes; the search ends at one of exactly `enough` cells.
+/// Cost: 120 lattices of a few searches among the points a cell.
+std::vector<std::vector<LatticeCell>> growLattices(std::vector<LatticePoint> points,
                                                    std::size_t enough);
 
 }  // namespace haustra::coverage

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Longest side of a calibration's picture, pixels.
-constexpr int maxSide = 8192;
+constexpr int maxSide = 4096;
 
 struct CalibrateArguments {
     std::vector<fs::path> images;
@@ -146,6 +146,11 @@ Result<coverage::CalibrationOptions> optionsOf(const CalibrateArguments& argumen
 
 void tellPictures(const std::vector<Picture>& pictures, const Boards& boards,
                   const coverage::Calibration& calibration, int points) {
+    std::vector<double> rms;
+    for (const coverage::ViewFit& fit : calibration.views)
+        rms.push_back(fit.rmsPixels);
+    std::sort(rms.begin(), rms.end());
+    const double middle = 0.5 * (rms[(rms.size() - 1) / 2] + rms[rms.size() / 2]);
     std::size_t view = 0;
     for (std::size_t n = 0; n < pictures.size(); ++n) {
         const std::string name = pictures[n].file.filename().string();
@@ -154,8 +159,9 @@ void tellPictures(const std::vector<Picture>& pictures, const Boards& boards,
             continue;
         }
         const coverage::ViewFit& fit = calibration.views[view++];
-        fmt::print("  {}: {} of {} points, RMS {:.3f} px, largest {:.3f} px\n", name,
-                   fit.residuals.size(), points, fit.rmsPixels, fit.largestPixels);
+        fmt::print("  {}: {} of {} points, RMS {:.3f} px, largest {:.3f} px{}\n", name,
+                   fit.residuals.size(), points, fit.rmsPixels, fit.largestPixels,
+                   fit.rmsPixels > 2.0 * middle ? ": stands out; is its board flat?" : "");
     }
 }
 
@@ -275,6 +281,18 @@ void checkUse(const CLI::App& command, const CalibrateArguments& arguments) {
     } else {
         if (arguments.images.empty()) wrong("IMAGES", "are needed: pictures of the board");
         if (!given("--spacing")) wrong("--spacing", "is needed: mm between the board's points");
+        const coverage::LensModel& model = *coverage::findLensModel(arguments.model);
+        for (const char* option : {"--focal", "--pixels-per-mm"})
+            if (model.firstIsOne && given(option))
+                wrong(option, "is of no use to " + arguments.model + ", whose k1 is 1");
+        if (given("--focal") && given("--pixels-per-mm"))
+            wrong("--focal", "and --pixels-per-mm would each fix the scale");
+        const bool polynomial =
+            model.coefficients > 1 && model.projection == coverage::Projection::equidistance;
+        if (given("--nominal") && (!polynomial || given("--lens")))
+            wrong("--nominal", "is of no use to " +
+                                   (polynomial ? std::string("--lens") : arguments.model) +
+                                   ", which has a beginning of its own");
     }
     for (const fs::path& file : {arguments.residuals, arguments.undistorted})
         if (!file.empty() && !pictures::isPictureFile(file))

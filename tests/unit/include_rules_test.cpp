@@ -127,7 +127,7 @@ const std::vector<Foreign>& foreignHeaders() {
             of("^(Eigen|suitesparse|cholmod).*",
                {"processing/flatten", "processing/flatten/tube", "processing/flatten/general",
                 "processing/cleansing", "processing/handles", "processing/coverage"}),
-            of("^ceres/.*", {"processing/coverage"}),
+            of("^(ceres|glog)/.*", {"processing/coverage"}),
             of("^CGAL/.*", {"processing/handles"}),
             of("^OpenMesh/.*", {"processing/handles", "processing/flatten/tube"}),
             of("^OpenImageIO/.*", {"processing/pictures"}),
@@ -316,20 +316,26 @@ TEST(IncludeRules, TheServerAndTheClientLinkNoImageOrMeshLibrary) {
         const std::string linked = told("ldd", program);
         EXPECT_NE(linked.find("libssl"), std::string::npos) << linked;
         for (const char* library : {"libdcm", "libCGAL", "libOpenMesh", "libopenjp2", "libnifti",
-                                    "libOpenImageIO", "libopencv"}) {
+                                    "libOpenImageIO", "libopencv", "libglog"}) {
             EXPECT_EQ(linked.find(library), std::string::npos) << program << " links " << library;
         }
     }
     EXPECT_EQ(told("ldd", "haustra-server").find("libpng"), std::string::npos);
 }
 
-// They cost every start a quarter of a second: haustra loads them with its first picture.
-TEST(IncludeRules, OnlyTheModuleOfPicturesLinksTheImageLibraries) {
-    const std::string module = told("ldd", "../lib/haustra/haustra-pictures.so");
+// They cost every start a quarter of a second: haustra loads them with its first picture, or board.
+TEST(IncludeRules, OnlyTheModulesLinkTheImageLibrariesAndTheSolver) {
     const std::string program = told("ldd", "haustra");
-    for (const char* library : {"libOpenImageIO", "libopencv_imgproc"}) {
-        EXPECT_NE(module.find(library), std::string::npos) << library;
-        EXPECT_EQ(program.find(library), std::string::npos) << library;
+    for (const auto& [module, libraries] :
+         {std::pair<const char*, Names>{"haustra-pictures",
+                                        {"libOpenImageIO", "libopencv_imgproc"}},
+          {"haustra-calibration", {"libglog", "libopencv_imgproc"}}}) {
+        const std::string linked =
+            told("ldd", (std::string("../lib/haustra/") + module + ".so").c_str());
+        for (const std::string& library : libraries) {
+            EXPECT_NE(linked.find(library), std::string::npos) << module << " " << library;
+            EXPECT_EQ(program.find(library), std::string::npos) << library;
+        }
     }
 }
 

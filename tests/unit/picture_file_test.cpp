@@ -222,11 +222,18 @@ TEST_F(PictureFiles, WhatIsNotReadIsRefused) {
         refused(readColorPicture(file, 100), file, why);
     };
     both(at("none.png"), "cannot be read");
-    both(write("empty.png", ""), "no PNG or TIFF");
-    both(write("text.png", "P5 5 4 255 "), "no PNG or TIFF");
-    both(write("raw.tif", std::string(132, '\0') + "DICM"), "no PNG or TIFF");
+    both(write("empty.png", ""), "this is no PNG");
+    both(write("text.png", "P5 5 4 255 "), "this is no PNG");
+    both(write("raw.tif", std::string(132, '\0') + "DICM"), "this is no PNG");
+    // JPEG loses values: no slice of a scan.
     writePixels(at("photo.jpg"), bytes.data(), {5, 4}, 3);
-    both(at("photo.jpg"), "no PNG or TIFF");
+    refused(readGreyPicture(at("photo.jpg")), at("photo.jpg"), "no PNG or TIFF");
+    const auto photo = readColorPicture(at("photo.jpg"), 100);
+    ASSERT_TRUE(photo) << describe(photo.error());
+    EXPECT_EQ(photo->size, glm::ivec2(5, 4));
+    EXPECT_NEAR(photo->pixels[7].g, 7, 2);
+    EXPECT_EQ(photo->pixels[7].a, 255);
+    refused(readColorPicture(at("photo.jpg"), 4), at("photo.jpg"), "too large");
     fs::create_directory(at("folder.png"));
     both(at("folder.png"), "");
     for (const std::string ending : {".png", ".tif"}) {
@@ -252,6 +259,18 @@ TEST_F(PictureFiles, DamagedPicturesAreRefusedOrReadButNothingWorse) {
     std::vector<std::uint16_t> values(60 * 50);
     for (auto& value : values)
         value = std::uint16_t(random());
+    std::vector<std::uint8_t> colors(3 * 60 * 50);
+    for (auto& color : colors)
+        color = std::uint8_t(random());
+    writePixels(at("sound.jpg"), colors.data(), {60, 50}, 3);
+    const std::string jpeg = content(at("sound.jpg"));
+    for (int n = 0; n < 300; ++n) {
+        std::string bytes = jpeg.substr(0, n % 3 == 0 ? random() % jpeg.size() : jpeg.size());
+        for (int change = 0; change < 4 && n % 3 != 0; ++change)
+            bytes[random() % (n % 2 == 0 ? 700 : bytes.size())] = char(random());
+        const fs::path file = write("odd.jpg", bytes);
+        if (const auto read = readColorPicture(file, 1000); !read) refused(read, file, "");
+    }
     for (const std::string ending : {".png", ".tif"}) {
         writePixels(at("sound" + ending), values.data(), {60, 50});
         const std::string sound = content(at("sound" + ending));
