@@ -1,9 +1,17 @@
-// Times simulated colonoscopies of a prepared case, and holds the fast search against every ray.
-// usage: coverage_bench STORE CASE [CAMERAS [CHECKED]]
+// Times simulated colonoscopies of a prepared case; holds the search against every ray, and the
+// GPU's item buffer and occlusion queries against rays. usage: coverage_bench STORE CASE [CAMERAS
+// [CHECKED [GPU_CAMERAS]]]
 #include "core/bridges.h"
+#include "core/missed_patches.h"
 #include "coverage/corner_path.h"
 #include "coverage/fine_wall.h"
 #include "coverage/sight.h"
+#include "gpu/context.h"
+#include "occlusion_queries.h"
+#include "render/gl/flat_surface.h"
+#include "render/wall/item_buffer.h"
+#include "render/wall/wall_coverage.h"
+#include "render/wall/wall_index.h"
 #include "stopwatch.h"
 #include "store/case_store.h"
 
@@ -47,7 +55,97 @@ void print(const char* what, const TriMesh& mesh, const std::vector<std::uint8_t
                 100.0 * part / all, 100.0 * observed / triangles, 100.0 * full / all);
 }
 
-Result<void> run(const std::string& folder, const std::string& name, int count, int checked) {
+/// Where two ways to see differ, and whether what is seen ends there.
+void compare(const char* what, const TriMesh& mesh, const std::vector<std::uint8_t>& bridged,
+             const std::vector<Visibility>& a, const std::vector<Visibility>& b) {
+    const auto neighbours = neighboursOf(mesh);
+    const auto observed = [](const std::vector<Visibility>& seen, std::size_t n) {
+        return seen[n] != Visibility::unseen;
+    };
+    long all = 0, differ = 0, silhouettes = 0, otherwise = 0;
+    double allMm2 = 0.0, differMm2 = 0.0;
+    for (std::size_t n = 0; n < a.size(); ++n) {
+        if (bridged[n]) continue;
+        const glm::ivec3 t = mesh.triangles[n];
+        const glm::dvec3 v = mesh.vertices[std::size_t(t.x)];
+        const double area = 0.5 * glm::length(glm::cross(mesh.vertices[std::size_t(t.y)] - v,
+                                                         mesh.vertices[std::size_t(t.z)] - v));
+        ++all, allMm2 += area;
+        otherwise += a[n] != b[n];
+        if (observed(a, n) == observed(b, n)) continue;
+        ++differ, differMm2 += area;
+        for (int side = 0; side < 3; ++side)
+            if (const int other = neighbours[n][side];
+                other >= 0 && observed(b, std::size_t(other)) != observed(b, n)) {
+                ++silhouettes;
+                break;
+            }
+    }
+    std::printf(
+        "%s: agree on %.4f %% of triangles, %.4f %% of area; %ld differ, %ld of them where "
+        "what is seen ends; partly against fully on %ld more\n",
+        what, 100.0 * double(all - differ) / double(all), 100.0 * (1.0 - differMm2 / allMm2),
+        differ, silhouettes, otherwise - differ);
+}
+
+Result<void> compareWithGpu(const store::Case& source, const FineWall& fine,
+                            const std::vector<std::uint8_t>& bridged, const SightTree& tree,
+                            const std::vector<CenterlineCamera>& cameras) {
+    const PinholePicture picture;
+    const Eyepiece eyepiece = Eyepiece::of(picture);
+    auto context = TRY(gpu::Context::create());
+    std::printf("%s\n", context->renderer().c_str());
+    Clock start;
+    auto items = TRY(render::ItemBuffer::create(*context, fine.mesh, bridged, picture, true));
+    start.print("item buffer: set up");
+    start = {};
+    for (const CenterlineCamera& camera : cameras)
+        TRY(items->look(camera));
+    const auto byItems = items->seen();
+    start.print("item buffer", double(cameras.size()));
+    std::vector<Visibility> byRays(byItems.size(), Visibility::unseen);
+    start = {};
+    TRY(look(tree, eyepiece, cameras, byRays, {.tellFully = true}));
+    start.print("rays, the same pictures", double(cameras.size()));
+    compare("item buffer and rays", fine.mesh, bridged, byItems, byRays);
+
+    const std::span few = std::span(cameras).first(std::min<std::size_t>(2, cameras.size()));
+    std::vector<Visibility> byQueries(byItems.size(), Visibility::unseen),
+        fewByRays(byItems.size(), Visibility::unseen);
+    long queries = 0;
+    start = {};
+    for (const CenterlineCamera& camera : few)
+        addSeen(byQueries, TRY(bench::queryTriangles(fine.mesh, picture, camera, queries)));
+    start.print("occlusion queries", double(few.size()));
+    std::printf("  %.0f queries a picture\n", double(queries) / double(few.size()));
+    TRY(look(tree, eyepiece, few, fewByRays, {.tellFully = true}));
+    compare("occlusion queries and rays", fine.mesh, bridged, byQueries, fewByRays);
+
+    // What the server has for readers' pictures: its item buffer, and lines of sight by Embree.
+    if (!source.find("flatmap")) return {};
+    auto map = std::make_shared<const FlatMap>(TRY(source.readFlatMap()));
+    const auto geometry = TRY(render::FlatGeometry::of(*map, tree.rays().originMm()));
+    const auto surface = TRY(render::FlatSurface::upload(geometry));
+    auto index = TRY(render::WallIndex::create());
+    const render::Band whole = render::Band::whole(picture.side, picture.side);
+    const auto viewOf = [&](const CenterlineCamera& camera) {
+        return Camera{camera.positionMm, camera.forward, camera.up, picture.fovDegrees};
+    };
+    TRY(index.find(*context, surface, viewOf(cameras.front()), whole));
+    start = {};
+    for (const CenterlineCamera& camera : cameras)
+        TRY(index.find(*context, surface, viewOf(camera), whole));
+    start.print("the server's item buffer", double(cameras.size()));
+    render::WallCoverage live(TRY(render::WallSight::of(map)));
+    start = {};
+    for (const CenterlineCamera& camera : cameras)
+        live.show(viewOf(camera), glm::ivec2(picture.side));
+    start.print("the server's lines of sight", double(cameras.size()));
+    return {};
+}
+
+Result<void> run(const std::string& folder, const std::string& name, int count, int checked,
+                 int onGpu) {
     const auto source = TRY(store::CaseStore::open(folder, false).and_then([&](const auto& s) {
         return s.openCase(name);
     }));
@@ -78,9 +176,9 @@ Result<void> run(const std::string& folder, const std::string& name, int count, 
         std::vector<CenterlineCamera> cameras;
         bool tellFully;
     };
-    const auto both = [&](auto cameras, const Centerline& path) {
-        auto all = cameras(path, count, FlightDirection::antegrade);
-        const auto back = cameras(path, count, FlightDirection::retrograde);
+    const auto both = [&](auto cameras, const Centerline& path, int places) {
+        auto all = cameras(path, places, FlightDirection::antegrade);
+        const auto back = cameras(path, places, FlightDirection::retrograde);
         all.insert(all.end(), back.begin(), back.end());
         return all;
     };
@@ -91,10 +189,11 @@ Result<void> run(const std::string& folder, const std::string& name, int count, 
         {"oc towards rectum", scope, scopeCameras(corner.path, count, retro), false},
         {"vc antegrade", pinhole, flightCameras(centerline, count, ante), true},
         {"vc retrograde", pinhole, flightCameras(centerline, count, retro), true},
-        {"vc both", pinhole, both(flightCameras, centerline), true},
-        {"vc both, tangents", pinhole, both(scopeCameras, centerline), true},
+        {"vc both", pinhole, both(flightCameras, centerline, count), true},
+        {"vc both, tangents", pinhole, both(scopeCameras, centerline, count), true},
     };
     for (const Mode& mode : modes) {
+        if (count == 0) break;
         std::vector<Visibility> seen(fine.mesh.triangles.size(), Visibility::unseen);
         start = {};
         TRY(look(tree, mode.eyepiece, mode.cameras, seen, {.tellFully = mode.tellFully}));
@@ -121,18 +220,20 @@ Result<void> run(const std::string& folder, const std::string& name, int count, 
             differ += fast[n] != every[n];
         std::printf("  %ld triangles differ\n", differ);
     }
-    return {};
+    if (onGpu == 0) return {};
+    return compareWithGpu(source, fine, bridged, tree, both(flightCameras, centerline, onGpu / 2));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     if (argc < 3) {
-        std::fprintf(stderr, "usage: coverage_bench STORE CASE [CAMERAS [CHECKED]]\n");
+        std::fprintf(stderr,
+                     "usage: coverage_bench STORE CASE [CAMERAS [CHECKED [GPU_CAMERAS]]]\n");
         return 2;
     }
     const auto done = run(argv[1], argv[2], argc > 3 ? std::atoi(argv[3]) : 1000,
-                          argc > 4 ? std::atoi(argv[4]) : 8);
+                          argc > 4 ? std::atoi(argv[4]) : 8, argc > 5 ? std::atoi(argv[5]) : 40);
     if (!done) std::fprintf(stderr, "%s\n", describe(done.error()).c_str());
     return done ? 0 : 1;
 }
