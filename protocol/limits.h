@@ -79,7 +79,8 @@ inline constexpr std::size_t maxReaderBytes = 64;
 /// Of the pictures that were sent last so many can be told to have been on screen, and so many in
 /// one message.
 inline constexpr std::size_t maxShownPictures = 256;
-inline constexpr int maxMissedPatches = 256;  ///< of a list: the largest
+inline constexpr int maxMissedPatches = 64;  ///< of a list: the largest
+inline constexpr double leastListedMm2 = 1.0, mostListedMm2 = 1e6;
 /// Kept of one wall, of all readers; of the newest a report tells so many, each with its largest
 /// patches.
 inline constexpr int maxWallLedgers = 256, maxReportedLedgers = 32, maxReportedPatches = 32;
