@@ -450,6 +450,7 @@ void Session::openCase(const std::string& name) {
 // Everything that the server has to know of a session that it sees for the first time.
 void Session::askAgain() {
     forgetSeen();
+    sequenceBefore_ = sequence_;
     if (caseInfo_->flat && chosenLimits_) setSeenLimits(*chosenLimits_);
     if (caseInfo_->flat && paint_.any())
         connection_.send(protocol::paintMessage(++sequence_, paint_));
@@ -673,9 +674,10 @@ void Session::answered(const Message& message, Result<Body> body, std::vector<An
 
 // ---- what has been seen -----------------------------------------------------------------------
 
-void Session::onScreen(int viewport, std::uint32_t picture) {
-    if (phase_ == Phase::open && caseInfo_->flat && serverCan(protocol::capability::ledger))
-        screen_.show(viewport, picture, Clock::now());
+void Session::onScreen(const tiles::Picture& picture) {
+    if (phase_ == Phase::open && caseInfo_->flat && serverCan(protocol::capability::ledger) &&
+        picture.sequence > sequenceBefore_)
+        screen_.show(picture.viewport, picture.number, Clock::now());
 }
 void Session::offScreen(int viewport) {
     screen_.hide(viewport, Clock::now());

@@ -133,9 +133,9 @@ public:
     // reader (ConnectionOptions::reader) has had on screen, in all sessions; with another, what
     // endoscopic pictures of this link have shown.
 
-    /// A picture is on the reader's screen in its viewport, until another is, or it is hidden. Told
-    /// to the server ten times a second.
-    void onScreen(int viewport, std::uint32_t picture);
+    /// A picture is on the reader's screen, until another of its viewport is, or it is hidden. Told
+    /// to the server ten times a second. One of a former link, or of a case that is left, is not.
+    void onScreen(const tiles::Picture& picture);
     void offScreen(int viewport);
     /// Tells what has not been told yet, now. Returns the number of what was told last.
     std::uint64_t tellShown();
@@ -322,6 +322,7 @@ private:
     std::optional<SeenLimits> seenLimits_, chosenLimits_;  // the server's; the reader's choice
     ScreenTime screen_;
     Clock::time_point tellsShownAt_{};
+    std::uint64_t sequenceBefore_ = 0;  // of the last input before the case was opened
     std::vector<ShownTime> told_;
     std::uint64_t shownNumber_ = 0, keptShown_ = 0;
     std::optional<MissedList> missed_;

@@ -1,6 +1,7 @@
 #include "script/report.h"
 
 #include "reader/latency.h"
+#include "reader/seen_lists_json.h"
 
 #include <cmath>
 
@@ -104,36 +105,6 @@ ordered_json jsonOf(const Camera& camera) {
             {"height_mm", camera.heightMm}};
 }
 
-ordered_json jsonOf(const MissedList& missed) {
-    ordered_json out = {{"seen_share", missed.share},
-                        {"least_mm2", missed.leastMm2},
-                        {"count", missed.count},
-                        {"area_mm2", missed.areaMm2},
-                        {"missed", ordered_json::array()}};
-    for (const MissedPlace& patch : missed.patches) {
-        ordered_json one = {{"area_mm2", patch.areaMm2},
-                            {"center_mm", jsonOf(patch.place.positionMm)},
-                            {"arc_mm", patch.place.arcMm}};
-        if (patch.place.flat)
-            one["flat"] = ordered_json::array({patch.place.flat->x, patch.place.flat->y});
-        if (patch.view) one["view"] = jsonOf(*patch.view);
-        out["missed"].push_back(std::move(one));
-    }
-    return out;
-}
-
-ordered_json jsonOf(const SeenReport& report) {
-    ordered_json out = {{"wall", report.wall}, {"readers", ordered_json::array()}};
-    for (const ReaderSeen& reader : report.readers) {
-        ordered_json one = {{"reader", reader.reader},
-                            {"changed_utc", reader.changedUtc},
-                            {"limits", jsonOf(reader.limits)}};
-        one.update(jsonOf(reader.missed));
-        out["readers"].push_back(std::move(one));
-    }
-    return out;
-}
-
 // As runs: the first of some that follow each other, and how many.
 ordered_json runsOf(const std::vector<std::uint8_t>& flags) {
     auto runs = ordered_json::array();
@@ -200,8 +171,8 @@ ordered_json jsonOf(const ActionReport& action) {
     if (action.place) out["place"] = jsonOf(*action.place);
     if (action.measure) out["measure"] = jsonOf(*action.measure);
     if (action.seenShare) out["seen_share"] = *action.seenShare;
-    if (action.missed) out["missed"] = jsonOf(*action.missed);
-    if (action.seenReport) out["seen_report"] = jsonOf(*action.seenReport);
+    if (action.missed) out["missed"] = ordered_json::parse(toJson(*action.missed));
+    if (action.seenReport) out["seen_report"] = ordered_json::parse(toJson(*action.seenReport, ""));
     if (action.findings) out["findings"] = jsonOf(*action.findings);
     return out;
 }
@@ -219,14 +190,6 @@ std::string toJson(const FlatMeasure& measure) {
 // What a server tells as text may be no UTF-8 once it is cut.
 std::string toJson(const FindingList& findings) {
     return jsonOf(findings).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
-
-std::string toJson(const MissedList& missed) {
-    return jsonOf(missed).dump(2) + "\n";
-}
-
-std::string toJson(const SeenReport& report) {
-    return jsonOf(report).dump(2) + "\n";
 }
 
 std::string seenShareJson(double share, const std::optional<SeenNow>& now) {

@@ -81,8 +81,6 @@ std::string toJson(const PlayReport& report);
 std::string toJson(const WallPlace& place);
 std::string toJson(const FlatMeasure& measure);
 std::string toJson(const FindingList& findings);
-std::string toJson(const MissedList& missed);
-std::string toJson(const SeenReport& report);
 std::string seenShareJson(double share, const std::optional<SeenNow>& now);
 /// The ledger as the server told it, and the client's own log of what led to it.
 std::string toJson(const LedgerFlags& ledger, const std::vector<LoggedPicture>& log);

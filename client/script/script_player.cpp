@@ -7,6 +7,7 @@
 #include "reader/findings_reading.h"
 #include "reader/missed_reading.h"
 #include "reader/overview_map.h"
+#include "reader/seen_lists_json.h"
 #include "reader/strip_tour.h"
 #include "tiles/png_file.h"
 
@@ -229,7 +230,7 @@ Result<Arrival> Player::awaitPicture(int viewport, std::uint64_t sequence, bool 
 // What has come is on the screen of whoever plays.
 void Player::show(const Arrival& arrival) {
     const tiles::Picture& picture = arrival.picture;
-    session_.onScreen(picture.viewport, picture.number);
+    session_.onScreen(picture);
     const auto asked = asked_.find(picture.viewport);
     if (asked == asked_.end()) return;
     const auto after = asked->second.upper_bound(picture.sequence);
@@ -732,8 +733,10 @@ Status Player::run(const SeenReportAction& action, ActionReport& report) {
                   "the report of what has been seen"));
     if (!session_.seenReport()) return noLedger();
     report.seenReport = *session_.seenReport();
-    return action.json.empty() ? Status{}
-                               : writeJson(action.json, toJson(*report.seenReport), report);
+    return action.json.empty()
+               ? Status{}
+               : writeJson(action.json, toJson(*report.seenReport, session_.caseInfo()->name),
+                           report);
 }
 
 tl::unexpected<Error> Player::noLedger() {

@@ -402,7 +402,7 @@ TEST(LedgerKill, WhatWasToldToBeKeptSurvives) {
         while (std::chrono::steady_clock::now() < end) {
             session.poll(std::chrono::milliseconds(20));
             for (const reader::Arrival& arrival : session.takePictures())
-                session.onScreen(arrival.picture.viewport, arrival.picture.number);
+                session.onScreen(arrival.picture);
             if (session.seenShare()) shareBefore = std::max(shareBefore, *session.seenShare());
         }
         server->kill();
