@@ -7,9 +7,9 @@ namespace haustra {
 
 struct SeenLimits {
     /// Pixels that a millimetre of wall across the line of sight must have in the picture. A polyp
-    /// of 6 mm, the smallest that is reported (C-RADS; Zalis et al. 2005), then has four across: the
-    /// two cycles at which 95 % of observers detect that something is there, twice as many as for
-    /// half of them (Johnson 1958).
+    /// of 6 mm, the smallest that is reported (C-RADS; Zalis et al. 2005), then has four across:
+    /// the two cycles at which 95 % of observers detect that something is there, twice as many as
+    /// for half of them (Johnson 1958).
     double pixelsPerMm = 2.0 / 3.0;
     /// How long pictures that show it must have been on screen, all together: one fixation of the
     /// eye, 200 ms of pause and 50 to 100 ms to take in (Salthouse and Ellis 1980).
