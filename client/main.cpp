@@ -3,6 +3,7 @@
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
 #include "protocol/limits.h"
+#include "reader/reader_name.h"
 #include "script/script.h"
 #include "script/script_player.h"
 #include "window/run.h"
@@ -22,7 +23,7 @@ const std::string software = std::string("haustra-client ") + softwareVersion;
 
 struct Arguments {
     std::string server, caseName, script, out, size, fingerprint, knownServers, screenshot;
-    std::string theme, language;
+    std::string theme, language, readerName;
     bool list = false, headless = false, reconnect = false;
     double timeoutSeconds = 30.0, scale = 0.0;
     int screenshotAfterMs = 3000;
@@ -81,6 +82,11 @@ void declare(CLI::App& app, Arguments& a) {
     app.add_option("--known-servers", a.knownServers,
                    "file of pinned certificates (default $XDG_CONFIG_HOME/haustra/known_servers)")
         ->type_name("FILE");
+    app.add_option("--reader", a.readerName,
+                   "whose record it is of which wall has been on screen, kept by the server "
+                   "(default: a random\nname in $XDG_DATA_HOME/haustra/reader; with --headless "
+                   "nobody's, and nothing is kept)")
+        ->type_name("NAME");
     app.add_option("--timeout", a.timeoutSeconds,
                    "seconds to wait for each answer of the server (default 30)")
         ->type_name("S")
@@ -229,6 +235,11 @@ int main(int argc, char** argv) {
         connection.pinning.knownServersFile = a.knownServers;
     }
 
+    if (!a.readerName.empty()) {
+        const auto name = reader::checkReaderName(a.readerName);
+        if (!name) return wrongUsage("--reader: " + name.error().message);
+        connection.reader = *name;
+    }
     int width = 0, height = 0;
     if (!a.size.empty() && !readSize(a.size, width, height))
         return wrongUsage("--size: not WxH, such as 512x512: " + a.size);
@@ -243,6 +254,15 @@ int main(int argc, char** argv) {
             return wrongUsage("--size: pictures have at most " +
                               std::to_string(protocol::maxViewportPixels) + " pixels a side");
         return playScript(a, connection, options);
+    }
+    if (connection.reader.empty()) {
+        const auto file = reader::defaultReaderFile();
+        const auto name = file ? reader::readerNameIn(*file)
+                               : Result<std::string>(tl::make_unexpected(file.error()));
+        if (name)
+            connection.reader = *name;
+        else  // what is seen is this session's alone, as the window tells
+            std::cerr << "haustra-client: " << describe(name.error()) << "\n";
     }
     window::WindowOptions options;
     options.connection = connection;

@@ -8,6 +8,8 @@ namespace haustra::protocol::capability {
 inline constexpr char jpeg[] = "jpeg", lossless[] = "lossless", coarse[] = "coarse";
 // ---- a client: what it may be told unasked; a server: what it tells to such a client
 inline constexpr char bookmarkPush[] = "bookmark-push";  ///< others' bookmarks, as they are added
+// ---- both: TellShown, and what is asked about what has been seen
+inline constexpr char ledger[] = "ledger";
 // ---- a server: what it may be asked, and what it tells besides
 inline constexpr char slabs[] = "slabs";               ///< slices with a slab, moved by a pan
 inline constexpr char caseEntries[] = "case-entries";  ///< CaseList says more than names

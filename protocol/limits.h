@@ -5,6 +5,7 @@
 #include "core/findings.h"
 #include "core/flat_map.h"
 #include "core/scan_values.h"
+#include "core/seen_limits.h"
 #include "core/view.h"
 
 #include <cstddef>
@@ -69,6 +70,22 @@ using haustra::maxFindings;  ///< of a list
 inline constexpr std::size_t maxListedRuns = 150'000;
 inline constexpr std::size_t maxFindingKindBytes = 40, maxModelNameBytes = 200,
                              maxTrainedOnBytes = 2000;
+
+// ---- §4, what readers have seen
+using haustra::leastSeenPixelsPerMm;
+using haustra::mostSeenMs;  ///< of SeenLimits, and of a picture in one message
+using haustra::mostSeenPixelsPerMm;
+inline constexpr std::size_t maxReaderBytes = 64;
+/// Of the pictures that were sent last so many can be told to have been on screen, and so many in
+/// one message.
+inline constexpr std::size_t maxShownPictures = 256;
+inline constexpr int maxMissedPatches = 64;  ///< of a list: the largest
+inline constexpr double leastListedMm2 = 1.0, mostListedMm2 = 1e6;
+/// Kept of one wall, of all readers; of the newest a report tells so many, each with its largest
+/// patches.
+inline constexpr int maxWallLedgers = 256, maxReportedLedgers = 32, maxReportedPatches = 32;
+/// Its flags, twice a bit each, fit in one message.
+inline constexpr int maxLedgerTriangles = 1 << 23;
 
 // ---- §7, requests without an answer: at most so much weight of them at a time
 inline constexpr int maxUnanswered = 256, listWeight = 64, measurementWeight = 16;

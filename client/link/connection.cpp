@@ -187,10 +187,11 @@ struct Connection::Impl {
     asio::awaitable<Result<void>> greet(LinkUp& up) {
         ClientMessage hello;
         hello.mutable_hello()->set_protocol_version(protocol::protocolVersion);
-        for (const char* name :
-             {capability::jpeg, capability::lossless, capability::coarse, capability::bookmarkPush})
+        for (const char* name : {capability::jpeg, capability::lossless, capability::coarse,
+                                 capability::bookmarkPush, capability::ledger})
             hello.mutable_hello()->add_capabilities(name);
         hello.mutable_hello()->set_software(options.software);
+        hello.mutable_hello()->set_reader(options.reader);
         co_await asio::async_write(*stream, asio::buffer(protocol::controlFrame(hello)),
                                    asio::use_awaitable);
         ServerMessage answer;

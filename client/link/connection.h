@@ -24,6 +24,7 @@ struct ConnectionOptions {
     ServerAddress address;
     Pinning pinning;
     std::string software = "haustra-client";
+    std::string reader;      ///< whose ledger it is of what has been seen; empty: nobody's
     bool reconnect = false;  ///< try again after a loss, with growing pauses of up to 5 s
     std::chrono::milliseconds connectPatience{10'000};  ///< for name, TCP, TLS and welcome together
     std::chrono::milliseconds silencePatience{

@@ -63,9 +63,12 @@ void FlatReading::goTo(glm::dvec3 placeMm) {
     wall_.pickNear(placeMm);
 }
 
-void FlatReading::goTo(const WallPlace& place) {
+void FlatReading::goTo(const WallPlace& place, const std::optional<Camera>& view) {
     tour_.setMotion(Motion::paused);
-    if (!case_->centerline.points.empty()) flight_.lookAt(place.arcMm, place.positionMm);
+    if (view)
+        flight_.goTo(*view, place.arcMm);
+    else if (!case_->centerline.points.empty())
+        flight_.lookAt(place.arcMm, place.positionMm);
     if (hasStrip() && place.flat) tour_.centerOn(*place.flat);
     stay();
     wall_.forgetPick();

@@ -43,8 +43,8 @@ public:
     /// the zoom view shows the wall nearest to it.
     void goTo(glm::dvec3 placeMm);
     /// Goes to a place of the wall that the server has told: the camera looks at it, and the zoom
-    /// view has it in its middle.
-    void goTo(const WallPlace& place);
+    /// view has it in its middle. With a view of it, the camera is that one.
+    void goTo(const WallPlace& place, const std::optional<Camera>& view = {});
     /// The place that was gone to last, until the camera moves on.
     const std::optional<GoneTo>& picked() const { return picked_; }
     /// No mark, and what is still asked about is gone to no more.

@@ -420,4 +420,104 @@ Result<FindingList> findingsFrom(const protocol::FindingList& message, const Gri
     return list;
 }
 
+// ---- what has been seen -------------------------------------------------------------------------
+
+namespace {
+
+constexpr double mostWallMm2 = 1e9;
+
+tl::unexpected<Error> refuseSeen(const char* what) {
+    return fail(ErrorKind::badInput, what, "seen");
+}
+
+bool isWallName(const std::string& name) {
+    return isVisibleAscii(name, 64);
+}
+
+Result<std::vector<MissedPlace>> patchesFrom(
+    const google::protobuf::RepeatedPtrField<protocol::MissedPatch>& message, int most) {
+    if (message.size() > most) return refuseSeen("the server sent more patches than a list has");
+    std::vector<MissedPlace> patches;
+    for (const protocol::MissedPatch& patch : message) {
+        MissedPlace one{patch.area_mm2(), TRY(placeFrom(patch.place())), std::nullopt};
+        if (!isWithin(one.areaMm2, 0.0, mostWallMm2))
+            return refuseSeen("the server sent a patch whose area is none");
+        if (patch.has_view()) {
+            auto view = TRY(protocol::cameraFrom(patch.view()));
+            view.forward = glm::normalize(view.forward);
+            view.up = glm::cross(glm::normalize(glm::cross(view.forward, view.up)), view.forward);
+            one.view = view;
+        }
+        patches.push_back(std::move(one));
+    }
+    return patches;
+}
+
+std::vector<std::uint8_t> flagsOf(const std::string& bits, std::size_t count) {
+    std::vector<std::uint8_t> flags(count);
+    for (std::size_t n = 0; n < count; ++n)
+        flags[n] = static_cast<unsigned char>(bits[n / 8]) >> n % 8 & 1u;
+    return flags;
+}
+
+}  // namespace
+
+Result<SeenLimits> seenLimitsFrom(const protocol::SeenLimits& message) {
+    if (message.least_ms() > std::uint32_t(mostSeenMs))
+        return refuseSeen("the server sent limits that are none");
+    const SeenLimits limits{message.pixels_per_mm(), int(message.least_ms())};
+    TRY(checkSeenLimits(limits));
+    return limits;
+}
+
+Result<MissedList> missedFrom(const protocol::MissedList& message) {
+    MissedList list{message.share(), message.least_mm2(), 0, message.area_mm2(), {}};
+    if (!isWithin(list.share, 0.0, 1.0) || !isWithin(list.leastMm2, 0.0, mostWallMm2) ||
+        !isWithin(list.areaMm2, 0.0, mostWallMm2) ||
+        message.count() > std::uint32_t(protocol::maxLedgerTriangles))
+        return refuseSeen("the server sent a list whose figures are none");
+    list.count = int(message.count());
+    list.patches = TRY(patchesFrom(message.patches(), protocol::maxMissedPatches));
+    return list;
+}
+
+Result<LedgerFlags> ledgerFrom(const protocol::Ledger& message) {
+    if (!isWallName(message.wall()) || !isWithin(message.share(), 0.0, 1.0) ||
+        message.triangles() > std::uint32_t(protocol::maxLedgerTriangles))
+        return refuseSeen("the server sent a ledger of no wall");
+    const std::size_t triangles = message.triangles(), bytes = (triangles + 7) / 8;
+    if (message.shown().size() != bytes || message.seen().size() != bytes)
+        return refuseSeen("the server sent a ledger whose flags are not as many as triangles");
+    return LedgerFlags{message.wall(),
+                       TRY(seenLimitsFrom(message.limits())),
+                       message.share(),
+                       message.recorded(),
+                       flagsOf(message.shown(), triangles),
+                       flagsOf(message.seen(), triangles)};
+}
+
+Result<SeenReport> seenReportFrom(const protocol::SeenReport& message) {
+    SeenReport report{message.wall(), message.least_mm2(), {}};
+    if (!isWallName(report.wall) || !isWithin(report.leastMm2, 0.0, mostWallMm2))
+        return refuseSeen("the server sent a report of no wall");
+    if (message.readers_size() > protocol::maxReportedLedgers)
+        return refuseSeen("the server sent more readers than a report has");
+    for (const protocol::ReaderSeen& reader : message.readers()) {
+        ReaderSeen one;
+        if (!isVisibleAscii(reader.reader(), protocol::maxReaderBytes) ||
+            !isWithin(reader.share(), 0.0, 1.0) ||
+            !isWithin(reader.missed_mm2(), 0.0, mostWallMm2) ||
+            reader.missed() > std::uint32_t(protocol::maxLedgerTriangles))
+            return refuseSeen("the server sent a reader whose figures are none");
+        one.reader = reader.reader();
+        one.limits = TRY(seenLimitsFrom(reader.limits()));
+        one.share = reader.share();
+        one.changedUtc = peerText(reader.changed_utc(), maxTimeBytes);
+        one.missed = {one.share, report.leastMm2, int(reader.missed()), reader.missed_mm2(),
+                      TRY(patchesFrom(reader.patches(), protocol::maxReportedPatches))};
+        report.readers.push_back(std::move(one));
+    }
+    return report;
+}
+
 }  // namespace haustra::reader

@@ -8,6 +8,7 @@
 #include "protocol/limits.h"
 #include "reader/case_info.h"
 #include "reader/finding_list.h"
+#include "reader/seen_lists.h"
 
 namespace haustra::reader {
 
@@ -28,5 +29,11 @@ Result<ScanStatistics> statisticsFrom(const protocol::ScanStatistics& message);
 /// Fails where a finding lies nowhere, its voxels are none of the case's grid, they are not in the
 /// order of their arcs, two have the same number, or there are any that should be hidden.
 Result<FindingList> findingsFrom(const protocol::FindingList& message, const Grid& grid);
+/// Fail where a share, an area or a limit is out of its bounds, a place is none, a list is longer
+/// than a server's, or flags are not as many as triangles.
+Result<SeenLimits> seenLimitsFrom(const protocol::SeenLimits& message);
+Result<MissedList> missedFrom(const protocol::MissedList& message);
+Result<LedgerFlags> ledgerFrom(const protocol::Ledger& message);
+Result<SeenReport> seenReportFrom(const protocol::SeenReport& message);
 
 }  // namespace haustra::reader

@@ -36,6 +36,7 @@ void Reader::update(double seconds) {
     slices_.follow(flight_.camera().positionMm);
     measures_.update();
     rulers_.update();
+    missed_.update(Clock::now());
     sendWindow();
     sendOptics(Clock::now());
     panes_.askForViews([this](View view) { return stateOf(view); }, Clock::now());
@@ -60,6 +61,7 @@ void Reader::caseOpened() {
     lens_.open(case_);
     measures_.reset();
     findings_.open();
+    missed_.open();
     rulers_.reset();
     panes_.clear();
     optics_.offer(case_->presets);
@@ -183,6 +185,13 @@ void Reader::goTo(const ListedFinding& finding) {
     setMotion(Motion::paused);
     flat_.goTo(finding.wall);
     slices_.show(finding.wall.positionMm, flight_.camera().positionMm);
+}
+
+void Reader::goTo(const MissedPlace& patch) {
+    if (!case_) return;
+    setMotion(Motion::paused);
+    flat_.goTo(patch.place, patch.view);
+    slices_.show(patch.place.positionMm, flight_.camera().positionMm);
 }
 
 void Reader::restore(const Flight& flight, const SliceViews& slices) {

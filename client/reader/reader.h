@@ -5,6 +5,7 @@
 #include "reader/biopsy_lens.h"
 #include "reader/findings_reading.h"
 #include "reader/flat_reading.h"
+#include "reader/missed_reading.h"
 #include "reader/optics_editor.h"
 #include "reader/outside_view.h"
 #include "reader/panes.h"
@@ -60,6 +61,8 @@ public:
     const ScanMeasures& measures() const { return measures_; }
     FindingsReading& findings() { return findings_; }
     const FindingsReading& findings() const { return findings_; }
+    MissedReading& missed() { return missed_; }
+    const MissedReading& missed() const { return missed_; }
     /// Lengths between two clicked places, and findings' diameters.
     PlaceRulers& rulers() { return rulers_; }
     const PlaceRulers& rulers() const { return rulers_; }
@@ -94,6 +97,8 @@ public:
     void goTo(const Bookmark& bookmark) { flight_.goTo(bookmark.camera, bookmark.arcMm); }
     /// To its top: the camera looks at it, slices and zoom view show it. It is the current one.
     void goTo(const ListedFinding& finding);
+    /// To where a patch is seen from that has been missed; slices and zoom view show its middle.
+    void goTo(const MissedPlace& patch);
     /// The next (or, with −1, previous) bookmark along the centerline, if any.
     std::optional<Bookmark> nextBookmark(int step) const;
 
@@ -111,6 +116,7 @@ private:
     BiopsyLens lens_{session_};
     ScanMeasures measures_{session_};
     FindingsReading findings_{session_};
+    MissedReading missed_{session_};
     PlaceRulers rulers_{session_, flat_.wall()};
     OpticsEditor optics_;
     Panes panes_{session_};

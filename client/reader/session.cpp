@@ -6,25 +6,14 @@
 #include "protocol/optics_message.h"
 #include "protocol/view_message.h"
 #include "reader/incoming_messages.h"
+#include "reader/random_key.h"
 
 #include <algorithm>
 #include <iterator>
-#include <random>
 #include <utility>
 
 namespace haustra::reader {
 namespace {
-
-// 128 random bits: no two bookmarks of any client share a key.
-std::string newClientKey() {
-    std::random_device random;
-    static constexpr char digits[] = "0123456789abcdef";
-    std::string key;
-    for (int word = 0; word < 4; ++word)
-        for (std::uint32_t bits = random(), n = 0; n < 8; ++n, bits >>= 4)
-            key += digits[bits & 15];
-    return key;
-}
 
 std::int64_t nowMs() {
     using namespace std::chrono;
@@ -121,6 +110,9 @@ protocol::ClientMessage scanMessage(std::uint64_t request, const ScanRegion& reg
 const char* neededBy(const protocol::ClientMessage& question) {
     if (question.has_pick_wall()) return protocol::capability::pick;
     if (question.has_list_findings()) return protocol::capability::findings;
+    if (question.has_set_seen_limits() || question.has_list_missed() || question.has_ask_ledger() ||
+        question.has_ask_seen_report())
+        return protocol::capability::ledger;
     return question.has_measure_scan() ? protocol::capability::scanValues : nullptr;
 }
 
@@ -137,7 +129,14 @@ protocol::ServerMessage::BodyCase answerOf(const protocol::ClientMessage& questi
         case protocol::ClientMessage::kMeasureScan:
             return protocol::ServerMessage::kScanStatistics;
         case protocol::ClientMessage::kAskSeen:
+        case protocol::ClientMessage::kSetSeenLimits:
             return protocol::ServerMessage::kWallSeen;
+        case protocol::ClientMessage::kListMissed:
+            return protocol::ServerMessage::kMissedList;
+        case protocol::ClientMessage::kAskLedger:
+            return protocol::ServerMessage::kLedger;
+        case protocol::ClientMessage::kAskSeenReport:
+            return protocol::ServerMessage::kSeenReport;
         case protocol::ClientMessage::kListFindings:
             return protocol::ServerMessage::kFindingList;
         default:
@@ -151,6 +150,9 @@ std::uint64_t requestOf(const protocol::ServerMessage& answer) {
            : answer.has_scan_statistics() ? answer.scan_statistics().request()
            : answer.has_wall_seen()       ? answer.wall_seen().request()
            : answer.has_finding_list()    ? answer.finding_list().request()
+           : answer.has_missed_list()     ? answer.missed_list().request()
+           : answer.has_ledger()          ? answer.ledger().request()
+           : answer.has_seen_report()     ? answer.seen_report().request()
                                           : 0;
 }
 
@@ -181,6 +183,7 @@ void Session::poll(std::chrono::milliseconds patience) {
             handle(std::get<protocol::ServerMessage>(event->body));
         if (phase_ == Phase::failed) return;
     }
+    if (Clock::now() >= tellsShownAt_) tellShown();
 }
 
 void Session::handle(link::LinkUp up) {
@@ -199,6 +202,7 @@ void Session::handle(const link::LinkDown& down) {
     failure_ = down.error;
     if (!lastWords_.empty()) failure_.message = "the connection was lost: " + lastWords_;
     linked_ = false;
+    forgetSeen();
     for (auto& [id, state] : viewports_)
         state.owedSince.reset();
     phase_ = down.final ? Phase::failed : Phase::lost;
@@ -252,12 +256,17 @@ void Session::handle(const protocol::ServerMessage& message) {
                      scanAnswers_);
             break;
         case protocol::ServerMessage::kWallSeen:
-            if (!(message.wall_seen().share() >= 0.0 && message.wall_seen().share() <= 1.0))
-                return giveUp(
-                    {ErrorKind::badInput, "the server sent a share that is none", "wall"});
-            seenShare_ = message.wall_seen().share();
-            questions_.erase(message.wall_seen().request());
-            answeredSeen_ = std::max(answeredSeen_, message.wall_seen().request());
+            take(message.wall_seen());
+            break;
+        case protocol::ServerMessage::kMissedList:
+            keep(message.missed_list(), missedFrom(message.missed_list()), missed_);
+            ++missedRevision_;
+            break;
+        case protocol::ServerMessage::kLedger:
+            keep(message.ledger(), ledgerFrom(message.ledger()), ledger_);
+            break;
+        case protocol::ServerMessage::kSeenReport:
+            keep(message.seen_report(), seenReportFrom(message.seen_report()), seenReport_);
             break;
         case protocol::ServerMessage::kFindingList:
             take(message.finding_list());
@@ -431,7 +440,8 @@ void Session::openCase(const std::string& name) {
     detection_ = {};
     findings_.reset();
     ++findingsRevision_;
-    seenShare_.reset();
+    tellShown();
+    forgetSeen();
     if (phase_ == Phase::failed || phase_ == Phase::lost) return;
     phase_ = Phase::connecting;
     askForCase();
@@ -439,7 +449,9 @@ void Session::openCase(const std::string& name) {
 
 // Everything that the server has to know of a session that it sees for the first time.
 void Session::askAgain() {
-    seenShare_.reset();
+    forgetSeen();
+    sequenceBefore_ = sequence_;
+    if (caseInfo_->flat && chosenLimits_) setSeenLimits(*chosenLimits_);
     if (caseInfo_->flat && paint_.any())
         connection_.send(protocol::paintMessage(++sequence_, paint_));
     // Its views are opened with the paint that they are to have; the list is asked for after it.
@@ -614,9 +626,14 @@ void Session::say(std::uint64_t request) {
 bool Session::refuseQuestion(std::uint64_t request, const Error& error) {
     const auto asked = questions_.find(request);
     if (asked == questions_.end()) return false;
-    if (asked->second.message.has_list_findings())
+    const protocol::ClientMessage& question = asked->second.message;
+    if (question.has_list_findings())
         answeredFindings_ = std::max(answeredFindings_, request);
-    else if (asked->second.message.has_measure_scan())
+    else if (question.has_ask_seen() || question.has_set_seen_limits())
+        answeredSeen_ = std::max(answeredSeen_, request);
+    else if (neededBy(question) == protocol::capability::ledger)
+        answeredLedger_ = std::max(answeredLedger_, request);
+    else if (question.has_measure_scan())
         scanAnswers_.push_back({request, tl::make_unexpected(error)});
     else
         wallAnswers_.push_back({request, tl::make_unexpected(error)});
@@ -634,6 +651,7 @@ std::uint64_t Session::pick(glm::dvec3 positionMm, glm::dvec3 direction) {
     return ask(pickMessage(++request_, positionMm, direction));
 }
 std::uint64_t Session::askSeen(bool forget) {
+    tellShown();
     protocol::ClientMessage message;
     message.mutable_ask_seen()->set_request(++request_);
     message.mutable_ask_seen()->set_forget(forget);
@@ -654,6 +672,106 @@ void Session::answered(const Message& message, Result<Body> body, std::vector<An
     answers.push_back({message.request(), std::move(*body)});
 }
 
+// ---- what has been seen -----------------------------------------------------------------------
+
+void Session::onScreen(const tiles::Picture& picture) {
+    if (phase_ == Phase::open && caseInfo_->flat && serverCan(protocol::capability::ledger) &&
+        picture.sequence > sequenceBefore_)
+        screen_.show(picture.viewport, picture.number, Clock::now());
+}
+void Session::offScreen(int viewport) {
+    screen_.hide(viewport, Clock::now());
+}
+
+std::uint64_t Session::tellShown() {
+    constexpr std::chrono::milliseconds every{100};
+    const auto now = Clock::now();
+    tellsShownAt_ = now + every;
+    if (phase_ != Phase::open || !caseInfo_->flat || !serverCan(protocol::capability::ledger))
+        return shownNumber_;
+    for (;;) {
+        const auto times = screen_.take(now, protocol::maxShownPictures);
+        if (times.empty()) return shownNumber_;
+        protocol::ClientMessage message;
+        message.mutable_tell_shown()->set_number(++shownNumber_);
+        for (const ShownTime& time : times) {
+            auto* one = message.mutable_tell_shown()->add_pictures();
+            one->set_picture(time.picture);
+            one->set_ms(std::uint32_t(time.ms));
+        }
+        connection_.send(message);
+        if (logsShown_) told_.insert(told_.end(), times.begin(), times.end());
+    }
+}
+
+// Of another link, or another case: the server begins to tell anew.
+void Session::forgetSeen() {
+    screen_.reset();
+    seenShare_.reset();
+    seenLimits_.reset();
+    seenIsRecorded_ = false;
+    keptShown_ = shownNumber_;
+    missed_.reset();
+    ledger_.reset();
+    seenReport_.reset();
+    ++missedRevision_;
+}
+
+void Session::take(const protocol::WallSeen& message) {
+    if (!(message.share() >= 0.0 && message.share() <= 1.0))
+        return giveUp({ErrorKind::badInput, "the server sent a share that is none", "wall"});
+    if (message.has_limits()) {
+        auto limits = seenLimitsFrom(message.limits());
+        if (!limits) return giveUp(limits.error());
+        seenLimits_ = *limits;
+    }
+    seenShare_ = message.share();
+    seenIsRecorded_ = message.recorded();
+    keptShown_ = std::max(keptShown_, std::min(message.kept(), shownNumber_));
+    questions_.erase(message.request());
+    answeredSeen_ = std::max(answeredSeen_, message.request());
+}
+
+template <class Message, class Body>
+void Session::keep(const Message& message, Result<Body> body, std::optional<Body>& kept) {
+    if (questions_.erase(message.request()) == 0) return;  // of a case that is left
+    if (!body) return giveUp(body.error());
+    kept = std::move(*body);
+    answeredLedger_ = std::max(answeredLedger_, message.request());
+}
+
+std::uint64_t Session::setSeenLimits(const SeenLimits& limits) {
+    chosenLimits_ = limits;
+    tellShown();
+    protocol::ClientMessage message;
+    message.mutable_set_seen_limits()->set_request(++request_);
+    message.mutable_set_seen_limits()->mutable_limits()->set_pixels_per_mm(limits.pixelsPerMm);
+    message.mutable_set_seen_limits()->mutable_limits()->set_least_ms(
+        std::uint32_t(limits.leastMs));
+    return ask(message);
+}
+
+std::uint64_t Session::requestMissed(double leastMm2) {
+    tellShown();
+    protocol::ClientMessage message;
+    message.mutable_list_missed()->set_request(++request_);
+    message.mutable_list_missed()->set_least_mm2(leastMm2);
+    return ask(message);
+}
+std::uint64_t Session::requestLedger() {
+    tellShown();
+    protocol::ClientMessage message;
+    message.mutable_ask_ledger()->set_request(++request_);
+    return ask(message);
+}
+std::uint64_t Session::requestSeenReport(double leastMm2) {
+    tellShown();
+    protocol::ClientMessage message;
+    message.mutable_ask_seen_report()->set_request(++request_);
+    message.mutable_ask_seen_report()->set_least_mm2(leastMm2);
+    return ask(message);
+}
+
 // ---- bookmarks ------------------------------------------------------------------------------
 
 // One made on a scan that the case is no longer of belongs to another patient, it may be.
@@ -667,7 +785,7 @@ std::string Session::addBookmark(const Camera& camera, double arcMm, std::string
     bookmark.camera = camera;
     bookmark.arcMm = arcMm;
     bookmark.note = cutUtf8(std::move(note), protocol::maxNoteBytes);
-    bookmark.clientKey = newClientKey();
+    bookmark.clientKey = randomKey();
     // While another case is being opened, the reader still sees the one before.
     Owed owed{caseName_, std::nullopt, ++request_, bookmark, nowMs()};
     if (caseInfo_) owed.caseName = caseInfo_->name, owed.scan = caseInfo_->scan;
@@ -771,7 +889,7 @@ std::string Session::sendRefusedAgain(const std::string& clientKey, std::string 
     const bool changed = note != owed.bookmark.note;
     if (changed) {
         owed.bookmark.note = std::move(note);
-        owed.bookmark.clientKey = newClientKey();
+        owed.bookmark.clientKey = randomKey();
     }
     owed.refusal.clear();
     owed.request = ++request_;

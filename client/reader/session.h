@@ -8,6 +8,8 @@
 #include "reader/case_info.h"
 #include "reader/finding_list.h"
 #include "reader/latency.h"
+#include "reader/screen_time.h"
+#include "reader/seen_lists.h"
 #include "tiles/picture.h"
 
 #include <array>
@@ -127,14 +129,50 @@ public:
     std::uint64_t requestFindings();
     std::uint64_t answeredFindingsRequest() const { return answeredFindings_; }
 
-    /// How much of the wall's area this session's pictures have shown, 0…1, as the server told
-    /// last. None before it has: it is asked when a case is open, and again after a lost link,
-    /// where it begins anew.
+    // ---- what has been seen. With a server that has protocol::capability::ledger it is what the
+    // reader (ConnectionOptions::reader) has had on screen, in all sessions; with another, what
+    // endoscopic pictures of this link have shown.
+
+    /// A picture is on the reader's screen, until another of its viewport is, or it is hidden. Told
+    /// to the server ten times a second. One of a former link, or of a case that is left, is not.
+    void onScreen(const tiles::Picture& picture);
+    void offScreen(int viewport);
+    /// Tells what has not been told yet, now. Returns the number of what was told last.
+    std::uint64_t tellShown();
+    /// What was told to have been on screen since the last call, with logsShown(true) alone.
+    std::vector<ShownTime> takeTold() { return std::exchange(told_, {}); }
+    void setLogsShown(bool logs) { logsShown_ = logs; }
+
+    /// Of the wall's area, 0…1, as the server told last. None before it has: it is asked when a
+    /// case is open, and again after a lost link.
     std::optional<double> seenShare() const { return seenShare_; }
-    /// Asks for it, of all pictures so far; with `forget`, nothing has been shown. Returns the
-    /// request's number.
+    /// Whether the server keeps it for the reader's next session.
+    bool seenIsRecorded() const { return seenIsRecorded_; }
+    /// Up to which tellShown() all is on the server's stable storage, where it is kept.
+    std::uint64_t keptShown() const { return keptShown_; }
+    /// Something was told that is to be kept, and is not yet.
+    bool owesShown() const { return seenIsRecorded_ && shownNumber_ > keptShown_; }
+    /// By which the server counts, as it told last.
+    const std::optional<SeenLimits>& seenLimits() const { return seenLimits_; }
+    /// Asks for the share, of all that has been told so far; with `forget`, nothing has been seen.
+    /// Returns the request's number.
     std::uint64_t askSeen(bool forget);
+    /// From now on, in all cases, it counts by these. Another ledger goes on or begins. As askSeen.
+    std::uint64_t setSeenLimits(const SeenLimits& limits);
     std::uint64_t answeredSeenRequest() const { return answeredSeen_; }
+
+    /// Each asks, and returns the request's number; the newest answer is kept. Of a server without
+    /// protocol::capability::ledger the answer is a refusal of the client's own, after which there
+    /// is none.
+    std::uint64_t requestMissed(double leastMm2 = leastMissedMm2);
+    std::uint64_t requestLedger();
+    std::uint64_t requestSeenReport(double leastMm2 = leastMissedMm2);
+    const std::optional<MissedList>& missed() const { return missed_; }
+    std::uint64_t missedRevision() const { return missedRevision_; }  ///< of another list another
+    const std::optional<LedgerFlags>& ledger() const { return ledger_; }
+    const std::optional<SeenReport>& seenReport() const { return seenReport_; }
+    /// Of the newest of these three that was answered or refused.
+    std::uint64_t answeredLedgerRequest() const { return answeredLedger_; }
 
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
     std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
@@ -255,6 +293,10 @@ private:
     void askAgain();
     void giveUp(Error error);
     void sayWhatWaited(int viewport, ViewportState& state);
+    void take(const protocol::WallSeen& message);
+    template <class Message, class Body>
+    void keep(const Message& message, Result<Body> body, std::optional<Body>& kept);
+    void forgetSeen();
     void sendIfOpen(const protocol::ClientMessage& message);
 
     Phase phase_ = Phase::connecting;
@@ -276,6 +318,17 @@ private:
     std::optional<FindingList> findings_;
     std::uint64_t findingsRevision_ = 0, answeredFindings_ = 0;
     std::optional<double> seenShare_;
+    bool seenIsRecorded_ = false, logsShown_ = false;
+    std::optional<SeenLimits> seenLimits_, chosenLimits_;  // the server's; the reader's choice
+    ScreenTime screen_;
+    Clock::time_point tellsShownAt_{};
+    std::uint64_t sequenceBefore_ = 0;  // of the last input before the case was opened
+    std::vector<ShownTime> told_;
+    std::uint64_t shownNumber_ = 0, keptShown_ = 0;
+    std::optional<MissedList> missed_;
+    std::optional<LedgerFlags> ledger_;
+    std::optional<SeenReport> seenReport_;
+    std::uint64_t missedRevision_ = 0, answeredLedger_ = 0;
     std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0,
                   casesAsked_ = 0, answeredCases_ = 0;
     std::map<int, ViewportState> viewports_;

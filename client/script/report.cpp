@@ -1,6 +1,7 @@
 #include "script/report.h"
 
 #include "reader/latency.h"
+#include "reader/seen_lists_json.h"
 
 #include <cmath>
 
@@ -86,6 +87,55 @@ ordered_json jsonOf(const FindingList& list) {
     return out;
 }
 
+ordered_json jsonOf(const SeenLimits& limits) {
+    return {{"pixels_per_mm", limits.pixelsPerMm}, {"least_ms", limits.leastMs}};
+}
+
+ordered_json jsonOf(const SeenNow& seen) {
+    return {{"share", seen.share}, {"recorded", seen.recorded}, {"limits", jsonOf(seen.limits)}};
+}
+
+ordered_json jsonOf(const Camera& camera) {
+    static constexpr const char* lenses[] = {"perspective", "fisheye", "orthographic"};
+    return {{"position_mm", jsonOf(camera.positionMm)},
+            {"forward", jsonOf(camera.forward)},
+            {"up", jsonOf(camera.up)},
+            {"lens", lenses[int(camera.lens)]},
+            {"fov_deg", camera.fovDegrees},
+            {"height_mm", camera.heightMm}};
+}
+
+// As runs: the first of some that follow each other, and how many.
+ordered_json runsOf(const std::vector<std::uint8_t>& flags) {
+    auto runs = ordered_json::array();
+    for (std::size_t n = 0; n < flags.size();) {
+        const std::size_t first = n;
+        while (n < flags.size() && flags[n])
+            ++n;
+        if (n > first)
+            runs.push_back({first, n - first});
+        else
+            ++n;
+    }
+    return runs;
+}
+
+ordered_json jsonOf(const LoggedPicture& picture) {
+    ordered_json out = {{"viewport", picture.viewport},
+                        {"picture", picture.number},
+                        {"size", ordered_json::array({picture.size.x, picture.size.y})},
+                        {"ms", picture.ms},
+                        {"optics", picture.optics},
+                        {"view", toString(viewOf(picture.shown))}};
+    if (const auto* camera = std::get_if<Camera>(&picture.shown)) out["camera"] = jsonOf(*camera);
+    if (const auto* window = std::get_if<FlatWindow>(&picture.shown)) {
+        out["center"] = ordered_json::array({window->center.x, window->center.y});
+        out["pixels_per_circumference"] =
+            window->pixelsPerUnit * picture.size.x / picture.viewportWidth;
+    }
+    return out;
+}
+
 ordered_json jsonOf(const ActionReport& action) {
     ordered_json out = {
         {"line", action.line}, {"do", action.name}, {"seconds", rounded(action.seconds)}};
@@ -121,6 +171,8 @@ ordered_json jsonOf(const ActionReport& action) {
     if (action.place) out["place"] = jsonOf(*action.place);
     if (action.measure) out["measure"] = jsonOf(*action.measure);
     if (action.seenShare) out["seen_share"] = *action.seenShare;
+    if (action.missed) out["missed"] = ordered_json::parse(toJson(*action.missed));
+    if (action.seenReport) out["seen_report"] = ordered_json::parse(toJson(*action.seenReport, ""));
     if (action.findings) out["findings"] = jsonOf(*action.findings);
     return out;
 }
@@ -140,8 +192,27 @@ std::string toJson(const FindingList& findings) {
     return jsonOf(findings).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string seenShareJson(double share) {
-    return ordered_json{{"seen_share", share}}.dump(2) + "\n";
+std::string seenShareJson(double share, const std::optional<SeenNow>& now) {
+    ordered_json out = {{"seen_share", share}};
+    if (now) {
+        out["recorded"] = now->recorded;
+        out["limits"] = jsonOf(now->limits);
+    }
+    return out.dump(2) + "\n";
+}
+
+std::string toJson(const LedgerFlags& ledger, const std::vector<LoggedPicture>& log) {
+    ordered_json out = {{"wall", ledger.wall},
+                        {"limits", jsonOf(ledger.limits)},
+                        {"seen_share", ledger.share},
+                        {"recorded", ledger.recorded},
+                        {"triangles", ledger.seen.size()},
+                        {"shown", runsOf(ledger.shown)},
+                        {"seen", runsOf(ledger.seen)},
+                        {"pictures", ordered_json::array()}};
+    for (const LoggedPicture& picture : log)
+        if (picture.ms > 0) out["pictures"].push_back(jsonOf(picture));
+    return out.dump() + "\n";
 }
 
 std::string toJson(const PlayReport& report) {
@@ -170,6 +241,7 @@ std::string toJson(const PlayReport& report) {
                         {"warnings", report.trust->warnings},
                         {"segments", segments}};
     }
+    if (report.seen) out["seen"] = jsonOf(*report.seen);
     out["error"] = report.failure ? ordered_json(describe(*report.failure)) : ordered_json();
     out["actions"] = ordered_json::array();
     for (const ActionReport& action : report.actions)

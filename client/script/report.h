@@ -4,8 +4,10 @@
 #include "core/bridges.h"
 #include "core/colon_record.h"
 #include "core/result.h"
+#include "core/view.h"
 #include "reader/finding_list.h"
 #include "reader/flat_strip.h"
+#include "reader/seen_lists.h"
 
 #include <cstdint>
 #include <optional>
@@ -39,7 +41,28 @@ struct ActionReport {
     std::optional<WallPlace> place;
     std::optional<FlatMeasure> measure;
     std::optional<double> seenShare;  ///< of the wall
+    std::optional<MissedList> missed;
+    std::optional<SeenReport> seenReport;
     std::optional<FindingList> findings;
+};
+
+/// What has been seen, as the server told last.
+struct SeenNow {
+    double share = 0.0;
+    bool recorded = false;
+    SeenLimits limits;
+};
+
+/// A picture that the client has had on screen, for as long as it has told.
+struct LoggedPicture {
+    int viewport = 0;
+    std::uint32_t number = 0;  ///< the server's
+    glm::ivec2 size{0};
+    ViewState shown;  ///< of a flat window, in pixels of the viewport
+    int viewportWidth = 0;
+    std::string
+        optics;  ///< the preset's name; empty: the first one's, or optics of the script's own
+    std::int64_t ms = 0;
 };
 
 struct PlayReport {
@@ -48,6 +71,7 @@ struct PlayReport {
     std::vector<Bridge> bridges;      ///< of the path, where no wall is seen
     std::optional<ColonTrust> trust;  ///< as the case tells it
     std::vector<ActionReport> actions;
+    std::optional<SeenNow> seen;  ///< at the end, of a server that keeps a ledger
     std::optional<Error> failure;
 };
 
@@ -57,6 +81,8 @@ std::string toJson(const PlayReport& report);
 std::string toJson(const WallPlace& place);
 std::string toJson(const FlatMeasure& measure);
 std::string toJson(const FindingList& findings);
-std::string seenShareJson(double share);
+std::string seenShareJson(double share, const std::optional<SeenNow>& now);
+/// The ledger as the server told it, and the client's own log of what led to it.
+std::string toJson(const LedgerFlags& ledger, const std::vector<LoggedPicture>& log);
 
 }  // namespace haustra::reader

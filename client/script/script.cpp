@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double maxArcMm = 1e5;
+constexpr double maxArcMm = 1e5, maxHoldMs = 60'000.0;
 
 ViewAction readView(Fields& in) {
     ViewAction action;
@@ -64,6 +64,7 @@ FlyAction readFly(Fields& in) {
     if (in.has("positions")) action.positions = in.integer("positions", 2, 100'000);
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("pipelined")) action.pipelined = in.flag("pipelined");
+    if (in.has("hold_ms")) action.holdMs = in.number("hold_ms", 0.0, maxHoldMs);
     return action;
 }
 
@@ -71,6 +72,7 @@ StillAction readStill(Fields& in) {
     StillAction action;
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("png")) action.png = in.fileName("png", ".png");
+    if (in.has("hold_ms")) action.holdMs = in.number("hold_ms", 0.0, maxHoldMs);
     return action;
 }
 
@@ -115,6 +117,7 @@ FlatAction readFlat(Fields& in) {
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
     if (in.has("png")) action.png = in.fileName("png", ".png");
+    if (in.has("hold_ms")) action.holdMs = in.number("hold_ms", 0.0, maxHoldMs);
     return action;
 }
 
@@ -155,6 +158,7 @@ StripAction readStrip(Fields& in) {
     if (in.has("viewport")) action.viewport = in.viewport();
     if (in.has("size")) action.size = in.size("size");
     if (in.has("png")) action.png = in.fileName("png", ".png");
+    if (in.has("hold_ms")) action.holdMs = in.number("hold_ms", 0.0, maxHoldMs);
     return action;
 }
 
@@ -172,6 +176,7 @@ FlyOverAction readFlyOver(Fields& in) {
     if (in.has("endoscopic")) action.endoscopic = in.flag("endoscopic");
     if (action.endoscopic && action.viewport == 0)
         Fields::refuse("viewport", "0 shows the endoscopic view");
+    if (in.has("hold_ms")) action.holdMs = in.number("hold_ms", 0.0, maxHoldMs);
     return action;
 }
 
@@ -207,6 +212,45 @@ PaintAction readPaint(Fields& in) {
 SeenAction readSeen(Fields& in) {
     SeenAction action;
     if (in.has("forget")) action.forget = in.flag("forget");
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+SeenLimitsAction readSeenLimits(Fields& in) {
+    SeenLimitsAction action;
+    if (in.has("pixels_per_mm"))
+        action.limits.pixelsPerMm =
+            in.number("pixels_per_mm", leastSeenPixelsPerMm, mostSeenPixelsPerMm);
+    if (in.has("least_ms")) action.limits.leastMs = in.integer("least_ms", 0, mostSeenMs);
+    return action;
+}
+
+// Of which patches.
+double readLeastMm2(Fields& in) {
+    return in.has("least_mm2")
+               ? in.number("least_mm2", protocol::leastListedMm2, protocol::mostListedMm2)
+               : leastMissedMm2;
+}
+
+MissedAction readMissed(Fields& in) {
+    MissedAction action{readLeastMm2(in), {}};
+    if (in.has("json")) action.json = in.fileName("json", ".json");
+    return action;
+}
+
+NextMissedAction readNextMissed(Fields& in) {
+    NextMissedAction action;
+    if (in.has("step")) action.step = in.integer("step", -1, 1);
+    if (action.step == 0) Fields::refuse("step", "must be 1 or -1");
+    return action;
+}
+
+LedgerAction readLedger(Fields& in) {
+    return {in.fileName("json", ".json")};
+}
+
+SeenReportAction readSeenReport(Fields& in) {
+    SeenReportAction action{readLeastMm2(in), {}};
     if (in.has("json")) action.json = in.fileName("json", ".json");
     return action;
 }
@@ -303,6 +347,11 @@ constexpr ActionKind actionKinds[] = {
     {"measure", bodyBy<readMeasure>},
     {"paint", bodyBy<readPaint>},
     {"seen", bodyBy<readSeen>},
+    {"seen-limits", bodyBy<readSeenLimits>},
+    {"missed", bodyBy<readMissed>},
+    {"next-missed", bodyBy<readNextMissed>},
+    {"ledger", bodyBy<readLedger>},
+    {"seen-report", bodyBy<readSeenReport>},
     {"detection", bodyBy<readDetection>},
     {"findings", bodyBy<readFindings>},
     {"finding", bodyBy<readFinding>},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/detection_choice.h"
+#include "core/seen_limits.h"
 #include "reader/case_info.h"
 #include "reader/lens_view.h"
 
@@ -29,10 +30,12 @@ struct FlyAction {
     int positions = 200;
     int viewport = 0;
     bool pipelined = false;
+    double holdMs = 0.0;  ///< each picture stays on screen for so long
 };
 struct StillAction {
     int viewport = 0;
-    std::string png;  ///< may be empty: only wait for the picture
+    std::string png;      ///< may be empty: only wait for the picture
+    double holdMs = 0.0;  ///< as of FlyAction
 };
 struct LensAction {
     std::optional<glm::dvec2> at;          ///< heights of the picture from its middle
@@ -57,6 +60,7 @@ struct FlatAction {
     int viewport = int(View::flattenedZoom);
     std::optional<glm::ivec2> size;
     std::string png;
+    double holdMs = 0.0;  ///< as of FlyAction
 };
 struct ObliqueAction {
     std::optional<glm::dvec3> positionMm;   ///< default: where the camera is
@@ -80,6 +84,7 @@ struct StripAction {
     int viewport = int(View::flattened);
     std::optional<glm::ivec2> size;
     std::string png;
+    double holdMs = 0.0;  ///< as of FlyAction
 };
 struct FlyOverAction {
     std::optional<double> from, to;  ///< circumferences; default: the whole strip
@@ -88,6 +93,7 @@ struct FlyOverAction {
     int viewport = int(View::flattenedZoom);
     bool pipelined = false;
     bool endoscopic = false;  ///< the endoscopic view follows, in viewport 0
+    double holdMs = 0.0;      ///< as of FlyAction
 };
 struct LocateAction {
     std::optional<glm::dvec2> flat;
@@ -123,6 +129,23 @@ struct SeenAction {
     bool forget = false;
     std::string json;
 };
+struct SeenLimitsAction {
+    SeenLimits limits;
+};
+struct MissedAction {
+    double leastMm2 = leastMissedMm2;
+    std::string json;
+};
+struct NextMissedAction {
+    int step = 1;  ///< −1: the one before
+};
+struct LedgerAction {
+    std::string json;
+};
+struct SeenReportAction {
+    double leastMm2 = leastMissedMm2;
+    std::string json;
+};
 struct BookmarkAction {
     std::string note;
     int count = 1;  ///< added one after the other, each acknowledged before the next
@@ -134,11 +157,13 @@ struct WaitAction {
     double ms = 0.0;
 };
 
-using ActionBody = std::variant<ViewAction, GoAction, FlyAction, StillAction, LensAction,
-                                SliceAction, ObliqueAction, OverviewAction, FlatAction, StripAction,
-                                FlyOverAction, LocateAction, MeasureAction, PaintAction, SeenAction,
-                                DetectionAction, FindingsAction, FindingAction, WindowAction,
-                                TransferAction, BookmarkAction, BookmarksAction, WaitAction>;
+using ActionBody =
+    std::variant<ViewAction, GoAction, FlyAction, StillAction, LensAction, SliceAction,
+                 ObliqueAction, OverviewAction, FlatAction, StripAction, FlyOverAction,
+                 LocateAction, MeasureAction, PaintAction, SeenAction, SeenLimitsAction,
+                 MissedAction, NextMissedAction, LedgerAction, SeenReportAction, DetectionAction,
+                 FindingsAction, FindingAction, WindowAction, TransferAction, BookmarkAction,
+                 BookmarksAction, WaitAction>;
 
 struct Action {
     int line = 0;

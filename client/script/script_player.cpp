@@ -5,7 +5,9 @@
 #include "protocol/limits.h"
 #include "reader/biopsy_lens.h"
 #include "reader/findings_reading.h"
+#include "reader/missed_reading.h"
 #include "reader/overview_map.h"
+#include "reader/seen_lists_json.h"
 #include "reader/strip_tour.h"
 #include "tiles/png_file.h"
 
@@ -44,10 +46,16 @@ void count(ActionReport& report, const Arrival& arrival, Clock::time_point asked
 class Player {
 public:
     Player(Session& session, const PlayOptions& options)
-        : session_(session), options_(options), flight_({}) {}
+        : session_(session), options_(options), flight_({}) {
+        session_.setLogsShown(true);
+    }
 
     /// Waits until the case is open; where none was named, opens the only one.
     Status awaitCase();
+    /// As the server told last; none of one that keeps no ledger.
+    std::optional<SeenNow> seenNow() const;
+    /// Waits until all that has been on screen so far is kept, where it is.
+    Status settleShown();
     Status play(const Action& action, ActionReport& report) {
         return std::visit([&](const auto& body) { return run(body, report); }, action.body);
     }
@@ -62,6 +70,7 @@ private:
     struct Course {
         int positions = 0, viewport = 0;
         bool pipelined = false;
+        double holdMs = 0.0;
         /// To so much of the way, 0…1; returns the sequence that the picture will reach.
         std::function<std::uint64_t(double)> goTo;
     };
@@ -81,6 +90,11 @@ private:
     Status run(const MeasureAction&, ActionReport&);
     Status run(const PaintAction&, ActionReport&);
     Status run(const SeenAction&, ActionReport&);
+    Status run(const SeenLimitsAction&, ActionReport&);
+    Status run(const MissedAction&, ActionReport&);
+    Status run(const NextMissedAction&, ActionReport&);
+    Status run(const LedgerAction&, ActionReport&);
+    Status run(const SeenReportAction&, ActionReport&);
     Status run(const DetectionAction&, ActionReport&);
     Status run(const FindingsAction&, ActionReport&);
     Status run(const FindingAction&, ActionReport&);
@@ -112,6 +126,10 @@ private:
     Result<Arrival> awaitPicture(int viewport, std::uint64_t sequence, bool exact);
     Result<Session::WallAnswer> awaitWallAnswer(std::uint64_t request, ActionReport& report);
     Status awaitBookmarkList();
+    static tl::unexpected<Error> noLedger();
+    Status hold(double ms);
+    void show(const Arrival& arrival);
+    void log(const std::vector<ShownTime>& told);
     Status awaitThat(const std::function<bool()>& done, const std::string& what);
     Status writeJson(const std::string& file, const std::string& text, ActionReport& report);
 
@@ -120,6 +138,16 @@ private:
     Flight flight_;
     std::map<int, OpenViewport> viewports_;
     std::deque<Arrival> arrivals_;
+    MissedReading missed_{session_};
+    struct Asked {
+        ViewState state;
+        std::string optics;
+        int width;
+    };
+    std::map<int, std::map<std::uint64_t, Asked>> asked_;  // by viewport and sequence
+    std::map<int, std::string> optics_;                    // presets that were chosen, by viewport
+    std::vector<LoggedPicture> log_;                       // of the wall's views
+    std::map<std::uint32_t, std::size_t> logged_;          // over this link: number to log_
     std::map<int, int> passedOver_;  // pictures that came while another viewport's was awaited
 };
 
@@ -179,8 +207,10 @@ Status Player::awaitCase() {
 Result<Arrival> Player::awaitPicture(int viewport, std::uint64_t sequence, bool exact) {
     Result<Arrival> found = fail(ErrorKind::noResult, "");
     const auto look = [&] {
-        for (Arrival& arrival : session_.takePictures())
+        for (Arrival& arrival : session_.takePictures()) {
+            show(arrival);
             arrivals_.push_back(std::move(arrival));
+        }
         while (!found && !arrivals_.empty()) {
             const tiles::Picture& picture = arrivals_.front().picture;
             if (picture.viewport == viewport && picture.sequence >= sequence &&
@@ -195,6 +225,51 @@ Result<Arrival> Player::awaitPicture(int viewport, std::uint64_t sequence, bool 
     const std::string what = exact ? "the exact picture" : "the picture";
     TRY(awaitThat(look, what + " of viewport " + std::to_string(viewport)));
     return found;
+}
+
+// What has come is on the screen of whoever plays.
+void Player::show(const Arrival& arrival) {
+    const tiles::Picture& picture = arrival.picture;
+    session_.onScreen(picture);
+    const auto asked = asked_.find(picture.viewport);
+    if (asked == asked_.end()) return;
+    const auto after = asked->second.upper_bound(picture.sequence);
+    if (after == asked->second.begin()) return;
+    const Asked& last = std::prev(after)->second;
+    // Over another link the server counts anew.
+    if (!logged_.empty() && picture.number < logged_.rbegin()->first) logged_.clear();
+    logged_[picture.number] = log_.size();
+    log_.push_back({picture.viewport,
+                    picture.number,
+                    {picture.width, picture.height},
+                    last.state,
+                    last.width,
+                    last.optics,
+                    0});
+}
+
+void Player::log(const std::vector<ShownTime>& told) {
+    for (const ShownTime& time : told)
+        if (const auto known = logged_.find(time.picture); known != logged_.end())
+            log_[known->second].ms += time.ms;
+}
+
+// With what is on screen; what comes meanwhile is, too.
+Status Player::hold(double ms) {
+    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                          std::chrono::duration<double, std::milli>(ms));
+    while (Clock::now() < until) {
+        session_.poll(
+            std::min(std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
+                         std::chrono::milliseconds(1),
+                     std::chrono::milliseconds(100)));
+        for (Arrival& arrival : session_.takePictures()) {
+            show(arrival);
+            arrivals_.push_back(std::move(arrival));
+        }
+        if (session_.phase() == Phase::failed) return tl::make_unexpected(session_.failure());
+    }
+    return {};
 }
 
 Status Player::awaitStill(int viewport, std::uint64_t sequence, Clock::time_point askedAt,
@@ -252,7 +327,10 @@ Player::OpenViewport& Player::open(int viewport, View view, std::optional<glm::i
 std::uint64_t Player::ask(int id, bool moving) {
     OpenViewport& viewport = viewports_.at(id);
     if (viewport.view == View::endoscopic) viewport.state = flight_.camera();
-    return session_.look(id, viewport.state, moving);
+    const auto sequence = session_.look(id, viewport.state, moving);
+    if (viewport.view == View::endoscopic || isFlat(viewport.view))
+        asked_[id][sequence] = {viewport.state, optics_[id], viewport.width};
+    return sequence;
 }
 
 Status Player::still(int viewport, const std::string& png, ActionReport& report) {
@@ -294,7 +372,8 @@ Status Player::run(const GoAction& action, ActionReport&) {
 
 Status Player::run(const StillAction& action, ActionReport& report) {
     TRY(mustBeOpen(action.viewport));
-    return still(action.viewport, action.png, report);
+    TRY(still(action.viewport, action.png, report));
+    return hold(action.holdMs);
 }
 
 // The exact picture of viewport 0, and over it what the lens shows there.
@@ -354,7 +433,15 @@ Status Player::run(const WindowAction& action, ActionReport&) {
 
 Status Player::run(const TransferAction& action, ActionReport&) {
     TRY(mustBeOpen(action.viewport));
-    session_.setTransferFunction(action.viewport, action.optics);
+    const auto sequence = session_.setTransferFunction(action.viewport, action.optics);
+    const auto* preset = std::get_if<std::string>(&action.optics);
+    optics_[action.viewport] = preset ? *preset : "";
+    // The picture that is there is drawn anew.
+    if (auto& asked = asked_[action.viewport]; !asked.empty()) {
+        Asked last = asked.rbegin()->second;
+        last.optics = optics_[action.viewport];
+        asked[sequence] = last;
+    }
     return awaitBookmarkList();
 }
 
@@ -408,16 +495,7 @@ Status Player::writeJson(const std::string& file, const std::string& text, Actio
 }
 
 Status Player::run(const WaitAction& action, ActionReport&) {
-    const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                          std::chrono::duration<double, std::milli>(action.ms));
-    while (Clock::now() < until) {
-        session_.poll(
-            std::min(std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
-                         std::chrono::milliseconds(1),
-                     std::chrono::milliseconds(100)));
-        if (session_.phase() == Phase::failed) return tl::make_unexpected(session_.failure());
-    }
-    return {};
+    return hold(action.ms);
 }
 
 // ---- flights --------------------------------------------------------------------------------
@@ -432,7 +510,7 @@ Status Player::run(const FlyAction& action, ActionReport& report) {
     const bool antegrade = flight_.direction() == FlightDirection::antegrade;
     const double fromMm = std::min(action.fromMm.value_or(antegrade ? 0.0 : length), length);
     const double toMm = std::min(action.toMm.value_or(antegrade ? length : 0.0), length);
-    Course course{action.positions, action.viewport, action.pipelined, {}};
+    Course course{action.positions, action.viewport, action.pipelined, action.holdMs, {}};
     course.goTo = [&](double part) {
         flight_.goTo(fromMm + (toMm - fromMm) * part);
         return ask(action.viewport, true);
@@ -452,7 +530,7 @@ Status Player::run(const FlyOverAction& action, ActionReport& report) {
     const double from = std::min(action.from.value_or(0.0), strip.height);
     const double to = std::min(action.to.value_or(strip.height), strip.height);
     FlatWindow window = windowAround(from, action.pixelsPerCircumference, zoom.width);
-    Course course{action.positions, action.viewport, action.pipelined, {}};
+    Course course{action.positions, action.viewport, action.pipelined, action.holdMs, {}};
     course.goTo = [&](double part) {
         window.center.y = from + (to - from) * part;
         zoom.state = window;
@@ -483,6 +561,7 @@ Status Player::travelStepwise(const Course& course, ActionReport& report) {
         const auto sequence = course.goTo(double(n) / (course.positions - 1));
         auto arrival = TRY(awaitPicture(course.viewport, sequence, false));
         count(report, arrival, askedAt);
+        TRY(hold(course.holdMs));
     }
     return {};
 }
@@ -501,6 +580,7 @@ Status Player::travelPipelined(const Course& course, ActionReport& report) {
         const auto past = askedAt.upper_bound(arrival.picture.sequence);
         count(report, arrival, std::prev(past)->second);
         askedAt.erase(askedAt.begin(), past);
+        TRY(hold(course.holdMs));
     }
     return {};
 }
@@ -525,13 +605,15 @@ Status Player::run(const FlatAction& action, ActionReport& report) {
                                      action.pixelsPerCircumference, zoom.width);
     if (action.center) window.center = *action.center;
     zoom.state = window;
-    return still(action.viewport, action.png, report);
+    TRY(still(action.viewport, action.png, report));
+    return hold(action.holdMs);
 }
 
 Status Player::run(const StripAction& action, ActionReport& report) {
     TRY(mustBeFlattened());
     open(action.viewport, View::flattened, action.size);
-    return still(action.viewport, action.png, report);
+    TRY(still(action.viewport, action.png, report));
+    return hold(action.holdMs);
 }
 
 Result<Session::WallAnswer> Player::awaitWallAnswer(std::uint64_t request, ActionReport& report) {
@@ -578,8 +660,87 @@ Status Player::run(const SeenAction& action, ActionReport& report) {
     TRY(awaitThat([&] { return session_.answeredSeenRequest() >= request; },
                   "the share of the wall that has been seen"));
     report.seenShare = session_.seenShare();
-    return action.json.empty() ? Status{}
-                               : writeJson(action.json, seenShareJson(*report.seenShare), report);
+    return action.json.empty()
+               ? Status{}
+               : writeJson(action.json, seenShareJson(*report.seenShare, seenNow()), report);
+}
+
+std::optional<SeenNow> Player::seenNow() const {
+    if (!session_.seenShare() || !session_.seenLimits()) return std::nullopt;
+    return SeenNow{*session_.seenShare(), session_.seenIsRecorded(), *session_.seenLimits()};
+}
+
+Status Player::run(const SeenLimitsAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    const auto request = session_.setSeenLimits(action.limits);
+    TRY(awaitThat([&] { return session_.answeredSeenRequest() >= request; },
+                  "what counts as seen"));
+    if (!session_.seenLimits())
+        return fail(ErrorKind::unsupported, "this server counts by limits of its own");
+    report.seenShare = session_.seenShare();
+    return {};
+}
+
+Status Player::run(const MissedAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    const auto request = session_.requestMissed(action.leastMm2);
+    TRY(awaitThat([&] { return session_.answeredLedgerRequest() >= request; },
+                  "the list of missed patches"));
+    if (!session_.missed()) return noLedger();
+    report.missed = *session_.missed();
+    return action.json.empty() ? Status{} : writeJson(action.json, toJson(*report.missed), report);
+}
+
+// The list comes first, so that a patch that has been seen is not gone to again.
+Status Player::run(const NextMissedAction& action, ActionReport& report) {
+    TRY(run(MissedAction{}, report));
+    report.missed.reset();
+    missed_.want(action.step);
+    bool none = false;
+    const auto patch = missed_.takeWanted(none);
+    if (!patch) return fail(ErrorKind::noResult, "no patch of 300 mm2 or more is left there");
+    if (patch->view)
+        flight_.goTo(*patch->view, patch->place.arcMm);
+    else
+        flight_.lookAt(patch->place.arcMm, patch->place.positionMm);
+    report.place = patch->place;
+    return {};
+}
+
+Status Player::settleShown() {
+    const auto number = session_.tellShown();
+    return awaitThat([&] { return !session_.seenIsRecorded() || session_.keptShown() >= number; },
+                     "word that what has been seen is kept");
+}
+
+// With all that has been on screen until it is asked for, and that is on the server's disk.
+Status Player::run(const LedgerAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    TRY(settleShown());
+    const auto request = session_.requestLedger();
+    log(session_.takeTold());
+    const auto log = log_;
+    TRY(awaitThat([&] { return session_.answeredLedgerRequest() >= request; }, "the ledger"));
+    if (!session_.ledger()) return noLedger();
+    report.seenShare = session_.ledger()->share;
+    return writeJson(action.json, toJson(*session_.ledger(), log), report);
+}
+
+Status Player::run(const SeenReportAction& action, ActionReport& report) {
+    TRY(mustBeFlattened());
+    const auto request = session_.requestSeenReport(action.leastMm2);
+    TRY(awaitThat([&] { return session_.answeredLedgerRequest() >= request; },
+                  "the report of what has been seen"));
+    if (!session_.seenReport()) return noLedger();
+    report.seenReport = *session_.seenReport();
+    return action.json.empty()
+               ? Status{}
+               : writeJson(action.json, toJson(*report.seenReport, session_.caseInfo()->name),
+                           report);
+}
+
+tl::unexpected<Error> Player::noLedger() {
+    return fail(ErrorKind::unsupported, "this server keeps no ledger of what has been seen");
 }
 
 // ---- findings -------------------------------------------------------------------------------
@@ -677,6 +838,7 @@ PlayReport play(Session& session, const std::vector<Action>& actions, const Play
         report.renderer = session.server().renderer;
         report.fingerprint = session.server().fingerprint;
         report.roundTripMs = session.roundTripMs();
+        report.seen = player.seenNow();
         report.failure = std::move(failure);
         return std::move(report);
     };
@@ -698,6 +860,8 @@ PlayReport play(Session& session, const std::vector<Action>& actions, const Play
         error.place = error.place.empty() ? line : line + ": " + error.place;
         return finish(std::move(error));
     }
+    // Nothing that has been seen is lost with the link.
+    if (auto settled = player.settleShown(); !settled) return finish(settled.error());
     return finish(std::nullopt);
 }
 

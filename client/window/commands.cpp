@@ -3,6 +3,7 @@
 #include "protocol/capabilities.h"
 #include "window/findings_panel.h"
 #include "window/look_steps.h"
+#include "window/missed_panel.h"
 #include "window/pane.h"
 #include "window/reader_window.h"
 
@@ -669,6 +670,28 @@ const std::array table = {
             .text = QT_TRANSLATE_NOOP("Commands", "Nothing has been seen: begin anew"),
             .keys = "Shift+U",
             .run = [](ReaderWindow& w) { needStrip(w, [&] { w.reader().flat().forgetSeen(); }); }},
+    Command{.id = "previous-missed",
+            .menu = Menu::wall,
+            .text = QT_TRANSLATE_NOOP("Commands", "Previous missed patch of the wall"),
+            .keys = "Shift+H",
+            .run = [](ReaderWindow& w) { goToNextMissed(w.reading(), -1); }},
+    Command{.id = "next-missed",
+            .menu = Menu::wall,
+            .text = QT_TRANSLATE_NOOP("Commands", "Next missed patch of the wall"),
+            .keys = "Shift+J",
+            .run = [](ReaderWindow& w) { goToNextMissed(w.reading(), +1); }},
+    Command{.id = "missed-panel",
+            .menu = Menu::wall,
+            .text = QT_TRANSLATE_NOOP("Commands", "Show what has been seen and missed"),
+            .keys = "Ctrl+U",
+            .run = [](ReaderWindow& w) { w.toggleMissed(); },
+            .isOn = [](ReaderWindow& w) { return w.showsMissed(); },
+            .shortText = QT_TRANSLATE_NOOP("Commands", "Missed")},
+    Command{.id = "seen-report",
+            .menu = Menu::wall,
+            .text = QT_TRANSLATE_NOOP("Commands", "Save a report of what has been seen…"),
+            .keys = "Ctrl+Shift+U",
+            .run = [](ReaderWindow& w) { w.saveSeenReport(); }},
     Command{.id = "overview-body",
             .menu = Menu::wall,
             .text = QT_TRANSLATE_NOOP("Commands", "Overview: with the body"),

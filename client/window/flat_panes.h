@@ -6,6 +6,14 @@
 
 namespace haustra::window {
 
+/// A flattened view stands beside the endoscopic one in most layouts, and the eye is on one of
+/// them: on this where the mouse or the keys' pointer is in it and nothing flies, or where the
+/// endoscopic one is out of sight.
+inline bool isFlatLookedAt(const reader::Reader& reader, bool pointedAt) {
+    return reader.panes().size(View::endoscopic) == glm::ivec2(0) ||
+           (pointedAt && reader.motion() == reader::Motion::paused);
+}
+
 /// The whole strip in columns. A click goes to that place of the wall, a drag looks it over.
 class StripPane : public Pane {
     Q_OBJECT
@@ -14,6 +22,7 @@ public:
     QSize sizeHint() const override { return {260, 600}; }
 
 protected:
+    bool isLookedAt() const override { return isFlatLookedAt(reader(), pointedAt().has_value()); }
     QPointF dragFrom() const override;
     void paintMarks(QPainter& painter) override;
     void addShown(Shown& shown) const override;
@@ -36,6 +45,10 @@ public:
     void fillMenu(QMenu& menu) override;
 
 protected:
+    bool isLookedAt() const override {
+        return reader().flat().tour().flyingOver() ||
+               isFlatLookedAt(reader(), pointedAt().has_value());
+    }
     void paintPicture(QPainter& painter, const QImage& picture) override;
     void paintMarks(QPainter& painter) override;
     void addShown(Shown& shown) const override;

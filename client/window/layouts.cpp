@@ -78,7 +78,7 @@ void Layouts::arrange(BuiltinLayout layout, bool flat) {
             split(d.overview, d.oblique, Qt::Vertical);
             split(d.oblique, d.bookmarks, Qt::Vertical);
             for (QDockWidget* dock : d.all())
-                dock->setVisible(dock != d.optics && dock != d.findings &&
+                dock->setVisible(dock != d.optics && dock != d.findings && dock != d.missed &&
                                  (flat || !d.isFlat(dock)));
             main_.resizeDocks({d.axial, d.endoscopic, d.strip, d.overview},
                               {wide * 20 / 100, wide * 41 / 100, wide * 20 / 100, wide * 19 / 100},
@@ -134,14 +134,16 @@ void Layouts::arrange(BuiltinLayout layout, bool flat) {
             fillSecond();
             break;
     }
-    placeFindings();
+    placeLists();
 }
 
-// A tab beside the bookmarks once it is shown.
-void Layouts::placeFindings() {
+// Tabs beside the bookmarks once they are shown.
+void Layouts::placeLists() {
     QMainWindow& window = docks_.bookmarks->parentWidget() == &second_ ? second_ : main_;
-    window.tabifyDockWidget(docks_.bookmarks, docks_.findings);
-    docks_.findings->hide();
+    for (QDockWidget* list : {docks_.findings, docks_.missed}) {
+        window.tabifyDockWidget(docks_.bookmarks, list);
+        list->hide();
+    }
 }
 
 void Layouts::fillSecond() {

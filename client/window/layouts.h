@@ -21,10 +21,10 @@ enum class BuiltinLayout {
 struct Docks {
     QDockWidget *endoscopic = nullptr, *axial = nullptr, *coronal = nullptr, *sagittal = nullptr,
                 *strip = nullptr, *zoom = nullptr, *overview = nullptr, *oblique = nullptr,
-                *bookmarks = nullptr, *findings = nullptr, *optics = nullptr;
-    std::array<QDockWidget*, 11> all() const {
-        return {endoscopic, axial,   coronal,   sagittal, strip, zoom,
-                overview,   oblique, bookmarks, findings, optics};
+                *bookmarks = nullptr, *findings = nullptr, *missed = nullptr, *optics = nullptr;
+    std::array<QDockWidget*, 12> all() const {
+        return {endoscopic, axial,   coronal,   sagittal, strip,  zoom,
+                overview,   oblique, bookmarks, findings, missed, optics};
     }
     bool isFlat(const QDockWidget* dock) const { return dock == strip || dock == zoom; }
 };
@@ -56,7 +56,7 @@ private:
     void floatOptics();
     void showFlat(bool flat);
     void fillSecond();
-    void placeFindings();
+    void placeLists();
 
     QMainWindow &main_, &second_;
     Docks docks_;

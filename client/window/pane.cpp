@@ -8,6 +8,7 @@
 #include <QDrag>
 #include <QMimeData>
 #include <QMouseEvent>
+#include <QWindow>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -85,6 +86,7 @@ QPointF Pane::positionOf(glm::dvec2 pixel) const {
 // ---- painting -----------------------------------------------------------------------------------
 
 void Pane::look() {
+    tellOnScreen();
     if (!isVisible()) return;
     if (!sizeDue_.isActive()) tellSize();  // what lies over it may have gone
     Shown shown;
@@ -98,6 +100,16 @@ void Pane::look() {
     shown_ = std::move(shown);
     setAccessibleDescription(isOpen() ? inWords() : QString());
     update();
+}
+
+// The picture that was painted last, where the window's system shows it.
+void Pane::tellOnScreen() {
+    const QWindow* around = window()->windowHandle();
+    if (!isVisible() || visibleRegion().isEmpty() || !around || !around->isExposed() ||
+        !isLookedAt())
+        reader().session().offScreen(int(view_));
+    else if (paintedCount_ > 0 && paintedCount_ == reader().panes().pictureCount(view_))
+        reader().session().onScreen(reader().panes().picture(view_));
 }
 
 void Pane::paintPicture(QPainter& painter, const QImage& picture) {
@@ -137,6 +149,8 @@ void Pane::paintAll(QPainter& painter) {
 void Pane::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     paintAll(painter);
+    paintedCount_ = isOpen() ? reader().panes().pictureCount(view_) : 0;
+    tellOnScreen();
     paintKeyPointer(painter);
     painter.setRenderHint(QPainter::Antialiasing, false);
     painter.setBrush(Qt::NoBrush);
@@ -224,6 +238,7 @@ void Pane::showEvent(QShowEvent*) {
     tellSizeSoon();
 }
 void Pane::hideEvent(QHideEvent*) {
+    reader().session().offScreen(int(view_));
     held_ = Qt::NoButton;
     setKeyPointer(false);
     tellSizeSoon();

@@ -97,6 +97,10 @@ protected:
     glm::dvec2 pixelAt(QPointF position) const;
     QPointF positionOf(glm::dvec2 pixel) const;
 
+    /// Whether its picture, while it is on screen, is what the reader looks at: else nothing in it
+    /// counts as seen.
+    virtual bool isLookedAt() const { return true; }
+
     /// The dock says what the pane shows; a picture that leaves the window says it itself.
     bool namesItself() const { return namesItself_; }
     /// What is drawn over the picture, and all that it depends on besides the picture.
@@ -144,6 +148,7 @@ protected:
 
 private:
     void look();
+    void tellOnScreen();
     void tellSize();
     void paintAll(QPainter& painter);
     void paintKeyPointer(QPainter& painter);
@@ -158,6 +163,7 @@ private:
     QString title_;
     glm::ivec2 toldSize_{0};
     Shown shown_;
+    std::uint64_t paintedCount_ = 0;  // of the view's pictures, when it was painted last
     QPointF pressedAt_, lastAt_;
     std::optional<QPointF> keyPointer_;
     bool keyDraws_ = false;

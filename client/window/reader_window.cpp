@@ -1,6 +1,7 @@
 #include "window/reader_window.h"
 
 #include "core/raycasters.h"
+#include "protocol/capabilities.h"
 #include "window/accessible_panes.h"
 #include "window/bookmark_panel.h"
 #include "window/case_list.h"
@@ -11,6 +12,7 @@
 #include "window/help_pages.h"
 #include "window/language.h"
 #include "window/look_steps.h"
+#include "window/missed_panel.h"
 #include "window/notices.h"
 #include "window/optics_panel.h"
 #include "window/overview_pane.h"
@@ -183,6 +185,8 @@ Docks ReaderWindow::makeDocks() {
     });
     docks.bookmarks = dock(bookmarks_, "bookmarks", tr("Bookmarks"));
     docks.findings = dock(new FindingsPanel(reading_), "findings", tr("Findings"));
+    missed_ = new MissedPanel(reading_);
+    docks.missed = dock(missed_, "missed", tr("Seen and missed"));
     docks.optics = dock(new OpticsPanel(reading_), "optics", tr("Colours, opacities and light"));
     return docks;
 }
@@ -277,6 +281,7 @@ void ReaderWindow::makeHeader() {
         row->addSpacing(8);
     }
     row->addStretch(1);
+    button("missed-panel", Qt::ToolButtonTextOnly);
     button("findings-panel", Qt::ToolButtonTextOnly);
     button("bookmarks-panel", Qt::ToolButtonTextOnly);
     button("help", Qt::ToolButtonTextOnly);
@@ -580,7 +585,18 @@ bool ReaderWindow::showsBookmarks() const {
 
 // Beside the list of bookmarks, as its tab, until the reader moves it.
 void ReaderWindow::toggleFindings() {
-    QDockWidget* dock = docks_.findings;
+    toggleList(docks_.findings);
+}
+void ReaderWindow::toggleMissed() {
+    toggleList(docks_.missed);
+}
+bool ReaderWindow::showsMissed() const {
+    return docks_.missed->isVisible();
+}
+void ReaderWindow::saveSeenReport() {
+    missed_->saveReport();
+}
+void ReaderWindow::toggleList(QDockWidget* dock) {
     if (dock->isVisible() && !dock->visibleRegion().isEmpty()) return dock->hide();
     dock->show();
     dock->raise();
@@ -673,7 +689,10 @@ void ReaderWindow::look() {
     QStringList figures;
     const std::optional<double> seen = session.seenShare();
     if (info.flat)
-        figures += seen ? tr("wall seen %1 %").arg(decimal(100.0 * *seen)) : tr("wall seen –");
+        figures += !seen ? tr("wall seen –")
+                   : session.serverCan(protocol::capability::ledger) && !session.seenIsRecorded()
+                       ? tr("wall seen %1 %, not kept").arg(decimal(100.0 * *seen))
+                       : tr("wall seen %1 %").arg(decimal(100.0 * *seen));
     const tiles::Picture& shown = reader().panes().picture(View::endoscopic);
     const std::string raycaster = raycasterName(shown.raycaster);
     if (!raycaster.empty())

@@ -20,6 +20,7 @@ namespace haustra::window {
 
 class BookmarkPanel;
 class CaseList;
+class MissedPanel;
 class Notices;
 class Pane;
 
@@ -62,6 +63,9 @@ public:
     bool showsBookmarks() const;
     void toggleFindings();
     bool showsFindings() const;
+    void toggleMissed();
+    bool showsMissed() const;
+    void saveSeenReport();
     void showHelp();
     void changeKeys();
     void showAbout();
@@ -88,12 +92,14 @@ private:
     void look();
     void keepLayout();
     bool handleHeldKeys(QEvent* event);
+    void toggleList(QDockWidget* dock);
 
     Reading& reading_;
     QMainWindow second_;
     CommandSet commands_;
     std::vector<Pane*> panes_;
     BookmarkPanel* bookmarks_ = nullptr;
+    MissedPanel* missed_ = nullptr;
     Docks docks_;
     Layouts layouts_;
     CaseList* cases_ = nullptr;

@@ -1,5 +1,7 @@
 #include "window/reading.h"
 
+#include "protocol/capabilities.h"
+
 #include <QLocale>
 #include <QLoggingCategory>
 #include <QTextDocument>
@@ -103,11 +105,12 @@ void Reading::connectAgain() {
 }
 
 Reading::~Reading() {
-    // Bookmarks on their way are waited for, but not for long.
+    // Bookmarks on their way, and what has been seen last, are waited for, but not for long.
     reader::Session& session = reader_->session();
     const auto deadline = Clock::now() + std::chrono::seconds(2);
-    while (session.owedBookmarks() > 0 && session.phase() == reader::Phase::open &&
-           Clock::now() < deadline)
+    session.tellShown();
+    while ((session.owedBookmarks() > 0 || session.owesShown()) &&
+           session.phase() == reader::Phase::open && Clock::now() < deadline)
         session.poll(milliseconds(50));
     // Its thread wakes the timers: it ends before they do.
     reader_.reset();
@@ -155,8 +158,10 @@ void Reading::watchSession() {
         emit caseOpened();
     }
     if (session.phase() != phase_) {
+        const bool kept =
+            !options_.reader.empty() && session.serverCan(protocol::capability::ledger);
         if (phase_ == reader::Phase::lost && session.phase() != reader::Phase::failed && case_ &&
-            case_->flat)
+            case_->flat && !kept)
             tell(tr("The server counts what has been seen of the wall anew with this link."), true);
         phase_ = session.phase();
         if (phase_ == reader::Phase::lost)

@@ -123,7 +123,7 @@ using ViewState = std::variant<Camera, SliceView, ObliqueView, Overview, FlatWin
 /// What colours the wall, in all views that show it.
 struct WallPaintChoice {
     bool marks = false;         ///< discs around the places that bookmarks mean, whoever added them
-    bool unseen = false;        ///< what no endoscopic picture of the session has shown
+    bool unseen = false;        ///< what the reader has not seen
     double markRadiusMm = 5.0;  ///< minMarkRadiusMm…maxMarkRadiusMm
     bool any() const { return marks || unseen; }
     bool operator==(const WallPaintChoice&) const = default;

@@ -114,7 +114,8 @@ struct Server::Impl {
     std::unique_ptr<session::CaseLoader> loader;  // after the renderer, which it uses
     std::unique_ptr<session::EncoderThreads> encoders;
     std::unique_ptr<session::QuestionThread> questions;
-    std::unique_ptr<session::PaintThread> painting;
+    std::unique_ptr<session::PaintThread> painting;  // after the records, which it writes to
+    std::optional<session::SeenLedgers> ledgers;
     session::News<session::BookmarkNews> bookmarks;
     session::News<std::shared_ptr<const session::OpenCase>> lostCases;
     session::OpenCounts readers;
@@ -149,7 +150,9 @@ Result<void> Server::Impl::start() {
                                                : identityIn(options.store / "tls"));
     TRY(configureTls(tls, identity));
     fingerprint = certificateFingerprint(tls);
-    auto kept = TRY(records::BookmarkStore::open(options.store / "records.sqlite3"));
+    const auto recordsFile = options.store / "records.sqlite3";
+    auto kept = TRY(records::BookmarkStore::open(recordsFile));
+    auto seen = TRY(records::SeenStore::open(recordsFile));
     TRY(readPresets());
     auto rendering = TRY(session::RenderThread::start(options.drawing, [this](auto of) {
         asio::post(io, [this, of = std::move(of)] { lostCases.tell(of); });
@@ -158,13 +161,15 @@ Result<void> Server::Impl::start() {
     TRY(listen(acceptor, options.listen));
 
     loader = std::make_unique<session::CaseLoader>(cases, *rendering);
-    records = std::make_unique<session::RecordsThread>(std::move(kept), std::move(cases));
+    records = std::make_unique<session::RecordsThread>(std::move(kept), std::move(seen),
+                                                       std::move(cases));
     renderer = std::move(rendering);
     encoders = std::move(encoding);
     questions = std::make_unique<session::QuestionThread>();
     painting = std::make_unique<session::PaintThread>();
+    ledgers.emplace(io.get_executor(), *painting, *records);
     services.emplace(session::Services{*renderer, *loader, *encoders, *records, *questions,
-                                       *painting, bookmarks, lostCases, readers, presets,
+                                       *painting, *ledgers, bookmarks, lostCases, readers, presets,
                                        options.software});
     signals.add(SIGTERM);
     signals.add(SIGINT);

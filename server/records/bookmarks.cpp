@@ -11,8 +11,6 @@ namespace {
 
 // AUTOINCREMENT: an id is never given twice, even after its row has gone.
 constexpr char schema[] = R"(
-    PRAGMA journal_mode = WAL;
-    PRAGMA synchronous = FULL;
     CREATE TABLE IF NOT EXISTS scan_bookmarks(
         id INTEGER PRIMARY KEY AUTOINCREMENT,
         case_name TEXT NOT NULL,
@@ -46,14 +44,6 @@ constexpr char columns[] =
 
 constexpr char caseForScan[] = "case:";  // as `upgrade` has it
 
-constexpr int busyMs = 5000;  // another process commits
-
-Result<void> run(sqlite3* database, const char* sql, const char* doing) {
-    if (sqlite3_exec(database, sql, nullptr, nullptr, nullptr) != SQLITE_OK)
-        return failedSql(database, doing);
-    return {};
-}
-
 std::size_t listBytes(const NewBookmark& bookmark) {
     return bookmark.note.size() + bookmark.clientKey.size() + protocol::bookmarkOverheadBytes;
 }
@@ -75,12 +65,8 @@ Bookmark bookmarkAt(const Statement& row) {
 
 }  // namespace
 
-void BookmarkStore::Close::operator()(sqlite3* database) const {
-    sqlite3_close_v2(database);
-}
-
-BookmarkStore::BookmarkStore(std::unique_ptr<sqlite3, Close> database, Statement insert,
-                             Statement find, Statement select, Statement adopt)
+BookmarkStore::BookmarkStore(Database database, Statement insert, Statement find, Statement select,
+                             Statement adopt)
     : database_(std::move(database)),
       insert_(std::move(insert)),
       find_(std::move(find)),
@@ -88,14 +74,8 @@ BookmarkStore::BookmarkStore(std::unique_ptr<sqlite3, Close> database, Statement
       adopt_(std::move(adopt)) {}
 
 Result<BookmarkStore> BookmarkStore::open(const std::filesystem::path& file) {
-    sqlite3* opened = nullptr;
-    const int code =
-        sqlite3_open_v2(file.c_str(), &opened,
-                        SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
-    std::unique_ptr<sqlite3, Close> database(opened);
-    if (code != SQLITE_OK) return failedSql(opened, "open " + file.string());
-    sqlite3_busy_timeout(opened, busyMs);
-    TRY(run(opened, schema, "prepare the records"));
+    auto database = TRY(openDatabase(file, schema));
+    sqlite3* const opened = database.get();
     auto former =
         TRY(Statement::prepare(opened, "SELECT 1 FROM sqlite_schema WHERE name = 'bookmarks'"));
     const auto isFormer = TRY(former.step());
@@ -185,24 +165,18 @@ Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
 
 Result<std::vector<Result<Bookmark>>> BookmarkStore::add(
     const std::vector<NewBookmark>& bookmarks) {
-    sqlite3* const database = database_.get();
-    // IMMEDIATE: whoever else writes is waited for here, not found out half way.
-    TRY(run(database, "BEGIN IMMEDIATE", "write the records"));
     const auto bytesBefore = scanBytes_;
-    const auto giveUp = [&](const Error& error) {
-        sqlite3_exec(database, "ROLLBACK", nullptr, nullptr, nullptr);
-        scanBytes_ = bytesBefore;
-        return tl::make_unexpected(error);
-    };
-    std::vector<Result<Bookmark>> added;
-    for (const NewBookmark& bookmark : bookmarks) {
-        added.push_back(addOne(bookmark));
-        if (!added.back() && added.back().error().kind == ErrorKind::io)
-            return giveUp(added.back().error());
-    }
-    if (const auto committed = run(database, "COMMIT", "write the records"); !committed)
-        return giveUp(committed.error());
-    return added;
+    auto done = inTransaction(database_.get(), [&]() -> Result<std::vector<Result<Bookmark>>> {
+        std::vector<Result<Bookmark>> added;
+        for (const NewBookmark& bookmark : bookmarks) {
+            added.push_back(addOne(bookmark));
+            if (!added.back() && added.back().error().kind == ErrorKind::io)
+                return tl::make_unexpected(added.back().error());
+        }
+        return added;
+    });
+    if (!done) scanBytes_ = bytesBefore;
+    return done;
 }
 
 std::size_t BookmarkCounts::of(const std::string& caseName, const std::string& scan) const {

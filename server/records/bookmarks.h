@@ -2,12 +2,12 @@
 #pragma once
 
 #include "core/result.h"
+#include "records/database.h"
 #include "records/statement.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -37,9 +37,8 @@ struct BookmarkCounts {
     std::size_t of(const std::string& caseName, const std::string& scan) const;
 };
 
-/// The table of bookmarks. SQLite in WAL mode with synchronous=FULL: what add() has returned
-/// survives a crash of the process, and of the machine where its disk honours fsync. Belongs to
-/// one thread; other processes may have the same file open.
+/// The table of bookmarks. What add() has returned survives a crash (openDatabase). Belongs to one
+/// thread; other processes may have the same file open.
 ///
 /// Bookmarks belong to a scan, not to the case that it lies in: another scan under the case's name
 /// shows none of them, and the scan under another name all. Files of before this was so had cases
@@ -67,15 +66,12 @@ public:
     Result<void> adopt(const std::string& caseName, const std::string& scan);
 
 private:
-    struct Close {
-        void operator()(sqlite3* database) const;
-    };
-    explicit BookmarkStore(std::unique_ptr<sqlite3, Close> database, Statement insert,
-                           Statement find, Statement select, Statement adopt);
+    BookmarkStore(Database database, Statement insert, Statement find, Statement select,
+                  Statement adopt);
     Result<void> measure();
     Result<Bookmark> addOne(const NewBookmark& bookmark);
 
-    std::unique_ptr<sqlite3, Close> database_;  // first: outlives the statements
+    Database database_;  // first: outlives the statements
     Statement insert_, find_, list_, adopt_;
     std::map<std::string, std::size_t> scanBytes_;
     std::set<std::string> unadopted_;  // cases with bookmarks of no known scan

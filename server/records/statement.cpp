@@ -32,6 +32,10 @@ void Statement::bind(int parameter, const std::string& text) {
     sqlite3_bind_text(statement_.get(), parameter, text.data(), int(text.size()), SQLITE_TRANSIENT);
 }
 
+void Statement::bind(int parameter, std::span<const std::uint8_t> blob) {
+    sqlite3_bind_blob64(statement_.get(), parameter, blob.data(), blob.size(), SQLITE_TRANSIENT);
+}
+
 Result<bool> Statement::step() {
     const int code = sqlite3_step(statement_.get());
     if (code == SQLITE_ROW) return true;
@@ -55,6 +59,11 @@ std::string Statement::text(int column) const {
     const int bytes = sqlite3_column_bytes(statement_.get(), column);
     return text ? std::string(reinterpret_cast<const char*>(text), std::size_t(bytes))
                 : std::string();
+}
+std::span<const std::uint8_t> Statement::blob(int column) const {
+    const auto* bytes =
+        static_cast<const std::uint8_t*>(sqlite3_column_blob(statement_.get(), column));
+    return {bytes, std::size_t(sqlite3_column_bytes(statement_.get(), column))};
 }
 
 }  // namespace haustra::records

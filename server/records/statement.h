@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 struct sqlite3;
@@ -23,6 +24,7 @@ public:
     void bind(int parameter, std::int64_t value);
     void bind(int parameter, double value);
     void bind(int parameter, const std::string& text);
+    void bind(int parameter, std::span<const std::uint8_t> blob);
 
     /// True: a row is there. False: done. After either, reset() before the next use.
     Result<bool> step();
@@ -31,6 +33,8 @@ public:
     std::int64_t integer(int column) const;
     double real(int column) const;
     std::string text(int column) const;
+    /// Valid until the next step() or reset().
+    std::span<const std::uint8_t> blob(int column) const;
 
 private:
     struct Finalize {

@@ -88,6 +88,34 @@ Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
         caseName, scan, key, camera.positionMm, camera.forward, camera.up, message.arc_mm(), note};
 }
 
+Result<std::string> readerFrom(const std::string& name) {
+    if (name.empty() || name.size() > protocol::maxReaderBytes ||
+        !std::all_of(name.begin(), name.end(), isVisibleAscii))
+        return refuse("a reader's name is 1 to " + std::to_string(protocol::maxReaderBytes) +
+                          " visible ASCII characters",
+                      "reader");
+    return name;
+}
+
+Result<SeenLimits> seenLimitsFrom(const protocol::SetSeenLimits& message) {
+    SeenLimits limits;
+    if (!message.has_limits()) return limits;
+    if (message.limits().pixels_per_mm() != 0.0)
+        limits.pixelsPerMm = message.limits().pixels_per_mm();
+    if (message.limits().least_ms() > std::uint32_t(protocol::mostSeenMs))
+        return refuse("a place is looked at for 0 to 60000 ms", "seen");
+    limits.leastMs = int(message.limits().least_ms());
+    TRY(checkSeenLimits(limits));
+    return limits;
+}
+
+Result<double> leastMm2From(double message) {
+    if (message == 0.0) return leastMissedMm2;
+    if (!(message >= protocol::leastListedMm2 && message <= protocol::mostListedMm2))
+        return refuse("patches are listed from 1 to 1000000 mm2 on", "missed");
+    return message;
+}
+
 Result<CaseQuestion> questionFrom(const protocol::LocateFlat& message, const OpenCase& of) {
     const auto flat = TRY(protocol::flatPointFrom(message.flat()));
     if (!(flat.y >= 0.0 && flat.y <= of.wall->map->height))
@@ -364,6 +392,84 @@ protocol::ServerMessage findingListMessage(const OpenCase& of, const DetectionCh
                 for (const int number : {run.first.x, run.first.y, run.first.z, run.count})
                     one->add_voxels(std::uint32_t(number));
         }
+    }
+    return message;
+}
+
+// ---- what has been seen -------------------------------------------------------------------------
+
+namespace {
+
+void fill(google::protobuf::RepeatedPtrField<protocol::MissedPatch>& message,
+          const Missed& missed) {
+    for (const Missed::Patch& patch : missed.patches) {
+        protocol::MissedPatch& one = *message.Add();
+        one.set_area_mm2(patch.areaMm2);
+        fill(*one.mutable_place(), patch.place);
+        if (patch.view) protocol::fill(*one.mutable_view(), *patch.view);
+    }
+}
+
+// The lowest bit of a byte first.
+std::string bitsOf(const std::vector<std::uint8_t>& flags) {
+    std::string bits((flags.size() + 7) / 8, '\0');
+    for (std::size_t n = 0; n < flags.size(); ++n)
+        if (flags[n]) bits[n / 8] = char(static_cast<unsigned char>(bits[n / 8]) | 1u << n % 8);
+    return bits;
+}
+
+}  // namespace
+
+void fill(protocol::SeenLimits& message, const SeenLimits& limits) {
+    message.set_pixels_per_mm(limits.pixelsPerMm);
+    message.set_least_ms(std::uint32_t(limits.leastMs));
+}
+
+protocol::ServerMessage missedListMessage(const Missed& missed, double leastMm2,
+                                          std::uint64_t request) {
+    protocol::ServerMessage message;
+    protocol::MissedList& list = *message.mutable_missed_list();
+    list.set_request(request);
+    list.set_share(missed.share);
+    list.set_least_mm2(leastMm2);
+    list.set_count(std::uint32_t(missed.count));
+    list.set_area_mm2(missed.areaMm2);
+    fill(*list.mutable_patches(), missed);
+    return message;
+}
+
+protocol::ServerMessage ledgerMessage(const SeenFlags& flags, const records::LedgerKey& key,
+                                      bool recorded, std::uint64_t request) {
+    protocol::ServerMessage message;
+    protocol::Ledger& ledger = *message.mutable_ledger();
+    ledger.set_request(request);
+    ledger.set_wall(key.wall);
+    fill(*ledger.mutable_limits(), key.limits);
+    ledger.set_share(flags.share);
+    ledger.set_recorded(recorded);
+    ledger.set_triangles(std::uint32_t(flags.seen.size()));
+    ledger.set_shown(bitsOf(flags.shown));
+    ledger.set_seen(bitsOf(flags.seen));
+    return message;
+}
+
+protocol::ServerMessage seenReportMessage(const std::vector<ReaderSeen>& readers,
+                                          const std::string& wall, double leastMm2,
+                                          std::uint64_t request) {
+    protocol::ServerMessage message;
+    protocol::SeenReport& report = *message.mutable_seen_report();
+    report.set_request(request);
+    report.set_wall(wall);
+    report.set_least_mm2(leastMm2);
+    for (const ReaderSeen& reader : readers) {
+        protocol::ReaderSeen& one = *report.add_readers();
+        one.set_reader(reader.key.reader);
+        fill(*one.mutable_limits(), reader.key.limits);
+        one.set_share(reader.share);
+        one.set_changed_utc(reader.changedUtc);
+        one.set_missed(std::uint32_t(reader.missed.count));
+        one.set_missed_mm2(reader.missed.areaMm2);
+        fill(*one.mutable_patches(), reader.missed);
     }
     return message;
 }

@@ -11,6 +11,7 @@
 #include "session/case_questions.h"
 #include "session/marked_bookmark.h"
 #include "session/open_case.h"
+#include "session/seen_ledger.h"
 
 #include <cstdint>
 #include <string>
@@ -29,6 +30,13 @@ Result<Optics> opticsFrom(const protocol::SetTransferFunction& message,
 /// characters but line feed and tab; the key is 1 to protocol::maxClientKeyBytes of visible ASCII.
 Result<records::NewBookmark> bookmarkFrom(const protocol::AddBookmark& message,
                                           const std::string& caseName, const std::string& scan);
+
+/// 1 to protocol::maxReaderBytes of visible ASCII.
+Result<std::string> readerFrom(const std::string& name);
+/// What is missing is usual.
+Result<SeenLimits> seenLimitsFrom(const protocol::SetSeenLimits& message);
+/// 0 is leastMissedMm2; else protocol::leastListedMm2 to mostListedMm2.
+Result<double> leastMm2From(double message);
 
 /// Of a case that has a wall.
 Result<CaseQuestion> questionFrom(const protocol::LocateFlat& message, const OpenCase& of);
@@ -81,6 +89,15 @@ protocol::ServerMessage bookmarkAddedMessage(const MarkedBookmark& bookmark, std
 /// microseconds each.
 protocol::ServerMessage findingListMessage(const OpenCase& of, const DetectionChoice& choice,
                                            std::uint64_t request);
+
+void fill(protocol::SeenLimits& message, const SeenLimits& limits);
+protocol::ServerMessage missedListMessage(const Missed& missed, double leastMm2,
+                                          std::uint64_t request);
+protocol::ServerMessage ledgerMessage(const SeenFlags& flags, const records::LedgerKey& key,
+                                      bool recorded, std::uint64_t request);
+protocol::ServerMessage seenReportMessage(const std::vector<ReaderSeen>& readers,
+                                          const std::string& wall, double leastMm2,
+                                          std::uint64_t request);
 
 protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t request);
 

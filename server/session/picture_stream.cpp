@@ -1,6 +1,7 @@
 #include "session/picture_stream.h"
 
 #include "protocol/view_message.h"
+#include "render/optics/drawn_wall.h"
 #include "session/case_presets.h"
 #include "session/worker.h"
 
@@ -9,6 +10,26 @@
 #include <spdlog/spdlog.h>
 
 namespace haustra::session {
+namespace {
+
+/// The wall itself, which a picture of this view shows; its flat window is in pixels of a picture
+/// as large as was asked for. None of a view of something else, through a lens, or whose optics let
+/// the eye through the wall.
+std::optional<ViewState> wallOf(const AnyView& view) {
+    if (const auto* camera = std::get_if<render::CameraView>(&view))
+        return camera->beneathWallMm == 0.0 && render::drawsWall(camera->optics)
+                   ? std::optional<ViewState>(camera->camera)
+                   : std::nullopt;
+    if (const auto* flat = std::get_if<render::FlatView>(&view))
+        return render::drawsWall(flat->optics) ? std::optional<ViewState>(flat->window)
+                                               : std::nullopt;
+    if (const auto* strip = std::get_if<render::FlatOverview>(&view))
+        return render::drawsWall(strip->optics) ? std::optional<ViewState>(WholeStrip{})
+                                                : std::nullopt;
+    return std::nullopt;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<EncoderThreads>> EncoderThreads::start(int threads) {
     std::unique_ptr<EncoderThreads> self(new EncoderThreads);
@@ -37,6 +58,7 @@ void PictureStream::setCase(std::shared_ptr<const OpenCase> opened) {
     case_ = std::move(opened);
     if (case_) presets_ = withPresetOfCase(offered_, case_->scanBiopsy);
     reading_.reset();
+    ofWall_.clear();
     ++caseNumber_;
     slots_ = {};
     renderer_.withdraw(session_);
@@ -100,6 +122,32 @@ Result<DetectionChoice> PictureStream::input(const protocol::SetDetection& messa
     reading_->chooseFindings(choice);
     wallChanged(message.sequence());
     return choice;
+}
+
+Result<void> PictureStream::shown(const protocol::TellShown& message) {
+    const auto refuse = [](const char* why) { return fail(ErrorKind::badInput, why, "shown"); };
+    if (message.number() <= lastShown_) return refuse("the number does not grow");
+    if (std::size_t(message.pictures_size()) > protocol::maxShownPictures)
+        return refuse("more pictures than may be told at a time");
+    for (const protocol::ScreenTime& time : message.pictures()) {
+        if (time.picture() == 0 || time.picture() > pictures_)
+            return refuse("there has been no such picture");
+        if (time.ms() == 0 || time.ms() > std::uint32_t(protocol::mostSeenMs))
+            return refuse("a picture is on screen for 1 to 60000 ms more");
+    }
+    lastShown_ = message.number();
+    if (!reading_) return {};
+    std::vector<ShownPicture> pictures;
+    for (const protocol::ScreenTime& time : message.pictures()) {
+        const auto found = std::lower_bound(
+            ofWall_.begin(), ofWall_.end(), time.picture(),
+            [](const OfWall& known, std::uint32_t number) { return known.picture < number; });
+        if (found == ofWall_.end() || found->picture != time.picture()) continue;
+        pictures.push_back(found->shown);
+        pictures.back().microseconds = 1000 * std::int64_t(time.ms());
+    }
+    reading_->shown(std::move(pictures), message.number());
+    return {};
 }
 
 void PictureStream::wallChanged(std::uint64_t sequence) {
@@ -207,10 +255,7 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.view = slot.viewport.view(presets_);
     slot.paint = reading_ && slot.viewport.isPainted() ? reading_->paint() : nullptr;
     setPaint(job.view, slot.paint);
-    std::optional<Camera> camera;  // of a picture that shows the wall itself
-    if (const auto* endoscopic = std::get_if<render::CameraView>(&job.view);
-        endoscopic && !slot.viewport.isLens())
-        camera = endoscopic->camera;
+    const auto wall = reading_ ? wallOf(job.view) : std::nullopt;
     job.width = slot.viewport.width();
     job.height = slot.viewport.height();
     job.inputAt = slot.inputAt;
@@ -223,37 +268,49 @@ PictureJob PictureStream::makeJob(std::size_t id) {
     job.header.sequence = slot.sequence;
     job.header.viewportWidth = std::uint16_t(job.width);
     job.header.viewportHeight = std::uint16_t(job.height);
-    job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_, camera](
+    job.done = [weak = weak_from_this(), io = io_, ofCase = caseNumber_, wall](
                    const protocol::TileHeader& header, Result<Image> image) {
         postTo(io, weak,
-               [ofCase, header, camera, image = std::move(image)](PictureStream& self) mutable {
-                   self.rendered(ofCase, header, camera, std::move(image));
+               [ofCase, header, wall, image = std::move(image)](PictureStream& self) mutable {
+                   self.rendered(ofCase, header, wall, std::move(image));
                });
     };
     return job;
 }
 
 void PictureStream::rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
-                             const std::optional<Camera>& camera, Result<Image> image) {
+                             const std::optional<ViewState>& wall, Result<Image> image) {
     if (ofCase != caseNumber_ || stopped_) return;  // rendering_ speaks of a newer picture
     rendering_.reset();
     if (!image) {
         lost(slots_[header.viewport], image.error());
     } else {
-        if (reading_ && camera)
-            reading_->shown(*camera, {image->width, image->height}, !header.exact);
         EncodeJob job{std::move(*image), header, {}};
         if (encoding_)
-            held_ = Held{std::move(job), ofCase};
+            held_ = Held{std::move(job), ofCase, wall};
         else
-            encode(std::move(job), ofCase);
+            encode(std::move(job), ofCase, wall);
     }
     schedule();
 }
 
-void PictureStream::encode(EncodeJob job, std::uint64_t ofCase) {
+void PictureStream::encode(EncodeJob job, std::uint64_t ofCase,
+                           const std::optional<ViewState>& wall) {
     encoding_ = true;
     job.header.picture = ++pictures_;
+    if (wall && reading_ && ofCase == caseNumber_) {
+        ShownPicture shown{*wall, {job.image.width, job.image.height}, 0, !job.header.exact};
+        // A coarse picture shows the same in fewer pixels.
+        if (auto* window = std::get_if<FlatWindow>(&shown.shown))
+            window->pixelsPerUnit *= double(job.image.width) / job.header.viewportWidth;
+        if (tellsShown_) {
+            ofWall_.push_back({pictures_, std::move(shown)});
+            if (ofWall_.size() > protocol::maxShownPictures) ofWall_.pop_front();
+        } else if (std::holds_alternative<Camera>(shown.shown)) {
+            shown.microseconds = 1000 * protocol::mostSeenMs;
+            reading_->shown({std::move(shown)}, 0);
+        }
+    }
     job.done = [weak = weak_from_this(), io = io_, ofCase,
                 header = job.header](Result<std::vector<std::uint8_t>> frames) {
         postTo(io, weak, [ofCase, header, frames = std::move(frames)](PictureStream& self) mutable {
@@ -280,7 +337,7 @@ void PictureStream::encoded(std::uint64_t ofCase, const protocol::TileHeader& he
     if (held_) {
         Held held = std::move(*held_);
         held_.reset();
-        encode(std::move(held.job), held.ofCase);
+        encode(std::move(held.job), held.ofCase, held.wall);
     }
     schedule();
 }

@@ -58,6 +58,9 @@ public:
     void setJpeg(bool accepted) { jpeg_ = accepted; }
     /// True: moving pictures may be smaller than their viewport.
     void setCoarse(bool accepted) { coarse_ = accepted; }
+    /// True: the client tells which pictures have been on screen; else an endoscopic picture that
+    /// has been drawn has been.
+    void setTellsShown(bool tells) { tellsShown_ = tells; }
     /// From here on pictures are of this case (null: of none). Closes all viewports; pictures of
     /// the case before do not appear any more.
     void setCase(std::shared_ptr<const OpenCase> opened);
@@ -73,6 +76,11 @@ public:
     Result<void> input(const protocol::ClientMessage& message);
     Result<void> input(const protocol::SetWallPaint& message);
     Result<DetectionChoice> input(const protocol::SetDetection& message);
+
+    /// Pictures have been on screen, which the reading's ledger learns of, as far as they show the
+    /// wall and are among the newest protocol::maxShownPictures that do. Fails (badInput), and
+    /// takes nothing in, where the message is out of bounds.
+    Result<void> shown(const protocol::TellShown& message);
 
     void pictureSent();
     /// After a fault in what was posted here (postTo).
@@ -101,8 +109,8 @@ private:
     void overtake();
     PictureJob makeJob(std::size_t id);
     void rendered(std::uint64_t ofCase, const protocol::TileHeader& header,
-                  const std::optional<Camera>& camera, Result<Image> image);
-    void encode(EncodeJob job, std::uint64_t ofCase);
+                  const std::optional<ViewState>& wall, Result<Image> image);
+    void encode(EncodeJob job, std::uint64_t ofCase, const std::optional<ViewState>& wall);
     void encoded(std::uint64_t ofCase, const protocol::TileHeader& header,
                  Result<std::vector<std::uint8_t>> frames);
     void lost(Slot& slot, const Error& error);
@@ -110,6 +118,7 @@ private:
     struct Held {
         EncodeJob job;
         std::uint64_t ofCase;
+        std::optional<ViewState> wall;  // that it shows
     };
 
     const SessionId session_;
@@ -122,7 +131,7 @@ private:
     std::shared_ptr<const OpenCase> case_;
     std::shared_ptr<WallReading> reading_;  // null where the case has not been flattened
     std::uint64_t caseNumber_ = 0;          // counts setCase: tells old pictures from new ones
-    bool jpeg_ = true, coarse_ = false, stopped_ = false;
+    bool jpeg_ = true, coarse_ = false, tellsShown_ = false, stopped_ = false;
 
     std::array<Slot, protocol::maxViewports> slots_;
     std::size_t lastDrawn_ = 0;
@@ -133,6 +142,12 @@ private:
     std::optional<Held> held_;              // drawn, while another is being encoded
     bool encoding_ = false;
     std::deque<protocol::TileHeader> unsent_;  // given to the outlet, in order
+    struct OfWall {
+        std::uint32_t picture;
+        ShownPicture shown;
+    };
+    std::deque<OfWall> ofWall_;    // that were encoded last and show the wall, by number
+    std::uint64_t lastShown_ = 0;  // number of the newest TellShown
 };
 
 }  // namespace haustra::session

@@ -2,24 +2,27 @@
 #pragma once
 
 #include "records/bookmarks.h"
+#include "records/seen_walls.h"
 #include "session/case_list.h"
 #include "session/worker.h"
 #include "store/case_store.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace haustra::session {
 
-/// Owns the bookmarks. Requests are served in order; additions that wait together share one
-/// commit. Its functions may be called from any thread and never block; callbacks come on the
-/// records thread.
+/// Owns the records. Requests are served in order; bookmarks that wait together to be added share
+/// one commit, and so do ledgers to be kept. Its functions may be called from any thread and never
+/// block; callbacks come on the records thread.
 class RecordsThread {
 public:
-    RecordsThread(records::BookmarkStore bookmarks, store::CaseStore cases);
+    RecordsThread(records::BookmarkStore bookmarks, records::SeenStore seen,
+                  store::CaseStore cases);
 
     /// `done` is called after the commit.
     using Added = std::function<void(Result<records::Bookmark>)>;
@@ -29,6 +32,16 @@ public:
     void list(std::string caseName, std::string scan, Listed done);
     using Cases = std::function<void(Result<std::vector<CaseSummary>>)>;
     void listCases(Cases done);
+
+    /// What readers have seen, as records::SeenStore; `done` of what is kept or forgotten is called
+    /// after the commit.
+    using Done = std::function<void(Result<void>)>;
+    void keepSeen(records::Ledger ledger, Done done);
+    void forgetSeen(records::LedgerKey key, Done done);
+    using Found = std::function<void(Result<std::optional<records::Ledger>>)>;
+    void findSeen(records::LedgerKey key, Found done);
+    using Ledgers = std::function<void(Result<std::vector<records::Ledger>>)>;
+    void listSeen(std::string wall, Ledgers done);
 
 private:
     struct Add {
@@ -42,7 +55,23 @@ private:
     struct ListCases {
         Cases done;
     };
-    using Request = std::variant<Add, List, ListCases>;
+    struct KeepSeen {
+        records::Ledger ledger;
+        Done done;
+    };
+    struct ForgetSeen {
+        records::LedgerKey key;
+        Done done;
+    };
+    struct FindSeen {
+        records::LedgerKey key;
+        Found done;
+    };
+    struct ListSeen {
+        std::string wall;
+        Ledgers done;
+    };
+    using Request = std::variant<Add, List, ListCases, KeepSeen, ForgetSeen, FindSeen, ListSeen>;
     struct Keeping;
 
     Worker<Request> worker_;

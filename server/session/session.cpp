@@ -7,6 +7,7 @@
 #include "session/worker.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <asio/post.hpp>
 #include <spdlog/spdlog.h>
@@ -106,6 +107,16 @@ void Session::dispatch(const ClientMessage& message) {
             return handle(message.set_wall_paint());
         case ClientMessage::kAskSeen:
             return handle(message.ask_seen());
+        case ClientMessage::kTellShown:
+            return handle(message.tell_shown());
+        case ClientMessage::kSetSeenLimits:
+            return handle(message.set_seen_limits());
+        case ClientMessage::kListMissed:
+            return handle(message.list_missed());
+        case ClientMessage::kAskLedger:
+            return handle(message.ask_ledger());
+        case ClientMessage::kAskSeenReport:
+            return handle(message.ask_seen_report());
         case ClientMessage::kSetDetection:
             return handle(message.set_detection());
         case ClientMessage::kListFindings:
@@ -159,14 +170,23 @@ void Session::handle(const protocol::Hello& hello) {
     pictures_->setJpeg(can(capability::jpeg));
     pictures_->setCoarse(can(capability::coarse));
     takesBookmarks_ = can(capability::bookmarkPush);
+    tellsShown_ = can(capability::ledger);
+    pictures_->setTellsShown(tellsShown_);
+    if (!hello.reader().empty()) {
+        const auto reader = readerFrom(hello.reader());
+        if (!reader) return end(ErrorReport::BAD_MESSAGE, describe(reader.error()));
+        if (tellsShown_) reader_ = *reader;
+    }
+    // What such a client has been sent has been seen.
+    if (!tellsShown_) seenLimits_.leastMs = 0;
     state_ = State::ready;
     ServerMessage answer;
     auto* welcome = answer.mutable_welcome();
     welcome->set_protocol_version(protocol::protocolVersion);
-    for (const char* known :
-         {capability::jpeg, capability::lossless, capability::coarse, capability::slabs,
-          capability::bookmarkPush, capability::marks, capability::caseEntries,
-          capability::scanValues, capability::pick, capability::lens, capability::findings})
+    for (const char* known : {capability::jpeg, capability::lossless, capability::coarse,
+                              capability::slabs, capability::bookmarkPush, capability::marks,
+                              capability::caseEntries, capability::scanValues, capability::pick,
+                              capability::lens, capability::findings, capability::ledger})
         welcome->add_capabilities(known);
     welcome->set_software(services_.software);
     welcome->set_renderer(services_.renderer.renderer());
@@ -291,16 +311,21 @@ void Session::makeReading() {
     outlet.painted = [weak] {
         if (const auto session = weak.lock()) session->pictures_->repaint();
     };
-    outlet.seen = [weak](double share) {
-        if (const auto session = weak.lock()) session->tellSeen(0, share);
+    outlet.seen = [weak](double share, std::uint64_t) {
+        if (const auto session = weak.lock()) session->heardSeen(share);
+    };
+    outlet.unkept = [weak](const Error& error) {
+        if (const auto session = weak.lock()) session->report(error);
     };
     outlet.broken = [weak](const std::string& what) {
         if (const auto session = weak.lock()) session->broken(what);
     };
     ++readings_;
     reading_ = std::make_shared<WallReading>(io_, services_.painting, case_, std::move(outlet));
+    reading_->setLedger(services_.ledgers.of(reader_, case_, seenLimits_));
     reading_->choose({});
     pictures_->setReading(reading_);
+    toldShare_ = 0.0;
 }
 
 void Session::handle(const protocol::SetWallPaint& message) {
@@ -318,31 +343,120 @@ void Session::listedToPaint(std::uint64_t ofReading,
     reading_->setBookmarks(bookmarks.value_or(std::vector<records::Bookmark>()));
 }
 
+// ---- what has been seen -------------------------------------------------------------------------
+
+bool Session::refuseWithoutWall(std::uint64_t request) {
+    if (state_ != State::open)
+        refuse(ErrorReport::BAD_STATE, "no case is open", request);
+    else if (!reading_)
+        refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
+    return state_ != State::open || !reading_;
+}
+
+template <class T, class Then>
+std::function<void(Result<T>)> Session::ofLedger(std::uint64_t request, Then then, int weight) {
+    unanswered_ += weight;
+    return [weak = weak_from_this(), request, then = std::move(then), weight](Result<T> result) {
+        const auto self = weak.lock();
+        if (!self) return;
+        self->unanswered_ -= weight;
+        if (self->state_ == State::ended) return;
+        if (!result)
+            self->report(result.error(), request);
+        else
+            then(*self, std::move(*result));
+        self->peer_.answered();
+    };
+}
+
+// It may tell of a case that is left.
+void Session::handle(const protocol::TellShown& message) {
+    if (state_ == State::ready || state_ == State::opening) return;
+    if (const auto taken = pictures_->shown(message); !taken) report(taken.error());
+}
+
 void Session::handle(const protocol::AskSeen& message) {
     const std::uint64_t request = message.request();
-    if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
-    if (!reading_)
-        return refuse(ErrorReport::BAD_VALUE, "the case has not been flattened", request);
-    const int weight = message.forget() ? protocol::listWeight : 1;  // to begin anew takes a while
-    unanswered_ += weight;
-    reading_->ask(message.forget(),
-                  [weak = weak_from_this(), request, weight](Result<double> share) {
-                      const auto self = weak.lock();
-                      if (!self) return;
-                      self->unanswered_ -= weight;
-                      if (self->state_ == State::ended) return;
-                      if (share)
-                          self->tellSeen(request, *share);
-                      else
-                          self->report(share.error(), request);
-                      self->peer_.answered();
-                  });
+    if (refuseWithoutWall(request)) return;
+    const auto tell = [request](Session& self, double share) {
+        self.toldShare_ = share;
+        self.tellSeen(request, share);
+    };
+    if (message.forget())
+        reading_->forget(ofLedger<double>(request, tell));
+    else
+        reading_->ledger().ask(ofLedger<double>(request, tell, 1));
+}
+
+void Session::handle(const protocol::SetSeenLimits& message) {
+    const std::uint64_t request = message.request();
+    if (refuseWithoutWall(request)) return;
+    const auto limits = seenLimitsFrom(message);
+    if (!limits) return report(limits.error(), request);
+    seenLimits_ = *limits;
+    reading_->setLedger(services_.ledgers.of(reader_, case_, seenLimits_));
+    reading_->ledger().ask(ofLedger<double>(
+        request, [request](Session& self, double share) { self.tellSeen(request, share); }));
+}
+
+void Session::handle(const protocol::ListMissed& message) {
+    const std::uint64_t request = message.request();
+    if (refuseWithoutWall(request)) return;
+    const auto leastMm2 = leastMm2From(message.least_mm2());
+    if (!leastMm2) return report(leastMm2.error(), request);
+    reading_->ledger().missed(
+        *leastMm2, ofLedger<Missed>(
+                       request, [request, least = *leastMm2](Session& self, const Missed& missed) {
+                           self.send(missedListMessage(missed, least, request));
+                       }));
+}
+
+void Session::handle(const protocol::AskLedger& message) {
+    const std::uint64_t request = message.request();
+    if (refuseWithoutWall(request)) return;
+    reading_->ledger().flags(ofLedger<SeenFlags>(
+        request,
+        [request, key = reading_->ledger().key(), recorded = reading_->ledger().isRecorded()](
+            Session& self, const SeenFlags& flags) {
+            self.send(ledgerMessage(flags, key, recorded, request));
+        }));
+}
+
+// Those of the records, and the reader's own where it is not in them. After what this ledger has
+// taken in has gone to them.
+void Session::handle(const protocol::AskSeenReport& message) {
+    const std::uint64_t request = message.request();
+    if (refuseWithoutWall(request)) return;
+    const auto leastMm2 = leastMm2From(message.least_mm2());
+    if (!leastMm2) return report(leastMm2.error(), request);
+    SeenLedger& ledger = reading_->ledger();
+    ledger.report(*leastMm2,
+                  ofLedger<std::vector<ReaderSeen>>(
+                      request, [request, least = *leastMm2, wall = ledger.key().wall](
+                                   Session& self, const std::vector<ReaderSeen>& readers) {
+                          self.send(seenReportMessage(readers, wall, least, request));
+                      }));
+}
+
+// Older clients are told of what is worth to be read.
+void Session::heardSeen(double share) {
+    constexpr double worthTelling = 0.005;
+    if (!tellsShown_ && std::abs(share - toldShare_) < worthTelling && share != 1.0) return;
+    if (!tellsShown_ && share == toldShare_) return;
+    toldShare_ = share;
+    tellSeen(0, share);
 }
 
 void Session::tellSeen(std::uint64_t request, double share) {
+    if (!reading_) return;
+    const SeenLedger& ledger = reading_->ledger();
     ServerMessage message;
-    message.mutable_wall_seen()->set_request(request);
-    message.mutable_wall_seen()->set_share(share);
+    protocol::WallSeen& seen = *message.mutable_wall_seen();
+    seen.set_request(request);
+    seen.set_share(share);
+    seen.set_recorded(ledger.isRecorded());
+    if (ledger.isRecorded()) seen.set_kept(reading_->kept());
+    fill(*seen.mutable_limits(), ledger.limits());
     send(message);
 }
 

@@ -6,6 +6,7 @@
 #include "session/case_loader.h"
 #include "session/case_questions.h"
 #include "session/marked_bookmark.h"
+#include "session/news.h"
 #include "session/picture_stream.h"
 #include "session/records_thread.h"
 #include "session/render_thread.h"
@@ -23,25 +24,6 @@
 
 namespace haustra::session {
 
-/// What one thread or session tells all sessions. Belongs to the io thread.
-template <class T>
-class News {
-public:
-    using Heard = std::function<void(const T&)>;
-    /// `heard` is called for all that is told while `listener` lives.
-    void listen(std::weak_ptr<const void> listener, Heard heard) {
-        std::erase_if(listeners_, [](const auto& known) { return known.first.expired(); });
-        listeners_.emplace_back(std::move(listener), std::move(heard));
-    }
-    void tell(const T& news) const {
-        for (const auto& [listener, heard] : listeners_)
-            if (const auto alive = listener.lock()) heard(news);
-    }
-
-private:
-    std::vector<std::pair<std::weak_ptr<const void>, Heard>> listeners_;
-};
-
 /// What sessions use together. Outlives them all.
 struct Services {
     RenderThread& renderer;
@@ -50,6 +32,7 @@ struct Services {
     RecordsThread& records;
     QuestionThread& questions;
     PaintThread& painting;
+    SeenLedgers& ledgers;
     News<BookmarkNews>& bookmarks;
     News<std::shared_ptr<const OpenCase>>& lostCases;  ///< whose files cannot be read any more
     OpenCounts& readers;                               ///< of each case
@@ -96,6 +79,11 @@ private:
     void handle(const protocol::ListBookmarks& message);
     void handle(const protocol::SetWallPaint& message);
     void handle(const protocol::AskSeen& message);
+    void handle(const protocol::TellShown& message);
+    void handle(const protocol::SetSeenLimits& message);
+    void handle(const protocol::ListMissed& message);
+    void handle(const protocol::AskLedger& message);
+    void handle(const protocol::AskSeenReport& message);
     void handle(const protocol::SetDetection& message);
     void handle(const protocol::ListFindings& message);
     void handle(const protocol::Ping& message);
@@ -124,7 +112,13 @@ private:
     void listedBookmarks(std::uint64_t request, Result<std::vector<MarkedBookmark>> bookmarks);
     void makeReading();
     void listedToPaint(std::uint64_t ofReading, Result<std::vector<records::Bookmark>> bookmarks);
+    void heardSeen(double share);
     void tellSeen(std::uint64_t request, double share);
+    bool refuseWithoutWall(std::uint64_t request);
+    /// A callback of the reading's ledger: its result comes to `then` if the session still lives.
+    template <class T, class Then>
+    std::function<void(Result<T>)> ofLedger(std::uint64_t request, Then then,
+                                            int weight = protocol::listWeight);
 
     const SessionId id_;
     asio::any_io_executor io_;
@@ -139,6 +133,10 @@ private:
     std::shared_ptr<WallReading> reading_;  // where the open case has been flattened
     std::uint64_t readings_ = 0;
     DetectionChoice detection_;  // of the open case
+    std::string reader_;         // whose ledger it is; empty: nobody's
+    bool tellsShown_ = false;
+    SeenLimits seenLimits_;
+    double toldShare_ = 0.0;  // without being asked, last
     int unanswered_ = 0;
 
     std::deque<CaseRequest> questions_;  // not yet asked

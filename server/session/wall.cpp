@@ -2,9 +2,11 @@
 
 #include "render/wall/wall_coverage.h"
 #include "store/products.h"
+#include "store/sha256.h"
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace haustra::session {
 namespace {
@@ -54,6 +56,15 @@ std::vector<WallRow> rowsOf(const FlatMap& map) {
     return rows;
 }
 
+// Of the numbers themselves, whatever made them.
+std::string contentOf(const TriMesh& surface) {
+    store::Sha256 hash;
+    hash.add(std::to_string(surface.vertices.size()) + ' ');
+    hash.add(std::as_bytes(std::span(surface.vertices)));
+    hash.add(std::as_bytes(std::span(surface.triangles)));
+    return store::toHex(hash.finish());
+}
+
 WallMeasure measure(const FlatLookup& lookup, const Measure& question) {
     WallMeasure result;
     std::vector<glm::dvec3> outline;
@@ -93,8 +104,9 @@ Result<std::shared_ptr<const Wall>> makeWall(std::shared_ptr<const FlatMap> map,
     FlatLookup lookup(map);
     auto sight = TRY(render::WallSight::of(map, std::move(bridged)));
     auto painter = TRY(render::StripPainter::of(std::move(sight)));
-    return std::make_shared<const Wall>(Wall{std::move(map), std::move(lookup), circumferenceMm,
-                                             std::move(rows), std::move(painter)});
+    std::string content = contentOf(map->surface);
+    return std::make_shared<const Wall>(Wall{std::move(map), std::move(content), std::move(lookup),
+                                             circumferenceMm, std::move(rows), std::move(painter)});
 }
 
 Result<WallAnswer> answer(const Wall& wall, const WallQuestion& question) {
@@ -112,7 +124,7 @@ std::optional<WallPlace> markOf(const Wall& wall, glm::dvec3 positionMm, glm::dv
     const WallPlace near = wall.lookup.nearest(positionMm);
     if (glm::distance(near.positionMm, positionMm) <= onWallMm) return near;
     const auto met = wall.painter->sight().firstMet(positionMm, forward);
-    if (!met || met->distanceMm > render::seenLimits.farthestMm) return std::nullopt;
+    if (!met || met->distanceMm > render::sightLimits.farthestMm) return std::nullopt;
     const auto place = wall.lookup.at(met->flat);
     return place ? *place : wall.lookup.nearest(met->positionMm);
 }

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct WallRow {
 /// Immutable; any number of threads.
 struct Wall {
     std::shared_ptr<const FlatMap> map;
+    std::string content;  ///< SHA-256 of the cut surface: what is kept of one wall is no other's
     FlatLookup lookup;
     double circumferenceMm = 0.0;  ///< √(area of the surface / area of the strip)
     /// Of the cameras that look at any vertex: the mean height of those, made monotone by least

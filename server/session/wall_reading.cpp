@@ -14,30 +14,14 @@
 #include <spdlog/spdlog.h>
 
 namespace haustra::session {
-namespace {
-
-constexpr int maxLooks = 16;  // that wait
-bool nearlySame(const Camera& a, const Camera& b) {
-    const double cosine = glm::dot(glm::normalize(a.forward), glm::normalize(b.forward));
-    return a.lens == b.lens && a.fovDegrees == b.fovDegrees && a.heightMm == b.heightMm &&
-           glm::distance(a.positionMm, b.positionMm) < sameCameraMm &&
-           cosine > std::cos(glm::radians(sameCameraDegrees));
-}
-
-}  // namespace
 
 // Its functions are called on the paint thread, one after the other.
 struct WallReading::Work {
     std::shared_ptr<const OpenCase> of;
-    std::optional<render::WallCoverage> coverage;
     std::vector<render::WallMark> marks;
     std::vector<render::MarkedPixel> discs;
     double discsRadiusMm = 0.0;  // 0: they have not been drawn
 
-    render::WallCoverage& seen() {
-        if (!coverage) coverage.emplace(of->wall->painter->sharedSight());
-        return *coverage;
-    }
     void mark(const std::vector<Gaze>& gazes) {
         discsRadiusMm = 0.0;
         marks.clear();
@@ -45,7 +29,7 @@ struct WallReading::Work {
             if (const auto mark = markOf(*of->wall, gaze.positionMm, gaze.forward))
                 marks.push_back({mark->flat, mark->positionMm});
     }
-    Paint paint(const WallPaintChoice& choice, const DetectionChoice& detection) {
+    Paint paint(const WallPaintChoice& choice, const DetectionChoice& detection, SeenWork& seen) {
         const render::StripPainter& painter = *of->wall->painter;
         if (choice.marks && discsRadiusMm != choice.markRadiusMm) {
             discs = painter.discs(marks, choice.markRadiusMm);
@@ -55,9 +39,9 @@ struct WallReading::Work {
         if (of->findings && detection.shows())
             findings = render::colorFindings(of->findings->paint, of->findings->shades(detection));
         using Marked = std::span<const render::MarkedPixel>;
-        using Seen = std::span<const std::uint8_t>;
-        return painter.paint(choice.marks ? Marked(discs) : Marked(),
-                             choice.unseen ? Seen(seen().seenTriangles()) : Seen(), findings);
+        const auto seenTriangles =
+            choice.unseen ? seen.coverage().seenTriangles() : std::vector<std::uint8_t>();
+        return painter.paint(choice.marks ? Marked(discs) : Marked(), seenTriangles, findings);
     }
 };
 
@@ -65,9 +49,8 @@ WallReading::WallReading(asio::any_io_executor io, PaintThread& painting,
                          std::shared_ptr<const OpenCase> of, Outlet outlet)
     : io_(std::move(io)),
       painting_(painting),
-      work_(std::make_shared<Work>(Work{std::move(of), {}, {}, {}, 0.0})),
-      outlet_(std::move(outlet)),
-      later_(io_) {}
+      work_(std::make_shared<Work>(Work{std::move(of), {}, {}, 0.0})),
+      outlet_(std::move(outlet)) {}
 
 // ---- paint --------------------------------------------------------------------------------------
 
@@ -93,7 +76,7 @@ void WallReading::chosen() {
     if (ready_)
         paint_ = nullptr;
     else
-        repaint(true);
+        repaint();
 }
 
 void WallReading::setBookmarks(const std::vector<records::Bookmark>& bookmarks) {
@@ -102,7 +85,7 @@ void WallReading::setBookmarks(const std::vector<records::Bookmark>& bookmarks) 
         keep(bookmark);
     gazesAreNew_ = true;
     listed_ = true;
-    if (choice_.marks) repaint(true);
+    if (choice_.marks) repaint();
 }
 
 void WallReading::addBookmark(const records::Bookmark& bookmark) {
@@ -112,7 +95,7 @@ void WallReading::addBookmark(const records::Bookmark& bookmark) {
                     [&](const Gaze& gaze) { return gaze.bookmark == bookmark.id; }))
         return;
     keep(bookmark);
-    repaint(true);
+    repaint();
 }
 
 void WallReading::keep(const records::Bookmark& bookmark) {
@@ -121,36 +104,26 @@ void WallReading::keep(const records::Bookmark& bookmark) {
     gazesAreNew_ = true;
 }
 
-void WallReading::repaint(bool soon) {
+void WallReading::repaint() {
     ++wanted_;
     if (!listed_) return;
-    if (isPainting_) {
+    if (isPainting_)
         paintAgain_ = true;
-        paintAgainSoon_ |= soon;
-        return;
-    }
-    const auto due =
-        soon || !paintedAt_ ? std::chrono::steady_clock::now() : *paintedAt_ + repaintAfter;
-    if (due <= std::chrono::steady_clock::now()) return startPainting();
-    later_.expires_at(due);
-    later_.async_wait([weak = weak_from_this()](const asio::error_code& error) {
-        const auto self = weak.lock();
-        if (!error && self && self->paints() && self->listed_ && !self->isPainting_)
-            self->startPainting();
-    });
+    else
+        startPainting();
 }
 
 void WallReading::startPainting() {
-    later_.cancel();
     isPainting_ = true;
-    paintAgain_ = paintAgainSoon_ = false;
+    paintAgain_ = false;
     std::optional<std::vector<Gaze>> gazes;
     if (choice_.marks && std::exchange(gazesAreNew_, false)) gazes = gazes_;
-    painting_.push([weak = weak_from_this(), io = io_, work = work_, choice = choice_,
-                    detection = detection_, gazes = std::move(gazes), number = wanted_] {
+    painting_.push([weak = weak_from_this(), io = io_, work = work_, seen = ledger_->work(),
+                    choice = choice_, detection = detection_, gazes = std::move(gazes),
+                    number = wanted_] {
         auto paint = guarded([&]() -> Result<Paint> {
             if (gazes) work->mark(*gazes);
-            return work->paint(choice, detection);
+            return work->paint(choice, detection, *seen);
         });
         postTo(io, weak, [number, paint = std::move(paint)](WallReading& self) mutable {
             self.painted(number, std::move(paint));
@@ -160,7 +133,6 @@ void WallReading::startPainting() {
 
 void WallReading::painted(std::uint64_t number, Result<Paint> paint) {
     isPainting_ = false;
-    paintedAt_ = std::chrono::steady_clock::now();
     if (!paint) {
         spdlog::error("a wall cannot be painted: {}", paint.error().message);
         gazesAreNew_ = true;
@@ -171,74 +143,37 @@ void WallReading::painted(std::uint64_t number, Result<Paint> paint) {
         ready_ = true;
         outlet_.painted();
     }
-    if (paints() && paintAgain_) repaint(paintAgainSoon_);
+    if (paints() && paintAgain_) repaint();
 }
 
 // ---- what has been seen -------------------------------------------------------------------------
 
-void WallReading::shown(const Camera& camera, glm::ivec2 size, bool moving) {
-    if (moving && lastCamera_ && nearlySame(camera, *lastCamera_)) return;
-    if (looks_ < maxLooks)
-        look(camera, size);
-    else if (!moving)
-        still_ = Still{camera, size};
-}
-
-void WallReading::look(const Camera& camera, glm::ivec2 size) {
-    lastCamera_ = camera;
-    ++looks_;
-    struct Saw {
-        double share;
-        bool more;
-    };
-    painting_.push([weak = weak_from_this(), io = io_, work = work_, camera, size] {
-        const auto saw = guarded([&]() -> Result<Saw> {
-            render::WallCoverage& seen = work->seen();
-            const bool more = seen.show(camera, size) > 0;
-            return Saw{seen.share(), more};
-        });
-        postTo(io, weak, [saw](WallReading& self) {
-            --self.looks_;
-            if (saw)
-                self.sawMore(saw->share, saw->more);
-            else
-                spdlog::error("a wall cannot be looked at: {}", saw.error().message);
-            self.lookAtStill();
-        });
+void WallReading::setLedger(std::shared_ptr<SeenLedger> ledger) {
+    ledger_ = std::move(ledger);
+    steps_.clear();
+    ledger_->news().listen(weak_from_this(), [this, of = ledger_.get()](const auto& told) {
+        if (ledger_.get() == of) heard(told);
     });
+    if (choice_.unseen) repaint();
 }
 
-void WallReading::lookAtStill() {
-    if (const auto still = std::exchange(still_, std::nullopt)) look(still->camera, still->size);
+void WallReading::shown(std::vector<ShownPicture> pictures, std::uint64_t number) {
+    steps_.emplace_back(ledger_->take(std::move(pictures)), number);
 }
 
-void WallReading::sawMore(double share, bool more) {
-    if (!more) return;
-    if (std::abs(share - told_) >= toldShare || share == 1.0) {
-        told_ = share;
-        outlet_.seen(share);
-    }
-    if (choice_.unseen) repaint(false);
+void WallReading::heard(const SeenLedger::Told& told) {
+    if (told.error) return outlet_.unkept(*told.error);
+    for (; !steps_.empty() && steps_.front().first <= told.step; steps_.pop_front())
+        kept_ = steps_.front().second;
+    outlet_.seen(told.share, kept_);
+    if (choice_.unseen) repaint();
 }
 
-void WallReading::ask(bool forget, std::function<void(Result<double> share)> told) {
-    if (forget) {
-        lastCamera_.reset();
-        still_.reset();
-    }
-    lookAtStill();
-    painting_.push([weak = weak_from_this(), io = io_, work = work_, forget,
-                    told = std::move(told)]() mutable {
-        const auto share = guarded([&]() -> Result<double> {
-            if (forget) work->seen().forget();
-            return work->seen().share();
-        });
-        asio::post(io, [weak, share, forget, told = std::move(told)] {
-            const auto self = weak.lock();
-            if (self && share) self->told_ = *share;
-            told(share);
-            if (self && forget && self->choice_.unseen) self->repaint(true);
-        });
+void WallReading::forget(std::function<void(Result<double>)> told) {
+    ledger_->forget([weak = weak_from_this(), told = std::move(told)](Result<double> share) {
+        told(std::move(share));
+        const auto self = weak.lock();
+        if (self && self->choice_.unseen) self->repaint();
     });
 }
 

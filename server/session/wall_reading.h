@@ -1,54 +1,44 @@
-// What one session has been shown of a case's wall, and what its pictures colour the wall with.
+// What one session's pictures colour the wall of a case with, and what they tell its reader's
+// ledger.
 #pragma once
 
 #include "core/result.h"
 #include "records/bookmarks.h"
 #include "render/scene/picture.h"
 #include "session/open_case.h"
+#include "session/seen_ledger.h"
 #include "session/worker.h"
 
-#include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <asio/any_io_executor.hpp>
-#include <asio/steady_timer.hpp>
 
 namespace haustra::session {
 
-/// A place stays painted for so long after it has been shown: long enough to be noticed as one that
-/// had been missed.
-inline constexpr std::chrono::milliseconds repaintAfter{1000};
-/// The share of the wall that has been seen is told when it has changed by this.
-inline constexpr double toldShare = 0.005;
-/// While the hand moves, a camera that has moved and turned by less shows nothing new.
-inline constexpr double sameCameraMm = 1.0, sameCameraDegrees = 2.0;
-
-/// The thread that finds what pictures have shown of walls, and paints them: tasks, which must not
-/// throw, one after the other. WallReading bounds how many of a session's wait here.
-class PaintThread : public Worker<std::function<void()>> {
-public:
-    PaintThread() {
-        start("paint", 1, [](auto& taken) { taken.front()(); });
-    }
-};
-
-/// Belongs to the io thread; seeing and painting are done on the paint thread. The wall that has
-/// been seen is kept whether or not it is painted, so that whoever turns the paint on learns of all
-/// of the session.
+/// Belongs to the io thread; seeing and painting are done on the paint thread. What has been seen
+/// goes to the ledger whether or not it is painted, so that whoever turns the paint on learns of
+/// all of it.
 class WallReading : public std::enable_shared_from_this<WallReading> {
 public:
     struct Outlet {
-        std::function<void()> painted;                        ///< paint() is another
-        std::function<void(double share)> seen;               ///< of the wall's area, 0…1
+        std::function<void()> painted;  ///< paint() is another
+        /// Of the wall's area, 0…1, and up to which TellShown that is taken in and kept.
+        std::function<void(double share, std::uint64_t kept)> seen;
+        std::function<void(const Error& error)> unkept;       ///< why it is not kept
         std::function<void(const std::string& what)> broken;  ///< nothing else will come
     };
     /// The case has a wall.
     WallReading(asio::any_io_executor io, PaintThread& painting, std::shared_ptr<const OpenCase> of,
                 Outlet outlet);
+    /// Before anything else, and whenever the reader has chosen other limits.
+    void setLedger(std::shared_ptr<SeenLedger> ledger);
+    SeenLedger& ledger() { return *ledger_; }
 
     /// From now on paint() is to be this; until it is made, ready() is false. With marks,
     /// setBookmarks has to follow.
@@ -66,13 +56,13 @@ public:
     /// Null where nothing is painted.
     const std::shared_ptr<const render::WallPaint>& paint() const { return paint_; }
 
-    /// An endoscopic picture of `size` pixels has been drawn for the client. Where there are more
-    /// than the paint thread can look at, some are passed over, but not the newest that is at rest:
-    /// what is told as seen has been.
-    void shown(const Camera& camera, glm::ivec2 size, bool moving);
-    /// `told` is called on the io thread with the share that pictures drawn before this have shown;
-    /// with `forget`, nothing has been. Fails (device) where there is not enough memory.
-    void ask(bool forget, std::function<void(Result<double> share)> told);
+    /// Pictures have been on the reader's screen; `number`: of the TellShown that said so, which
+    /// grows.
+    void shown(std::vector<ShownPicture> pictures, std::uint64_t number);
+    /// Up to which TellShown all is taken in and kept.
+    std::uint64_t kept() const { return kept_; }
+    /// Nothing has been seen: `told` as of SeenLedger::forget.
+    void forget(std::function<void(Result<double> share)> told);
 
     /// After a fault in what was posted here (postTo).
     void broken(const std::string& what) { outlet_.broken(what); }
@@ -88,12 +78,10 @@ private:
     bool paints() const;
     void chosen();
     void keep(const records::Bookmark& bookmark);
-    void repaint(bool soon);
+    void repaint();
     void startPainting();
     void painted(std::uint64_t number, Result<Paint> paint);
-    void look(const Camera& camera, glm::ivec2 size);
-    void lookAtStill();
-    void sawMore(double share, bool more);
+    void heard(const SeenLedger::Told& told);
 
     asio::any_io_executor io_;
     PaintThread& painting_;
@@ -109,18 +97,12 @@ private:
     Paint paint_;
     std::uint64_t wanted_ = 0;  // counts what changed the paint; the newest is to be shown
     std::uint64_t chosen_ = 0;  // its number when the newest choice was made
-    bool isPainting_ = false, paintAgain_ = false, paintAgainSoon_ = false;
-    std::optional<std::chrono::steady_clock::time_point> paintedAt_;
-    asio::steady_timer later_;
+    bool isPainting_ = false, paintAgain_ = false;
 
-    struct Still {
-        Camera camera;
-        glm::ivec2 size;
-    };
-    std::optional<Camera> lastCamera_;
-    std::optional<Still> still_;  // the newest that could not be looked at yet
-    int looks_ = 0;               // that wait for the paint thread
-    double told_ = 0.0;
+    std::shared_ptr<SeenLedger> ledger_;
+    std::deque<std::pair<std::uint64_t, std::uint64_t>>
+        steps_;  // of the ledger, and whose they are
+    std::uint64_t kept_ = 0;
 };
 
 }  // namespace haustra::session

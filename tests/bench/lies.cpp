@@ -394,8 +394,21 @@ void addAnswerLies(std::vector<Lie>& all) {
             if (chance(r, 0.3)) finding.set_kind(wildText(r));
         }
     });
+    add("wild missed patches", ServerMessage::kMissedList, [](Random& r, ServerMessage& m) {
+        auto* list = m.mutable_missed_list();
+        if (chance(r, 0.3)) list->set_area_mm2(wildNumber(r));
+        if (chance(r, 0.3)) list->set_count(wildCount(r));
+        for (auto& patch : *list->mutable_patches()) {
+            if (chance(r, 0.3)) patch.set_area_mm2(wildNumber(r));
+            if (chance(r, 0.3)) patch.mutable_view()->mutable_forward()->set_x(wildNumber(r));
+            if (chance(r, 0.3)) patch.mutable_place()->set_arc_mm(wildNumber(r));
+        }
+    });
     add("wild share", ServerMessage::kWallSeen, [](Random& r, ServerMessage& m) {
         m.mutable_wall_seen()->set_share(wildNumber(r));
+        if (chance(r, 0.5)) m.mutable_wall_seen()->set_kept(r());
+        if (chance(r, 0.5))
+            m.mutable_wall_seen()->mutable_limits()->set_pixels_per_mm(wildNumber(r));
         if (chance(r, 0.5)) m.mutable_wall_seen()->set_request(pick(r, 40));
     });
     add("wild welcome", ServerMessage::kWelcome, [](Random& r, ServerMessage& m) {

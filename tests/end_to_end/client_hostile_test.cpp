@@ -123,6 +123,64 @@ TEST_F(ClientOfAHostileServer, FindingsThatAreNoneEndTheSession) {
     }
 }
 
+TEST_F(ClientOfAHostileServer, WhatHasBeenSeenIsToldWithinBounds) {
+    using Alters = std::function<void(ServerMessage&)>;
+    const auto limits = [](ServerMessage& m) { return m.mutable_wall_seen()->mutable_limits(); };
+    const auto patch = [](ServerMessage& m) { return m.mutable_missed_list()->mutable_patches(0); };
+    const auto reader = [](ServerMessage& m) {
+        return m.mutable_seen_report()->mutable_readers(0);
+    };
+    const std::vector<std::pair<std::string, Alters>> lies = {
+        {"pixels", [&](auto& m) { limits(m)->set_pixels_per_mm(NAN); }},
+        {"limits", [&](auto& m) { limits(m)->set_least_ms(4'000'000'000u); }},
+        {"figures", [](auto& m) { m.mutable_missed_list()->set_share(1.1); }},
+        {"figures", [](auto& m) { m.mutable_missed_list()->set_area_mm2(-1.0); }},
+        {"figures", [](auto& m) { m.mutable_missed_list()->set_count(4'000'000'000u); }},
+        {"area is none", [&](auto& m) { patch(m)->set_area_mm2(INFINITY); }},
+        {"nowhere", [&](auto& m) { patch(m)->mutable_place()->set_arc_mm(1e9); }},
+        {"", [&](auto& m) { patch(m)->mutable_view()->clear_forward(); }},
+        {"more patches",
+         [](auto& m) {
+             while (m.missed_list().patches_size() <= protocol::maxMissedPatches)
+                 m.mutable_missed_list()->add_patches()->set_area_mm2(1.0);
+         }},
+        {"figures", [&](auto& m) { reader(m)->set_reader("a b"); }},
+        {"figures", [&](auto& m) { reader(m)->set_share(-0.1); }},
+        {"no wall", [](auto& m) { m.mutable_seen_report()->set_wall(std::string(65, 'f')); }},
+        {"more readers",
+         [](auto& m) {
+             while (m.seen_report().readers_size() <= protocol::maxReportedLedgers)
+                 m.mutable_seen_report()->add_readers();
+         }},
+        {"as many as triangles",
+         [](auto& m) {
+             m.mutable_ledger()->set_triangles(17);
+             m.mutable_ledger()->set_seen(std::string(2, 'x'));
+             m.mutable_ledger()->set_shown(std::string(3, 'x'));
+         }},
+        {"no wall", [](auto& m) { m.mutable_ledger()->set_triangles(4'000'000'000u); }},
+    };
+    int asked = 0;
+    for (const auto& [reason, lie] : lies) {
+        const auto tell = lie;
+        const int which = asked++;
+        const auto body = which < 2    ? ServerMessage::kWallSeen
+                          : which < 9  ? ServerMessage::kMissedList
+                          : which < 13 ? ServerMessage::kSeenReport
+                                       : ServerMessage::kLedger;
+        const auto end = endOf(
+            [tell, body](ServerMessage& message) {
+                if (message.body_case() == body) tell(message);
+            },
+            [body](Session& session) {
+                if (body == ServerMessage::kMissedList) session.requestMissed();
+                if (body == ServerMessage::kSeenReport) session.requestSeenReport();
+                if (body == ServerMessage::kLedger) session.requestLedger();
+            });
+        EXPECT_TRUE(!end.empty() && has(end, reason)) << reason << ": " << end;
+    }
+}
+
 // It may have crossed a change of the mode on its way: it is not an end, but nothing is shown.
 TEST_F(ClientOfAHostileServer, FindingsThatAreNotToBeSeenYetAreNotKept) {
     const tests::FakeServer server(altering([](ServerMessage& message) {

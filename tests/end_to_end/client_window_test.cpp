@@ -7,6 +7,7 @@
 #include "protocol/limits.h"
 #include "reader/overview_map.h"
 #include "temporary_folder.h"
+#include "window/missed_panel.h"
 #include "window/pane.h"
 #include "window/reader_window.h"
 #include "window/theme.h"
@@ -23,6 +24,7 @@
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QDockWidget>
+#include <QFile>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenuBar>
@@ -386,6 +388,12 @@ protected:
                reader().flat().picked() &&
                reader().flat().picked()->positionMm == current->wall.positionMm;
     }
+    bool isAtPatch(std::size_t patch) {
+        const auto current = reader().missed().current();
+        return current && *current == patch && reader().flat().picked() &&
+               reader().flat().picked()->positionMm ==
+                   reader().missed().list()->patches[patch].place.positionMm;
+    }
     Check fov(double change) {
         const double before = flight().camera().fovDegrees;
         return
@@ -674,6 +682,34 @@ protected:
         {"paint-marks", [this] { return flips([this] { return reader().flat().paint().marks; }); }},
         {"paint-unseen",
          [this] { return flips([this] { return reader().flat().paint().unseen; }); }},
+        {"next-missed",
+         [this]() -> Check {
+             reader().missed().open();
+             return [this] { return isAtPatch(0); };
+         }},
+        {"previous-missed",
+         [this]() -> Check {
+             reader().missed().open();
+             goToNextMissed(*reading_, 1);
+             EXPECT_TRUE(waitFor([this] { return isAtPatch(0); }));
+             goToNextMissed(*reading_, 1);
+             EXPECT_TRUE(waitFor([this] { return isAtPatch(1); }));
+             return [this] { return isAtPatch(0); };
+         }},
+        {"missed-panel", [this] { return flips([this] { return window_->showsMissed(); }); }},
+        {"seen-report",
+         [this]() -> Check {
+             const QString file = QString::fromStdString((folder_ / "seen.json").string());
+             dialog<QDialog>([file](QDialog& dialog) {
+                 dialog.findChild<QLineEdit*>()->setText(file);
+                 press(Qt::Key_Return);
+             });
+             return [file] {
+                 QFile written(file);
+                 return written.open(QIODevice::ReadOnly) &&
+                        written.readAll().contains("\"reader\": \"ada\"");
+             };
+         }},
         {"forget-seen",
          [this]() -> Check {
              const int before = server_.seenForgotten();
@@ -1443,6 +1479,79 @@ TEST_F(ClientWindow, TwoClicksInAnyViewsMeasureBetweenTheirPlaces) {
     EXPECT_TRUE(rulers.empty());
     press(Qt::Key_Z, Qt::ControlModifier);
     EXPECT_EQ(rulers.size(), 2u);
+}
+
+TEST_F(ClientWindow, WhatIsOnScreenIsToldAsLongAsItIs) {
+    const auto toldIn = [&](int ms) {
+        const std::uint64_t before = server_.onScreenMs();
+        QTest::qWait(ms);
+        return server_.onScreenMs() - before;
+    };
+    ASSERT_TRUE(settle());
+    // Of each pane in sight but the strip's; the server hears of it a few times a second.
+    const std::uint64_t mapped = server_.onScreenMs(View::flattened);
+    EXPECT_GT(toldIn(1500), 1500u);
+    EXPECT_EQ(server_.onScreenMs(View::flattened), mapped);
+    moveTo(pane(View::flattened), {50, 50});
+    QTest::qWait(800);
+    EXPECT_GT(server_.onScreenMs(View::flattened), mapped + 100) << "it is pointed at";
+    moveTo(pane(View::axial), {50, 50});
+    press(Qt::Key_O, Qt::ControlModifier);
+    ASSERT_TRUE(waitFor([&] { return cases()->isVisible(); }));
+    QTest::qWait(600);
+    EXPECT_LT(toldIn(800), 100u) << "the list of cases lies over the case";
+    press(Qt::Key_O, Qt::ControlModifier);
+    ASSERT_TRUE(waitFor([&] { return !cases()->isVisible(); }));
+    ASSERT_TRUE(settle());
+    EXPECT_GT(toldIn(1500), 1500u);
+    window_->hide();
+    QTest::qWait(600);
+    EXPECT_LT(toldIn(800), 100u) << "a window that is hidden shows nothing";
+}
+
+TEST_F(ClientWindow, MissedPatchesAreListedAndGoneTo) {
+    press(Qt::Key_U, Qt::ControlModifier);
+    ASSERT_TRUE(waitFor([&] { return dock("missed")->isVisible(); }));
+    auto& list =
+        *named<QTreeWidget>(QStringLiteral("Missed patches of the wall, the largest first"));
+    ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 3; }));
+    EXPECT_EQ(list.topLevelItem(0)->text(0), QStringLiteral("900"));
+    EXPECT_TRUE(waitFor([&] { return notices(QStringLiteral("3 patch")); }));
+    EXPECT_TRUE(notices(QStringLiteral("19.0 cm²")));
+    EXPECT_TRUE(notices(QStringLiteral("It is not kept"))) << "nobody has been named";
+    const reader::MissedList patches = *reader().missed().list();
+    const auto isAt = [&](std::size_t n) {
+        return waitFor([&] { return reader().missed().current() == n; }) &&
+               reader().flat().picked()->positionMm == patches.patches[n].place.positionMm;
+    };
+    // The camera is the one that shows it, beside the path; Ctrl+Z leads back.
+    flight().goTo(10.0);
+    press(Qt::Key_J, Qt::ShiftModifier);
+    ASSERT_TRUE(isAt(0));
+    EXPECT_TRUE(areNear(flight().camera(), *patches.patches[0].view));
+    press(Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_TRUE(waitFor([&] { return flight().arcMm() == 10.0 && !flight().isFree(); }));
+    press(Qt::Key_J, Qt::ShiftModifier);
+    ASSERT_TRUE(isAt(1));
+    press(Qt::Key_H, Qt::ShiftModifier);
+    ASSERT_TRUE(isAt(0));
+    press(Qt::Key_H, Qt::ShiftModifier);
+    EXPECT_TRUE(waitFor([&] {
+        return window_->statusBar()->currentMessage().startsWith(QStringLiteral("No other missed"));
+    }));
+    click(*list.viewport(), list.visualItemRect(list.topLevelItem(2)).center());
+    ASSERT_TRUE(isAt(2));
+    // Limits go to the server, and to the next start.
+    auto& ms = *named<QAbstractSpinBox>(
+        QStringLiteral("How long a place must have been on screen to count as seen"));
+    ms.findChild<QLineEdit*>()->setText(QStringLiteral("450 ms"));
+    ms.setFocus();
+    press(Qt::Key_Return);
+    ASSERT_TRUE(waitFor([&] {
+        return reader().session().seenLimits() && reader().session().seenLimits()->leastMs == 450;
+    }));
+    EXPECT_EQ(reader().session().seenLimits()->pixelsPerMm, SeenLimits{}.pixelsPerMm);
+    EXPECT_EQ(QSettings().value("reading/seen-ms").toInt(), 450);
 }
 
 TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList) {

@@ -44,6 +44,8 @@ struct FakeServer::Impl {
     std::vector<protocol::Bookmark> bookmarks;  // guarded by mutex
     std::set<std::shared_ptr<Stream>> streams;  // guarded by mutex
     std::map<int, AskedOfViewport> asked;       // guarded by mutex
+    std::map<int, std::uint64_t> onScreenMs;    // by viewport; guarded by mutex
+    std::map<std::uint32_t, int> viewportOf;    // by picture; guarded by mutex
     std::vector<std::thread> conversations;
     std::thread listener;
 
@@ -126,6 +128,7 @@ struct FakeServer::Impl {
         {
             const std::lock_guard lock(mutex);
             ++asked[id].pictures;
+            viewportOf[number] = id;
         }
         asio::write(stream, asio::buffer(framesOf({id, viewport.width, viewport.height, number,
                                                    input.sequence(), !input.moving(), positionMm,
@@ -261,7 +264,20 @@ struct FakeServer::Impl {
         double seen = misbehaviour.seenAtFirst;
         int opensAfterLists = 0;
         protocol::SetDetection detection;
-        if (!read(stream).has_hello()) return;
+        const ClientMessage hello = read(stream);
+        if (!hello.has_hello()) return;
+        protocol::SeenLimits limits;
+        limits.set_pixels_per_mm(2.0 / 3.0);
+        limits.set_least_ms(300);
+        std::uint64_t shown = 0;
+        const auto fillSeen = [&](protocol::WallSeen& message, std::uint64_t request) {
+            message.set_request(request);
+            message.set_share(seen);
+            if (misbehaviour.old) return;
+            *message.mutable_limits() = limits;
+            message.set_recorded(!hello.hello().reader().empty());
+            if (message.recorded()) message.set_kept(shown);
+        };
         ServerMessage welcome;
         welcome.mutable_welcome()->set_protocol_version(misbehaviour.protocolVersion);
         welcome.mutable_welcome()->set_software("fake-server 1");
@@ -271,7 +287,8 @@ struct FakeServer::Impl {
                  {protocol::capability::caseEntries, protocol::capability::bookmarkPush,
                   protocol::capability::marks, protocol::capability::slabs,
                   protocol::capability::scanValues, protocol::capability::pick,
-                  protocol::capability::lens, protocol::capability::findings})
+                  protocol::capability::lens, protocol::capability::findings,
+                  protocol::capability::ledger})
                 welcome.mutable_welcome()->add_capabilities(known);
         if (misbehaviour.truncateWelcome) {
             std::vector<std::uint8_t> frame;
@@ -389,10 +406,59 @@ struct FakeServer::Impl {
                 case ClientMessage::kAskSeen:
                     seenForgotten += message.ask_seen().forget();
                     if (message.ask_seen().forget()) seen = 0.0;
-                    answer.mutable_wall_seen()->set_request(message.ask_seen().request());
-                    answer.mutable_wall_seen()->set_share(seen);
+                    fillSeen(*answer.mutable_wall_seen(), message.ask_seen().request());
                     write(stream, answer);
                     break;
+                case ClientMessage::kTellShown: {
+                    if (misbehaviour.old) return;
+                    shown = message.tell_shown().number();
+                    const std::lock_guard lock(mutex);
+                    for (const auto& time : message.tell_shown().pictures())
+                        onScreenMs[viewportOf[time.picture()]] += time.ms();
+                    break;
+                }
+                case ClientMessage::kSetSeenLimits:
+                    if (misbehaviour.old) return;
+                    limits = message.set_seen_limits().limits();
+                    fillSeen(*answer.mutable_wall_seen(), message.set_seen_limits().request());
+                    write(stream, answer);
+                    break;
+                case ClientMessage::kListMissed:
+                    if (misbehaviour.old) return;
+                    *answer.mutable_missed_list() = fakeMissed();
+                    answer.mutable_missed_list()->set_request(message.list_missed().request());
+                    write(stream, answer);
+                    break;
+                case ClientMessage::kAskLedger:
+                    if (misbehaviour.old) return;
+                    answer.mutable_ledger()->set_request(message.ask_ledger().request());
+                    *answer.mutable_ledger()->mutable_limits() = limits;
+                    answer.mutable_ledger()->set_wall("0123");
+                    answer.mutable_ledger()->set_triangles(12);
+                    answer.mutable_ledger()->set_shown("\x05\x01");
+                    answer.mutable_ledger()->set_seen("\x07\x01");
+                    write(stream, answer);
+                    break;
+                case ClientMessage::kAskSeenReport: {
+                    if (misbehaviour.old) return;
+                    protocol::SeenReport& report = *answer.mutable_seen_report();
+                    report.set_request(message.ask_seen_report().request());
+                    report.set_least_mm2(300.0);
+                    report.set_wall("0123");
+                    protocol::ReaderSeen& reader = *report.add_readers();
+                    reader.set_reader("ada");
+                    *reader.mutable_limits() = limits;
+                    reader.set_share(0.75);
+                    const protocol::MissedList missed = fakeMissed();
+                    reader.set_missed(missed.count());
+                    reader.set_missed_mm2(missed.area_mm2());
+                    for (const auto& patch : missed.patches()) {
+                        *reader.add_patches() = patch;
+                        reader.mutable_patches()->rbegin()->clear_view();
+                    }
+                    write(stream, answer);
+                    break;
+                }
                 case ClientMessage::kMeasureScan:
                     if (misbehaviour.old) return;
                     if (misbehaviour.dropAtQuestions > 0) {
@@ -468,6 +534,17 @@ int FakeServer::connections() const {
 }
 int FakeServer::seenForgotten() const {
     return impl_->seenForgotten;
+}
+std::uint64_t FakeServer::onScreenMs() const {
+    const std::lock_guard lock(impl_->mutex);
+    std::uint64_t sum = 0;
+    for (const auto& [viewport, ms] : impl_->onScreenMs)
+        sum += ms;
+    return sum;
+}
+std::uint64_t FakeServer::onScreenMs(View view) const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->onScreenMs[int(view)];
 }
 int FakeServer::detectionMessages() const {
     return impl_->detectionMessages;

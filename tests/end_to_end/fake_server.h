@@ -71,6 +71,9 @@ public:
     int connections() const;
     int bookmarkMessages() const;
     int detectionMessages() const;
+    /// How long pictures have been on screen, all together, as clients tell it.
+    std::uint64_t onScreenMs() const;
+    std::uint64_t onScreenMs(View view) const;
     int seenForgotten() const;  ///< how often what had been seen was to be forgotten
     AskedOfViewport askedOf(View view) const { return askedOf(int(view)); }
     AskedOfViewport askedOf(int viewport) const;

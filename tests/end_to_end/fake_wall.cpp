@@ -1,5 +1,7 @@
 #include "end_to_end/fake_wall.h"
 
+#include "protocol/view_message.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -148,6 +150,28 @@ protocol::ServerMessage aboutFakeWall(const protocol::ClientMessage& question) {
         answer.mutable_wall_place()->set_request(locate.request());
     }
     return answer;
+}
+
+protocol::MissedList fakeMissed() {
+    protocol::MissedList list;
+    list.set_share(0.5);
+    list.set_least_mm2(300.0);
+    for (const auto& [y, mm2] : {std::pair{1.0, 900.0}, {4.0, 600.0}, {5.0, 400.0}}) {
+        protocol::MissedPatch& patch = *list.add_patches();
+        patch.set_area_mm2(mm2);
+        *patch.mutable_place() = fakePlace({0.25, y});
+        list.set_count(list.count() + 1);
+        list.set_area_mm2(list.area_mm2() + mm2);
+        if (y > 4.5) continue;
+        // From beside the path, straight at it.
+        const glm::dvec3 place = protocol::vectorFrom(patch.place().position_mm()),
+                         path = protocol::vectorFrom(patch.place().camera_mm());
+        protocol::fill(
+            *patch.mutable_view(),
+            haustra::Camera{
+                path + 0.5 * (path - place), glm::normalize(place - path), {0.0, 0.0, 1.0}, 90.0});
+    }
+    return list;
 }
 
 protocol::FindingList fakeFindings(const protocol::SetDetection& choice) {

@@ -29,6 +29,9 @@ protocol::ServerMessage fakePick(const protocol::PickWall& question, bool flatte
 /// candidate (number 3, 0.3 probable) at the places of fakePlace where x = ¼, a third, a half and
 /// two thirds of the way up the strip.
 protocol::FindingList fakeFindings(const protocol::SetDetection& choice);
+/// Three patches at the places of fakePlace where y is 1, 4 and 5, of 900, 600 and 400 mm²; the
+/// first two with a view, from fakeRadiusMm / 2 off the path.
+protocol::MissedList fakeMissed();
 /// Of a scan whose value at (x, y, z) mm is 2x + 3y + z HU, 1000 more where it is cleansed: what
 /// is known of it without sampling.
 protocol::ScanStatistics fakeStatistics(const protocol::MeasureScan& question);

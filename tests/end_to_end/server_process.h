@@ -36,6 +36,7 @@ public:
     std::uint16_t port() const { return port_; }
     std::string log() const { return fileContent(folder_.path() / "log"); }
     std::string output() const { return fileContent(folder_.path() / "out"); }
+    pid_t pid() const { return child_; }
     bool running() const { return child_ > 0 && ::waitpid(child_, nullptr, WNOHANG) == 0; }
 
     void kill();

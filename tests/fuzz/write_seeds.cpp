@@ -97,6 +97,15 @@ void writeFrames(const fs::path& folder) {
         opened.mutable_case_opened()->add_centerline(n);
     writeControl(folder / "opened", opened);
 
+    protocol::ClientMessage shown;
+    shown.mutable_tell_shown()->set_number(1);
+    shown.mutable_tell_shown()->add_pictures()->set_picture(7);
+    writeControl(folder / "shown", shown);
+    protocol::ServerMessage ledger;
+    ledger.mutable_ledger()->set_triangles(12);
+    ledger.mutable_ledger()->set_shown("\x05\x01");
+    ledger.mutable_ledger()->mutable_limits()->set_least_ms(300);
+    writeControl(folder / "ledger", ledger);
     protocol::TileHeader header;
     header.codec = protocol::TileCodec::lossless;
     header.last = header.exact = true;

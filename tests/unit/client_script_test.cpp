@@ -38,6 +38,30 @@ TEST(Script, PaintsTheWallWithinBounds) {
         EXPECT_FALSE(parse(bad)) << bad;
 }
 
+TEST(Script, AsksWhatHasBeenSeenAndMissedWithinBounds) {
+    const auto actions = parse(R"({"do":"seen-limits","pixels_per_mm":2,"least_ms":0}
+        {"do":"seen-limits"}
+        {"do":"missed","least_mm2":50,"json":"missed.json"}
+        {"do":"next-missed","step":-1}
+        {"do":"ledger","json":"ledger.json"}
+        {"do":"seen-report"}
+        {"do":"fly","hold_ms":40})");
+    ASSERT_TRUE(actions) << describe(actions.error());
+    EXPECT_EQ(std::get<SeenLimitsAction>((*actions)[0].body).limits, (SeenLimits{2.0, 0}));
+    EXPECT_EQ(std::get<SeenLimitsAction>((*actions)[1].body).limits, SeenLimits{});
+    EXPECT_EQ(std::get<MissedAction>((*actions)[2].body).leastMm2, 50.0);
+    EXPECT_EQ(std::get<NextMissedAction>((*actions)[3].body).step, -1);
+    EXPECT_EQ(std::get<LedgerAction>((*actions)[4].body).json, "ledger.json");
+    EXPECT_EQ(std::get<SeenReportAction>((*actions)[5].body).leastMm2, 300.0);
+    EXPECT_EQ(std::get<FlyAction>((*actions)[6].body).holdMs, 40.0);
+    for (const char* bad :
+         {R"({"do":"seen-limits","pixels_per_mm":0})", R"({"do":"seen-limits","least_ms":60001})",
+          R"({"do":"missed","least_mm2":0.5})", R"({"do":"next-missed","step":0})",
+          R"({"do":"next-missed","step":2})", R"({"do":"ledger"})",
+          R"({"do":"still","hold_ms":-1})", R"({"do":"seen-report","png":"a.png"})"})
+        EXPECT_FALSE(parse(bad)) << bad;
+}
+
 TEST(Script, ChoosesTheModeOfFindingsAndGoesToOne) {
     const auto actions = parse(R"({"do":"detection","mode":"second-reader"})"
                                "\n"

@@ -2,6 +2,7 @@
 #include "render/wall/wall_coverage.h"
 
 #include "flat_tube.h"
+#include "render/optics/drawn_wall.h"
 #include "render/wall/strip_painter.h"
 
 #include <set>
@@ -22,6 +23,20 @@ protected:
     }
     static Camera onAxis(double z, double towards = 1.0) {
         return {{0.0, 0.0, z}, {0.0, 0.0, towards}, {0.0, -1.0, 0.0}, 90.0};
+    }
+    /// Whatever is shown is seen, unless it is smaller than a pixel of 2 mm.
+    static constexpr SeenLimits atOnce{0.5, 0};
+    static int show(WallCoverage& coverage, const Camera& camera, glm::ivec2 size = {512, 512}) {
+        return coverage.show(camera, size, 1000);
+    }
+    static bool isShown(const WallCoverage& coverage, int triangle) {
+        return coverage.times()[std::size_t(triangle)] >= coverage.enough();
+    }
+    double areaMm2(const std::vector<std::uint8_t>& which) const {
+        double sum = 0.0;
+        for (int t = 0; t < triangles; ++t)
+            if (which[std::size_t(t)]) sum += sight->facets()[std::size_t(t)].areaMm2;
+        return sum;
     }
     glm::dvec3 middle(int triangle) const {
         return sight->originMm() + glm::dvec3(sight->facets()[std::size_t(triangle)].middleMm);
@@ -55,9 +70,9 @@ TEST_F(WallCoverageTest, SeesWhatARayThroughTheScanReaches) {
     int shown = 0, hidden = 0, differ = 0, outside = 0;
     for (const double z : {6.0, 21.0, 40.0}) {
         for (const double towards : {1.0, -1.0}) {
-            WallCoverage coverage(sight);
+            WallCoverage coverage(sight, atOnce);
             const Camera camera = onAxis(z, towards);
-            coverage.show(camera, {512, 512});
+            show(coverage, camera);
             for (int t = 0; t < triangles; ++t) {
                 const glm::dvec3 from = camera.positionMm, way = middle(t) - from;
                 const double distance = glm::length(way);
@@ -67,9 +82,9 @@ TEST_F(WallCoverageTest, SeesWhatARayThroughTheScanReaches) {
                 const double depth = towards * way.z;
                 const bool inPicture =
                     depth > 0.0 && std::max(std::abs(way.x), std::abs(way.y)) < depth;
-                if (!inPicture || facing < std::cos(glm::radians(seenLimits.mostAngleDegrees)) ||
-                    distance < seenLimits.nearestMm || distance > seenLimits.farthestMm) {
-                    outside += coverage.seen(t);
+                if (!inPicture || facing < std::cos(glm::radians(sightLimits.mostAngleDegrees)) ||
+                    distance < sightLimits.nearestMm || distance > sightLimits.farthestMm) {
+                    outside += isShown(coverage, t);
                     continue;
                 }
                 // Tissue well before the place; a scan's edge is a millimetre wide.
@@ -78,7 +93,7 @@ TEST_F(WallCoverageTest, SeesWhatARayThroughTheScanReaches) {
                     densest = std::max(densest, interpolated(scan, from + at * along));
                 if (densest > -700.0 && densest < -250.0) continue;  // it passes a crest
                 (densest < -480.0 ? shown : hidden)++;
-                differ += coverage.seen(t) != (densest < -480.0);
+                differ += isShown(coverage, t) != (densest < -480.0);
             }
         }
     }
@@ -89,43 +104,38 @@ TEST_F(WallCoverageTest, SeesWhatARayThroughTheScanReaches) {
 }
 
 TEST_F(WallCoverageTest, TheShareGrowsFromNothingToAllAndIsOfArea) {
-    WallCoverage coverage(sight);
+    WallCoverage coverage(sight, atOnce);
     EXPECT_EQ(coverage.share(), 0.0);
     double before = 0.0;
-    const auto areaSeen = [&] {
-        double seen = 0.0;
-        for (int t = 0; t < triangles; ++t)
-            if (coverage.seen(t)) seen += sight->facets()[std::size_t(t)].areaMm2;
-        return seen / sight->areaMm2();
-    };
+    const auto areaSeen = [&] { return areaMm2(coverage.seenTriangles()) / sight->areaMm2(); };
     for (double z = 1.0; z < 60.0; z += 3.0) {
-        coverage.show(onAxis(z), {512, 512});
+        show(coverage, onAxis(z));
         EXPECT_GE(coverage.share(), before);
         before = coverage.share();
         EXPECT_NEAR(before, areaSeen(), 1e-6);
     }
     EXPECT_GT(before, 0.3);
-    EXPECT_EQ(coverage.show(onAxis(58.0), {512, 512}), 0) << "the same camera twice";
+    EXPECT_EQ(show(coverage, onAxis(58.0)), 0) << "the same camera twice";
     for (double z = 1.0; z < 60.0; z += 3.0)
-        coverage.show(onAxis(z, -1.0), {512, 512});
+        show(coverage, onAxis(z, -1.0));
     // The folds overhang: flying both ways along the axis is not enough.
     EXPECT_GT(coverage.share(), before + 0.05);
     EXPECT_LT(coverage.share(), 0.99);
     for (int t = 0; t < triangles; ++t) {
         const glm::dvec3 inward(sight->facets()[std::size_t(t)].inward);
         const glm::dvec3 up = std::abs(inward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-        coverage.show({middle(t) + 3.2 * inward, -inward, up, 90.0}, {512, 512});
+        show(coverage, {middle(t) + 3.2 * inward, -inward, up, 90.0});
     }
     EXPECT_EQ(coverage.share(), 1.0);
     coverage.forget();
     EXPECT_EQ(coverage.share(), 0.0);
-    EXPECT_GT(coverage.show(onAxis(10.0), {512, 512}), 0);
+    EXPECT_GT(show(coverage, onAxis(10.0)), 0);
 }
 
 TEST_F(WallCoverageTest, LensesShowWhatIsInTheirPictures) {
     const auto share = [&](Camera camera, glm::ivec2 size = {512, 512}) {
-        WallCoverage coverage(sight);
-        coverage.show(camera, size);
+        WallCoverage coverage(sight, atOnce);
+        show(coverage, camera, size);
         return coverage.share();
     };
     const Camera forward = onAxis(30.0);
@@ -142,6 +152,180 @@ TEST_F(WallCoverageTest, LensesShowWhatIsInTheirPictures) {
     EXPECT_EQ(share(forward, {4, 4}), 0.0) << "pixels of centimetres";
     // From outside, the wall is seen from behind.
     EXPECT_EQ(share({{60.0, 0.0, 30.0}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 90.0}), 0.0);
+}
+
+TEST_F(WallCoverageTest, APlaceIsSeenOnceItHasBeenOnScreenForLongEnough) {
+    WallCoverage coverage(sight, {0.5, 300});
+    WallCoverage glimpse(sight, atOnce);
+    show(glimpse, onAxis(20.0));
+    // In parts, with other pictures between, and of the same picture again.
+    for (const int ms : {100, 150, 49})
+        EXPECT_GT(coverage.show(onAxis(20.0), {512, 512}, 1000 * ms), 0);
+    EXPECT_EQ(coverage.share(), 0.0);
+    coverage.show(onAxis(55.0), {512, 512}, 299'999);
+    EXPECT_LT(coverage.share(), glimpse.share()) << "what both show alone";
+    coverage.show(onAxis(20.0), {512, 512}, 1000);
+    for (int t = 0; t < triangles; ++t)
+        EXPECT_LE(isShown(glimpse, t), isShown(coverage, t));
+    EXPECT_EQ(coverage.show(onAxis(20.0), {512, 512}, 1'000'000), 0) << "all of it has been seen";
+}
+
+TEST_F(WallCoverageTest, SmallerThanWasChosenIsNotSeen) {
+    const auto share = [&](double pixelsPerMm, int side) {
+        WallCoverage coverage(sight, {pixelsPerMm, 0});
+        for (double z = 3.0; z < 60.0; z += 3.0)
+            show(coverage, onAxis(z), {side, side});
+        return coverage.share();
+    };
+    // Twice the pixels for twice as many a millimetre are the same.
+    EXPECT_EQ(share(1.0, 64), share(8.0, 512));
+    EXPECT_GT(share(1.0, 64), share(4.0, 64) + 0.05);
+    EXPECT_EQ(share(100.0, 64), 0.0);
+    // From 3 mm on, where 64 pixels of 90° are 10.7 a millimetre.
+    EXPECT_EQ(share(11.0, 64), 0.0);
+}
+
+TEST_F(WallCoverageTest, AStripShowsWhatLiesInItLargeEnough) {
+    const auto windowed = [&](const FlatWindow& window, glm::ivec2 size, double pixelsPerMm) {
+        WallCoverage coverage(sight, {pixelsPerMm, 0});
+        coverage.show(window, size, 1000);
+        return coverage.shownTriangles();
+    };
+    const auto middleFlat = [&](int t) {
+        glm::dvec2 flat(0.0);
+        for (int corner = 0; corner < 3; ++corner)
+            flat += map.flat[std::size_t(map.surface.triangles[std::size_t(t)][corner])] / 3.0;
+        return flat;
+    };
+    // Across the seam, a quarter of the circumference to either side.
+    const FlatWindow window{{0.1, 0.4}, 400.0};
+    const glm::ivec2 size(200, 120);
+    const auto shown = windowed(window, size, 1e-2);
+    int inside = 0;
+    for (int t = 0; t < triangles; ++t) {
+        bool in = false;
+        for (const double turn : {-1.0, 0.0, 1.0}) {
+            const glm::dvec2 pixel =
+                window.pixelFromFlat(middleFlat(t) + glm::dvec2(turn, 0.0), size);
+            in |= pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x <= size.x && pixel.y <= size.y;
+        }
+        EXPECT_EQ(bool(shown[std::size_t(t)]), in) << t;
+        inside += in;
+    }
+    EXPECT_GT(inside, 500);
+    // The map is conformal: a millimetre of a ring of radius r is 1 / 2πr circumferences.
+    const double pixelsPerMm = 5.0;
+    const auto large = windowed({{0.5, 0.5 * map.height}, 400.0}, {2000, 2000}, pixelsPerMm);
+    int some = 0, differ = 0;
+    for (int t = 0; t < triangles; ++t) {
+        const double radius = std::hypot(middle(t).x, middle(t).y),
+                     here = 400.0 / (2.0 * std::numbers::pi * radius);
+        if (std::abs(here / pixelsPerMm - 1.0) > 0.05)
+            differ += large[std::size_t(t)] != (here > pixelsPerMm);
+        some += large[std::size_t(t)];
+    }
+    EXPECT_EQ(differ, 0);
+    EXPECT_GT(some, triangles / 10);
+    EXPECT_LT(some, triangles * 9 / 10);
+    WallCoverage whole(sight, {0.5, 0});
+    whole.show(WholeStrip{}, {400, 800}, 1'000'000);
+    EXPECT_EQ(whole.share(), 1.0);
+    whole.forget();
+    whole.show(SliceView{}, {400, 800}, 1'000'000);
+    EXPECT_EQ(whole.share(), 0.0) << "a slice is no picture of the wall";
+}
+
+TEST_F(WallCoverageTest, AStripIsReadNoFasterThanTheEyeWanders) {
+    // Four fields of the eye take four times as long.
+    const glm::ivec2 size(400, 350);
+    ASSERT_EQ(std::int64_t(size.x) * size.y, 4 * eyeFieldPixels);
+    WallCoverage coverage(sight, {0.1, 300});
+    coverage.show(WholeStrip{}, size, 1'199'000);
+    EXPECT_EQ(coverage.share(), 0.0);
+    coverage.show(WholeStrip{}, size, 1'000);
+    EXPECT_EQ(coverage.share(), 1.0);
+    // What is smaller than a field is read in a fixation.
+    WallCoverage small(sight, {0.1, 300});
+    small.show(WholeStrip{}, {100, 200}, 300'000);
+    EXPECT_EQ(small.share(), 1.0);
+}
+
+TEST_F(WallCoverageTest, WhatWasKeptIsAdded) {
+    WallCoverage before(sight, {0.5, 300}), after(sight, {0.5, 300}), both(sight, {0.5, 300});
+    before.show(onAxis(20.0), {512, 512}, 200'000);
+    after.show(onAxis(21.0), {512, 512}, 200'000);
+    both.show(onAxis(20.0), {512, 512}, 200'000);
+    both.show(onAxis(21.0), {512, 512}, 200'000);
+    after.add(before.times());
+    EXPECT_EQ(after.times(), both.times());
+    EXPECT_GT(after.share(), 0.0);
+}
+
+TEST_F(WallCoverageTest, ASingleTriangleBetweenSeenOnesCounts) {
+    WallCoverage coverage(sight, atOnce);
+    std::vector<std::uint32_t> times(std::size_t(triangles), 1);
+    // One alone, two that join each other, one on the seam.
+    const auto pair = sight->neighbours()[2000];
+    const int second = std::max({pair.x, pair.y, pair.z});
+    const int seam = int(std::find_if(sight->facets().begin(), sight->facets().end(),
+                                      [](const auto& facet) { return facet.flat.x > 0.99f; }) -
+                         sight->facets().begin()) +
+                     120 * 40;
+    for (const int t : {500, 2000, second, seam})
+        times[std::size_t(t)] = 0;
+    coverage.add(times);
+    const auto seen = coverage.seenTriangles();
+    EXPECT_TRUE(seen[500]);
+    EXPECT_FALSE(seen[2000]);
+    EXPECT_FALSE(seen[std::size_t(second)]);
+    EXPECT_TRUE(seen[std::size_t(seam)]);
+    EXPECT_FALSE(coverage.shownTriangles()[500]);
+    EXPECT_NEAR(coverage.share(), areaMm2(seen) / sight->areaMm2(), 1e-6);
+}
+
+// Those of the built-in looks that show the wall, by what their descriptions say of it.
+TEST(DrawnWall, OpticsShowTheWallOrLetTheEyeThrough) {
+    const std::set<std::string> opaque{"mucosa", "surface", "skin"};
+    for (const std::string& name : opticsPresets()) {
+        if (name.starts_with("bonsai") || name.starts_with("engine") || name.starts_with("head"))
+            continue;  // not of a CT
+        EXPECT_EQ(drawsWall(*opticsPreset(name)), opaque.contains(name)) << name;
+    }
+    Optics optics = *opticsPreset("mucosa");
+    const auto with = [&](const auto& change) {
+        Optics changed = optics;
+        change(changed);
+        return drawsWall(changed);
+    };
+    EXPECT_FALSE(with([](Optics& o) { o.shading = false; }));
+    EXPECT_FALSE(with([](Optics& o) { o.light.diffuse = 0.0; }));
+    EXPECT_FALSE(with([](Optics& o) { o.light.halfDepthMm = 0.1; }));
+    EXPECT_FALSE(with([](Optics& o) { o.composition = Composition::maximumIntensity; }));
+    EXPECT_TRUE(with([](Optics& o) { o.composition = Composition::firstHit; }));
+    EXPECT_FALSE(with([](Optics& o) {
+        for (auto& point : o.transferFunction.points)
+            point.color = glm::dvec3(0.02);
+    }));
+    EXPECT_FALSE(with([](Optics& o) {
+        for (auto& point : o.transferFunction.points)
+            point.opacity *= 0.3;
+    }));
+    // Fog in the gas.
+    EXPECT_FALSE(with([](Optics& o) {
+        o.transferFunction.points.front().hu = -1001.0;
+        o.transferFunction.points.front().opacity = 0.2;
+    }));
+    // A row of a 2-D function that the wall's steepness meets, and one that it does not.
+    const auto rowAt = [&](double gradient) {
+        return with([&](Optics& o) {
+            o.preIntegrated = false;
+            o.transferFunction.rows = {{gradient, o.transferFunction.points}};
+            for (auto& point : o.transferFunction.points)
+                point.opacity = 0.0;
+        });
+    };
+    EXPECT_TRUE(rowAt(100.0));
+    EXPECT_FALSE(rowAt(5000.0));
 }
 
 TEST_F(WallCoverageTest, RaysMeetTheWallWhereTheMapHasIt) {
@@ -197,9 +381,10 @@ TEST_F(StripPainterTest, DiscsHoldWhatIsWithinTheRadiusAcrossTheSeamToo) {
 
 TEST_F(StripPainterTest, WhatHasNotBeenSeenHasAColourAndMarksLieOverIt) {
     const auto painter = painterOf(sight);
-    WallCoverage coverage(sight);
-    coverage.show(onAxis(20.0), {512, 512});
-    const auto paint = painter->paint({}, coverage.seenTriangles());
+    WallCoverage coverage(sight, atOnce);
+    show(coverage, onAxis(20.0));
+    const auto counted = coverage.seenTriangles();
+    const auto paint = painter->paint({}, counted);
     ASSERT_TRUE(checkWallPaint(*paint));
     int seen = 0, unseen = 0;
     for (int t = 0; t < triangles; ++t) {
@@ -210,8 +395,8 @@ TEST_F(StripPainterTest, WhatHasNotBeenSeenHasAColourAndMarksLieOverIt) {
         const glm::u8vec4 color = paint->at(flat);
         // All triangles around it are alike, so that smoothing leaves its middle alone.
         if (color.a != 0 && color.a != 150) continue;
-        EXPECT_EQ(color.a == 0, coverage.seen(t));
-        (coverage.seen(t) ? seen : unseen)++;
+        EXPECT_EQ(color.a == 0, counted[std::size_t(t)] != 0);
+        (counted[std::size_t(t)] ? seen : unseen)++;
     }
     EXPECT_GT(seen, 500);
     EXPECT_GT(unseen, 500);
@@ -247,21 +432,18 @@ TEST_F(BridgedWallTest, ABridgeIsNeverSeenAndNoPartOfTheWallsArea) {
     for (int t = 0; t < triangles; ++t)
         if (isBridged(middle(t).z)) bridgeMm2 += sight->facets()[std::size_t(t)].areaMm2;
     EXPECT_NEAR(withBridge->areaMm2() + bridgeMm2, sight->areaMm2(), 1e-3);
-    WallCoverage coverage(withBridge), plain(sight);
+    WallCoverage coverage(withBridge, atOnce), plain(sight, atOnce);
     for (double z = 1.0; z < 60.0; z += 3.0) {
-        coverage.show(onAxis(z), {512, 512});
-        plain.show(onAxis(z), {512, 512});
+        show(coverage, onAxis(z));
+        show(plain, onAxis(z));
     }
-    double seenMm2 = 0.0;
-    for (int t = 0; t < triangles; ++t) {
-        EXPECT_EQ(coverage.seen(t), plain.seen(t) && !isBridged(middle(t).z));
-        if (coverage.seen(t)) seenMm2 += sight->facets()[std::size_t(t)].areaMm2;
-    }
-    EXPECT_NEAR(coverage.share(), seenMm2 / withBridge->areaMm2(), 1e-6);
+    for (int t = 0; t < triangles; ++t)
+        EXPECT_EQ(isShown(coverage, t), isShown(plain, t) && !isBridged(middle(t).z));
+    EXPECT_NEAR(coverage.share(), areaMm2(coverage.seenTriangles()) / withBridge->areaMm2(), 1e-6);
     for (int t = 0; t < triangles; ++t) {
         const glm::dvec3 inward(sight->facets()[std::size_t(t)].inward);
         const glm::dvec3 up = std::abs(inward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-        coverage.show({middle(t) + 3.2 * inward, -inward, up, 90.0}, {512, 512});
+        show(coverage, {middle(t) + 3.2 * inward, -inward, up, 90.0});
     }
     EXPECT_EQ(coverage.share(), 1.0) << "all of the wall that there is";
 }

@@ -483,6 +483,26 @@
         <source>F&amp;indings</source>
         <translation>Bef&amp;unde</translation>
     </message>
+    <message>
+        <source>Previous missed patch of the wall</source>
+        <translation>Vorige übersehene Stelle der Wand</translation>
+    </message>
+    <message>
+        <source>Next missed patch of the wall</source>
+        <translation>Nächste übersehene Stelle der Wand</translation>
+    </message>
+    <message>
+        <source>Show what has been seen and missed</source>
+        <translation>Zeigen, was gesehen und was übersehen wurde</translation>
+    </message>
+    <message>
+        <source>Missed</source>
+        <translation>Übersehen</translation>
+    </message>
+    <message>
+        <source>Save a report of what has been seen…</source>
+        <translation>Bericht über das Gesehene speichern …</translation>
+    </message>
 </context>
 <context>
     <name>Help</name>
@@ -1409,6 +1429,120 @@
     </message>
 </context>
 <context>
+    <name>haustra::window::MissedPanel</name>
+    <message>
+        <source>This case has not been flattened.</source>
+        <translation>Für diesen Fall gibt es keine Abwicklung.</translation>
+    </message>
+    <message>
+        <source>This server does not keep what has been seen.</source>
+        <translation>Dieser Server führt nicht Buch über das Gesehene.</translation>
+    </message>
+    <message>
+        <source>go to a missed patch</source>
+        <translation>zu einer übersehenen Stelle gehen</translation>
+    </message>
+    <message>
+        <source>Previous</source>
+        <translation>Vorige</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>Nächste</translation>
+    </message>
+    <message>
+        <source>Save a report…</source>
+        <translation>Bericht speichern …</translation>
+    </message>
+    <message>
+        <source>Share of the wall that has been seen</source>
+        <translation>Anteil der Wand, der gesehen wurde</translation>
+    </message>
+    <message>
+        <source>What every reader has seen of this wall, and missed, as a JSON file</source>
+        <translation>Was jeder Befunder von dieser Wand gesehen und übersehen hat, als JSON-Datei</translation>
+    </message>
+    <message>
+        <source> pixels/mm</source>
+        <translation> Pixel/mm</translation>
+    </message>
+    <message>
+        <source>How large a place must have been on screen to count as seen</source>
+        <translation>Wie groß eine Stelle auf dem Schirm gewesen sein muss, um als gesehen zu gelten</translation>
+    </message>
+    <message>
+        <source> ms</source>
+        <translation> ms</translation>
+    </message>
+    <message>
+        <source>How long a place must have been on screen to count as seen</source>
+        <translation>Wie lange eine Stelle auf dem Schirm gewesen sein muss, um als gesehen zu gelten</translation>
+    </message>
+    <message>
+        <source>A place counts as seen that has been on screen so large, for so long in all. Each choice has a record of its own.</source>
+        <translation>Als gesehen gilt eine Stelle, die so groß und insgesamt so lange auf dem Schirm war. Über jede Wahl wird eigens Buch geführt.</translation>
+    </message>
+    <message>
+        <source>Missed patches of the wall, the largest first</source>
+        <translation>Übersehene Stellen der Wand, die größten zuerst</translation>
+    </message>
+    <message>
+        <source>mm²</source>
+        <translation>mm²</translation>
+    </message>
+    <message>
+        <source>mm from the rectum</source>
+        <translation>mm vom Rektum</translation>
+    </message>
+    <message>
+        <source>Seen from</source>
+        <translation>Gesehen ab</translation>
+    </message>
+    <message>
+        <source>No patch of 300 mm² or more has been missed.</source>
+        <translation>Keine Stelle ab 300 mm² wurde übersehen.</translation>
+    </message>
+    <message>
+        <source>No other missed patch on this side of the list.</source>
+        <translation>Auf dieser Seite der Liste ist keine weitere übersehene Stelle.</translation>
+    </message>
+    <message>
+        <source>%1 % of the wall seen</source>
+        <translation>%1 % der Wand gesehen</translation>
+    </message>
+    <message>
+        <source>asking…</source>
+        <translation>wird gefragt …</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n patch(es) of 300 mm² or more missed, %1 cm² together</source>
+        <translation>
+            <numerusform>%n übersehene Stelle ab 300 mm², %1 cm²</numerusform>
+            <numerusform>%n übersehene Stellen ab 300 mm², zusammen %1 cm²</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>It is not kept: with this session it is forgotten.</source>
+        <translation>Es wird nicht behalten: mit dieser Sitzung ist es vergessen.</translation>
+    </message>
+    <message>
+        <source>Save a report of what has been seen</source>
+        <translation>Bericht über das Gesehene speichern</translation>
+    </message>
+    <message>
+        <source>Reports (*.json)</source>
+        <translation>Berichte (*.json)</translation>
+    </message>
+    <message>
+        <source>Report saved: %1</source>
+        <translation>Bericht gespeichert: %1</translation>
+    </message>
+    <message>
+        <source>cannot write %1: %2</source>
+        <translation>%1 kann nicht geschrieben werden: %2</translation>
+    </message>
+</context>
+<context>
     <name>haustra::window::Notices</name>
     <message>
         <source>Dismiss this notice</source>
@@ -1994,6 +2128,14 @@
     <message>
         <source>Findings</source>
         <translation>Befunde</translation>
+    </message>
+    <message>
+        <source>Seen and missed</source>
+        <translation>Gesehen und übersehen</translation>
+    </message>
+    <message>
+        <source>wall seen %1 %, not kept</source>
+        <translation>Wand gesehen %1 %, nicht behalten</translation>
     </message>
 </context>
 <context>

@@ -36,6 +36,16 @@
     </message>
 </context>
 <context>
+    <name>haustra::window::MissedPanel</name>
+    <message numerus="yes">
+        <source>%n patch(es) of 300 mm² or more missed, %1 cm² together</source>
+        <translation>
+            <numerusform>%n patch of 300 mm² or more missed, %1 cm²</numerusform>
+            <numerusform>%n patches of 300 mm² or more missed, %1 cm² together</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>haustra::window::Notices</name>
     <message numerus="yes">
         <source>%n bookmark(s) will be saved when the server is back.</source>

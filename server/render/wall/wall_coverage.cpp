@@ -1,10 +1,13 @@
 #include "render/wall/wall_coverage.h"
 
+#include "core/missed_patches.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <type_traits>
 
 namespace haustra::render {
 
@@ -63,7 +66,10 @@ private:
 
 }  // namespace
 
-WallCoverage::WallCoverage(std::shared_ptr<const WallSight> sight) : sight_(std::move(sight)) {
+WallCoverage::WallCoverage(std::shared_ptr<const WallSight> sight, const SeenLimits& limits)
+    : sight_(std::move(sight)),
+      limits_(limits),
+      enough_(std::uint32_t(std::max(limits.leastMs * 1000, 1))) {
     forget();
 }
 
@@ -82,36 +88,59 @@ void WallCoverage::makeCells() {
             low = glm::min(low, facets[std::size_t(t)].middleMm);
             high = glm::max(high, facets[std::size_t(t)].middleMm);
         }
-        unseenTriangles_ += triangles.size();
         cells_.push_back(
             {0.5f * (low + high), 0.5f * glm::distance(low, high), std::move(triangles)});
     }
 }
 
 void WallCoverage::forget() {
-    seen_.assign(sight_->facets().size(), 0);
-    unseenTriangles_ = 0;
-    unseenMm2_ = sight_->areaMm2();
+    times_.assign(sight_->facets().size(), 0);
+    last_ = {};
     makeCells();
 }
 
-double WallCoverage::share() const {
-    if (unseenTriangles_ == 0) return 1.0;
-    return std::clamp(1.0 - unseenMm2_ / sight_->areaMm2(), 0.0, 1.0);
+void WallCoverage::add(std::span<const std::uint32_t> times) {
+    for (std::size_t t = 0; t < times_.size(); ++t)
+        times_[t] += std::min(times[t], enough_ - times_[t]);
 }
 
-int WallCoverage::show(const Camera& camera, glm::ivec2 size) {
+int WallCoverage::show(const ViewState& shown, glm::ivec2 size, std::int64_t microseconds) {
+    Picture& last = last_[shown.index()];
+    if (last.size != size || last.shown != shown) {
+        last = {shown, size, {}};
+        std::visit(
+            [&](const auto& what) {
+                if constexpr (requires { collect(what, size, last.triangles); })
+                    collect(what, size, last.triangles);
+            },
+            shown);
+    }
+    const std::int64_t pixels = std::int64_t(size.x) * size.y;
+    if (!std::holds_alternative<Camera>(shown))
+        microseconds = microseconds * eyeFieldPixels / std::max(pixels, eyeFieldPixels);
+    const auto more = std::uint32_t(std::clamp<std::int64_t>(microseconds, 0, enough_));
+    int added = 0;
+    for (const int triangle : last.triangles) {
+        std::uint32_t& time = times_[std::size_t(triangle)];
+        added += more > 0 && time < enough_;
+        time += std::min(more, enough_ - time);
+    }
+    return added;
+}
+
+void WallCoverage::collect(const Camera& camera, glm::ivec2 size, std::vector<int>& triangles) {
     const Sight sight(camera, size);
     const auto& facets = sight_->facets();
     const glm::vec3 eye(camera.positionMm - sight_->originMm());
-    const float nearest = float(seenLimits.nearestMm), farthest = float(seenLimits.farthestMm),
-                leastCosine = float(std::cos(glm::radians(seenLimits.mostAngleDegrees)));
+    const float nearest = float(sightLimits.nearestMm), farthest = float(sightLimits.farthestMm),
+                leastCosine = float(std::cos(glm::radians(sightLimits.mostAngleDegrees))),
+                mostPixelMm = float(1.0 / limits_.pixelsPerMm);
     const auto shows = [&](int triangle) {
         const WallSight::Facet& facet = facets[std::size_t(triangle)];
         const glm::vec3 fromEye = facet.middleMm - eye;
         const auto [direction, distance] = sight.towards(fromEye);
         if (!(distance >= nearest && distance <= farthest) ||
-            sight.pixelMm(distance) > float(seenLimits.mostPixelMm) ||
+            sight.pixelMm(distance) > mostPixelMm ||
             -glm::dot(direction, facet.inward) < leastCosine || !sight.inPicture(fromEye))
             return false;
         // Parallel rays start in the camera's plane, each before its own place.
@@ -121,21 +150,67 @@ int WallCoverage::show(const Camera& camera, glm::ivec2 size) {
                 : camera.positionMm;
         return !sight_->hides(from, triangle);
     };
-    int first = 0;
     for (Cell& cell : cells_) {
         const glm::vec3 fromEye = cell.middleMm - eye;
         // Of an orthographic camera the way across counts too, and is bounded by the picture.
         if (!sight.parallel() && glm::length(fromEye) > farthest + cell.radiusMm) continue;
         std::erase_if(cell.unseen, [&](int triangle) {
-            if (!shows(triangle)) return false;
-            seen_[std::size_t(triangle)] = 1;
-            unseenMm2_ -= double(facets[std::size_t(triangle)].areaMm2);
-            --unseenTriangles_;
-            ++first;
-            return true;
+            if (isSeen(triangle)) return true;
+            if (shows(triangle)) triangles.push_back(triangle);
+            return false;
         });
     }
-    return first;
+}
+
+void WallCoverage::collect(const FlatWindow& window, glm::ivec2 size, std::vector<int>& triangles) {
+    collectLarge(window.pixelsPerUnit, &window, size, triangles);
+}
+
+void WallCoverage::collect(const WholeStrip&, glm::ivec2 size, std::vector<int>& triangles) {
+    const StripLayout layout = layOutStrip(sight_->map().height, size);
+    collectLarge(layout.columns.front().window.pixelsPerUnit, nullptr, size, triangles);
+}
+
+// Within a window, which repeats beyond the seam; null: everywhere.
+void WallCoverage::collectLarge(double pixelsPerUnit, const FlatWindow* window, glm::ivec2 size,
+                                std::vector<int>& triangles) {
+    const glm::dvec2 half = 0.5 * glm::dvec2(size);
+    for (Cell& cell : cells_) {
+        std::erase_if(cell.unseen, [&](int triangle) {
+            if (isSeen(triangle)) return true;
+            const WallSight::Facet& facet = sight_->facets()[std::size_t(triangle)];
+            if (pixelsPerUnit * double(facet.circumferencesPerMm) < limits_.pixelsPerMm)
+                return false;
+            if (window) {
+                glm::dvec2 aside = window->center - glm::dvec2(facet.flat);
+                aside.x -= std::round(aside.x);
+                aside = glm::abs(aside) * pixelsPerUnit;
+                if (aside.x > half.x || aside.y > half.y) return false;
+            }
+            triangles.push_back(triangle);
+            return false;
+        });
+    }
+}
+
+std::vector<std::uint8_t> WallCoverage::shownTriangles() const {
+    std::vector<std::uint8_t> shown(times_.size());
+    for (std::size_t t = 0; t < times_.size(); ++t)
+        shown[t] = isSeen(int(t));
+    return shown;
+}
+
+std::vector<std::uint8_t> WallCoverage::seenTriangles() const {
+    return withoutSingles(sight_->neighbours(), shownTriangles(), sight_->bridges());
+}
+
+double WallCoverage::share() const {
+    const auto seen = seenTriangles();
+    double unseenMm2 = 0.0;
+    for (std::size_t t = 0; t < seen.size(); ++t)
+        if (!seen[t] && !sight_->isBridge(int(t))) unseenMm2 += double(sight_->facets()[t].areaMm2);
+    if (unseenMm2 == 0.0) return 1.0;
+    return std::clamp(1.0 - unseenMm2 / sight_->areaMm2(), 0.0, 1.0);
 }
 
 }  // namespace haustra::render

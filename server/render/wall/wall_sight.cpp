@@ -1,5 +1,7 @@
 #include "render/wall/wall_sight.h"
 
+#include "core/missed_patches.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -33,6 +35,20 @@ RTCRay rayFrom(glm::vec3 from, glm::vec3 along) {
     return ray;
 }
 
+/// The lesser singular value of the map from the triangle's plane to the strip, which the
+/// triangle's sides define: that of the 2×2 matrix M from one to the other, from |M|² and det M.
+float leastStretch(glm::dvec3 ab, glm::dvec3 ac, glm::dvec2 flatAb, glm::dvec2 flatAc) {
+    const double length = glm::length(ab), doubled = glm::length(glm::cross(ab, ac));
+    if (!(doubled > 0.0)) return 0.0f;
+    // The sides in axes along ab and across it: (length, 0) and `c`.
+    const glm::dvec2 c(glm::dot(ab, ac) / length, doubled / length);
+    const glm::dvec2 along = flatAb / length, across = (flatAc - c.x * along) / c.y;
+    const double squares = glm::dot(along, along) + glm::dot(across, across);
+    const double det = along.x * across.y - along.y * across.x;
+    const double apart = std::sqrt(std::max(squares * squares - 4.0 * det * det, 0.0));
+    return float(std::sqrt(std::max(0.5 * (squares - apart), 0.0)));
+}
+
 }  // namespace
 
 WallSight::WallSight(std::shared_ptr<const FlatMap> map)
@@ -56,11 +72,15 @@ Result<std::shared_ptr<const WallSight>> WallSight::of(std::shared_ptr<const Fla
                          c = mesh.vertices[std::size_t(t.z)];
         const glm::dvec3 outward = glm::cross(b - a, c - a);
         const double doubled = glm::length(outward);
+        const auto flat = [&](int corner) { return made->map_->flat[std::size_t(t[corner])]; };
         made->facets_.push_back({glm::vec3((a + b + c) / 3.0 - made->originMm_),
                                  doubled > 0.0 ? glm::vec3(-outward / doubled) : glm::vec3(0.0f),
-                                 float(0.5 * doubled)});
+                                 float(0.5 * doubled),
+                                 glm::vec2((flat(0) + flat(1) + flat(2)) / 3.0),
+                                 leastStretch(b - a, c - a, flat(1) - flat(0), flat(2) - flat(0))});
         if (!made->isBridge(int(made->facets_.size()) - 1)) made->areaMm2_ += 0.5 * doubled;
     }
+    made->neighbours_ = neighboursOf(mesh);
 
     // One thread, so that the tree is the same each time and no case starts threads of its own.
     Tree& tree = *made->tree_;

@@ -33,6 +33,10 @@ public:
         glm::vec3 middleMm{0.0f};  ///< from originMm()
         glm::vec3 inward{0.0f};    ///< unit, into the lumen; zero where it has no area
         float areaMm2 = 0.0f;
+        glm::vec2 flat{0.0f};  ///< of its middle
+        /// How long a millimetre on it is in the strip, in circumferences, in the direction in
+        /// which it is the shortest; 0 where it has no area.
+        float circumferencesPerMm = 0.0f;
     };
     const FlatMap& map() const { return *map_; }
     glm::dvec3 originMm() const { return originMm_; }
@@ -42,6 +46,10 @@ public:
         return !bridged_.empty() && bridged_[std::size_t(triangle)] != 0;
     }
     bool hasBridges() const { return !bridged_.empty(); }
+    /// For each triangle whether it is a bridge's; empty: none is.
+    const std::vector<std::uint8_t>& bridges() const { return bridged_; }
+    /// Across the edges of each triangle (core/missed_patches.h), the seam too.
+    const std::vector<glm::ivec3>& neighbours() const { return neighbours_; }
 
     /// Where a ray first meets the surface, from whichever side.
     struct Place {
@@ -65,6 +73,7 @@ private:
     glm::dvec3 originMm_{0.0};
     std::vector<std::uint8_t> bridged_;  // empty: none is
     std::vector<Facet> facets_;
+    std::vector<glm::ivec3> neighbours_;
     double areaMm2_ = 0.0;
     std::unique_ptr<Tree> tree_;
 };

@@ -1,0 +1,20 @@
+// From where a patch of the wall that was missed is seen.
+#pragma once
+
+#include "core/camera.h"
+#include "core/centerline.h"
+#include "core/missed_patches.h"
+#include "render/wall/wall_sight.h"
+
+namespace haustra::render {
+
+/// The camera that shows the most of the patch's area in a square picture, by 64 of its triangles
+/// at most, of those that stand on the path up to 30 mm before and behind the patch's arc, and of
+/// those that stand before its centre: straight, and slanting by 25° and 50° to eight sides, as far
+/// from it as shows all of it, but in the nearer six tenths of the way to the wall across. They
+/// look at the centre, the colon's direction towards the cecum up. What is shown is as WallCoverage
+/// counts it, whatever the picture's size. Of equally good ones one on the path is taken. `patch`
+/// is of this wall. A millisecond or two.
+Camera reviewCamera(const WallSight& sight, const MissedPatch& patch, const Centerline& centerline);
+
+}  // namespace haustra::render

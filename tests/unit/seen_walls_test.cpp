@@ -1,0 +1,121 @@
+// What readers have seen is kept, each reader's for itself, and nothing that was kept is lost.
+#include "records/seen_walls.h"
+
+#include "protocol/limits.h"
+#include "temporary_folder.h"
+
+#include <numeric>
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+namespace haustra::records {
+namespace {
+
+class SeenWalls : public ::testing::Test {
+protected:
+    SeenStore open() {
+        auto store = SeenStore::open(file_);
+        EXPECT_TRUE(store) << describe(store.error());
+        return std::move(*store);
+    }
+    static Ledger ledger(const std::string& reader, const std::string& wall,
+                         std::vector<std::uint32_t> times, SeenLimits limits = {}) {
+        return {{reader, wall, limits}, "a case", "a scan", std::move(times), 0.25};
+    }
+    static void keep(SeenStore& store, const std::vector<Ledger>& ledgers) {
+        const auto kept = store.keep(ledgers);
+        ASSERT_TRUE(kept) << describe(kept.error());
+        for (const auto& one : *kept)
+            ASSERT_TRUE(one) << describe(one.error());
+    }
+    static std::vector<std::uint32_t> timesOf(SeenStore& store, const LedgerKey& key) {
+        const auto found = store.find(key);
+        EXPECT_TRUE(found) << describe(found.error());
+        return found && *found ? (*found)->times : std::vector<std::uint32_t>();
+    }
+    void run(const std::string& sql) {
+        sqlite3* database = nullptr;
+        ASSERT_EQ(sqlite3_open(file_.c_str(), &database), SQLITE_OK);
+        EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+            << sqlite3_errmsg(database);
+        sqlite3_close(database);
+    }
+
+    tests::TemporaryFolder folder_;
+    const std::filesystem::path file_ = folder_.path() / "records.sqlite3";
+};
+
+TEST_F(SeenWalls, AreThereAfterReopeningEachForItself) {
+    std::vector<std::uint32_t> times(100'000);
+    for (std::size_t t = 0; t < times.size(); ++t)
+        times[t] = t % 7 == 0 ? 300'000 : std::uint32_t(t * 2654435761u % 300'000);
+    const SeenLimits strict{2.0, 1000};
+    {
+        SeenStore store = open();
+        keep(store, {ledger("ada", "w", times), ledger("ada", "w", {1, 2}, strict),
+                     ledger("bob'; --", "w", {3}), ledger("ada", "another wall", {4})});
+    }
+    SeenStore store = open();
+    EXPECT_EQ(timesOf(store, {"ada", "w", {}}), times);
+    EXPECT_EQ(timesOf(store, {"ada", "w", strict}), std::vector<std::uint32_t>({1, 2}));
+    EXPECT_EQ(timesOf(store, {"bob'; --", "w", {}}), std::vector<std::uint32_t>({3}));
+    EXPECT_EQ(timesOf(store, {"ada", "another wall", {}}), std::vector<std::uint32_t>({4}));
+    EXPECT_FALSE(*store.find({"eve", "w", {}}));
+    const auto all = store.ofWall("w");
+    ASSERT_TRUE(all);
+    EXPECT_EQ(all->size(), 3u);
+    for (const Ledger& one : *all) {
+        EXPECT_EQ(one.caseName, "a case");
+        EXPECT_EQ(one.share, 0.25);
+        EXPECT_EQ(one.changedUtc.size(), 20u);
+    }
+    ASSERT_TRUE(store.forget({"ada", "w", {}}));
+    EXPECT_FALSE(*store.find({"ada", "w", {}}));
+    EXPECT_EQ(timesOf(store, {"bob'; --", "w", {}}), std::vector<std::uint32_t>({3}));
+}
+
+TEST_F(SeenWalls, TheLongerTimeCounts) {
+    SeenStore store = open(), other = open();
+    keep(store, {ledger("ada", "w", {5, 0, 9})});
+    keep(other, {ledger("ada", "w", {1, 7, 9})});
+    EXPECT_EQ(timesOf(store, {"ada", "w", {}}), std::vector<std::uint32_t>({5, 7, 9}));
+}
+
+TEST_F(SeenWalls, ManyReadersHaveRoomAndNotAnyNumber) {
+    SeenStore store = open();
+    std::vector<Ledger> all;
+    for (int n = 0; n < protocol::maxWallLedgers; ++n)
+        all.push_back(ledger("reader " + std::to_string(n), "w", {std::uint32_t(n)}));
+    keep(store, all);
+    const auto more =
+        store.keep(std::vector{ledger("one too many", "w", {1}), ledger("reader 0", "w", {99}),
+                               ledger("one too many", "another", {1})});
+    ASSERT_TRUE(more);
+    EXPECT_FALSE((*more)[0]);
+    EXPECT_TRUE((*more)[1]);
+    EXPECT_TRUE((*more)[2]);
+    EXPECT_EQ(timesOf(store, {"reader 0", "w", {}}), std::vector<std::uint32_t>({99}));
+}
+
+TEST_F(SeenWalls, DamageIsToldAndNotOverwritten) {
+    {
+        SeenStore store = open();
+        keep(store, {ledger("ada", "w", std::vector<std::uint32_t>(1000, 8))});
+    }
+    for (const char* damage :
+         {"UPDATE seen_walls SET times = x'00'", "UPDATE seen_walls SET triangles = 999",
+          "UPDATE seen_walls SET triangles = 1000000000000", "UPDATE seen_walls SET triangles = -1",
+          "UPDATE seen_walls SET times = ''"}) {
+        run(damage);
+        SeenStore store = open();
+        const auto found = store.find({"ada", "w", {}});
+        ASSERT_FALSE(found) << damage;
+        EXPECT_EQ(found.error().kind, ErrorKind::io);
+        EXPECT_FALSE(store.ofWall("w"));
+        EXPECT_FALSE(store.keep(std::vector{ledger("ada", "w", {1})}));
+    }
+}
+
+}  // namespace
+}  // namespace haustra::records
