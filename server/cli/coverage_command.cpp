@@ -112,8 +112,8 @@ public:
           picture_(picture),
           options_(std::move(options)) {}
 
-    /// --visibility; auto takes the faster on this machine, by the same pictures of those that are
-    /// to be taken.
+    /// --visibility; auto takes what would be done first with all pictures on this machine, told
+    /// from some of them.
     Result<void> choose(const std::vector<CenterlineCamera>& cameras, ProgressBar& bar) {
         if (arguments_.isOptical() || arguments_.visibility == "rays") return {};
         auto made = makeItems();
@@ -130,23 +130,37 @@ public:
                 some.push_back(cameras[n * cameras.size() / count]);
             return some;
         };
-        // The first pictures of rays cost the most, and the GPU's all the same: so many of both
-        // that both have got into their stride, and less of what is plainly slow.
-        const auto few = trial(std::min<std::size_t>(2, cameras.size())),
-                   many = trial(std::min<std::size_t>(48, cameras.size()));
         bar.show("visibility", 0.0);
-        double start = millisecondsNow();
-        std::vector<Visibility> ignored = TRY(byItems(few, {}));
-        const double gpuMs = (millisecondsNow() - start) / double(few.size());
+        std::vector<Visibility> ignored;
+        const auto timed = [&](std::size_t count, const auto& look) -> Result<double> {
+            const auto some = trial(count);
+            const double start = millisecondsNow();
+            TRY(look(some));
+            return millisecondsNow() - start;
+        };
+        const std::size_t all = cameras.size(), few = std::min<std::size_t>(2, all),
+                          some = std::min<std::size_t>(24, all),
+                          more = std::min<std::size_t>(96, all);
         SightOptions quiet = options_;
         quiet.progress = {};
-        std::fill(ignored.begin(), ignored.end(), Visibility::unseen);
-        start = millisecondsNow();
-        TRY(coverage::look(tree_, eyepiece_, many, ignored, quiet));
-        const double raysMs = (millisecondsNow() - start) / double(many.size());
+        const auto byRays = [&](const std::vector<CenterlineCamera>& chosen) {
+            ignored.assign(wall_.mesh.triangles.size(), Visibility::unseen);
+            return coverage::look(tree_, eyepiece_, chosen, ignored, quiet);
+        };
+        const auto byGpu = [&](const std::vector<CenterlineCamera>& chosen) -> Result<void> {
+            TRY(byItems(chosen, {}));
+            return {};
+        };
+        // The GPU's pictures cost the same each. Those of rays cost little once what can be seen
+        // has been seen by the first, so that their cost is a beginning and a slope.
+        const double gpuMs = TRY(timed(few, byGpu)) * double(all) / double(few);
+        const double someMs = TRY(timed(some, byRays)), moreMs = TRY(timed(more, byRays));
+        const double slopeMs =
+            more > some ? std::max(0.0, moreMs - someMs) / double(more - some) : 0.0;
+        const double raysMs = moreMs + slopeMs * double(all - more);
         useGpu_ = gpuMs < raysMs;
-        bar.say(fmt::format("visibility: {}; a picture takes {:.2f} ms by rays, {:.2f} ms by {}",
-                            name(), raysMs, gpuMs, context_->renderer()));
+        bar.say(fmt::format("visibility: {}; about {:.1f} s by rays, {:.1f} s by {}", name(),
+                            raysMs / 1e3, gpuMs / 1e3, context_->renderer()));
         return {};
     }
 
@@ -239,6 +253,11 @@ Result<void> writePictures(const CoverageArguments& arguments, const Inputs& inp
                            const Interruption& interruption) {
     constexpr glm::ivec2 outsideSize(768, 768);
     constexpr int views = 4;
+    std::error_code error;
+    fs::create_directories(arguments.pictures, error);
+    if (error)
+        return fail(ErrorKind::io, "cannot make the folder: " + error.message(),
+                    arguments.pictures.string());
     pictures::Provenance provenance = ownProvenance();
     provenance.facts = {{"case", arguments.caseName},
                         {"view", "coverage"},
@@ -275,12 +294,12 @@ Result<void> writePictures(const CoverageArguments& arguments, const Inputs& inp
     return {};
 }
 
-void print(const CoverageReport& report, double seconds) {
+void print(const CoverageReport& report, double seconds, double lookSeconds) {
     fmt::print(
         "{} {} {} cameras, {} pictures by {}: {:.2f} % of the wall's area, {:.2f} % of its "
-        "triangles, in {:.1f} s\n",
+        "triangles, in {:.1f} s ({:.1f} s of it to see)\n",
         report.mode, report.direction, report.cameras, report.pictures, report.visibility,
-        report.share.areaPercent(), report.share.trianglePercent(), seconds);
+        report.share.areaPercent(), report.share.trianglePercent(), seconds, lookSeconds);
     if (report.clearanceMm > 0.0)
         fmt::print("path: {:.0f} mm, {:.0f} mm of it nearer to the wall than {:.1f} mm\n",
                    report.pathMm, report.narrowMm, report.clearanceMm);
@@ -309,8 +328,9 @@ void print(const CoverageReport& report, double seconds) {
 Result<void> runCoverage(const CoverageArguments& arguments) {
     TRY(checkOutputFile(arguments.report));
     std::error_code error;
-    if (!arguments.pictures.empty() && !fs::is_directory(arguments.pictures, error))
-        return fail(ErrorKind::notFound, "there is no such folder", arguments.pictures.string());
+    if (fs::exists(arguments.pictures, error) && !fs::is_directory(arguments.pictures, error))
+        return fail(ErrorKind::io, "pictures go into a folder, and this is none",
+                    arguments.pictures.string());
     const Colonoscope scope = TRY(readColonoscope(arguments.lens));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     const auto source = TRY(store.openCase(arguments.caseName));
@@ -371,11 +391,14 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
     report.pictures = int(cameras.size());
 
     std::vector<Visibility> seen(wall.mesh.triangles.size(), Visibility::unseen);
+    double lookSeconds = 0.0;
     {
         Looker looker(arguments, tree, wall, eyepiece, picture, options);
         TRY(looker.choose(cameras, bar));
         report.visibility = looker.name();
+        const double start = millisecondsNow();
         TRY(looker.look(cameras, seen, stage("visibility")));
+        lookSeconds = (millisecondsNow() - start) / 1e3;
     }
     report.share = shareOf(wall, seen);
     report.missed = wall.missed(seen);
@@ -426,7 +449,7 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
                            coverageJson(report, wall, seen)));
     if (!arguments.report.empty()) TRY(writeTextFile(arguments.report, coverageJson(report)));
     bar.show("done", 1.0);
-    print(report, (millisecondsNow() - began) / 1e3);
+    print(report, (millisecondsNow() - began) / 1e3, lookSeconds);
     return {};
 }
 
@@ -474,7 +497,7 @@ Command addCoverage(CLI::App& program) {
     command
         ->add_option("--visibility", arguments->visibility,
                      "Of vc and planned: by rays on the CPU, by an item buffer on the GPU, or by "
-                     "whichever takes less time for the first pictures; of oc by rays")
+                     "whichever would be done first, told from some pictures; of oc by rays")
         ->check(CLI::IsMember({"auto", "rays", "gpu"}))
         ->capture_default_str();
     command
@@ -484,9 +507,11 @@ Command addCoverage(CLI::App& program) {
             "with area, centre (LPS, mm) and arc")
         ->type_name("FILE.json");
     command
-        ->add_option("--pictures", arguments->pictures,
-                     "Write pictures into this folder, the wall green where it was seen: front.png "
-                     "and back.png from outside, view-1.png to view-4.png through the lens")
+        ->add_option(
+            "--pictures", arguments->pictures,
+            "Write pictures into this folder (made if it is not there), the wall green where it "
+            "was seen: front.png "
+            "and back.png from outside, view-1.png to view-4.png through the lens")
         ->type_name("FOLDER");
     addThreadsOption(*command, arguments->threads);
     command->callback([arguments, command] {

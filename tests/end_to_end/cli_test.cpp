@@ -265,6 +265,9 @@ void publishWhatIsMissing(store::Case target) {
 
 TEST_F(PreparedPhantom, EachProductIsExportedInEachOfItsFormatsAndInNoOther) {
     publishWhatIsMissing(store::CaseStore::open(store(), false)->createCase("p").value());
+    const auto seen = haustra({"coverage", "p", "--store", store(), "--mode", "vc", "--cameras",
+                               "10", "--visibility", "rays"});
+    ASSERT_EQ(seen.exitCode, 0) << seen.err;
     const auto exported = [&](const std::string& product, const std::string& name) {
         Arguments arguments{"export", "p", product, file(name), "--store", store()};
         if (product == store::product::flatImage)
