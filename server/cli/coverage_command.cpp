@@ -510,8 +510,8 @@ Command addCoverage(CLI::App& program) {
         ->add_option(
             "--pictures", arguments->pictures,
             "Write pictures into this folder (made if it is not there), the wall green where it "
-            "was seen: front.png "
-            "and back.png from outside, view-1.png to view-4.png through the lens")
+            "was seen: front.png and back.png from outside, view-1.png to view-4.png through the "
+            "lens")
         ->type_name("FOLDER");
     addThreadsOption(*command, arguments->threads);
     command->callback([arguments, command] {
