@@ -275,12 +275,12 @@ Result<void> writePictures(const CoverageArguments& arguments, const Inputs& inp
     return {};
 }
 
-void print(const CoverageReport& report, double seconds) {
+void print(const CoverageReport& report, double seconds, double lookSeconds) {
     fmt::print(
         "{} {} {} cameras, {} pictures by {}: {:.2f} % of the wall's area, {:.2f} % of its "
-        "triangles, in {:.1f} s\n",
+        "triangles, in {:.1f} s ({:.1f} s of it to see)\n",
         report.mode, report.direction, report.cameras, report.pictures, report.visibility,
-        report.share.areaPercent(), report.share.trianglePercent(), seconds);
+        report.share.areaPercent(), report.share.trianglePercent(), seconds, lookSeconds);
     if (report.clearanceMm > 0.0)
         fmt::print("path: {:.0f} mm, {:.0f} mm of it nearer to the wall than {:.1f} mm\n",
                    report.pathMm, report.narrowMm, report.clearanceMm);
@@ -371,11 +371,14 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
     report.pictures = int(cameras.size());
 
     std::vector<Visibility> seen(wall.mesh.triangles.size(), Visibility::unseen);
+    double lookSeconds = 0.0;
     {
         Looker looker(arguments, tree, wall, eyepiece, picture, options);
         TRY(looker.choose(cameras, bar));
         report.visibility = looker.name();
+        const double start = millisecondsNow();
         TRY(looker.look(cameras, seen, stage("visibility")));
+        lookSeconds = (millisecondsNow() - start) / 1e3;
     }
     report.share = shareOf(wall, seen);
     report.missed = wall.missed(seen);
@@ -426,7 +429,7 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
                            coverageJson(report, wall, seen)));
     if (!arguments.report.empty()) TRY(writeTextFile(arguments.report, coverageJson(report)));
     bar.show("done", 1.0);
-    print(report, (millisecondsNow() - began) / 1e3);
+    print(report, (millisecondsNow() - began) / 1e3, lookSeconds);
     return {};
 }
 
