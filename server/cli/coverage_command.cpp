@@ -254,7 +254,7 @@ Result<void> writePictures(const CoverageArguments& arguments, const Inputs& inp
     constexpr glm::ivec2 outsideSize(768, 768);
     constexpr int views = 4;
     std::error_code error;
-    fs::create_directories(arguments.pictures, error);
+    fs::create_directory(arguments.pictures, error);
     if (error)
         return fail(ErrorKind::io, "cannot make the folder: " + error.message(),
                     arguments.pictures.string());
@@ -330,6 +330,10 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
     std::error_code error;
     if (fs::exists(arguments.pictures, error) && !fs::is_directory(arguments.pictures, error))
         return fail(ErrorKind::io, "pictures go into a folder, and this is none",
+                    arguments.pictures.string());
+    if (!arguments.pictures.empty() &&
+        !fs::is_directory(fs::absolute(arguments.pictures / "").parent_path().parent_path(), error))
+        return fail(ErrorKind::notFound, "there is no folder to make this one in",
                     arguments.pictures.string());
     const Colonoscope scope = TRY(readColonoscope(arguments.lens));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));

@@ -148,7 +148,7 @@ TEST_F(CoverageCommand, RefusesWhatItCannotDo) {
     refused({"--mode", "vc", "--lens", "x.json"}, 2, "--lens");
     refused({"--mode", "planned", "--direction", "both"}, 2, "--direction");
     refused({"--mode", "oc", "--lens", "nothing.json"}, 1, "nothing.json");
-    refused({"--mode", "vc", "--pictures", "/nowhere"}, 1, "/nowhere");
+    refused({"--mode", "vc", "--pictures", "/nowhere/seen"}, 1, "/nowhere/seen");
     // A case that has not been prepared so far, and none.
     fs::remove_all(store / "cases" / "p");
     refused({"--mode", "vc"}, 1, "p");
