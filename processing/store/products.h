@@ -23,8 +23,8 @@ inline constexpr char ct[] = "ct", source[] = "source", segmentation[] = "segmen
                       cleansedLumen[] = "cleansed-lumen", cleansed[] = "cleansed",
                       lumen[] = "lumen", distance[] = "distance", centerline[] = "centerline",
                       branches[] = "branches", surface[] = "surface", flatMap[] = "flatmap",
-                      findings[] = "findings", coverage[] = "coverage", edits[] = "edits", flatImage[] = "flat-image",
-                      biopsy[] = "biopsy";
+                      findings[] = "findings", coverage[] = "coverage", edits[] = "edits",
+                      flatImage[] = "flat-image", biopsy[] = "biopsy";
 }  // namespace product
 
 /// One product that a case can have.
