@@ -1,5 +1,7 @@
 #include "coverage/eyepiece.h"
 
+#include "coverage/lens_projection.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -144,12 +146,15 @@ PixelBox Eyepiece::boxOf(const std::array<glm::vec3, 3>& corners) const {
     // Around a field of more than a half space the way within it is an arc, not the straight one.
     if (fieldEnd_ > 1.55f) spread *= 1.6f;
     const glm::vec2 toward = aside > 0.0f ? glm::vec2(middle) / aside : glm::vec2(1.0f, 0.0f);
-    const auto pixel = pixelOf(
-        lens_, glm::dvec3(glm::dvec2(toward) * std::sin(double(end)), std::cos(double(end))));
-    if (!pixel) return whole;
+    // As pixelOf does, but for the question whether the lens reaches so far, which it does.
+    const glm::dvec3 d(glm::dvec2(toward) * std::sin(double(end)), std::cos(double(end)));
+    const double pixelsPerMm[2] = {lens_.mu, lens_.mv}, centre[2] = {lens_.u0, lens_.v0};
+    glm::dvec2 pixel;
+    projectTo(lens_.projection, lens_.k.data(), pixelsPerMm, centre, lens_.decentring.data(), d.x,
+              d.y, d.z, &pixel.x);
     const float reach = glm::degrees(end + spread) + 1.0f;
     const float pixels = spread * mostScale_[std::min(std::size_t(reach), mostScale_.size() - 1)];
-    return clipped(glm::vec2(*pixel) - pixels, glm::vec2(*pixel) + pixels);
+    return clipped(glm::vec2(pixel) - pixels, glm::vec2(pixel) + pixels);
 }
 
 }  // namespace haustra::coverage

@@ -131,7 +131,6 @@ public:
             return some;
         };
         bar.show("visibility", 0.0);
-        std::vector<Visibility> ignored;
         const auto timed = [&](std::size_t count, const auto& look) -> Result<double> {
             const auto some = trial(count);
             const double start = millisecondsNow();
@@ -143,21 +142,19 @@ public:
                           more = std::min<std::size_t>(96, all);
         SightOptions quiet = options_;
         quiet.progress = {};
+        begun_.assign(wall_.mesh.triangles.size(), Visibility::unseen);
         const auto byRays = [&](const std::vector<CenterlineCamera>& chosen) {
-            ignored.assign(wall_.mesh.triangles.size(), Visibility::unseen);
-            return coverage::look(tree_, eyepiece_, chosen, ignored, quiet);
+            return coverage::look(tree_, eyepiece_, chosen, begun_, quiet);
         };
         const auto byGpu = [&](const std::vector<CenterlineCamera>& chosen) -> Result<void> {
             TRY(byItems(chosen, {}));
             return {};
         };
         // The GPU's pictures cost the same each. Those of rays cost little once what can be seen
-        // has been seen by the first, so that their cost is a beginning and a slope.
+        // has been seen by the first, so that all the rest cost no more each than the second lot.
         const double gpuMs = TRY(timed(few, byGpu)) * double(all) / double(few);
         const double someMs = TRY(timed(some, byRays)), moreMs = TRY(timed(more, byRays));
-        const double slopeMs =
-            more > some ? std::max(0.0, moreMs - someMs) / double(more - some) : 0.0;
-        const double raysMs = moreMs + slopeMs * double(all - more);
+        const double raysMs = someMs + moreMs * double(all) / double(more);
         useGpu_ = gpuMs < raysMs;
         bar.say(fmt::format("visibility: {}; about {:.1f} s by rays, {:.1f} s by {}", name(),
                             raysMs / 1e3, gpuMs / 1e3, context_->renderer()));
@@ -172,6 +169,8 @@ public:
             addSeen(seen, TRY(byItems(cameras, progress)));
             return {};
         }
+        // What the trial has seen is seen: its pictures are among these.
+        if (!begun_.empty()) addSeen(seen, begun_);
         SightOptions options = options_;
         options.progress = progress;
         return coverage::look(tree_, eyepiece_, cameras, seen, options);
@@ -202,6 +201,7 @@ private:
     PinholePicture picture_;
     SightOptions options_;
     bool useGpu_ = false;
+    std::vector<Visibility> begun_;  ///< by the trial's rays
     std::unique_ptr<gpu::Context> context_;
     std::unique_ptr<render::ItemBuffer> items_;  // before the context
 };

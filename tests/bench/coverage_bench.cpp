@@ -57,12 +57,13 @@ void print(const char* what, const TriMesh& mesh, const std::vector<std::uint8_t
 
 /// Where two ways to see differ, and whether what is seen ends there.
 void compare(const char* what, const TriMesh& mesh, const std::vector<std::uint8_t>& bridged,
-             const std::vector<Visibility>& a, const std::vector<Visibility>& b) {
+             const std::vector<Visibility>& a, const std::vector<Visibility>& b,
+             const std::vector<int>& pictures) {
     const auto neighbours = neighboursOf(mesh);
     const auto observed = [](const std::vector<Visibility>& seen, std::size_t n) {
         return seen[n] != Visibility::unseen;
     };
-    long all = 0, differ = 0, silhouettes = 0, otherwise = 0;
+    long all = 0, differ = 0, silhouettes = 0, otherwise = 0, mostPictures = 0;
     double allMm2 = 0.0, differMm2 = 0.0;
     for (std::size_t n = 0; n < a.size(); ++n) {
         if (bridged[n]) continue;
@@ -74,6 +75,7 @@ void compare(const char* what, const TriMesh& mesh, const std::vector<std::uint8
         otherwise += a[n] != b[n];
         if (observed(a, n) == observed(b, n)) continue;
         ++differ, differMm2 += area;
+        mostPictures = std::max(mostPictures, long(pictures[n]));
         for (int side = 0; side < 3; ++side)
             if (const int other = neighbours[n][side];
                 other >= 0 && observed(b, std::size_t(other)) != observed(b, n)) {
@@ -83,9 +85,10 @@ void compare(const char* what, const TriMesh& mesh, const std::vector<std::uint8
     }
     std::printf(
         "%s: agree on %.4f %% of triangles, %.4f %% of area; %ld differ, %ld of them where "
-        "what is seen ends; partly against fully on %ld more\n",
+        "what is seen ends; none of them is seen in more than %ld pictures; partly against fully "
+        "on %ld more\n",
         what, 100.0 * double(all - differ) / double(all), 100.0 * (1.0 - differMm2 / allMm2),
-        differ, silhouettes, otherwise - differ);
+        differ, silhouettes, mostPictures, otherwise - differ);
 }
 
 Result<void> compareWithGpu(const store::Case& source, const FineWall& fine,
@@ -107,7 +110,15 @@ Result<void> compareWithGpu(const store::Case& source, const FineWall& fine,
     start = {};
     TRY(look(tree, eyepiece, cameras, byRays, {.tellFully = true}));
     start.print("rays, the same pictures", double(cameras.size()));
-    compare("item buffer and rays", fine.mesh, bridged, byItems, byRays);
+    // In how many pictures each is seen, by the pixels' rays.
+    const auto picturesOf = [&](std::span<const CenterlineCamera> some) {
+        std::vector<int> pictures(byItems.size(), 0);
+        for (const CenterlineCamera& camera : some)
+            for (const std::int32_t triangle : trianglesSeen(tree.rays(), eyepiece, camera))
+                ++pictures[std::size_t(triangle)];
+        return pictures;
+    };
+    compare("item buffer and rays", fine.mesh, bridged, byItems, byRays, picturesOf(cameras));
 
     const std::span few = std::span(cameras).first(std::min<std::size_t>(2, cameras.size()));
     std::vector<Visibility> byQueries(byItems.size(), Visibility::unseen),
@@ -119,7 +130,8 @@ Result<void> compareWithGpu(const store::Case& source, const FineWall& fine,
     start.print("occlusion queries", double(few.size()));
     std::printf("  %.0f queries a picture\n", double(queries) / double(few.size()));
     TRY(look(tree, eyepiece, few, fewByRays, {.tellFully = true}));
-    compare("occlusion queries and rays", fine.mesh, bridged, byQueries, fewByRays);
+    compare("occlusion queries and rays", fine.mesh, bridged, byQueries, fewByRays,
+            picturesOf(few));
 
     // What the server has for readers' pictures: its item buffer, and lines of sight by Embree.
     if (!source.find("flatmap")) return {};
