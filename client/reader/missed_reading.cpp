@@ -2,6 +2,9 @@
 
 #include "protocol/capabilities.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace haustra::reader {
 namespace {
 
@@ -13,8 +16,8 @@ constexpr auto askEvery = std::chrono::milliseconds(1000);
 
 void MissedReading::open() {
     wanted_.reset();
-    currentMm_.reset();
-    rank_ = 0;
+    visited_.clear();
+    at_ = 0;
     askedAtShare_.reset();
     asked_ = 0;
     askAfter_ = {};
@@ -31,42 +34,70 @@ const MissedList* MissedReading::list() const {
 
 void MissedReading::update(Clock::time_point now) {
     if (!has() || session_.phase() != Phase::open || !session_.seenShare()) return;
-    const bool waits = asked_ > session_.answeredLedgerRequest();
+    const bool waits = session_.awaits(asked_);
     const bool stale = !list() || askedAtShare_ != session_.seenShare();
-    if (waits || !stale || now < askAfter_ || (!watched_ && !wanted_ && !currentMm_)) return;
+    if (waits || !stale || now < askAfter_ || (!watched_ && !wanted_ && visited_.empty())) return;
     askedAtShare_ = session_.seenShare();
     asked_ = session_.requestMissed();
     askAfter_ = now + askEvery;
 }
 
-std::optional<std::size_t> MissedReading::current() const {
-    if (!currentMm_ || !list()) return std::nullopt;
+std::optional<std::size_t> MissedReading::patchAt(glm::dvec3 placeMm) const {
+    if (!list()) return std::nullopt;
     std::optional<std::size_t> nearest;
     double least = samePatchMm;
     for (std::size_t n = 0; n < list()->patches.size(); ++n) {
-        const double apart = glm::distance(list()->patches[n].place.positionMm, *currentMm_);
+        const double apart = glm::distance(list()->patches[n].place.positionMm, placeMm);
         if (apart < least) least = apart, nearest = n;
     }
     return nearest;
 }
 
-void MissedReading::setCurrent(std::size_t patch) {
-    rank_ = patch;
-    currentMm_ = list()->patches[patch].place.positionMm;
+std::optional<std::size_t> MissedReading::current() const {
+    return visited_.empty() ? std::nullopt : patchAt(visited_[at_]);
 }
 
-// In the place of one that has been seen stands the one after it.
+void MissedReading::setCurrent(std::size_t patch) {
+    visited_.push_back(list()->patches[patch].place.positionMm);
+    at_ = visited_.size() - 1;
+}
+
+std::optional<std::size_t> MissedReading::firstUnvisited() const {
+    const auto& patches = list()->patches;
+    for (std::size_t n = 0; n < patches.size(); ++n) {
+        const bool been =
+            std::any_of(visited_.begin(), visited_.end(), [&](const glm::dvec3& placeMm) {
+                return glm::distance(placeMm, patches[n].place.positionMm) < samePatchMm;
+            });
+        if (!been) return n;
+    }
+    return std::nullopt;
+}
+
 std::optional<MissedPlace> MissedReading::takeWanted(bool& none) {
     none = false;
     if (!wanted_ || !list()) return std::nullopt;
-    const int step = *std::exchange(wanted_, std::nullopt);
-    const auto here = current();
-    std::ptrdiff_t to = std::ptrdiff_t(here.value_or(rank_));
-    if (currentMm_ && (here || step < 0)) to += step;
-    none = to < 0 || to >= std::ptrdiff_t(list()->patches.size());
+    const bool onward = *std::exchange(wanted_, std::nullopt) > 0;
+    // Along the way that was gone, over what has been seen meanwhile.
+    std::optional<std::size_t> to;
+    const auto goTo = [&](std::size_t visit) {
+        to = patchAt(visited_[visit]);
+        if (to) at_ = visit;
+    };
+    if (onward)
+        for (std::size_t n = at_ + 1; n < visited_.size() && !to; ++n)
+            goTo(n);
+    else
+        for (std::size_t n = visited_.empty() ? 0 : at_; n > 0 && !to;)
+            goTo(--n);
+    if (onward && !to) {
+        to = firstUnvisited();
+        if (!to && !list()->patches.empty()) visited_.clear(), to = 0;  // another round
+        if (to) setCurrent(*to);
+    }
+    none = !to;
     if (none) return std::nullopt;
-    setCurrent(std::size_t(to));
-    return list()->patches[std::size_t(to)];
+    return list()->patches[*to];
 }
 
 }  // namespace haustra::reader

@@ -5,6 +5,7 @@
 #include "reader/session.h"
 
 #include <optional>
+#include <vector>
 
 namespace haustra::reader {
 
@@ -31,19 +32,24 @@ public:
     /// The reader is at this one, by a click in the list.
     void setCurrent(std::size_t patch);
 
-    /// The next patch (−1: the previous) is to be gone to, once the list is there.
+    /// A patch is to be gone to, once the list is there: the largest that has not been visited in
+    /// this round, and after the last of them the largest that is left; −1: the one before, of
+    /// those that were visited and are still there.
     void want(int step) { wanted_ = step; }
-    /// The one that is to be gone to now, which becomes the current one. Once; where there is none
-    /// farther on, `none` is set instead.
+    /// The one that is to be gone to now, which becomes the current one. Once; where there is none,
+    /// `none` is set instead.
     std::optional<MissedPlace> takeWanted(bool& none);
 
 private:
+    std::optional<std::size_t> patchAt(glm::dvec3 placeMm) const;
+    std::optional<std::size_t> firstUnvisited() const;
+
     Session& session_;
     bool watched_ = false;
     std::optional<int> wanted_;
-    std::optional<glm::dvec3> currentMm_;  // middle of the one that was gone to last
-    std::size_t rank_ = 0;                 // where it stands, or stood last
-    std::optional<double> askedAtShare_;   // what had been seen when the list was asked for
+    std::vector<glm::dvec3> visited_;     // middles of those that were gone to in this round
+    std::size_t at_ = 0;                  // which of them the reader is at
+    std::optional<double> askedAtShare_;  // what had been seen when the list was asked for
     std::uint64_t asked_ = 0;
     Clock::time_point askAfter_{};
 };

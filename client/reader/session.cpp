@@ -631,8 +631,12 @@ bool Session::refuseQuestion(std::uint64_t request, const Error& error) {
         answeredFindings_ = std::max(answeredFindings_, request);
     else if (question.has_ask_seen() || question.has_set_seen_limits())
         answeredSeen_ = std::max(answeredSeen_, request);
-    else if (neededBy(question) == protocol::capability::ledger)
-        answeredLedger_ = std::max(answeredLedger_, request);
+    else if (question.has_list_missed())
+        missed_.reset();
+    else if (question.has_ask_ledger())
+        ledger_.reset();
+    else if (question.has_ask_seen_report())
+        seenReport_.reset();
     else if (question.has_measure_scan())
         scanAnswers_.push_back({request, tl::make_unexpected(error)});
     else
@@ -737,7 +741,6 @@ void Session::keep(const Message& message, Result<Body> body, std::optional<Body
     if (questions_.erase(message.request()) == 0) return;  // of a case that is left
     if (!body) return giveUp(body.error());
     kept = std::move(*body);
-    answeredLedger_ = std::max(answeredLedger_, message.request());
 }
 
 std::uint64_t Session::setSeenLimits(const SeenLimits& limits) {

@@ -171,8 +171,8 @@ public:
     std::uint64_t missedRevision() const { return missedRevision_; }  ///< of another list another
     const std::optional<LedgerFlags>& ledger() const { return ledger_; }
     const std::optional<SeenReport>& seenReport() const { return seenReport_; }
-    /// Of the newest of these three that was answered or refused.
-    std::uint64_t answeredLedgerRequest() const { return answeredLedger_; }
+    /// Whether one of these three still waits for its answer; once refused there is none.
+    bool awaits(std::uint64_t request) const { return questions_.contains(request); }
 
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
     std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
@@ -328,7 +328,7 @@ private:
     std::optional<MissedList> missed_;
     std::optional<LedgerFlags> ledger_;
     std::optional<SeenReport> seenReport_;
-    std::uint64_t missedRevision_ = 0, answeredLedger_ = 0;
+    std::uint64_t missedRevision_ = 0;
     std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0,
                   casesAsked_ = 0, answeredCases_ = 0;
     std::map<int, ViewportState> viewports_;

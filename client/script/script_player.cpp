@@ -684,8 +684,7 @@ Status Player::run(const SeenLimitsAction& action, ActionReport& report) {
 Status Player::run(const MissedAction& action, ActionReport& report) {
     TRY(mustBeFlattened());
     const auto request = session_.requestMissed(action.leastMm2);
-    TRY(awaitThat([&] { return session_.answeredLedgerRequest() >= request; },
-                  "the list of missed patches"));
+    TRY(awaitThat([&] { return !session_.awaits(request); }, "the list of missed patches"));
     if (!session_.missed()) return noLedger();
     report.missed = *session_.missed();
     return action.json.empty() ? Status{} : writeJson(action.json, toJson(*report.missed), report);
@@ -720,7 +719,7 @@ Status Player::run(const LedgerAction& action, ActionReport& report) {
     const auto request = session_.requestLedger();
     log(session_.takeTold());
     const auto log = log_;
-    TRY(awaitThat([&] { return session_.answeredLedgerRequest() >= request; }, "the ledger"));
+    TRY(awaitThat([&] { return !session_.awaits(request); }, "the ledger"));
     if (!session_.ledger()) return noLedger();
     report.seenShare = session_.ledger()->share;
     return writeJson(action.json, toJson(*session_.ledger(), log), report);
@@ -729,8 +728,7 @@ Status Player::run(const LedgerAction& action, ActionReport& report) {
 Status Player::run(const SeenReportAction& action, ActionReport& report) {
     TRY(mustBeFlattened());
     const auto request = session_.requestSeenReport(action.leastMm2);
-    TRY(awaitThat([&] { return session_.answeredLedgerRequest() >= request; },
-                  "the report of what has been seen"));
+    TRY(awaitThat([&] { return !session_.awaits(request); }, "the report of what has been seen"));
     if (!session_.seenReport()) return noLedger();
     report.seenReport = *session_.seenReport();
     return action.json.empty()

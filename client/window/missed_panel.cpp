@@ -151,9 +151,8 @@ void MissedPanel::look() {
     if (none)
         reading_.tell(reader.missed().list()->patches.empty()
                           ? tr("No patch of 300 mm² or more has been missed.")
-                          : tr("No other missed patch on this side of the list."));
-    if (reportRequest_ > 0 && reader.session().answeredLedgerRequest() >= reportRequest_)
-        writeReport();
+                          : tr("No patch that was visited before is still missed."));
+    if (reportRequest_ > 0 && !reader.session().awaits(reportRequest_)) writeReport();
     reader.missed().setWatched(isVisible());
     const bool has = reader.isOpen() && reader.missed().has();
     for (QWidget* control : {static_cast<QWidget*>(list_), static_cast<QWidget*>(previous_),
@@ -201,6 +200,7 @@ void MissedPanel::fill() {
             item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
         item->setData(0, patchRole, int(n));
     }
+    list_->viewport()->update();
 }
 
 QString MissedPanel::stateText() const {

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <opencv2/ml.hpp>
 
 namespace haustra::cad {
 
 namespace {
+
+constexpr int deepest = 32;  // levels of branches of a tree from a file
 
 // What of a tree's branch and below it counts.
 double below(const std::vector<TreeNode>& tree, std::int32_t at, std::span<const float> features,
@@ -57,14 +60,21 @@ Result<void> checkTrees(const BoostedTrees& boosted, int features) {
         if (!(width >= 0.0f && std::isfinite(width))) return refuse("a width is no length");
     for (const std::vector<TreeNode>& tree : boosted.trees) {
         if (tree.empty()) return refuse("a tree has no root");
+        // So that a walk down both sides ends soon: each node but the root has one parent, and none
+        // is deep.
+        std::vector<int> depth(tree.size(), 0);
         for (std::size_t n = 0; n < tree.size(); ++n) {
             const TreeNode& node = tree[n];
             if (!std::isfinite(node.threshold)) return refuse("a tree's number is not finite");
             if (node.feature < 0) continue;
             if (node.feature >= features) return refuse("a tree asks for a feature there is not");
-            for (const std::int32_t next : {node.left, node.right})
+            for (const std::int32_t next : {node.left, node.right}) {
                 if (next <= std::int32_t(n) || next >= std::int32_t(tree.size()))
                     return refuse("a tree's branch leads nowhere");
+                if (std::exchange(depth[std::size_t(next)], depth[n] + 1) != 0)
+                    return refuse("two branches of a tree lead to one node");
+            }
+            if (depth[n] == deepest) return refuse("a tree is too deep");
         }
     }
     return {};

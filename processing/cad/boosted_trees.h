@@ -28,7 +28,8 @@ struct BoostedTrees {
 };
 
 /// Fails (badInput) where there is no tree, a width for each feature is missing or below 0, a
-/// branch leads back or nowhere, or a feature does not exist.
+/// branch leads back or nowhere, two lead to one node, a tree has more than 32 levels of branches,
+/// or a feature does not exist.
 Result<void> checkTrees(const BoostedTrees& boosted, int features);
 
 /// `rows`: `features` numbers each, as many rows as responses (0 or 1, both kinds). Gentle AdaBoost

@@ -49,22 +49,28 @@ std::vector<std::int32_t> firstAtPlace(const std::vector<glm::dvec3>& vertices) 
     return first;
 }
 
+// Of the samples on the wall's inner side: another loop that lies against this wall has its own
+// nearer ones, but behind it. In the cecum's end all may lie behind; the next inner one is then
+// farther than the axis of any colon from its wall (a cecum of 120 mm is near to bursting), and
+// the nearest of all counts.
 double arcOf(const Centerline& centerline, glm::dvec3 centerMm, glm::dvec3 inward) {
-    double best = std::numeric_limits<double>::infinity(), arc = -1.0;
+    constexpr double widestRadiusMm = 60.0;
+    const double infinity = std::numeric_limits<double>::infinity();
+    double nearest = infinity, inner = infinity, arc = 0.0, innerArc = 0.0;
     for (const CenterlinePoint& sample : centerline.points) {
         const glm::dvec3 from = sample.positionMm - centerMm;
-        const double squared = glm::dot(from, from);
-        if (squared < best && glm::dot(from, inward) > 0.0) best = squared, arc = sample.arcMm;
+        const double mm = glm::length(from);
+        if (mm < nearest) nearest = mm, arc = sample.arcMm;
+        if (mm < inner && glm::dot(from, inward) > 0.0) inner = mm, innerArc = sample.arcMm;
     }
-    return arc >= 0.0 ? arc : nearestArc(centerline, centerMm);
+    return inner <= widestRadiusMm ? innerArc : arc;
 }
 
-/// What remains to know of a patch whose triangles are known.
+/// What remains to know of a patch whose triangles and area are known.
 void complete(const TriMesh& wall, const Centerline& centerline, MissedPatch& patch) {
     glm::dvec3 mean(0.0), middles(0.0);
     for (const std::int32_t triangle : patch.triangles) {
         const double area = 0.5 * glm::length(inwardOf(wall, triangle));
-        patch.areaMm2 += area;
         mean += area * middleOf(wall, triangle);
         middles += middleOf(wall, triangle);
     }
@@ -141,7 +147,7 @@ std::vector<std::uint8_t> withoutSingles(std::span<const glm::ivec3> neighbours,
 std::vector<MissedPatch> missedPatches(const TriMesh& wall, std::span<const glm::ivec3> neighbours,
                                        std::span<const std::uint8_t> seen,
                                        std::span<const std::uint8_t> bridged,
-                                       const Centerline& centerline) {
+                                       const Centerline& centerline, double leastMm2) {
     std::vector<std::uint8_t> taken = withoutSingles(neighbours, seen, bridged);
     std::vector<MissedPatch> patches;
     for (std::size_t start = 0; start < taken.size(); ++start) {
@@ -159,6 +165,9 @@ std::vector<MissedPatch> missedPatches(const TriMesh& wall, std::span<const glm:
             }
         }
         std::sort(patch.triangles.begin(), patch.triangles.end());
+        for (const std::int32_t triangle : patch.triangles)
+            patch.areaMm2 += 0.5 * glm::length(inwardOf(wall, triangle));
+        if (patch.areaMm2 < leastMm2) continue;
         complete(wall, centerline, patch);
         patches.push_back(std::move(patch));
     }

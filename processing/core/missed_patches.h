@@ -35,7 +35,8 @@ struct MissedPatch {
     int centerTriangle = -1;  ///< that the centre lies in
     glm::dvec3 inward{0.0};   ///< unit, into the lumen, of the wall within a few mm of the centre
     /// On the centerline, from the rectum: the sample nearest to the centre of those that lie on
-    /// the wall's inner side there, so that a loop that touches from outside is not taken.
+    /// the wall's inner side there, so that a loop that touches from outside is not taken; where
+    /// that one is twice as far as the nearest of all, this.
     double arcMm = 0.0;
     std::vector<std::int32_t> triangles;  ///< ascending
 };
@@ -43,11 +44,11 @@ struct MissedPatch {
 /// The patches of a wall (counter-clockwise seen from outside) that withoutSingles leaves unseen,
 /// bridges aside, the largest first; of equal areas the one with the lowest triangle first. Areas
 /// add up to that of all unseen triangles. `neighbours` are neighboursOf(wall), which stay the same
-/// whatever is seen; without a centerline all arcs are 0. Sizes must fit. O(n + unseen log unseen +
-/// patches · samples); thread-safe.
+/// whatever is seen; without a centerline all arcs are 0. Smaller ones than `leastMm2` are left
+/// out. Sizes must fit. O(n + unseen log unseen + patches · samples); thread-safe.
 std::vector<MissedPatch> missedPatches(const TriMesh& wall, std::span<const glm::ivec3> neighbours,
                                        std::span<const std::uint8_t> seen,
                                        std::span<const std::uint8_t> bridged,
-                                       const Centerline& centerline);
+                                       const Centerline& centerline, double leastMm2 = 0.0);
 
 }  // namespace haustra

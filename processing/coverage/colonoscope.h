@@ -8,6 +8,9 @@
 
 namespace haustra::coverage {
 
+/// A picture's largest side, pixels: of each a direction is kept.
+inline constexpr int mostScopePixels = 4096;
+
 struct Colonoscope {
     std::string name;
     FisheyeLens lens;

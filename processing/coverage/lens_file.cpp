@@ -15,7 +15,6 @@ using nlohmann::json, nlohmann::ordered_json;
 constexpr const char* projectionNames[] = {"equidistance", "stereographic", "equisolid",
                                            "orthogonal", "perspective"};
 constexpr std::size_t mostBytes = std::size_t(1) << 20;
-constexpr int mostPixels = 1 << 16;
 
 /// Takes numbers out of a lens file and remembers the first thing that is wrong.
 class LensFields {
@@ -145,8 +144,8 @@ Result<Colonoscope> colonoscopeOfText(std::string_view text, const std::string& 
     fields.numbers("depth_of_field_mm", 2, &depth.x);
     fields.numbers("tip_radius_mm", 1, &scope.tipRadiusMm);
     for (const double side : {size.x, size.y})
-        if (!(side >= 1.0 && side <= mostPixels && side == std::floor(side)))
-            fields.wrong("picture_size", "is not within 1 to " + std::to_string(mostPixels));
+        if (!(side >= 1.0 && side <= mostScopePixels && side == std::floor(side)))
+            fields.wrong("picture_size", "is not within 1 to " + std::to_string(mostScopePixels));
     if (!(scope.openRadii.x > 0.0 && scope.openRadii.y > 0.0))
         fields.wrong("open_radii", "is not over 0");
     if (!(scope.fieldDegrees > 0.0 && scope.fieldDegrees <= 360.0))

@@ -93,9 +93,8 @@ Result<Colonoscope> lensOfOpenCvText(const std::string& text, const std::string&
     if (!d) return wrong("the file's distortion_coefficients are no list of finite numbers");
     const auto width = camera.number("image_width", "image_Width"),
                height = camera.number("image_height", "image_Height");
-    constexpr double mostPixels = 1 << 16;
     for (const auto& side : {width, height})
-        if (!side || !(*side >= 1.0 && *side <= mostPixels && *side == std::floor(*side)))
+        if (!side || !(*side >= 1.0 && *side <= mostScopePixels && *side == std::floor(*side)))
             return wrong("the file's image_width and image_height are not a picture's");
     const auto fisheye = camera.number("fisheye_model", "fisheye_model");
     if (!fisheye && d->size() == 4)

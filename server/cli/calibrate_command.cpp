@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Longest side of a calibration's picture, pixels.
-constexpr int maxSide = 4096;
 
 struct CalibrateArguments {
     std::vector<fs::path> images;
@@ -43,7 +42,7 @@ struct Picture {
 Result<std::vector<Picture>> readPictures(const std::vector<fs::path>& files) {
     std::vector<Picture> pictures;
     for (const fs::path& file : files) {
-        const auto read = TRY(pictures::readColorPicture(file, maxSide));
+        const auto read = TRY(pictures::readColorPicture(file, coverage::mostScopePixels));
         Image image = blankImage(read.size);
         for (std::size_t n = 0; n < read.pixels.size(); ++n)
             for (int c = 0; c < 3; ++c)
@@ -191,6 +190,13 @@ Result<coverage::Colonoscope> calibrateOn(const CalibrateArguments& arguments,
     fmt::print("focal length k1·m_u {:.3f} ± {:.3f} pixels; aspect m_v/m_u {:.5f}\n",
                calibration.focalPixels, calibration.focalError,
                calibration.lens.mv / calibration.lens.mu);
+    // A hundredth of the focal length moves all angles by as much.
+    constexpr double poorlyKnown = 0.03;
+    if (calibration.focalError > poorlyKnown * calibration.focalPixels)
+        fmt::print(
+            "warning: these pictures fix the focal length to ±{:.0f} % only; more of them, "
+            "nearer and more oblique, would tell it better\n",
+            100.0 * calibration.focalError / calibration.focalPixels);
     std::size_t points = 0;
     for (const auto& fit : calibration.views)
         points += fit.residuals.size();
@@ -413,7 +419,8 @@ Command addCalibrate(CLI::App& program) {
         ->type_name("FILE.json");
     command
         ->add_option("--opencv", arguments->openCv,
-                     "Write the lens as OpenCV does: .xml, .yml, .yaml or .json")
+                     "Write the lens as OpenCV does: .xml, .yml, .yaml or .json; its files have no "
+                     "field, so that of a lens read from one all of the picture is open")
         ->type_name("FILE");
     command
         ->add_option("--residuals", arguments->residuals,

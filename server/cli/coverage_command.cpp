@@ -40,7 +40,7 @@ constexpr int coverageVersion = 1;
 
 struct CoverageArguments {
     fs::path store, report, pictures;
-    std::string caseName, mode, direction, visibility = "auto", lens = "olympus-cf-q160l";
+    std::string caseName, mode, direction, visibility = "rays", lens = "olympus-cf-q160l";
     int cameras = 1000, side = PinholePicture{}.side, threads = 0;
 
     bool isOptical() const { return mode == "oc"; }
@@ -152,7 +152,14 @@ public:
         };
         // The GPU's pictures cost the same each. Those of rays cost little once what can be seen
         // has been seen by the first, so that all the rest cost no more each than the second lot.
-        const double gpuMs = TRY(timed(few, byGpu)) * double(all) / double(few);
+        const auto fewMs = timed(few, byGpu);
+        if (!fewMs && interrupted()) return tl::make_unexpected(fewMs.error());
+        if (!fewMs) {
+            useGpu_ = false;
+            bar.say("visibility: rays, as the GPU fails: " + describe(fewMs.error()));
+            return {};
+        }
+        const double gpuMs = *fewMs * double(all) / double(few);
         const double someMs = TRY(timed(some, byRays)), moreMs = TRY(timed(more, byRays));
         const double raysMs = someMs + moreMs * double(all) / double(more);
         useGpu_ = gpuMs < raysMs;
@@ -177,6 +184,7 @@ public:
     }
 
 private:
+    bool interrupted() const { return options_.cancelled && options_.cancelled(); }
     Result<void> makeItems() {
         context_ = TRY(gpu::Context::create());
         items_ = TRY(render::ItemBuffer::create(*context_, wall_.mesh, wall_.bridged, picture_,
@@ -186,8 +194,7 @@ private:
     Result<std::vector<Visibility>> byItems(const std::vector<CenterlineCamera>& cameras,
                                             const Progress& progress) {
         for (std::size_t n = 0; n < cameras.size(); ++n) {
-            if (options_.cancelled && options_.cancelled())
-                return fail(ErrorKind::wrongState, "interrupted");
+            if (interrupted()) return fail(ErrorKind::wrongState, "interrupted");
             TRY(items_->look(cameras[n]));
             if (progress) progress(double(n + 1) / double(cameras.size()));
         }
@@ -245,19 +252,23 @@ double flattenedPercent(const Inputs& inputs) {
     return all > 0.0 ? 100.0 * flat / all : 0.0;
 }
 
-/// Figure 2.6: the colon from the front and from behind, and four views from among the cameras.
-Result<void> writePictures(const CoverageArguments& arguments, const Inputs& inputs,
-                           const WallRays& rays, const Eyepiece& eyepiece, const Centerline& path,
-                           const std::vector<CenterlineCamera>& cameras,
-                           const std::vector<Visibility>& seen, ProgressBar& bar,
-                           const Interruption& interruption) {
+struct Drawn {
+    std::string name;
+    Image image;
+    pictures::Provenance provenance;
+};
+
+/// Figure 2.6: the colon from the front and from behind, and four views from within: of the largest
+/// missed patches, where there are so many, else from among the cameras.
+Result<std::vector<Drawn>> drawPictures(const CoverageArguments& arguments, const Inputs& inputs,
+                                        const SightTree& tree, const Eyepiece& eyepiece,
+                                        const Centerline& path,
+                                        const std::vector<CenterlineCamera>& cameras,
+                                        const std::vector<MissedPatch>& missed,
+                                        const std::vector<Visibility>& seen, ProgressBar& bar,
+                                        const Interruption& interruption) {
     constexpr glm::ivec2 outsideSize(768, 768);
     constexpr int views = 4;
-    std::error_code error;
-    fs::create_directory(arguments.pictures, error);
-    if (error)
-        return fail(ErrorKind::io, "cannot make the folder: " + error.message(),
-                    arguments.pictures.string());
     pictures::Provenance provenance = ownProvenance();
     provenance.facts = {{"case", arguments.caseName},
                         {"view", "coverage"},
@@ -265,41 +276,52 @@ Result<void> writePictures(const CoverageArguments& arguments, const Inputs& inp
                         {"cameras", std::to_string(arguments.cameras)}};
     if (!arguments.direction.empty())
         provenance.facts.emplace_back("direction", arguments.direction);
-    int done = 0;
-    const auto write = [&](const std::string& name, const Image& image,
-                           const CenterlineCamera* camera) -> Result<void> {
+    const WallRays& rays = tree.rays();
+    std::vector<Drawn> drawn;
+    const auto tell = [&] { bar.show("pictures", double(drawn.size()) / (views + 2)); };
+    tell();
+    for (const auto& [name, azimuth] : {std::pair("front.png", 0.0), {"back.png", 180.0}}) {
+        drawn.push_back(
+            {name,
+             paintedOutside(rays, inputs.wall, seen, path, outsideSize, azimuth, arguments.threads),
+             provenance});
         if (interruption.came()) return fail(ErrorKind::wrongState, "interrupted");
-        pictures::Provenance own = provenance;
-        if (camera) {
-            own.facts.emplace_back("camera.position_mm", toText(camera->positionMm));
-            own.facts.emplace_back("camera.forward", toText(camera->forward));
-        }
-        TRY(pictures::writePicture(arguments.pictures / name, image, own));
-        bar.show("pictures", double(++done) / (views + 2));
-        return {};
-    };
-    bar.show("pictures", 0.0);
-    for (const auto& [name, azimuth] : {std::pair("front.png", 0.0), {"back.png", 180.0}})
-        TRY(write(
-            name,
-            paintedOutside(rays, inputs.wall, seen, path, outsideSize, azimuth, arguments.threads),
-            nullptr));
-    for (int n = 0; n < views; ++n) {
-        const CenterlineCamera& camera =
-            cameras[cameras.size() * std::size_t(2 * n + 1) / (2 * views)];
-        TRY(write(fmt::format("view-{}.png", n + 1),
-                  paintedView(rays, inputs.wall, seen, eyepiece, camera, arguments.threads),
-                  &camera));
+        tell();
     }
+    for (int n = 0; n < views; ++n) {
+        CenterlineCamera camera = cameras[cameras.size() * std::size_t(2 * n + 1) / (2 * views)];
+        if (std::size_t(n) < missed.size())
+            camera = cameraForPatch(tree, inputs.wall, missed[std::size_t(n)]).value_or(camera);
+        drawn.push_back({fmt::format("view-{}.png", n + 1),
+                         paintedView(rays, inputs.wall, seen, eyepiece, camera, arguments.threads),
+                         provenance});
+        auto& facts = drawn.back().provenance.facts;
+        facts.emplace_back("camera.position_mm", toText(camera.positionMm));
+        facts.emplace_back("camera.forward", toText(camera.forward));
+        if (interruption.came()) return fail(ErrorKind::wrongState, "interrupted");
+        tell();
+    }
+    return drawn;
+}
+
+Result<void> writePictures(const fs::path& folder, const std::vector<Drawn>& drawn) {
+    if (drawn.empty()) return {};
+    std::error_code error;
+    fs::create_directory(folder, error);
+    if (error)
+        return fail(ErrorKind::io, "cannot make the folder: " + error.message(), folder.string());
+    for (const Drawn& picture : drawn)
+        TRY(pictures::writePicture(folder / picture.name, picture.image, picture.provenance));
     return {};
 }
 
 void print(const CoverageReport& report, double seconds, double lookSeconds) {
     fmt::print(
-        "{} {} {} cameras, {} pictures by {}: {:.2f} % of the wall's area, {:.2f} % of its "
+        "{}{}{} {} cameras, {} pictures by {}: {:.2f} % of the wall's area, {:.2f} % of its "
         "triangles, in {:.1f} s ({:.1f} s of it to see)\n",
-        report.mode, report.direction, report.cameras, report.pictures, report.visibility,
-        report.share.areaPercent(), report.share.trianglePercent(), seconds, lookSeconds);
+        report.mode, report.direction.empty() ? "" : " ", report.direction, report.cameras,
+        report.pictures, report.visibility, report.share.areaPercent(),
+        report.share.trianglePercent(), seconds, lookSeconds);
     if (report.clearanceMm > 0.0)
         fmt::print("path: {:.0f} mm, {:.0f} mm of it nearer to the wall than {:.1f} mm\n",
                    report.pathMm, report.narrowMm, report.clearanceMm);
@@ -316,10 +338,10 @@ void print(const CoverageReport& report, double seconds, double lookSeconds) {
     fmt::print("missed: {} patches, {} of {:.0f} mm2 and more\n", report.missed.size(), large,
                leastReviewedMm2);
     if (report.review)
-        fmt::print("after review of those: {:.2f} % of the area ({} pictures)\n",
-                   report.reviewed.areaPercent(), report.review->patches);
+        fmt::print("after review of those: {:.2f} % of the area ({} pictures in {} rounds)\n",
+                   report.reviewed.areaPercent(), report.review->patches, report.review->rounds);
     if (report.flattenedPercent)
-        fmt::print("flattened view: {:.2f} % of the area\n", *report.flattenedPercent);
+        fmt::print("the flattened strip has {:.2f} % of the area\n", *report.flattenedPercent);
     if (report.centerlineShare)
         fmt::print("as many pictures on the centerline, both ways: {:.2f} % of the area\n",
                    report.centerlineShare->areaPercent());
@@ -431,9 +453,10 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
             reviewMissed(tree, wall, Eyepiece::of(picture), leastReviewedMm2, reviewed, review));
         report.reviewed = shareOf(wall, reviewed);
     }
+    std::vector<Drawn> drawn;
     if (!arguments.pictures.empty())
-        TRY(writePictures(arguments, inputs, *rays, eyepiece, path, cameras, seen, bar,
-                          interruption));
+        drawn = TRY(drawPictures(arguments, inputs, tree, eyepiece, path, cameras, report.missed,
+                                 seen, bar, interruption));
     if (interruption.came()) return fail(ErrorKind::wrongState, "interrupted");
 
     const std::string said =
@@ -452,6 +475,7 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
                            store::makeKey("coverage", coverageVersion, said, inputs.keys),
                            coverageJson(report, wall, seen)));
     if (!arguments.report.empty()) TRY(writeTextFile(arguments.report, coverageJson(report)));
+    TRY(writePictures(arguments.pictures, drawn));
     bar.show("done", 1.0);
     print(report, (millisecondsNow() - began) / 1e3, lookSeconds);
     return {};
@@ -499,9 +523,11 @@ Command addCoverage(CLI::App& program) {
         ->check(CLI::Range(16, 4096))
         ->capture_default_str();
     command
-        ->add_option("--visibility", arguments->visibility,
-                     "Of vc and planned: by rays on the CPU, by an item buffer on the GPU, or by "
-                     "whichever would be done first, told from some pictures; of oc by rays")
+        ->add_option(
+            "--visibility", arguments->visibility,
+            "Of vc and planned: by rays on the CPU, by an item buffer on the GPU, or (auto) by "
+            "whichever would be done first, told from some pictures: the two differ on a "
+            "triangle in some ten thousand; of oc by rays")
         ->check(CLI::IsMember({"auto", "rays", "gpu"}))
         ->capture_default_str();
     command

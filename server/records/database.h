@@ -24,19 +24,22 @@ Result<Database> openDatabase(const std::filesystem::path& file, const char* sch
 /// Statements without parameters or rows. `doing` is for the error: "cannot <doing>: …".
 Result<void> run(sqlite3* database, const char* sql, const char* doing);
 
-/// Runs `work`, which returns a Result, in one transaction; where it or the commit fails, nothing
-/// has changed. Whoever else writes is waited for at its beginning.
+/// Runs `work`, which returns a Result, in one transaction; where it throws, or it or the commit
+/// fails, nothing has changed. Whoever else writes is waited for at its beginning.
 template <class Work>
 auto inTransaction(sqlite3* database, const Work& work) -> decltype(work()) {
     TRY(run(database, "BEGIN IMMEDIATE", "write the records"));
+    struct TakenBack {
+        sqlite3* database;
+        ~TakenBack() {
+            if (database) (void)run(database, "ROLLBACK", "take the records back");
+        }
+    } takenBack{database};
     auto done = work();
-    if (done) {
-        if (const auto committed = run(database, "COMMIT", "write the records"); committed)
-            return done;
-        else
-            done = tl::make_unexpected(committed.error());
-    }
-    (void)run(database, "ROLLBACK", "take the records back");
+    if (!done) return done;
+    if (const auto committed = run(database, "COMMIT", "write the records"); !committed)
+        return tl::make_unexpected(committed.error());
+    takenBack.database = nullptr;
     return done;
 }
 

@@ -22,13 +22,12 @@ constexpr char seenSchema[] = R"(
         scan TEXT NOT NULL,
         triangles INTEGER NOT NULL,
         times BLOB NOT NULL,
-        share REAL NOT NULL,
         changed_utc TEXT NOT NULL,
         PRIMARY KEY(wall, reader, pixels_per_mm, least_ms)) WITHOUT ROWID;
 )";
 
 constexpr char seenColumns[] =
-    "SELECT reader, wall, pixels_per_mm, least_ms, case_name, scan, triangles, times, share, "
+    "SELECT reader, wall, pixels_per_mm, least_ms, case_name, scan, triangles, times, "
     "changed_utc FROM seen_walls WHERE wall = ?";
 
 static_assert(std::endian::native == std::endian::little);
@@ -54,8 +53,7 @@ Result<Ledger> ledgerAt(const Statement& row) {
     ledger.key = {row.text(0), row.text(1), {row.real(2), int(row.integer(3))}};
     ledger.caseName = row.text(4);
     ledger.scan = row.text(5);
-    ledger.share = row.real(8);
-    ledger.changedUtc = row.text(9);
+    ledger.changedUtc = row.text(8);
     const std::int64_t triangles = row.integer(6);
     const auto bytes = row.blob(7);
     // Of its own frame, so that no number in the file makes memory.
@@ -98,84 +96,78 @@ Result<SeenStore> SeenStore::open(const std::filesystem::path& file) {
         return Statement::prepare(database.get(), sql.c_str());
     };
     auto find = TRY(prepared(select + byKey));
-    auto ofWall = TRY(prepared(select + " ORDER BY changed_utc DESC, reader"));
+    auto ofWall = TRY(prepared(select + " ORDER BY changed_utc DESC, reader LIMIT ?"));
     auto count = TRY(prepared("SELECT count(*) FROM seen_walls WHERE wall = ?"));
     auto write =
         TRY(prepared("INSERT OR REPLACE INTO seen_walls(wall, reader, pixels_per_mm, least_ms, "
-                     "case_name, scan, triangles, times, share, changed_utc) "
-                     "VALUES(?,?,?,?,?,?,?,?,?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))"));
+                     "case_name, scan, triangles, times, changed_utc) "
+                     "VALUES(?,?,?,?,?,?,?,?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))"));
     auto forget = TRY(prepared("DELETE FROM seen_walls WHERE wall = ?" + byKey));
     return SeenStore(std::move(database), std::move(find), std::move(ofWall), std::move(count),
                      std::move(write), std::move(forget));
 }
 
-Result<std::optional<Ledger>> SeenStore::find(const LedgerKey& key) {
+Result<std::optional<Result<Ledger>>> SeenStore::row(const LedgerKey& key) {
+    const ResetAfter reset(find_);
     bindKey(find_, key);
-    const auto row = find_.step();
-    std::optional<Result<Ledger>> found;
-    if (row && *row) found = ledgerAt(find_);
-    find_.reset();
-    if (!row) return tl::make_unexpected(row.error());
+    if (!TRY(find_.step())) return std::optional<Result<Ledger>>();
+    return std::optional<Result<Ledger>>(ledgerAt(find_));
+}
+
+Result<std::optional<Ledger>> SeenStore::find(const LedgerKey& key) {
+    auto found = TRY(row(key));
     if (!found) return std::optional<Ledger>();
     return TRY(std::move(*found));
 }
 
 Result<void> SeenStore::forget(const LedgerKey& key) {
+    const ResetAfter reset(forget_);
     bindKey(forget_, key);
-    const auto done = forget_.step();
-    forget_.reset();
-    if (!done) return tl::make_unexpected(done.error());
+    TRY(forget_.step());
     return {};
 }
 
-Result<std::vector<Ledger>> SeenStore::ofWall(const std::string& wall) {
-    std::vector<Ledger> ledgers;
-    std::optional<Error> error;
+Result<std::vector<Ledger>> SeenStore::ofWall(const std::string& wall, int most) {
+    const ResetAfter reset(ofWall_);
     ofWall_.bind(1, wall);
-    auto row = ofWall_.step();
-    for (; row && *row && !error; row = ofWall_.step()) {
-        auto ledger = ledgerAt(ofWall_);
-        if (ledger)
-            ledgers.push_back(std::move(*ledger));
-        else
-            error = ledger.error();
-    }
-    ofWall_.reset();
-    if (!row) error = row.error();
-    if (error) return tl::make_unexpected(*error);
+    ofWall_.bind(2, std::int64_t(most));
+    std::vector<Ledger> ledgers;
+    while (TRY(ofWall_.step()))
+        ledgers.push_back(TRY(ledgerAt(ofWall_)));
     return ledgers;
+}
+
+Result<bool> SeenStore::isFull(const std::string& wall) {
+    const ResetAfter reset(count_);
+    count_.bind(1, wall);
+    return TRY(count_.step()) && count_.integer(0) >= protocol::maxWallLedgers;
 }
 
 Result<void> SeenStore::keepOne(const Ledger& ledger) {
     auto times = ledger.times;
-    double share = ledger.share;
-    if (const auto before = TRY(find(ledger.key))) {
-        if (before->times.size() != times.size()) return damaged();
+    if (times.size() > std::size_t(protocol::maxLedgerTriangles))
+        return fail(ErrorKind::badInput, "the wall has more triangles than a record may have",
+                    "seen");
+    if (const auto before = TRY(row(ledger.key))) {
+        // Bad input, as it is of this reader alone: the others' are kept.
+        if (!*before || (*before)->times.size() != times.size())
+            return fail(ErrorKind::badInput, damaged().value().message, "records");
         for (std::size_t t = 0; t < times.size(); ++t)
-            times[t] = std::max(times[t], before->times[t]);
-        share = std::max(share, before->share);
-    } else {
-        count_.bind(1, ledger.key.wall);
-        const auto counted = count_.step();
-        const bool full = counted && *counted && count_.integer(0) >= protocol::maxWallLedgers;
-        count_.reset();
-        if (!counted) return tl::make_unexpected(counted.error());
-        if (full)
-            return fail(ErrorKind::badInput,
-                        "so many readers' records of this wall are kept that there is no room for "
-                        "another",
-                        "seen");
+            times[t] = std::max(times[t], (*before)->times[t]);
+    } else if (TRY(isFull(ledger.key.wall))) {
+        return fail(ErrorKind::badInput,
+                    "so many readers' records of this wall are kept that there is no room for "
+                    "another",
+                    "seen");
     }
     const auto blob = TRY(packed(times));
+    const ResetAfter reset(write_);
     bindKey(write_, ledger.key);
     write_.bind(5, ledger.caseName);
     write_.bind(6, ledger.scan);
     write_.bind(7, std::int64_t(times.size()));
     write_.bind(8, std::span<const std::uint8_t>(blob));
-    write_.bind(9, share);
-    const auto written = write_.step();
-    write_.reset();
-    if (!written) return tl::make_unexpected(written.error());
+    TRY(write_.step());
     return {};
 }
 

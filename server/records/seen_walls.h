@@ -28,7 +28,6 @@ struct Ledger {
     LedgerKey key;
     std::string caseName, scan;        ///< under which it was read last
     std::vector<std::uint32_t> times;  ///< µs on screen of each triangle of the wall
-    double share = 0.0;                ///< of the wall's area that counts as seen, 0…1
     std::string changedUtc = {};       ///< "2020-01-31T23:59:59Z"; the store's own
 };
 
@@ -41,20 +40,23 @@ public:
 
     /// Keeps all in one transaction, which costs one fsync. Of each triangle the longer time
     /// counts, the one that is kept or the new one: of two programs that serve one reader neither
-    /// takes away what the other has kept. One past protocol::maxWallLedgers of its wall is refused
-    /// (badInput), and the others are kept; where the transaction fails, none is. Some milliseconds
-    /// for a million triangles.
+    /// takes away what the other has kept. One past protocol::maxWallLedgers of its wall, or whose
+    /// record is damaged or too large, is refused (badInput), and the others are kept; where the
+    /// transaction fails, none is. Some milliseconds for a million triangles.
     Result<std::vector<Result<void>>> keep(std::span<const Ledger> ledgers);
 
     /// Nothing where there is none. Fails (io) where what is kept is damaged.
     Result<std::optional<Ledger>> find(const LedgerKey& key);
     Result<void> forget(const LedgerKey& key);
-    /// All of a wall, the newest first. Fails (io) where one is damaged.
-    Result<std::vector<Ledger>> ofWall(const std::string& wall);
+    /// Of a wall at most so many, the newest first. Fails (io) where one is damaged.
+    Result<std::vector<Ledger>> ofWall(const std::string& wall, int most);
 
 private:
     SeenStore(Database database, Statement find, Statement ofWall, Statement count, Statement write,
               Statement forget);
+    /// Nothing where there is none; an error within where it is damaged.
+    Result<std::optional<Result<Ledger>>> row(const LedgerKey& key);
+    Result<bool> isFull(const std::string& wall);
     Result<void> keepOne(const Ledger& ledger);
 
     Database database_;  // first: outlives the statements

@@ -44,4 +44,16 @@ private:
     std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
+/// Resets a statement at the end of a scope, whatever ends it.
+class ResetAfter {
+public:
+    explicit ResetAfter(Statement& statement) : statement_(statement) {}
+    ~ResetAfter() { statement_.reset(); }
+    ResetAfter(const ResetAfter&) = delete;
+    ResetAfter& operator=(const ResetAfter&) = delete;
+
+private:
+    Statement& statement_;
+};
+
 }  // namespace haustra::records

@@ -4,6 +4,7 @@
 #include "protocol/limits.h"
 #include "protocol/optics_message.h"
 #include "protocol/view_message.h"
+#include "store/sha256.h"
 
 #include <algorithm>
 #include <cmath>
@@ -454,16 +455,20 @@ protocol::ServerMessage ledgerMessage(const SeenFlags& flags, const records::Led
 }
 
 protocol::ServerMessage seenReportMessage(const std::vector<ReaderSeen>& readers,
-                                          const std::string& wall, double leastMm2,
+                                          const records::LedgerKey& own, double leastMm2,
                                           std::uint64_t request) {
+    // Whoever knows another's name may go on under it.
+    const auto markOf = [](const std::string& reader) {
+        return "sha256:" + store::toHex(store::textDigest(reader)).substr(0, 16);
+    };
     protocol::ServerMessage message;
     protocol::SeenReport& report = *message.mutable_seen_report();
     report.set_request(request);
-    report.set_wall(wall);
+    report.set_wall(own.wall);
     report.set_least_mm2(leastMm2);
     for (const ReaderSeen& reader : readers) {
         protocol::ReaderSeen& one = *report.add_readers();
-        one.set_reader(reader.key.reader);
+        one.set_reader(reader.key.reader == own.reader ? own.reader : markOf(reader.key.reader));
         fill(*one.mutable_limits(), reader.key.limits);
         one.set_share(reader.share);
         one.set_changed_utc(reader.changedUtc);

@@ -95,8 +95,9 @@ protocol::ServerMessage missedListMessage(const Missed& missed, double leastMm2,
                                           std::uint64_t request);
 protocol::ServerMessage ledgerMessage(const SeenFlags& flags, const records::LedgerKey& key,
                                       bool recorded, std::uint64_t request);
+/// `own`: of the session that asks; other readers are told by marks of their names.
 protocol::ServerMessage seenReportMessage(const std::vector<ReaderSeen>& readers,
-                                          const std::string& wall, double leastMm2,
+                                          const records::LedgerKey& own, double leastMm2,
                                           std::uint64_t request);
 
 protocol::ServerMessage messageOf(const CaseAnswer& answer, std::uint64_t request);

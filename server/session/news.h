@@ -13,9 +13,14 @@ template <class T>
 class News {
 public:
     using Heard = std::function<void(const T&)>;
-    /// `heard` is called for all that is told while `listener` lives.
+    /// `heard` is called for all that is told while `listener` lives, in place of what it gave
+    /// before.
     void listen(std::weak_ptr<const void> listener, Heard heard) {
-        std::erase_if(listeners_, [](const auto& known) { return known.first.expired(); });
+        std::erase_if(listeners_, [&](const auto& known) {
+            const bool same =
+                !known.first.owner_before(listener) && !listener.owner_before(known.first);
+            return same || known.first.expired();
+        });
         listeners_.emplace_back(std::move(listener), std::move(heard));
     }
     void tell(const T& news) const {

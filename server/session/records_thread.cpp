@@ -1,5 +1,6 @@
 #include "session/records_thread.h"
 
+#include "protocol/limits.h"
 #include "session/worker.h"
 
 #include <utility>
@@ -72,7 +73,7 @@ struct RecordsThread::Keeping {
     }
     void serve(ListSeen& list) {
         commit();
-        list.done(guarded([&] { return seen.ofWall(list.wall); }));
+        list.done(guarded([&] { return seen.ofWall(list.wall, protocol::maxReportedLedgers); }));
     }
 };
 

@@ -33,8 +33,7 @@ Missed missedOf(const OpenCase& of, std::span<const std::uint8_t> seen, double l
     const render::WallSight& sight = of.wall->painter->sight();
     Missed missed;
     for (const MissedPatch& patch : missedPatches(sight.map().surface, sight.neighbours(), seen,
-                                                  sight.bridges(), of.centerline)) {
-        if (patch.areaMm2 < leastMm2) break;
+                                                  sight.bridges(), of.centerline, leastMm2)) {
         ++missed.count;
         missed.areaMm2 += patch.areaMm2;
         if (int(missed.patches.size()) == most) continue;
@@ -186,7 +185,6 @@ void SeenLedger::write() {
             return work->coverage().share();
         });
         if (!share || !keeps) return told(std::move(share));
-        ledger.share = *share;
         records.keepSeen(std::move(ledger), [told, share = *share](Result<void> kept) {
             told(kept.map([&] { return share; }));
         });
@@ -209,7 +207,7 @@ void SeenLedger::wrote(std::uint64_t step, Result<double> share) {
 }
 
 records::Ledger SeenLedger::record() const {
-    return {key_, caseName_, scan_, {}, 0.0};
+    return {key_, caseName_, scan_, {}};
 }
 
 void SeenLedger::flush() {
@@ -217,7 +215,6 @@ void SeenLedger::flush() {
     painting_.push([&records = records_, work = work_, ledger = record()]() mutable {
         const auto made = guarded([&]() -> Result<void> {
             ledger.times = work->coverage().times();
-            ledger.share = work->coverage().share();
             return {};
         });
         if (!made)
@@ -253,25 +250,31 @@ void SeenLedger::ask(std::function<void(Result<double>)> told) {
                           std::move(told));
 }
 
+// The record goes in the same step of the paint thread: what is looked at after it is kept.
 void SeenLedger::forget(std::function<void(Result<double>)> told) {
+    if (!loaded_) {
+        whenLoaded_.push_back([this, told = std::move(told)](bool loaded) {
+            if (loaded) return forget(told);
+            told(fail(ErrorKind::wrongState, "the case has been left", "seen"));
+        });
+        return;
+    }
     still_.reset();
-    onPaintThread<double>(
-        [](SeenWork& work) -> Result<double> {
+    const auto gone = [io = io_, told](Result<void> forgotten) {
+        asio::post(io, [told, forgotten = std::move(forgotten)] {
+            told(forgotten.map([] { return 0.0; }));
+        });
+    };
+    onPaintThread<bool>(
+        [&records = records_, key = key_, recorded = recorded_,
+         gone](SeenWork& work) -> Result<bool> {
             work.coverage().forget();
-            return 0.0;
+            if (recorded) records.forgetSeen(key, gone);
+            return recorded;
         },
-        [weak = weak_from_this(), told = std::move(told)](Result<double> share) {
-            const auto self = weak.lock();
-            if (!share || !self || !self->recorded_) return told(std::move(share));
-            // By way of the paint thread: after what it was given to write before.
-            self->painting_.push(
-                [&records = self->records_, key = self->key_, io = self->io_, told] {
-                    records.forgetSeen(key, [io, told](Result<void> forgotten) {
-                        asio::post(io, [told, forgotten = std::move(forgotten)] {
-                            told(forgotten.map([] { return 0.0; }));
-                        });
-                    });
-                });
+        [told](Result<bool> recorded) {
+            if (!recorded) return told(tl::make_unexpected(recorded.error()));
+            if (!*recorded) told(0.0);
         });
 }
 

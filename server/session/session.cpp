@@ -432,9 +432,9 @@ void Session::handle(const protocol::AskSeenReport& message) {
     SeenLedger& ledger = reading_->ledger();
     ledger.report(*leastMm2,
                   ofLedger<std::vector<ReaderSeen>>(
-                      request, [request, least = *leastMm2, wall = ledger.key().wall](
+                      request, [request, least = *leastMm2, own = ledger.key()](
                                    Session& self, const std::vector<ReaderSeen>& readers) {
-                          self.send(seenReportMessage(readers, wall, least, request));
+                          self.send(seenReportMessage(readers, own, least, request));
                       }));
 }
 

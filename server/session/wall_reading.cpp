@@ -150,23 +150,35 @@ void WallReading::painted(std::uint64_t number, Result<Paint> paint) {
 
 void WallReading::setLedger(std::shared_ptr<SeenLedger> ledger) {
     ledger_ = std::move(ledger);
-    steps_.clear();
-    ledger_->news().listen(weak_from_this(), [this, of = ledger_.get()](const auto& told) {
-        if (ledger_.get() == of) heard(told);
-    });
+    ledger_->news().listen(weak_from_this(),
+                           [this, of = ledger_.get()](const auto& told) { heard(*of, told); });
     if (choice_.unseen) repaint();
 }
 
 void WallReading::shown(std::vector<ShownPicture> pictures, std::uint64_t number) {
-    steps_.emplace_back(ledger_->take(std::move(pictures)), number);
+    steps_.push_back({ledger_, ledger_->take(std::move(pictures)), number});
 }
 
-void WallReading::heard(const SeenLedger::Told& told) {
-    if (told.error) return outlet_.unkept(*told.error);
-    for (; !steps_.empty() && steps_.front().first <= told.step; steps_.pop_front())
-        kept_ = steps_.front().second;
-    outlet_.seen(told.share, kept_);
-    if (choice_.unseen) repaint();
+void WallReading::heard(const SeenLedger& of, const SeenLedger::Told& told) {
+    if (told.error) {
+        if (&of == ledger_.get()) outlet_.unkept(*told.error);
+        return;
+    }
+    for (Step& step : steps_)
+        step.isKept |= step.of.get() == &of && step.step <= told.step;
+    // In the order in which they were told of, whichever ledger had them.
+    const std::uint64_t before = kept_;
+    for (; !steps_.empty() && steps_.front().isKept; steps_.pop_front())
+        kept_ = steps_.front().number;
+    if (&of == ledger_.get()) {
+        outlet_.seen(told.share, kept_);
+        if (choice_.unseen) repaint();
+    } else if (kept_ != before) {
+        ledger_->ask([weak = weak_from_this()](Result<double> share) {
+            const auto self = weak.lock();
+            if (self && share) self->outlet_.seen(*share, self->kept_);
+        });
+    }
 }
 
 void WallReading::forget(std::function<void(Result<double>)> told) {

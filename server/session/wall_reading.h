@@ -81,7 +81,7 @@ private:
     void repaint();
     void startPainting();
     void painted(std::uint64_t number, Result<Paint> paint);
-    void heard(const SeenLedger::Told& told);
+    void heard(const SeenLedger& of, const SeenLedger::Told& told);
 
     asio::any_io_executor io_;
     PaintThread& painting_;
@@ -100,8 +100,13 @@ private:
     bool isPainting_ = false, paintAgain_ = false;
 
     std::shared_ptr<SeenLedger> ledger_;
-    std::deque<std::pair<std::uint64_t, std::uint64_t>>
-        steps_;  // of the ledger, and whose they are
+    /// What a ledger was given, and the TellShown that it was of.
+    struct Step {
+        std::shared_ptr<SeenLedger> of;
+        std::uint64_t step, number;
+        bool isKept = false;
+    };
+    std::deque<Step> steps_;  // not told as kept yet, in the order of their numbers
     std::uint64_t kept_ = 0;
 };
 

@@ -1537,10 +1537,14 @@ TEST_F(ClientWindow, MissedPatchesAreListedAndGoneTo) {
     ASSERT_TRUE(isAt(0));
     press(Qt::Key_H, Qt::ShiftModifier);
     EXPECT_TRUE(waitFor([&] {
-        return window_->statusBar()->currentMessage().startsWith(QStringLiteral("No other missed"));
+        return window_->statusBar()->currentMessage().startsWith(
+            QStringLiteral("No patch that was visited"));
     }));
     click(*list.viewport(), list.visualItemRect(list.topLevelItem(2)).center());
     ASSERT_TRUE(isAt(2));
+    // All have been visited: another round begins.
+    press(Qt::Key_J, Qt::ShiftModifier);
+    ASSERT_TRUE(isAt(0));
     // Limits go to the server, and to the next start.
     auto& ms = *named<QAbstractSpinBox>(
         QStringLiteral("How long a place must have been on screen to count as seen"));

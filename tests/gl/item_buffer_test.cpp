@@ -102,8 +102,11 @@ TEST_F(ItemBufferTest, SeesAllOfAConvexVesselAndMissesAPocketToTheTriangle) {
     const TriMesh mesh = tests::pocketTube();
     const auto cameras =
         flightCameras(tests::straightLine(5.0, tests::lastEyeMm), 36, FlightDirection::antegrade);
-    const auto seen = byItems(mesh, {}, cameras, false);
+    const auto seen = byItems(mesh, {}, cameras, false), byRay = byRays(mesh, {}, cameras, false);
+    int inPocket = 0, observed = 0, differ = 0;
     for (std::size_t n = 0; n < seen.size(); ++n) {
+        observed += seen[n] != Visibility::unseen;
+        differ += (seen[n] != Visibility::unseen) != (byRay[n] != Visibility::unseen);
         double low = 1e9, high = -1e9, out = 0.0;
         for (int corner = 0; corner < 3; ++corner) {
             const glm::dvec3 v = mesh.vertices[std::size_t(mesh.triangles[n][corner])];
@@ -112,8 +115,12 @@ TEST_F(ItemBufferTest, SeesAllOfAConvexVesselAndMissesAPocketToTheTriangle) {
         }
         if (out > 8.1 && low > tests::pocketBeginMm - 0.1 && high < tests::pocketEndMm + 0.1) {
             EXPECT_EQ(seen[n], Visibility::unseen) << low;
+            ++inPocket;
         }
     }
+    EXPECT_GT(inPocket, 100);
+    EXPECT_GT(observed, int(seen.size()) / 2);
+    EXPECT_LE(differ, int(seen.size()) / 1000);
 }
 
 }  // namespace

@@ -115,6 +115,18 @@ TEST(BoostedTrees, AnswerIsTheMeanOverWhatFeaturesMayBe) {
         before = now;
     }
     EXPECT_LT(largest, 0.4);  // a single one of the 30 trees may leap by 2
+    // What would be walked for ever, or too deep, is refused.
+    cad::BoostedTrees shared = one;
+    shared.trees = {{{0, 0.5f, 1, 1}, {-1, 1.0f, 0, 0}}};
+    EXPECT_FALSE(cad::checkTrees(shared, 2));
+    cad::BoostedTrees chain = one;
+    chain.trees.assign(1, {});
+    for (int n = 0; n < 200; n += 2) {
+        chain.trees[0].push_back({0, 0.5f, n + 1, n + 2});
+        chain.trees[0].push_back({-1, 1.0f, 0, 0});
+    }
+    chain.trees[0].push_back({-1, 2.0f, 0, 0});
+    EXPECT_FALSE(cad::checkTrees(chain, 2));
     one.widths.pop_back();
     EXPECT_FALSE(cad::checkTrees(one, 2));
 }

@@ -158,5 +158,18 @@ TEST(MissedPatches, TheArcIsOfTheLoopWhoseWallItIs) {
     EXPECT_NEAR(scene.patches()[0].arcMm, 81.0, 1.0);
 }
 
+// Past the axis's end, looking away from it: only another loop, far off, lies before it.
+TEST(MissedPatches, AWallThatLooksAwayFromItsAxisIsNotOfAFarLoop) {
+    Scene scene;
+    scene.miss(0, 40);  // at x = radius, z = 81; its inner side is towards smaller x
+    scene.line = axis(radiusMm + 6.0);
+    Centerline far = axis(-100.0);
+    for (CenterlinePoint& point : far.points)
+        point.arcMm += 500.0;
+    scene.line.points.insert(scene.line.points.end(), far.points.begin(), far.points.end());
+    ASSERT_EQ(scene.patches().size(), 1u);
+    EXPECT_NEAR(scene.patches()[0].arcMm, 81.0, 1.0);
+}
+
 }  // namespace
 }  // namespace haustra

@@ -21,7 +21,7 @@ protected:
     }
     static Ledger ledger(const std::string& reader, const std::string& wall,
                          std::vector<std::uint32_t> times, SeenLimits limits = {}) {
-        return {{reader, wall, limits}, "a case", "a scan", std::move(times), 0.25};
+        return {{reader, wall, limits}, "a case", "a scan", std::move(times)};
     }
     static void keep(SeenStore& store, const std::vector<Ledger>& ledgers) {
         const auto kept = store.keep(ledgers);
@@ -62,12 +62,12 @@ TEST_F(SeenWalls, AreThereAfterReopeningEachForItself) {
     EXPECT_EQ(timesOf(store, {"bob'; --", "w", {}}), std::vector<std::uint32_t>({3}));
     EXPECT_EQ(timesOf(store, {"ada", "another wall", {}}), std::vector<std::uint32_t>({4}));
     EXPECT_FALSE(*store.find({"eve", "w", {}}));
-    const auto all = store.ofWall("w");
+    const auto all = store.ofWall("w", 10);
     ASSERT_TRUE(all);
     EXPECT_EQ(all->size(), 3u);
+    EXPECT_EQ(store.ofWall("w", 2)->size(), 2u);
     for (const Ledger& one : *all) {
         EXPECT_EQ(one.caseName, "a case");
-        EXPECT_EQ(one.share, 0.25);
         EXPECT_EQ(one.changedUtc.size(), 20u);
     }
     ASSERT_TRUE(store.forget({"ada", "w", {}}));
@@ -107,14 +107,37 @@ TEST_F(SeenWalls, DamageIsToldAndNotOverwritten) {
          {"UPDATE seen_walls SET times = x'00'", "UPDATE seen_walls SET triangles = 999",
           "UPDATE seen_walls SET triangles = 1000000000000", "UPDATE seen_walls SET triangles = -1",
           "UPDATE seen_walls SET times = ''"}) {
-        run(damage);
+        run((std::string(damage) + " WHERE reader = 'ada'").c_str());
         SeenStore store = open();
         const auto found = store.find({"ada", "w", {}});
         ASSERT_FALSE(found) << damage;
         EXPECT_EQ(found.error().kind, ErrorKind::io);
-        EXPECT_FALSE(store.ofWall("w"));
-        EXPECT_FALSE(store.keep(std::vector{ledger("ada", "w", {1})}));
+        EXPECT_FALSE(store.ofWall("w", 10));
+        // Whoever waits in the same commit is kept.
+        const auto kept = store.keep(std::vector{ledger("ada", "w", {1}), ledger("bob", "x", {2})});
+        ASSERT_TRUE(kept);
+        EXPECT_FALSE((*kept)[0]);
+        EXPECT_TRUE((*kept)[1]);
+        EXPECT_FALSE(store.find({"ada", "w", {}}));
     }
+}
+
+TEST_F(SeenWalls, ATransactionThatThrowsIsTakenBack) {
+    auto database = openDatabase(file_, "CREATE TABLE IF NOT EXISTS t(x INTEGER);");
+    ASSERT_TRUE(database);
+    EXPECT_THROW((void)inTransaction(database->get(),
+                                     [&]() -> Result<void> {
+                                         TRY(haustra::records::run(database->get(),
+                                                                   "INSERT INTO t VALUES(1)", "x"));
+                                         throw std::bad_alloc();
+                                     }),
+                 std::bad_alloc);
+    ASSERT_TRUE(inTransaction(database->get(), [&]() -> Result<void> {
+        return haustra::records::run(database->get(), "INSERT INTO t VALUES(2)", "x");
+    }));
+    auto count = Statement::prepare(database->get(), "SELECT count(*) FROM t");
+    ASSERT_TRUE(count && *count->step());
+    EXPECT_EQ(count->integer(0), 1);
 }
 
 }  // namespace

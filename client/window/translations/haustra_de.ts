@@ -1503,8 +1503,8 @@
         <translation>Keine Stelle ab 300 mm² wurde übersehen.</translation>
     </message>
     <message>
-        <source>No other missed patch on this side of the list.</source>
-        <translation>Auf dieser Seite der Liste ist keine weitere übersehene Stelle.</translation>
+        <source>No patch that was visited before is still missed.</source>
+        <translation>Keine zuvor besuchte Stelle ist noch übersehen.</translation>
     </message>
     <message>
         <source>%1 % of the wall seen</source>

@@ -96,18 +96,21 @@ void WallCoverage::makeCells() {
 void WallCoverage::forget() {
     times_.assign(sight_->facets().size(), 0);
     last_ = {};
-    makeCells();
+    cells_.clear();
+    share_.reset();
 }
 
 void WallCoverage::add(std::span<const std::uint32_t> times) {
     for (std::size_t t = 0; t < times_.size(); ++t)
         times_[t] += std::min(times[t], enough_ - times_[t]);
+    share_.reset();
 }
 
 int WallCoverage::show(const ViewState& shown, glm::ivec2 size, std::int64_t microseconds) {
     Picture& last = last_[shown.index()];
     if (last.size != size || last.shown != shown) {
         last = {shown, size, {}};
+        if (cells_.empty()) makeCells();
         std::visit(
             [&](const auto& what) {
                 if constexpr (requires { collect(what, size, last.triangles); })
@@ -125,6 +128,7 @@ int WallCoverage::show(const ViewState& shown, glm::ivec2 size, std::int64_t mic
         added += more > 0 && time < enough_;
         time += std::min(more, enough_ - time);
     }
+    if (added > 0) share_.reset();
     return added;
 }
 
@@ -154,8 +158,8 @@ void WallCoverage::collect(const Camera& camera, glm::ivec2 size, std::vector<in
         const glm::vec3 fromEye = cell.middleMm - eye;
         // Of an orthographic camera the way across counts too, and is bounded by the picture.
         if (!sight.parallel() && glm::length(fromEye) > farthest + cell.radiusMm) continue;
-        std::erase_if(cell.unseen, [&](int triangle) {
-            if (isSeen(triangle)) return true;
+        std::erase_if(cell.unshown, [&](int triangle) {
+            if (isShown(triangle)) return true;
             if (shows(triangle)) triangles.push_back(triangle);
             return false;
         });
@@ -176,8 +180,8 @@ void WallCoverage::collectLarge(double pixelsPerUnit, const FlatWindow* window, 
                                 std::vector<int>& triangles) {
     const glm::dvec2 half = 0.5 * glm::dvec2(size);
     for (Cell& cell : cells_) {
-        std::erase_if(cell.unseen, [&](int triangle) {
-            if (isSeen(triangle)) return true;
+        std::erase_if(cell.unshown, [&](int triangle) {
+            if (isShown(triangle)) return true;
             const WallSight::Facet& facet = sight_->facets()[std::size_t(triangle)];
             if (pixelsPerUnit * double(facet.circumferencesPerMm) < limits_.pixelsPerMm)
                 return false;
@@ -196,7 +200,7 @@ void WallCoverage::collectLarge(double pixelsPerUnit, const FlatWindow* window, 
 std::vector<std::uint8_t> WallCoverage::shownTriangles() const {
     std::vector<std::uint8_t> shown(times_.size());
     for (std::size_t t = 0; t < times_.size(); ++t)
-        shown[t] = isSeen(int(t));
+        shown[t] = isShown(int(t));
     return shown;
 }
 
@@ -205,12 +209,14 @@ std::vector<std::uint8_t> WallCoverage::seenTriangles() const {
 }
 
 double WallCoverage::share() const {
+    if (share_) return *share_;
     const auto seen = seenTriangles();
-    double unseenMm2 = 0.0;
+    double seenMm2 = 0.0, unseenMm2 = 0.0;
     for (std::size_t t = 0; t < seen.size(); ++t)
-        if (!seen[t] && !sight_->isBridge(int(t))) unseenMm2 += double(sight_->facets()[t].areaMm2);
-    if (unseenMm2 == 0.0) return 1.0;
-    return std::clamp(1.0 - unseenMm2 / sight_->areaMm2(), 0.0, 1.0);
+        if (!sight_->isBridge(int(t)))
+            (seen[t] ? seenMm2 : unseenMm2) += double(sight_->facets()[t].areaMm2);
+    share_ = unseenMm2 == 0.0 ? 1.0 : seenMm2 / (seenMm2 + unseenMm2);
+    return *share_;
 }
 
 }  // namespace haustra::render

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,7 +68,8 @@ public:
     std::vector<std::uint8_t> shownTriangles() const;
     /// 0 or 1 each: which count as seen, singles too. O(n).
     std::vector<std::uint8_t> seenTriangles() const;
-    /// Of the wall's area, 0…1: 1 only where every triangle with an area counts as seen. O(n).
+    /// Of the wall's area, 0…1: 1 only where every triangle with an area counts as seen. O(n) once
+    /// after what changes it.
     double share() const;
     const WallSight& sight() const { return *sight_; }
 
@@ -76,7 +78,7 @@ private:
     struct Cell {
         glm::vec3 middleMm{0.0f};
         float radiusMm = 0.0f;
-        std::vector<int> unseen;
+        std::vector<int> unshown;
     };
     struct Picture {
         ViewState shown;
@@ -89,14 +91,15 @@ private:
     void collect(const WholeStrip& strip, glm::ivec2 size, std::vector<int>& triangles);
     void collectLarge(double pixelsPerUnit, const FlatWindow* window, glm::ivec2 size,
                       std::vector<int>& triangles);
-    bool isSeen(int triangle) const { return times_[std::size_t(triangle)] >= enough_; }
+    bool isShown(int triangle) const { return times_[std::size_t(triangle)] >= enough_; }
 
     std::shared_ptr<const WallSight> sight_;
     const SeenLimits limits_;
     const std::uint32_t enough_;
-    std::vector<Cell> cells_;
+    std::vector<Cell> cells_;  // made when the first picture is shown
     std::vector<std::uint32_t> times_;
     std::array<Picture, std::variant_size_v<ViewState>> last_;  // of each kind
+    mutable std::optional<double> share_;                       // as long as times_ are the same
 };
 
 }  // namespace haustra::render
