@@ -39,6 +39,13 @@ constexpr std::size_t featureNumber(std::string_view name) {
 }
 using FeatureVector = std::array<float, std::size_t(featureCount)>;
 
+/// What rises less than this above the wall is flat to any reader (Paris 0-IIb, which CT does not
+/// show), whatever grew there.
+inline constexpr float leastHeightMm = 0.5f;
+inline bool rises(const FeatureVector& features) {
+    return features[featureNumber("height_mm")] >= leastHeightMm;
+}
+
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.
 /// `numbers`: of all samples, for its own use. O(samples of the patch and its voxels).
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,

@@ -83,7 +83,7 @@ bool ShapeThresholds::pass(const FeatureVector& features) const {
 }
 
 double CadModel::probability(const FeatureVector& features) const {
-    return logistic(calibrationA + calibrationB * boosted.at(features));
+    return rises(features) ? logistic(calibrationA + calibrationB * boosted.at(features)) : 0.0;
 }
 
 double CadModel::placeProbability(double score) const {
@@ -213,10 +213,11 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         }
         if (!(model.operatingPoint >= 0.0 && model.operatingPoint <= 1.0))
             throw std::invalid_argument("the operating point is no probability");
-        const auto rises = [](double a, double b) {
+        const auto isRising = [](double a, double b) {
             return std::abs(a) < 1e6 && b > 0.0 && b < 1e6;
         };
-        if (!rises(model.calibrationA, model.calibrationB) || !rises(model.placeA, model.placeB))
+        if (!isRising(model.calibrationA, model.calibrationB) ||
+            !isRising(model.placeA, model.placeB))
             throw std::invalid_argument("the calibration does not rise with the score");
         if (model.texture.count() == 0) throw std::invalid_argument("the texture has no component");
         if (const auto sound = checkTrees(model.boosted, featureCount); !sound)

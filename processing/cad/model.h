@@ -40,7 +40,7 @@ struct CadModel {
     double placeA = 0.0, placeB = 1.0;
     double operatingPoint = 0.5;  ///< probability from which on a candidate is a finding
 
-    /// Of a candidate by itself.
+    /// Of a candidate by itself; 0 where it does not rise.
     double probability(const FeatureVector& features) const;
     /// Of a place with this score: what a finding tells.
     double placeProbability(double score) const;

@@ -11,6 +11,7 @@
 namespace haustra::cad {
 namespace {
 
+// Symmetric, of an odd length.
 std::vector<float> gaussian(double sigmaVoxels) {
     const int reach = int(std::ceil(3.0 * sigmaVoxels));
     std::vector<float> kernel;
@@ -23,6 +24,22 @@ std::vector<float> gaussian(double sigmaVoxels) {
     return kernel;
 }
 
+// out = Σ kernel[reach + n] · line(n), of lines of `count` numbers; line(n) and line(−n) are added
+// first, as they have one weight.
+template <class Line>
+void weightedSum(const std::vector<float>& kernel, const Line& line, int count, float* out) {
+    const int reach = int(kernel.size()) / 2;
+    const float* middle = line(0);
+    for (int i = 0; i < count; ++i)
+        out[i] = kernel[std::size_t(reach)] * middle[i];
+    for (int n = 1; n <= reach; ++n) {
+        const float *before = line(-n), *after = line(n);
+        const float weight = kernel[std::size_t(reach + n)];
+        for (int i = 0; i < count; ++i)
+            out[i] += weight * (before[i] + after[i]);
+    }
+}
+
 // Rows along i, then columns along j, slice by slice.
 void smoothSlices(const Volume<std::int16_t>& hu, const VoxelBox& box,
                   const std::array<std::vector<float>, 3>& kernels, Volume<float>& out,
@@ -30,7 +47,7 @@ void smoothSlices(const Volume<std::int16_t>& hu, const VoxelBox& box,
     const glm::ivec3 size = box.size;
     const auto values = out.writable();
     parallelFor(std::size_t(size.z), 2, threads, [&](std::size_t begin, std::size_t end) {
-        const int rx = int(kernels[0].size()) / 2, ry = int(kernels[1].size()) / 2;
+        const int rx = int(kernels[0].size()) / 2;
         std::vector<float> row(std::size_t(size.x + 2 * rx)),
             slice(std::size_t(size.x) * std::size_t(size.y));
         for (std::size_t k = begin; k < end; ++k) {
@@ -39,23 +56,18 @@ void smoothSlices(const Volume<std::int16_t>& hu, const VoxelBox& box,
                     &hu.voxels()[hu.grid().index(box.lo + glm::ivec3(0, j, int(k)))];
                 for (int i = -rx; i < size.x + rx; ++i)
                     row[std::size_t(i + rx)] = float(in[std::clamp(i, 0, size.x - 1)]);
-                float* to = &slice[std::size_t(j) * std::size_t(size.x)];
-                std::fill_n(to, size.x, 0.0f);
-                for (std::size_t n = 0; n < kernels[0].size(); ++n)
-                    for (int i = 0; i < size.x; ++i)
-                        to[i] += kernels[0][n] * row[std::size_t(i) + n];
+                weightedSum(
+                    kernels[0], [&](int n) { return &row[std::size_t(rx + n)]; }, size.x,
+                    &slice[std::size_t(j) * std::size_t(size.x)]);
             }
-            for (int j = 0; j < size.y; ++j) {
-                float* to = &values[out.grid().index(0, j, int(k))];
-                std::fill_n(to, size.x, 0.0f);
-                for (int n = -ry; n <= ry; ++n) {
-                    const float* from =
-                        &slice[std::size_t(std::clamp(j + n, 0, size.y - 1)) * std::size_t(size.x)];
-                    const float weight = kernels[1][std::size_t(n + ry)];
-                    for (int i = 0; i < size.x; ++i)
-                        to[i] += weight * from[i];
-                }
-            }
+            for (int j = 0; j < size.y; ++j)
+                weightedSum(
+                    kernels[1],
+                    [&](int n) {
+                        return &slice[std::size_t(std::clamp(j + n, 0, size.y - 1)) *
+                                      std::size_t(size.x)];
+                    },
+                    size.x, &values[out.grid().index(0, j, int(k))]);
         }
     });
 }
@@ -63,7 +75,6 @@ void smoothSlices(const Volume<std::int16_t>& hu, const VoxelBox& box,
 void smoothAcross(const std::vector<float>& kernel, Volume<float>& volume, int threads) {
     if (kernel.size() == 1) return;
     const glm::ivec3 size = volume.grid().size;
-    const int reach = int(kernel.size()) / 2;
     const auto values = volume.writable();
     parallelFor(std::size_t(size.y), 4, threads, [&](std::size_t begin, std::size_t end) {
         std::vector<float> sheet(std::size_t(size.x) * std::size_t(size.z));
@@ -71,17 +82,14 @@ void smoothAcross(const std::vector<float>& kernel, Volume<float>& volume, int t
             for (int k = 0; k < size.z; ++k)
                 std::copy_n(&values[volume.grid().index(0, int(j), k)], size.x,
                             &sheet[std::size_t(k) * std::size_t(size.x)]);
-            for (int k = 0; k < size.z; ++k) {
-                float* to = &values[volume.grid().index(0, int(j), k)];
-                std::fill_n(to, size.x, 0.0f);
-                for (int n = -reach; n <= reach; ++n) {
-                    const float* from =
-                        &sheet[std::size_t(std::clamp(k + n, 0, size.z - 1)) * std::size_t(size.x)];
-                    const float weight = kernel[std::size_t(n + reach)];
-                    for (int i = 0; i < size.x; ++i)
-                        to[i] += weight * from[i];
-                }
-            }
+            for (int k = 0; k < size.z; ++k)
+                weightedSum(
+                    kernel,
+                    [&](int n) {
+                        return &sheet[std::size_t(std::clamp(k + n, 0, size.z - 1)) *
+                                      std::size_t(size.x)];
+                    },
+                    size.x, &values[volume.grid().index(0, int(j), k)]);
         }
     });
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -36,13 +37,15 @@ BoostedTrees boostedOn(const std::vector<const TrainingCase*>& cases) {
     return boostTrees(rows, responses, featureCount);
 }
 
-// Examples as witnesses, each with what `probability` makes of its features.
+// Examples as witnesses, each with what `probability` makes of its features; nothing's where it
+// does not rise.
 template <class Probability>
-std::vector<PlaceWitness> witnessesOf(const TrainingCase& each, const Probability& probability) {
+std::vector<PlaceWitness> witnessesOf(const TrainingCase& each, const Probability& probability,
+                                      double nothing) {
     std::vector<PlaceWitness> witnesses;
     for (const Example& example : each.examples)
-        witnesses.push_back(
-            {example.placeMm, example.diameterMm, example.areaMm2, probability(example.features)});
+        witnesses.push_back({example.placeMm, example.diameterMm, example.areaMm2,
+                             rises(example.features) ? probability(example.features) : nothing});
     return witnesses;
 }
 
@@ -177,10 +180,12 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
     };
     for (std::size_t n = 0; n < cases.size(); ++n) {
         const auto witnesses = witnessesOf(
-            cases[n], [&](const FeatureVector& features) { return ofFold(n).at(features); });
+            cases[n], [&](const FeatureVector& features) { return ofFold(n).at(features); },
+            std::numeric_limits<double>::lowest());
         for (const WitnessedPlace& place : placesOf(witnesses)) {
-            const auto polyp = truthOf(cases[n], cases[n].examples[place.best].lesion);
-            if (!polyp) continue;
+            const Example& best = cases[n].examples[place.best];
+            const auto polyp = truthOf(cases[n], best.lesion);
+            if (!polyp || !rises(best.features)) continue;
             sums.push_back(witnesses[place.best].probability);
             truths.push_back(*polyp);
         }
@@ -192,15 +197,18 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
                     "other places; more training cases, or ones with more polyps, are needed");
     TrainedModel trained;
     for (std::size_t n = 0; n < cases.size(); ++n) {
-        const auto witnesses = witnessesOf(cases[n], [&](const FeatureVector& features) {
-            return logistic(model.calibrationA + model.calibrationB * ofFold(n).at(features));
-        });
+        const auto witnesses = witnessesOf(
+            cases[n],
+            [&](const FeatureVector& features) {
+                return logistic(model.calibrationA + model.calibrationB * ofFold(n).at(features));
+            },
+            0.0);
         EvaluatedCase told{cases[n].name, cases[n].name, cases[n].truth, {}};
         for (const WitnessedPlace& place : placesOf(witnesses)) {
             const Example& best = cases[n].examples[place.best];
             told.places.push_back({place.score, best.diameterMm, best.lesion, ""});
             const auto polyp = truthOf(cases[n], best.lesion);
-            if (!polyp) continue;
+            if (!polyp || !rises(best.features)) continue;
             scores.push_back(logit(place.score));
             placeTruths.push_back(*polyp);
         }

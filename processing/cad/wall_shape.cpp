@@ -29,7 +29,7 @@ WallShape shapeOf(const Derivatives& scan) {
     const glm::dvec3 hu = scan.hessian * u, hv = scan.hessian * v;
     const double a = -glm::dot(u, hu) / steep, b = -glm::dot(u, hv) / steep,
                  c = -glm::dot(v, hv) / steep;
-    const double mean = 0.5 * (a + c), spread = std::hypot(0.5 * (a - c), b);
+    const double mean = 0.5 * (a + c), spread = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
     shape.k1 = float(mean + spread), shape.k2 = float(mean - spread);
     return shape;
 }

@@ -45,7 +45,8 @@ double Growth::distance(glm::dvec3 p) const {
 }
 
 double Growth::reachMm() const {
-    const double head = 1.1 * std::max({semiAxes.x, semiAxes.y, semiAxes.z}) + 1.0;
+    const double head =
+        1.1 * std::max({semiAxes.x, semiAxes.y, semiAxes.z}) + std::max(1.0, footMm);
     return stalkRadiusMm > 0.0 ? std::max(head, glm::distance(root, centre) + stalkRadiusMm + 1.0)
                                : head;
 }
@@ -242,7 +243,7 @@ ColonPoint ColonShape::evaluate(glm::dvec3 p, const Nearby& nearby) const {
         if (growth.kind == Growth::Kind::taggedStool) continue;
         const double g = growth.distance(p);
         if (g < 0.0 && d < 0.8) point.growth = n;
-        d = smoothMax(d, -g, growth.stool() ? 0.4 : 0.8);
+        d = smoothMax(d, -g, growth.stool() ? 0.4 : growth.footMm);
     }
     point.lumenMm = d;
     point.outerMm = outer;

@@ -29,6 +29,7 @@ struct Growth {
     glm::dvec3 semiAxes{3.0};     ///< along two tangents of the wall, and along `inward`
     glm::dvec3 tangent{1, 0, 0};  ///< direction of the first semi-axis
     double stalkRadiusMm = 0.0;
+    double footMm = 0.8;     ///< over this distance a lesion's side goes over into the wall
     std::uint64_t seed = 0;  ///< of its irregular outline and core
     double hu = 0.0;         ///< of stool
 

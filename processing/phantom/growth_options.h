@@ -9,9 +9,10 @@ namespace haustra::phantom {
 ///
 /// Where the ranges come from: sessile lesions are as high as a half to nearly all of their width,
 /// flat ones (Paris 0-IIa) at most 2.5 mm, the closed cups of a biopsy forceps, or less than half
-/// their width (Endoscopic Classification Review Group, Endoscopy 2005; 37: 570); most adenomas
-/// have the wall's own density without contrast medium in the blood; stool without tagging is
-/// mottled with gas (Pickhardt & Kim, Radiographics 2009).
+/// their width, those that spread sideways often wider than 10 mm, with sides that slope
+/// (Endoscopic Classification Review Group, Endoscopy 2005; 37: 570); most adenomas have the wall's
+/// own density without contrast medium in the blood; stool without tagging is mottled with gas
+/// (Pickhardt & Kim, Radiographics 2009).
 struct GrowthOptions {
     /// Of all polyps the share that is no denser inside than the wall, 0…1.
     double plainCores = 0.0;
@@ -20,6 +21,9 @@ struct GrowthOptions {
     int morePolyps = 0;
     /// More lumps of stool that took no tagging, 5…12 mm, 0…40.
     int moreUntaggedStool = 0;
+    /// More flat lesions, 6…18 mm wide and 1…2.5 mm high, whose sides go over into the wall over
+    /// 0.8 to 3.5 mm, 0…40; fewer where there is no room.
+    int moreFlat = 0;
 };
 
 }  // namespace haustra::phantom

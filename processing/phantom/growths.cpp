@@ -231,6 +231,21 @@ void addMoreGrowths(ColonShape& shape, std::uint64_t seed, const GrowthOptions& 
             return growth;
         });
     }
+    Random flatRandom(seed, 62);
+    Placer flatPlacer(shape, flatRandom);
+    for (int n = 0; n < options.moreFlat; ++n) {
+        const double diameter = flatRandom.uniform(6.0, 18.0);
+        Wanted where;
+        where.apartMm = 0.5 * diameter + 11.0;
+        where.radiusAtLeastMm = std::max(12.0, diameter);
+        if (flatRandom.chance(0.3)) where.downward = gravityDirection(body.position);
+        flatPlacer.add(where, [&](const WallPlace& place) {
+            Growth growth = polypAt(place, Growth::Kind::flat, diameter, flatRandom);
+            growth.semiAxes.z = flatRandom.uniform(1.0, 2.5);
+            growth.footMm = flatRandom.uniform(0.8, 3.5);
+            return growth;
+        });
+    }
     for (int n = 0; n < options.moreUntaggedStool; ++n) {
         const double r = random.uniform(2.5, 6.0);
         Wanted where;

@@ -267,7 +267,7 @@ Result<void> check(const PhantomOptions& options) {
     const GrowthOptions& growths = options.growths;
     if (!share(growths.plainCores)) return bad("a share of polyps is 0 to 1");
     if (growths.morePolyps < 0 || growths.morePolyps > 40 || growths.moreUntaggedStool < 0 ||
-        growths.moreUntaggedStool > 40)
+        growths.moreUntaggedStool > 40 || growths.moreFlat < 0 || growths.moreFlat > 40)
         return bad("there may be 0 to 40 more growths of a kind");
     if (!(bowel.ileumMm >= 0.0 && bowel.ileumMm <= 2000.0))
         return bad("an ileum is 0 to 2000 mm long");

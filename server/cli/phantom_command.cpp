@@ -144,9 +144,12 @@ std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
 }
 
 nlohmann::ordered_json growthOptionsJson(const phantom::GrowthOptions& growths) {
-    return {{"plain_cores", growths.plainCores},
-            {"more_polyps", growths.morePolyps},
-            {"more_untagged_stool", growths.moreUntaggedStool}};
+    nlohmann::ordered_json json{{"plain_cores", growths.plainCores},
+                                {"more_polyps", growths.morePolyps},
+                                {"more_untagged_stool", growths.moreUntaggedStool}};
+    // As above.
+    if (growths.moreFlat > 0) json["more_flat"] = growths.moreFlat;
+    return json;
 }
 
 std::string structureJson(const phantom::Structure& structure) {
@@ -447,6 +450,14 @@ void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
     command
         .add_option("--more-polyps", arguments.growths.morePolyps,
                     "More polyps of 4 to 15 mm, 0 to 40, of more shapes than the preset's")
+        ->check(CLI::Range(0, 40))
+        ->type_name("N")
+        ->group(group);
+    command
+        .add_option(
+            "--more-flat", arguments.growths.moreFlat,
+            "More flat lesions of 6 to 18 mm, 1 to 2.5 mm high, with sides that slope, 0 to "
+            "40")
         ->check(CLI::Range(0, 40))
         ->type_name("N")
         ->group(group);

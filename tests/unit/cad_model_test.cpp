@@ -178,6 +178,20 @@ TEST(Model, TheBuiltInOneIsSoundAndSaysWhatItIs) {
     EXPECT_GE(model->texture.varianceShare, cad::textureVariance);
 }
 
+TEST(Model, WhatDoesNotRiseIsNothing) {
+    cad::CadModel model;
+    model.boosted.trees = {{{-1, 5.0f}}};
+    model.boosted.widths.assign(std::size_t(cad::featureCount), 0.0f);
+    cad::FeatureVector features{};
+    float& height = features[cad::featureNumber("height_mm")];
+    for (const float mm : {-2.0f, 0.0f, 0.49f}) {
+        height = mm;
+        EXPECT_EQ(model.probability(features), 0.0);
+    }
+    height = cad::leastHeightMm;
+    EXPECT_GT(model.probability(features), 0.9);
+}
+
 TEST(Calibration, FindsTheLogisticThatDrewTheTruths) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> share;
@@ -214,6 +228,30 @@ cad::EvaluatedCase judged(std::vector<cad::ToldPlace> places) {
                   polypAt({0, 50, 0}, 3.0, "hyperplastic"), polypAt({0, 0, 50}, 7.0, "lump")};
     each.places = std::move(places);
     return each;
+}
+
+TEST(Examples, AreLearntFromWhereTheyShowAPolypWhole) {
+    std::vector<cad::TrueLesion> truth(2);
+    truth[0].diameterMm = 10.0;
+    truth[1].diameterMm = 6.0, truth[1].positionMm = {50, 0, 0};
+    truth[1].neoplastic = false, truth[1].kind = "hyperplastic";
+    const auto candidate = [](double x, double diameterMm) {
+        cad::Candidate made;
+        made.lesion.centreMm = {x, 0, 0};
+        made.lesion.diameter.mm = diameterMm, made.lesion.areaMm2 = diameterMm * diameterMm;
+        return made;
+    };
+    const auto examples = cad::examplesOf(
+        {candidate(1, 9), candidate(2, 4), candidate(51, 6), candidate(100, 6)}, truth);
+    const auto told = [&](auto member) {
+        std::vector<bool> all;
+        for (const cad::Example& example : examples)
+            all.push_back(example.*member);
+        return all;
+    };
+    // Whole; a fragment; benign; nothing at all.
+    EXPECT_EQ(told(&cad::Example::polyp), (std::vector<bool>{true, false, false, false}));
+    EXPECT_EQ(told(&cad::Example::weighed), (std::vector<bool>{true, false, false, true}));
 }
 
 TEST(Places, ArePairedByTheirTwoMostProbableWitnesses) {

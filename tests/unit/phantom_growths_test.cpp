@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -73,6 +74,41 @@ TEST(PhantomGrowths, TheTruthTellsPolypsAndWhatResemblesThem) {
         EXPECT_EQ(neoplastic[n], made.polyps.findings[n].positionMm);
 }
 
+// A slope is filled where the side meets the wall, and nothing else changes.
+TEST(PhantomGrowths, AGentleFootAddsTissueAroundAFlatLesionAlone) {
+    phantom::PhantomOptions options = grown();
+    const std::size_t before = grownPhantom().growths.size();
+    options.growths.moreFlat = 6;
+    const phantom::Phantom made = phantom::makePhantom(options).value();
+    ASSERT_GE(made.growths.size(), before + 4);
+    std::vector<phantom::GrowthTruth> flat;
+    for (const phantom::GrowthTruth& growth : made.growths)
+        if (std::none_of(grownPhantom().growths.begin(), grownPhantom().growths.end(),
+                         [&](const auto& other) { return other.wallMm == growth.wallMm; }))
+            flat.push_back(growth);
+    ASSERT_GE(flat.size(), 4u);
+    const Grid& grid = made.lumen.grid();
+    double filled = 0.0, expected = 0.0;
+    for (const phantom::GrowthTruth& growth : flat) {
+        if (growth.kind != "flat") continue;  // stool that looked for another place
+        EXPECT_LE(growth.heightMm, 2.5);
+        EXPECT_GE(growth.diameterMm, 6.0);
+        // Half an ellipsoid, of which a curved wall buries a part and slopes add to the rest.
+        expected += 2.0 / 3.0 * std::numbers::pi * 0.25 * growth.diameterMm * growth.diameterMm *
+                    0.85 * growth.heightMm;
+        const glm::ivec3 foot(glm::round(grid.voxelFromPatientPoint(growth.wallMm)));
+        const int reach = int(std::ceil(0.5 * growth.diameterMm / grid.spacingMm().x)) + 3;
+        visitBox(glm::max(foot - reach, glm::ivec3(0)), glm::min(foot + reach, grid.size - 1),
+                 [&](glm::ivec3 v) {
+                     filled += !made.lumen.at(v) && grownPhantom().lumen.at(v)
+                                   ? grid.voxelVolumeMm3()
+                                   : 0.0;
+                 });
+    }
+    EXPECT_GT(filled, 0.4 * expected);
+    EXPECT_LT(filled, 2.5 * expected);
+}
+
 TEST(PhantomGrowths, PlainPolypsHaveTheWallsDensityAndOthersMore) {
     const phantom::Phantom& made = grownPhantom();
     const Grid& grid = made.lumen.grid();
@@ -93,7 +129,8 @@ TEST(PhantomGrowths, PlainPolypsHaveTheWallsDensityAndOthersMore) {
 TEST(PhantomGrowths, WhatCannotBeIsRefused) {
     for (const phantom::GrowthOptions& growths :
          {phantom::GrowthOptions{1.5, 0, 0}, phantom::GrowthOptions{0.0, 41, 0},
-          phantom::GrowthOptions{0.0, 0, -1}, phantom::GrowthOptions{NAN, 0, 0}}) {
+          phantom::GrowthOptions{0.0, 0, -1}, phantom::GrowthOptions{NAN, 0, 0},
+          phantom::GrowthOptions{0.0, 0, 0, 41}}) {
         phantom::PhantomOptions options = grown();
         options.growths = growths;
         EXPECT_FALSE(phantom::makePhantom(options));
