@@ -11,6 +11,7 @@ namespace {
 // The middle of a patch moves while parts of it are seen.
 constexpr double samePatchMm = 10.0;
 constexpr auto askEvery = std::chrono::milliseconds(1000);
+constexpr auto askAfterRefusal = std::chrono::seconds(30);
 
 }  // namespace
 
@@ -35,6 +36,13 @@ const MissedList* MissedReading::list() const {
 void MissedReading::update(Clock::time_point now) {
     if (!has() || session_.phase() != Phase::open || !session_.seenShare()) return;
     const bool waits = session_.awaits(asked_);
+    if (asked_ > 0 && !waits && !list()) {  // refused, which the session has told
+        asked_ = 0;
+        askAfter_ = now + askAfterRefusal;
+        wanted_.reset();
+    }
+    // Forgotten, or by stricter limits: another review.
+    if (askedAtShare_ && *session_.seenShare() < *askedAtShare_) visited_.clear(), at_ = 0;
     const bool stale = !list() || askedAtShare_ != session_.seenShare();
     if (waits || !stale || now < askAfter_ || (!watched_ && !wanted_ && visited_.empty())) return;
     askedAtShare_ = session_.seenShare();
@@ -63,15 +71,12 @@ void MissedReading::setCurrent(std::size_t patch) {
 }
 
 std::optional<std::size_t> MissedReading::firstUnvisited() const {
-    const auto& patches = list()->patches;
-    for (std::size_t n = 0; n < patches.size(); ++n) {
-        const bool been =
-            std::any_of(visited_.begin(), visited_.end(), [&](const glm::dvec3& placeMm) {
-                return glm::distance(placeMm, patches[n].place.positionMm) < samePatchMm;
-            });
-        if (!been) return n;
-    }
-    return std::nullopt;
+    // A visit is of one patch: the faces of a fold may lie closer than a patch's middle moves.
+    std::vector<bool> been(list()->patches.size(), false);
+    for (const glm::dvec3& placeMm : visited_)
+        if (const auto patch = patchAt(placeMm)) been[*patch] = true;
+    const auto first = std::find(been.begin(), been.end(), false);
+    return first == been.end() ? std::nullopt : std::optional(std::size_t(first - been.begin()));
 }
 
 std::optional<MissedPlace> MissedReading::takeWanted(bool& none) {

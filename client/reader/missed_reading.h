@@ -29,12 +29,12 @@ public:
     const MissedList* list() const;
     /// The patch that the reader is at; none where it has been seen since.
     std::optional<std::size_t> current() const;
-    /// The reader is at this one, by a click in the list.
+    /// The reader is at this one, by a click in the list: the last of the way from now on.
     void setCurrent(std::size_t patch);
 
     /// A patch is to be gone to, once the list is there: the largest that has not been visited in
     /// this round, and after the last of them the largest that is left; −1: the one before, of
-    /// those that were visited and are still there.
+    /// those that were visited and are still there. After −1, onward goes the same way again first.
     void want(int step) { wanted_ = step; }
     /// The one that is to be gone to now, which becomes the current one. Once; where there is none,
     /// `none` is set instead.

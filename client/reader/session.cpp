@@ -632,7 +632,7 @@ bool Session::refuseQuestion(std::uint64_t request, const Error& error) {
     else if (question.has_ask_seen() || question.has_set_seen_limits())
         answeredSeen_ = std::max(answeredSeen_, request);
     else if (question.has_list_missed())
-        missed_.reset();
+        missed_.reset(), ++missedRevision_;
     else if (question.has_ask_ledger())
         ledger_.reset();
     else if (question.has_ask_seen_report())

@@ -151,7 +151,7 @@ void MissedPanel::look() {
     if (none)
         reading_.tell(reader.missed().list()->patches.empty()
                           ? tr("No patch of 300 mm² or more has been missed.")
-                          : tr("No patch that was visited before is still missed."));
+                          : tr("No earlier patch is still missed."));
     if (reportRequest_ > 0 && !reader.session().awaits(reportRequest_)) writeReport();
     reader.missed().setWatched(isVisible());
     const bool has = reader.isOpen() && reader.missed().has();
@@ -236,8 +236,9 @@ void MissedPanel::saveReport() {
 void MissedPanel::writeReport() {
     reportRequest_ = 0;
     const reader::Session& session = reading_.reader().session();
-    if (!session.seenReport()) return;  // the refusal is told
-    QSaveFile out(reportFile_);         // replaced in one step
+    // Refused, or the case has been left meanwhile.
+    if (!session.seenReport()) return reading_.tell(tr("No report was saved."), true);
+    QSaveFile out(reportFile_);  // replaced in one step
     const std::string json = reader::toJson(*session.seenReport(), session.caseInfo()->name);
     if (out.open(QIODevice::WriteOnly) && out.write(json.data(), qint64(json.size())) >= 0 &&
         out.commit())

@@ -36,7 +36,7 @@ struct MissedPatch {
     glm::dvec3 inward{0.0};   ///< unit, into the lumen, of the wall within a few mm of the centre
     /// On the centerline, from the rectum: the sample nearest to the centre of those that lie on
     /// the wall's inner side there, so that a loop that touches from outside is not taken; where
-    /// that one is twice as far as the nearest of all, this.
+    /// that one is farther than a colon is wide (60 mm), the nearest of all.
     double arcMm = 0.0;
     std::vector<std::int32_t> triangles;  ///< ascending
 };

@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Longest side of a calibration's picture, pixels.
-
 struct CalibrateArguments {
     std::vector<fs::path> images;
     std::optional<coverage::Board> board;

@@ -541,7 +541,7 @@ Command addCoverage(CLI::App& program) {
             "--pictures", arguments->pictures,
             "Write pictures into this folder (made if it is not there), the wall green where it "
             "was seen: front.png and back.png from outside, view-1.png to view-4.png through the "
-            "lens")
+            "lens before the largest patches that were missed")
         ->type_name("FOLDER");
     addThreadsOption(*command, arguments->threads);
     command->callback([arguments, command] {

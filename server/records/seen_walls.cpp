@@ -77,6 +77,19 @@ void bindKey(Statement& statement, const LedgerKey& key) {
     statement.bind(4, std::int64_t(key.limits.leastMs));
 }
 
+// Files of earlier versions have a column that nothing reads any more.
+Result<void> dropShare(sqlite3* database) {
+    return inTransaction(database, [&]() -> Result<void> {
+        auto has = TRY(Statement::prepare(
+            database, "SELECT count(*) FROM pragma_table_info('seen_walls') WHERE name = 'share'"));
+        {
+            const ResetAfter reset(has);
+            if (!TRY(has.step()) || has.integer(0) == 0) return {};
+        }
+        return run(database, "ALTER TABLE seen_walls DROP COLUMN share", "take up the records");
+    });
+}
+
 }  // namespace
 
 SeenStore::SeenStore(Database database, Statement find, Statement ofWall, Statement count,
@@ -90,6 +103,7 @@ SeenStore::SeenStore(Database database, Statement find, Statement ofWall, Statem
 
 Result<SeenStore> SeenStore::open(const std::filesystem::path& file) {
     auto database = TRY(openDatabase(file, seenSchema));
+    TRY(dropShare(database.get()));
     const std::string select = seenColumns,
                       byKey = " AND reader = ? AND pixels_per_mm = ? AND least_ms = ?";
     const auto prepared = [&](const std::string& sql) {
@@ -149,9 +163,9 @@ Result<void> SeenStore::keepOne(const Ledger& ledger) {
         return fail(ErrorKind::badInput, "the wall has more triangles than a record may have",
                     "seen");
     if (const auto before = TRY(row(ledger.key))) {
-        // Bad input, as it is of this reader alone: the others' are kept.
+        // Not io, as it is of this reader alone: the others' are kept.
         if (!*before || (*before)->times.size() != times.size())
-            return fail(ErrorKind::badInput, damaged().value().message, "records");
+            return fail(ErrorKind::wrongState, damaged().value().message, "records");
         for (std::size_t t = 0; t < times.size(); ++t)
             times[t] = std::max(times[t], (*before)->times[t]);
     } else if (TRY(isFull(ledger.key.wall))) {

@@ -40,9 +40,9 @@ public:
 
     /// Keeps all in one transaction, which costs one fsync. Of each triangle the longer time
     /// counts, the one that is kept or the new one: of two programs that serve one reader neither
-    /// takes away what the other has kept. One past protocol::maxWallLedgers of its wall, or whose
-    /// record is damaged or too large, is refused (badInput), and the others are kept; where the
-    /// transaction fails, none is. Some milliseconds for a million triangles.
+    /// takes away what the other has kept. One past protocol::maxWallLedgers of its wall or too
+    /// large (badInput), or whose record is damaged (wrongState), is refused, and the others are
+    /// kept; where the transaction fails, none is. Some milliseconds for a million triangles.
     Result<std::vector<Result<void>>> keep(std::span<const Ledger> ledgers);
 
     /// Nothing where there is none. Fails (io) where what is kept is damaged.

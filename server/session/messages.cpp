@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <string>
 
 namespace haustra::session {
 namespace {
@@ -457,9 +459,17 @@ protocol::ServerMessage ledgerMessage(const SeenFlags& flags, const records::Led
 protocol::ServerMessage seenReportMessage(const std::vector<ReaderSeen>& readers,
                                           const records::LedgerKey& own, double leastMm2,
                                           std::uint64_t request) {
-    // Whoever knows another's name may go on under it.
+    // Whoever knows another's name may go on under it. With a key of this process alone, so that no
+    // list of likely names tells whose mark it is.
+    static const std::string key = [] {
+        std::random_device random;
+        std::string made;
+        for (int n = 0; n < 8; ++n)
+            made += std::to_string(random()) + ' ';
+        return made;
+    }();
     const auto markOf = [](const std::string& reader) {
-        return "sha256:" + store::toHex(store::textDigest(reader)).substr(0, 16);
+        return "sha256:" + store::toHex(store::textDigest(key + reader)).substr(0, 16);
     };
     protocol::ServerMessage message;
     protocol::SeenReport& report = *message.mutable_seen_report();

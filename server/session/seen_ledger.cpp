@@ -200,7 +200,7 @@ void SeenLedger::wrote(std::uint64_t step, Result<double> share) {
         spdlog::error("what a reader has seen cannot be kept: {}", share.error().message);
         changed_ = true;
         nextWrite_ = std::chrono::steady_clock::now() + ledgerAgainAfter;
-        if (share.error().kind == ErrorKind::badInput) recorded_ = false;
+        if (share.error().kind != ErrorKind::io) recorded_ = false;  // to try again is of no use
         news_.tell({0.0, 0, share.error()});
     }
     writeSoon();

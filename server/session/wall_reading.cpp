@@ -161,7 +161,10 @@ void WallReading::shown(std::vector<ShownPicture> pictures, std::uint64_t number
 
 void WallReading::heard(const SeenLedger& of, const SeenLedger::Told& told) {
     if (told.error) {
-        if (&of == ledger_.get()) outlet_.unkept(*told.error);
+        // A former ledger's too, as long as something of it has not been told as kept.
+        const bool waits = std::ranges::any_of(
+            steps_, [&](const Step& step) { return step.of.get() == &of && !step.isKept; });
+        if (waits || &of == ledger_.get()) outlet_.unkept(*told.error);
         return;
     }
     for (Step& step : steps_)

@@ -1538,7 +1538,7 @@ TEST_F(ClientWindow, MissedPatchesAreListedAndGoneTo) {
     press(Qt::Key_H, Qt::ShiftModifier);
     EXPECT_TRUE(waitFor([&] {
         return window_->statusBar()->currentMessage().startsWith(
-            QStringLiteral("No patch that was visited"));
+            QStringLiteral("No earlier patch"));
     }));
     click(*list.viewport(), list.visualItemRect(list.topLevelItem(2)).center());
     ASSERT_TRUE(isAt(2));

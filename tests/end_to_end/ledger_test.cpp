@@ -345,6 +345,12 @@ TEST_F(LedgerTest, MissedPatchesAreVisitedUntilNoneIsLeft) {
     const auto others = nobody.play(R"({"do":"seen-report"})").actions.back().seenReport.value();
     EXPECT_EQ(others.readers.front().reader, "");
     EXPECT_EQ(others.readers.front().share, 0.0);
+    // Whoever knows a name may go on under it.
+    ASSERT_GE(others.readers.size(), 2u);
+    for (std::size_t n = 1; n < others.readers.size(); ++n) {
+        EXPECT_EQ(others.readers[n].reader.substr(0, 7), "sha256:");
+        EXPECT_EQ(others.readers[n].reader.size(), 7u + 16u);
+    }
 }
 
 TEST_F(LedgerTest, ACaseThatIsMadeAnewInheritsNothingThatIsNotItsOwn) {

@@ -6,6 +6,7 @@
 #include "phantom/implicit.h"
 #include "phantom/random.h"
 #include "phantom/scanner.h"
+#include "phantom/wall_place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,39 @@ TEST(ColonPath, LengthFramesAndRoomForManySeeds) {
             }
         }
     }
+}
+
+// Tissue fills the edge between a lesion's side and the wall, and is nowhere else.
+TEST(Growth, AGentlerFootOnlyAddsTissueAroundIt) {
+    const ColonShape bare(makeColonPath(5, Preset::standard, BodyPlan{}), 5);
+    std::optional<WallPlace> place;
+    for (double arc = 300.0; !place; arc += 5.0) {
+        place = castToWall(bare, arc, 1.0);
+        if (place && place->radiusMm < 16.0) place.reset();
+    }
+    Growth growth;
+    growth.kind = Growth::Kind::flat;
+    growth.inward = place->inward, growth.tangent = place->tangent;
+    growth.centre = growth.root = place->at;
+    growth.semiAxes = {6.0, 5.0, 2.0};
+    ColonShape sharp = bare, gentle = bare;
+    sharp.add(growth);
+    growth.footMm = 3.0;
+    gentle.add(growth);
+    double most = 0.0;
+    for (double x = -14.0; x <= 14.0; x += 0.5) {
+        for (double z = -1.0; z <= 4.0; z += 0.5) {
+            const glm::dvec3 p = place->at + x * place->tangent + z * place->inward;
+            const double more = gentle.evaluate(p).lumenMm - sharp.evaluate(p).lumenMm;
+            EXPECT_GE(more, -1e-9);
+            most = std::max(most, more);
+            if (glm::distance(p, growth.centre) > growth.reachMm()) {
+                EXPECT_EQ(gentle.evaluate(p).lumenMm, bare.evaluate(p).lumenMm);
+            }
+        }
+    }
+    // A polynomial fillet over k adds k/4 where both surfaces are equally near.
+    EXPECT_NEAR(most, 0.25 * (3.0 - 0.8), 0.1);
 }
 
 TEST(ColonPath, AnotherSeedIsAnotherPatient) {

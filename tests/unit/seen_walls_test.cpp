@@ -122,6 +122,19 @@ TEST_F(SeenWalls, DamageIsToldAndNotOverwritten) {
     }
 }
 
+TEST_F(SeenWalls, FilesOfEarlierVersionsAreTakenUp) {
+    {
+        SeenStore store = open();
+        keep(store, {ledger("ada", "w", {7, 8})});
+    }
+    run("ALTER TABLE seen_walls ADD COLUMN share REAL NOT NULL DEFAULT 0.5");
+    for (int opened = 0; opened < 2; ++opened) {
+        SeenStore store = open();
+        EXPECT_EQ(timesOf(store, {"ada", "w", {}}), std::vector<std::uint32_t>({7, 8}));
+        keep(store, {ledger("bob", "w", {1, 2})});
+    }
+}
+
 TEST_F(SeenWalls, ATransactionThatThrowsIsTakenBack) {
     auto database = openDatabase(file_, "CREATE TABLE IF NOT EXISTS t(x INTEGER);");
     ASSERT_TRUE(database);

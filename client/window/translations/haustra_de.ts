@@ -1503,8 +1503,8 @@
         <translation>Keine Stelle ab 300 mm² wurde übersehen.</translation>
     </message>
     <message>
-        <source>No patch that was visited before is still missed.</source>
-        <translation>Keine zuvor besuchte Stelle ist noch übersehen.</translation>
+        <source>No earlier patch is still missed.</source>
+        <translation>Keine frühere Stelle ist noch übersehen.</translation>
     </message>
     <message>
         <source>%1 % of the wall seen</source>
@@ -1532,6 +1532,10 @@
     <message>
         <source>Reports (*.json)</source>
         <translation>Berichte (*.json)</translation>
+    </message>
+    <message>
+        <source>No report was saved.</source>
+        <translation>Es wurde kein Bericht gespeichert.</translation>
     </message>
     <message>
         <source>Report saved: %1</source>
