@@ -42,7 +42,11 @@ void MissedReading::update(Clock::time_point now) {
         wanted_.reset();
     }
     // Forgotten, or by stricter limits: another review.
-    if (askedAtShare_ && *session_.seenShare() < *askedAtShare_) visited_.clear(), at_ = 0;
+    if (askedAtShare_ && *session_.seenShare() < *askedAtShare_) {
+        visited_.clear();
+        at_ = 0;
+        askedAtShare_.reset();
+    }
     const bool stale = !list() || askedAtShare_ != session_.seenShare();
     if (waits || !stale || now < askAfter_ || (!watched_ && !wanted_ && visited_.empty())) return;
     askedAtShare_ = session_.seenShare();

@@ -147,7 +147,7 @@ nlohmann::ordered_json growthOptionsJson(const phantom::GrowthOptions& growths) 
     nlohmann::ordered_json json{{"plain_cores", growths.plainCores},
                                 {"more_polyps", growths.morePolyps},
                                 {"more_untagged_stool", growths.moreUntaggedStool}};
-    // As above.
+    // Only where there are any, so that phantoms from before this option stay the same files.
     if (growths.moreFlat > 0) json["more_flat"] = growths.moreFlat;
     return json;
 }
