@@ -11,7 +11,7 @@ using store::Attributes;
 
 // Raise it whenever the scan changes for the same files. A case that lacks a product which the
 // import has come to make gets it as the series is read again, and keeps all else that it has.
-constexpr int importVersion = 1;
+constexpr int importVersion = 2;
 
 }  // namespace
 

@@ -16,11 +16,11 @@ std::string describeSize(glm::ivec3 size) {
     return std::to_string(size.x) + "×" + std::to_string(size.y) + "×" + std::to_string(size.z);
 }
 
-// Which axis of the patient each stored axis is nearest to.
+// Towards which side of the patient each stored axis runs: "LPS" is the order that the stages use.
 std::string describeOrder(const AxisOrder& order) {
     std::string text(3, ' ');
     for (std::size_t axis = 0; axis < 3; ++axis)
-        text[std::size_t(order[axis])] = "xyz"[axis];
+        text[std::size_t(order.from[axis])] = (order.reversed[axis] ? "RAI" : "LPS")[axis];
     return text;
 }
 
@@ -41,10 +41,8 @@ bool almostSameGrid(const Grid& a, const Grid& b) {
 
 // Programs that reorder a scan's axes write its masks in either order.
 std::optional<AxisOrder> orderOnGrid(const Grid& grid, const Grid& wanted) {
-    AxisOrder order = sameOrder;
-    do {
+    for (const AxisOrder& order : allAxisOrders())
         if (almostSameGrid(reordered(grid, order), wanted)) return order;
-    } while (std::next_permutation(order.begin(), order.end()));
     return std::nullopt;
 }
 
@@ -52,8 +50,9 @@ ScanInput inAxialOrder(ScanInput input, int threads) {
     const AxisOrder order = axialOrder(input.scan.hu.grid());
     if (order == sameOrder) return input;
     input.scan.hu = reordered(std::move(input.scan.hu), order, threads);
-    input.notes.push_back("the voxels' axes were put in axial order; they were stored as " +
-                          describeOrder(order));
+    input.notes.push_back(
+        "the voxels' axes were put in the order left, posterior, superior; they were stored as " +
+        describeOrder(order));
     return input;
 }
 

@@ -75,9 +75,9 @@ TEST_F(PrepareInputs, AMaskOnAnotherGridIsRefused) {
     EXPECT_FALSE(prepare(store(), "tube", options()));
 }
 
-TEST_F(PrepareInputs, ACoronalScanIsPreparedAsTheAxialOne) {
+TEST_F(PrepareInputs, ACoronalScanFromHeadToFeetIsPreparedAsTheAxialOne) {
     EXPECT_EQ(reused(options()), all(false));
-    const AxisOrder coronal{0, 2, 1};
+    const AxisOrder coronal{{0, 2, 1}, {true, true, false}};
     auto ct = nifti::readNifti<std::int16_t>(ctFile()).value();
     ASSERT_TRUE(
         nifti::writeNifti(folder_ / "coronal.nii.gz", reordered(std::move(ct), coronal, 1)));
@@ -91,8 +91,8 @@ TEST_F(PrepareInputs, ACoronalScanIsPreparedAsTheAxialOne) {
         const auto report = prepare(store(), name, turned);
         ASSERT_TRUE(report) << describe(report.error());
         EXPECT_EQ(std::ranges::count(report->notes,
-                                     "import: the voxels' axes were put in axial order; they were "
-                                     "stored as xzy"),
+                                     "import: the voxels' axes were put in the order left, "
+                                     "posterior, superior; they were stored as RIP"),
                   1);
         for (const char* product : {"ct", "cleansed"}) {
             const auto axial = store().openCase("tube")->readVolume<std::int16_t>(product).value();
