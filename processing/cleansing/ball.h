@@ -61,10 +61,10 @@ inline Ball blurBall(const Grid& grid) {
     return {grid, blurReachMm + 0.5 * grid.spacingMm()};
 }
 
-/// Of a scan's row each `every`th voxel is looked at, voxel `first` among them. The first of these
-/// in a box that begins at the row's voxel `from`, counted from there.
-inline int firstSample(int first, int from, int every) {
-    return ((first - from) % every + every) % every;
+/// Of a row each `every`th voxel is looked at, voxel `one` (0 and more) among them: the first of
+/// these.
+inline int firstSample(int one, int every) {
+    return one % every;
 }
 
 /// Calls visit(v + n · step), n whole numbers for each axis, for those voxels that are in the grid

@@ -85,10 +85,9 @@ public:
           unit_(float(grid_.voxelVolumeMm3() / voxelMm3)),
           threads_(threads) {}
 
-    /// `from` is the scan's voxel at which its box begins.
-    ContentSums contents(glm::ivec3 from) const {
+    ContentSums contents() const {
         const int every = std::max(1, int(std::lround(gasSampleMm3 / grid_.voxelVolumeMm3())));
-        const int begin = from.x + from.y + from.z, depth = cells_.voxelsPerCell().z;
+        const int depth = cells_.voxelsPerCell().z;
         const float airWeight = unit_ * float(every) / 3.0f;
         const auto hu = scan_.hu.voxels();
         const auto isAir = [&](std::size_t n) { return is(n, LumenLabel::air); };
@@ -99,7 +98,7 @@ public:
                 sums.holdsTagged[cell] = 1;
                 if (hu[n] <= tissue_.meanHu[int(Tissue::soft)]) return;
                 sums.tagged.add(cell, unit_ * taggedWeight(n, v), hu[n]);
-            } else if (isAir(n) && (v.x + v.y + v.z + begin) % every == 0) {
+            } else if (isAir(n) && (v.x + v.y + v.z) % every == 0) {
                 if (!ball_.everywhere(v, isAir)) return;
                 const std::size_t slab = std::size_t(v.z / depth);
                 sums.airSum[slab] += hu[n], sums.airCount[slab] += 1.0;
@@ -192,15 +191,15 @@ glm::ivec3 cellVoxels(const Grid& grid) {
 
 LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                              const Volume<std::uint8_t>& segmentation,
-                             const TaggedSurroundings& around, int threads, glm::ivec3 from) {
+                             const TaggedSurroundings& around, int threads) {
     const Grid& grid = scan.hu.grid();
     const SmoothField cells(grid, cellVoxels(grid));
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     const double fatHu = tissue.meanHu[int(Tissue::fat)];
     LocalMeans means;
-    means.noise = measureNoise(scan, tissue, segmentation, threads, from);
+    means.noise = measureNoise(scan, tissue, segmentation, threads);
     const CellSampling sampling(scan, tissue, segmentation, cells, threads);
-    const ContentSums contents = sampling.contents(from);
+    const ContentSums contents = sampling.contents();
     means.airHu = normalised(contents.air, cells, contents.airHu(tissue.meanHu[int(Tissue::air)]),
                              1.0, threads);
     // Soft tissue within two cells of the tagging.

@@ -25,12 +25,11 @@ struct LocalMeans {
 /// Means over the voxels that lie deeper inside their material than the scanner's blur reaches
 /// (1.6 mm), by normalised convolution: a place that has none nearby takes the mean of a wider
 /// neighbourhood, and in the end the class's own. Tagged material is what `segmentation` says it
-/// is; `around` is its surroundings. Of a scan's box that begins at its voxel `from`, a whole
-/// number of cells (cellVoxels), and holds what is within 20 mm of the labels, the same as of the
-/// whole. O(labelled voxels); the same for any number of threads.
+/// is; `around` is its surroundings. The box of a scan that holds what is within 20 mm of the
+/// labels will do, which begins a whole number of cells (cellVoxels) before them. O(labelled
+/// voxels); the same for any number of threads.
 LocalMeans measureLocalMeans(const CtScan& scan, const TissueModel& tissue,
                              const Volume<std::uint8_t>& segmentation,
-                             const TaggedSurroundings& around, int threads,
-                             glm::ivec3 from = glm::ivec3(0));
+                             const TaggedSurroundings& around, int threads);
 
 }  // namespace haustra::cleansing

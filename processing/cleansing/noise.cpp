@@ -36,15 +36,12 @@ double standardDeviation(const Counts& counts) {
     return sd / std::sqrt(6.0);
 }
 
-/// Blocks of 6 mm of the whole scan, of a box that begins at its voxel `from`: those that hold
-/// tagging, and those beside them.
+/// Blocks of 6 mm: those that hold tagging, and those beside them.
 class BlocksNearTagging {
 public:
-    BlocksNearTagging(const Volume<std::uint8_t>& segmentation, glm::ivec3 from)
-        : from_(from),
-          voxels_(voxelsIn(segmentation.grid(), apartFromTaggingMm)),
-          first_(from / voxels_),
-          count_((from + segmentation.grid().size + voxels_ - 1) / voxels_ - first_),
+    explicit BlocksNearTagging(const Volume<std::uint8_t>& segmentation)
+        : voxels_(voxelsIn(segmentation.grid(), apartFromTaggingMm)),
+          count_((segmentation.grid().size + voxels_ - 1) / voxels_),
           near_(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z)) {
         const Grid& grid = segmentation.grid();
         for (int k = 0; k < grid.size.z; ++k) {
@@ -54,7 +51,7 @@ public:
                     const glm::ivec3 block = blockOf({i, j, k});
                     mark(block);
                     // The rest of the block adds nothing.
-                    i = (block.x + first_.x + 1) * voxels_.x - 1 - from.x;
+                    i = (block.x + 1) * voxels_.x - 1;
                 }
             }
         }
@@ -68,7 +65,7 @@ public:
     }
 
 private:
-    glm::ivec3 blockOf(glm::ivec3 voxel) const { return (voxel + from_) / voxels_ - first_; }
+    glm::ivec3 blockOf(glm::ivec3 voxel) const { return voxel / voxels_; }
 
     std::size_t index(glm::ivec3 block) const {
         return (std::size_t(block.z) * std::size_t(count_.y) + std::size_t(block.y)) *
@@ -81,19 +78,18 @@ private:
                  [&](glm::ivec3 b) { near_[index(b)] = 1; });
     }
 
-    const glm::ivec3 from_, voxels_, first_, count_;
+    const glm::ivec3 voxels_, count_;
     std::vector<char> near_;
 };
 
-/// Second differences in a scan's box that begins at its voxel `from`.
+/// Second differences.
 class Differences {
 public:
-    Differences(const CtScan& scan, glm::ivec3 from, int threads)
+    Differences(const CtScan& scan, int threads)
         : hu_(scan.hu),
           grid_(scan.hu.grid()),
           ball_(blurBall(grid_)),
           apart_(glm::ceil(apartMm / grid_.spacingMm())),
-          from_(from),
           threads_(threads) {}
 
     /// Their standard deviation about the voxels that are `wanted` and of a material, `is(index)`,
@@ -123,7 +119,7 @@ private:
     template <class Wanted, class Is>
     void addSlice(int k, int every, const Wanted& wanted, const Is& is, Counts& counts) const {
         for (int j = 0; j < grid_.size.y; ++j) {
-            const int first = firstSample(j + from_.y + 2 * (k + from_.z), from_.x, every);
+            const int first = firstSample(j + 2 * k, every);
             for (int i = first; i < grid_.size.x; i += every) {
                 const glm::ivec3 v(i, j, k);
                 if (wanted(v) && isDeep(v, is)) addAbout(v, is, counts);
@@ -153,7 +149,7 @@ private:
     const Volume<std::int16_t>& hu_;
     const Grid& grid_;
     const Ball ball_;
-    const glm::ivec3 apart_, from_;
+    const glm::ivec3 apart_;
     const int threads_;
 };
 
@@ -174,8 +170,8 @@ NoiseSd completed(NoiseSd sd, double otherwise) {
 }  // namespace
 
 NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
-                     const Volume<std::uint8_t>& segmentation, int threads, glm::ivec3 from) {
-    const Differences differences(scan, from, threads);
+                     const Volume<std::uint8_t>& segmentation, int threads) {
+    const Differences differences(scan, threads);
     const auto ofLabel = [&](LumenLabel label) {
         const auto all = segmentation.voxels();
         return differences.sd(
@@ -189,7 +185,7 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
     // Wide enough that the window cuts off none of the noise.
     const double softHu = tissue.meanHu[int(Tissue::soft)],
                  window = std::max(70.0, 4.5 * std::max(sd.gas, sd.tagged));
-    const BlocksNearTagging near(segmentation, from);
+    const BlocksNearTagging near(segmentation);
     sd.soft = differences.sd(
         near.voxelCount() / 4, [&](glm::ivec3 v) { return near.hold(v); },
         [&](std::size_t n) {

@@ -17,11 +17,9 @@ struct NoiseSd {
 /// material than the blur reaches (1.6 mm), so that no partial volume is read as noise; what is
 /// farther out than four standard deviations is structure. Gas and tagging are what `segmentation`
 /// (LumenLabel) says; soft tissue counts within 6 mm of tagging. A material with too little to
-/// measure takes another's. Of a scan's box that begins at its voxel `from`, and holds what is
-/// within 20 mm of the labels, the same as of the whole. O(voxels); the same for any number of
-/// threads.
+/// measure takes another's. The box of a scan that holds what is within 20 mm of the labels will
+/// do. O(voxels); the same for any number of threads.
 NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
-                     const Volume<std::uint8_t>& segmentation, int threads,
-                     glm::ivec3 from = glm::ivec3(0));
+                     const Volume<std::uint8_t>& segmentation, int threads);
 
 }  // namespace haustra::cleansing

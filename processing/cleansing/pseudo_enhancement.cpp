@@ -19,13 +19,19 @@ constexpr double enhancementSampleMm3 = 4.0;  // one voxel of so much is looked 
 constexpr double leastEdgeHu = 4.0;
 constexpr double fewestSamples = 500.0;
 
-/// The tagging's excess over gas, in cells of one slice each of the whole scan.
-SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentation, double airHu,
-                     const Grid& whole, glm::ivec3 from, int threads) {
-    const Grid& grid = scan.hu.grid();
+glm::ivec3 excessCell(const Grid& grid) {
     glm::ivec3 perCell = voxelsIn(grid, excessCellMm);
     perCell.z = 1;
-    SmoothField excess(whole, perCell);
+    return perCell;
+}
+
+/// The tagging's excess over gas, in cells of one slice each, over all of `field`, whose voxel
+/// `from` is the scan's first.
+SmoothField excessOf(const CtScan& scan, const Volume<std::uint8_t>& segmentation, double airHu,
+                     const Grid& field, glm::ivec3 from, int threads) {
+    const Grid& grid = scan.hu.grid();
+    const glm::ivec3 perCell = excessCell(grid);
+    SmoothField excess(field, perCell);
     std::vector<float>& values = excess.values();
     const float share = 1.0f / float(perCell.x * perCell.y);
     parallelFor(std::size_t(grid.size.z), 4, threads, [&](std::size_t begin, std::size_t end) {
@@ -78,7 +84,7 @@ struct Line {
 
 void PseudoEnhancement::takeOff(glm::ivec3 first, std::span<std::int16_t> row) const {
     std::vector<float> excess(row.size());
-    excessHu.row(first, excess);
+    excessHu.row(first + begin, excess);
     for (std::size_t i = 0; i < row.size(); ++i) {
         const double added = gain * excess[i];
         if (row[i] > -1024 && added != 0.0)
@@ -91,7 +97,12 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
                                            const Grid& whole, glm::ivec3 from, int threads) {
     const Grid& grid = scan.hu.grid();
     const double airHu = tissue.meanHu[int(Tissue::air)];
-    const SmoothField excess = excessOf(scan, segmentation, airHu, whole, from, threads);
+    // The field begins a part of a cell before the whole, so that a cell begins at `from`.
+    const glm::ivec3 perCell = excessCell(grid), begin = (perCell - from % perCell) % perCell;
+    Grid field = whole;
+    field.size += begin;
+    from += begin;
+    const SmoothField excess = excessOf(scan, segmentation, airHu, field, from, threads);
     std::vector<SmoothField> fields;
     for (const double width : widthsMm) {
         fields.push_back(excess);
@@ -111,7 +122,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
     parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             for (int j = 0; j < grid.size.y; ++j) {
-                const int first = firstSample(j + from.y + 2 * (int(k) + from.z), from.x, every);
+                const int first = firstSample(j + 2 * int(k), every);
                 for (int i = first; i < grid.size.x; i += every) {
                     const glm::ivec3 v(i, j, int(k));
                     const std::size_t n = grid.index(v);
@@ -128,7 +139,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         for (std::size_t w = 0; w < lines.size(); ++w)
             lines[w].add(slice[w]);
     }
-    const double sd = measureNoise(scan, tissue, segmentation, threads, from).soft;
+    const double sd = measureNoise(scan, tissue, segmentation, threads).soft;
     const double seen = normalCdf((airHu + 1024.0) / sd);
     PseudoEnhancement best;
     double most = 0.0;
@@ -142,7 +153,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         best.widthMm = widthsMm[w], best.gain = line.slope() / std::max(seen, 0.5);
     }
     if (best.edgeHu() < leastEdgeHu) return {};
-    best.excessHu = std::move(fields[at]);
+    best.excessHu = std::move(fields[at]), best.begin = begin;
     return best;
 }
 

@@ -17,9 +17,10 @@ struct PseudoEnhancement {
     double widthMm = 0.0;  ///< of the spread, full at half maximum; 0 where there is none
     double gain = 0.0;     ///< HU for each HU of spread excess
     SmoothField excessHu;  ///< spread, over the whole scan; empty where there is none
+    glm::ivec3 begin{0};   ///< the field's voxel that is the scan's first
 
     explicit operator bool() const { return gain > 0.0; }
-    double at(int i, int j, int k) const { return gain * excessHu.at(i, j, k); }
+    double at(int i, int j, int k) const { return gain * excessHu.at(i + begin.x, j + begin.y, k); }
     /// Takes it off the HU of the scan's voxel `first` and of those after it along i.
     void takeOff(glm::ivec3 first, std::span<std::int16_t> row) const;
     /// What the flat edge of a large pool gains that is 1500 HU denser than gas.
@@ -33,7 +34,8 @@ struct PseudoEnhancement {
 /// the fitted scale is corrected for that. None where the flat edge of a pool would gain less than
 /// 4 HU. `scan`
 /// and `segmentation` may be the part of a larger scan, on grid `whole`, that begins at its voxel
-/// `from` and holds what is within 20 mm of the labels. O(voxels); the same for any number of
+/// `from` and holds what is within 20 mm of the labels; cells and samples are counted from there.
+/// O(voxels); the same for any number of
 /// threads.
 PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
                                            const Volume<std::uint8_t>& segmentation,

@@ -16,7 +16,7 @@ namespace {
 constexpr double marginMm = 20.0;
 constexpr int marginVoxels = 8;
 
-/// The box of what is labelled and its surroundings, in whole cells; empty where nothing is tagged.
+/// The box of what is labelled and its surroundings; empty where nothing is tagged.
 VoxelBox boxOf(const Volume<std::uint8_t>& segmentation, int threads) {
     const Grid& grid = segmentation.grid();
     struct Slice {
@@ -50,9 +50,12 @@ VoxelBox boxOf(const Volume<std::uint8_t>& segmentation, int threads) {
     if (!all.tagged) return {};
     const VoxelBox box =
         boxWithin(grid, all.lo, all.hi, marginMm + double(marginVoxels) * grid.spacingMm());
-    const glm::ivec3 cell = cellVoxels(grid), lo = box.lo / cell * cell,
-                     end = glm::min((box.lo + box.size + cell - 1) / cell * cell, grid.size);
-    return {lo, end - lo};
+    // Whole cells before the labels, so that where the colon lies in the scan changes nothing; as
+    // much as there is where they do not fit.
+    const glm::ivec3 cell = cellVoxels(grid),
+                     fitting = all.lo - (all.lo - box.lo + cell - 1) / cell * cell,
+                     lo = glm::mix(fitting, glm::ivec3(0), glm::lessThan(fitting, glm::ivec3(0)));
+    return {lo, box.lo + box.size - lo};
 }
 
 }  // namespace
@@ -101,7 +104,7 @@ TaggedLumen measureTaggedLumen(LumenPart part, const TissueModel& tissue, int th
             }
         });
     }
-    lumen.means = measureLocalMeans(lumen.scan, tissue, lumen.labels, lumen.around, threads, from);
+    lumen.means = measureLocalMeans(lumen.scan, tissue, lumen.labels, lumen.around, threads);
     return lumen;
 }
 

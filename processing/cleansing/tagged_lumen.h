@@ -15,7 +15,9 @@
 
 namespace haustra::cleansing {
 
-/// The box of a scan that has all labels (LumenLabel) and what is within 20 mm of them.
+/// The box of a scan that has all labels (LumenLabel) and what is within 20 mm of them. What is
+/// sampled, or measured in cells, is so by the box's voxels, which begin a fixed way before the
+/// labels: the same colon elsewhere in a scan is measured alike.
 struct LumenPart {
     Grid scanGrid;
     VoxelBox box;
@@ -40,8 +42,7 @@ struct TaggedLumen {
     LocalMeans means;
 };
 
-/// Measures of the box what measuring the whole scan would give there. O(voxels of the box); the
-/// same for any number of threads.
+/// O(voxels of the box); the same for any number of threads.
 TaggedLumen measureTaggedLumen(LumenPart part, const TissueModel& tissue, int threads);
 
 }  // namespace haustra::cleansing
