@@ -97,6 +97,14 @@ LayerPair::LayerPair(const BoundaryCells& cells) : cells_(cells), width_(cells.g
         map.assign(places, -1);
 }
 
+glm::ivec3 BoundaryCells::low() const {
+    glm::ivec3 least(size_);
+    for (int n = 0; n < layers(); ++n)
+        for (const BoundaryCell& cell : layer(n))
+            least = glm::min(least, glm::ivec3(cell.i, cell.j, ofLayer(n)));
+    return least;
+}
+
 void LayerPair::fill(int map, int layer) {
     if (layerOf_[map] == layer) return;
     if (layerOf_[map] >= 0) {

@@ -49,6 +49,8 @@ public:
     /// Place of a layer's first cell among all.
     std::size_t layerBegin(int n) const { return begin_[std::size_t(n)]; }
     std::size_t vertexCount() const { return vertexCount_; }
+    /// The least i, j and k of any cell; there must be one.
+    glm::ivec3 low() const;
 
 private:
     glm::ivec3 size_;

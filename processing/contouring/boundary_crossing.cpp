@@ -14,9 +14,11 @@ constexpr double beyondEdge = 0.5;
 
 }  // namespace
 
-BoundaryCrossings::BoundaryCrossings(const Volume<std::int16_t>& hu, double isoHu)
+BoundaryCrossings::BoundaryCrossings(const Volume<std::int16_t>& hu, double isoHu,
+                                     glm::ivec3 origin)
     : hu_(hu),
       isoHu_(isoHu),
+      origin_(origin),
       last_(hu.grid().size - 1),
       mmFromVoxel_(hu.grid().patientFromVoxel),
       covectorMm_(glm::transpose(glm::inverse(mmFromVoxel_))) {}
@@ -48,7 +50,7 @@ glm::dvec3 BoundaryCrossings::gradient(glm::ivec3 v) const {
 
 Crossing BoundaryCrossings::between(glm::ivec3 inside, glm::ivec3 outside) const {
     const double fromHu = at(inside), rise = at(outside) - fromHu;
-    const glm::dvec3 start(inside), along(outside - inside);
+    const glm::dvec3 start(inside - origin_), along(outside - inside);
     Crossing crossing;
     double share = 0.5;
     if (rise > 0.0) {

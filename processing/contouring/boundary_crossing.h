@@ -6,8 +6,8 @@
 namespace haustra::contouring {
 
 struct Crossing {
-    glm::dvec3 onEdge{0.0};  ///< voxel coordinates, strictly between the two centres
-    glm::dvec3 point{0.0};   ///< voxel coordinates where HU crosses, up to half an edge beyond it
+    glm::dvec3 onEdge{0.0};  ///< in voxels from the origin, strictly between the two centres
+    glm::dvec3 point{0.0};   ///< likewise, where HU crosses, up to half an edge beyond it
     glm::dvec3 normal{0.0};  ///< unit, mm, along rising HU; zero where the HU do not show the wall
     /// 1 where HU cross between the centres, falling to 0 half an edge beyond.
     double weight = 0.0;
@@ -16,13 +16,16 @@ struct Crossing {
 /// The wall in the HU between voxels that labels tell apart. Reads only; any thread.
 class BoundaryCrossings {
 public:
-    BoundaryCrossings(const Volume<std::int16_t>& hu, double isoHu);
+    /// Places are told from the voxel `origin`: near the boundary, so that the same boundary
+    /// elsewhere on a grid gives the same numbers to the last bit.
+    BoundaryCrossings(const Volume<std::int16_t>& hu, double isoHu, glm::ivec3 origin);
 
     /// `inside` and `outside` are neighbours along an axis; one may be beyond the grid. Where HU
     /// rises outwards and crosses isoHu between the two centres or a little beyond them, there is
     /// the wall; else (where a handle was cut, along a bridge) it is midway.
     Crossing between(glm::ivec3 inside, glm::ivec3 outside) const;
 
+    glm::ivec3 origin() const { return origin_; }
     /// Voxel axes in patient mm.
     const glm::dmat3& mmFromVoxel() const { return mmFromVoxel_; }
 
@@ -34,7 +37,7 @@ private:
 
     const Volume<std::int16_t>& hu_;
     double isoHu_;
-    glm::ivec3 last_;
+    glm::ivec3 origin_, last_;
     glm::dmat3 mmFromVoxel_, covectorMm_;
 };
 

@@ -22,7 +22,7 @@ class FaceVertices {
 public:
     FaceVertices(const BoundaryCells& cells, const BoundaryCrossings& crossings, int threads);
 
-    /// In voxel coordinates.
+    /// In voxels from the crossings' origin.
     const std::vector<glm::dvec3>& positions() const { return positions_; }
 
     /// The vertex on the low face across `axis` of a cell (its place among all), on the arc that
@@ -125,7 +125,7 @@ struct DualVertices {
     const BoundaryCells& cells;
     const BoundaryCrossings& crossings;
     const FaceVertices& faceVertices;
-    const std::vector<glm::dvec3>& loopVertices;  ///< voxel coordinates
+    const std::vector<glm::dvec3>& loopVertices;  ///< in voxels from the crossings' origin
     std::int32_t edgeVerticesBegin() const {
         return std::int32_t(loopVertices.size() + faceVertices.positions().size());
     }
@@ -133,7 +133,7 @@ struct DualVertices {
 
 /// The triangles of the edges that one layer's cells own: those from their corner 0.
 struct LayerSurface {
-    std::vector<glm::dvec3> edgeVertices;  ///< voxel coordinates
+    std::vector<glm::dvec3> edgeVertices;  ///< in voxels from the crossings' origin
     /// Vertex numbers; −1 − n is the layer's edge vertex n.
     std::vector<glm::ivec3> triangles;
 };
@@ -198,8 +198,8 @@ private:
     std::optional<int> diagonalOf(const DualPolygon& polygon, glm::ivec3 voxel, int axis) const {
         std::array<glm::dvec3, 4> local, mm;
         for (int n = 0; n < 4; ++n) {
-            const glm::dvec3 p =
-                dual_.loopVertices[std::size_t(polygon.corners[n])] - glm::dvec3(voxel);
+            const glm::dvec3 p = dual_.loopVertices[std::size_t(polygon.corners[n])] -
+                                 glm::dvec3(voxel - dual_.crossings.origin());
             local[n] = {p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]};
             mm[n] = dual_.crossings.mmFromVoxel() * p;
         }
@@ -242,9 +242,14 @@ private:
     LayerPair pair_;
 };
 
-/// One mesh of all layers' triangles, vertices in patient mm.
+/// One mesh of all layers' triangles, vertices in patient mm, on a lattice about the origin.
 TriMesh assemble(const DualVertices& dual, const std::vector<LayerSurface>& layers,
                  const Grid& grid, int threads) {
+    const glm::dmat3& mmFromVoxel = dual.crossings.mmFromVoxel();
+    const glm::dvec3 originMm = grid.patientFromVoxelPoint(glm::dvec3(dual.crossings.origin()));
+    const auto place = [&](glm::dvec3 voxels) {
+        return originMm + onMeshLattice(mmFromVoxel * voxels);
+    };
     std::vector<std::size_t> vertexBegin{std::size_t(dual.edgeVerticesBegin())}, triangleBegin{0};
     for (const LayerSurface& layer : layers) {
         vertexBegin.push_back(vertexBegin.back() + layer.edgeVertices.size());
@@ -257,15 +262,13 @@ TriMesh assemble(const DualVertices& dual, const std::vector<LayerSurface>& laye
     const auto& facePositions = dual.faceVertices.positions();
     parallelFor(vertexBegin.front(), 1 << 16, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            mesh.vertices[v] = grid.patientFromVoxelPoint(v < loops ? dual.loopVertices[v]
-                                                                    : facePositions[v - loops]);
+            mesh.vertices[v] = place(v < loops ? dual.loopVertices[v] : facePositions[v - loops]);
         }
     });
     parallelFor(layers.size(), 8, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
             for (std::size_t v = 0; v < layers[n].edgeVertices.size(); ++v)
-                mesh.vertices[vertexBegin[n] + v] =
-                    grid.patientFromVoxelPoint(layers[n].edgeVertices[v]);
+                mesh.vertices[vertexBegin[n] + v] = place(layers[n].edgeVertices[v]);
             for (std::size_t t = 0; t < layers[n].triangles.size(); ++t) {
                 glm::ivec3 triangle = layers[n].triangles[t];
                 for (int corner = 0; corner < 3; ++corner) {
@@ -289,7 +292,7 @@ Result<TriMesh> contourLumen(const Volume<std::int16_t>& hu, const Volume<std::u
     if (cells.cells().empty())
         return fail(ErrorKind::noResult, "the lumen is empty: there is no surface", "surface");
 
-    const BoundaryCrossings crossings(hu, isoHu);
+    const BoundaryCrossings crossings(hu, isoHu, cells.low());
     const FaceVertices faceVertices(cells, crossings, options.threads);
     const std::vector<glm::dvec3> loopVertices = placeVertices(cells, crossings, options.threads);
     const DualVertices dual{cells, crossings, faceVertices, loopVertices};

@@ -16,7 +16,7 @@ constexpr double smoothness = 0.3;
 constexpr int steps = 10;
 
 /// Σ w (n · (x − p))² over the crossings p of one loop, normals n in mm: the quadric of dual
-/// contouring (Ju et al., SIGGRAPH 2002). All in mm from voxel (0, 0, 0).
+/// contouring (Ju et al., SIGGRAPH 2002). All in mm from the crossings' origin.
 struct LoopQuadric {
     glm::dmat3 normals{0.0};  ///< Σ w n nᵀ
     glm::dvec3 planes{0.0};   ///< Σ w n (n · p)
@@ -128,9 +128,9 @@ std::vector<glm::dvec3> placeVertices(const BoundaryCells& cells,
         const LoopQuadric& quadric = quadrics[v];
         const glm::dvec3 target = quadric.planes + smoothness * meanOf(neighbours[v], mm);
         const glm::dvec3 free = glm::inverse(quadric.normals + glm::dmat3(smoothness)) * target;
-        const glm::dvec3 origin(cell.i, cell.j, k);
+        const glm::dvec3 low(glm::ivec3(cell.i, cell.j, k) - crossings.origin());
         next[v] = mmFromVoxel *
-                  glm::clamp(voxelFromMm * free, origin + cellMargin, origin + (1.0 - cellMargin));
+                  glm::clamp(voxelFromMm * free, low + cellMargin, low + (1.0 - cellMargin));
     };
     for (int step = 0; step < steps; ++step) {
         cells.forEach(threads, relax);

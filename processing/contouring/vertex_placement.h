@@ -8,7 +8,8 @@
 
 namespace haustra::contouring {
 
-/// One position for each loop of each cell, in voxel coordinates, strictly within the cell; where
+/// One position for each loop of each cell, in voxels from the crossings' origin, strictly within
+/// the cell; where
 /// a cell has several loops, each is the mean of its own crossings, so that the sheets keep apart.
 ///
 /// The positions x minimise the sum of their cells' quadrics, Σ w (n · (x − p))² over the crossings

@@ -14,6 +14,14 @@ struct TriMesh {
     std::vector<glm::ivec3> triangles;
 };
 
+/// The nearest point whose coordinates are multiples of 2⁻²⁶ mm: less than the rounding of what is
+/// hundreds of mm from its origin, so that a mesh that is moved, and moved back, is the same to the
+/// last bit. What compares places that are equal in truth needs that.
+inline glm::dvec3 onMeshLattice(glm::dvec3 mm) {
+    constexpr double perMm = 67108864.0;
+    return glm::round(mm * perMm) / perMm;
+}
+
 /// What the connectivity alone tells.
 struct MeshTopology {
     long eulerCharacteristic = 0;  ///< V − E + F over the vertices that triangles use

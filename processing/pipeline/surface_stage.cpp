@@ -16,7 +16,7 @@ using organs::LumenFinder;
 using store::Attributes;
 
 // Raise it whenever the surface changes for the same input and options.
-constexpr int surfaceVersion = 4;
+constexpr int surfaceVersion = 5;
 
 // Which HU the wall stands at, and in which field.
 enum class WallRule { air, content, mask };

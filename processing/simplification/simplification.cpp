@@ -41,11 +41,13 @@ std::uint64_t spread(std::uint32_t x) {
 }
 
 /// The mesh with vertices, and triangles by their first vertex, in Morton order: what is near in
-/// space is then near in memory. Vertices are moved by −centre.
-TriMesh orderedInSpace(const TriMesh& mesh, const glm::dvec3& low, const glm::dvec3& centre) {
+/// space is then near in memory. Vertices are put on the mesh lattice about `low`, and moved by
+/// −(low + middle).
+TriMesh orderedInSpace(const TriMesh& mesh, const glm::dvec3& low, const glm::dvec3& middle) {
     std::vector<std::pair<std::uint64_t, int>> order(mesh.vertices.size());
     for (std::size_t v = 0; v < order.size(); ++v) {
-        const glm::uvec3 cell(glm::clamp((mesh.vertices[v] - low) * 2.0, 0.0, 2097151.0));
+        const glm::dvec3 place = onMeshLattice(mesh.vertices[v] - low);
+        const glm::uvec3 cell(glm::clamp(place * 2.0, 0.0, 2097151.0));
         order[v] = {spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, int(v)};
     }
     std::sort(order.begin(), order.end());
@@ -54,7 +56,7 @@ TriMesh orderedInSpace(const TriMesh& mesh, const glm::dvec3& low, const glm::dv
     std::vector<int> rank(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         rank[order[i].second] = int(i);
-        result.vertices.push_back(mesh.vertices[order[i].second] - centre);
+        result.vertices.push_back(onMeshLattice(mesh.vertices[order[i].second] - low) - middle);
     }
     const auto firstOf = [](const glm::ivec3& t) { return std::min({t.x, t.y, t.z}); };
     std::vector<std::size_t> begin(order.size() + 1, 0);
@@ -102,8 +104,9 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& optio
           glm::all(glm::lessThan(glm::abs(high), glm::dvec3(farthestMm))))) {
         return fail(ErrorKind::badInput, "the mesh has no finite extent", "simplification");
     }
-    const glm::dvec3 centre = glm::round(0.5 * (low + high));
-    auto corners = TRY(cornerMesh(orderedInSpace(mesh, low, centre)));
+    // From the mesh alone, so that the same mesh elsewhere is simplified alike, to the last bit.
+    const glm::dvec3 middle = glm::floor(0.5 * onMeshLattice(high - low));
+    auto corners = TRY(cornerMesh(orderedInSpace(mesh, low, middle)));
 
     std::optional<ErrorBound> bound;
     std::vector<Quadric> quadric;
@@ -141,7 +144,7 @@ Result<TriMesh> simplify(const TriMesh& mesh, const SimplificationOptions& optio
     }
     TriMesh result = triMesh(shared.mesh);
     for (glm::dvec3& v : result.vertices)
-        v += centre;
+        v += low + middle;
     return result;
 }
 

@@ -161,6 +161,30 @@ TEST(DualContouringLaw, MovesWithTheGrid) {
         ASSERT_LT(glm::distance(mesh.vertices[v] + shift, moved.vertices[v]), 1e-9);
 }
 
+TEST(DualContouringLaw, TheSameBoundaryElsewhereInAScanIsTheSameToTheLastBit) {
+    constexpr double ballMm = 9.0;
+    std::vector<TriMesh> meshes;
+    for (const glm::ivec3 at : {glm::ivec3(20, 21, 22), glm::ivec3(33, 18, 41)}) {
+        const auto depth = [&](glm::ivec3 v) {
+            return ballMm - glm::length(glm::dvec3(v - at) * glm::dvec3(0.75, 0.8, 1.05));
+        };
+        const Case made = makeCase(
+            {60, 60, 60}, [&](glm::ivec3 v) { return depth(v) > 0.0; },
+            [&](glm::ivec3 v) {
+                const glm::ivec3 w = v - at;  // grain that goes with the ball
+                return int(-480 - 300.0 * depth(v)) + (w.x * 7 + w.y * 13 + w.z * 29) % 31;
+            });
+        auto mesh = contouring::contourLumen(made.hu, made.labels, -480.0, {2});
+        ASSERT_TRUE(mesh) << describe(mesh.error());
+        meshes.push_back(*std::move(mesh));
+    }
+    ASSERT_EQ(meshes[0].vertices.size(), meshes[1].vertices.size());
+    EXPECT_EQ(meshes[0].triangles, meshes[1].triangles);
+    for (std::size_t v = 0; v < meshes[0].vertices.size(); ++v)
+        ASSERT_EQ(onMeshLattice(meshes[0].vertices[v] - meshes[0].vertices[0]),
+                  onMeshLattice(meshes[1].vertices[v] - meshes[1].vertices[0]));
+}
+
 TEST(DualContouringLaw, MirroredGridsGiveTheSameSolid) {
     const Case given = noisyBall(7);
     const TriMesh mesh = *contouring::contourLumen(given.hu, given.labels, -480.0);

@@ -170,6 +170,21 @@ TEST(SimplificationLaw, TheThreadsDoNotShow) {
     EXPECT_EQ(one->triangles, four->triangles);
 }
 
+TEST(SimplificationLaw, WhereAMeshIsDoesNotShow) {
+    const TriMesh mesh = largeTorus(80.0);
+    TriMesh moved = mesh;
+    for (glm::dvec3& v : moved.vertices)
+        v += glm::dvec3(-211.3, 17.7, 0.1);  // by what no binary fraction is
+    const auto here = simplify(mesh), there = simplify(moved);
+    ASSERT_TRUE(here && there);
+    ASSERT_EQ(here->vertices.size(), there->vertices.size());
+    EXPECT_EQ(here->triangles, there->triangles);
+    for (std::size_t v = 0; v < here->vertices.size(); ++v)
+        ASSERT_LT(glm::distance(here->vertices[v] - here->vertices[0],
+                                there->vertices[v] - there->vertices[0]),
+                  1e-9);
+}
+
 TEST(SimplificationLaw, RefusesWhatIsNotClosedAndManifold) {
     const TriMesh mesh = ball();
     TriMesh open = mesh;
