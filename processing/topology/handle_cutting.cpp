@@ -9,6 +9,9 @@
 namespace haustra::topology {
 namespace {
 
+// What an empty scanner measures.
+constexpr double emptyHu = -1000.0;
+
 /// A part of a grid.
 struct Box {
     glm::ivec3 lowest{0}, size{0};
@@ -67,6 +70,8 @@ Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
     const auto progress = [&](double fraction) {
         if (options.progress) options.progress(fraction);
     };
+    if (options.hu && !sameGrid(options.hu->grid(), grid))
+        return fail(ErrorKind::badInput, "the scan is not on the labels' grid", "handle cutting");
     Box box;
     {
         const BitMask mask = maskOf(labels, options.threads);
@@ -80,6 +85,7 @@ Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
     JoinedLumen joined = joinPieces(mask, part.grid(),
                                     {.bridgeRadiusMm = options.bridgeRadiusMm,
                                      .sureWay = bridges.count() > 0 ? &bridges : nullptr,
+                                     .traces = {options.hu, box.lowest, emptyHu, options.wallHu},
                                      .threads = options.threads});
     progress(0.3);
     BallGrowthOptions growth{options.priorityStep, options.priorityThreshold, {}};
@@ -88,7 +94,7 @@ Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
 
     CutLumen cut;
     cut.handlesCut = digitalTopology(joined.domain, options.threads).handles();
-    cut.cavitiesFilled = joined.cavitiesFilled;
+    cut.cavitiesFilled = joined.cavitiesFilled, cut.islandsTied = joined.islandsTied;
     cut.notes = std::move(joined.notes);
     cut.labels = Volume<std::uint8_t>(grid, std::uint8_t(LumenLabel::outside));
     for (int k = 0; k < box.size.z; ++k) {

@@ -15,13 +15,17 @@ struct HandleCuttingOptions {
     double priorityStep = 0.1;       ///< δ: what a non-simple voxel's priority falls by
     double priorityThreshold = 0.8;  ///< T_th: below it the voxel is left out
     double bridgeRadiusMm = 1.5;     ///< of the tube that joins segments across a collapse
+    /// The scan that the labels were found in, on their grid; null: none. Islands are tied where it
+    /// shows a trace of a stalk; all of a wall is at `wallHu`.
+    const Volume<std::int16_t>* hu = nullptr;
+    double wallHu = -500.0;
     int threads = 0;
-    Progress progress;
+    Progress progress = {};
 };
 
 struct CutLumen {
     Volume<std::uint8_t> labels;  ///< LumenLabel; its topology is a ball's
-    long handlesCut = 0, cavitiesFilled = 0;
+    long handlesCut = 0, cavitiesFilled = 0, islandsTied = 0;
     std::size_t voxelsRemoved = 0, voxelsAdded = 0;  ///< against the labels that came in
     std::vector<std::string> notes;
 };
@@ -31,14 +35,15 @@ struct CutLumen {
 /// voxel labelled bridge: what leads around a collapse that the segmentation crossed is a leak,
 /// however wide (joinPieces). Large pieces of
 /// the lumen are joined by thin bridges, labelled so, in the order in which the colon passes them;
-/// small pieces, and those too far off the way, are left out; islands of background that float in
-/// the lumen are filled, with the label of the voxel before them on their row (joinPieces). What is
-/// left out, joined or filled is in `notes`.
+/// small pieces, and those too far off the way, are left out (joinPieces). Islands of background
+/// that float in the lumen are tied to the wall, or filled with the label of the voxel before them
+/// on their row (tieOrFillIslands). What is left out, joined, tied or filled is in `notes`.
 ///
 /// Distances count in units of the grid's smallest spacing: T_th is below the least distance a
 /// voxel can have, so that nothing is left out for being thin. Fails where the lumen is empty
-/// (noResult). The same bytes for any number of threads. O(n log n) in the lumen's voxels; takes
-/// about 6 bytes for each voxel of the lumen's bounding box, beside the result.
+/// (noResult), or the scan is on another grid (badInput). The same bytes for any number of threads.
+/// O(n log n) in the lumen's voxels; takes about 6 bytes for each voxel of the lumen's bounding
+/// box, beside the result.
 Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
                             const HandleCuttingOptions& options = {});
 

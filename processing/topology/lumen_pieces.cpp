@@ -19,7 +19,6 @@ namespace haustra::topology {
 namespace {
 
 constexpr std::size_t mostPieces = 12;  // that orderSegments takes
-constexpr double notedIslandMm3 = 50.0;
 
 using Path = std::vector<glm::ivec3>;
 
@@ -60,25 +59,14 @@ std::vector<BitMask> largePieces(const BitMask& mask, const Grid& grid, double s
     return pieces;
 }
 
-/// Fills the cavities of a mask; islands of some size go to `notes`. Returns how many.
-long fillCavities(BitMask& mask, const Grid& grid, std::vector<std::string>& notes) {
-    const MaskComponents cavities = cavitiesOf(mask);
-    std::vector<glm::dvec3> middle(cavities.voxels.size(), glm::dvec3(0.0));
-    for (const MaskRun& run : cavities.runs) {
-        setRun(mask, run);
-        middle[std::size_t(run.component)] +=
-            double(run.end - run.begin) *
-            glm::dvec3(0.5 * double(run.begin + run.end - 1), run.j, run.k);
-    }
-    for (std::size_t n = 0; n < cavities.voxels.size(); ++n) {
-        const double volumeMm3 = double(cavities.voxels[n]) * grid.voxelVolumeMm3();
-        if (volumeMm3 < notedIslandMm3) continue;
-        const glm::dvec3 at = grid.patientFromVoxelPoint(middle[n] / double(cavities.voxels[n]));
-        notes.push_back(
-            printed("an island of %.0f mm3 in the lumen filled, at (%.0f, %.0f, %.0f) mm",
-                    volumeMm3, at.x, at.y, at.z));
-    }
-    return long(cavities.voxels.size());
+void settleIslands(JoinedLumen& joined, const Grid& grid, const LumenJoinOptions& options) {
+    BitMask kept = joined.bridges;
+    if (options.sureWay) kept.add(*options.sureWay);
+    for (const glm::ivec3 v : joined.path)
+        kept.set(v);
+    Islands islands = tieOrFillIslands(joined.domain, kept, grid, options.traces);
+    joined.cavitiesFilled = islands.filled, joined.islandsTied = islands.tied;
+    joined.notes.insert(joined.notes.end(), islands.notes.begin(), islands.notes.end());
 }
 
 Volume<std::uint8_t> labelsOf(const BitMask& mask, const Grid& grid, int threads) {
@@ -255,11 +243,11 @@ std::vector<std::size_t> orderPaths(std::vector<Path>& paths, const Grid& grid,
 }  // namespace
 
 JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOptions& options) {
-    JoinedLumen joined{BitMask(mask.size()), BitMask(mask.size()), {}, {}, 0, {}};
+    JoinedLumen joined(mask.size());
     std::vector<BitMask> pieces = largePieces(mask, grid, options.smallestPieceMl, joined.notes);
     if (pieces.size() == 1) {
         joined.domain = std::move(pieces.front());
-        joined.cavitiesFilled = fillCavities(joined.domain, grid, joined.notes);
+        settleIslands(joined, grid, options);
         const Volume<std::uint8_t> labels = labelsOf(joined.domain, grid, options.threads);
         joined.distanceMm = depthOf(labels, options);
         joined.path = skeletonOf(joined.domain, labels, joined.distanceMm, SkeletonEnds::anywhere,
@@ -286,7 +274,7 @@ JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOpt
     }
     joined.bridges.remove(joined.domain);
     joined.domain.add(joined.bridges);
-    joined.cavitiesFilled = fillCavities(joined.domain, grid, joined.notes);
+    settleIslands(joined, grid, options);
     joined.distanceMm = depthOf(labelsOf(joined.domain, grid, options.threads), options);
     return joined;
 }

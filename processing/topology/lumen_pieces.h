@@ -3,6 +3,7 @@
 
 #include "core/volume.h"
 #include "topology/digital_topology.h"
+#include "topology/islands.h"
 
 #include <string>
 #include <vector>
@@ -11,11 +12,13 @@ namespace haustra::topology {
 
 /// A lumen in one 6-connected piece without cavities, and a path through it.
 struct JoinedLumen {
+    explicit JoinedLumen(glm::ivec3 size) : domain(size), bridges(size) {}
+
     BitMask domain;
     BitMask bridges;           ///< of the domain, what joins the pieces
     Volume<float> distanceMm;  ///< distanceToBoundaryMm of the domain; sure ways are the deepest
     std::vector<glm::ivec3> path;
-    long cavitiesFilled = 0;
+    long cavitiesFilled = 0, islandsTied = 0;
     std::vector<std::string> notes;
 };
 
@@ -23,12 +26,14 @@ struct LumenJoinOptions {
     double smallestPieceMl = 2.0;  ///< smaller pieces are left out, but for the largest
     double bridgeRadiusMm = 1.5;
     const BitMask* sureWay = nullptr;  ///< voxels in which no way is too narrow: see joinPieces
+    StalkTraces traces = {};
     int threads = 0;
 };
 
 /// Joins the 6-connected pieces of a mask worth a visit, in the order in which the colon passes
 /// them (orderSegments), by straight tubes from tip to tip; what lies too far off the way and
-/// small pieces are left out. Islands of background in the pieces are filled. The path is the
+/// small pieces are left out. Islands of background are tied to the wall or filled (islands.h). The
+/// path is the
 /// widest way between two far ends, piece by piece: the skeleton from which dissertation §3.3.2.2
 /// grows the lumen; 6-connected where the lumen lets it be.
 ///

@@ -156,20 +156,99 @@ TEST(HandleCutting, KeepsWhatIsOneVoxelThin) {
     }
 }
 
-TEST(HandleCutting, FillsIslandsAndSaysSo) {
-    const auto curve = sampleCurve([](double t) { return glm::dvec3(0.0, 0.0, 80.0 * t); });
-    Volume<std::uint8_t> mask(gridAround(curve, 16.0, glm::dvec3(1.0)), std::uint8_t(0));
-    fillTube(mask, curve, 12.0);
-    Volume<std::uint8_t> whole = mask.clone();
-    fillTube(mask, {{2.0, 1.0, 30.0}}, 3.0, 0);   // large enough to be worth a word
-    fillTube(mask, {{-3.0, 2.0, 50.0}}, 0.5, 0);  // a speck
-    mask.writable()[mask.grid().index(16, 16, 70)] = 0;
-    mask.writable()[mask.grid().index(17, 17, 71)] = 0;  // shares no more than a corner
-    const CutLumen result = cut(mask);
-    EXPECT_EQ(result.cavitiesFilled, 4);
+/// A straight tube along z, and a ball of background that floats in it.
+struct TubeWithIsland {
+    Volume<std::uint8_t> whole, mask;
+    glm::dvec3 middle;
+
+    TubeWithIsland(double tubeMm, glm::dvec3 at, double islandMm) : middle(at) {
+        const auto curve = sampleCurve([](double t) { return glm::dvec3(0.0, 0.0, 80.0 * t); });
+        mask =
+            Volume<std::uint8_t>(gridAround(curve, tubeMm + 4.0, glm::dvec3(1.0)), std::uint8_t(0));
+        fillTube(mask, curve, tubeMm);
+        whole = mask.clone();
+        fillTube(mask, {at}, islandMm, 0);
+    }
+
+    std::vector<glm::dvec3> stalk(const CutLumen& cut) const {
+        std::vector<glm::dvec3> voxels;
+        for (std::size_t n = 0; n < mask.voxels().size(); ++n)
+            if (mask[n] != 0 && cut.labels[n] == 0)
+                voxels.push_back(mask.grid().patientFromVoxelPoint(mask.grid().voxelAt(n)));
+        return voxels;
+    }
+};
+
+TEST(HandleCutting, TiesAnIslandToTheNearestWallAndSaysSo) {
+    TubeWithIsland tube(12.0, {4.0, 1.0, 30.0}, 3.0);
+    fillTube(tube.mask, {{-3.0, 2.0, 50.0}}, 0.5, 0);  // a speck
+    tube.mask.writable()[tube.mask.grid().index(16, 16, 70)] = 0;
+    tube.mask.writable()[tube.mask.grid().index(17, 17, 71)] = 0;  // shares no more than a corner
+    const CutLumen result = cut(tube.mask);
+    EXPECT_TRUE(digitalTopology(result.labels).isBall());
+    EXPECT_EQ(result.islandsTied, 1);
+    EXPECT_EQ(result.cavitiesFilled, 3);
+    EXPECT_EQ(result.handlesCut, 0);
+    EXPECT_EQ(result.notes.size(), 1u);
+    const auto stalk = tube.stalk(result);
+    EXPECT_EQ(stalk.size(), result.voxelsRemoved);
+    // From its surface to the wall on its own side; by steps along the axes no more than √2 times
+    // the straight way, and no farther off than it is deep in the tube.
+    EXPECT_GE(stalk.size(), 4u);
+    EXPECT_LE(stalk.size(), 8u);
+    for (const glm::dvec3 p : stalk) {
+        EXPECT_GT(p.x, 0.0);
+        EXPECT_NEAR(p.z, 30.0, 4.0);
+    }
+    // The island is wall, as is all that was.
+    for (std::size_t n = 0; n < tube.whole.voxels().size(); ++n) {
+        const glm::dvec3 p = tube.mask.grid().patientFromVoxelPoint(tube.mask.grid().voxelAt(n));
+        if (tube.whole[n] == 0 || glm::distance(p, tube.middle) < 2.5) {
+            EXPECT_EQ(result.labels[n], 0);
+        }
+    }
+    const CutLumen alone = cut(tube.mask, 1);
+    EXPECT_TRUE(std::ranges::equal(alone.labels.voxels(), result.labels.voxels()));
+}
+
+TEST(HandleCutting, LaysAStalkWhereTheScanShowsItsTrace) {
+    const TubeWithIsland tube(12.0, {4.0, 0.0, 30.0}, 3.0);
+    // The trace leads away from the nearest wall: half tissue, half gas.
+    Volume<std::int16_t> hu(tube.mask.grid(), std::int16_t(-1000));
+    for (std::size_t n = 0; n < hu.voxels().size(); ++n) {
+        const glm::dvec3 p = hu.grid().patientFromVoxelPoint(hu.grid().voxelAt(n));
+        if (tube.mask[n] == 0) hu.writable()[n] = 40;
+        if (p.x < 3.0 && std::abs(p.y) < 0.6 && std::abs(p.z - 30.0) < 0.6 && tube.mask[n] != 0)
+            hu.writable()[n] = -700;
+    }
+    HandleCuttingOptions options;
+    options.hu = &hu;
+    const auto result = cutHandles(tube.mask, options);
+    ASSERT_TRUE(result) << describe(result.error());
+    EXPECT_TRUE(digitalTopology(result->labels).isBall());
+    EXPECT_EQ(result->islandsTied, 1);
+    const auto stalk = tube.stalk(*result);
+    EXPECT_GE(stalk.size(), 11u);
+    for (const glm::dvec3 p : stalk) {
+        EXPECT_LT(p.x, 3.0);
+        EXPECT_LT(std::abs(p.y) + std::abs(p.z - 30.0), 1.2);
+    }
+    options.hu = nullptr;
+    for (const glm::dvec3 p : tube.stalk(*cutHandles(tube.mask, options)))
+        EXPECT_GT(p.x, 3.0);
+    const Volume<std::int16_t> elsewhere(axisAlignedGrid({4, 4, 4}, glm::dvec3(1.0)));
+    options.hu = &elsewhere;
+    EXPECT_FALSE(cutHandles(tube.mask, options));
+}
+
+TEST(HandleCutting, FillsAnIslandThatNoWallIsNear) {
+    const TubeWithIsland tube(32.0, {0.0, 0.0, 40.0}, 3.0);
+    const CutLumen result = cut(tube.mask);
+    EXPECT_EQ(result.islandsTied, 0);
+    EXPECT_EQ(result.cavitiesFilled, 1);
     EXPECT_EQ(result.notes.size(), 1u);
     EXPECT_EQ(result.voxelsRemoved, 0u);
-    EXPECT_TRUE(std::ranges::equal(result.labels.voxels(), whole.voxels()));
+    EXPECT_TRUE(std::ranges::equal(result.labels.voxels(), tube.whole.voxels()));
 }
 
 TEST(HandleCutting, JoinsPiecesAndLeavesCrumbsOut) {
@@ -233,8 +312,9 @@ TEST(HandleCutting, CutsTheLeakAndNotTheBridgeAcrossACollapse) {
 
 TEST(HandleCutting, MakesABallOfAnything) {
     // Noise, thresholded at all levels: handles and cavities by the hundred. In the end no voxel
-    // of the body that was left out could be added.
+    // of the body that was left out could be added, but for stalks.
     std::mt19937 random(5);
+    int withoutStalks = 0;
     for (int trial = 0; trial < 40; ++trial) {
         const unsigned percent = 30 + unsigned(trial) * 69 / 40;
         Volume<std::uint8_t> mask(axisAlignedGrid({30, 25, 20}, {0.7, 0.7, 1.0 + 0.1 * trial}));
@@ -249,14 +329,17 @@ TEST(HandleCutting, MakesABallOfAnything) {
             removed += mask[n] != 0 && result.labels[n] == 0;
             added += mask[n] == 0 && result.labels[n] != 0;
             if (mask[n] == 0) continue;
-            if (result.labels[n] != 0)
+            if (result.labels[n] != 0) {
                 EXPECT_EQ(result.labels[n], mask[n]);
-            else
+            } else if (result.islandsTied == 0) {
                 EXPECT_FALSE(isSimple(ball.around(v)));
+            }
         }
+        withoutStalks += result.islandsTied == 0;
         EXPECT_EQ(result.voxelsRemoved, removed);
         EXPECT_EQ(result.voxelsAdded, added);
     }
+    EXPECT_GE(withoutStalks, 20);
 }
 
 TEST(HandleCutting, IsTheSameForAnyNumberOfThreads) {
