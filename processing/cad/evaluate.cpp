@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <random>
 
@@ -43,6 +44,12 @@ std::vector<std::pair<double, double>> sensitivities(const std::vector<const Eva
             ++lesions;
             if (best[l] >= 0.0) right.push_back(best[l]);
         }
+    }
+    // Of many wrong ones only the best can be asked for.
+    const auto most = std::size_t(*std::ranges::max_element(falsePositives) * double(cases.size()));
+    if (most + 1 < wrong.size()) {
+        std::ranges::nth_element(wrong, wrong.begin() + std::ptrdiff_t(most), std::greater());
+        wrong.resize(most + 1);
     }
     std::sort(wrong.rbegin(), wrong.rend());
     std::sort(right.rbegin(), right.rend());

@@ -142,6 +142,23 @@ void describeGradients(const WallEvidence& evidence, const Lesion& lesion, Named
     put("gradient_sharpness", mean(steep) / std::max(1.0, s.wallHu + 1000.0));
 }
 
+// Of the scan as it came, in the lumen before the patch: gas, or the tagging that stood there. What
+// is left of a lump of residue has gas before it, a polyp in a pool the pool.
+double outsideHu(const PreparedColon& colon, const WallEvidence& evidence, const Lesion& lesion) {
+    constexpr double offMm = 2.5;
+    const glm::dmat4 voxelFromPatient = colon.ct.grid().voxelFromPatient();
+    double sum = 0.0;
+    long count = 0;
+    for (const std::uint32_t v : lesion.patch.samples) {
+        const glm::dvec3 at =
+            evidence.samples.mesh.vertices[v] - offMm * glm::dvec3(evidence.shapes[v].intoWall);
+        const glm::ivec3 voxel = glm::round(glm::dvec3(voxelFromPatient * glm::dvec4(at, 1.0)));
+        if (!colon.ct.grid().contains(voxel)) continue;
+        sum += colon.ct.at(voxel), ++count;
+    }
+    return count > 0 ? sum / double(count) : emptyHu;
+}
+
 void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
                       std::span<const float> textureDistance, const Lesion& lesion,
                       const std::vector<std::uint32_t>& ring, Named& put) {
@@ -173,6 +190,8 @@ void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
     put("gas_share", gas / voxels);
     if (density.empty()) density.push_back(-3.0f), raw.push_back(-3.0f), removed.push_back(0.0f);
     put("removed_density", mean(removed));
+    put("removed_p90", quantile(removed, 0.9));
+    put("scan_noise", s.noiseHu / unit);
     put("density_median", quantile(density, 0.5));
     put("density_p90", quantile(density, 0.9));
     put("density_core", quantile(density, 0.98));
@@ -181,6 +200,7 @@ void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
     for (std::size_t n = 0; n < density.size(); ++n)
         if (density[n] > -0.6f) core.push_back(raw[n]);
     put("density_spread", deviation(core));
+    put("outside_density", (outsideHu(colon, evidence, lesion) - s.wallHu) / unit);
     std::vector<float> peaks, ringPeaks, broad;
     for (const std::uint32_t v : lesion.patch.samples) {
         peaks.push_back(float((evidence.rays[v].peakHu - s.wallHu) / unit));

@@ -12,7 +12,7 @@ namespace haustra::cad {
 
 /// In the order of featureNames. HU are relative to the scan: (HU − wall) / (wall − fat), so that a
 /// scanner's calibration and voltage do not matter; lengths are mm.
-inline constexpr std::array<std::string_view, 41> featureNames{
+inline constexpr std::array<std::string_view, 44> featureNames{
     // size and form
     "diameter_mm", "width_ratio", "height_mm", "height_ratio", "compactness", "neck_ratio",
     // shape index and curvedness over the patch
@@ -27,7 +27,9 @@ inline constexpr std::array<std::string_view, 41> featureNames{
     "texture_share", "peak_median", "peak_over_ring", "broad_k2_size",
     // what it borders on
     "wet_share", "wet_edge", "former_fluid_mm", "tissue_behind_mm", "reentry_share",
-    "removed_density",
+    "removed_density", "removed_p90",
+    // what lay before it, in the scan as it came, and how well anything is known
+    "outside_density", "scan_noise",
     // what else has fat or gas inside: lips of the ileocecal valve, a rectal tube
     "fat_share", "gas_share",
     // where it is

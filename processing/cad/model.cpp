@@ -15,17 +15,33 @@ namespace {
 using ModelJson = nlohmann::ordered_json;
 
 // To seven significant digits: a model is what is written, and a fifth shorter than with nine.
-double shortened(float value) {
+double shortened(float value, int digits = 7) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.7g", double(value));
+    std::snprintf(text, sizeof text, "%.*g", digits, double(value));
     return std::strtod(text, nullptr);
 }
 
-ModelJson numbers(const std::vector<float>& values) {
+ModelJson numbers(const std::vector<float>& values, int digits = 7) {
     ModelJson list = ModelJson::array();
     for (const float v : values)
-        list.push_back(shortened(v));
+        list.push_back(shortened(v, digits));
     return list;
+}
+
+constexpr int weightDigits = 5;  // thousands of weights: none matters so much
+
+ModelJson jsonOf(const DenseLayer& layer) {
+    return {{"inputs", layer.inputs},
+            {"weights", numbers(layer.weights, weightDigits)},
+            {"biases", numbers(layer.biases, weightDigits)}};
+}
+
+NeuralNetwork networkIn(const ModelJson& json) {
+    NeuralNetwork network;
+    for (const ModelJson& layer : json)
+        network.push_back({layer.at("inputs"), layer.at("weights").get<std::vector<float>>(),
+                           layer.at("biases").get<std::vector<float>>()});
+    return network;
 }
 
 std::vector<float> numbersIn(const ModelJson& json, std::size_t count) {
@@ -83,7 +99,9 @@ bool ShapeThresholds::pass(const FeatureVector& features) const {
 }
 
 double CadModel::probability(const FeatureVector& features) const {
-    return rises(features) ? logistic(calibrationA + calibrationB * boosted.at(features)) : 0.0;
+    if (!rises(features)) return 0.0;
+    const double trees = calibrationA + calibrationB * boosted.at(features);
+    return logistic(0.5 * (trees + networks.at(features)));
 }
 
 double CadModel::placeProbability(double score) const {
@@ -164,6 +182,18 @@ std::string modelText(const CadModel& model) {
     add("widths", widths);
     add("thresholds", thresholds);
     add("texture", jsonOf(model.texture));
+    ModelJson scores = ModelJson::array(), networks = ModelJson::array();
+    for (const NormalScore& score : model.networks.scores)
+        scores.push_back(
+            {numbers(score.values, weightDigits), numbers(score.scores, weightDigits)});
+    add("scores", scores);
+    for (const NeuralNetwork& network : model.networks.networks) {
+        ModelJson layers = ModelJson::array();
+        for (const DenseLayer& layer : network)
+            layers.push_back(jsonOf(layer));
+        networks.push_back(std::move(layers));
+    }
+    add("networks", networks);
     text += "\"trees\": [";
     for (std::size_t n = 0; n < trees.size(); ++n)
         text += (n ? ",\n" : "\n") + trees[n].dump();
@@ -196,6 +226,11 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
                             rangeIn(thresholds.at("curvedness")),
                             rangeIn(thresholds.at("gradient_concentration"))};
         model.texture = textureIn(json.at("texture"));
+        for (const ModelJson& score : json.at("scores"))
+            model.networks.scores.push_back(
+                {score.at(0).get<std::vector<float>>(), score.at(1).get<std::vector<float>>()});
+        for (const ModelJson& layers : json.at("networks"))
+            model.networks.networks.push_back(networkIn(layers));
         model.boosted.widths = json.at("widths").get<std::vector<float>>();
         for (const ModelJson& nodes : json.at("trees")) {
             std::vector<TreeNode> tree;
@@ -221,6 +256,8 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
             throw std::invalid_argument("the calibration does not rise with the score");
         if (model.texture.count() == 0) throw std::invalid_argument("the texture has no component");
         if (const auto sound = checkTrees(model.boosted, featureCount); !sound)
+            throw std::invalid_argument(sound.error().message);
+        if (const auto sound = checkNetworks(model.networks, featureCount); !sound)
             throw std::invalid_argument(sound.error().message);
         return model;
     } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 
 #include "cad/boosted_trees.h"
 #include "cad/lesion_features.h"
+#include "cad/neural_networks.h"
 #include "cad/texture.h"
 #include "core/result.h"
 
@@ -15,7 +16,7 @@
 namespace haustra::cad {
 
 /// Raised whenever features or candidates change so that older models no longer fit them.
-inline constexpr int modelVersion = 4;
+inline constexpr int modelVersion = 5;
 
 /// The reduction of false positives of the source (§6.2.6): each of its features within what
 /// training polyps had.
@@ -34,13 +35,15 @@ struct CadModel {
     TextureModel texture;
     ShapeThresholds thresholds;
     BoostedTrees boosted;
-    /// The trees' sum s becomes the probability 1/(1 + exp(−(a + b·s))) (Platt 1999).
+    NeuralNetworks networks;
+    /// The trees' sum s is the logarithm of the odds a + b·s (Platt 1999).
     double calibrationA = 0.0, calibrationB = 1.0;
     /// A place's score s (places.h) becomes the probability 1/(1 + exp(−(a + b·logit s))).
     double placeA = 0.0, placeB = 1.0;
     double operatingPoint = 0.5;  ///< probability from which on a candidate is a finding
 
-    /// Of a candidate by itself; 0 where it does not rise.
+    /// Of a candidate by itself: the logarithm of its odds is the mean of the trees' and the
+    /// networks'. 0 where it does not rise.
     double probability(const FeatureVector& features) const;
     /// Of a place with this score: what a finding tells.
     double placeProbability(double score) const;

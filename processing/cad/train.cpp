@@ -25,7 +25,13 @@ std::pair<double, double> middleRange(std::vector<double> values) {
     return {at(0.025), at(0.975)};
 }
 
-BoostedTrees boostedOn(const std::vector<const TrainingCase*>& cases) {
+// What has learnt from the same cases.
+struct Judges {
+    BoostedTrees boosted;
+    NeuralNetworks networks;
+};
+
+Judges judgesOn(const std::vector<const TrainingCase*>& cases) {
     std::vector<float> rows, responses;
     for (const TrainingCase* each : cases) {
         for (const Example& example : each->examples) {
@@ -34,7 +40,10 @@ BoostedTrees boostedOn(const std::vector<const TrainingCase*>& cases) {
             responses.push_back(example.polyp ? 1.0f : 0.0f);
         }
     }
-    return boostTrees(rows, responses, featureCount);
+    NetworkTraining training;
+    training.threads = 1;
+    return {boostTrees(rows, responses, featureCount),
+            trainNetworks(rows, responses, featureCount, training)};
 }
 
 // Examples as witnesses, each with what `probability` makes of its features; nothing's where it
@@ -161,26 +170,26 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
         return fail(ErrorKind::badInput, "no polyp of the training cases was a candidate");
     model.thresholds = {middleRange(indices), middleRange(curvedness), middleRange(concentration)};
 
-    // The last trees have seen all cases, each others all but those of a fold.
-    std::vector<BoostedTrees> boosted(std::size_t(options.folds) + 1);
-    parallelFor(boosted.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+    // The last have seen all cases, each others all but those of a fold.
+    std::vector<Judges> judges(std::size_t(options.folds) + 1);
+    parallelFor(judges.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t fold = begin; fold < end; ++fold) {
             std::vector<const TrainingCase*> seen;
             for (std::size_t n = 0; n < cases.size(); ++n)
-                if (n % std::size_t(options.folds) != fold || fold + 1 == boosted.size())
+                if (n % std::size_t(options.folds) != fold || fold + 1 == judges.size())
                     seen.push_back(all[n]);
-            boosted[fold] = boostedOn(seen);
+            judges[fold] = judgesOn(seen);
         }
     });
-    // By themselves first, the best of each place; then what places make of them.
+    // The trees by themselves first, the best of each place; then what places make of both.
     std::vector<double> sums, scores;
     std::vector<int> truths, placeTruths;
-    const auto ofFold = [&](std::size_t n) -> const BoostedTrees& {
-        return boosted[n % std::size_t(options.folds)];
+    const auto ofFold = [&](std::size_t n) -> const Judges& {
+        return judges[n % std::size_t(options.folds)];
     };
     for (std::size_t n = 0; n < cases.size(); ++n) {
         const auto witnesses = witnessesOf(
-            cases[n], [&](const FeatureVector& features) { return ofFold(n).at(features); },
+            cases[n], [&](const FeatureVector& features) { return ofFold(n).boosted.at(features); },
             std::numeric_limits<double>::lowest());
         for (const WitnessedPlace& place : placesOf(witnesses)) {
             const Example& best = cases[n].examples[place.best];
@@ -200,7 +209,9 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
         const auto witnesses = witnessesOf(
             cases[n],
             [&](const FeatureVector& features) {
-                return logistic(model.calibrationA + model.calibrationB * ofFold(n).at(features));
+                const double trees =
+                    model.calibrationA + model.calibrationB * ofFold(n).boosted.at(features);
+                return logistic(0.5 * (trees + ofFold(n).networks.at(features)));
             },
             0.0);
         EvaluatedCase told{cases[n].name, cases[n].name, cases[n].truth, {}};
@@ -214,7 +225,8 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
         }
         trained.crossValidated.push_back(std::move(told));
     }
-    model.boosted = std::move(boosted.back());
+    model.boosted = std::move(judges.back().boosted);
+    model.networks = std::move(judges.back().networks);
     std::tie(model.placeA, model.placeB) = fitLogistic(scores, placeTruths);
     if (!(model.placeB > 0.0)) return fail(ErrorKind::badInput, "nothing was learnt of places");
     std::vector<double> blamedScores;

@@ -49,13 +49,14 @@ struct TrainOptions {
 
 struct TrainedModel {
     CadModel model;
-    /// Each case as it was told by trees that had not seen it; scores are probabilities.
+    /// Each case as it was told by what had not seen it; scores are probabilities.
     std::vector<EvaluatedCase> crossValidated;
 };
 
-/// Trees, thresholds, calibration and operating point. The trees have learnt from all cases;
-/// calibration and operating point are those of trees that had not seen the case (folds by case).
-/// Fails (badInput) where there are fewer cases than folds, or no polyp was found in any.
+/// Trees, networks, thresholds, calibration and operating point. Trees and networks have learnt
+/// from all cases; calibration and operating point are those of others that had not seen the case
+/// (folds by case). Fails (badInput) where there are fewer cases than folds, or no polyp was found
+/// in any.
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
                                 const TrainOptions& options);
 

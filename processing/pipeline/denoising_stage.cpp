@@ -40,7 +40,8 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
     const StageMeter meter;
     const ExpectedTopology topology = preparation.organ().topology;
     std::vector<ProductKey> inputs{source.labelsKey};
-    if (!source.hu.empty()) inputs.push_back(source.huKey);
+    const bool cleansed = source.hu == product::cleansed;
+    if (cleansed) inputs.push_back(source.huKey);
     const ProductKey key =
         store::makeKey("denoising", denoisingVersion,
                        std::string("topology=") + organs::toString(topology), inputs);
@@ -66,7 +67,7 @@ Result<ProductKey> denoiseLumen(Preparation& preparation, const WallSource& sour
         cutting.threads = threads;
         cutting.progress = progress;
         std::optional<Volume<std::int16_t>> hu;
-        if (!source.hu.empty() && preparation.organ().finder != organs::LumenFinder::huRange) {
+        if (cleansed) {
             auto scan = TRY(stage.readVolume<std::int16_t>(source.hu));
             hu = std::move(scan);
             cutting.hu = &*hu;

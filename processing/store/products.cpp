@@ -58,7 +58,7 @@ const Catalogue& catalogue() {
         {.name = lumen,
          .stage = "denoising",
          .content = Content::uint8Volume,
-         .parents = {ct, segmentation, cleansedLumen, cleansed},
+         .parents = {segmentation, cleansedLumen, cleansed},
          .endings = volume,
          .help = "the lumen with the organ's topology: a colon without handles (uint8, as "
                  "segmentation)"},

@@ -188,6 +188,37 @@ TEST(Detect, TurnsShiftsAndThreadsChangeNothing) {
     }
 }
 
+TEST(Detect, AFeatureTellsWhatStoodBeforeAPlace) {
+    const BallColon ball;
+    // A pool of tagging stood before the first bump.
+    Volume<std::int16_t> scanned = ball.hu.clone();
+    for (std::size_t n = 0; n < scanned.grid().voxelCount(); ++n) {
+        const glm::ivec3 voxel = scanned.grid().voxelAt(n);
+        if (ball.lumen[n] && scanned.grid().patientFromVoxelPoint(voxel).z > 8.0)
+            scanned.writable()[n] = 540;
+    }
+    const cad::PreparedColon plain = ball.colon();
+    const cad::PreparedColon colon{scanned,       plain.cleansed, plain.lumen,
+                                   plain.surface, plain.flat,     plain.centerline,
+                                   plain.tissue,  plain.pieces,   plain.rebuilt};
+    const auto evidence = cad::gatherEvidence(colon, {});
+    auto found = cad::findCandidates(colon, evidence, nullptr, shapeAlone());
+    std::erase_if(found, [](const cad::Candidate& c) { return c.lesion.heightMm < 1.5; });
+    const cad::WallStatistics& wall = evidence.statistics;
+    const auto told = [&](double hu) { return (hu - wall.wallHu) / (wall.wallHu - wall.fatHu); };
+    const std::vector<double> before{540.0, -990.0};
+    std::vector<int> count(bumps.size(), 0);
+    for (const cad::Candidate& c : found) {
+        for (std::size_t n = 0; n < bumps.size(); ++n) {
+            if (glm::distance(c.lesion.centreMm, bumps[n].centreMm) > 3.0) continue;
+            EXPECT_NEAR(c.features[cad::featureNumber("outside_density")], told(before[n]), 0.5);
+            ++count[n];
+        }
+    }
+    for (const int found : count)
+        EXPECT_GT(found, 0);
+}
+
 TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
     BallColon ball;
     // The first bump stands on a bridge.

@@ -1,4 +1,4 @@
-// What detection learns: texture, trees, calibration; and how it is judged.
+// What detection learns: texture, trees, networks, calibration; and how it is judged.
 #include "cad/candidate_table.h"
 #include "cad/evaluate.h"
 #include "cad/former_fluid.h"
@@ -7,6 +7,7 @@
 #include "cad/train.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -58,6 +59,13 @@ struct Taught {
     }
 };
 
+cad::NetworkTraining quickTraining() {
+    cad::NetworkTraining training;
+    training.networks = 2, training.hidden = {16, 8}, training.epochs = 30, training.batch = 64;
+    training.jitter = 0.1;
+    return training;
+}
+
 cad::CadModel smallModel() {
     const Taught taught(400);
     cad::CadModel model;
@@ -66,8 +74,85 @@ cad::CadModel smallModel() {
     model.texture = cad::learnTexture(cloud(200, 0.2f, 0.05f, 1), cloud(50, 0.6f, 0.02f, 2));
     model.thresholds = {{0.8, 1.0}, {0.05, 0.4}, {0.1, 0.9}};
     model.boosted = cad::boostTrees(taught.rows, taught.responses, cad::featureCount, 30);
+    model.networks =
+        cad::trainNetworks(taught.rows, taught.responses, cad::featureCount, quickTraining());
     model.calibrationA = -0.25, model.calibrationB = 1.5, model.operatingPoint = 0.4;
     return model;
+}
+
+TEST(NormalScore, IsWhereAValueStandsAmongThose) {
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal;
+    std::vector<float> values;
+    for (int n = 0; n < 20000; ++n)
+        values.push_back(std::exp(normal(random)));  // skewed
+    const cad::NormalScore score = cad::normalScoreOf(values);
+    for (const float z : {-1.5f, -0.5f, 0.0f, 0.7f, 1.5f})
+        EXPECT_NEAR(score.at(std::exp(z)), z, 0.1f);
+    float before = -10.0f;
+    for (float v = -1.0f; v < 60.0f; v += 0.01f) {
+        EXPECT_GE(score.at(v), before);
+        EXPECT_LE(score.at(v) - before, before < -5.0f ? 10.0f : 0.2f);
+        before = score.at(v);
+    }
+    // Where 60 of 100 are equal, they stand in the middle of what they take.
+    std::vector<float> tied(60, 0.0f);
+    for (int n = 0; n < 40; ++n)
+        tied.push_back(1.0f + float(n));
+    EXPECT_NEAR(cad::normalScoreOf(tied).at(0.0f), -0.52f, 0.05f);  // Φ⁻¹(0.3)
+    EXPECT_NEAR(cad::normalScoreOf({2.0f, 2.0f}).at(7.0f), 0.0f, 1e-6f);
+}
+
+TEST(NeuralNetworks, LearnWhatNoSingleFeatureTells) {
+    // A polyp where features 0 and 1 are on different sides of a half.
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> share;
+    std::vector<float> rows, responses;
+    for (int n = 0; n < 6000; ++n) {
+        for (int f = 0; f < 4; ++f)
+            rows.push_back(share(random));
+        const float* row = &rows[rows.size() - 4];
+        responses.push_back((row[0] > 0.5f) != (row[1] > 0.5f));
+    }
+    cad::NetworkTraining training = quickTraining();
+    training.threads = 1;
+    const auto networks = cad::trainNetworks(rows, responses, 4, training);
+    ASSERT_TRUE(cad::checkNetworks(networks, 4));
+    for (const auto& [x, y] : {std::pair(0.2f, 0.8f), {0.8f, 0.2f}, {0.2f, 0.2f}, {0.8f, 0.8f}}) {
+        const double odds = networks.at(std::vector<float>{x, y, 0.5f, 0.5f});
+        EXPECT_GT((x > 0.5f) != (y > 0.5f) ? odds : -odds, 1.0) << x << ' ' << y;
+    }
+    // Known no better than the noise it was taught with, a step of a tenth of that moves it little.
+    double largest = 0.0, before = 0.0;
+    for (int n = 0; n <= 1000; ++n) {
+        const double now =
+            networks.at(std::vector<float>{0.2f + 0.6f * float(n) / 1000.0f, 0.2f, 0.5f, 0.5f});
+        if (n > 0) largest = std::max(largest, std::abs(now - before));
+        before = now;
+    }
+    EXPECT_LT(largest, 0.1);
+    training.threads = 2;
+    const auto again = cad::trainNetworks(rows, responses, 4, training);
+    EXPECT_EQ(again.at(std::span(rows).first(4)), networks.at(std::span(rows).first(4)));
+}
+
+TEST(NeuralNetworks, ThatDoNotFitAreRefused) {
+    const cad::NeuralNetworks sound = smallModel().networks;
+    ASSERT_TRUE(cad::checkNetworks(sound, cad::featureCount));
+    EXPECT_FALSE(cad::checkNetworks(sound, cad::featureCount + 1));
+    EXPECT_FALSE(cad::checkNetworks({}, cad::featureCount));
+    cad::NeuralNetworks other = sound;
+    other.networks[0][0].weights.pop_back();
+    EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
+    other = sound;
+    other.networks[0].pop_back();  // many numbers, not one
+    EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
+    other = sound;
+    other.networks[0][1].biases[0] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
+    other = sound;
+    std::swap(other.scores[0].values.front(), other.scores[0].values.back());
+    EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
 }
 
 TEST(BoostedTrees, LearnsWhatTellsTheTwoApart) {
@@ -165,6 +250,8 @@ TEST(Model, WhatIsNoneIsRefused) {
           with("\"operating_point\": ", "\"operating_point\": 2"),
           with("\"calibration\": [", "\"calibration\": [0.5,-"),
           with("\"place_calibration\": [", "\"place_calibration\": [0.5,-"),
+          with("\"networks\": [", "\"networks\": [[],"),
+          with("\"scores\": [", "\"scores\": [[[1.0],[1.0]],"),
           with("\"training_scans\": ", "\"training_scans\": 7, \"x\": ")})
         EXPECT_FALSE(cad::modelOfText(text, "m.json")) << text.substr(0, 60);
 }
@@ -181,7 +268,11 @@ TEST(Model, TheBuiltInOneIsSoundAndSaysWhatItIs) {
 TEST(Model, WhatDoesNotRiseIsNothing) {
     cad::CadModel model;
     model.boosted.trees = {{{-1, 5.0f}}};
-    model.boosted.widths.assign(std::size_t(cad::featureCount), 0.0f);
+    const auto count = std::size_t(cad::featureCount);
+    model.boosted.widths.assign(count, 0.0f);
+    model.networks.scores.assign(count, {{0.0f}, {0.0f}});
+    model.networks.networks = {{{cad::featureCount, std::vector<float>(count, 0.0f), {5.0f}}}};
+    ASSERT_TRUE(cad::checkNetworks(model.networks, cad::featureCount));
     cad::FeatureVector features{};
     float& height = features[cad::featureNumber("height_mm")];
     for (const float mm : {-2.0f, 0.0f, 0.49f}) {
