@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <random>
-#include <string>
 #include <utility>
 
 #include <Eigen/Core>
@@ -169,8 +169,17 @@ private:
     int step_ = 0;
 };
 
+// Of a file's networks, so that no answer leaves the range of a float: greatest · (width ·
+// greatest)^layers.
+constexpr std::size_t widest = 1000, mostLayers = 5;
+constexpr float greatest = 1e3f;
+
 bool finite(const std::vector<float>& values) {
     return std::ranges::all_of(values, [](float v) { return std::isfinite(v); });
+}
+
+bool bounded(const std::vector<float>& values) {
+    return std::ranges::all_of(values, [](float v) { return std::abs(v) <= greatest; });
 }
 
 }  // namespace
@@ -233,7 +242,7 @@ Result<void> checkNetworks(const NeuralNetworks& networks, int features) {
     if (int(networks.scores.size()) != features) return refuse("features have no scores");
     for (const NormalScore& score : networks.scores) {
         if (score.values.empty() || score.values.size() != score.scores.size() ||
-            !finite(score.values) || !finite(score.scores) ||
+            !finite(score.values) || !bounded(score.scores) ||
             std::ranges::adjacent_find(score.values, std::greater_equal()) != score.values.end())
             return refuse("a feature's scores do not ascend");
     }
@@ -243,11 +252,13 @@ Result<void> checkNetworks(const NeuralNetworks& networks, int features) {
             if (std::size_t(layer.inputs) != width || layer.biases.empty() ||
                 layer.weights.size() != width * layer.biases.size())
                 return refuse("a network's layers do not fit each other");
-            if (!finite(layer.weights) || !finite(layer.biases))
-                return refuse("a network's number is not finite");
+            if (!bounded(layer.weights) || !bounded(layer.biases))
+                return refuse("a network's number is not finite, or too great");
             width = layer.biases.size();
+            if (width > widest) return refuse("a network's layer is too wide");
         }
         if (network.empty() || width != 1) return refuse("a network gives not one number");
+        if (network.size() > mostLayers) return refuse("a network has too many layers");
     }
     return {};
 }

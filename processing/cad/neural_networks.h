@@ -42,7 +42,8 @@ struct NeuralNetworks {
 };
 
 /// Fails (badInput) where there is no network or one does not take `features` numbers and give one,
-/// a number is not finite, or a score's values do not ascend.
+/// a number is not finite, a score's values do not ascend, or a network is so deep, wide or has
+/// such great numbers that its answer could be none.
 Result<void> checkNetworks(const NeuralNetworks& networks, int features);
 
 struct NetworkTraining {

@@ -59,6 +59,7 @@ std::vector<BitMask> largePieces(const BitMask& mask, const Grid& grid, double s
     return pieces;
 }
 
+/// Ties or fills the domain's islands; path, bridges and the sure way stay.
 void settleIslands(JoinedLumen& joined, const Grid& grid, const LumenJoinOptions& options) {
     BitMask kept = joined.bridges;
     if (options.sureWay) kept.add(*options.sureWay);

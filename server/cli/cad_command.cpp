@@ -272,7 +272,7 @@ Result<void> runTrain(const CadArguments& arguments) {
     options.trainingSha256 = store::toHex(hash.finish());
     options.falsePositives = arguments.falsePositives;
     options.threads = arguments.threads;
-    bar.show("trees", 0.0);
+    bar.show("trees and networks", 0.0);
     const auto trained = TRY(cad::trainModel(texture, cases, options));
     std::vector<const cad::EvaluatedCase*> every;
     for (const cad::EvaluatedCase& each : trained.crossValidated)

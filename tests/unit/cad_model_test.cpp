@@ -151,6 +151,12 @@ TEST(NeuralNetworks, ThatDoNotFitAreRefused) {
     other.networks[0][1].biases[0] = std::numeric_limits<float>::quiet_NaN();
     EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
     other = sound;
+    other.networks[0][0].weights[0] = 1e30f;  // two of them would overflow
+    EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
+    other = sound;
+    other.networks[0].insert(other.networks[0].end(), 9, {1, {1.0f}, {0.0f}});  // fits, but deep
+    EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
+    other = sound;
     std::swap(other.scores[0].values.front(), other.scores[0].values.back());
     EXPECT_FALSE(cad::checkNetworks(other, cad::featureCount));
 }
