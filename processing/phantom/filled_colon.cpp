@@ -101,7 +101,9 @@ FilledColon makeFilledColon(const PhantomOptions& options) {
     addDiverticula(shape, options.seed, bowel.diverticula);
     for (const Diverticulum& pouch : shape.diverticula())
         field.resample(shape, pouch.centre, pouch.sacRadiusMm + ColonShape::reachMm + 6.0);
-    return {std::move(shape), std::move(field), std::move(fluid), std::move(ileum)};
+    std::vector<Film> films = makeFilms(shape, options.seed, options.growths);
+    return {std::move(shape), std::move(field), std::move(fluid), std::move(ileum),
+            std::move(films)};
 }
 
 }  // namespace haustra::phantom

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "phantom/colon_field.h"
+#include "phantom/film.h"
 #include "phantom/fluid.h"
 #include "phantom/ileum.h"
 #include "phantom/phantom.h"
@@ -19,12 +20,13 @@ struct FilledColon {
     ColonField field;  ///< of `shape`, on gridOf(options.size)
     Fluid fluid;
     std::optional<Ileum> ileum;
+    std::vector<Film> films;
 };
 
 /// The colon of the options' patient: the path, what grows on its wall, the fluid that gravity
-/// levels, the polyps that the fluid covers, the ileum with its valve, and diverticula.
-/// Deterministic in seed, preset, position and size, whatever the number of threads; seconds at
-/// full size.
+/// levels, the polyps that the fluid covers, films of residue, the ileum with its valve, and
+/// diverticula. Deterministic in seed, preset, position and size, whatever the number of threads;
+/// seconds at full size.
 FilledColon makeFilledColon(const PhantomOptions& options);
 
 }  // namespace haustra::phantom

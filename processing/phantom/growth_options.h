@@ -12,7 +12,7 @@ namespace haustra::phantom {
 /// their width, those that spread sideways often wider than 10 mm, with sides that slope
 /// (Endoscopic Classification Review Group, Endoscopy 2005; 37: 570); most adenomas have the wall's
 /// own density without contrast medium in the blood; stool without tagging is mottled with gas
-/// (Pickhardt & Kim, Radiographics 2009).
+/// (Pickhardt & Kim, Radiographics 2009); film.h tells where films come from.
 struct GrowthOptions {
     /// Of all polyps the share that is no denser inside than the wall, 0…1.
     double plainCores = 0.0;
@@ -24,6 +24,10 @@ struct GrowthOptions {
     /// More flat lesions, 6…18 mm wide and 1…2.5 mm high, whose sides go over into the wall over
     /// 0.8 to 3.5 mm, 0…40; fewer where there is no room.
     int moreFlat = 0;
+    /// Of all growths that are not stool the share over which a film of tagged residue lies, 0…1.
+    double coated = 0.0;
+    /// Films of tagged residue on the bare wall, 8…22 mm wide, 0…40; fewer where there is no room.
+    int films = 0;
 };
 
 }  // namespace haustra::phantom

@@ -59,6 +59,18 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
         truth.submergedShare = std::clamp(0.5 + 0.5 * (level - height) / half, 0.0, 1.0);
         truths.push_back(truth);
     }
+    for (const Film& film : colon.films) {
+        if (film.growth >= 0) {
+            truths[std::size_t(film.growth)].filmMm = film.thicknessMm;
+            continue;
+        }
+        GrowthTruth truth;
+        truth.kind = "film";
+        truth.positionMm = truth.wallMm = film.centre;
+        truth.diameterMm = 2.0 * film.radiusMm;
+        truth.heightMm = truth.filmMm = film.thicknessMm;
+        truths.push_back(truth);
+    }
     return truths;
 }
 

@@ -41,17 +41,17 @@ struct Slab {
 /// Paints the colon's wall and growths over the anatomy, and its contents into two volumes.
 class ColonPainter {
 public:
-    ColonPainter(const ColonShape& shape, const ColonField& field, const Fluid& fluid,
-                 const PhantomOptions& options)
-        : shape_(shape),
-          field_(field),
-          fluid_(fluid),
+    ColonPainter(const FilledColon& colon, const PhantomOptions& options)
+        : shape_(colon.shape),
+          field_(colon.field),
+          fluid_(colon.fluid),
+          films_(colon.films),
           growths_(options.growths),
           seed_(mixBits(options.seed + 31)) {
-        const glm::dvec3 spacing = field.grid().spacingMm();
+        const glm::dvec3 spacing = field_.grid().spacingMm();
         width_ = std::cbrt(spacing.x * spacing.y * spacing.z);
-        levelWidth_ = glm::dot(glm::abs(fluid.up), spacing);
-        for (const Growth& growth : shape.growths()) {
+        levelWidth_ = glm::dot(glm::abs(fluid_.up), spacing);
+        for (const Growth& growth : shape_.growths()) {
             if (growth.kind == Growth::Kind::taggedStool) stool_.push_back(&growth);
         }
     }
@@ -73,6 +73,12 @@ public:
                 stool.push_back(ball);
             }
         }
+        std::vector<const Film*> films;
+        for (const Film& film : films_) {
+            if (glm::distance(film.centre, centre) <
+                1.3 * film.radiusMm + n * glm::length(grid.spacingMm()))
+                films.push_back(&film);
+        }
         for (int v = 0; v < ColonField::blockVoxels; ++v) {
             const ColonField::Sample& s = samples[v];
             if (std::min(s.outerMm, s.lumenMm) > width_) continue;
@@ -85,7 +91,9 @@ public:
             const double solid =
                 glm::mix(around, solidHu(s, p), coverage(std::min(s.outerMm, s.lumenMm), width_));
             const double share = coverage(s.lumenMm, width_);
-            const Contents inside = contents(s, p, stool);
+            Contents inside = contents(s, p, stool);
+            for (const Film* film : films)
+                coat(*film, s, p, inside);
             const double rest = glm::mix(lumenAirHu, inside.untaggedHu, inside.untaggedShare);
             untagged[at] = float(glm::mix(solid, rest, share));
             tagged[at] =
@@ -167,9 +175,19 @@ private:
         return inside;
     }
 
+    void coat(const Film& film, const ColonField::Sample& s, glm::dvec3 p, Contents& inside) const {
+        const double share = film.share(p, s.lumenMm, width_);
+        if (share <= inside.share) return;
+        inside.hu = film.hu * (1.0 + 0.15 * valueNoise(film.seed + 2, p, 4.0));
+        inside.share = share;
+        inside.tagged = inside.tagged || s.lumenMm > -film.thicknessAt(p);
+        inside.untaggedShare = std::min(inside.untaggedShare, 1.0 - share);
+    }
+
     const ColonShape& shape_;
     const ColonField& field_;
     const Fluid& fluid_;
+    const std::vector<Film>& films_;
     GrowthOptions growths_;
     std::uint64_t seed_;
     double width_ = 1.0, levelWidth_ = 1.0;
@@ -265,9 +283,11 @@ Result<void> check(const PhantomOptions& options) {
         return bad("pseudo-enhancement is 0 to 100 HU");
     if (!(scan.streakHu >= 0.0 && scan.streakHu <= 100.0)) return bad("streaks are 0 to 100 HU");
     const GrowthOptions& growths = options.growths;
-    if (!share(growths.plainCores)) return bad("a share of polyps is 0 to 1");
+    if (!share(growths.plainCores) || !share(growths.coated))
+        return bad("a share of polyps is 0 to 1");
     if (growths.morePolyps < 0 || growths.morePolyps > 40 || growths.moreUntaggedStool < 0 ||
-        growths.moreUntaggedStool > 40 || growths.moreFlat < 0 || growths.moreFlat > 40)
+        growths.moreUntaggedStool > 40 || growths.moreFlat < 0 || growths.moreFlat > 40 ||
+        growths.films < 0 || growths.films > 40)
         return bad("there may be 0 to 40 more growths of a kind");
     if (!(bowel.ileumMm >= 0.0 && bowel.ileumMm <= 2000.0))
         return bad("an ileum is 0 to 2000 mm long");
@@ -352,7 +372,7 @@ class Painter {
 public:
     Painter(const PhantomOptions& options, const BodyPlan& body, const FilledColon& filled)
         : filled_(filled),
-          colon_(filled.shape, filled.field, filled.fluid, options),
+          colon_(filled, options),
           solids_(makeAnatomy(options.seed, body)),
           threads_(options.threads) {
         if (options.scan.metalHip) add(makeMetalHip(options.seed));

@@ -92,7 +92,7 @@ enum class Site : std::uint8_t {
 
 /// One thing that grows from the wall or lies on it.
 struct GrowthTruth {
-    std::string kind;  ///< "sessile", "pedunculated", "flat"; "hyperplastic"; "untagged_stool" …
+    std::string kind;            ///< "sessile", "pedunculated", "flat"; "hyperplastic"; "film" …
     bool neoplastic = false;     ///< a polyp that must be found
     glm::dvec3 positionMm{0.0};  ///< centre of the head
     glm::dvec3 wallMm{0.0};      ///< its foot
@@ -101,6 +101,7 @@ struct GrowthTruth {
     double coreHu = 0.0;         ///< how much denser than the wall its middle is, about
     bool onFold = false;
     double submergedShare = 0.0;  ///< of the head's height, under the fluid's level, 0…1
+    double filmMm = 0.0;          ///< thickness of the tagged film over its middle
 };
 
 struct Phantom {

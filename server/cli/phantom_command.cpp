@@ -122,23 +122,23 @@ nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
 }
 
 // A line each: {"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm", "height_mm",
-// "core_hu", "on_fold", "submerged_share"}.
+// "core_hu", "on_fold", "submerged_share"}, and "film_mm" where a film of residue lies over it.
 std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
     const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
     std::string text = "{\"growths\": [";
     for (std::size_t n = 0; n < growths.size(); ++n) {
         const phantom::GrowthTruth& g = growths[n];
-        text += (n ? ",\n" : "\n") +
-                nlohmann::ordered_json{{"kind", g.kind},
-                                       {"neoplastic", g.neoplastic},
-                                       {"position_mm", pointJson(g.positionMm)},
-                                       {"wall_mm", pointJson(g.wallMm)},
-                                       {"diameter_mm", rounded(g.diameterMm)},
-                                       {"height_mm", rounded(g.heightMm)},
-                                       {"core_hu", g.coreHu},
-                                       {"on_fold", g.onFold},
-                                       {"submerged_share", rounded(g.submergedShare)}}
-                    .dump();
+        nlohmann::ordered_json json{{"kind", g.kind},
+                                    {"neoplastic", g.neoplastic},
+                                    {"position_mm", pointJson(g.positionMm)},
+                                    {"wall_mm", pointJson(g.wallMm)},
+                                    {"diameter_mm", rounded(g.diameterMm)},
+                                    {"height_mm", rounded(g.heightMm)},
+                                    {"core_hu", g.coreHu},
+                                    {"on_fold", g.onFold},
+                                    {"submerged_share", rounded(g.submergedShare)}};
+        if (g.filmMm > 0.0) json["film_mm"] = rounded(g.filmMm);
+        text += (n ? ",\n" : "\n") + json.dump();
     }
     return text + "]}\n";
 }
@@ -147,8 +147,10 @@ nlohmann::ordered_json growthOptionsJson(const phantom::GrowthOptions& growths) 
     nlohmann::ordered_json json{{"plain_cores", growths.plainCores},
                                 {"more_polyps", growths.morePolyps},
                                 {"more_untagged_stool", growths.moreUntaggedStool}};
-    // Only where there are any, so that phantoms from before this option stay the same files.
+    // Only where there are any, so that phantoms from before these options stay the same files.
     if (growths.moreFlat > 0) json["more_flat"] = growths.moreFlat;
+    if (growths.coated > 0.0) json["coated"] = growths.coated;
+    if (growths.films > 0) json["films"] = growths.films;
     return json;
 }
 
@@ -458,6 +460,18 @@ void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
             "--more-flat", arguments.growths.moreFlat,
             "More flat lesions of 6 to 18 mm, 1 to 2.5 mm high, with sides that slope, 0 to "
             "40")
+        ->check(CLI::Range(0, 40))
+        ->type_name("N")
+        ->group(group);
+    command
+        .add_option("--coated", arguments.growths.coated,
+                    "Share of the growths over which a film of tagged residue lies, 0 to 1")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("SHARE")
+        ->group(group);
+    command
+        .add_option("--films", arguments.growths.films,
+                    "Films of tagged residue on the bare wall, 0 to 40")
         ->check(CLI::Range(0, 40))
         ->type_name("N")
         ->group(group);

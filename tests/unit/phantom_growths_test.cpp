@@ -112,6 +112,45 @@ TEST(PhantomGrowths, MoreFlatLesionsAddTissueAndLeaveTheRest) {
     EXPECT_GT(filled, 30u);
 }
 
+TEST(PhantomGrowths, FilmsOfResidueLieOnTheWallAndLeaveTheTissue) {
+    phantom::PhantomOptions options = grown();
+    options.growths.coated = 1.0;
+    options.growths.films = 6;
+    const phantom::Phantom coated = phantom::makePhantom(options).value();
+    const phantom::Phantom& bare = grownPhantom();
+    // What grows there is the same; films alone are new.
+    std::vector<phantom::GrowthTruth> covered;
+    int onWall = 0;
+    for (const phantom::GrowthTruth& growth : coated.growths) {
+        if (growth.filmMm > 0.0) covered.push_back(growth);
+        onWall += growth.kind == "film";
+        const bool stool = growth.kind == "tagged_stool" || growth.kind == "untagged_stool";
+        EXPECT_EQ(growth.filmMm > 0.0, !stool) << growth.kind;
+    }
+    EXPECT_EQ(onWall, 6);
+    ASSERT_EQ(coated.growths.size(), bare.growths.size() + std::size_t(onWall));
+    // The same places are lumen, but some that held gas hold residue, each near a film; and with
+    // the tagging taken out there is gas as before.
+    const Grid& grid = coated.lumen.grid();
+    const double voxelMm = glm::length(grid.spacingMm());
+    std::size_t residue = 0, otherTissue = 0, farFromAll = 0, remains = 0;
+    visitBox(glm::ivec3(0), grid.size - 1, [&](glm::ivec3 v) {
+        otherTissue += (coated.lumen.at(v) == 0) != (bare.lumen.at(v) == 0);
+        remains += std::abs(coated.untaggedHu.at(v) - bare.untaggedHu.at(v)) > 1;
+        if (coated.scan.hu.at(v) == bare.scan.hu.at(v)) return;
+        residue += coated.lumen.at(v) == 2 && bare.lumen.at(v) == 1;
+        const glm::dvec3 at = grid.patientFromVoxelPoint(glm::dvec3(v));
+        farFromAll += std::none_of(covered.begin(), covered.end(), [&](const auto& growth) {
+            return glm::distance(at, growth.positionMm) <
+                   2.0 * (std::max(growth.diameterMm, growth.heightMm) + 5.0) + 3.0 * voxelMm;
+        });
+    });
+    EXPECT_GT(residue, 200u);
+    EXPECT_EQ(otherTissue, 0u);
+    EXPECT_EQ(farFromAll, 0u);
+    EXPECT_EQ(remains, 0u);
+}
+
 TEST(PhantomGrowths, PlainPolypsHaveTheWallsDensityAndOthersMore) {
     const phantom::Phantom& made = grownPhantom();
     const Grid& grid = made.lumen.grid();
@@ -133,7 +172,8 @@ TEST(PhantomGrowths, WhatCannotBeIsRefused) {
     for (const phantom::GrowthOptions& growths :
          {phantom::GrowthOptions{1.5, 0, 0}, phantom::GrowthOptions{0.0, 41, 0},
           phantom::GrowthOptions{0.0, 0, -1}, phantom::GrowthOptions{NAN, 0, 0},
-          phantom::GrowthOptions{0.0, 0, 0, 41}}) {
+          phantom::GrowthOptions{0.0, 0, 0, 41}, phantom::GrowthOptions{0.0, 0, 0, 0, 1.1},
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, -1}}) {
         phantom::PhantomOptions options = grown();
         options.growths = growths;
         EXPECT_FALSE(phantom::makePhantom(options));
