@@ -124,7 +124,10 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
             count(sum.from6Mm, hit);
             if (lesion.diameterMm >= 10.0) count(sum.from10Mm, hit);
             count(lesion.coreHu < 5.0 ? sum.plain : sum.dense, hit);
-            if (lesion.submergedShare > 0.5) count(sum.submerged, hit);
+            if (lesion.submergedShare > 0.5)
+                count(sum.submerged, hit);
+            else if (lesion.filmMm > 0.0)
+                count(sum.coated, hit);
             count(sum.byKind[lesion.kind], hit);
         }
     }

@@ -21,6 +21,7 @@ struct TrueLesion {
     double coreHu = 0.0;     ///< how much denser than the wall its inside is
     bool onFold = false;
     double submergedShare = 0.0;
+    double filmMm = 0.0;  ///< thickness of the residue that coats it
 
     /// From how far a finding is taken to mean it: half its diameter and 3 mm, at least 5 mm.
     double reachMm() const;
@@ -31,8 +32,9 @@ struct TrueLesion {
 };
 
 /// A list of lesions: {"growths": [{"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm",
-/// "height_mm", "core_hu", "on_fold", "submerged_share"}, …]}; or {"findings": [{"position_mm",
-/// "diameter_mm", "kind"}, …]}, which are all polyps. Fails (badInput) where it is neither.
+/// "height_mm", "core_hu", "on_fold", "submerged_share", "film_mm"}, …]}; or {"findings":
+/// [{"position_mm", "diameter_mm", "kind"}, …]}, which are all polyps. Fails (badInput) where it is
+/// neither.
 Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place);
 
 /// Of a phantom's structure.json what may be taken for polyps and is no lesion: the ileocecal valve

@@ -310,6 +310,7 @@ nlohmann::ordered_json jsonOf(const cad::Evaluation& sum) {
             {"plain", jsonOf(sum.plain)},
             {"dense", jsonOf(sum.dense)},
             {"submerged", jsonOf(sum.submerged)},
+            {"coated", jsonOf(sum.coated)},
             {"by_kind", byKind},
             {"false_positives_per_scan", sum.falsePositives},
             {"before_reduction_per_scan", sum.falseBefore},
@@ -325,10 +326,10 @@ nlohmann::ordered_json jsonOf(const cad::Evaluation& sum) {
 void print(const std::string& group, const cad::Evaluation& sum) {
     const auto of = [](const cad::Share& s) { return fmt::format("{}/{}", s.hit, s.of); };
     fmt::print(
-        "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7.2f} {:>7.1f} {:>6.1f}% "
+        "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7.2f} {:>7.1f} {:>6.1f}% "
         "{:>6.2f} {:>6.2f}\n",
         group, sum.cases, of(sum.from6Mm), of(sum.from5To6Mm), of(sum.from10Mm), of(sum.plain),
-        of(sum.dense), of(sum.submerged), sum.falsePositives, sum.falseBefore,
+        of(sum.dense), of(sum.submerged), of(sum.coated), sum.falsePositives, sum.falseBefore,
         sum.falseBefore > 0.0 ? 100.0 * (1.0 - sum.falsePositives / sum.falseBefore) : 0.0,
         sum.diameterMean, sum.diameter95);
     std::string kinds;
@@ -383,9 +384,10 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         "(3,046 patients; Radiology 2010;256:791); the dissertation's table 6.1: all polyps at\n"
         "2.9 and 3.5 false positives a series, 97.1 and 96.1 % of the false candidates "
         "rejected.\n");
-    fmt::print("{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7} {:>6} {:>6}\n",
-               "group", "scans", ">=6 mm", "5-6 mm", ">=10 mm", "plain", "dense", "submerged", "FP",
-               "before", "reduced", "|d|", "95 %");
+    fmt::print(
+        "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6}\n",
+        "group", "scans", ">=6 mm", "5-6 mm", ">=10 mm", "plain", "dense", "submerged", "coated",
+        "FP", "before", "reduced", "|d|", "95 %");
     nlohmann::ordered_json report{{"model", model.name},
                                   {"trained_on", model.trainedOn},
                                   {"note", "of phantoms, unless the cases are patients'"},
