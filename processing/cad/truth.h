@@ -16,7 +16,7 @@ struct TrueLesion {
     glm::dvec3 wallMm{0.0};      ///< its foot
     double diameterMm = 0.0;
     double heightMm = 0.0;
-    std::string kind;        ///< "sessile", "pedunculated", "flat"; or "untagged_stool" …
+    std::string kind;        ///< "sessile", "pedunculated", "flat"; or "untagged_stool", "film" …
     bool neoplastic = true;  ///< else what detection must not be praised nor blamed for, or a mimic
     double coreHu = 0.0;     ///< how much denser than the wall its inside is
     bool onFold = false;

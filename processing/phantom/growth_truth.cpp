@@ -57,18 +57,23 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
                      level = colon.fluid.poolAt(at.arcMm).levelMm,
                      half = std::max(0.5, std::min({axes.x, axes.y, axes.z}));
         truth.submergedShare = std::clamp(0.5 + 0.5 * (level - height) / half, 0.0, 1.0);
+        // Whosever film it is: one may reach over a neighbour.
+        for (const Film& film : colon.films) {
+            if (!growth.stool())
+                truth.filmMm = std::max(truth.filmMm,
+                                        film.thicknessAt(growth.centre + axes.z * growth.inward));
+        }
         truths.push_back(truth);
     }
     for (const Film& film : colon.films) {
-        if (film.growth >= 0) {
-            truths[std::size_t(film.growth)].filmMm = film.thicknessMm;
-            continue;
-        }
+        const double level = colon.fluid.poolAt(colon.shape.evaluate(film.centre).arcMm).levelMm;
+        const bool drowned = colon.fluid.heightMm(film.centre) + film.reachMm() < level;
+        if (film.growth >= 0 || drowned) continue;
         GrowthTruth truth;
         truth.kind = "film";
         truth.positionMm = truth.wallMm = film.centre;
         truth.diameterMm = 2.0 * film.radiusMm;
-        truth.heightMm = truth.filmMm = film.thicknessMm;
+        truth.heightMm = truth.filmMm = film.thicknessAt(film.centre);
         truths.push_back(truth);
     }
     return truths;

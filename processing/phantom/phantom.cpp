@@ -76,7 +76,7 @@ public:
         std::vector<const Film*> films;
         for (const Film& film : films_) {
             if (glm::distance(film.centre, centre) <
-                1.3 * film.radiusMm + n * glm::length(grid.spacingMm()))
+                film.reachMm() + n * glm::length(grid.spacingMm()))
                 films.push_back(&film);
         }
         for (int v = 0; v < ColonField::blockVoxels; ++v) {
@@ -176,11 +176,11 @@ private:
     }
 
     void coat(const Film& film, const ColonField::Sample& s, glm::dvec3 p, Contents& inside) const {
+        inside.tagged = inside.tagged || s.lumenMm > -film.thicknessAt(p);
         const double share = film.share(p, s.lumenMm, width_);
         if (share <= inside.share) return;
         inside.hu = film.hu * (1.0 + 0.15 * valueNoise(film.seed + 2, p, 4.0));
         inside.share = share;
-        inside.tagged = inside.tagged || s.lumenMm > -film.thicknessAt(p);
         inside.untaggedShare = std::min(inside.untaggedShare, 1.0 - share);
     }
 

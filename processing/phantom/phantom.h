@@ -101,18 +101,18 @@ struct GrowthTruth {
     double coreHu = 0.0;         ///< how much denser than the wall its middle is, about
     bool onFold = false;
     double submergedShare = 0.0;  ///< of the head's height, under the fluid's level, 0…1
-    double filmMm = 0.0;          ///< thickness of the tagged film over its middle
+    double filmMm = 0.0;          ///< thickness of the tagged film over its top
 };
 
 struct Phantom {
     CtScan scan;
-    /// The same scan and noise, with air where the colon's tagged fluid and stool were (what is
-    /// opacified in other bowel stays).
+    /// The same scan and noise, with air where the colon's tagged fluid, stool and films were (what
+    /// is opacified in other bowel stays).
     Volume<std::int16_t> untaggedHu;
     /// LumenLabel from the implicit geometry at each voxel's centre; `tagged` is all that is fluid,
-    /// be it tagged or not, and tagged stool. Diverticula are lumen; folds, polyps and untagged
-    /// stool are not, nor is what lies beyond the orifice of the ileocecal valve. Loops with a
-    /// septum thinner than a voxel still share no two neighbouring voxels.
+    /// be it tagged or not, tagged stool and films. Diverticula are lumen; folds, polyps and
+    /// untagged stool are not, nor is what lies beyond the orifice of the ileocecal valve. Loops
+    /// with a septum thinner than a voxel still share no two neighbouring voxels.
     Volume<std::uint8_t> lumen;
     /// Site of each voxel.
     Volume<std::uint8_t> sites;

@@ -464,8 +464,9 @@ void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
         ->type_name("N")
         ->group(group);
     command
-        .add_option("--coated", arguments.growths.coated,
-                    "Share of the growths over which a film of tagged residue lies, 0 to 1")
+        .add_option(
+            "--coated", arguments.growths.coated,
+            "Share of the polyps and bumps over which a film of tagged residue lies, 0 to 1")
         ->check(CLI::Range(0.0, 1.0))
         ->type_name("SHARE")
         ->group(group);

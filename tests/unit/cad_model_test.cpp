@@ -435,6 +435,19 @@ TEST(Evaluation, CountsWhatItSays) {
     EXPECT_EQ(cad::evaluate({&a}, 0.2).from6Mm.hit, 2);
 }
 
+TEST(Evaluation, CountsWhatResidueCoatsApartFromWhatIsUnderFluid) {
+    cad::TrueLesion dry, under, bare;
+    dry.diameterMm = under.diameterMm = bare.diameterMm = 9.0;
+    dry.filmMm = under.filmMm = 1.5;
+    under.submergedShare = 1.0;
+    const cad::EvaluatedCase a{"a", "", {dry, dry, under, bare}, {{0.9, 9.0, 1, ""}}};
+    const cad::Evaluation sum = cad::evaluate({&a}, 0.5);
+    EXPECT_EQ(sum.coated.of, 2);
+    EXPECT_EQ(sum.coated.hit, 1);
+    EXPECT_EQ(sum.submerged.of, 1);
+    EXPECT_EQ(sum.submerged.hit, 0);
+}
+
 TEST(Evaluation, TheFrocCurveRisesAndItsBandsHoldIt) {
     std::vector<cad::EvaluatedCase> cases;
     std::mt19937 random(11);

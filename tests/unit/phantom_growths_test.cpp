@@ -1,5 +1,6 @@
 // What grows on a phantom's wall: polyps dense and plain, what resembles them, and their truth.
 #include "core/voxel_sweep.h"
+#include "phantom/film.h"
 #include "phantom/phantom.h"
 
 #include <algorithm>
@@ -112,6 +113,26 @@ TEST(PhantomGrowths, MoreFlatLesionsAddTissueAndLeaveTheRest) {
     EXPECT_GT(filled, 30u);
 }
 
+TEST(PhantomGrowths, AFilmFillsWhatLiesBetweenTheWallAndItsThickness) {
+    phantom::Film film;
+    film.radiusMm = 10.0, film.thicknessMm = 1.5, film.seed = 9;
+    const double middle = film.thicknessAt({});
+    EXPECT_GT(middle, 0.5 * 1.5);
+    EXPECT_LT(middle, 1.5 * 1.5);
+    EXPECT_EQ(film.thicknessAt({0.0, 0.0, 13.1}), 0.0) << "its edge wanders by 0.3 of its radius";
+    // Across a flat wall, x its lumen's signed distance, voxels hold the film's volume in sum.
+    constexpr double width = 0.8;
+    double sum = 0.0;
+    for (double x = 5.0 * width; x > -10.0 * width; x -= width) {
+        const double lumen = std::clamp(0.5 - x / width, 0.0, 1.0),
+                     share = film.share({}, x, width);
+        EXPECT_GE(share, 0.0);
+        EXPECT_LE(share, 1.0);
+        sum += width * lumen * share;
+    }
+    EXPECT_NEAR(sum, middle, 1e-9);
+}
+
 TEST(PhantomGrowths, FilmsOfResidueLieOnTheWallAndLeaveTheTissue) {
     phantom::PhantomOptions options = grown();
     options.growths.coated = 1.0;
@@ -120,32 +141,41 @@ TEST(PhantomGrowths, FilmsOfResidueLieOnTheWallAndLeaveTheTissue) {
     const phantom::Phantom& bare = grownPhantom();
     // What grows there is the same; films alone are new.
     std::vector<phantom::GrowthTruth> covered;
-    int onWall = 0;
+    std::size_t onWall = 0, over = 0, polypsAndBumps = 0;
     for (const phantom::GrowthTruth& growth : coated.growths) {
-        if (growth.filmMm > 0.0) covered.push_back(growth);
-        onWall += growth.kind == "film";
-        const bool stool = growth.kind == "tagged_stool" || growth.kind == "untagged_stool";
-        EXPECT_EQ(growth.filmMm > 0.0, !stool) << growth.kind;
+        const bool stool = growth.kind == "tagged_stool" || growth.kind == "untagged_stool",
+                   film = growth.kind == "film";
+        if (!stool) covered.push_back(growth);
+        onWall += film, polypsAndBumps += !stool && !film;
+        over += !film && growth.filmMm > 0.0;
+        EXPECT_FALSE(stool && growth.filmMm > 0.0);
+        EXPECT_LT(growth.filmMm, 4.5);
     }
-    EXPECT_EQ(onWall, 6);
-    ASSERT_EQ(coated.growths.size(), bare.growths.size() + std::size_t(onWall));
+    EXPECT_GE(onWall, 4u) << "but for what is under fluid";
+    EXPECT_LE(onWall, 6u);
+    EXPECT_GE(2 * over, polypsAndBumps) << "some leave the top bare";
+    ASSERT_EQ(coated.growths.size(), bare.growths.size() + onWall);
     // The same places are lumen, but some that held gas hold residue, each near a film; and with
     // the tagging taken out there is gas as before.
     const Grid& grid = coated.lumen.grid();
-    const double voxelMm = glm::length(grid.spacingMm());
-    std::size_t residue = 0, otherTissue = 0, farFromAll = 0, remains = 0;
+    const double blurMm = 3.0 * glm::length(grid.spacingMm());
+    std::size_t residue = 0, otherTissue = 0, farFromAll = 0, remains = 0, brighter = 0;
     visitBox(glm::ivec3(0), grid.size - 1, [&](glm::ivec3 v) {
         otherTissue += (coated.lumen.at(v) == 0) != (bare.lumen.at(v) == 0);
         remains += std::abs(coated.untaggedHu.at(v) - bare.untaggedHu.at(v)) > 1;
-        if (coated.scan.hu.at(v) == bare.scan.hu.at(v)) return;
-        residue += coated.lumen.at(v) == 2 && bare.lumen.at(v) == 1;
+        const bool filled = coated.lumen.at(v) == 2 && bare.lumen.at(v) == 1;
+        residue += filled;
+        if (!filled) return;
+        brighter += coated.scan.hu.at(v) > bare.scan.hu.at(v) + 50;
         const glm::dvec3 at = grid.patientFromVoxelPoint(glm::dvec3(v));
         farFromAll += std::none_of(covered.begin(), covered.end(), [&](const auto& growth) {
+            const double reach = 0.5 * growth.diameterMm;
             return glm::distance(at, growth.positionMm) <
-                   2.0 * (std::max(growth.diameterMm, growth.heightMm) + 5.0) + 3.0 * voxelMm;
+                   (growth.kind == "film" ? 1.3 * reach : 1.9 * reach + 6.5) + blurMm;
         });
     });
     EXPECT_GT(residue, 200u);
+    EXPECT_GT(20 * brighter, 19 * residue) << "but at the edge of denser fluid";
     EXPECT_EQ(otherTissue, 0u);
     EXPECT_EQ(farFromAll, 0u);
     EXPECT_EQ(remains, 0u);
@@ -173,7 +203,8 @@ TEST(PhantomGrowths, WhatCannotBeIsRefused) {
          {phantom::GrowthOptions{1.5, 0, 0}, phantom::GrowthOptions{0.0, 41, 0},
           phantom::GrowthOptions{0.0, 0, -1}, phantom::GrowthOptions{NAN, 0, 0},
           phantom::GrowthOptions{0.0, 0, 0, 41}, phantom::GrowthOptions{0.0, 0, 0, 0, 1.1},
-          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, -1}}) {
+          phantom::GrowthOptions{0.0, 0, 0, 0, NAN}, phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, -1},
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 41}}) {
         phantom::PhantomOptions options = grown();
         options.growths = growths;
         EXPECT_FALSE(phantom::makePhantom(options));
