@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <type_traits>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -442,46 +443,24 @@ void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
 
 /// What grows on the wall beyond the preset's; phantom/growth_options.h tells more.
 void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
-    constexpr const char* group = "Growths (each adds to the preset; wild draws none of these)";
-    command
-        .add_option("--plain-cores", arguments.growths.plainCores,
-                    "Share of the polyps that are no denser inside than the wall, 0 to 1")
-        ->check(CLI::Range(0.0, 1.0))
-        ->type_name("SHARE")
-        ->group(group);
-    command
-        .add_option("--more-polyps", arguments.growths.morePolyps,
-                    "More polyps of 4 to 15 mm, 0 to 40, of more shapes than the preset's")
-        ->check(CLI::Range(0, 40))
-        ->type_name("N")
-        ->group(group);
-    command
-        .add_option(
-            "--more-flat", arguments.growths.moreFlat,
-            "More flat lesions of 6 to 18 mm, 1 to 2.5 mm high, with sides that slope, 0 to "
-            "40")
-        ->check(CLI::Range(0, 40))
-        ->type_name("N")
-        ->group(group);
-    command
-        .add_option(
-            "--coated", arguments.growths.coated,
-            "Share of the polyps and bumps over which a film of tagged residue lies, 0 to 1")
-        ->check(CLI::Range(0.0, 1.0))
-        ->type_name("SHARE")
-        ->group(group);
-    command
-        .add_option("--films", arguments.growths.films,
-                    "Films of tagged residue on the bare wall, 0 to 40")
-        ->check(CLI::Range(0, 40))
-        ->type_name("N")
-        ->group(group);
-    command
-        .add_option("--more-untagged-stool", arguments.growths.moreUntaggedStool,
-                    "More lumps of stool without tagging, 0 to 40")
-        ->check(CLI::Range(0, 40))
-        ->type_name("N")
-        ->group(group);
+    phantom::GrowthOptions& growths = arguments.growths;
+    const auto add = [&](const char* name, auto& value, auto most, const char* help) {
+        command.add_option(name, value, help)
+            ->check(CLI::Range(decltype(most)(0), most))
+            ->type_name(std::is_integral_v<decltype(most)> ? "N" : "SHARE")
+            ->group("Growths (each adds to the preset; wild draws none of these)");
+    };
+    add("--plain-cores", growths.plainCores, 1.0,
+        "Share of the polyps that are no denser inside than the wall, 0 to 1");
+    add("--more-polyps", growths.morePolyps, 40,
+        "More polyps of 4 to 15 mm, 0 to 40, of more shapes than the preset's");
+    add("--more-flat", growths.moreFlat, 40,
+        "More flat lesions of 6 to 18 mm, 1 to 2.5 mm high, with sides that slope, 0 to 40");
+    add("--coated", growths.coated, 1.0,
+        "Share of the polyps and bumps over which a film of tagged residue lies, 0 to 1");
+    add("--films", growths.films, 40, "Films of tagged residue on the bare wall, 0 to 40");
+    add("--more-untagged-stool", growths.moreUntaggedStool, 40,
+        "More lumps of stool without tagging, 0 to 40");
 }
 
 }  // namespace
