@@ -29,37 +29,62 @@ constexpr std::uint8_t firstBody(std::uint8_t inside) {
     return std::uint8_t(body);
 }
 
-/// The first voxel along i and the end of those inside in the rows of voxels that a row of blocks
-/// is made of; both 0 where there are none.
-std::pair<int, int> insideOf(const Volume<std::uint8_t>& labels, int blockY, int blockZ) {
+/// The first voxel along i and the end of those inside in a row of voxels; both 0 where there are
+/// none.
+std::pair<int, int> insideOf(const Volume<std::uint8_t>& labels, int j, int k) {
     const Grid& grid = labels.grid();
-    int first = grid.size.x, end = 0;
-    for (int child = 0; child < 4; ++child) {
-        const int j = 2 * blockY + (child & 1), k = 2 * blockZ + (child >> 1);
-        if (j >= grid.size.y || k >= grid.size.z) continue;
-        const auto row = labels.voxels().subspan(grid.index(0, j, k), std::size_t(grid.size.x));
-        const auto isInside = [](std::uint8_t label) { return label != 0; };
-        const auto at = std::find_if(row.begin(), row.end(), isInside);
-        if (at == row.end()) continue;
-        first = std::min(first, int(at - row.begin()));
-        end = std::max(end,
-                       int(std::find_if(row.rbegin(), row.rend(), isInside).base() - row.begin()));
+    const auto row = labels.voxels().subspan(grid.index(0, j, k), std::size_t(grid.size.x));
+    const auto isInside = [](std::uint8_t label) { return label != 0; };
+    const auto first = std::find_if(row.begin(), row.end(), isInside);
+    if (first == row.end()) return {0, 0};
+    const auto end = std::find_if(row.rbegin(), row.rend(), isInside).base();
+    return {int(first - row.begin()), int(end - row.begin())};
+}
+
+/// The same of the rows of voxels that a row of blocks is made of.
+std::pair<int, int> insideOfBlocks(const BlockGraph& graph, const Volume<std::uint8_t>& labels,
+                                   int blockY, int blockZ) {
+    int first = graph.grid.size.x, end = 0;
+    for (int child = 0; child < 8; child += 2) {
+        const glm::ivec3 v = graph.childVoxel({0, blockY, blockZ}, child);
+        if (!graph.grid.contains({0, v.y, v.z})) continue;
+        const auto [rowFirst, rowEnd] = insideOf(labels, v.y, v.z);
+        if (rowEnd == 0) continue;
+        first = std::min(first, rowFirst);
+        end = std::max(end, rowEnd);
     }
     return {std::min(first, end), end};
 }
 
+/// The lower corner of the box around the lumen; 0 where there is none.
+glm::ivec3 lowCorner(const Volume<std::uint8_t>& labels, int threads) {
+    const glm::ivec3 size = labels.grid().size;
+    std::vector<glm::ivec3> slices(std::size_t(size.z), size);
+    parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            for (int j = 0; j < size.y; ++j) {
+                const auto [first, rowEnd] = insideOf(labels, j, int(k));
+                if (rowEnd > 0) slices[k] = glm::min(slices[k], glm::ivec3(first, j, int(k)));
+            }
+        }
+    });
+    glm::ivec3 low = size;
+    for (const glm::ivec3 slice : slices)
+        low = glm::min(low, slice);
+    return low == size ? glm::ivec3(0) : low;
+}
+
 /// The nodes of one layer of blocks.
-std::vector<BlockGraph::Node> layerNodes(const Volume<std::uint8_t>& labels,
-                                         const Volume<float>& distanceMm, glm::ivec3 blocks,
-                                         int layer) {
+std::vector<BlockGraph::Node> layerNodes(const BlockGraph& graph,
+                                         const Volume<std::uint8_t>& labels,
+                                         const Volume<float>& distanceMm, int layer) {
     const Grid& grid = labels.grid();
     std::vector<BlockGraph::Node> nodes;
-    for (int by = 0; by < blocks.y; ++by) {
-        const auto [first, end] = insideOf(labels, by, layer);
-        for (int bx = first / 2; 2 * bx < end; ++bx) {
+    for (int by = 0; by < graph.blocks.y; ++by) {
+        const auto [first, end] = insideOfBlocks(graph, labels, by, layer);
+        for (int bx = (first + graph.shift.x) / 2; 2 * bx < end + graph.shift.x; ++bx) {
             const auto voxelAt = [&](int child) {
-                return glm::ivec3(2 * bx + (child & 1), 2 * by + (child >> 1 & 1),
-                                  2 * layer + (child >> 2));
+                return graph.childVoxel({bx, by, layer}, child);
             };
             unsigned inside = 0;
             for (int child = 0; child < 8; ++child) {
@@ -228,11 +253,12 @@ BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float
     BlockGraph graph;
     graph.grid = labels.grid();
     graph.spacingMm = graph.grid.spacingMm();
-    graph.blocks = (graph.grid.size + 1) / 2;
+    graph.shift = lowCorner(labels, threads) & 1;
+    graph.blocks = (graph.grid.size + graph.shift + 1) / 2;
     std::vector<std::vector<BlockGraph::Node>> layers(std::size_t(graph.blocks.z));
     parallelFor(layers.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
-            layers[k] = layerNodes(labels, distanceMm, graph.blocks, int(k));
+            layers[k] = layerNodes(graph, labels, distanceMm, int(k));
     });
     Grid blockGrid;
     blockGrid.size = graph.blocks;
@@ -245,7 +271,7 @@ BlockGraph makeBlockGraph(const Volume<std::uint8_t>& labels, const Volume<float
     for (auto& layer : layers) {
         for (const BlockGraph::Node& node : layer) {
             graph.nodes.push_back(node);
-            std::int32_t& first = firstNodeOf[blockGrid.index(node.voxel / 2)];
+            std::int32_t& first = firstNodeOf[blockGrid.index(graph.blockAt(node.voxel))];
             if (first == 0) first = std::int32_t(graph.nodes.size());
         }
         layer = {};
@@ -264,10 +290,11 @@ void markAlong(const BlockGraph& graph, const std::vector<std::int32_t>& route, 
         const double radiusMm = part * double(graph.nodes[std::size_t(node)].radiusMm) + marginMm;
         if (!std::isfinite(radiusMm)) continue;
         const glm::ivec3 reach = glm::ivec3(radiusMm / (2.0 * spacing)) + 1;
-        const glm::ivec3 lo = glm::max(centre / 2 - reach, glm::ivec3(0));
-        const glm::ivec3 hi = glm::min(centre / 2 + reach, graph.blocks - 1);
-        visitBox(lo, hi, [&](glm::ivec3 block) {
-            graph.visitNodesOf(block, [&](std::int32_t other) {
+        const glm::ivec3 block = graph.blockOf(node);
+        const glm::ivec3 lo = glm::max(block - reach, glm::ivec3(0));
+        const glm::ivec3 hi = glm::min(block + reach, graph.blocks - 1);
+        visitBox(lo, hi, [&](glm::ivec3 near) {
+            graph.visitNodesOf(near, [&](std::int32_t other) {
                 const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
                 if (glm::dot(away, away) <= radiusMm * radiusMm) marked[std::size_t(other)] = true;
             });

@@ -15,7 +15,8 @@ namespace haustra::centerline {
 /// share a face are joined exactly where voxels of theirs do; two of blocks that share an edge or
 /// a corner where such joints lead straight from the one to the other. So the graph's connected
 /// components are the mask's 6-connected ones: nothing is merged or cut by halving the resolution,
-/// and a wall one voxel thick parts what it parts in the mask.
+/// and a wall one voxel thick parts what it parts in the mask. Blocks begin at the lower corner of
+/// the box around the lumen: a lumen stored by a voxel elsewhere has the same graph there.
 struct BlockGraph {
     struct Node {
         glm::ivec3 voxel;  ///< the node's deepest voxel; the first of several
@@ -31,6 +32,8 @@ struct BlockGraph {
     Grid grid;
     glm::dvec3 spacingMm{0.0};
     glm::ivec3 blocks{0};  ///< extent of the block grid
+    glm::ivec3 shift{
+        0};  ///< voxels, 0 or 1 along each axis, that the first blocks begin before the grid
     /// By block: 1 + its first node; 0: none. Where there is no lumen it takes no memory.
     Volume<std::int32_t> firstNodeOf;
     std::vector<Node> nodes;  ///< by block, in memory order
@@ -41,7 +44,16 @@ struct BlockGraph {
     /// The first node of a block; −1: none.
     std::int32_t nodeAt(glm::ivec3 block) const { return firstNodeOf.at(block) - 1; }
     glm::ivec3 voxelOf(std::int32_t node) const { return nodes[std::size_t(node)].voxel; }
-    glm::ivec3 blockOf(std::int32_t node) const { return voxelOf(node) / 2; }
+    glm::ivec3 blockAt(glm::ivec3 voxel) const { return (voxel + shift) / 2; }
+    glm::ivec3 blockOf(std::int32_t node) const { return blockAt(voxelOf(node)); }
+    /// The voxel of a block that bit `child` of Node::inside stands for; it may be off the grid.
+    glm::ivec3 childVoxel(glm::ivec3 block, int child) const {
+        return 2 * block - shift + glm::ivec3(child & 1, child >> 1 & 1, child >> 2);
+    }
+    int childAt(glm::ivec3 voxel) const {
+        const glm::ivec3 odd = (voxel + shift) & 1;
+        return odd.x | odd.y << 1 | odd.z << 2;
+    }
     glm::dvec3 positionMm(std::int32_t node) const {
         return grid.patientFromVoxelPoint(voxelOf(node));
     }

@@ -38,9 +38,9 @@ public:
     /// −1 for a voxel that is outside the lumen or the corridor.
     std::int32_t numberOf(glm::ivec3 voxel) const {
         if (!graph_.grid.contains(voxel)) return -1;
-        const int child = (voxel.x & 1) | (voxel.y & 1) << 1 | (voxel.z & 1) << 2;
+        const int child = graph_.childAt(voxel);
         std::int32_t number = -1;
-        graph_.visitNodesOf(voxel / 2, [&](std::int32_t node) {
+        graph_.visitNodesOf(graph_.blockAt(voxel), [&](std::int32_t node) {
             if (numberOf_[std::size_t(node)] >= 0 &&
                 (graph_.nodes[std::size_t(node)].inside >> child & 1))
                 number = numberOf_[std::size_t(node)] * 8 + child;
@@ -69,8 +69,7 @@ public:
         return false;
     }
     glm::ivec3 voxelOf(std::int32_t number) const {
-        const glm::ivec3 block = graph_.blockOf(nodes_[std::size_t(number / 8)]);
-        return 2 * block + glm::ivec3(number & 1, number >> 1 & 1, number >> 2 & 1);
+        return graph_.childVoxel(graph_.blockOf(nodes_[std::size_t(number / 8)]), number % 8);
     }
 
 private:

@@ -117,11 +117,14 @@ Volume<float> depthOf(const Volume<std::uint8_t>& labels, const LumenJoinOptions
 
 /// Appends a 6-connected way from the path's last voxel to `target` within the two voxels' blocks
 /// and the mask; where there is none, `target` alone.
-void connect(Path& path, glm::ivec3 target, const BitMask& mask) {
+void connect(Path& path, glm::ivec3 target, const BitMask& mask,
+             const centerline::BlockGraph& graph) {
     constexpr int reach = 4;
-    const glm::ivec3 source = path.back();
-    const glm::ivec3 lo = glm::min(source / 2, target / 2) * 2;
-    const glm::ivec3 hi = glm::max(source / 2, target / 2) * 2 + 1;
+    const glm::ivec3 source = path.back(), one = graph.blockAt(source),
+                     other = graph.blockAt(target);
+    // On the grid or one voxel before or behind, as far as a mask can be asked.
+    const glm::ivec3 lo = graph.childVoxel(glm::min(one, other), 0);
+    const glm::ivec3 hi = graph.childVoxel(glm::max(one, other), 7);
     const auto place = [&](glm::ivec3 v) {
         const glm::ivec3 d = v - lo;
         return std::size_t(d.x + reach * (d.y + reach * d.z));
@@ -173,7 +176,7 @@ Path skeletonOf(const BitMask& piece, const Volume<std::uint8_t>& labels,
     }
     Path path{graph.voxelOf(route.front())};
     for (const std::int32_t node : route)
-        connect(path, graph.voxelOf(node), piece);
+        connect(path, graph.voxelOf(node), piece, graph);
     return path;
 }
 

@@ -1,5 +1,6 @@
 // The centerline of tubes whose true one is known.
 #include "centerline/path.h"
+#include "core/crop.h"
 #include "topology/distance_field.h"
 #include "tube_phantom.h"
 
@@ -218,6 +219,30 @@ TEST(CenterlinePath, IsTheSameForAnyNumberOfThreads) {
     ASSERT_EQ(a.points.size(), b.points.size());
     for (std::size_t n = 0; n < a.points.size(); ++n)
         EXPECT_EQ(a.points[n].positionMm, b.points[n].positionMm);
+}
+
+TEST(CenterlinePath, IsTheSameWhereverTheScanBegins) {
+    const auto truth = sampleCurve([](double t) {
+        const double a = 4.0 * pi * t;
+        return glm::dvec3(25.0 * std::cos(a), 25.0 * std::sin(a), 60.0 * t);
+    });
+    Volume<std::uint8_t> mask(gridAround(truth, 12.0, spacing), std::uint8_t(0));
+    fillTube(mask, truth, 8.0);
+    const Centerline line = trace(mask);
+    // Odd and even, so that any blocks counted from the grid's corner would lie otherwise.
+    for (const glm::ivec3 before :
+         {glm::ivec3(1, 0, 0), glm::ivec3(0, 3, 0), glm::ivec3(0, 0, 1), glm::ivec3(3, 2, 5)}) {
+        Grid wider = mask.grid();
+        wider.size += before;
+        wider.patientFromVoxel[3] =
+            glm::dvec4(mask.grid().patientFromVoxelPoint(glm::dvec3(-before)), 1.0);
+        Volume<std::uint8_t> moved(wider, std::uint8_t(0));
+        paste(mask, {before, mask.grid().size}, moved, 1);
+        const Centerline same = trace(moved);
+        ASSERT_EQ(same.points.size(), line.points.size());
+        for (std::size_t n = 0; n < line.points.size(); ++n)
+            EXPECT_LT(glm::distance(same.points[n].positionMm, line.points[n].positionMm), 1e-6);
+    }
 }
 
 TEST(CenterlinePath, RefusesWhatHoldsNoPath) {
