@@ -3,6 +3,7 @@
 #include "cad/biopsy_transfer.h"
 #include "cad/places.h"
 #include "cad/wall_frames.h"
+#include "core/flat_lookup.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
 #include "core/version.h"
@@ -11,6 +12,7 @@
 #include <atomic>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 namespace haustra::cad {
@@ -33,6 +35,7 @@ const char* kindOf(const Candidate& candidate) {
     return lesion.heightMm < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
 }
 
+/// Of the piece whose ball is nearest.
 std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 placeMm) {
     std::optional<ColonSegment> segment;
     double least = std::numeric_limits<double>::infinity();
@@ -43,8 +46,24 @@ std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 pla
     return segment;
 }
 
+/// Where a place of the wall is along the colon: on the centerline where the flat map says, as the
+/// nearest point of it may be in a loop that touches from outside; without a map, that one.
+struct AlongColon {
+    double arcMm = 0.0;
+    glm::dvec3 cameraMm{0.0};
+};
+AlongColon alongColon(const PreparedColon& colon, const FlatLookup* lookup, glm::dvec3 wallMm) {
+    if (lookup) {
+        const WallPlace place = lookup->nearest(wallMm);
+        return {place.arcMm, place.cameraMm};
+    }
+    if (colon.centerline.points.empty()) return {0.0, wallMm};
+    const double arcMm = nearestArc(colon.centerline, wallMm);
+    return {arcMm, poseAtArc(colon.centerline, arcMm).point.positionMm};
+}
+
 Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
-                  const Candidate& candidate) {
+                  const FlatLookup* lookup, const Candidate& candidate) {
     const Lesion& lesion = candidate.lesion;
     Finding finding;
     finding.positionMm = lesion.centreMm;
@@ -55,9 +74,9 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
     finding.heightMm = std::max(0.0, lesion.heightMm);
-    finding.arcMm =
-        colon.centerline.points.empty() ? 0.0 : nearestArc(colon.centerline, lesion.centreMm);
-    finding.segment = segmentAt(colon, lesion.centreMm);
+    const AlongColon along = alongColon(colon, lookup, lesion.topMm);
+    finding.arcMm = along.arcMm;
+    finding.segment = segmentAt(colon, along.cameraMm);
     for (std::size_t n = 0; n < featureNames.size(); ++n)
         finding.features.emplace_back(std::string(featureNames[n]), candidate.features[n]);
     finding.voxels = lesion.voxels;
@@ -185,6 +204,9 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     const WallStatistics& statistics = evidence.statistics;
     findings.biopsy = {statistics.wallHu, statistics.fatHu, statistics.noiseHu,
                        evidence.transferFunction};
+    std::optional<FlatLookup> lookup;
+    if (!colon.flat.cameras.empty() && !colon.flat.surface.triangles.empty())
+        lookup.emplace(std::shared_ptr<const FlatMap>(std::shared_ptr<void>(), &colon.flat));
     for (const Candidate& candidate : candidates) {
         if (candidate.probability < std::min(leastProbability, model.operatingPoint)) continue;
         if (findings.findings.size() + findings.candidates.size() == std::size_t(maxFindings)) {
@@ -193,7 +215,7 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
             break;
         }
         (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)
-            .push_back(findingOf(colon, evidence, candidate));
+            .push_back(findingOf(colon, evidence, lookup ? &*lookup : nullptr, candidate));
     }
     for (auto* list : {&findings.findings, &findings.candidates})
         std::stable_sort(list->begin(), list->end(),

@@ -264,6 +264,37 @@ TEST(Biopsy, ARayEndsWhereTheLumenBeginsAgain) {
     EXPECT_GT(along.color.g, along.color.r) << "tissue of middle density is green";
 }
 
+TEST(Detect, APlaceAlongTheColonIsWhereItsWallBelongsThoughAnotherLoopIsNearer) {
+    // Wall at x = 25 of a colon along x = 0; another loop of it runs by at x = 32.
+    BallColon ball;
+    ball.centerline.points = {{{0, -10, 0}, 0.0, 20.0, false},
+                              {{0, 10, 0}, 20.0, 20.0, false},
+                              {{32, 10, 0}, 52.0, 5.0, false},
+                              {{32, -10, 0}, 72.0, 5.0, false}};
+    ball.flat.surface.vertices = {{25, -10, -9}, {25, 10, -9}, {25, 10, 9}, {25, -10, 9}};
+    ball.flat.surface.triangles = {{0, 1, 2}, {0, 2, 3}};
+    ball.flat.flat = {{0.0, 0.0}, {0.0, 1.0}, {0.5, 1.0}, {0.5, 0.0}};
+    ball.flat.camera = {0, 1, 1, 0};
+    ball.flat.cameras = {{{0, -10, 0}, 0.0}, {{0, 10, 0}, 20.0}};
+    ball.flat.sourceTriangle = {0, 1};
+    cad::WallEvidence evidence;
+    evidence.samples.mesh.vertices.resize(1);
+    cad::Candidate candidate;
+    candidate.lesion.topMm = {25, 5, 0}, candidate.lesion.centreMm = {27, 5, 0};
+    candidate.probability = 1.0;
+    auto colon = ball.colon();
+    colon.pieces = {{ColonPart::rectum, {0, 0, 0}, 15.0}, {ColonPart::cecum, {32, 0, 0}, 5.0}};
+    const Findings findings = cad::findingsOf(colon, evidence, {candidate}, {});
+    ASSERT_EQ(findings.findings.size(), 1u);
+    EXPECT_NEAR(findings.findings.front().arcMm, 15.0, 1e-9);
+    EXPECT_EQ(findings.findings.front().segment, ColonSegment::rectum);
+    // Without a map there is nothing better than the nearest.
+    ball.flat = {};
+    const Findings unmapped = cad::findingsOf(colon, evidence, {candidate}, {});
+    ASSERT_EQ(unmapped.findings.size(), 1u);
+    EXPECT_GT(unmapped.findings.front().arcMm, 50.0);
+}
+
 TEST(Biopsy, FindingsTellByWhichColoursTheirWallWasSeen) {
     const BallColon ball;
     const cad::PreparedColon colon = ball.colon();
