@@ -1,5 +1,7 @@
 #include "cad/candidate_table.h"
 
+#include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -18,9 +20,11 @@ std::string candidateTable(const std::vector<Candidate>& candidates) {
         text += (name == featureNames.front() ? "\"" : ",\"") + std::string(name) + '"';
     text += "],\n\"candidates\": [";
     bool first = true;
-    const auto number = [](double value) {
+    // With as many digits as bring the same number back.
+    const auto exact = [](auto value) {
         char digits[32];
-        std::snprintf(digits, sizeof digits, "%.7g", value);
+        std::snprintf(digits, sizeof digits, "%.*g",
+                      std::numeric_limits<decltype(value)>::max_digits10, double(value));
         return std::string(digits);
     };
     for (const Candidate& candidate : candidates) {
@@ -30,9 +34,9 @@ std::string candidateTable(const std::vector<Candidate>& candidates) {
         for (const double value :
              {lesion.centreMm.x, lesion.centreMm.y, lesion.centreMm.z, lesion.diameter.mm,
               lesion.areaMm2, double(lesion.patch.byShape), double(lesion.patch.byTexture)})
-            text += number(value) + ',';
+            text += exact(value) + ',';
         for (const float value : candidate.features)
-            text += number(value) + ',';
+            text += exact(value) + ',';
         text.back() = ']';
     }
     return text + "]}\n";

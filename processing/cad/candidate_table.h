@@ -10,7 +10,7 @@
 namespace haustra::cad {
 
 /// What weighing, learning and judging use of candidates: centre, diameter, area, which generators
-/// found it, and features; JSON, a line each, numbers to seven digits.
+/// found it, and features; JSON, a line each, numbers so that they read back the same.
 std::string candidateTable(const std::vector<Candidate>& candidates);
 /// Reads it back; bodies, rims, voxels and probabilities are empty. Fails (badInput) where the text
 /// is none, (unsupported) where it has other features than this program.

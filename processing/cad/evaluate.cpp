@@ -30,7 +30,14 @@ void count(Share& share, bool hit) {
     share.hit += hit;
 }
 
+bool holdPolyps(const std::vector<const EvaluatedCase*>& cases) {
+    return std::ranges::any_of(cases, [](const EvaluatedCase* each) {
+        return std::ranges::any_of(each->truth, countsInCurve);
+    });
+}
+
 // Thresholds at which the false positives a scan are at most as asked, and the sensitivity there.
+// Needs cases that hold polyps.
 std::vector<std::pair<double, double>> sensitivities(const std::vector<const EvaluatedCase*>& cases,
                                                      const std::vector<double>& falsePositives) {
     std::vector<double> wrong, right;
@@ -40,7 +47,7 @@ std::vector<std::pair<double, double>> sensitivities(const std::vector<const Eva
             if (blamed(*each, place)) wrong.push_back(place.score);
         const std::vector<double> best = bestScores(*each);
         for (std::size_t l = 0; l < best.size(); ++l) {
-            if (!each->truth[l].neoplastic || each->truth[l].diameterMm < 6.0) continue;
+            if (!countsInCurve(each->truth[l])) continue;
             ++lesions;
             if (best[l] >= 0.0) right.push_back(best[l]);
         }
@@ -60,12 +67,16 @@ std::vector<std::pair<double, double>> sensitivities(const std::vector<const Eva
         const double limit = allowed < wrong.size() ? wrong[allowed] : -1.0;
         const auto told = std::partition_point(right.begin(), right.end(),
                                                [&](double score) { return score > limit; });
-        points.emplace_back(limit, lesions > 0 ? double(told - right.begin()) / lesions : 0.0);
+        points.emplace_back(limit, double(told - right.begin()) / lesions);
     }
     return points;
 }
 
 }  // namespace
+
+bool countsInCurve(const TrueLesion& lesion) {
+    return lesion.neoplastic && lesion.diameterMm >= 6.0;
+}
 
 EvaluatedCase evaluateCase(std::string name, std::string group,
                            const std::vector<Candidate>& weighed,
@@ -149,13 +160,13 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
 }
 
 std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases, int resamples) {
+    if (!holdPolyps(cases)) return {};
     std::vector<double> wanted;
     for (double n = -3.0; n <= 4.0; n += 0.5)
         wanted.push_back(std::exp2(n));
     std::vector<FrocPoint> curve;
     for (const auto& [threshold, sensitivity] : sensitivities(cases, wanted))
         curve.push_back({wanted[curve.size()], sensitivity, 0.0, 0.0, threshold});
-    if (cases.empty()) return curve;
     std::mt19937 random(1);
     std::vector<std::vector<double>> drawn(wanted.size());
     for (int n = 0; n < resamples; ++n) {
@@ -163,14 +174,16 @@ std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases,
         std::vector<const EvaluatedCase*> sample;
         for (std::size_t c = 0; c < cases.size(); ++c)
             sample.push_back(cases[random() % cases.size()]);
+        if (!holdPolyps(sample)) continue;  // nothing to be found or missed
         const auto points = sensitivities(sample, wanted);
         for (std::size_t p = 0; p < points.size(); ++p)
             drawn[p].push_back(points[p].second);
     }
-    for (std::size_t p = 0; p < curve.size() && resamples > 0; ++p) {
+    for (std::size_t p = 0; p < curve.size() && !drawn[p].empty(); ++p) {
         std::sort(drawn[p].begin(), drawn[p].end());
-        curve[p].low = drawn[p][std::size_t(0.025 * double(resamples - 1))];
-        curve[p].high = drawn[p][std::size_t(0.975 * double(resamples - 1))];
+        const double last = double(drawn[p].size() - 1);
+        curve[p].low = drawn[p][std::size_t(0.025 * last)];
+        curve[p].high = drawn[p][std::size_t(0.975 * last)];
     }
     return curve;
 }

@@ -51,14 +51,19 @@ struct Evaluation {
 };
 Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double operatingPoint);
 
+/// Whether the free-response ROC curve asks for it: neoplastic, from 6 mm.
+bool countsInCurve(const TrueLesion& lesion);
+
 /// One point of the free-response ROC curve, with the 2.5 and 97.5 % of `resamples` bootstrap
-/// samples of the cases.
+/// samples of the cases; of samples without such a lesion nothing can be said, and they are left
+/// out.
 struct FrocPoint {
     double falsePositives = 0.0;                      ///< a scan
     double sensitivity = 0.0, low = 0.0, high = 0.0;  ///< of neoplastic lesions from 6 mm
     double threshold = 0.0;
 };
-/// At 1/8, 1/4 … 16 false positives a scan and every half between. The same for equal input.
+/// At 1/8, 1/4 … 16 false positives a scan and every half between. Empty where no case has a
+/// neoplastic lesion from 6 mm. The same for equal input.
 std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases,
                                  int resamples = 1000);
 

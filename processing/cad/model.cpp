@@ -29,6 +29,7 @@ ModelJson numbers(const std::vector<float>& values, int digits = 7) {
 }
 
 constexpr int weightDigits = 5;  // thousands of weights: none matters so much
+constexpr int exactDigits = 9;   // neighbours stay apart, which a score's values must
 
 ModelJson jsonOf(const DenseLayer& layer) {
     return {{"inputs", layer.inputs},
@@ -184,8 +185,7 @@ std::string modelText(const CadModel& model) {
     add("texture", jsonOf(model.texture));
     ModelJson scores = ModelJson::array(), networks = ModelJson::array();
     for (const NormalScore& score : model.networks.scores)
-        scores.push_back(
-            {numbers(score.values, weightDigits), numbers(score.scores, weightDigits)});
+        scores.push_back({numbers(score.values, exactDigits), numbers(score.scores, weightDigits)});
     add("scores", scores);
     for (const NeuralNetwork& network : model.networks.networks) {
         ModelJson layers = ModelJson::array();

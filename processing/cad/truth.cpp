@@ -9,9 +9,21 @@
 namespace haustra::cad {
 namespace {
 
+constexpr double farthestMm = 1e5, largestMm = 300.0;  // no body is longer, no colon wider
+
 glm::dvec3 placeOfTruth(const nlohmann::json& json) {
     if (json.size() != 3) throw std::invalid_argument("a place has three coordinates");
-    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+    const glm::dvec3 place(json.at(0).get<double>(), json.at(1).get<double>(),
+                           json.at(2).get<double>());
+    if (!glm::all(glm::lessThan(glm::abs(place), glm::dvec3(farthestMm))))
+        throw std::invalid_argument("a place lies outside any body");
+    return place;
+}
+
+double diameterOfTruth(double mm) {
+    if (!(mm >= 0.0 && mm <= largestMm))
+        throw std::invalid_argument("a diameter is not 0 to 300 mm");
+    return mm;
 }
 
 }  // namespace
@@ -29,14 +41,14 @@ Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::
     try {
         const auto json = nlohmann::json::parse(text);
         std::vector<TrueLesion> lesions;
-        for (const auto& read :
-             json.contains("growths") ? json.at("growths") : json.at("findings")) {
+        const auto& list = json.contains("growths") ? json.at("growths") : json.at("findings");
+        if (!list.is_array()) throw std::invalid_argument("its lesions are no list");
+        for (const auto& read : list) {
             TrueLesion lesion;
             lesion.positionMm = placeOfTruth(read.at("position_mm"));
             lesion.wallMm =
                 read.contains("wall_mm") ? placeOfTruth(read.at("wall_mm")) : lesion.positionMm;
-            lesion.diameterMm = read.at("diameter_mm");
-            if (!(lesion.diameterMm >= 0.0)) throw std::invalid_argument("a diameter is negative");
+            lesion.diameterMm = diameterOfTruth(read.at("diameter_mm"));
             lesion.heightMm = read.value("height_mm", 0.0);
             lesion.kind = read.value("kind", "");
             lesion.neoplastic = read.value("neoplastic", true);
@@ -60,7 +72,7 @@ Result<std::vector<TrueLesion>> mimicsOfJson(const std::string& text, const std:
         const auto add = [&](const char* kind, const nlohmann::json& at, double diameterMm) {
             TrueLesion mimic;
             mimic.positionMm = mimic.wallMm = placeOfTruth(at);
-            mimic.diameterMm = diameterMm;
+            mimic.diameterMm = diameterOfTruth(diameterMm);
             mimic.kind = kind;
             mimic.neoplastic = false;
             mimics.push_back(mimic);

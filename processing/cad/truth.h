@@ -34,7 +34,7 @@ struct TrueLesion {
 /// A list of lesions: {"growths": [{"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm",
 /// "height_mm", "core_hu", "on_fold", "submerged_share", "film_mm"}, …]}; or {"findings":
 /// [{"position_mm", "diameter_mm", "kind"}, …]}, which are all polyps. Fails (badInput) where it is
-/// neither.
+/// neither, or a lesion lies outside any body (±100 m) or is wider than 300 mm.
 Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place);
 
 /// Of a phantom's structure.json what may be taken for polyps and is no lesion: the ileocecal valve

@@ -34,7 +34,9 @@ struct Finding {
     /// Between which the diameter was taken.
     std::pair<glm::dvec3, glm::dvec3> diameterEndsMm{};
     double heightMm = 0.0;  ///< above the wall as it would be without it, stalk included
-    double arcMm = 0.0;  ///< along the centerline, from the rectum, where the flat map has wallMm
+    /// Along the centerline, from the rectum: where the flat map has wallMm, or, without a map, the
+    /// nearest point.
+    double arcMm = 0.0;
     std::optional<ColonSegment> segment = {};  ///< where the colon's parts are known
     std::vector<std::pair<std::string, double>> features = {};
     std::vector<VoxelRun> voxels = {};  ///< its tissue, of Findings::grid, in memory order

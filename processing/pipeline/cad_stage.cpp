@@ -13,9 +13,6 @@ namespace {
 
 namespace product = store::product;
 
-// Raise it whenever the findings change for the same input and model.
-constexpr int detectionVersion = 7;
-
 Result<std::string> modelText(const std::filesystem::path& file) {
     if (file.empty()) return std::string(cad::builtInModelText());
     std::ifstream in(file, std::ios::binary);
@@ -48,7 +45,7 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surf
     const auto model = TRY(modelOf(options, text));
     const std::string hash = store::toHex(store::textDigest(text));
     const ProductKey key = store::makeKey(
-        "cad", detectionVersion, "model=" + hash,
+        "cad", cad::detectionVersion, "model=" + hash,
         flatMapKey ? std::vector{*flatMapKey} : std::vector{surfaceKey, centerlineKey});
     StageCase stage = preparation.open("cad", key);
     return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {

@@ -93,8 +93,8 @@ Result<PrepareReport> runStages(Preparation& preparation) {
         return preparation.takeReport();
     }
     const auto flatMap = flattenSurface(preparation, surface, centerline);
-    // A colon that cannot be flattened is searched for polyps all the same: the map only tells
-    // detection which way the strip runs.
+    // A colon that cannot be flattened is searched for polyps all the same: from the map detection
+    // has which way the strip runs, and where a place is along the colon.
     if (!flatMap && flatMap.error().kind != ErrorKind::noResult)
         return tl::make_unexpected(flatMap.error());
     if (preparation.wanted("cad")) {

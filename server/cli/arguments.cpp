@@ -1,5 +1,7 @@
 #include "cli/arguments.h"
 
+#include "cli/number_range.h"
+
 #include <charconv>
 #include <cmath>
 
@@ -111,20 +113,13 @@ CLI::Option* addEndsOption(CLI::App& command, std::vector<glm::dvec3>& endsMm,
 }
 
 void addAreaWeightOption(CLI::App& command, double& areaWeight) {
-    // CLI::Range lets NaN through.
-    const auto check = [](const std::string& text) {
-        const auto number = parseNumbers(text, ',', 1);
-        return number && (*number)[0] >= 0.0 && (*number)[0] <= 1.0
-                   ? std::string()
-                   : "\"" + text + "\" is not between 0 and 1";
-    };
     command
         .add_option(
             "--area-weight", areaWeight,
             "Of the flat map, how far angles are traded for areas: from 0, where small shapes "
             "are kept, to 1, where sizes nearly are")
         ->type_name("W")
-        ->check(check, "FLOAT in [0 - 1]")
+        ->check(numberRange(0.0, 1.0))
         ->capture_default_str();
 }
 

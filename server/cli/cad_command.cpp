@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/froc_picture.h"
+#include "cli/number_range.h"
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/text_files.h"
@@ -51,22 +52,27 @@ Result<std::string> readText(const fs::path& file) {
     return text.str();
 }
 
+struct Truth {
+    std::string file, text;  // the lesions'; the text with that of the mimics
+    std::vector<cad::TrueLesion> lesions, mimics;
+};
+
 // Of the case's own folder of the truths, which may be a phantom's: growths.json, or polyps.json.
-Result<std::vector<cad::TrueLesion>> readTruth(const fs::path& truths, const std::string& name) {
+Result<Truth> readTruth(const fs::path& truths, const std::string& name) {
     std::error_code ignored;
     for (const fs::path& folder : {truths / name / "truth", truths / name}) {
         for (const char* file : {"growths.json", "polyps.json"}) {
             if (!fs::exists(folder / file, ignored)) continue;
-            const auto text = TRY(readText(folder / file));
-            auto lesions = TRY(cad::truthOfJson(text, (folder / file).string()));
+            Truth truth{(folder / file).string(), TRY(readText(folder / file)), {}, {}};
+            truth.lesions = TRY(cad::truthOfJson(truth.text, truth.file));
             // What else a false finding may be on.
             if (fs::exists(folder / "structure.json", ignored)) {
                 const auto structure = TRY(readText(folder / "structure.json"));
-                const auto mimics =
+                truth.mimics =
                     TRY(cad::mimicsOfJson(structure, (folder / "structure.json").string()));
-                lesions.insert(lesions.end(), mimics.begin(), mimics.end());
+                truth.text += structure;
             }
-            return lesions;
+            return truth;
         }
     }
     return fail(ErrorKind::notFound, "there is no truth/growths.json or truth/polyps.json",
@@ -84,7 +90,7 @@ bool isWithout(const CadArguments& arguments, std::string_view part) {
 
 std::string checkPart(const std::string& part) {
     if (std::find(parts.begin(), parts.end(), part) != parts.end()) return {};
-    const bool named = part.starts_with(featurePart);
+    const bool named = part.starts_with(featurePart) && part.size() > featurePart.size();
     const std::string prefix = named ? part.substr(featurePart.size()) : "";
     if (named && std::any_of(cad::featureNames.begin(), cad::featureNames.end(),
                              [&](std::string_view name) { return name.starts_with(prefix); }))
@@ -103,21 +109,37 @@ std::string variantOf(const CadArguments& arguments) {
 struct LoadedCase {
     store::Case source;
     std::vector<cad::TrueLesion> truth;
-    std::string scan;      // key of its scan
-    std::string prepared;  // key of its last product before detection
+    std::string truthMark;  // digest of the truth's text
+    std::string scan;       // key of its scan
+    std::string prepared;   // key of its last product before detection
 };
 
 Result<LoadedCase> load(const store::CaseStore& store, const CadArguments& arguments,
                         const std::string& name) {
-    LoadedCase loaded{TRY(store.openCase(name)), {}, {}, {}};
+    LoadedCase loaded{TRY(store.openCase(name)), {}, {}, {}, {}};
     const auto key = [&](const char* wanted) -> Result<std::string> {
         const auto entry = loaded.source.find(wanted);
         if (!entry)
             return fail(ErrorKind::notFound, std::string("the case has no ") + wanted, name);
         return entry->key.hex;
     };
-    loaded.truth = TRY(readTruth(arguments.truth, name));
+    const Truth truth = TRY(readTruth(arguments.truth, name));
+    loaded.truth = truth.lesions;
+    loaded.truth.insert(loaded.truth.end(), truth.mimics.begin(), truth.mimics.end());
+    loaded.truthMark = store::toHex(store::textDigest(truth.text));
     loaded.scan = TRY(key(product::ct));
+    const Volume<std::int16_t> scan = TRY(loaded.source.readVolume<std::int16_t>(product::ct));
+    for (const cad::TrueLesion& lesion : truth.lesions) {
+        if (scan.grid().contains(
+                glm::ivec3(glm::floor(scan.grid().voxelFromPatientPoint(lesion.positionMm) + 0.5))))
+            continue;
+        const glm::dvec3 at = lesion.positionMm;
+        return fail(ErrorKind::badInput,
+                    fmt::format("the truth has something at ({:.0f}, {:.0f}, {:.0f}) mm, outside "
+                                "the scan of case {}: is it another scan's?",
+                                at.x, at.y, at.z, name),
+                    truth.file);
+    }
     loaded.prepared =
         TRY(key(loaded.source.find(product::flatMap) ? product::flatMap : product::surface));
     return loaded;
@@ -128,8 +150,11 @@ std::string scanMark(const LoadedCase& loaded) {
     return loaded.scan.substr(0, 16);
 }
 
-// One that is given twice would count twice, and its copies teach and judge each other.
+// A case that is given twice would count twice, and its copies teach and judge each other.
 Result<void> checkCases(const CadArguments& arguments) {
+    if (isWithout(arguments, "texture") &&
+        (isWithout(arguments, "shape") || isWithout(arguments, "past")))
+        return fail(ErrorKind::badInput, "without texture and shape there are no candidates");
     std::set<std::string> seen;
     for (const std::string& name : arguments.cases)
         if (!seen.insert(name).second)
@@ -159,8 +184,9 @@ Result<std::vector<cad::Candidate>> candidatesOf(const LoadedCase& loaded,
                                                  const cad::TextureModel& texture) {
     fs::path file;
     if (!arguments.kept.empty()) {
-        const std::string key = store::toHex(store::textDigest(fmt::format(
-            "{} {} {}", loaded.prepared, variantOf(arguments), cad::textureText(texture))));
+        const std::string key = store::toHex(
+            store::textDigest(fmt::format("{} {} {} {}", cad::detectionVersion, loaded.prepared,
+                                          variantOf(arguments), cad::textureText(texture))));
         file = arguments.kept / fmt::format("{}.{}.json", loaded.source.name(), key.substr(0, 16));
         std::error_code ignored;
         if (fs::exists(file, ignored)) {
@@ -211,9 +237,9 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
                                        const CadArguments& arguments, ProgressBar& bar) {
     fs::path file;
     if (!arguments.kept.empty()) {
-        std::string key = variantOf(arguments);
+        std::string key = fmt::format("{} {}", cad::detectionVersion, variantOf(arguments));
         for (const LoadedCase& each : cases)
-            key += each.prepared + ' ';
+            key += each.prepared + ' ' + each.truthMark + ' ';
         file = arguments.kept /
                fmt::format("texture.{}.json", store::toHex(store::textDigest(key)).substr(0, 16));
         std::error_code ignored;
@@ -233,9 +259,10 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
     }
     if (polyps.empty())
         return fail(ErrorKind::badInput, "the cases hold no polyp", arguments.truth.string());
-    const auto texture = cad::learnTexture(walls, polyps, !isWithout(arguments, "pca"));
-    if (!file.empty()) TRY(writeTextFile(file, cad::textureText(texture)));
-    return texture;
+    const std::string text =
+        cad::textureText(cad::learnTexture(walls, polyps, !isWithout(arguments, "pca")));
+    if (!file.empty()) TRY(writeTextFile(file, text));
+    return cad::textureOfText(text, "texture");  // as it is when it is kept
 }
 
 Result<void> runTrain(const CadArguments& arguments) {
@@ -277,6 +304,8 @@ Result<void> runTrain(const CadArguments& arguments) {
     std::vector<const cad::EvaluatedCase*> every;
     for (const cad::EvaluatedCase& each : trained.crossValidated)
         every.push_back(&each);
+    for (const std::string_view note : frocNotes)
+        bar.say(std::string(note));
     for (const cad::FrocPoint& point : cad::frocCurve(every))
         bar.say(
             fmt::format("cross-validation by case: {:.2f} false positives a scan, {:.1f} % of "
@@ -346,10 +375,6 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         if (file.empty()) continue;
         TRY(checkOutputFile(file));
     }
-    const std::string ending = arguments.froc.extension().string();
-    if (!arguments.froc.empty() && ending != ".png" && ending != ".csv")
-        return fail(ErrorKind::unsupported, "a curve is written as .png or .csv",
-                    arguments.froc.string());
     TRY(checkCases(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     const auto model = TRY(readModel(arguments));
@@ -365,6 +390,11 @@ Result<void> runEvaluate(const CadArguments& arguments) {
             return fail(ErrorKind::badInput,
                         "the model has learnt from this case, so it cannot be judged by it", name);
     }
+    if (!arguments.froc.empty() && std::ranges::none_of(loaded, [](const LoadedCase& each) {
+            return std::ranges::any_of(each.truth, cad::countsInCurve);
+        }))
+        return fail(ErrorKind::badInput, "no polyp from 6 mm is in these cases: there is no curve",
+                    arguments.truth.string());
     std::vector<cad::EvaluatedCase> cases;
     for (std::size_t n = 0; n < loaded.size(); ++n) {
         bar.show("detect", double(n) / double(loaded.size()));
@@ -378,19 +408,15 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     std::vector<const cad::EvaluatedCase*> every;
     for (const cad::EvaluatedCase& each : cases)
         groups[each.group].push_back(&each), every.push_back(&each);
-    fmt::print(
-        "These figures are of phantoms, unless you gave patients' cases. For comparison, on "
-        "patients: 90 % of polyps from 6 mm and 96 %\nfrom 10 mm at 4.7 false positives a series "
-        "(3,046 patients; Radiology 2010;256:791); the dissertation's table 6.1: all polyps at\n"
-        "2.9 and 3.5 false positives a series, 97.1 and 96.1 % of the false candidates "
-        "rejected.\n");
+    for (const std::string_view note : frocNotes)
+        fmt::print("{}\n", note);
     fmt::print(
         "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6}\n",
         "group", "scans", ">=6 mm", "5-6 mm", ">=10 mm", "plain", "dense", "submerged", "coated",
         "FP", "before", "reduced", "|d|", "95 %");
     nlohmann::ordered_json report{{"model", model.name},
                                   {"trained_on", model.trainedOn},
-                                  {"note", "of phantoms, unless the cases are patients'"},
+                                  {"notes", frocNotes},
                                   {"operating_point", model.operatingPoint}};
     const double point = method.classifier ? model.operatingPoint : 0.5;
     for (const auto& [group, members] : groups) {
@@ -402,13 +428,16 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     if (groups.size() > 1) print("all", sum);
     report["all"] = jsonOf(sum);
     const auto curve = cad::frocCurve(every);
+    if (curve.empty())
+        fmt::print("No polyp from 6 mm is in these cases: nothing was found or missed.\n");
+    report["froc"] = nlohmann::ordered_json::array();
     for (const cad::FrocPoint& p : curve)
         report["froc"].push_back({p.falsePositives, p.sensitivity, p.low, p.high});
     if (!arguments.froc.empty()) {
         if (arguments.froc.extension() == ".png") {
-            const Image picture = TRY(frocPicture(
-                curve, fmt::format("{}, {} scans: phantoms unless the cases are patients'",
-                                   model.name, every.size())));
+            const Image picture =
+                TRY(frocPicture(curve, fmt::format("{}, {} scan{}", model.name, every.size(),
+                                                   every.size() == 1 ? "" : "s")));
             TRY(pictures::writePicture(arguments.froc, picture, ownProvenance()));
         } else {
             TRY(writeTextFile(arguments.froc, frocCsv(curve)));
@@ -425,7 +454,8 @@ void addCases(CLI::App& command, CadArguments& arguments) {
         .add_option(
             "--truth", arguments.truth,
             "Folder that has of each case CASE/truth/growths.json or CASE/truth/polyps.json, "
-            "as haustra phantom writes them")
+            "as haustra phantom writes them; a structure.json beside it tells false findings on "
+            "the ileocecal valve and a rectal tube from others")
         ->type_name("DIR")
         ->required();
     addThreadsOption(command, arguments.threads);
@@ -467,7 +497,7 @@ Command addCad(CLI::App& program) {
         ->add_option("--false-positives", arguments->falsePositives,
                      "How many a scan the operating point allows, in cross-validation")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 50.0));
+        ->check(numberRange(0.1, 50.0));
     CLI::App* evaluate = command->add_subcommand(
         "evaluate",
         "Sensitivity, false positives and errors of size on prepared cases whose polyps are known, "
@@ -480,7 +510,13 @@ Command addCad(CLI::App& program) {
     evaluate
         ->add_option("--froc", arguments->froc,
                      "Write the free-response ROC curve with 95 % bands by bootstrap over cases")
-        ->type_name("FILE.csv|FILE.png");
+        ->type_name("FILE.csv|FILE.png")
+        ->check([](const std::string& file) {
+            const std::string ending = fs::path(file).extension().string();
+            return ending == ".png" || ending == ".csv"
+                       ? std::string()
+                       : "\"" + file + "\": a curve is written as .png or .csv";
+        });
     return {command, [arguments, train] {
                 return train->parsed() ? runTrain(*arguments) : runEvaluate(*arguments);
             }};

@@ -4,6 +4,7 @@
 #include "cli/caption.h"
 #include "cli/case_scans.h"
 #include "cli/interruption.h"
+#include "cli/number_range.h"
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/wall_paint.h"
@@ -33,7 +34,7 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
         ->add_option("--seam-margin", options.seamMargin,
                      "How much of the circumference is repeated beyond the seam on either side")
         ->type_name("M")
-        ->check(CLI::Range(0.0, 0.5))
+        ->check(numberRange(0.0, 0.5))
         ->capture_default_str();
     group->add_option("--transfer-function", options.transferFunction, "Colours")
         ->check(CLI::IsMember(render::opticsPresets()))
@@ -47,7 +48,7 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
                      "And the candidates below the operating point that are so probable to be a "
                      "polyp")
         ->type_name("P")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(numberRange(0.0, 1.0))
         ->needs(findings);
     addThreadsOption(*group, options.threads);
 }

@@ -10,7 +10,7 @@
 namespace haustra::cli {
 namespace {
 
-constexpr glm::ivec2 pictureSize{900, 640};
+constexpr glm::ivec2 pictureSize{900, 740};
 // Of the field between the axes.
 constexpr glm::ivec2 upperLeft{90, 60}, lowerRight{870, 560};
 constexpr glm::u8vec3 bandColor{120, 150, 200}, gridColor{70, 70, 70}, curveColor{255, 200, 60};
@@ -46,7 +46,7 @@ void drawGrid(const Axes& axes, pictures::Marks& marks) {
         const glm::ivec2 low = axes.at(falsePositives, 0.01 * axes.leastPercent());
         marks.lines.push_back({low, axes.at(falsePositives, 1.0), gridColor});
         marks.words.push_back(
-            {fmt::format("{:g}", falsePositives), low + glm::ivec2(0, 8), {0.5, 0.0}});
+            {fmt::format("{:g}", falsePositives), low + glm::ivec2(0, 14), {0.5, 0.0}});
     }
     for (int percent = axes.leastPercent(); percent <= 100; percent += 10) {
         const glm::ivec2 left = axes.at(std::exp2(axes.first()), percent / 100.0);
@@ -58,7 +58,10 @@ void drawGrid(const Axes& axes, pictures::Marks& marks) {
 }  // namespace
 
 std::string frocCsv(const std::vector<cad::FrocPoint>& curve) {
-    std::string csv = "false_positives_per_scan,sensitivity_from_6_mm,low,high,threshold\n";
+    std::string csv;
+    for (const std::string_view note : frocNotes)
+        csv += fmt::format("# {}\n", note);
+    csv += "false_positives_per_scan,sensitivity_from_6_mm,low,high,threshold\n";
     for (const cad::FrocPoint& p : curve)
         csv += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.6f}\n", p.falsePositives, p.sensitivity,
                            p.low, p.high, p.threshold);
@@ -98,6 +101,11 @@ Result<Image> frocPicture(const std::vector<cad::FrocPoint>& curve, const std::s
                            {0.0, 0.0}});
     marks.words.push_back(
         {"false positives a scan", {lowerRight.x, lowerRight.y + 34}, {1.0, 0.0}});
+    int below = lowerRight.y + 64;
+    for (const std::string_view note : frocNotes) {
+        marks.words.push_back({std::string(note), {18, below}, {0.0, 0.0}});
+        below += 22;
+    }
     TRY(pictures::draw(marks, picture));
     return picture;
 }

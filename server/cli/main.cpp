@@ -26,8 +26,9 @@ int runProgram(int argc, char** argv) {
     program.set_help_all_flag("--help-all", "Print the help of all subcommands and exit");
     program.failure_message([](const CLI::App* app, const CLI::Error& error) {
         std::string command = app->get_name();
-        for (const CLI::App* used : app->get_subcommands())
-            command += " " + used->get_name();
+        for (auto used = app->get_subcommands(); !used.empty();
+             used = used.front()->get_subcommands())
+            command += " " + used.front()->get_name();
         const auto unknown = app->remaining();
         const std::string what = app->get_subcommands().empty() && !unknown.empty()
                                      ? "there is no command or option " + unknown.front()

@@ -1,6 +1,7 @@
 // haustra phantom: a synthetic abdomen as a DICOM series, with its truth.
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/number_range.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
 #include "core/version.h"
@@ -335,16 +336,16 @@ std::vector<std::string> namesOf(const std::map<std::string, T>& map) {
 /// What a patient's bowel may have beyond the preset's; phantom/bowel_options.h tells more.
 void addBowelOptions(CLI::App& command, PhantomArguments& arguments) {
     constexpr const char* group = "Bowel (each adds to the preset; wild draws what is not given)";
-    const auto share = CLI::Range(0.0, 1.0);
+    const auto share = numberRange(0.0, 1.0);
     command
         .add_option("--ileum", arguments.ileumMm,
                     "Length of a gas-filled ileum that joins the cecum and runs along the colon, "
                     "0 to 2000")
-        ->check(CLI::Range(0.0, 2000.0))
+        ->check(numberRange(0.0, 2000.0))
         ->type_name("MM")
         ->group(group);
     command.add_option("--ileum-calibre", arguments.ileumCalibreMm, "Its inner diameter, 12 to 30")
-        ->check(CLI::Range(12.0, 30.0))
+        ->check(numberRange(12.0, 30.0))
         ->type_name("MM")
         ->group(group);
     command.add_option("--valve", arguments.valve, "Whether gas passes the ileocecal valve's lips")
@@ -353,19 +354,19 @@ void addBowelOptions(CLI::App& command, PhantomArguments& arguments) {
     command
         .add_option("--septum", arguments.septumMm,
                     "Least tissue between loops that touch, 0.5 to 5 (3.2)")
-        ->check(CLI::Range(0.5, 5.0))
+        ->check(numberRange(0.5, 5.0))
         ->type_name("MM")
         ->group(group);
     command
         .add_option("--collapse", arguments.collapsesMm,
                     "Lengths of collapsed stretches, 5 to 60, in place of the preset's")
-        ->check(CLI::Range(5.0, 60.0))
+        ->check(numberRange(5.0, 60.0))
         ->type_name("MM …")
         ->group(group);
     command
         .add_option("--redundant-sigmoid", arguments.redundantSigmoidMm,
                     "How much longer the sigmoid's loops are, 0 to 400")
-        ->check(CLI::Range(0.0, 400.0))
+        ->check(numberRange(0.0, 400.0))
         ->type_name("MM")
         ->group(group);
     command
@@ -408,7 +409,7 @@ void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
     const auto add = [&](const char* name, std::optional<double>& value, const char* help,
                          double low, double high, const char* unit) {
         command.add_option(name, value, help)
-            ->check(CLI::Range(low, high))
+            ->check(numberRange(low, high))
             ->type_name(unit)
             ->group(group);
     };
@@ -416,7 +417,7 @@ void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
     command
         .add_option("--blur", arguments.blurMm,
                     "Full widths of the point spread along x, y and z, 0.3 to 6")
-        ->check(CLI::Range(0.3, 6.0))
+        ->check(numberRange(0.3, 6.0))
         ->expected(3)
         ->type_name("MM")
         ->group(group);
@@ -445,9 +446,10 @@ void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
 void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
     phantom::GrowthOptions& growths = arguments.growths;
     const auto add = [&](const char* name, auto& value, auto most, const char* help) {
+        constexpr bool isCount = std::is_integral_v<decltype(most)>;
         command.add_option(name, value, help)
-            ->check(CLI::Range(decltype(most)(0), most))
-            ->type_name(std::is_integral_v<decltype(most)> ? "N" : "SHARE")
+            ->check(isCount ? CLI::Validator(CLI::Range(0, int(most))) : numberRange(0.0, most))
+            ->type_name(isCount ? "N" : "SHARE")
             ->group("Growths (each adds to the preset; wild draws none of these)");
     };
     add("--plain-cores", growths.plainCores, 1.0,

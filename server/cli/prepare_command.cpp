@@ -1,6 +1,7 @@
 // haustra prepare: from a series to the products that a reader needs.
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/number_range.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
 #include "pipeline/prepare.h"
@@ -40,14 +41,6 @@ Result<std::string> defaultCaseName(const pipeline::PrepareOptions& options) {
 
 std::string checkCaseName(const std::string& name) {
     return store::isCaseName(name) ? std::string() : "not a case name: \"" + name + "\"";
-}
-
-// CLI::Range lets NaN through.
-std::string checkSurfaceError(const std::string& text) {
-    const auto number = parseNumbers(text, ',', 1);
-    return number && (*number)[0] >= 0.001 && (*number)[0] <= 10.0
-               ? std::string()
-               : "\"" + text + "\" is not 0.001 to 10 mm";
 }
 
 // `quality` is the case's product of that name; empty where it has none.
@@ -189,7 +182,7 @@ void addSurface(CLI::App& command, pipeline::PrepareOptions& options) {
                     "where it is held to it: corners, middles of edges and triangles; between "
                     "them it may be farther at a few places")
         ->type_name("MM")
-        ->check(checkSurfaceError, "FLOAT in [0.001 - 10]")
+        ->check(numberRange(0.001, 10.0))
         ->capture_default_str();
     addAreaWeightOption(command, options.areaWeight);
     command

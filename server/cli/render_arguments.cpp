@@ -1,6 +1,7 @@
 #include "cli/render_arguments.h"
 
 #include "cli/arguments.h"
+#include "cli/number_range.h"
 #include "pictures/picture_file.h"
 #include "render/optics/optics_presets.h"
 #include "store/products.h"
@@ -63,7 +64,7 @@ void addPlaceOptions(CLI::App& command, RenderArguments& my) {
         .add_option("--pixels-per-circumference", my.pixelsPerCircumference,
                     "Enlargement of flattened-zoom")
         ->type_name("P")
-        ->check(CLI::Range(1.0, double(render::maxPixelsPerUnit)))
+        ->check(numberRange(1.0, double(render::maxPixelsPerUnit)))
         ->capture_default_str();
     command.add_option("--direction", my.direction, "Which way the camera on --arc-mm looks")
         ->check(CLI::IsMember({"antegrade", "retrograde"}))
@@ -85,13 +86,13 @@ void addCameraOptions(CLI::App& command, RenderArguments& my) {
                     "Of a camera outside, and of the overview: from the patient's front (0), left "
                     "(90) or back (180)")
         ->type_name("DEGREES")
-        ->check(CLI::Range(-360.0, 360.0))
+        ->check(numberRange(-360.0, 360.0))
         ->capture_default_str();
     command
         .add_option("--elevation", my.elevationDegrees,
                     "Likewise, how far from above; negative from the feet")
         ->type_name("DEGREES")
-        ->check(CLI::Range(-90.0, 90.0))
+        ->check(numberRange(-90.0, 90.0))
         ->capture_default_str();
     command
         .add_option_function<std::string>(
@@ -109,13 +110,13 @@ void addCameraOptions(CLI::App& command, RenderArguments& my) {
                     "Vertical field of view: perspective 1 to 170 (90; 30 of a camera outside), "
                     "fisheye 1 to 360 (180)")
         ->type_name("DEGREES")
-        ->check(CLI::Range(1.0, 360.0));
+        ->check(numberRange(1.0, 360.0));
     command
         .add_option("--height-mm", my.heightMm,
                     "How much an orthographic camera (all of the scan), oblique (60) or the "
                     "overview (all of the colon) shows from top to bottom")
         ->type_name("H")
-        ->check(CLI::Range(minObliqueMm, maxObliqueMm));
+        ->check(numberRange(minObliqueMm, maxObliqueMm));
 }
 
 std::string presetNames() {
@@ -153,7 +154,7 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
             "GPU memory for the scan, MB; 0: what there is. Of --raycaster object-order and of "
             "--labels: the others keep the whole scan there, or, native, nothing")
         ->type_name("MB")
-        ->check(CLI::Range(0.0, 1e7))
+        ->check(numberRange(0.0, 1e7))
         ->capture_default_str();
     auto* labels = command
                        .add_option("--labels", my.labels,
@@ -171,7 +172,7 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         .add_option("--step", my.stepVoxels,
                     "Distance of samples on a ray, in voxels (0.5; 1 in the overview)")
         ->type_name("V")
-        ->check(CLI::Range(0.05, 4.0));
+        ->check(numberRange(0.05, 4.0));
     command
         .add_option("--paint", my.paint,
                     "A picture of the whole strip, as flat-image is without a seam margin, that "
@@ -183,7 +184,7 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
                     "Of --paint findings: the candidates below the operating point, too, that are "
                     "so probable to be a polyp")
         ->type_name("P")
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(numberRange(0.0, 1.0));
     addPointsOption(command, "--mark", my.marksMm,
                     "A ball in the overview (LPS, mm); may be given again and again");
     command.add_flag_callback(
@@ -198,7 +199,7 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
             });
     command.add_option("--zoom", my.zoom, "Enlargement of a slice")
         ->type_name("Z")
-        ->check(CLI::Range(1.0, 64.0))
+        ->check(numberRange(1.0, 64.0))
         ->capture_default_str();
 }
 

@@ -1,7 +1,7 @@
 // What polyp detection costs on a prepared case, stage by stage, beside the dissertation's shape
 // features over the whole mucosa (its §6.3 compares the two), the biopsy image, and how many
 // samples and pixels of the strip a polyp has where the truth is given. usage: cad_table STORE CASE
-// [TRUTH.json]
+// [TRUTH.json | - [CLUSTERS.png]]
 #include "cad/biopsy_image.h"
 #include "cad/detect.h"
 #include "cad/lesion_features.h"

@@ -479,6 +479,21 @@ TEST(Evaluation, TheFrocCurveRisesAndItsBandsHoldIt) {
     EXPECT_EQ(curve.back().sensitivity, 1.0);
 }
 
+TEST(Evaluation, WithoutAPolypThereIsNoCurve) {
+    cad::EvaluatedCase none{"a", "g", {}, {{0.9, 8.0, -1, "wall"}}};
+    EXPECT_TRUE(cad::frocCurve({&none}, 20).empty());
+    EXPECT_DOUBLE_EQ(cad::evaluate({&none}, 0.5).falsePositives, 1.0);
+    // Beside one that has some, those without lower no sensitivity in any sample of the cases.
+    cad::EvaluatedCase found = none;
+    found.truth.resize(1);
+    found.truth[0].diameterMm = 8.0;
+    found.places.push_back({0.95, 8.0, 0, ""});
+    for (const cad::FrocPoint& point : cad::frocCurve({&none, &none, &found}, 50)) {
+        EXPECT_DOUBLE_EQ(point.sensitivity, 1.0);
+        EXPECT_DOUBLE_EQ(point.low, 1.0);
+    }
+}
+
 TEST(CandidateTable, ReadsBackWhatLearningAndJudgingUse) {
     std::vector<cad::Candidate> candidates(3);
     for (std::size_t n = 0; n < candidates.size(); ++n) {
@@ -502,7 +517,7 @@ TEST(CandidateTable, ReadsBackWhatLearningAndJudgingUse) {
         EXPECT_EQ(is.patch.byShape, was.patch.byShape);
         EXPECT_EQ(is.patch.byTexture, was.patch.byTexture);
         for (std::size_t f = 0; f < candidates[n].features.size(); ++f)
-            EXPECT_NEAR((*read)[n].features[f], candidates[n].features[f], 1e-6);
+            EXPECT_EQ((*read)[n].features[f], candidates[n].features[f]);
     }
     EXPECT_EQ(cad::candidateTable(*read), text);
 }

@@ -1,0 +1,203 @@
+// haustra cad: a model is learnt from cases and judged by others, as somebody does who has truths.
+#include "ball_colon.h"
+#include "cad/model.h"
+#include "end_to_end/run_program.h"
+#include "pipeline/product_attributes.h"
+#include "store/case_store.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace haustra::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using Arguments = std::vector<std::string>;
+using nlohmann::json;
+
+Outcome haustra(const Arguments& arguments) {
+    return runProgram("haustra", arguments);
+}
+
+void writeText(const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+}
+
+json placeJson(glm::dvec3 p) {
+    return {p.x, p.y, p.z};
+}
+
+// Balls of gas, each with bumps of 8 mm, which are polyps, and as many of 4 mm, which are stool:
+// what is large is a polyp.
+class CadCommand : public testing::Test {
+protected:
+    static constexpr int bumpsOfAKind = 3;
+    static constexpr double polypRadiusMm = 4.0, stoolRadiusMm = 2.0;
+
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        for (int n = 0; n < 8; ++n)
+            makeCase(n);
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+
+    static std::string store() { return folder_->path() / "store"; }
+    static std::string truth() { return folder_->path() / "truth"; }
+    static std::string name(int n) { return "ball-" + std::to_string(n); }
+
+    static Arguments training() {
+        Arguments arguments{"cad", "train"};
+        for (int n = 0; n < 6; ++n)
+            arguments.push_back(name(n));
+        arguments.insert(arguments.end(), {"--store", store(), "--truth", truth()});
+        return arguments;
+    }
+    static Arguments judging(const Arguments& cases) {
+        Arguments arguments{"cad", "evaluate", "--store", store(), "--truth", truth()};
+        arguments.insert(arguments.end(), cases.begin(), cases.end());
+        return arguments;
+    }
+    static Arguments with(Arguments arguments, const Arguments& more) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    }
+
+private:
+    static void makeCase(int number) {
+        // Places all around, far enough from each other, turned otherwise in each case.
+        std::mt19937 random{unsigned(number)};
+        const double turn = double(random() % 1000) / 1000.0;
+        std::vector<Bump> onIt;
+        json growths = json::array();
+        for (int n = 0; n < 2 * bumpsOfAKind; ++n) {
+            const double z = 0.7 - 1.4 * (n + 0.5) / (2 * bumpsOfAKind),
+                         around = 2.0 * M_PI * (turn + n * 0.381966);
+            const glm::dvec3 way(std::sqrt(1.0 - z * z) * std::cos(around),
+                                 std::sqrt(1.0 - z * z) * std::sin(around), z);
+            const bool polyp = n % 2 == 0;
+            const double radius =
+                (polyp ? polypRadiusMm : stoolRadiusMm) + 0.2 * double(random() % 5) / 5.0;
+            onIt.push_back({(lumenMm - 0.3 * radius) * way, radius});
+            growths.push_back({{"kind", polyp ? "sessile" : "untagged_stool"},
+                               {"neoplastic", polyp},
+                               {"position_mm", placeJson(onIt.back().centreMm)},
+                               {"wall_mm", placeJson(lumenMm * way)},
+                               {"diameter_mm", 2.0 * radius}});
+        }
+        const BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, onIt);
+        auto made = store::CaseStore::open(store(), true).value().createCase(name(number)).value();
+        const auto key = [&](const char* product) {
+            return store::makeKey(product, number, "", {});
+        };
+        store::Attributes tissue;
+        pipeline::setTissueModel(tissue, ball.tissue);
+        ASSERT_TRUE(made.publishVolume("ct", key("ct"), ball.hu));
+        ASSERT_TRUE(made.publishVolume("segmentation", key("segmentation"), ball.lumen, tissue));
+        ASSERT_TRUE(made.publishVolume("lumen", key("lumen"), ball.lumen));
+        ASSERT_TRUE(made.publishCenterline("centerline", key("centerline"), ball.centerline));
+        ASSERT_TRUE(made.publishMesh("surface", key("surface"), ball.surface));
+        writeText(fs::path(truth()) / name(number) / "truth" / "growths.json",
+                  json{{"growths", growths}}.dump());
+    }
+
+    static inline std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(CadCommand, LearnsWhatAPolypIsAndFindsThoseOfOtherCases) {
+    const TemporaryFolder out;
+    const std::string model = out.path() / "model.json", kept = out.path() / "kept";
+    fs::create_directories(kept);
+    const Arguments learn = with(training(), {"--candidates", kept, "--name", "balls"});
+    const auto learnt = haustra(with(learn, {"--model", model}));
+    ASSERT_EQ(learnt.exitCode, 0) << learnt.err;
+    EXPECT_NE(learnt.err.find("3,046"), std::string::npos) << "no figure without the field's";
+    const auto read = cad::modelOfText(fileContent(model));
+    ASSERT_TRUE(read) << describe(read.error());
+    EXPECT_EQ(read->name, "balls");
+    EXPECT_EQ(read->trainingScans.size(), 6u);
+
+    const std::string report = out.path() / "report.json", curve = out.path() / "curve.csv";
+    const auto judged = haustra(
+        with(judging({name(6), name(7)}), {"--model", model, "--report", report, "--froc", curve}));
+    ASSERT_EQ(judged.exitCode, 0) << judged.err;
+    EXPECT_NE(judged.out.find("3,046"), std::string::npos);
+    const json all = json::parse(fileContent(report)).at("all");
+    EXPECT_EQ(all.at("from_6_mm").at("of"), 2 * bumpsOfAKind);
+    EXPECT_EQ(all.at("from_6_mm").at("hit"), 2 * bumpsOfAKind);
+    EXPECT_EQ(all.at("false_positives_per_scan"), 0.0);
+    EXPECT_GE(all.at("before_reduction_per_scan"), double(bumpsOfAKind)) << "stool is candidates";
+    const std::string table = fileContent(curve);
+    EXPECT_EQ(table.front(), '#');
+    EXPECT_NE(table.find("\nfalse_positives_per_scan,"), std::string::npos);
+
+    // What it has learnt from it is not judged by.
+    const auto same = haustra(with(judging({name(0)}), {"--model", model}));
+    EXPECT_EQ(same.exitCode, 1);
+    EXPECT_NE(same.err.find(name(0)), std::string::npos);
+
+    // From kept candidates the same is learnt; not from those of another truth.
+    const std::string again = out.path() / "again.json";
+    ASSERT_EQ(haustra(with(learn, {"--model", again})).exitCode, 0);
+    EXPECT_TRUE(fileContent(again) == fileContent(model));
+    const auto files = [&] {
+        return std::distance(fs::directory_iterator(kept), fs::directory_iterator());
+    };
+    const auto before = files();
+    const fs::path own = fs::path(truth()) / name(0) / "truth" / "growths.json";
+    const std::string text = fileContent(own);
+    json fewer = json::parse(text);
+    fewer.at("growths").erase(0);
+    writeText(own, fewer.dump());
+    const auto other = haustra(with(learn, {"--model", again}));
+    writeText(own, text);
+    EXPECT_EQ(other.exitCode, 0) << other.err;
+    EXPECT_GT(files(), before);
+}
+
+TEST_F(CadCommand, DrawsItsCurve) {
+    const TemporaryFolder out;
+    const fs::path picture = out.path() / "curve.png";
+    const auto judged = haustra(with(judging({name(6)}), {"--froc", picture}));
+    ASSERT_EQ(judged.exitCode, 0) << judged.err;
+    EXPECT_EQ(fileContent(picture).substr(1, 3), "PNG");
+}
+
+TEST_F(CadCommand, SaysWhatIsWrongWithATruth) {
+    const TemporaryFolder other;
+    const fs::path file = other.path() / name(6) / "truth" / "growths.json";
+    const auto told = [&](const std::string& text, const Arguments& more = {}) {
+        writeText(file, text);
+        Arguments arguments{"cad",   "evaluate", name(6),     "--store",
+                            store(), "--truth",  other.path()};
+        return haustra(with(arguments, more));
+    };
+    const auto refused = [&](const std::string& text, const Arguments& more = {}) {
+        const auto outcome = told(text, more);
+        EXPECT_EQ(outcome.exitCode, 1) << text;
+        EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+        EXPECT_NE(outcome.err.find(other.path().string()), std::string::npos) << outcome.err;
+        return outcome.err;
+    };
+    const auto lesion = [](glm::dvec3 at, double diameterMm) {
+        return json{{"growths", {{{"position_mm", placeJson(at)}, {"diameter_mm", diameterMm}}}}}
+            .dump();
+    };
+    EXPECT_NE(refused(lesion({400, 0, 0}, 8)).find("another scan"), std::string::npos);
+    EXPECT_NE(refused(lesion({1e9, 0, 0}, 8)).find("outside any body"), std::string::npos);
+    EXPECT_NE(refused(lesion({0, 0, 0}, 1e9)).find("diameter"), std::string::npos);
+    refused("{\"growths\": {}}");
+    // Nothing to be found: there are false findings to count, but no curve.
+    const auto none = told("{\"growths\": []}");
+    EXPECT_EQ(none.exitCode, 0) << none.err;
+    EXPECT_NE(none.out.find("No polyp"), std::string::npos) << none.out;
+    const std::string curve = other.path() / "curve.csv";
+    refused("{\"growths\": []}", {"--froc", curve});
+    EXPECT_FALSE(fs::exists(curve));
+}
+
+}  // namespace
+}  // namespace haustra::tests
