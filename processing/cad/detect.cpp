@@ -115,6 +115,16 @@ std::vector<float> textureDistances(const WallEvidence& evidence, const TextureS
     return distances;
 }
 
+// The most of it by area.
+bool liesBehindUntagged(const WallEvidence& evidence, const Patch& patch) {
+    double untagged = 0.0, all = 0.0;
+    for (const std::uint32_t v : patch.samples) {
+        all += evidence.samples.areaMm2[v];
+        if (evidence.untagged[v]) untagged += evidence.samples.areaMm2[v];
+    }
+    return untagged > 0.5 * all;
+}
+
 }  // namespace
 
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
@@ -148,7 +158,7 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
         for (std::size_t n; (n = next++) < patches.size();) {
             auto lesion =
                 standUp(evidence, triangles, std::move(patches[n]), colon.cleansed.grid(), numbers);
-            if (!lesion) continue;
+            if (!lesion || liesBehindUntagged(evidence, lesion->patch)) continue;
             const FeatureVector features = featuresOf(colon, evidence, distances, *lesion, numbers);
             made[n] = Candidate{*std::move(lesion), features};
         }
@@ -188,14 +198,20 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     findings.model.name = model.name;
     findings.model.trainedOn = model.trainedOn;
     findings.grid = colon.ct.grid();
-    double unseenMm2 = 0.0;
+    double inventedMm2 = 0.0, untaggedMm2 = 0.0;
     for (std::size_t v = 0; v < evidence.unseen.size(); ++v)
-        if (evidence.unseen[v]) unseenMm2 += evidence.samples.areaMm2[v];
-    if (unseenMm2 >= leastUnseenMm2)
+        if (evidence.unseen[v] || evidence.untagged[v])
+            (evidence.unseen[v] ? inventedMm2 : untaggedMm2) += evidence.samples.areaMm2[v];
+    if (inventedMm2 >= leastUnseenMm2)
         findings.warnings.push_back(printed(
             "%.0f mm2 of the wall were not examined: they enclose a bridge over a collapse, or "
             "were rebuilt after a leak",
-            unseenMm2));
+            inventedMm2));
+    if (untaggedMm2 >= leastUnseenMm2)
+        findings.warnings.push_back(printed(
+            "%.0f mm2 of the wall were not examined: they lie behind fluid without tagging or "
+            "beside what stands in the lumen, where the wall's place is known to millimetres only",
+            untaggedMm2));
     if (evidence.statistics.noiseHu > noisyHu)
         findings.warnings.push_back(
             printed("the scan is noisier than what detection has learnt from: %.0f HU after "

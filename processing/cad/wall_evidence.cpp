@@ -14,36 +14,37 @@ namespace {
 // as a disc of its area reaches, what has no more tissue beneath it than such a wall has.
 constexpr double leastRebuiltMm = 6.0, rebuiltVoxels = 2.5;
 
-std::vector<std::uint8_t> unseenSamples(const PreparedColon& colon, const WallSamples& samples,
-                                        const std::vector<BiopsyRay>& rays) {
+// What nobody has seen because there is a bridge or a wall that was set up again.
+std::vector<std::uint8_t> inventedSamples(const PreparedColon& colon, const WallSamples& samples,
+                                          const std::vector<BiopsyRay>& rays) {
     const glm::dvec3 spacing = colon.lumen.grid().spacingMm();
     const double thinMm = rebuiltVoxels * std::max({spacing.x, spacing.y, spacing.z});
     const auto bridged = bridgedTriangles(colon.surface, colon.lumen);
-    std::vector<std::uint8_t> unseen(samples.mesh.vertices.size(), 0);
+    std::vector<std::uint8_t> invented(samples.mesh.vertices.size(), 0);
     for (std::size_t t = 0; t < samples.mesh.triangles.size(); ++t) {
         if (!bridged[std::size_t(samples.sourceTriangle[t])]) continue;
         for (int n = 0; n < 3; ++n)
-            unseen[std::size_t(samples.mesh.triangles[t][n])] = 1;
+            invented[std::size_t(samples.mesh.triangles[t][n])] = 1;
     }
     for (const RebuiltWallRecord& wall : colon.rebuilt) {
         const double reachMm = std::max(leastRebuiltMm, std::sqrt(wall.areaMm2 / 3.14) + 3.0);
-        for (std::size_t v = 0; v < unseen.size(); ++v) {
+        for (std::size_t v = 0; v < invented.size(); ++v) {
             const double mm = glm::distance(samples.mesh.vertices[v], wall.placeMm);
-            if (mm < leastRebuiltMm || (mm < reachMm && rays[v].tissueMm < thinMm)) unseen[v] = 1;
+            if (mm < leastRebuiltMm || (mm < reachMm && rays[v].tissueMm < thinMm)) invented[v] = 1;
         }
     }
-    return unseen;
+    return invented;
 }
 
 // The lumen's label a little off the wall.
-std::vector<std::uint8_t> wetSamples(const PreparedColon& colon, const WallSamples& samples,
+std::vector<LumenLabel> labelsBefore(const PreparedColon& colon, const WallSamples& samples,
                                      const std::vector<WallShape>& shapes, int threads) {
     const Grid& grid = colon.lumen.grid();
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     const glm::dvec3 spacing = grid.spacingMm();
     const double largest = std::max({spacing.x, spacing.y, spacing.z});
-    std::vector<std::uint8_t> wet(samples.mesh.vertices.size(), 0);
-    parallelFor(wet.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<LumenLabel> labels(samples.mesh.vertices.size(), LumenLabel::outside);
+    parallelFor(labels.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             for (double off = largest; off < 2.6 * largest; off += 0.5 * largest) {
                 const glm::dvec3 p =
@@ -51,14 +52,19 @@ std::vector<std::uint8_t> wetSamples(const PreparedColon& colon, const WallSampl
                 const glm::ivec3 voxel(
                     glm::floor(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)) + 0.5));
                 if (!grid.contains(voxel)) break;
-                const auto label = LumenLabel(colon.lumen.at(voxel));
-                if (label == LumenLabel::outside) continue;
-                wet[v] = label == LumenLabel::tagged;
-                break;
+                labels[v] = LumenLabel(colon.lumen.at(voxel));
+                if (labels[v] != LumenLabel::outside) break;
             }
         }
     });
-    return wet;
+    return labels;
+}
+
+std::vector<std::uint8_t> samplesBehind(const std::vector<LumenLabel>& labels, LumenLabel what) {
+    std::vector<std::uint8_t> behind(labels.size());
+    std::ranges::transform(labels, behind.begin(),
+                           [&](LumenLabel label) { return std::uint8_t(label == what); });
+    return behind;
 }
 
 }  // namespace
@@ -120,7 +126,9 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
         evidence.broadShapes = shapesOf(evidence.samples, broad, options.threads);
     }
     tell(0.6);
-    evidence.wet = wetSamples(colon, evidence.samples, evidence.shapes, options.threads);
+    const auto before = labelsBefore(colon, evidence.samples, evidence.shapes, options.threads);
+    evidence.wet = samplesBehind(before, LumenLabel::tagged);
+    evidence.untagged = samplesBehind(before, LumenLabel::untagged);
     evidence.formerFluid = FormerFluid(evidence.samples.mesh.vertices, evidence.wet);
     evidence.statistics = wallStatistics(colon, *evidence.smooth);
     evidence.transferFunction = transferFunctionFor(options, evidence.statistics);
@@ -133,7 +141,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
                 evidence.rays[v] = castBiopsyRay(scan, table, evidence.samples.mesh.vertices[v],
                                                  glm::dvec3(evidence.shapes[v].intoWall));
         });
-    evidence.unseen = unseenSamples(colon, evidence.samples, evidence.rays);
+    evidence.unseen = inventedSamples(colon, evidence.samples, evidence.rays);
     tell(1.0);
     return evidence;
 }

@@ -63,6 +63,10 @@ struct WallEvidence {
     std::vector<BiopsyRay> rays;
     /// Nobody has seen the wall there: it encloses a bridge, or was set up again after a leak.
     std::vector<std::uint8_t> unseen;
+    /// Fluid without tagging stood before it, or something stands in the lumen there: water's
+    /// contrast to tissue is less than most scans' noise, so that the wall's place is known to
+    /// millimetres only, and its shape not at all.
+    std::vector<std::uint8_t> untagged;
     std::vector<std::uint8_t> wet;  ///< tagging stood before it, which was taken out
     FormerFluid formerFluid;        ///< where that was
     WallStatistics statistics;

@@ -1,7 +1,7 @@
 // Detection on a lumen whose wall has polyps and nothing else, all by formula.
+#include "ball_colon.h"
 #include "cad/biopsy_transfer.h"
 #include "cad/detect.h"
-#include "core/ct_scan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,80 +12,10 @@ using namespace haustra;
 
 namespace {
 
-constexpr double lumenMm = 20.0;  // radius of a ball of gas
-
-struct Bump {
-    glm::dvec3 centreMm;  ///< of a ball of tissue
-    double radiusMm;
-};
-
-const std::vector<Bump> bumps{{{0, 0, 18.5}, 4.0}, {{-18.0, 0, -2}, 3.2}};
-
-// Negative in the lumen. The creases between ball and bumps are rounded.
-double wallMm(glm::dvec3 p, const std::vector<Bump>& onIt) {
-    double d = glm::length(p) - lumenMm;
-    for (const Bump& bump : onIt) {
-        const double other = bump.radiusMm - glm::distance(p, bump.centreMm);
-        const double h = std::max(0.0, 1.0 - std::abs(d - other) / 1.0);
-        d = std::max(d, other) + 0.25 * h * h;
-    }
-    return d;
-}
-
-// Prepared as the pipeline would, but by formula: a surface whose vertices lie where the wall is.
-struct BallColon {
-    Volume<std::int16_t> hu;
-    Volume<std::uint8_t> lumen;
-    TriMesh surface;
-    FlatMap flat;
-    Centerline centerline;
-    TissueModel tissue;
-
-    // `turn`: a turn of the body about z; `shift`: of the grid and body by whole voxels.
-    explicit BallColon(glm::dmat3 turn = glm::dmat3(1.0), glm::ivec3 shift = glm::ivec3(0),
-                       double offsetHu = 0.0, const std::vector<Bump>& onIt = bumps) {
-        const Grid grid = axisAlignedGrid({80, 80, 80}, {0.75, 0.75, 0.75}, {-29.5, -29.5, -29.5});
-        hu = Volume<std::int16_t>(grid), lumen = Volume<std::uint8_t>(grid);
-        const glm::dvec3 movedMm = 0.75 * glm::dvec3(shift);
-        const glm::dmat3 back = glm::transpose(turn);
-        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
-            const double d = wallMm(
-                back * (grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))) - movedMm), onIt);
-            hu.writable()[n] =
-                std::int16_t(std::lround(40.0 + offsetHu - 1030.0 / (1.0 + std::exp(d / 0.5))));
-            lumen.writable()[n] = std::uint8_t(d < 0.0 ? LumenLabel::air : LumenLabel::outside);
-        }
-        tissue.meanHu = {-990.0 + offsetHu, -100.0 + offsetHu, 40.0 + offsetHu, 600.0 + offsetHu};
-        tissue.airBelowHu = -475.0 + offsetHu;
-        makeSurface(turn, movedMm, onIt);
-        for (int n = -15; n <= 15; ++n)
-            centerline.points.push_back(
-                {turn * glm::dvec3(0, n, 0) + movedMm, double(n + 15), 5.0, false});
-        flat.height = 1.0;
-    }
-
-    // An octahedron, divided, each vertex on its ray where the wall begins.
-    void makeSurface(glm::dmat3 turn, glm::dvec3 movedMm, const std::vector<Bump>& onIt) {
-        surface.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-        surface.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                             {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-        const cad::WallSamples fine = cad::sampleWall(surface, 0.025);
-        surface = fine.mesh;
-        for (glm::dvec3& v : surface.vertices) {
-            const glm::dvec3 way = glm::normalize(v);
-            double low = 5.0, high = lumenMm + 5.0;
-            for (int step = 0; step < 40; ++step) {
-                const double middle = 0.5 * (low + high);
-                (wallMm(middle * way, onIt) < 0.0 ? low : high) = middle;
-            }
-            v = turn * (low * way) + movedMm;
-        }
-    }
-
-    cad::PreparedColon colon() const {
-        return {hu, hu, lumen, surface, flat, centerline, tissue, {}, {}};
-    }
-};
+using tests::BallColon;
+using tests::Bump;
+using tests::bumps;
+using tests::lumenMm;
 
 cad::DetectOptions shapeAlone(int threads = 2) {
     cad::DetectOptions options;
@@ -220,17 +150,25 @@ TEST(Detect, AFeatureTellsWhatStoodBeforeAPlace) {
 }
 
 TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
-    BallColon ball;
-    // The first bump stands on a bridge.
-    for (std::size_t n = 0; n < ball.lumen.grid().voxelCount(); ++n) {
-        const glm::dvec3 p =
-            ball.lumen.grid().patientFromVoxelPoint(glm::dvec3(ball.lumen.grid().voxelAt(n)));
-        if (ball.lumen[n] && glm::distance(p, bumps[0].centreMm) < 9.0)
-            ball.lumen.writable()[n] = std::uint8_t(LumenLabel::bridge);
+    // The first bump stands on a bridge, or in fluid without tagging.
+    for (const LumenLabel label : {LumenLabel::bridge, LumenLabel::untagged}) {
+        BallColon ball;
+        for (std::size_t n = 0; n < ball.lumen.grid().voxelCount(); ++n) {
+            const glm::dvec3 p =
+                ball.lumen.grid().patientFromVoxelPoint(glm::dvec3(ball.lumen.grid().voxelAt(n)));
+            if (ball.lumen[n] && glm::distance(p, bumps[0].centreMm) < 9.0)
+                ball.lumen.writable()[n] = std::uint8_t(label);
+        }
+        const auto found = bodies(ball);
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_LT(glm::distance(found[0].lesion.centreMm, bumps[1].centreMm), bumps[1].radiusMm);
+        // The reader is told.
+        const auto evidence = cad::gatherEvidence(ball.colon(), {});
+        const Findings findings = cad::findingsOf(ball.colon(), evidence, {}, {});
+        ASSERT_EQ(findings.warnings.size(), 1u);
+        const char* why = label == LumenLabel::bridge ? "a bridge" : "fluid without tagging";
+        EXPECT_NE(findings.warnings[0].find(why), std::string::npos) << findings.warnings[0];
     }
-    const auto found = bodies(ball);
-    ASSERT_EQ(found.size(), 1u);
-    EXPECT_LT(glm::distance(found[0].lesion.centreMm, bumps[1].centreMm), bumps[1].radiusMm);
     // A wall that was set up again counts as little.
     const BallColon whole;
     cad::PreparedColon colon = whole.colon();
