@@ -46,12 +46,13 @@ std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 pla
     return segment;
 }
 
-/// Where a place of the wall is along the colon: on the centerline where the flat map says, as the
-/// nearest point of it may be in a loop that touches from outside; without a map, that one.
 struct AlongColon {
     double arcMm = 0.0;
-    glm::dvec3 cameraMm{0.0};
+    glm::dvec3 cameraMm{0.0};  ///< the point of the centerline there
 };
+
+/// Where a place of the wall is along the colon: where the flat map says, as the centerline's
+/// nearest point may be in a loop that touches from outside; without a map, at that point.
 AlongColon alongColon(const PreparedColon& colon, const FlatLookup* lookup, glm::dvec3 wallMm) {
     if (lookup) {
         const WallPlace place = lookup->nearest(wallMm);
@@ -115,7 +116,8 @@ std::vector<float> textureDistances(const WallEvidence& evidence, const TextureS
     return distances;
 }
 
-// The most of it by area.
+// Whether more than half of a patch's area has fluid without tagging before it, so that the shape
+// that made it a candidate is not the wall's.
 bool liesBehindUntagged(const WallEvidence& evidence, const Patch& patch) {
     double untagged = 0.0, all = 0.0;
     for (const std::uint32_t v : patch.samples) {

@@ -32,8 +32,8 @@ struct BlockGraph {
     Grid grid;
     glm::dvec3 spacingMm{0.0};
     glm::ivec3 blocks{0};  ///< extent of the block grid
-    glm::ivec3 shift{
-        0};  ///< voxels, 0 or 1 along each axis, that the first blocks begin before the grid
+    /// How many voxels before the grid the first blocks begin: 0 or 1 along each axis.
+    glm::ivec3 shift{0};
     /// By block: 1 + its first node; 0: none. Where there is no lumen it takes no memory.
     Volume<std::int32_t> firstNodeOf;
     std::vector<Node> nodes;  ///< by block, in memory order

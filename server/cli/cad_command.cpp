@@ -150,11 +150,11 @@ std::string scanMark(const LoadedCase& loaded) {
     return loaded.scan.substr(0, 16);
 }
 
-// A case that is given twice would count twice, and its copies teach and judge each other.
-Result<void> checkCases(const CadArguments& arguments) {
+Result<void> checkArguments(const CadArguments& arguments) {
     if (isWithout(arguments, "texture") &&
         (isWithout(arguments, "shape") || isWithout(arguments, "past")))
         return fail(ErrorKind::badInput, "without texture and shape there are no candidates");
+    // A case that is given twice would count twice, and its copies teach and judge each other.
     std::set<std::string> seen;
     for (const std::string& name : arguments.cases)
         if (!seen.insert(name).second)
@@ -267,7 +267,7 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
 
 Result<void> runTrain(const CadArguments& arguments) {
     TRY(checkOutputFile(arguments.model));
-    TRY(checkCases(arguments));
+    TRY(checkArguments(arguments));
     cad::TrainOptions options;
     if (int(arguments.cases.size()) < options.folds)
         return fail(ErrorKind::badInput,
@@ -375,7 +375,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         if (file.empty()) continue;
         TRY(checkOutputFile(file));
     }
-    TRY(checkCases(arguments));
+    TRY(checkArguments(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     const auto model = TRY(readModel(arguments));
     cad::Method method;
