@@ -178,13 +178,13 @@ struct CaseRenderer::Impl {
         const std::size_t row = std::size_t(size.x);
         const std::span pixels(seen->pixels);
         tint(pixels.subspan(row * std::size_t(band.firstRow), row * std::size_t(band.rows)), paint,
-             band, picture);
+             band, picture, options.threads);
         return {};
     }
 
     Result<Image> drawFlat(const FlatView& view, const Band& band) {
         Result<Image> rows = pictures().flat(view, band);
-        if (rows && view.paint) tint(view.window, *view.paint, band, *rows);
+        if (rows && view.paint) tint(view.window, *view.paint, band, *rows, options.threads);
         return rows;
     }
 

@@ -203,7 +203,7 @@ TEST_F(Raycasters, GlAgreesWithNative) {
             ASSERT_TRUE(tube->use(RaycasterKind::native));
             const Image native = draw(*tube, view, 96, 64);
             ASSERT_TRUE(tube->use(RaycasterKind::singlePass));
-            EXPECT_GE(psnr(draw(*tube, view, 96, 64), native), 45.0)
+            EXPECT_GE(psnr(draw(*tube, view, 96, 64), native), near(45.0, 40.0))
                 << name << ", lens " << int(camera.lens);
         }
     }

@@ -117,6 +117,30 @@ protected:
                     : Image{width, height, std::vector<std::uint8_t>(3u * width * height)};
     }
 
+    /// Graphics hardware weighs texels by fractions of eight bits or so (Vulkan's
+    /// subTexelPrecisionBits); software filters exactly. `software` is how near a value comes
+    /// there.
+    double near(double software, double hardware) const {
+        return context->software() ? software : hardware;
+    }
+    /// Whether two pictures are the same though their samples lay elsewhere in a texture: to the
+    /// bit where the filter is exact. Else its fractions round otherwise there: values are a level
+    /// off, and at most one of a thousand more, where a sample just meets a surface or misses it.
+    testing::AssertionResult samePicture(const Image& a, const Image& b) const {
+        if (a.rgb.size() != b.rgb.size()) return testing::AssertionFailure() << "other sizes";
+        std::size_t off = 0, far = 0;
+        int worst = 0;
+        for (std::size_t n = 0; n < a.rgb.size(); ++n) {
+            const int by = std::abs(int(a.rgb[n]) - int(b.rgb[n]));
+            worst = std::max(worst, by), off += by > 0, far += by > 1;
+        }
+        if (off == 0 || (!context->software() && far * 1000 <= a.rgb.size() && worst <= 16))
+            return testing::AssertionSuccess();
+        return testing::AssertionFailure()
+               << off << " of " << a.rgb.size() << " values differ, " << far
+               << " by more than a level, by " << worst << " at most";
+    }
+
     std::unique_ptr<gpu::Context> context;
 };
 

@@ -205,6 +205,34 @@ TEST_F(WallOfTube, RefusesPaintThatFitsNothing) {
     EXPECT_TRUE(renderer->render(view, 16, 16));
 }
 
+TEST(WallPaint, TintsTheSameByAnyNumberOfThreadsAndItsOwnRowsAlone) {
+    const int width = 37, height = 90;
+    WallPaint paint{{64, 64}, std::vector<glm::u8vec4>(64 * 64), 2.0, true};
+    for (std::size_t n = 0; n < paint.pixels.size(); n += 3)
+        paint.pixels[n] = {n % 251, n % 17, 200, 90 + n % 160};
+    Image plain{width, height, std::vector<std::uint8_t>(3u * width * height)};
+    for (std::size_t n = 0; n < plain.rgb.size(); ++n)
+        plain.rgb[n] = std::uint8_t(37 * n % 256);
+    const Band band{{width, height}, 21, 53};
+    std::vector<WallPixel> seen(std::size_t(width) * 53);
+    for (std::size_t n = 0; n < seen.size(); ++n)
+        seen[n] = {{float(n) / 900.0f, 2.0f * float(n) / float(seen.size())}, n % 5 ? 1.0f : -1.0f};
+    Image one = plain, many = plain;
+    tint(seen, paint, band, one, 1);
+    tint(seen, paint, band, many, 5);
+    EXPECT_EQ(one.rgb, many.rgb);
+    for (std::size_t n = 0; n < plain.rgb.size(); ++n) {
+        const std::size_t pixel = n / 3;
+        const bool inside = pixel >= 21u * width && pixel < (21u + 53u) * width &&
+                            seen[pixel - 21u * width].seen() &&
+                            paint.at(seen[pixel - 21u * width].flat).a > 0;
+        if (!inside) {
+            ASSERT_EQ(one.rgb[n], plain.rgb[n]) << n;
+        }
+    }
+    EXPECT_NE(one.rgb, plain.rgb);
+}
+
 TEST(WallPaintOfACase, ColoursItsFindingsAndTheCandidatesThatAreProbableEnough) {
     const TemporaryFolder folder;
     const FlatTube tube;

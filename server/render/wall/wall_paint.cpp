@@ -1,6 +1,7 @@
 #include "render/wall/wall_paint.h"
 
 #include "core/flat_map.h"
+#include "core/parallel.h"
 #include "render/optics/srgb.h"
 
 #include <algorithm>
@@ -11,6 +12,8 @@
 namespace haustra::render {
 
 namespace {
+
+constexpr std::size_t rowsAtOnce = 16;
 
 std::array<double, 256> linearOfBytes() {
     std::array<double, 256> table{};
@@ -90,19 +93,29 @@ Result<void> checkWallPaint(const WallPaint& paint) {
     return {};
 }
 
-void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band,
-          Image& picture) {
-    std::uint8_t* rgb =
-        &picture.rgb[3 * std::size_t(band.pictureSize.x) * std::size_t(band.firstRow)];
-    for (std::size_t i = 0; i < seen.size(); ++i, rgb += 3)
-        if (seen[i].seen()) tintPixel(rgb, paint.at(seen[i].flat));
+void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band, Image& picture,
+          int threads) {
+    const std::size_t width = std::size_t(band.pictureSize.x);
+    std::uint8_t* const rgb = &picture.rgb[3 * width * std::size_t(band.firstRow)];
+    parallelFor(std::size_t(band.rows), rowsAtOnce, threads,
+                [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin * width; i < end * width; ++i)
+                        if (seen[i].seen()) tintPixel(rgb + 3 * i, paint.at(seen[i].flat));
+                });
 }
 
-void tint(const FlatWindow& window, const WallPaint& paint, const Band& band, Image& rows) {
-    std::uint8_t* rgb = rows.rgb.data();
-    for (int y = band.firstRow; y < band.firstRow + band.rows; ++y)
-        for (int x = 0; x < band.pictureSize.x; ++x, rgb += 3)
-            tintPixel(rgb, paint.at(window.flatFromPixel({x + 0.5, y + 0.5}, band.pictureSize)));
+void tint(const FlatWindow& window, const WallPaint& paint, const Band& band, Image& rows,
+          int threads) {
+    const std::size_t width = std::size_t(band.pictureSize.x);
+    parallelFor(
+        std::size_t(band.rows), rowsAtOnce, threads, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t y = begin; y < end; ++y)
+                for (std::size_t x = 0; x < width; ++x)
+                    tintPixel(&rows.rgb[3 * (y * width + x)],
+                              paint.at(window.flatFromPixel(
+                                  {double(x) + 0.5, double(band.firstRow) + double(y) + 0.5},
+                                  band.pictureSize)));
+        });
 }
 
 }  // namespace haustra::render

@@ -47,11 +47,13 @@ struct WallPixel {
 /// Tints the band of a finished picture: in linear light a painted pixel keeps its brightest
 /// component, which is the wall's light, and takes its colour from the paint, as far as the paint
 /// covers it. So it works on whatever drew the picture. `seen` is the band's, rows from the top;
-/// pixels that see no wall, and places without paint, stay as they are to the bit. O(pixels).
-void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band,
-          Image& picture);
+/// pixels that see no wall, and places without paint, stay as they are to the bit. The same for any
+/// number of threads (0: all cores). O(pixels).
+void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band, Image& picture,
+          int threads);
 
 /// Likewise `rows`, the band of a finished picture of a window onto the strip.
-void tint(const FlatWindow& window, const WallPaint& paint, const Band& band, Image& rows);
+void tint(const FlatWindow& window, const WallPaint& paint, const Band& band, Image& rows,
+          int threads);
 
 }  // namespace haustra::render
