@@ -1,9 +1,9 @@
 #include "cad/detect.h"
 
+#include "cad/along_colon.h"
 #include "cad/biopsy_transfer.h"
 #include "cad/places.h"
 #include "cad/wall_frames.h"
-#include "core/flat_lookup.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
 #include "core/version.h"
@@ -12,7 +12,6 @@
 #include <atomic>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <numeric>
 
 namespace haustra::cad {
@@ -46,25 +45,8 @@ std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 pla
     return segment;
 }
 
-struct AlongColon {
-    double arcMm = 0.0;
-    glm::dvec3 cameraMm{0.0};  ///< the point of the centerline there
-};
-
-/// Where a place of the wall is along the colon: where the flat map says, as the centerline's
-/// nearest point may be in a loop that touches from outside; without a map, at that point.
-AlongColon alongColon(const PreparedColon& colon, const FlatLookup* lookup, glm::dvec3 wallMm) {
-    if (lookup) {
-        const WallPlace place = lookup->nearest(wallMm);
-        return {place.arcMm, place.cameraMm};
-    }
-    if (colon.centerline.points.empty()) return {0.0, wallMm};
-    const double arcMm = nearestArc(colon.centerline, wallMm);
-    return {arcMm, poseAtArc(colon.centerline, arcMm).point.positionMm};
-}
-
 Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
-                  const FlatLookup* lookup, const Candidate& candidate) {
+                  const AlongColon& alongColon, const Candidate& candidate) {
     const Lesion& lesion = candidate.lesion;
     Finding finding;
     finding.positionMm = lesion.centreMm;
@@ -75,7 +57,7 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
     finding.heightMm = std::max(0.0, lesion.heightMm);
-    const AlongColon along = alongColon(colon, lookup, lesion.topMm);
+    const WallPlace along = alongColon.at(lesion.topMm);
     finding.arcMm = along.arcMm;
     finding.segment = segmentAt(colon, along.cameraMm);
     for (std::size_t n = 0; n < featureNames.size(); ++n)
@@ -151,6 +133,7 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
             std::back_inserter(patches));
     }
     const SampleTriangles triangles(evidence.samples);
+    const AlongColon alongColon(colon.flat, colon.centerline);
     std::vector<std::optional<Candidate>> made(patches.size());
     // Each thread takes patch after patch, as they differ in size by a thousand times.
     std::atomic<std::size_t> next = 0;
@@ -161,7 +144,8 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
             auto lesion =
                 standUp(evidence, triangles, std::move(patches[n]), colon.cleansed.grid(), numbers);
             if (!lesion || liesBehindUntagged(evidence, lesion->patch)) continue;
-            const FeatureVector features = featuresOf(colon, evidence, distances, *lesion, numbers);
+            const FeatureVector features =
+                featuresOf(colon, evidence, alongColon, distances, *lesion, numbers);
             made[n] = Candidate{*std::move(lesion), features};
         }
     });
@@ -222,9 +206,7 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     const WallStatistics& statistics = evidence.statistics;
     findings.biopsy = {statistics.wallHu, statistics.fatHu, statistics.noiseHu,
                        evidence.transferFunction};
-    std::optional<FlatLookup> lookup;
-    if (!colon.flat.cameras.empty() && !colon.flat.surface.triangles.empty())
-        lookup.emplace(std::shared_ptr<const FlatMap>(std::shared_ptr<void>(), &colon.flat));
+    const AlongColon alongColon(colon.flat, colon.centerline);
     for (const Candidate& candidate : candidates) {
         if (candidate.probability < std::min(leastProbability, model.operatingPoint)) continue;
         if (findings.findings.size() + findings.candidates.size() == std::size_t(maxFindings)) {
@@ -233,7 +215,7 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
             break;
         }
         (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)
-            .push_back(findingOf(colon, evidence, lookup ? &*lookup : nullptr, candidate));
+            .push_back(findingOf(colon, evidence, alongColon, candidate));
     }
     for (auto* list : {&findings.findings, &findings.candidates})
         std::stable_sort(list->begin(), list->end(),

@@ -224,7 +224,7 @@ void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
 }
 
 void describeSurroundings(const PreparedColon& colon, const WallEvidence& evidence,
-                          const Lesion& lesion, Named& put) {
+                          const AlongColon& alongColon, const Lesion& lesion, Named& put) {
     double wet = 0.0, reenters = 0.0, area = 0.0;
     std::vector<float> behind;
     for (const std::uint32_t v : lesion.patch.samples) {
@@ -239,10 +239,9 @@ void describeSurroundings(const PreparedColon& colon, const WallEvidence& eviden
     put("reentry_share", area > 0.0 ? reenters / area : 0.0);
     put("tissue_behind_mm", quantile(behind, 0.5));
     if (!colon.centerline.points.empty()) {
-        const double arcMm = nearestArc(colon.centerline, lesion.topMm);
-        describeRegion(colon, arcMm, put);
-        const CenterlinePose pose = poseAtArc(colon.centerline, arcMm);
-        const glm::dvec3 way = pose.point.positionMm - lesion.centreMm;
+        const WallPlace along = alongColon.at(lesion.topMm);
+        describeRegion(colon, along.arcMm, put);
+        const glm::dvec3 way = along.cameraMm - lesion.centreMm;
         const double length = glm::length(way);
         put("toward_axis", length > 0.0 ? glm::dot(way, lesion.axis) / length : 0.0);
     }
@@ -281,8 +280,8 @@ double gradientConcentration(const SmoothScan& scan, glm::dvec3 placeMm, double 
 }
 
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
-                         std::span<const float> textureDistance, const Lesion& lesion,
-                         SampleNumbers& numbers) {
+                         const AlongColon& alongColon, std::span<const float> textureDistance,
+                         const Lesion& lesion, SampleNumbers& numbers) {
     Named put;
     describeForm(lesion, put);
     describeShape(evidence, lesion, put);
@@ -290,7 +289,7 @@ FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidenc
     describeRing(evidence, ring, put);
     describeGradients(evidence, lesion, put);
     describeContents(colon, evidence, textureDistance, lesion, ring, put);
-    describeSurroundings(colon, evidence, lesion, put);
+    describeSurroundings(colon, evidence, alongColon, lesion, put);
     return put.values();
 }
 

@@ -1,6 +1,7 @@
 // What a candidate is like, in numbers that a classifier weighs.
 #pragma once
 
+#include "cad/along_colon.h"
 #include "cad/lesion.h"
 
 #include <algorithm>
@@ -51,8 +52,8 @@ inline bool rises(const FeatureVector& features) {
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.
 /// `numbers`: of all samples, for its own use. O(samples of the patch and its voxels).
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
-                         std::span<const float> textureDistance, const Lesion& lesion,
-                         SampleNumbers& numbers);
+                         const AlongColon& alongColon, std::span<const float> textureDistance,
+                         const Lesion& lesion, SampleNumbers& numbers);
 
 /// How well the gradients around a place point to it: over evenly spread directions, the greatest
 /// mean cosine between the scan's gradient and the way to the place, along stretches that begin 1

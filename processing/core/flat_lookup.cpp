@@ -93,6 +93,15 @@ double sharedArea(const FlatTriangle& triangle, const Trapezoid& piece) {
 
 }  // namespace
 
+WallPlace placeByCenterline(const Centerline& centerline, glm::dvec3 wallMm) {
+    WallPlace place;
+    place.positionMm = place.cameraMm = wallMm;
+    if (centerline.points.empty()) return place;
+    place.arcMm = nearestArc(centerline, wallMm);
+    place.cameraMm = poseAtArc(centerline, place.arcMm).point.positionMm;
+    return place;
+}
+
 struct FlatLookup::Index {
     explicit Index(std::shared_ptr<const FlatMap> of)
         : map(std::move(of)),

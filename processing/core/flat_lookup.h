@@ -1,6 +1,7 @@
 // From the flat view to the patient and back (dissertation §4.3.1, §6.3.2).
 #pragma once
 
+#include "core/centerline.h"
 #include "core/flat_map.h"
 
 #include <memory>
@@ -19,6 +20,10 @@ struct WallPlace {
     double arcMm = 0.0;           ///< of the camera, between cameras by interpolation
     glm::dvec3 cameraMm{0.0};     ///< where the camera stands, LPS
 };
+
+/// Without a flat map: the place itself, and the centerline's point nearest to it, which may be in
+/// a loop that touches from outside; where there is no centerline, itself, and arc 0.
+WallPlace placeByCenterline(const Centerline& centerline, glm::dvec3 wallMm);
 
 /// A stretch between two places as it lies on the surface.
 struct WallPath {

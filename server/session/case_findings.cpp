@@ -55,15 +55,8 @@ std::shared_ptr<const CaseFindings> placeFindings(Findings findings, const Cente
     for (int n = 0; n < all; ++n) {
         CaseFindings::Entry entry{n + 1, n >= above, {}};
         const Finding& finding = made->finding(n);
-        if (wall) {
-            entry.wall = wall->lookup.nearest(finding.wallMm);
-        } else {
-            entry.wall.positionMm = entry.wall.cameraMm = finding.wallMm;
-            if (!centerline.points.empty()) {
-                entry.wall.arcMm = nearestArc(centerline, finding.wallMm);
-                entry.wall.cameraMm = poseAtArc(centerline, entry.wall.arcMm).point.positionMm;
-            }
-        }
+        entry.wall = wall ? wall->lookup.nearest(finding.wallMm)
+                          : placeByCenterline(centerline, finding.wallMm);
         made->entries.push_back(entry);
     }
     made->alongColon.resize(std::size_t(all));
