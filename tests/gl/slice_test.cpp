@@ -39,7 +39,9 @@ TEST_F(Slices, PixelsAreTheWindowedTrilinearValue) {
                         outside += edge < 0.0;
                         const double expected =
                             edge < 0.0 ? 0.0 : windowed(trilinear(volume, voxel), view.window);
-                        ASSERT_NEAR(pixel(image, x, y), expected, near(0.56, 3.0))
+                        // Noise: from voxel to voxel some thousand HU, of which an eighth bit of
+                        // each of three weights is four levels.
+                        ASSERT_NEAR(pixel(image, x, y), expected, near(0.56, 5.0))
                             << toString(plane) << " " << x << " " << y;
                         different += pixel(image, x, y) != int(std::lround(expected));
                         ASSERT_EQ(pixel(image, x, y, 0), pixel(image, x, y, 1));
