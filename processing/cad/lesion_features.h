@@ -50,7 +50,8 @@ inline bool rises(const FeatureVector& features) {
 }
 
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.
-/// `numbers`: of all samples, for its own use. O(samples of the patch and its voxels).
+/// `alongColon`: of the same colon. `numbers`: of all samples, for its own use. O(samples of the
+/// patch and its voxels).
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
                          const AlongColon& alongColon, std::span<const float> textureDistance,
                          const Lesion& lesion, SampleNumbers& numbers);

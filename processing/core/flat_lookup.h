@@ -21,8 +21,9 @@ struct WallPlace {
     glm::dvec3 cameraMm{0.0};     ///< where the camera stands, LPS
 };
 
-/// Without a flat map: the place itself, and the centerline's point nearest to it, which may be in
-/// a loop that touches from outside; where there is no centerline, itself, and arc 0.
+/// Without a flat map: `positionMm` is the place, `cameraMm` and `arcMm` are of the centerline's
+/// point nearest to it, which may be in a loop that touches from outside; without a centerline the
+/// place and 0. What tells of a map stays unset.
 WallPlace placeByCenterline(const Centerline& centerline, glm::dvec3 wallMm);
 
 /// A stretch between two places as it lies on the surface.

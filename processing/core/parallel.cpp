@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -43,8 +44,12 @@ void parallelFor(std::size_t count, std::size_t grain, int threads,
         }
     };
     std::vector<std::thread> pool;
-    for (int n = 1; n < workers; ++n)
-        pool.emplace_back(work);
+    try {
+        for (int n = 1; n < workers; ++n)
+            pool.emplace_back(work);
+    } catch (const std::system_error&) {
+        // Those that there are do it: this one at least.
+    }
     work();
     for (std::thread& thread : pool)
         thread.join();

@@ -205,7 +205,7 @@ TEST_F(OpticalModel, FirstHitLiesOnTheSurfaceWhateverTheStep) {
         view.march.stepVoxels = stepVoxels;
         const Image image = draw(*drawn, view, 21, 21);
         for (const glm::ivec2 at : {glm::ivec2(10, 10), {6, 9}, {13, 14}, {10, 5}}) {
-            // 16 levels are half an HU, 1/120 mm.
+            // 16 levels are half an HU, 1/120 mm; 40 are 1/48 mm.
             EXPECT_NEAR(pixel(image, at.x, at.y), 255.0 * displayedOf(linearOf(0.5)),
                         near(16.0, 40.0))
                 << "step " << stepVoxels << " at " << at.x << ", " << at.y;

@@ -233,26 +233,30 @@ TEST(Detect, APlaceAlongTheColonIsWhereItsWallBelongsThoughAnotherLoopIsNearer) 
     EXPECT_GT(unmapped.findings.front().arcMm, 50.0);
 }
 
-TEST(Detect, FeaturesToldByTheAxisTakeItFromTheFlatMap) {
-    // The bump on the ball's side points to the axis, which a map has far below instead.
+TEST(Detect, FeaturesOfAxisAndRegionTakeThemFromTheFlatMap) {
+    // The bump on the ball's side points to the axis, which a map has on its outer side instead,
+    // far from the rectum.
     BallColon ball;
-    const auto towardAxis = [&]() -> double {
-        const auto colon = ball.colon();
+    const auto feature = [&](std::string_view name) -> double {
+        auto colon = ball.colon();
+        colon.pieces = {{ColonPart::rectum, {0, 0, 0}, 15.0}, {ColonPart::cecum, {0, 15, 0}, 5.0}};
         const auto candidates =
             cad::findCandidates(colon, cad::gatherEvidence(colon, {}), nullptr, {});
         for (const cad::Candidate& each : candidates)
             if (glm::distance(each.lesion.centreMm, bumps[1].centreMm) < 4.0)
-                return each.features[cad::featureNumber("toward_axis")];
+                return each.features[cad::featureNumber(name)];
         return NAN;
     };
-    EXPECT_GT(towardAxis(), 0.95);
+    EXPECT_GT(feature("toward_axis"), 0.95);
+    EXPECT_EQ(feature("tube_region"), 1.0);
     ball.flat.surface = ball.surface;
     for (const glm::dvec3& v : ball.surface.vertices)
         ball.flat.flat.push_back(0.5 + 0.4 * glm::dvec2(v.x, v.z) / lumenMm);
     ball.flat.camera.assign(ball.surface.vertices.size(), 0);
-    ball.flat.cameras = {{{0, 0, -1000}, 0.0}};
+    ball.flat.cameras = {{{-1000, 0, -2}, 500.0}};
     ball.flat.sourceTriangle.resize(ball.surface.triangles.size());
-    EXPECT_LT(std::abs(towardAxis()), 0.3);
+    EXPECT_LT(feature("toward_axis"), -0.95);
+    EXPECT_EQ(feature("tube_region"), 0.0);
 }
 
 TEST(Biopsy, FindingsTellByWhichColoursTheirWallWasSeen) {

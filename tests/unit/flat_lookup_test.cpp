@@ -45,6 +45,19 @@ FlatMap cylinderMap() {
     return flatMapOf(tests::cylinder(circumferenceMm), heightUnits, 300, 80);
 }
 
+TEST(PlaceByCenterline, IsTheNearestPointOrWithoutALineThePlaceItself) {
+    Centerline line;
+    line.points = {{{0, 0, 0}, 0.0, 5.0, false}, {{0, 0, 10}, 10.0, 5.0, false}};
+    const WallPlace place = placeByCenterline(line, {4, 0, 7});
+    EXPECT_EQ(place.positionMm, glm::dvec3(4, 0, 7));
+    EXPECT_NEAR(glm::distance(place.cameraMm, glm::dvec3(0, 0, place.arcMm)), 0.0, 1e-9);
+    EXPECT_NEAR(place.arcMm, nearestArc(line, {4, 0, 7}), 1e-12);
+    EXPECT_EQ(place.flatTriangle, -1);
+    const WallPlace alone = placeByCenterline({}, {4, 0, 7});
+    EXPECT_EQ(alone.cameraMm, glm::dvec3(4, 0, 7));
+    EXPECT_EQ(alone.arcMm, 0.0);
+}
+
 TEST(FlatLookup, PlaceIsInTheTriangleThatItNames) {
     const FlatLookup lookup = lookupOf(foldedMap());
     const FlatMap& map = lookup.map();

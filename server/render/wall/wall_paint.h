@@ -48,7 +48,7 @@ struct WallPixel {
 /// component, which is the wall's light, and takes its colour from the paint, as far as the paint
 /// covers it. So it works on whatever drew the picture. `seen` is the band's, rows from the top;
 /// pixels that see no wall, and places without paint, stay as they are to the bit. The same for any
-/// number of threads (0: all cores). O(pixels).
+/// number of threads (≤ 0: all cores). O(pixels).
 void tint(std::span<const WallPixel> seen, const WallPaint& paint, const Band& band, Image& picture,
           int threads);
 
