@@ -44,11 +44,12 @@ void parallelFor(std::size_t count, std::size_t grain, int threads,
         }
     };
     std::vector<std::thread> pool;
+    pool.reserve(std::size_t(workers - 1));
     try {
         for (int n = 1; n < workers; ++n)
             pool.emplace_back(work);
     } catch (const std::system_error&) {
-        // Those that there are do it: this one at least.
+        // No more threads are to be had: those that there are do the work, this one at least.
     }
     work();
     for (std::thread& thread : pool)

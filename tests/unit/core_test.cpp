@@ -9,11 +9,14 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace haustra {
 namespace {
@@ -196,6 +199,29 @@ TEST(Parallel, AnExceptionReachesTheCaller) {
                                  if (begin == 50) throw std::runtime_error("50");
                              }),
                  std::runtime_error);
+}
+
+// Ends the process: 0 where all of a loop was done, though of 40 threads some could have no stack.
+[[noreturn]] void loopWithFewThreads() {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t room = pages * rlim_t(sysconf(_SC_PAGESIZE)) + (rlim_t(20) << 20);
+    const rlimit limit{room, room};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(2);
+    std::atomic<int> hits = 0;
+    parallelFor(1000, 1, 40, [&](std::size_t begin, std::size_t end) {
+        usleep(100);
+        hits += int(end - begin);
+    });
+    _exit(hits == 1000 ? 0 : 1);
+}
+
+TEST(ParallelDeathTest, GoesOnWithTheThreadsThatThereAre) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer's own memory goes far beyond any limit";
+#endif
+    testing::GTEST_FLAG(death_test_style) = "threadsafe";  // none is left over from other tests
+    EXPECT_EXIT(loopWithFewThreads(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
