@@ -56,7 +56,11 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.wallMm = lesion.topMm;
     finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
-    finding.heightMm = std::max(0.0, lesion.heightMm);
+    // A soap film lies close to what is low and wide; the quadric does not.
+    finding.heightMm = lesion.heightMm >= leastHeightMm
+                           ? lesion.heightMm
+                           : std::max({0.0, lesion.heightMm,
+                                       double(candidate.features[featureNumber("lift_top")])});
     const WallPlace along = alongColon.at(lesion.topMm);
     finding.arcMm = along.arcMm;
     finding.segment = segmentAt(colon, along.cameraMm);

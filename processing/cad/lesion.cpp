@@ -132,8 +132,8 @@ std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& p
 
 }  // namespace
 
-void widen(const WallSamples& wall, std::span<const std::uint32_t> patch, double byMm,
-           SampleNumbers& numbers) {
+std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t> patch,
+                          double byMm, SampleNumbers& numbers) {
     numbers.clear();
     std::vector<double> distances;
     for (const std::uint32_t v : patch) {
@@ -153,6 +153,7 @@ void widen(const WallSamples& wall, std::span<const std::uint32_t> patch, double
             distances.push_back(mm);
         }
     }
+    return distances;
 }
 
 SampleTriangles::SampleTriangles(const WallSamples& wall)

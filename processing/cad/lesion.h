@@ -72,9 +72,10 @@ private:
 };
 
 /// Numbers the samples within a distance of the patch along the wall: the patch's first, in their
-/// order, then the others from the nearest on. O(numbered samples).
-void widen(const WallSamples& wall, std::span<const std::uint32_t> patch, double byMm,
-           SampleNumbers& numbers);
+/// order, then the others from the nearest on. Each one's distance, along the edges of a
+/// breadth-first search: some tenth too long. O(numbered samples).
+std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t> patch,
+                          double byMm, SampleNumbers& numbers);
 
 /// Of a patch that has triangles of its own; else nothing. `numbers`: of all samples, for its own
 /// use. O(samples of the patch · their width).

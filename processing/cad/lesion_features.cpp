@@ -1,5 +1,6 @@
 #include "cad/lesion_features.h"
 
+#include "cad/wall_lift.h"
 #include "core/ct_scan.h"
 
 #include <algorithm>
@@ -104,9 +105,6 @@ void describeRing(const WallEvidence& evidence, const std::vector<std::uint32_t>
     put("wet_edge", 4.0 * wet * (1.0 - wet));
 }
 
-// What an empty scanner measures.
-constexpr double emptyHu = -1000.0;
-
 // The ileocecal valve opens into the colon where the cecum ends, some 6 cm above its blind end; a
 // rectal tube and its balloon lie in the last 10 cm. Along the centerline, with what they span.
 constexpr double valveFromMm = 15.0, valveToMm = 120.0, tubeToMm = 110.0;
@@ -139,7 +137,7 @@ void describeGradients(const WallEvidence& evidence, const Lesion& lesion, Named
     for (const std::uint32_t v : lesion.patch.samples)
         steep.push_back(evidence.shapes[v].gradient);
     const WallStatistics& s = evidence.statistics;
-    put("gradient_sharpness", mean(steep) / std::max(1.0, s.wallHu + 1000.0));
+    put("gradient_sharpness", mean(steep) / std::max(1.0, s.wallHu - emptyHu));
 }
 
 // Of the scan as it came, in the lumen before the patch: gas, or the tagging that stood there. What
@@ -287,6 +285,10 @@ FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidenc
     describeShape(evidence, lesion, put);
     const std::vector<std::uint32_t> ring = ringAround(evidence.samples, lesion, numbers);
     describeRing(evidence, ring, put);
+    const WallLift lift = liftOf(evidence, lesion.patch, numbers);
+    put("lift_mean", lift.meanMm);
+    put("lift_top", lift.topMm);
+    put("lift_rough", lift.roughMm);
     describeGradients(evidence, lesion, put);
     describeContents(colon, evidence, textureDistance, lesion, ring, put);
     describeSurroundings(colon, evidence, alongColon, lesion, put);

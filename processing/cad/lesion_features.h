@@ -13,7 +13,7 @@ namespace haustra::cad {
 
 /// In the order of featureNames. HU are relative to the scan: (HU − wall) / (wall − fat), so that a
 /// scanner's calibration and voltage do not matter; lengths are mm.
-inline constexpr std::array<std::string_view, 44> featureNames{
+inline constexpr std::array<std::string_view, 47> featureNames{
     // size and form
     "diameter_mm", "width_ratio", "height_mm", "height_ratio", "compactness", "neck_ratio",
     // shape index and curvedness over the patch
@@ -21,6 +21,8 @@ inline constexpr std::array<std::string_view, 44> featureNames{
     "k2_mean_size", "cap_share",
     // how it goes over into the wall around it
     "ring_k1_mean", "ring_k2_p10", "ring_k2_p90", "ring_ridge_share",
+    // how far it stands above that, continued across it (wall_lift.h)
+    "lift_mean", "lift_top", "lift_rough",
     // gradients in 3-D
     "gradient_concentration", "gradient_concentration_max", "gradient_sharpness",
     // what it is made of
@@ -42,11 +44,12 @@ constexpr std::size_t featureNumber(std::string_view name) {
 }
 using FeatureVector = std::array<float, std::size_t(featureCount)>;
 
-/// What rises less than this above the wall is flat to any reader (Paris 0-IIb, which CT does not
-/// show), whatever grew there.
+/// What rises less than this above the wall, both as a soap film and as a quadric continue it, is
+/// flat to any reader (Paris 0-IIb, which CT does not show), whatever grew there.
 inline constexpr float leastHeightMm = 0.5f;
 inline bool rises(const FeatureVector& features) {
-    return features[featureNumber("height_mm")] >= leastHeightMm;
+    return std::max(features[featureNumber("height_mm")], features[featureNumber("lift_top")]) >=
+           leastHeightMm;
 }
 
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.

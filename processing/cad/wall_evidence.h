@@ -40,6 +40,9 @@ struct WallStatistics {
     double noiseHu = 0.0;  ///< standard deviation in the smoothed scan
 };
 
+/// What an empty scanner measures.
+inline constexpr double emptyHu = -1000.0;
+
 /// At most this far apart lie neighbouring samples.
 inline constexpr double sampleSpacingMm = 0.5;
 /// Scale at which the wall's shape is measured. A polyp of 6 mm has twelve of it around; of a

@@ -19,7 +19,7 @@ float WallShape::curvedness() const {
 WallShape shapeOf(const Derivatives& scan) {
     WallShape shape;
     const double steep = glm::length(scan.gradient);
-    shape.gradient = float(steep);
+    shape.gradient = float(steep), shape.hu = float(scan.hu);
     if (steep < 1e-6) return shape;
     const glm::dvec3 n = scan.gradient / steep;
     shape.intoWall = glm::vec3(n);

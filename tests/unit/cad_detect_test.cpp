@@ -86,6 +86,11 @@ TEST(Detect, AFlatLesionIsAsWideAsItsFoot) {
         EXPECT_GT(c.lesion.diameter.mm, 0.8 * footMm);
         EXPECT_LT(c.lesion.diameter.mm, 1.05 * footMm);
         EXPECT_NEAR(c.lesion.topMm.z, 17.0, 0.7);
+        // A tenth of the patch is higher, and what is around it is in part the lesion's foot.
+        EXPECT_GT(c.features[cad::featureNumber("lift_top")], 0.5 * (lumenMm - 17.0));
+        EXPECT_LT(c.features[cad::featureNumber("lift_top")], lumenMm - 17.0);
+        EXPECT_LT(c.features[cad::featureNumber("lift_mean")],
+                  c.features[cad::featureNumber("lift_top")]);
     }
 }
 

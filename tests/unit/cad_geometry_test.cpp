@@ -1,10 +1,12 @@
 // Samples of the wall, derivatives of the scan, and shapes whose curvatures are known.
 #include "cad/candidates.h"
 #include "cad/lesion.h"
+#include "cad/wall_lift.h"
 #include "cad/wall_shape.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -253,6 +255,117 @@ TEST(Candidates, WhatAPatchEnclosesIsPartOfIt) {
     const auto tip = cad::patchesByShape(cap.evidence, cap.evidence.shapes, {}, 2);
     EXPECT_TRUE(cap.holds(tip, {0, 0, 60}));
     EXPECT_FALSE(cap.holds(tip, {0, 0, -60}));
+}
+
+// A stretch of a tube's wall with a plateau on it, and perhaps another beside: lumen inside, scan
+// and mesh of the same field.
+struct Plateau {
+    static constexpr double radiusMm = 15.0;
+    double widthMm = 14.0, heightMm = 2.0;
+    double besideMm = 0.0;   // how far from the first's middle the other's is; 0: there is none
+    double meshOffMm = 0.0;  // every other vertex of the mesh lies so far inside the lumen
+    cad::WallEvidence evidence = {};
+
+    static glm::dvec2 along(glm::dvec3 p) { return {radiusMm * std::atan2(p.y, p.x), p.z}; }
+    double wallAt(glm::dvec2 place) const {
+        const auto rises = [&](double offMm) {
+            return heightMm / (1.0 + std::exp((offMm - 0.5 * widthMm) / 0.4));
+        };
+        double height = rises(glm::length(place));
+        if (besideMm > 0.0) height += rises(glm::distance(place, {0.0, besideMm}));
+        return radiusMm - height;
+    }
+    void make() {
+        const Grid grid = axisAlignedGrid({36, 72, 72}, {0.7, 0.7, 0.7}, {-2, -25, -25});
+        evidence.smooth = std::make_unique<const cad::SmoothScan>(wholeScan(
+            sampled(grid,
+                    [&](glm::dvec3 p) { return edge(std::hypot(p.x, p.y) - wallAt(along(p))); }),
+            0.6));
+        TriMesh mesh;
+        constexpr int count = 60;
+        for (int i = 0; i < count; ++i) {
+            for (int j = 0; j < count; ++j) {
+                const glm::dvec2 place = 0.6 * (glm::dvec2(i, j) - 0.5 * (count - 1));
+                const double r = wallAt(place) - ((i + j) % 2 ? meshOffMm : 0.0);
+                const double turn = place.x / radiusMm;
+                mesh.vertices.push_back({r * std::cos(turn), r * std::sin(turn), place.y});
+                const int n = i * count + j;
+                if (i + 1 < count && j + 1 < count) {
+                    mesh.triangles.push_back({n, n + count, n + 1});
+                    mesh.triangles.push_back({n + 1, n + count, n + count + 1});
+                }
+            }
+        }
+        evidence.samples = cad::sampleWall(mesh, 0.5);
+        evidence.shapes = cad::shapesOf(evidence.samples, *evidence.smooth, 2);
+        evidence.statistics = {20.0, -100.0, 10.0};
+    }
+    cad::Patch patchWithin(double mm) const {
+        cad::Patch patch;
+        for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); ++v)
+            if (glm::length(along(evidence.samples.mesh.vertices[v])) < mm)
+                patch.samples.push_back(v);
+        return patch;
+    }
+    double meanWithin(double mm) const {
+        double sum = 0.0, area = 0.0;
+        for (const std::uint32_t v : patchWithin(mm).samples) {
+            sum += evidence.samples.areaMm2[v] *
+                   (radiusMm - wallAt(along(evidence.samples.mesh.vertices[v])));
+            area += evidence.samples.areaMm2[v];
+        }
+        return sum / area;
+    }
+    cad::WallLift liftWithin(double mm) const {
+        cad::SampleNumbers numbers(evidence.samples.mesh.vertices.size());
+        return cad::liftOf(evidence, patchWithin(mm), numbers);
+    }
+};
+
+TEST(WallLift, IsTheHeightAboveTheTubeThatALesionStandsOn) {
+    for (const double height : {0.0, 1.5, 2.5}) {
+        Plateau plateau{.heightMm = height};
+        plateau.make();
+        const cad::WallLift lift = plateau.liftWithin(7.5);
+        EXPECT_NEAR(lift.meanMm, plateau.meanWithin(7.5), 0.15);
+        EXPECT_NEAR(lift.topMm, height, 0.2);
+        EXPECT_LT(lift.roughMm, 0.1);
+    }
+}
+
+TEST(WallLift, SeesWhatASoapFilmSpansOver) {
+    // The film has no mean curvature, the tube has: over the tube's wall it is a hill of up to
+    // d²/16r. Beneath a patch that is only the lesion's middle it hangs from the lesion itself.
+    Plateau plateau;
+    plateau.make();
+    const cad::SampleTriangles triangles(plateau.evidence.samples);
+    const auto lesionWithin = [&](double mm) {
+        cad::SampleNumbers numbers(plateau.evidence.samples.mesh.vertices.size());
+        return cad::standUp(plateau.evidence, triangles, plateau.patchWithin(mm),
+                            plateau.evidence.smooth->grid(), numbers);
+    };
+    const auto whole = lesionWithin(7.5), middle = lesionWithin(5.0);
+    ASSERT_TRUE(whole && middle);
+    EXPECT_LT(whole->axis.x, -0.99);
+    EXPECT_LT(whole->heightMm, 0.7 * plateau.heightMm);
+    EXPECT_GT(plateau.liftWithin(7.5).topMm, 0.9 * plateau.heightMm);
+    EXPECT_LT(middle->heightMm, 0.3 * plateau.heightMm);
+    EXPECT_GT(plateau.liftWithin(5.0).topMm, 1.5 * middle->heightMm);
+}
+
+TEST(WallLift, HoldsBesideAnotherLesionAndOnARoughMesh) {
+    Plateau beside{.widthMm = 8.0, .besideMm = 14.0};
+    beside.make();
+    EXPECT_NEAR(beside.liftWithin(4.5).topMm, beside.heightMm, 0.3);
+    Plateau rough{.meshOffMm = 0.5};
+    rough.make();
+    EXPECT_NEAR(rough.liftWithin(7.5).topMm, rough.heightMm, 0.15);
+    EXPECT_LT(rough.liftWithin(7.5).roughMm, 0.1);
+    // Nothing is told where there is nothing around.
+    const cad::WallLift none = rough.liftWithin(1e3);
+    EXPECT_EQ(none.meanMm, 0.0);
+    EXPECT_EQ(none.topMm, 0.0);
+    EXPECT_EQ(none.roughMm, 0.0);
 }
 
 TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {
