@@ -26,12 +26,19 @@ constexpr double leastUnseenMm2 = 20.0;
 // Of the smoothed scan; the noisiest training phantoms have 15.
 constexpr double noisyHu = 25.0;
 
+// Above its film, or, where that lies close to what is low and wide, above the wall continued.
+double heightOf(const Candidate& candidate) {
+    const double film = candidate.lesion.heightMm;
+    if (film >= leastHeightMm) return film;
+    return std::max({0.0, film, double(candidate.features[featureNumber("lift_top")])});
+}
+
 const char* kindOf(const Candidate& candidate) {
-    const Lesion& lesion = candidate.lesion;
-    const double ratio = lesion.heightMm / std::max(0.1, lesion.diameter.mm);
+    const double height = heightOf(candidate);
+    const double ratio = height / std::max(0.1, candidate.lesion.diameter.mm);
     if (candidate.features[featureNumber("neck_ratio")] < stalkNeck && ratio > stalkHeightRatio)
         return "pedunculated";
-    return lesion.heightMm < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
+    return height < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
 }
 
 /// Of the piece whose ball is nearest.
@@ -56,11 +63,7 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.wallMm = lesion.topMm;
     finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
-    // A soap film lies close to what is low and wide; the quadric does not.
-    finding.heightMm = lesion.heightMm >= leastHeightMm
-                           ? lesion.heightMm
-                           : std::max({0.0, lesion.heightMm,
-                                       double(candidate.features[featureNumber("lift_top")])});
+    finding.heightMm = heightOf(candidate);
     const WallPlace along = alongColon.at(lesion.topMm);
     finding.arcMm = along.arcMm;
     finding.segment = segmentAt(colon, along.cameraMm);

@@ -15,7 +15,7 @@ namespace haustra::cad {
 struct WallShape {
     glm::vec3 intoWall{0.0f, 0.0f, 1.0f};  ///< unit, along the gradient: from gas into tissue
     float gradient = 0.0f;                 ///< HU/mm
-    float hu = 0.0f;                       ///< there
+    float hu = 0.0f;                       ///< of the scan that was measured
     float k1 = 0.0f, k2 = 0.0f;            ///< principal curvatures, 1/mm, k1 ≥ k2
 
     /// SI = ½ + (1/π) atan((k1 + k2)/(k1 − k2)): 0 cup, ¼ rut, ½ saddle, ¾ ridge, 1 cap (Koenderink
