@@ -453,9 +453,16 @@ private:
             }
         }
         std::vector<char> taken(cut_.pieces.size(), 0);
-        std::vector<char> elsewhere(cut_.pieces.size(), 0);  // other bowel, or tagged and beside it
-        for (std::size_t p = 0; p < elsewhere.size(); ++p)
-            elsewhere[p] = !kept_[p] && graph_.nodeOf[p] >= 0;
+        // Other bowel, or tagged and beside it; and what is tagged and as wide as bowel.
+        std::vector<char> elsewhere(cut_.pieces.size(), 0), wide(cut_.pieces.size(), 0);
+        for (std::size_t p = 0; p < elsewhere.size(); ++p) {
+            const int node = graph_.nodeOf[p];
+            if (kept_[p] || node < 0) continue;
+            const TubePiece& piece = cut_.pieces[p];
+            const bool mayBeStool = !piece.mostlyGas() && !piece.mostlyUntagged() &&
+                                    graph_.graph.nodes[std::size_t(node)].given == 0.0;
+            (mayBeStool ? wide : elsewhere)[p] = 1;
+        }
         for (const auto& [crumb, contact] : contacts) {
             constexpr double largestMl = 1.0;
             const TubePiece& piece = cut_.pieces[std::size_t(crumb)];
@@ -473,12 +480,17 @@ private:
                 labels_[n] = labelOf(n);
         });
         if (options_.asGiven) return;
-        const auto barredVoxels =
-            voxelsWhere(grid_, options_.threads, [&](std::size_t n, glm::ivec3) {
-                const std::int32_t p = cut_.pieceAt[n];
-                return barred_[n] || (p >= 0 && elsewhere[std::size_t(p)]);
-            });
-        addTaggedStool(result_.labels, hu_, tissue_, barredVoxels);
+        const auto voxelsOf = [&](const auto& isOne) {
+            return voxelsWhere(grid_, options_.threads,
+                               [&](std::size_t n, glm::ivec3) { return isOne(n); });
+        };
+        const auto isOf = [&](const std::vector<char>& pieces, std::size_t n) {
+            const std::int32_t p = cut_.pieceAt[n];
+            return p >= 0 && pieces[std::size_t(p)];
+        };
+        addTaggedStool(result_.labels, hu_, tissue_,
+                       voxelsOf([&](std::size_t n) { return barred_[n] || isOf(elsewhere, n); }),
+                       voxelsOf([&](std::size_t n) { return !barred_[n] && isOf(wide, n); }));
         labels_ = result_.labels.writable();
     }
 

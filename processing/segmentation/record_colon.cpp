@@ -165,11 +165,7 @@ private:
 
     void findLeftOut() {
         constexpr double leastMl = 2.0, nearMm = 20.0;
-        std::set<int> taken = nodesOf(chain_);
-        for (const EnclosedGas& gas : labels_.enclosed) {
-            for (const std::int32_t piece : gas.pieces)
-                taken.insert(graph_.nodeOf[std::size_t(piece)]);
-        }
+        const std::set<int> taken = nodesOf(chain_);
         std::set<int> opened;
         for (const int j : chain_.cuts) {
             opened.insert(graph_.graph.junctions[std::size_t(j)].a);
@@ -178,6 +174,8 @@ private:
         for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
             const ChainNode& node = graph_.graph.nodes[n];
             if (taken.count(int(n)) || node.volumeMl < leastMl) continue;
+            // Gas of a balloon, or a ball of stool.
+            if (labels_.labels.at(pieceOf(int(n)).centre) != 0) continue;
             LeftOutBody body{node.centreMm,
                              node.volumeMl,
                              pieceOf(int(n)).mostlyGas(),

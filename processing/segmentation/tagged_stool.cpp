@@ -11,6 +11,8 @@ namespace {
 constexpr double largestMl = 30.0;
 constexpr std::size_t fewestVoxels = 8;
 constexpr double smallestContactShare = 0.25;
+// Of what is as wide as bowel: a loop that lies against the colon from outside shows it less.
+constexpr double smallestBallContactShare = 0.5;
 constexpr double smallestCoreShare = 0.1;
 constexpr double wellAboveHu = 60.0;
 constexpr int contactVoxels = 2;  // of partial volume between air and stool
@@ -29,8 +31,12 @@ public:
           aboveHu_(tissue.taggedAboveHu),
           barred_(labels_.size(), false),
           seen_(labels_.size(), false) {
-        for (std::uint32_t index : excluded)
-            barred_[index] = true;
+        bar(excluded, true);
+    }
+
+    void bar(std::span<const std::uint32_t> voxels, bool barred) {
+        for (const std::uint32_t index : voxels)
+            barred_[index] = barred;
     }
 
     /// Voxels of stool that air of the lumen reaches, ascending.
@@ -49,6 +55,25 @@ public:
         found.erase(std::unique(found.begin(), found.end()), found.end());
         return found;
     }
+
+    /// Those of `voxels` that are stool and reach air of the lumen.
+    std::vector<std::uint32_t> besideAir(std::span<const std::uint32_t> voxels) const {
+        std::vector<std::uint32_t> found;
+        for (const std::uint32_t index : voxels) {
+            if (!isStool(index)) continue;
+            bool reached = false;
+            reach(
+                index, [&](std::size_t at) { return labels_[at] != 0 || isStool(at); },
+                [&](int, int, int, std::size_t at) {
+                    reached = reached || labels_[at] == std::uint8_t(LumenLabel::air);
+                });
+            if (reached) found.push_back(index);
+        }
+        return found;
+    }
+
+    /// Bodies that were taken may be taken again.
+    void forgetTaken() { std::fill(seen_.begin(), seen_.end(), false); }
 
     /// The body of a voxel, joined by faces; empty where it was returned before. All of a body is
     /// seen, however large: what is left of bone must not pass for stool.
@@ -82,8 +107,8 @@ public:
                sum >= (aboveHu_ + wellAboveHu) * double(body.size());
     }
 
-    /// Enough of its surface faces the lumen.
-    bool liesInLumen(const std::vector<std::uint32_t>& body) const {
+    /// At least `share` of its surface faces the lumen.
+    bool liesInLumen(const std::vector<std::uint32_t>& body, double share) const {
         std::size_t faces = 0, contacts = 0;
         for (std::uint32_t index : body) {
             visitFaces(grid_, index, [&](std::size_t m, int) { faces += !isStool(m); });
@@ -91,7 +116,7 @@ public:
                 index, [&](std::size_t at) { return labels_[at] != 0 || isStool(at); },
                 [&](int, int, int, std::size_t at) { contacts += labels_[at] != 0; });
         }
-        return double(contacts) >= smallestContactShare * double(faces);
+        return double(contacts) >= share * double(faces);
     }
 
     /// Labels a body; the partial volume on the way to the air goes with it.
@@ -150,13 +175,24 @@ private:
 }  // namespace
 
 void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
-                    const TissueModel& tissue, std::span<const std::uint32_t> excluded) {
+                    const TissueModel& tissue, std::span<const std::uint32_t> excluded,
+                    std::span<const std::uint32_t> bowel) {
     StoolSearch search(labels, hu, tissue, excluded);
-    for (const std::uint32_t seed : search.besideAir()) {
-        const std::vector<std::uint32_t> body = search.takeBody(seed);
-        if (search.hasSizeOfStool(body) && search.isWellTagged(body) && search.liesInLumen(body))
-            search.label(body);
-    }
+    const auto labelBodiesOf = [&](const std::vector<std::uint32_t>& seeds, double contactShare) {
+        for (const std::uint32_t seed : seeds) {
+            const std::vector<std::uint32_t> body = search.takeBody(seed);
+            if (search.hasSizeOfStool(body) && search.isWellTagged(body) &&
+                search.liesInLumen(body, contactShare))
+                search.label(body);
+        }
+    };
+    search.bar(bowel, true);
+    labelBodiesOf(search.besideAir(), smallestContactShare);
+    if (bowel.empty()) return;
+    search.bar(bowel, false);
+    search.bar(excluded, true);
+    search.forgetTaken();
+    labelBodiesOf(search.besideAir(bowel), smallestBallContactShare);
 }
 
 }  // namespace haustra::segmentation

@@ -655,6 +655,45 @@ TEST(FindColon, DenseMaterialThatTouchesTheWallIsNotStool) {
     EXPECT_GT(diceWithDrawing(*found), 0.985);
 }
 
+// A lump of tagged stool, as wide as bowel, stands on the wall in the gas; its rim is partial
+// volume.
+TEST(FindColon, ALargeBallOfTaggedStoolIsOfTheLumen) {
+    Drawing drawing = Drawing::supine();
+    const auto fromMiddle = [](glm::dvec3 p) { return glm::distance(p, glm::dvec3(65, 117, 200)); };
+    drawing.paint(45, [&](glm::dvec3 p) { return fromMiddle(p) < 11.5 && inColon(p); });
+    drawing.paint(620, [&](glm::dvec3 p) { return fromMiddle(p) < 9.0 && inColon(p); });
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    const Grid& grid = found->labels.grid();
+    double ballMl = 0.0, taggedMl = 0.0;
+    drawing.eachVoxel([&](std::size_t n, glm::dvec3 p) {
+        if (fromMiddle(p) >= 9.0 || !inColon(p)) return;
+        ballMl += grid.voxelVolumeMm3() / 1000.0;
+        if (found->labels[n] == std::uint8_t(LumenLabel::tagged))
+            taggedMl += grid.voxelVolumeMm3() / 1000.0;
+    });
+    EXPECT_GT(ballMl, 2.0);
+    EXPECT_GT(taggedMl, 0.98 * ballMl);
+    for (const auto& body : found->record.leftOut)
+        EXPECT_GT(fromMiddle(body.centreMm), 9.0) << "what is lumen was not left out";
+}
+
+// A flat loop of opacified bowel is pressed against the colon, one voxel of wall between: it shows
+// the lumen less than half of its surface.
+TEST(FindColon, ATaggedLoopThatLiesAgainstTheColonIsNotStool) {
+    Drawing drawing = Drawing::supine();
+    const auto inLoop = [](glm::dvec3 p) {
+        const double off = outsideMm(colon()[7], p);
+        return off > 2.5 && off < 12.5 && p.x > 62 && p.y > 118 && p.y < 145 && p.z > 185 &&
+               p.z < 215;
+    };
+    drawing.paint(620, inLoop);
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_LT(labelledMl(*found, inLoop), 0.1);
+    EXPECT_GT(diceWithDrawing(*found), 0.985);
+}
+
 TEST(FindColon, AScanThatIsNoColonographyIsRefusedUnlessAPersonSaysOtherwise) {
     Drawing drawing;  // gas in a loop of ileum and the stomach, and one bubble in the colon
     const Capsule bubble{{262, 146, 160}, {264, 148, 205}, 14};
