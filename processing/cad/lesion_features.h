@@ -13,7 +13,7 @@ namespace haustra::cad {
 
 /// In the order of featureNames. HU are relative to the scan: (HU − wall) / (wall − fat), so that a
 /// scanner's calibration and voltage do not matter; lengths are mm.
-inline constexpr std::array<std::string_view, 47> featureNames{
+inline constexpr std::array<std::string_view, 52> featureNames{
     // size and form
     "diameter_mm", "width_ratio", "height_mm", "height_ratio", "compactness", "neck_ratio",
     // shape index and curvedness over the patch
@@ -27,7 +27,9 @@ inline constexpr std::array<std::string_view, 47> featureNames{
     "gradient_concentration", "gradient_concentration_max", "gradient_sharpness",
     // what it is made of
     "density_median", "density_p90", "density_core", "density_spread", "texture_distance",
-    "texture_share", "peak_median", "peak_over_ring", "broad_k2_size",
+    "texture_share", "peak_median", "peak_over_ring", "broad_k2_size", "peak_p90", "peak_spread",
+    // bubbles inside, as stool has
+    "dip_mean", "dip_p90", "dip_raw",
     // what it borders on
     "wet_share", "wet_edge", "former_fluid_mm", "tissue_behind_mm", "reentry_share",
     "removed_density", "removed_p90",

@@ -10,8 +10,8 @@
 namespace haustra::cad {
 namespace {
 
-// The wall around: so far from the patch's rim, beyond a lesion's foot and within what is one bend
-// of the wall; and no fold's flank, which faces elsewhere.
+// The wall around, as far as it was seen: so far from the patch's rim, beyond a lesion's foot and
+// within what is one bend of the wall; and no fold's flank, which faces elsewhere.
 constexpr double fromMm = 1.5, toMm = 7.0, leastFacing = 0.35;
 constexpr std::size_t leastSamples = 30;
 // Samples lie on the simplified surface, which is off the scan's by a fraction of a millimetre.
@@ -66,7 +66,7 @@ WallLift liftOf(const WallEvidence& evidence, const Patch& patch, SampleNumbers&
     std::vector<std::uint32_t> around;
     for (auto n = std::uint32_t(patch.samples.size()); n < numbers.count(); ++n) {
         const std::uint32_t v = numbers.sample(n);
-        if (distances[n] > fromMm &&
+        if (distances[n] > fromMm && !evidence.unseen[v] && !evidence.untagged[v] &&
             -glm::dot(axis, glm::dvec3(evidence.shapes[v].intoWall)) >= leastFacing)
             around.push_back(v);
     }

@@ -154,6 +154,31 @@ TEST(Detect, AFeatureTellsWhatStoodBeforeAPlace) {
         EXPECT_GT(found, 0);
 }
 
+TEST(Detect, AFeatureTellsBubblesInside) {
+    // A ball of gas and tissue in the middle of the first bump, 3 mm wide.
+    BallColon ball;
+    const auto features = [&](std::size_t bump) {
+        for (const cad::Candidate& c : bodies(ball))
+            if (glm::distance(c.lesion.centreMm, bumps[bump].centreMm) < 3.0) return c.features;
+        ADD_FAILURE() << "no candidate at bump " << bump;
+        return cad::FeatureVector{};
+    };
+    const auto solid = features(0), other = features(1);
+    for (std::size_t n = 0; n < ball.hu.grid().voxelCount(); ++n) {
+        const glm::dvec3 p = ball.hu.grid().patientFromVoxelPoint(ball.hu.grid().voxelAt(n));
+        if (glm::distance(p, bumps[0].centreMm) < 1.5) ball.hu.writable()[n] = -300;
+    }
+    const auto crumbly = features(0);
+    for (const char* name : {"dip_mean", "dip_p90", "dip_raw"}) {
+        const std::size_t f = cad::featureNumber(name);
+        // In wall minus fat; noise is none. The wall's own end is no dip.
+        EXPECT_LT(solid[f], 0.1) << name;
+        EXPECT_LT(other[f], 0.1) << name;
+        EXPECT_GT(crumbly[f], 3.0 * solid[f] + 0.1) << name;
+        EXPECT_NEAR(features(1)[f], other[f], 0.02) << name;
+    }
+}
+
 TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
     // The first bump stands on a bridge, or in fluid without tagging.
     for (const LumenLabel label : {LumenLabel::bridge, LumenLabel::untagged}) {

@@ -299,6 +299,8 @@ struct Plateau {
         evidence.samples = cad::sampleWall(mesh, 0.5);
         evidence.shapes = cad::shapesOf(evidence.samples, *evidence.smooth, 2);
         evidence.statistics = {20.0, -100.0, 10.0};
+        evidence.unseen.assign(evidence.samples.mesh.vertices.size(), 0);
+        evidence.untagged = evidence.unseen;
     }
     cad::Patch patchWithin(double mm) const {
         cad::Patch patch;
@@ -367,6 +369,24 @@ TEST(WallLift, HoldsBesideAnotherLesionAndOnARoughMesh) {
     EXPECT_EQ(none.meanMm, 0.0);
     EXPECT_EQ(none.topMm, 0.0);
     EXPECT_EQ(none.roughMm, 0.0);
+}
+
+TEST(WallLift, LeavesOutWallThatNobodyHasSeen) {
+    for (const auto which : {&cad::WallEvidence::unseen, &cad::WallEvidence::untagged}) {
+        Plateau plateau;
+        plateau.make();
+        auto& vertices = plateau.evidence.samples.mesh.vertices;
+        std::vector<std::uint8_t>& marked = plateau.evidence.*which;
+        // On one side the wall is told where it is not, by more than a sample is brought back.
+        for (std::size_t v = 0; v < vertices.size(); ++v) {
+            const glm::dvec2 place = plateau.along(vertices[v]);
+            marked[v] = place.y > 2.0 && glm::length(place) > 8.0;
+            if (marked[v]) vertices[v] *= glm::dvec3(0.7, 0.7, 1.0);
+        }
+        EXPECT_NEAR(plateau.liftWithin(7.5).topMm, plateau.heightMm, 0.25);
+        marked.assign(vertices.size(), 0);
+        EXPECT_GT(std::abs(plateau.liftWithin(7.5).topMm - plateau.heightMm), 0.5);
+    }
 }
 
 TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {
