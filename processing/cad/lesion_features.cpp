@@ -172,10 +172,10 @@ float deepestDip(std::span<const float> hu) {
 
 // Stool is crumbs with gas between, a polyp is of one tissue (Pickhardt, RadioGraphics 2004; 24:
 // 1535). Along rays into the body: of the smoothed scan, and of the cleansed voxels as they are,
-// which hold small bubbles better and noise, too.
+// which hold small bubbles better and noise, too. The gap behind a head or a fold is a dip as well.
 void describeBubbles(const PreparedColon& colon, const WallEvidence& evidence, const Lesion& lesion,
-                     double unit, Named& put) {
-    constexpr double stepMm = 0.5, mostHu = 400.0;
+                     double unitHu, Named& put) {
+    constexpr double stepMm = 0.5, mostDipHu = 400.0;
     constexpr std::size_t mostRays = 250;
     const double deepMm = std::clamp(lesion.heightMm + 1.0, 3.0, 8.0);
     const auto steps = std::size_t(deepMm / stepMm) + 1;
@@ -183,7 +183,7 @@ void describeBubbles(const PreparedColon& colon, const WallEvidence& evidence, c
     const glm::dmat4 voxelFromPatient = colon.cleansed.grid().voxelFromPatient();
     const std::vector<std::uint32_t>& samples = lesion.patch.samples;
     const std::size_t stride = (samples.size() + mostRays - 1) / mostRays;
-    std::vector<float> dips, raw, profile(steps), rawProfile(steps);
+    std::vector<float> dips, rawDips, profile(steps), rawProfile(steps);
     for (std::size_t n = 0; n < samples.size(); n += stride) {
         const glm::dvec3 from = evidence.samples.mesh.vertices[samples[n]],
                          step = stepMm * glm::dvec3(evidence.shapes[samples[n]].intoWall);
@@ -194,12 +194,12 @@ void describeBubbles(const PreparedColon& colon, const WallEvidence& evidence, c
             rawProfile[s] = colon.cleansed.grid().contains(voxel) ? float(colon.cleansed.at(voxel))
                                                                   : float(emptyHu);
         }
-        dips.push_back(float(std::min<double>(deepestDip(profile), mostHu) / unit));
-        raw.push_back(float(std::min<double>(deepestDip(rawProfile), mostHu) / unit));
+        dips.push_back(float(std::min<double>(deepestDip(profile), mostDipHu) / unitHu));
+        rawDips.push_back(float(std::min<double>(deepestDip(rawProfile), mostDipHu) / unitHu));
     }
     put("dip_mean", mean(dips));
     put("dip_p90", quantile(dips, 0.9));
-    put("dip_raw", mean(raw));
+    put("dip_raw", mean(rawDips));
 }
 
 void describeContents(const PreparedColon& colon, const WallEvidence& evidence,

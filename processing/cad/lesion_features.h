@@ -28,7 +28,7 @@ inline constexpr std::array<std::string_view, 52> featureNames{
     // what it is made of
     "density_median", "density_p90", "density_core", "density_spread", "texture_distance",
     "texture_share", "peak_median", "peak_over_ring", "broad_k2_size", "peak_p90", "peak_spread",
-    // bubbles inside, as stool has
+    // bubbles inside, as stool has, and gaps behind
     "dip_mean", "dip_p90", "dip_raw",
     // what it borders on
     "wet_share", "wet_edge", "former_fluid_mm", "tissue_behind_mm", "reentry_share",

@@ -10,8 +10,9 @@
 namespace haustra::cad {
 namespace {
 
-// The wall around, as far as it was seen: so far from the patch's rim, beyond a lesion's foot and
-// within what is one bend of the wall; and no fold's flank, which faces elsewhere.
+// The wall around, but for what nobody saw or has untagged fluid before it: so far from the patch's
+// rim, beyond a lesion's foot and within what is one bend of the wall; and no fold's flank, which
+// faces elsewhere.
 constexpr double fromMm = 1.5, toMm = 7.0, leastFacing = 0.35;
 constexpr std::size_t leastSamples = 30;
 // Samples lie on the simplified surface, which is off the scan's by a fraction of a millimetre.

@@ -18,8 +18,8 @@ struct WallLift {
     double roughMm = 0.0;
 };
 
-/// All 0 where too little wall around faces as the patch does. `numbers`: of all samples, for its
-/// own use. O(samples within 7 mm of the patch).
+/// All 0 where too little wall around was seen and faces as the patch does. `numbers`: of all
+/// samples, for its own use. O(samples within 7 mm of the patch).
 WallLift liftOf(const WallEvidence& evidence, const Patch& patch, SampleNumbers& numbers);
 
 }  // namespace haustra::cad

@@ -101,7 +101,8 @@ struct ColonRecord {
     double chainConfidence = 0.0;      ///< that it is right among those that were weighed
     std::vector<Doubt> doubts;         ///< the gravest first
     std::vector<RunnerUp> runnersUp;   ///< none or one
-    std::vector<LeftOutBody> leftOut;  ///< near the chain or like colon, the largest first
+    std::vector<LeftOutBody> leftOut;  ///< near the chain or like colon, and no part of
+                                       ///< the lumen; the largest first
     /// The lowest place of the last piece, in the trunk: x from −1 (the patient's right side) to 1,
     /// y from −1 (front) to 1, z from 0 (the lowest bowel) to 1 (the highest).
     std::optional<glm::dvec3> endsAt;

@@ -459,8 +459,8 @@ private:
             const int node = graph_.nodeOf[p];
             if (kept_[p] || node < 0) continue;
             const TubePiece& piece = cut_.pieces[p];
-            const bool mayBeStool = !piece.mostlyGas() && !piece.mostlyUntagged() &&
-                                    graph_.graph.nodes[std::size_t(node)].given == 0.0;
+            const bool mayBeStool = piece.taggedVoxels > piece.gasVoxels + piece.untaggedVoxels &&
+                                    graph_.graph.nodes[std::size_t(node)].given >= 0.0;
             (mayBeStool ? wide : elsewhere)[p] = 1;
         }
         for (const auto& [crumb, contact] : contacts) {

@@ -174,8 +174,9 @@ private:
         for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
             const ChainNode& node = graph_.graph.nodes[n];
             if (taken.count(int(n)) || node.volumeMl < leastMl) continue;
-            // Gas of a balloon, or a ball of stool.
-            if (labels_.labels.at(pieceOf(int(n)).centre) != 0) continue;
+            // Gas of a balloon, or a ball of stool; a bridge may cross what was left out.
+            const auto label = LumenLabel(labels_.labels.at(pieceOf(int(n)).centre));
+            if (label != LumenLabel::outside && label != LumenLabel::bridge) continue;
             LeftOutBody body{node.centreMm,
                              node.volumeMl,
                              pieceOf(int(n)).mostlyGas(),

@@ -692,6 +692,10 @@ TEST(FindColon, ATaggedLoopThatLiesAgainstTheColonIsNotStool) {
     ASSERT_TRUE(found) << describe(found.error());
     EXPECT_LT(labelledMl(*found, inLoop), 0.1);
     EXPECT_GT(diceWithDrawing(*found), 0.985);
+    const auto& leftOut = found->record.leftOut;
+    EXPECT_TRUE(std::any_of(leftOut.begin(), leftOut.end(), [&](const auto& body) {
+        return inLoop(body.centreMm);
+    })) << "it was searched as bowel";
 }
 
 TEST(FindColon, AScanThatIsNoColonographyIsRefusedUnlessAPersonSaysOtherwise) {
