@@ -453,8 +453,9 @@ private:
             }
         }
         std::vector<char> taken(cut_.pieces.size(), 0);
-        // Other bowel, or tagged and beside it; and what is tagged and as wide as bowel.
-        std::vector<char> elsewhere(cut_.pieces.size(), 0), wide(cut_.pieces.size(), 0);
+        // Other bowel; crumbs of tagged material that touch other pieces more than the lumen; and
+        // what is tagged and as wide as bowel.
+        std::vector<char> elsewhere(cut_.pieces.size(), 0), aside = elsewhere, wide = elsewhere;
         for (std::size_t p = 0; p < elsewhere.size(); ++p) {
             const int node = graph_.nodeOf[p];
             if (kept_[p] || node < 0) continue;
@@ -467,7 +468,7 @@ private:
             constexpr double largestMl = 1.0;
             const TubePiece& piece = cut_.pieces[std::size_t(crumb)];
             if (!piece.mostlyGas()) {
-                if (contact.others > contact.lumen) elsewhere[std::size_t(crumb)] = 1;
+                if (contact.others > contact.lumen) aside[std::size_t(crumb)] = 1;
             } else if (contact.openToLumen > 3.0 * contact.openToBowel &&
                        contact.openToLumen > 0.05 * piece.surfaceMm2 &&
                        piece.volumeMl < largestMl && piece.excludedAirMm2 == 0.0) {
@@ -488,9 +489,11 @@ private:
             const std::int32_t p = cut_.pieceAt[n];
             return p >= 0 && pieces[std::size_t(p)];
         };
-        addTaggedStool(result_.labels, hu_, tissue_,
-                       voxelsOf([&](std::size_t n) { return barred_[n] || isOf(elsewhere, n); }),
-                       voxelsOf([&](std::size_t n) { return !barred_[n] && isOf(wide, n); }));
+        OtherMaterial other;
+        other.surely = voxelsOf([&](std::size_t n) { return barred_[n] || isOf(elsewhere, n); });
+        other.aside = voxelsOf([&](std::size_t n) { return !barred_[n] && isOf(aside, n); });
+        other.bowel = voxelsOf([&](std::size_t n) { return !barred_[n] && isOf(wide, n); });
+        addTaggedStool(result_.labels, hu_, contents_, tissue_, other);
         labels_ = result_.labels.writable();
     }
 

@@ -3,6 +3,8 @@
 #include "core/flood_fill.h"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 #include <vector>
 
 namespace haustra::segmentation {
@@ -13,6 +15,16 @@ constexpr std::size_t fewestVoxels = 8;
 constexpr double smallestContactShare = 0.25;
 // Of what is as wide as bowel: a loop that lies against the colon from outside shows it less.
 constexpr double smallestBallContactShare = 0.5;
+// A film on the wall: so much of it, so thin in the mean, so much of its surface facing gas with no
+// wall between, which is told by voxels no wider than this.
+constexpr double smallestFilmMm3 = 15.0, thickestFilmMm = 4.0, filmShare = 0.3, filmVoxelMm = 1.25,
+                 thickestFoldMm = 7.0, mostBetween = 0.2;
+// Between gas and film lies their blur alone, which passes soft tissue's HU within less than a
+// wall's thickness: two walls of bowel, or one and what is behind it, have 2 mm and more.
+constexpr double farthestGasMm = 3.2, thinnestWallMm = 1.3, softSpreadHu = 120.0;
+// Facing gas: a ball that rests on the wall does so with more, a layer on the wall with half.
+constexpr double standingShare = 0.6, widestCrumbMm = 10.0;
+constexpr double farFromNoise = 2.0;
 constexpr double smallestCoreShare = 0.1;
 constexpr double wellAboveHu = 60.0;
 constexpr int contactVoxels = 2;  // of partial volume between air and stool
@@ -21,18 +33,19 @@ constexpr int contactVoxels = 2;  // of partial volume between air and stool
 class StoolSearch {
 public:
     StoolSearch(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
-                const TissueModel& tissue, std::span<const std::uint32_t> excluded)
+                const BowelContents& contents, const TissueModel& tissue)
         : grid_(labels.grid()),
           hu_(hu.voxels()),
+          content_(contents.content.voxels()),
           labels_(labels.writable()),
           strides_{1, std::size_t(grid_.size.x),
                    std::size_t(grid_.size.x) * std::size_t(grid_.size.y)},
           largest_(std::size_t(largestMl * 1000.0 / grid_.voxelVolumeMm3())),
           aboveHu_(tissue.taggedAboveHu),
+          softHu_(tissue.meanHu[int(Tissue::soft)]),
+          noiseSdHu_(contents.gasSdHu),
           barred_(labels_.size(), false),
-          seen_(labels_.size(), false) {
-        bar(excluded, true);
-    }
+          seen_(labels_.size(), false) {}
 
     void bar(std::span<const std::uint32_t> voxels, bool barred) {
         for (const std::uint32_t index : voxels)
@@ -96,41 +109,91 @@ public:
     /// A coated fold is thin and no brighter than its blur: stool has an inside, well tagged.
     bool isWellTagged(const std::vector<std::uint32_t>& body) const {
         std::size_t core = 0;
-        double sum = 0.0;
         for (std::uint32_t index : body) {
             int around = 0;
             visitFaces(grid_, index, [&](std::size_t m, int) { around += isStool(m); });
             core += around == 6;
-            sum += hu_[index];
         }
         return double(core) >= smallestCoreShare * double(body.size()) &&
-               sum >= (aboveHu_ + wellAboveHu) * double(body.size());
+               meanHu(body) >= aboveHu_ + wellAboveHu;
     }
 
     /// At least `share` of its surface faces the lumen.
     bool liesInLumen(const std::vector<std::uint32_t>& body, double share) const {
-        std::size_t faces = 0, contacts = 0;
-        for (std::uint32_t index : body) {
+        return facing(body, [&](std::size_t at) { return labels_[at] != 0; }) >= share;
+    }
+
+    /// What is brighter than any soft tissue, small all ways and has gas around it is residue,
+    /// however few its voxels are. A fold that is coated on both sides is no thicker, but wide.
+    bool standsInGas(const std::vector<std::uint32_t>& body) const {
+        glm::ivec3 lo = grid_.size, hi(0);
+        for (const std::uint32_t index : body)
+            lo = glm::min(lo, grid_.voxelAt(index)), hi = glm::max(hi, grid_.voxelAt(index));
+        const glm::dvec3 widthMm = grid_.spacingMm() * glm::dvec3(hi - lo + 1);
+        if (std::max({widthMm.x, widthMm.y, widthMm.z}) > widestCrumbMm) return false;
+        return facing(body, [&](std::size_t at) {
+                   return labels_[at] == std::uint8_t(LumenLabel::air);
+               }) >= standingShare;
+    }
+
+    /// So is what lies on the wall with no tissue between it and the gas. What has gas behind it,
+    /// too, coats a fold, which is often too thin to be told from its coat: that stays.
+    bool isFilm(const std::vector<std::uint32_t>& body) const {
+        const glm::dvec3 spacing = grid_.spacingMm();
+        if (std::max({spacing.x, spacing.y, spacing.z}) > filmVoxelMm ||
+            double(body.size()) * grid_.voxelVolumeMm3() < smallestFilmMm3)
+            return false;
+        const double voxelMm3 = grid_.voxelVolumeMm3();
+        std::size_t faces = 0, bare = 0, between = 0;
+        double bareMm2 = 0.0;
+        for (const std::uint32_t index : body) {
             visitFaces(grid_, index, [&](std::size_t m, int) { faces += !isStool(m); });
-            reach(
-                index, [&](std::size_t at) { return labels_[at] != 0 || isStool(at); },
-                [&](int, int, int, std::size_t at) { contacts += labels_[at] != 0; });
+            bool isBetween = false;
+            for (int axis = 0; axis < 3; ++axis) {
+                for (const int sign : {-1, 1}) {
+                    if (stepsToBareGas(index, axis, sign) == 0) continue;
+                    ++bare, bareMm2 += voxelMm3 / spacing[axis];
+                    isBetween = isBetween || hasGasWithin(index, axis, -sign, thickestFoldMm);
+                }
+            }
+            between += isBetween;
         }
-        return double(contacts) >= share * double(faces);
+        return double(bare) >= filmShare * double(faces) &&
+               double(between) <= mostBetween * double(body.size()) &&
+               double(body.size()) * voxelMm3 <= thickestFilmMm * bareMm2;
+    }
+
+    /// No brighter than what soft tissue's noise brings above the tagging's threshold t: of a
+    /// normal distribution's tail beyond t the mean lies about σ² / (t − µ) farther out.
+    bool mayBeNoise(const std::vector<std::uint32_t>& body) const {
+        const double beyondHu = noiseSdHu_ * noiseSdHu_ / (aboveHu_ - softHu_);
+        return meanHu(body) < aboveHu_ + farFromNoise * beyondHu;
+    }
+
+    /// As bright as tagging by a sharp kernel alone, which the contents take for tissue.
+    bool isOvershoot(const std::vector<std::uint32_t>& body) const {
+        const auto tissue = std::count_if(body.begin(), body.end(), [&](std::uint32_t index) {
+            return Content(content_[index]) == Content::tissue;
+        });
+        return 2 * std::size_t(tissue) > body.size();
     }
 
     /// Labels a body; the partial volume on the way to the air goes with it.
     void label(const std::vector<std::uint32_t>& body) {
         for (std::uint32_t index : body) {
+            const auto labelWay = [&](int axis, int sign, int steps) {
+                std::size_t at = index;
+                for (int n = 1; n < steps; ++n) {
+                    at = stepped(at, axis, sign);
+                    if (labels_[at] == 0) labels_[at] = std::uint8_t(LumenLabel::tagged);
+                }
+            };
             reach(
                 index, [&](std::size_t at) { return labels_[at] == std::uint8_t(LumenLabel::air); },
-                [&](int axis, int sign, int steps, std::size_t) {
-                    std::size_t at = index;
-                    for (int n = 1; n < steps; ++n) {
-                        at = stepped(at, axis, sign);
-                        if (labels_[at] == 0) labels_[at] = std::uint8_t(LumenLabel::tagged);
-                    }
-                });
+                [&](int axis, int sign, int steps, std::size_t) { labelWay(axis, sign, steps); });
+            for (int axis = 0; axis < 3; ++axis)
+                for (const int sign : {-1, 1})
+                    labelWay(axis, sign, stepsToBareGas(index, axis, sign));
             labels_[index] = std::uint8_t(LumenLabel::tagged);
         }
     }
@@ -138,6 +201,57 @@ public:
 private:
     bool isStool(std::size_t index) const {
         return labels_[index] == 0 && hu_[index] > aboveHu_ && !barred_[index];
+    }
+
+    double meanHu(const std::vector<std::uint32_t>& body) const {
+        double sum = 0.0;
+        for (const std::uint32_t index : body)
+            sum += hu_[index];
+        return sum / double(body.size());
+    }
+
+    /// The share of a body's surface from which what `counts` is reached.
+    template <class Counts>
+    double facing(const std::vector<std::uint32_t>& body, const Counts& counts) const {
+        std::size_t faces = 0, contacts = 0;
+        for (std::uint32_t index : body) {
+            visitFaces(grid_, index, [&](std::size_t m, int) { faces += !isStool(m); });
+            reach(
+                index, [&](std::size_t at) { return labels_[at] != 0 || isStool(at); },
+                [&](int, int, int, std::size_t at) { contacts += counts(at); });
+        }
+        return double(contacts) / double(faces);
+    }
+
+    /// From the voxel `index` along ± the axis to gas of the lumen that has nothing but their blur
+    /// before it; 0: there is none.
+    int stepsToBareGas(std::size_t index, int axis, int sign) const {
+        const glm::ivec3 v = grid_.voxelAt(index);
+        const double stepMm = grid_.spacingMm()[axis];
+        const int within = sign > 0 ? grid_.size[axis] - 1 - v[axis] : v[axis];
+        double softMm = 0.0;
+        std::size_t at = index;
+        for (int step = 1; step <= within && step * stepMm <= farthestGasMm; ++step) {
+            at = stepped(at, axis, sign);
+            if (labels_[at] == std::uint8_t(LumenLabel::air))
+                return softMm <= thinnestWallMm ? step : 0;
+            if (labels_[at] != 0 || isStool(at)) return 0;
+            if (std::abs(hu_[at] - softHu_) < softSpreadHu) softMm += stepMm;
+        }
+        return 0;
+    }
+
+    /// Whether gas of the lumen lies so near along ± the axis, whatever is between.
+    bool hasGasWithin(std::size_t index, int axis, int sign, double mm) const {
+        const glm::ivec3 v = grid_.voxelAt(index);
+        const int within = sign > 0 ? grid_.size[axis] - 1 - v[axis] : v[axis];
+        const int most = std::min(within, int(mm / grid_.spacingMm()[axis]));
+        std::size_t at = index;
+        for (int step = 0; step < most; ++step) {
+            at = stepped(at, axis, sign);
+            if (labels_[at] == std::uint8_t(LumenLabel::air)) return true;
+        }
+        return false;
     }
 
     std::size_t stepped(std::size_t index, int axis, int sign) const {
@@ -165,34 +279,43 @@ private:
 
     const Grid grid_;
     const std::span<const std::int16_t> hu_;
+    const std::span<const std::uint8_t> content_;
     const std::span<std::uint8_t> labels_;
     const std::size_t strides_[3];
     const std::size_t largest_;
-    const double aboveHu_;
+    const double aboveHu_, softHu_, noiseSdHu_;
     std::vector<bool> barred_, seen_;
 };
 
 }  // namespace
 
 void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
-                    const TissueModel& tissue, std::span<const std::uint32_t> excluded,
-                    std::span<const std::uint32_t> bowel) {
-    StoolSearch search(labels, hu, tissue, excluded);
-    const auto labelBodiesOf = [&](const std::vector<std::uint32_t>& seeds, double contactShare) {
+                    const BowelContents& contents, const TissueModel& tissue,
+                    const OtherMaterial& other) {
+    StoolSearch search(labels, hu, contents, tissue);
+    for (const auto* voxels : {&other.surely, &other.aside, &other.bowel})
+        search.bar(*voxels, true);
+    const auto labelBodiesOf = [&](const std::vector<std::uint32_t>& seeds, const auto& isStool) {
+        search.forgetTaken();
         for (const std::uint32_t seed : seeds) {
             const std::vector<std::uint32_t> body = search.takeBody(seed);
-            if (search.hasSizeOfStool(body) && search.isWellTagged(body) &&
-                search.liesInLumen(body, contactShare))
-                search.label(body);
+            if (search.hasSizeOfStool(body) && isStool(body)) search.label(body);
         }
     };
-    search.bar(bowel, true);
-    labelBodiesOf(search.besideAir(), smallestContactShare);
-    if (bowel.empty()) return;
-    search.bar(bowel, false);
-    search.bar(excluded, true);
-    search.forgetTaken();
-    labelBodiesOf(search.besideAir(bowel), smallestBallContactShare);
+    labelBodiesOf(search.besideAir(), [&](const auto& body) {
+        return search.isWellTagged(body) && search.liesInLumen(body, smallestContactShare);
+    });
+    search.bar(other.bowel, false);
+    if (!other.bowel.empty())
+        labelBodiesOf(search.besideAir(other.bowel), [&](const auto& body) {
+            return search.isWellTagged(body) && search.liesInLumen(body, smallestBallContactShare);
+        });
+    search.bar(other.aside, false);
+    labelBodiesOf(search.besideAir(), [&](const auto& body) {
+        return (search.standsInGas(body) || search.isFilm(body)) &&
+               (search.isWellTagged(body) ||
+                (!search.mayBeNoise(body) && !search.isOvershoot(body)));
+    });
 }
 
 }  // namespace haustra::segmentation
