@@ -9,7 +9,9 @@
 #include "core/version.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -121,7 +123,6 @@ bool liesBehindUntagged(const WallEvidence& evidence, const Patch& patch) {
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
                                       const TextureModel* texture, const DetectOptions& options) {
     std::vector<float> distances;
-    std::vector<Patch> patches;
     if (texture) {
         const auto along = stripDirections(evidence.samples, colon.flat);
         const TextureStencil stencil(evidence.samples, along);
@@ -129,35 +130,49 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
         std::transform(evidence.rays.begin(), evidence.rays.end(), colors.begin(),
                        [](const BiopsyRay& ray) { return ray.color; });
         distances = textureDistances(evidence, stencil, colors, *texture, options.threads);
-        if (options.method.texture)
-            patches = patchesByTexture(evidence, distances, options.threads);
     }
-    if (options.method.shape) {
-        std::ranges::move(patchesByShape(evidence, evidence.shapes, {}, options.threads),
-                          std::back_inserter(patches));
-        std::ranges::move(
-            patchesByShape(evidence, evidence.broadShapes, broadLimits, options.threads),
-            std::back_inserter(patches));
-    }
-    const SampleTriangles triangles(evidence.samples);
-    const AlongColon alongColon(colon.flat, colon.centerline);
-    std::vector<std::optional<Candidate>> made(patches.size());
+    // Each takes mostly one thread, so they go side by side.
+    std::array<std::vector<Patch>, 3> made;
+    std::optional<SampleTriangles> triangles;
+    std::optional<AlongColon> alongColon;
+    const std::array<std::function<void()>, 5> parts{
+        [&] { triangles.emplace(evidence.samples); },
+        [&] { alongColon.emplace(colon.flat, colon.centerline); },
+        [&] {
+            if (texture && options.method.texture)
+                made[0] = patchesByTexture(evidence, distances, 1);
+        },
+        [&] {
+            if (options.method.shape) made[1] = patchesByShape(evidence, evidence.shapes, {}, 1);
+        },
+        [&] {
+            if (options.method.shape)
+                made[2] = patchesByShape(evidence, evidence.broadShapes, broadLimits, 1);
+        }};
+    parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part)
+            parts[part]();
+    });
+    std::vector<Patch> patches;
+    for (auto& some : made)
+        std::ranges::move(some, std::back_inserter(patches));
+    std::vector<std::optional<Candidate>> measured(patches.size());
     // Each thread takes patch after patch, as they differ in size by a thousand times.
     std::atomic<std::size_t> next = 0;
     const auto threads = std::size_t(threadCount(options.threads));
     parallelFor(threads, 1, options.threads, [&](std::size_t, std::size_t) {
         SampleNumbers numbers(evidence.samples.mesh.vertices.size());
         for (std::size_t n; (n = next++) < patches.size();) {
-            auto lesion =
-                standUp(evidence, triangles, std::move(patches[n]), colon.cleansed.grid(), numbers);
+            auto lesion = standUp(evidence, *triangles, std::move(patches[n]),
+                                  colon.cleansed.grid(), numbers);
             if (!lesion || liesBehindUntagged(evidence, lesion->patch)) continue;
             const FeatureVector features =
-                featuresOf(colon, evidence, alongColon, distances, *lesion, numbers);
-            made[n] = Candidate{*std::move(lesion), features};
+                featuresOf(colon, evidence, *alongColon, distances, *lesion, numbers);
+            measured[n] = Candidate{*std::move(lesion), features};
         }
     });
     std::vector<Candidate> candidates;
-    for (auto& candidate : made)
+    for (auto& candidate : measured)
         if (candidate) candidates.push_back(*std::move(candidate));
     return candidates;
 }

@@ -16,7 +16,7 @@ constexpr double leastRebuiltMm = 6.0, rebuiltVoxels = 2.5;
 
 // What nobody has seen because there is a bridge or a wall that was set up again.
 std::vector<std::uint8_t> inventedSamples(const PreparedColon& colon, const WallSamples& samples,
-                                          const std::vector<BiopsyRay>& rays) {
+                                          const std::vector<BiopsyRay>& rays, int threads) {
     const glm::dvec3 spacing = colon.lumen.grid().spacingMm();
     const double thinMm = rebuiltVoxels * std::max({spacing.x, spacing.y, spacing.z});
     const auto bridged = bridgedTriangles(colon.surface, colon.lumen);
@@ -26,13 +26,16 @@ std::vector<std::uint8_t> inventedSamples(const PreparedColon& colon, const Wall
         for (int n = 0; n < 3; ++n)
             invented[std::size_t(samples.mesh.triangles[t][n])] = 1;
     }
-    for (const RebuiltWallRecord& wall : colon.rebuilt) {
-        const double reachMm = std::max(leastRebuiltMm, std::sqrt(wall.areaMm2 / 3.14) + 3.0);
-        for (std::size_t v = 0; v < invented.size(); ++v) {
-            const double mm = glm::distance(samples.mesh.vertices[v], wall.placeMm);
-            if (mm < leastRebuiltMm || (mm < reachMm && rays[v].tissueMm < thinMm)) invented[v] = 1;
+    parallelFor(invented.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {
+        for (const RebuiltWallRecord& wall : colon.rebuilt) {
+            const double reachMm = std::max(leastRebuiltMm, std::sqrt(wall.areaMm2 / 3.14) + 3.0);
+            for (std::size_t v = begin; v < end; ++v) {
+                const double mm = glm::distance(samples.mesh.vertices[v], wall.placeMm);
+                if (mm < leastRebuiltMm || (mm < reachMm && rays[v].tissueMm < thinMm))
+                    invented[v] = 1;
+            }
         }
-    }
+    });
     return invented;
 }
 
@@ -114,17 +117,26 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
     const auto tell = [&](double share) {
         if (options.progress) options.progress(share);
     };
+    const int threads = threadCount(options.threads);
     WallEvidence evidence;
-    evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
-    tell(0.15);
-    evidence.smooth =
-        std::make_unique<const SmoothScan>(smoothedAround(colon, shapeSigmaMm, options.threads));
+    // Sampling takes mostly one thread, so the scan is smoothed beside it.
+    std::unique_ptr<const SmoothScan> broad;
+    const auto smoothed = [&](double sigmaMm) {
+        return std::make_unique<const SmoothScan>(
+            smoothedAround(colon, sigmaMm, std::max(1, threads - 1)));
+    };
+    parallelFor(2, 1, options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part) {
+            if (part == 0)
+                evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
+            else
+                evidence.smooth = smoothed(shapeSigmaMm), broad = smoothed(broadSigmaMm);
+        }
+    });
     tell(0.4);
     evidence.shapes = shapesOf(evidence.samples, *evidence.smooth, options.threads);
-    {
-        const SmoothScan broad = smoothedAround(colon, broadSigmaMm, options.threads);
-        evidence.broadShapes = shapesOf(evidence.samples, broad, options.threads);
-    }
+    evidence.broadShapes = shapesOf(evidence.samples, *broad, options.threads);
+    broad.reset();
     tell(0.6);
     const auto before = labelsBefore(colon, evidence.samples, evidence.shapes, options.threads);
     evidence.wet = samplesBehind(before, LumenLabel::tagged);
@@ -141,7 +153,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
                 evidence.rays[v] = castBiopsyRay(scan, table, evidence.samples.mesh.vertices[v],
                                                  glm::dvec3(evidence.shapes[v].intoWall));
         });
-    evidence.unseen = inventedSamples(colon, evidence.samples, evidence.rays);
+    evidence.unseen = inventedSamples(colon, evidence.samples, evidence.rays, options.threads);
     tell(1.0);
     return evidence;
 }
