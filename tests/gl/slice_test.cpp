@@ -40,7 +40,8 @@ TEST_F(Slices, PixelsAreTheWindowedTrilinearValue) {
                         const double expected =
                             edge < 0.0 ? 0.0 : windowed(trilinear(volume, voxel), view.window);
                         // A weight rounded to eight bits is off by 1/512 at most: of 4,024 HU from
-                        // voxel to voxel 1.3 grey values, by three weights 4.
+                        // voxel to voxel 1.3 grey values, by three weights 4. In the mean it is a
+                        // third of a grey value, and as many pixels are rounded otherwise.
                         ASSERT_NEAR(pixel(image, x, y), expected, near(0.56, 5.0))
                             << toString(plane) << " " << x << " " << y;
                         different += pixel(image, x, y) != int(std::lround(expected));
@@ -48,7 +49,7 @@ TEST_F(Slices, PixelsAreTheWindowedTrilinearValue) {
                         ASSERT_EQ(pixel(image, x, y, 0), pixel(image, x, y, 2));
                     }
                 }
-                EXPECT_LT(different, 90 * 70 * near(0.02, 0.2));
+                EXPECT_LT(different, 90 * 70 * near(0.02, 0.4));
                 EXPECT_TRUE(zoom > 1.0 || outside > 0);
             }
         }
