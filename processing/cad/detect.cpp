@@ -132,6 +132,7 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
         distances = textureDistances(evidence, stencil, colors, *texture, options.threads);
     }
     // Each takes mostly one thread, so they go side by side.
+    const int some = std::max(1, threadCount(options.threads) / 2);
     std::array<std::vector<Patch>, 3> made;
     std::optional<SampleTriangles> triangles;
     std::optional<AlongColon> alongColon;
@@ -140,22 +141,22 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
         [&] { alongColon.emplace(colon.flat, colon.centerline); },
         [&] {
             if (texture && options.method.texture)
-                made[0] = patchesByTexture(evidence, distances, 1);
+                made[0] = patchesByTexture(evidence, distances, some);
         },
         [&] {
-            if (options.method.shape) made[1] = patchesByShape(evidence, evidence.shapes, {}, 1);
+            if (options.method.shape) made[1] = patchesByShape(evidence, evidence.shapes, {}, some);
         },
         [&] {
             if (options.method.shape)
-                made[2] = patchesByShape(evidence, evidence.broadShapes, broadLimits, 1);
+                made[2] = patchesByShape(evidence, evidence.broadShapes, broadLimits, some);
         }};
     parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t part = begin; part < end; ++part)
             parts[part]();
     });
     std::vector<Patch> patches;
-    for (auto& some : made)
-        std::ranges::move(some, std::back_inserter(patches));
+    for (auto& each : made)
+        std::ranges::move(each, std::back_inserter(patches));
     std::vector<std::optional<Candidate>> measured(patches.size());
     // Each thread takes patch after patch, as they differ in size by a thousand times.
     std::atomic<std::size_t> next = 0;

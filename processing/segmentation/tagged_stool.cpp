@@ -16,12 +16,15 @@ constexpr double smallestContactShare = 0.25;
 // Of what is as wide as bowel: a loop that lies against the colon from outside shows it less.
 constexpr double smallestBallContactShare = 0.5;
 // A film on the wall: so much of it, so thin in the mean, so much of its surface facing gas with no
-// wall between, which is told by voxels no wider than this.
-constexpr double smallestFilmMm3 = 15.0, thickestFilmMm = 4.0, filmShare = 0.3, filmVoxelMm = 1.25,
-                 thickestFoldMm = 7.0, mostBetween = 0.2;
-// Between gas and film lies their blur alone, which passes soft tissue's HU within less than a
-// wall's thickness: two walls of bowel, or one and what is behind it, have 2 mm and more.
-constexpr double farthestGasMm = 3.2, thinnestWallMm = 1.3, softSpreadHu = 120.0;
+// wall between.
+constexpr double smallestFilmMm3 = 15.0, thickestFilmMm = 4.0, filmShare = 0.3;
+// From where gas is half tissue to where tagging begins: blur of 1.3 to 1.6 mm full width takes 0.7
+// mm to bright tagging and 1.3 mm to a dim film; with two walls of bowel between, 2 mm thick, it is
+// 1.6 mm and more. Narrow voxels tell these apart.
+constexpr double widestBlurMm = 1.4, filmVoxelMm = 1.25;
+// Beneath a fold's coat there is gas again, as there is across a film from rim to rim: of what
+// faces gas, so much may do both.
+constexpr double thickestFoldMm = 6.0, mostOverFold = 0.3;
 // Facing gas: a ball that rests on the wall does so with more, a layer on the wall with half.
 constexpr double standingShare = 0.6, widestCrumbMm = 10.0;
 constexpr double farFromNoise = 2.0;
@@ -43,6 +46,7 @@ public:
           largest_(std::size_t(largestMl * 1000.0 / grid_.voxelVolumeMm3())),
           aboveHu_(tissue.taggedAboveHu),
           softHu_(tissue.meanHu[int(Tissue::soft)]),
+          airBelowHu_(tissue.airBelowHu),
           noiseSdHu_(contents.gasSdHu),
           barred_(labels_.size(), false),
           seen_(labels_.size(), false) {}
@@ -144,22 +148,20 @@ public:
             double(body.size()) * grid_.voxelVolumeMm3() < smallestFilmMm3)
             return false;
         const double voxelMm3 = grid_.voxelVolumeMm3();
-        std::size_t faces = 0, bare = 0, between = 0;
+        std::size_t faces = 0, bare = 0, overFold = 0;
         double bareMm2 = 0.0;
         for (const std::uint32_t index : body) {
             visitFaces(grid_, index, [&](std::size_t m, int) { faces += !isStool(m); });
-            bool isBetween = false;
             for (int axis = 0; axis < 3; ++axis) {
                 for (const int sign : {-1, 1}) {
                     if (stepsToBareGas(index, axis, sign) == 0) continue;
                     ++bare, bareMm2 += voxelMm3 / spacing[axis];
-                    isBetween = isBetween || hasGasWithin(index, axis, -sign, thickestFoldMm);
+                    overFold += hasGasBeneath(index, axis, -sign);
                 }
             }
-            between += isBetween;
         }
         return double(bare) >= filmShare * double(faces) &&
-               double(between) <= mostBetween * double(body.size()) &&
+               double(overFold) <= mostOverFold * double(bare) &&
                double(body.size()) * voxelMm3 <= thickestFilmMm * bareMm2;
     }
 
@@ -229,27 +231,36 @@ private:
         const glm::ivec3 v = grid_.voxelAt(index);
         const double stepMm = grid_.spacingMm()[axis];
         const int within = sign > 0 ? grid_.size[axis] - 1 - v[axis] : v[axis];
-        double softMm = 0.0;
+        double beginsAt = 0.0,
+               hu = hu_[index];  // steps to where tagging begins; HU one step before
         std::size_t at = index;
-        for (int step = 1; step <= within && step * stepMm <= farthestGasMm; ++step) {
+        for (int step = 1; step <= within; ++step) {
             at = stepped(at, axis, sign);
-            if (labels_[at] == std::uint8_t(LumenLabel::air))
-                return softMm <= thinnestWallMm ? step : 0;
-            if (labels_[at] != 0 || isStool(at)) return 0;
-            if (std::abs(hu_[at] - softHu_) < softSpreadHu) softMm += stepMm;
+            if (isStool(at) || barred_[at]) return 0;
+            const double next = hu_[at];
+            if (step == 1) beginsAt = next < aboveHu_ ? (hu - aboveHu_) / (hu - next) : 1.0;
+            if (next < airBelowHu_) {
+                const double gasAt = step - 1 + (hu - airBelowHu_) / (hu - next);
+                const bool isBlur = (gasAt - beginsAt) * stepMm <= widestBlurMm;
+                return isBlur && labels_[at] == std::uint8_t(LumenLabel::air) ? step : 0;
+            }
+            if ((step - beginsAt) * stepMm > widestBlurMm) return 0;
+            hu = next;
         }
         return 0;
     }
 
-    /// Whether gas of the lumen lies so near along ± the axis, whatever is between.
-    bool hasGasWithin(std::size_t index, int axis, int sign, double mm) const {
+    /// Whether along ± the axis, beyond the stool that the voxel `index` is of, gas of the lumen is
+    /// no farther than a fold is thick.
+    bool hasGasBeneath(std::size_t index, int axis, int sign) const {
         const glm::ivec3 v = grid_.voxelAt(index);
         const int within = sign > 0 ? grid_.size[axis] - 1 - v[axis] : v[axis];
-        const int most = std::min(within, int(mm / grid_.spacingMm()[axis]));
+        int left = int(thickestFoldMm / grid_.spacingMm()[axis]);
         std::size_t at = index;
-        for (int step = 0; step < most; ++step) {
+        for (int step = 0; step < within && left > 0; ++step) {
             at = stepped(at, axis, sign);
             if (labels_[at] == std::uint8_t(LumenLabel::air)) return true;
+            if (!isStool(at)) --left;
         }
         return false;
     }
@@ -283,7 +294,7 @@ private:
     const std::span<std::uint8_t> labels_;
     const std::size_t strides_[3];
     const std::size_t largest_;
-    const double aboveHu_, softHu_, noiseSdHu_;
+    const double aboveHu_, softHu_, airBelowHu_, noiseSdHu_;
     std::vector<bool> barred_, seen_;
 };
 
@@ -310,6 +321,7 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
         labelBodiesOf(search.besideAir(other.bowel), [&](const auto& body) {
             return search.isWellTagged(body) && search.liesInLumen(body, smallestBallContactShare);
         });
+    search.bar(other.bowel, true);
     search.bar(other.aside, false);
     labelBodiesOf(search.besideAir(), [&](const auto& body) {
         return (search.standsInGas(body) || search.isFilm(body)) &&

@@ -2,7 +2,9 @@
 
 #include "core/grid.h"
 
+#include <cmath>
 #include <functional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -55,8 +57,9 @@ struct Scene {
         });
     }
     // Of the voxels of a kind, the share that is labelled tagged once stool is added.
-    double taggedShare(const std::function<bool(glm::ivec3)>& of) {
-        segmentation::addTaggedStool(labels, hu, contents, tissue, {});
+    double taggedShare(const std::function<bool(glm::ivec3)>& of,
+                       const segmentation::OtherMaterial& other = {}) {
+        segmentation::addTaggedStool(labels, hu, contents, tissue, other);
         int all = 0, tagged = 0;
         each([&](std::size_t n, glm::ivec3 v) {
             if (!of(v)) return;
@@ -65,6 +68,14 @@ struct Scene {
         });
         EXPECT_GT(all, 0);
         return double(tagged) / all;
+    }
+    // The same where they are no lump of stool.
+    double taggedShareByGas(const std::function<bool(glm::ivec3)>& of) {
+        segmentation::OtherMaterial other;
+        each([&](std::size_t n, glm::ivec3 v) {
+            if (of(v)) other.aside.push_back(std::uint32_t(n));
+        });
+        return taggedShare(of, other);
     }
 };
 
@@ -91,14 +102,21 @@ TEST(TaggedStool, AFilmOnTheWallIsOfTheLumen) {
 
 // Between gas and gas: with its coat a fold would be gone.
 TEST(TaggedStool, ACoatedFoldIsLeftAlone) {
-    Scene scene(LumenLabel::air);
-    const auto inCoat = [](glm::ivec3 v) {
-        return v.x == 12 && v.y >= 5 && v.y < 19 && v.z >= wallBelow && v.z < wallBelow + 12;
-    };
-    const auto inFold = [&](glm::ivec3 v) { return inCoat(v - glm::ivec3(1, 0, 0)); };
-    scene.put(40, segmentation::Content::tissue, inFold);
-    scene.put(240, segmentation::Content::tagged, inCoat);
-    EXPECT_EQ(scene.taggedShare(inCoat), 0.0);
+    for (const int coatVoxels : {1, 2, 4}) {
+        Scene scene(LumenLabel::air);
+        const auto between = [](glm::ivec3 v, int from, int to) {
+            return v.x >= from && v.x < to && v.y >= 4 && v.y < 20 && v.z >= wallBelow &&
+                   v.z < wallBelow + 12;
+        };
+        const auto inCoat = [&](glm::ivec3 v) { return between(v, 12 - coatVoxels, 12); };
+        const auto inFold = [&](glm::ivec3 v) { return between(v, 12, 15); };
+        scene.put(300, segmentation::Content::tagged, inCoat);
+        scene.put(40, segmentation::Content::tissue, inFold);
+        scene.each([&](std::size_t n, glm::ivec3 v) {
+            if (inCoat(v)) scene.hu.writable()[n] = 300;
+        });
+        EXPECT_EQ(scene.taggedShareByGas(inCoat), 0.0) << coatVoxels;
+    }
 }
 
 // In wide voxels a thin wall is blur, too.
@@ -108,12 +126,38 @@ TEST(TaggedStool, InWideVoxelsAFilmIsLeftAlone) {
     EXPECT_EQ(scene.taggedShare(inLayer), 0.0);
 }
 
-// Behind 1.5 mm of wall: a loop that is pressed flat, or a rib.
+// Behind 2 mm of wall, blurred as a scanner does: a loop that is pressed flat, or a rib. Between
+// two such bodies the walk passes few voxels of soft tissue's own HU.
 TEST(TaggedStool, ALayerBehindAThinWallIsLeftAlone) {
-    Scene scene(LumenLabel::air);
-    const auto behind = [](glm::ivec3 v) { return inLayer(v + glm::ivec3(0, 0, 3)); };
-    scene.put(700, segmentation::Content::tagged, behind);
-    EXPECT_EQ(scene.taggedShare(behind), 0.0);
+    for (const double wallMm : {0.0, 2.0, 2.5}) {
+        for (const double shiftMm : {0.0, 0.2, 0.4, 0.6}) {
+            Scene scene(LumenLabel::air);
+            constexpr double sdMm = 0.6;
+            const auto above = [&](double mm) {
+                return 0.5 * std::erfc(-mm / (sdMm * std::sqrt(2.0)));
+            };
+            // Gas above the plane, the wall beneath it, then 3 mm of tagging, then tissue.
+            const double surfaceMm = 0.75 * wallBelow + shiftMm;
+            std::vector<std::uint8_t> bright(scene.hu.grid().voxelCount());
+            scene.each([&](std::size_t n, glm::ivec3 v) {
+                const double deep = surfaceMm - 0.75 * v.z;
+                const double hu = 40.0 - 1030.0 * above(-deep) +
+                                  660.0 * (above(deep - wallMm) - above(deep - wallMm - 3.0));
+                scene.hu.writable()[n] = std::int16_t(std::lround(hu));
+                const bool gas = hu < scene.tissue.airBelowHu;
+                scene.labels.writable()[n] =
+                    std::uint8_t(gas ? LumenLabel::air : LumenLabel::outside);
+                bright[n] = hu > scene.tissue.taggedAboveHu;
+                scene.contents.content.writable()[n] =
+                    std::uint8_t(gas         ? segmentation::Content::gas
+                                 : bright[n] ? segmentation::Content::tagged
+                                             : segmentation::Content::tissue);
+            });
+            const double share = scene.taggedShareByGas(
+                [&](glm::ivec3 v) { return bright[scene.hu.grid().index(v)] != 0; });
+            EXPECT_EQ(share, wallMm == 0.0 ? 1.0 : 0.0) << wallMm << " mm, shifted by " << shiftMm;
+        }
+    }
 }
 
 TEST(TaggedStool, NoiseIsNoFilm) {
@@ -129,11 +173,31 @@ TEST(TaggedStool, ASharpKernelsOvershootIsNoCrumb) {
     EXPECT_EQ(scene.taggedShare(inCrumb), 0.0);
 }
 
-// A small polyp under fluid, as bright as tagging by its blur alone, has fluid around, not gas.
+// A small polyp under fluid, as bright as tagging by its blur alone, has fluid around and gas on
+// one side at most.
 TEST(TaggedStool, WhatIsBrightByItsBlurUnderFluidIsNoCrumb) {
     Scene scene(LumenLabel::tagged);
+    scene.each([&](std::size_t n, glm::ivec3 v) {
+        if (v.z < wallBelow + 4) return;
+        scene.labels.writable()[n] = std::uint8_t(LumenLabel::air);
+        scene.hu.writable()[n] = -990;
+    });
     scene.put(240, segmentation::Content::tagged, inCrumb);
     EXPECT_EQ(scene.taggedShare(inCrumb), 0.0);
+}
+
+// What is surely something else is of no body; what is as wide as bowel is no film.
+TEST(TaggedStool, WhatIsOtherMaterialIsLeftAlone) {
+    for (int which = 0; which < 3; ++which) {
+        Scene scene(LumenLabel::air);
+        scene.put(240, segmentation::Content::tagged, inLayer);
+        segmentation::OtherMaterial other;
+        auto& list = which == 0 ? other.surely : which == 1 ? other.bowel : other.aside;
+        scene.each([&](std::size_t n, glm::ivec3 v) {
+            if (inLayer(v)) list.push_back(std::uint32_t(n));
+        });
+        EXPECT_EQ(scene.taggedShare(inLayer, other), which == 2 ? 1.0 : 0.0) << which;
+    }
 }
 
 }  // namespace
