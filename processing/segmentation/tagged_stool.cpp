@@ -27,6 +27,7 @@ constexpr double widestBlurMm = 1.4, filmVoxelMm = 1.25;
 constexpr double thickestFoldMm = 6.0, mostOverFold = 0.3;
 // Facing gas: a ball that rests on the wall does so with more, a layer on the wall with half.
 constexpr double standingShare = 0.6, widestCrumbMm = 10.0;
+// As far over the threshold as noise is there, times this: what is brighter is no noise.
 constexpr double farFromNoise = 2.0;
 constexpr double smallestCoreShare = 0.1;
 constexpr double wellAboveHu = 60.0;
@@ -231,18 +232,19 @@ private:
         const glm::ivec3 v = grid_.voxelAt(index);
         const double stepMm = grid_.spacingMm()[axis];
         const int within = sign > 0 ? grid_.size[axis] - 1 - v[axis] : v[axis];
-        double beginsAt = 0.0,
-               hu = hu_[index];  // steps to where tagging begins; HU one step before
+        double beginsAt = 0.0;   // in steps: where tagging does
+        double hu = hu_[index];  // one step before
         std::size_t at = index;
         for (int step = 1; step <= within; ++step) {
             at = stepped(at, axis, sign);
-            if (isStool(at) || barred_[at]) return 0;
+            const bool isAir = labels_[at] == std::uint8_t(LumenLabel::air);
+            if (isStool(at) || barred_[at] || (labels_[at] != 0 && !isAir)) return 0;
             const double next = hu_[at];
             if (step == 1) beginsAt = next < aboveHu_ ? (hu - aboveHu_) / (hu - next) : 1.0;
             if (next < airBelowHu_) {
                 const double gasAt = step - 1 + (hu - airBelowHu_) / (hu - next);
                 const bool isBlur = (gasAt - beginsAt) * stepMm <= widestBlurMm;
-                return isBlur && labels_[at] == std::uint8_t(LumenLabel::air) ? step : 0;
+                return isBlur && isAir ? step : 0;
             }
             if ((step - beginsAt) * stepMm > widestBlurMm) return 0;
             hu = next;
