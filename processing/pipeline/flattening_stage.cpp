@@ -15,9 +15,11 @@ namespace product = store::product;
 using store::Attributes;
 
 // Raise it whenever the flat map changes for the same input and options.
-constexpr int flatteningVersion = 5;
+constexpr int flatteningVersion = 6;
 // The chord at the centerline's ends that tells where it looks.
 constexpr double endWindowMm = 6.0;
+// Fingers that a conformal map has no room for are 0.5 % of a colon's wall or less.
+constexpr double largePouchShare = 0.02;
 
 std::string spreadText(const flatten::Spread& spread) {
     return exactText(spread.mean) + "," + exactText(spread.p95) + "," + exactText(spread.p999) +
@@ -39,6 +41,14 @@ double nearestArcMm(const Centerline& centerline, const glm::dvec3& placeMm) {
         return glm::distance(point.positionMm, placeMm);
     });
     return nearest->arcMm;
+}
+
+// Of the camera that looks at the wall there.
+double arcAtRowMm(const FlatMap& map, double y) {
+    const auto nearest = std::ranges::min_element(
+        map.flat, {}, [&](const glm::dvec2& at) { return std::abs(at.y - y); });
+    const auto vertex = std::size_t(nearest - map.flat.begin());
+    return map.cameras[std::size_t(map.camera[vertex])].arcMm;
 }
 
 // Of each spread: mean, 95 %, 99.9 %, largest.
@@ -85,6 +95,14 @@ Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedT
             printed("%zu blind pouches of %.0f mm² in all are mapped apart; outside them ",
                     flat.pouches, flat.pouchAreaMm2) +
             distortionNote(flat.outside));
+        if (flat.pouchAreaMm2 > largePouchShare * flat.wallAreaMm2) {
+            notes.push_back(printed(
+                "warning: %.0f %% of the wall lies in blind pouches, which the strip shows as "
+                "dots: the largest, of %.0f mm², begins at %.0f mm of the centerline. Look at it "
+                "from within; the course may pass by a part of the colon",
+                100.0 * flat.pouchAreaMm2 / flat.wallAreaMm2, flat.largestPouchMm2,
+                arcAtRowMm(flat.map, flat.largestPouchY)));
+        }
     }
     if (flat.areaWeight > 0.0) {
         setDistortion(attributes, "conformal-", flat.conformal);

@@ -200,6 +200,68 @@ TEST(Pouches, MayBeAsLargeAsAColon) {
     }
 }
 
+/// A colon with polyps and diverticula whose centerline takes a shortcut: closed at its far end,
+/// with the second hole in its side after `rows` of its 300 rows. The rest is one blind pouch with
+/// fingers of its own.
+TriMesh passedByColon(int rows, unsigned seed) {
+    constexpr int around = 48, along = 300;
+    std::vector<Finger> fingers;
+    for (int n = 0; n < 60; ++n) {
+        const int row = 4 + n / 3 * 14;
+        if (row < rows - 8 || row > rows + 8)
+            fingers.push_back({16 * (n % 3) + n % 5, row, 4, 2.0 + 0.5 * (n % 4), 3.0 + n % 20});
+    }
+    TriMesh mesh = fingeredTube(around, along, stepMm, fingers, 0.05, seed).mesh;
+    const auto ofHole = [&](const glm::ivec3& t) {
+        glm::dvec3 middle(0.0);
+        for (int c = 0; c < 3; ++c)
+            middle += mesh.vertices[std::size_t(t[c])] / 3.0;
+        return middle.x > 0.0 && std::abs(middle.y) < 4.0 &&
+               std::abs(middle.z - stepMm * rows) < 4.0;
+    };
+    std::erase_if(mesh.triangles, ofHole);
+    // The far rim: its edges have one triangle each, and lie at the highest z.
+    const double end = stepMm * along;
+    const auto halfedges = mesh::HalfedgeMesh::of(mesh);
+    const int tip = int(mesh.vertices.size());
+    for (int h = 0; halfedges && h < halfedges->halfedgeCount(); ++h) {
+        const int from = halfedges->origin(h), to = halfedges->target(h);
+        if (halfedges->opposite(h) >= 0 || mesh.vertices[std::size_t(from)].z != end ||
+            mesh.vertices[std::size_t(to)].z != end)
+            continue;
+        mesh.triangles.push_back({to, from, tip});
+    }
+    mesh.vertices.push_back({0.0, 0.0, end + 4.0});
+    return mesh;
+}
+
+/// What a course passes by lies on the strip without a fold all the same, fingers and all, and the
+/// pouch is told for what it is.
+TEST(Pouches, MayHaveFingersHoweverLarge) {
+    for (const int rows : {20, 120, 250}) {
+        const TriMesh tube = passedByColon(rows, unsigned(rows));
+        const auto made = flattenTube(tube, 0);
+        ASSERT_TRUE(made) << rows << " rows: " << describe(made.error());
+        EXPECT_TRUE(foldedTriangles(made->map).empty());
+        double flat = 0.0;
+        TriMesh beyond{made->map.surface.vertices, {}};
+        for (std::size_t t = 0; t < made->map.surface.triangles.size(); ++t) {
+            flat += flatArea(made->map, t);
+            const glm::ivec3 corners = made->map.surface.triangles[t];
+            // More than two circumferences past the hole.
+            if (beyond.vertices[std::size_t(corners.x)].z > stepMm * (rows + 100))
+                beyond.triangles.push_back(corners);
+        }
+        EXPECT_NEAR(flat, made->map.height, 1e-9);
+        EXPECT_NEAR(areaMm2(made->map.surface), areaMm2(tube), 1e-9 * areaMm2(tube));
+        EXPECT_NEAR(made->wallAreaMm2, areaMm2(tube), 1e-9 * areaMm2(tube));
+        EXPECT_TRUE(mesh::HalfedgeMesh::of(made->map.surface));
+        EXPECT_GE(made->largestPouchMm2, areaMm2(beyond));
+        EXPECT_LE(made->largestPouchMm2, made->pouchAreaMm2);
+        EXPECT_LT(made->largestPouchY, made->map.height);
+    }
+}
+
 /// Setting a pouch in moves no vertex outside of it.
 TEST(Pouches, LeaveTheMapOutsideAsItIs) {
     const TriMesh tube = oneFinger(240.0).mesh;

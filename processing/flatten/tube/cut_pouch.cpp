@@ -36,8 +36,8 @@ constexpr double mostFall = 7.0;
 /// A pouch of more triangles than this is not embedded where one in a hundred is folded in the
 /// target; one of more than the other, whose system would cost more than all else, not at all.
 constexpr std::size_t mostFolded = 2000, mostEmbedded = 8000;
-/// A grid of more triangles' vertices is finer than any hole's share of the lattice.
-constexpr std::size_t mostDrawn = 8000;
+/// What has more triangles is drawn on a grid only where all else has failed.
+constexpr std::size_t usuallyDrawn = 8000;
 /// So many triangles that are too thin, and one in fifty, are widened one by one.
 constexpr std::size_t fewThin = 30;
 
@@ -154,23 +154,35 @@ public:
         // In which corners 0, 1 and 2 have their own weights.
         const glm::dmat3 weights = glm::inverse(
             glm::dmat3(glm::dvec3((*drawn)[0]), glm::dvec3((*drawn)[1]), glm::dvec3((*drawn)[2])));
+        // Where the ellipses around the corners look in the ring's directions.
+        std::vector<double> ellipse;
+        for (std::size_t n = 0; n < ring_; ++n) {
+            const int c = corners->of[n];
+            const glm::dvec2 outward(std::cos(angles[n]), std::sin(angles[n]));
+            ellipse.push_back(
+                std::atan2(glm::dot(corners->at[c] - corners->at[(c + 2) % 3], outward),
+                           glm::dot(corners->at[c] - corners->at[(c + 1) % 3], outward)));
+        }
         const double clear = clearance(borderFlat_, *centre_);
         for (const double share : {0.9, 0.75, 0.5, 0.25}) {
             for (const double round : {0.125, 0.03125, 0.0078125}) {
+                const auto inWeights = [&](const glm::dvec3& w) {
+                    return share * clear * (1.0 - round) *
+                           (w.x * corners->at[0] + w.y * corners->at[1] + w.z * corners->at[2]);
+                };
+                const Grid grid = gridFor(*centre_, inWeights(weights * glm::dvec3(-1.0, 1.0, 0.0)),
+                                          inWeights(weights * glm::dvec3(-1.0, 0.0, 1.0)),
+                                          double(count - 1), units);
                 places_.clear();
                 for (std::size_t n = 0; n < ring_; ++n) {
-                    const glm::dvec2 outward(std::cos(angles[n]), std::sin(angles[n]));
-                    places_.push_back((1.0 - round) * corners->at[std::size_t(corners->of[n])] +
-                                      round * outward);
+                    const int c = corners->of[n];
+                    const glm::dvec2 place = grid.beyondCorner(c, (*drawn)[std::size_t(c)],
+                                                               ellipse[n], share * clear * round);
+                    places_.push_back(glm::round(place * units) / units);
                 }
-                for (std::size_t n = ring_; n < placesMm_.size(); ++n) {
-                    const glm::dvec3 w = weights * glm::dvec3((*drawn)[std::size_t(number[n])]);
-                    places_.push_back((1.0 - round) * (w.x * corners->at[0] + w.y * corners->at[1] +
-                                                       w.z * corners->at[2]));
-                }
-                for (glm::dvec2& at : places_)
-                    at = *centre_ + share * clear * at;
-                if (fillCollar(units) && allUpright(innerTriangles(), units)) return true;
+                for (std::size_t n = ring_; n < placesMm_.size(); ++n)
+                    places_.push_back(grid.at((*drawn)[std::size_t(number[n])]));
+                if (fillCollar(units) && gridUpright(units)) return true;
             }
         }
         return false;
@@ -197,6 +209,46 @@ private:
         std::vector<int> corners;
         int source;
     };
+
+    /// Where a grid's points lie: on the lattice, so that nothing is rounded.
+    struct Grid {
+        glm::dvec2 origin, second, third;  ///< and the steps along those coordinates
+
+        glm::dvec2 at(glm::ivec3 place) const {
+            return origin + double(place.y) * second + double(place.z) * third;
+        }
+
+        /// A place for one of the vertices that corner `c`, which is `corner`, stands for:
+        /// corner − p (a cos φ + b sin φ), where a and b are the steps from it along its sides,
+        /// 0 < φ < π / 2, and p so that the longer one is `away`. That lies beyond both sides, and
+        /// a triangle of the corner and two of the grid's places has more area with it in the
+        /// corner's place; two such vertices, φ ascending, make upright triangles with any of them.
+        glm::dvec2 beyondCorner(int c, glm::ivec3 corner, double phi, double away) const {
+            const glm::dvec2 steps[3] = {{0.0, 0.0}, second, third};
+            const glm::dvec2 a = steps[(c + 1) % 3] - steps[c], b = steps[(c + 2) % 3] - steps[c];
+            const double p = away / std::max(glm::length(a), glm::length(b));
+            return at(corner) - p * (std::cos(phi) * a + std::sin(phi) * b);
+        }
+    };
+
+    /// With about these steps, and three coordinates of `sum` / 3 at about `centre`.
+    static Grid gridFor(glm::dvec2 centre, glm::dvec2 second, glm::dvec2 third, double sum,
+                        double units) {
+        const auto onLattice = [&](glm::dvec2 at) { return glm::round(at * units) / units; };
+        Grid grid{{}, onLattice(second), onLattice(third)};
+        grid.origin = onLattice(centre - sum / 3.0 * (grid.second + grid.third));
+        return grid;
+    }
+
+    /// Whether all that is within the ring is upright, whose places are the lattice's own: those
+    /// of a pouch that is still to be rolled up with what it is on will not be.
+    bool gridUpright(double units) const {
+        if (depth_ > 0) return allUpright(innerTriangles(), units);
+        return std::ranges::all_of(inner_, [&](const Piece& piece) {
+            const auto at = [&](int corner) { return places_[std::size_t(piece.corners[corner])]; };
+            return cross(at(1) - at(0), at(2) - at(0)) > 0.0;
+        });
+    }
 
     bool isBorder(int h) const { return !inside_[std::size_t(halfedges_.opposite(h) / 3)]; }
 
@@ -727,7 +779,7 @@ double roundness(const TriMesh& tube, const HalfedgeMesh& halfedges, const Perio
 std::optional<PlacedPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfedges,
                                   const PeriodicMap& map, const std::vector<char>& inside,
                                   const Pouch& pouch, int depth, double roundness, std::size_t most,
-                                  PouchWork& work) {
+                                  Grids grids, PouchWork& work) {
     const double units = flatUnitsPerCircumference(map.height);
     std::optional<CutPouch> shaped(std::in_place, tube, halfedges, inside, pouch, depth, &work);
     if (!(shaped->roundness(map) > roundness)) return std::nullopt;
@@ -736,6 +788,7 @@ std::optional<PlacedPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfe
     std::vector<char> within = inside;
     trim(tube, halfedges, map, within, trimmed);
     std::optional<CutPouch> drawn(std::in_place, tube, halfedges, within, trimmed, depth, &work);
+    const std::size_t mostDrawn = grids == Grids::any ? trimmed.triangles.size() : usuallyDrawn;
     if (trimmed.triangles.size() <= mostDrawn && drawn->roundness(map) > 0.0 &&
         drawn->placeOnGrid(units)) {
         return std::move(*drawn).result();

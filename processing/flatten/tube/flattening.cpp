@@ -1,9 +1,11 @@
 #include "flatten/tube/flattening.h"
 
+#include "core/flood_fill.h"
 #include "core/printed_text.h"
 #include "flatten/tube/flip_repair.h"
 #include "flatten/tube/pouches.h"
 #include "flatten/tube/unified_flattening.h"
+#include "mesh/halfedge_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -47,7 +49,7 @@ struct Mapped {
     std::size_t pouches = 0;
     PouchWork work{};
 
-    /// What has had discs set in. Those around folds (`pouch` false) are no pouches.
+    /// What has had discs set in. Small ones around folds (`pouch` false) are no pouches.
     void take(SetIn made, bool pouch) {
         std::vector<char> now(made.apart.size());
         for (std::size_t t = 0; t < now.size(); ++t) {
@@ -61,15 +63,10 @@ struct Mapped {
         apart = std::move(now);
         if (pouch) pouches += made.pouches;
     }
-    double pouchAreaMm2() const {
-        double twice = 0.0;
-        for (std::size_t t = 0; t < apart.size(); ++t) {
-            if (!apart[t]) continue;
-            const glm::dvec3 a = tube.vertices[std::size_t(tube.triangles[t].x)];
-            twice += glm::length(glm::cross(tube.vertices[std::size_t(tube.triangles[t].y)] - a,
+    double areaMm2(std::size_t t) const {
+        const glm::dvec3 a = tube.vertices[std::size_t(tube.triangles[t].x)];
+        return 0.5 * glm::length(glm::cross(tube.vertices[std::size_t(tube.triangles[t].y)] - a,
                                             tube.vertices[std::size_t(tube.triangles[t].z)] - a));
-        }
-        return 0.5 * twice;
     }
     Distortion measured(bool outside = false) const {
         if (!outside) {
@@ -88,8 +85,42 @@ struct Mapped {
     }
 };
 
+/// Sums up the pouches' wall, and finds the largest of them: triangles that hang together.
+void measurePouches(const Mapped& mapped, Flattening& made) {
+    for (std::size_t t = 0; t < mapped.apart.size(); ++t) {
+        made.wallAreaMm2 += mapped.areaMm2(t);
+        if (mapped.apart[t]) made.pouchAreaMm2 += mapped.areaMm2(t);
+    }
+    made.pouches = mapped.pouches;
+    const auto halfedges = mesh::HalfedgeMesh::of(mapped.tube);
+    if (!(made.pouchAreaMm2 > 0.0) || !halfedges) return;
+    std::vector<char> waiting = mapped.apart;
+    for (std::size_t seed = 0; seed < waiting.size(); ++seed) {
+        if (!std::exchange(waiting[seed], char(0))) continue;
+        std::vector<int> pouch{int(seed)};
+        double areaMm2 = 0.0;
+        int border = -1;  // a half-edge
+        const auto acrossEdges = [&](int t, const auto& visit) {
+            areaMm2 += mapped.areaMm2(std::size_t(t));
+            for (int h = 3 * t; h < 3 * t + 3; ++h) {
+                const int other = halfedges->opposite(h) / 3;  // pouches do not reach the rims
+                if (mapped.apart[std::size_t(other)]) {
+                    visit(other);
+                } else {
+                    border = h;
+                }
+            }
+        };
+        floodFill(pouch, acrossEdges,
+                  [&](int t) { return std::exchange(waiting[std::size_t(t)], char(0)) != 0; });
+        if (areaMm2 <= made.largestPouchMm2) continue;
+        made.largestPouchMm2 = areaMm2;
+        made.largestPouchY = mapped.map.flat[std::size_t(halfedges->origin(border))].y;
+    }
+}
+
 /// Blind fingers apart, the rest repaired. Returns the vertices that the repair moved.
-int makeRoom(Mapped& mapped) {
+int makeRoom(Mapped& mapped, Grids grids) {
     const std::vector<Pouch> pouches = findPouches(mapped.tube, mapped.map);
     std::vector<char> apart;
     if (!pouches.empty()) apart.assign(mapped.tube.triangles.size(), 0);
@@ -98,7 +129,8 @@ int makeRoom(Mapped& mapped) {
             apart[std::size_t(t)] = 1;
     }
     const int repaired = repairMap(mapped.map, mapped.tube, apart);
-    if (!pouches.empty()) mapped.take(setIn(mapped.tube, mapped.map, pouches, mapped.work), true);
+    if (!pouches.empty())
+        mapped.take(setIn(mapped.tube, mapped.map, pouches, mapped.work, 0, grids), true);
     return repaired;
 }
 
@@ -116,7 +148,7 @@ Cut cutAt(const Mapped& mapped, double seam) {
 
 /// The strip cut open; where that leaves folds, with a seam a hair aside, and discs around the
 /// folds set in.
-Cut cutOpen(Mapped& mapped, double radiusFactor, const SeamOptions& options) {
+Cut cutOpen(Mapped& mapped, double radiusFactor, Grids grids, const SeamOptions& options) {
     constexpr int rounds = 40;
     constexpr double aside = 1.0 / 5760.0;  // an eighth of a column of bestSeam's
     Cut cut = cutAt(mapped, bestSeam(mapped.tube, mapped.map, options));
@@ -141,9 +173,9 @@ Cut cutOpen(Mapped& mapped, double radiusFactor, const SeamOptions& options) {
             cut = moved;
             continue;
         }
-        SetIn mended = mendFolds(mapped.tube, mapped.map, stay, radiusFactor, mapped.work);
-        if (mended.pouches == 0) break;
-        mapped.take(std::move(mended), false);
+        SetIn mended = mendFolds(mapped.tube, mapped.map, stay, radiusFactor, grids, mapped.work);
+        if (mended.pouches + mended.spread == 0) break;
+        mapped.take(std::move(mended), grids == Grids::any);
         cut = cutAt(mapped, cut.seam);
     }
     return cut;
@@ -151,13 +183,13 @@ Cut cutOpen(Mapped& mapped, double radiusFactor, const SeamOptions& options) {
 
 /// The strip cut open; where folds stay, all over again with holes of other radii, as one in
 /// between may be round enough to be filled; each try has as much more work.
-Cut cutOpen(Mapped& mapped, const SeamOptions& options) {
+Cut cutOpen(Mapped& mapped, Grids grids, const SeamOptions& options) {
     constexpr std::array<double, 3> radiusFactors{1.5, 1.25, 1.12};
     Mapped before = mapped;
     Cut cut;
     for (const double factor : radiusFactors) {
         mapped = before;
-        cut = cutOpen(mapped, factor, options);
+        cut = cutOpen(mapped, factor, grids, options);
         if (cut.folded.empty()) break;
         before.work.left += workPerTriangle * before.tube.triangles.size();
     }
@@ -238,8 +270,14 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
                   0,
                   {workPerTriangle * tube.triangles.size() + leastWork, 0}};
     std::iota(mapped.source.begin(), mapped.source.end(), 0);
-    made.repaired = makeRoom(mapped);
-    Cut cut = cutOpen(mapped, options.seam);
+    const Mapped bare = mapped;
+    Cut cut;
+    for (const Grids grids : {Grids::small, Grids::any}) {
+        mapped = bare;
+        made.repaired = makeRoom(mapped, grids);
+        cut = cutOpen(mapped, grids, options.seam);
+        if (cut.folded.empty()) break;
+    }
     if (!cut.folded.empty()) return foldsRemain(cut, options);
     made.conformal = made.distortion = mapped.measured();
     if (options.areaWeight > 0.0) {
@@ -250,7 +288,7 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
         if (auto traded = unifiedFlattening(mapped.tube, mapped.map, unified)) {
             Mapped weighted = mapped;
             weighted.map = std::move(*traded);
-            if (Cut again = cutOpen(weighted, options.seam); again.folded.empty()) {
+            if (Cut again = cutOpen(weighted, Grids::small, options.seam); again.folded.empty()) {
                 mapped = std::move(weighted);
                 cut = std::move(again);
                 made.areaWeight = options.areaWeight;
@@ -259,8 +297,7 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
         }
     }
     made.outside = mapped.pouches > 0 ? mapped.measured(true) : made.distortion;
-    made.pouches = mapped.pouches;
-    made.pouchAreaMm2 = mapped.pouchAreaMm2();
+    measurePouches(mapped, made);
     made.pouchWork = mapped.work.done;
     made.seam = cut.seam;
     made.map = std::move(cut.map);

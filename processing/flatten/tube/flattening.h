@@ -35,9 +35,11 @@ struct Flattening {
     double seamMismatch = 0.0;  ///< seamMismatch(map)
     int repaired = 0;           ///< vertices
     std::size_t pouches = 0;    ///< blind fingers that were mapped apart (pouches.h)
-    double pouchAreaMm2 = 0.0;
-    /// How many triangles were mapped apart, as often as they were: at most six for each of the
-    /// tube's, and 20,000.
+    double pouchAreaMm2 = 0.0, wallAreaMm2 = 0.0;  ///< of all triangles on the tube
+    double largestPouchMm2 = 0.0;
+    double largestPouchY = 0.0;  ///< where its border lies on the strip
+    /// How many triangles were mapped apart, as often as they were, in the try that succeeded: at
+    /// most six for each of the tube's, and 20,000, in the first; so much more in each later one.
     std::size_t pouchWork = 0;
     std::vector<char> isPouch;  ///< per triangle of `map`; empty where there are none
     /// `distortion` of all but the pouches, whose angles are not kept; the same where there are
@@ -49,7 +51,8 @@ struct Flattening {
 /// unifiedFlattening where it is asked for; bestSeam, cutAlongSeam, measureDistortion. `firstLoop`:
 /// a vertex on the loop that becomes y = 0, or −1. A map is given only if all its triangles are
 /// upright on the lattice that it is drawn on (foldedTriangles): discs around those that are not
-/// are mapped apart too, and the seam moves by a hair where it leaves splinters. Where weighting
+/// are mapped apart too, and the seam moves by a hair where it leaves splinters; where that is not
+/// enough, all over again with grids of any size. Where weighting
 /// areas fails or folds, the conformal map is given, with an areaWeight of 0. Fails (noResult)
 /// where folds remain, telling how many and the place of one, and as the functions named do. A tube
 /// without pouches has the very map of conformalTube.

@@ -31,7 +31,7 @@ constexpr double roomUnits = 64.0;
 class Setting {
 public:
     Setting(const TriMesh& tube, const PeriodicMap& map)
-        : tube_(tube), map_(map), made_{tube, map, {}, {}, 0}, gone_(tube.triangles.size(), 0) {}
+        : tube_(tube), map_(map), made_{tube, map, {}, {}}, gone_(tube.triangles.size(), 0) {}
 
     void take(const PlacedPouch& pouch) {
         ++made_.pouches;
@@ -62,7 +62,7 @@ public:
         }
     }
 
-    void count(std::size_t mended) { made_.pouches += mended; }
+    void countSpread(std::size_t clusters) { made_.spread += clusters; }
 
     SetIn finish() {
         made_.tube.triangles.clear();
@@ -112,7 +112,7 @@ private:
 std::optional<PlacedPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& halfedges,
                                      const PeriodicMap& map, const Spot& spot,
                                      const std::vector<char>& taken, Discs& discs,
-                                     double radiusFactor, PouchWork& work) {
+                                     double radiusFactor, Grids grids, PouchWork& work) {
     const double units = flatUnitsPerCircumference(map.height);
     const double most = largestRadiusAround(map, spot.middle);
     std::vector<char> inside(tube.triangles.size(), 0);
@@ -120,14 +120,16 @@ std::optional<PlacedPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& ha
          radius *= radiusFactor) {
         const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
         if (!disc) continue;
-        if (disc->triangles.size() > mostAround + 100 * spot.triangles.size()) break;
+        if (grids == Grids::small &&
+            disc->triangles.size() > mostAround + 100 * spot.triangles.size())
+            break;
         for (const int t : disc->triangles)
             inside[std::size_t(t)] = 1;
         const double clear = radius * units * roundness(tube, halfedges, map, inside, *disc);
         if (std::numbers::pi * clear * clear >
             roomUnits * roomUnits * double(disc->triangles.size())) {
             auto cut = placed(tube, halfedges, map, inside, *disc, 0, 0.0,
-                              spot.triangles.size() / 2, work);
+                              spot.triangles.size() / 2, grids, work);
             if (cut) return cut;
         }
         for (const int t : disc->triangles)
@@ -139,7 +141,7 @@ std::optional<PlacedPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& ha
 }  // namespace
 
 SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-            PouchWork& work, int depth) {
+            PouchWork& work, int depth, Grids grids) {
     Setting setting(tube, map);
     const auto halfedges = HalfedgeMesh::of(tube);
     std::vector<char> inside(tube.triangles.size(), 0);
@@ -148,7 +150,8 @@ SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch
         for (const int t : pouch.triangles)
             inside[std::size_t(t)] = 1;
         const auto most = std::size_t(mostThin * double(pouch.triangles.size()));
-        if (const auto cut = placed(tube, *halfedges, map, inside, pouch, depth, 0.0, most, work))
+        if (const auto cut =
+                placed(tube, *halfedges, map, inside, pouch, depth, 0.0, most, grids, work))
             setting.take(*cut);
         for (const int t : pouch.triangles)
             inside[std::size_t(t)] = 0;
@@ -157,7 +160,7 @@ SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch
 }
 
 SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
-                double radiusFactor, PouchWork& work) {
+                double radiusFactor, Grids grids, PouchWork& work) {
     PeriodicMap spread = map;
     const VertexStars stars(tube);
     const double units = flatUnitsPerCircumference(map.height);
@@ -173,7 +176,7 @@ SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<i
         }
     }
     Setting setting(tube, spread);
-    setting.count(mended);
+    setting.countSpread(mended);
     const auto halfedges = HalfedgeMesh::of(tube);
     if (!halfedges) return setting.finish();
     std::vector<char> taken(tube.triangles.size(), 0);
@@ -182,7 +185,7 @@ SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<i
         if (std::ranges::any_of(spot.triangles, [&](int t) { return taken[std::size_t(t)] != 0; }))
             continue;
         const auto cut =
-            leastDisc(tube, *halfedges, spread, spot, taken, discs, radiusFactor, work);
+            leastDisc(tube, *halfedges, spread, spot, taken, discs, radiusFactor, grids, work);
         if (!cut) continue;
         for (const int t : cut->triangles)
             taken[std::size_t(t)] = 1;

@@ -46,6 +46,10 @@ struct PouchWork {
     }
 };
 
+/// How many triangles may be drawn on one grid, which tells nothing of their shape: some thousand,
+/// or, where all else has failed, as many as the lattice has room for.
+enum class Grids { small, any };
+
 /// A map in which pouches have been set in. Their triangles are cut along a ring in them.
 struct SetIn {
     TriMesh tube;  ///< the vertices of the tube before, and new ones
@@ -53,6 +57,7 @@ struct SetIn {
     std::vector<int> sourceTriangle;  ///< per triangle: the one that it is, or is a part of
     std::vector<char> apart;          ///< per triangle: mapped apart
     std::size_t pouches = 0;          ///< how many; those with a border that could not be are left
+    std::size_t spread = 0;           ///< of mendFolds: clusters that got room where they are
 };
 
 /// Outside of the pouches the map stays as it is, to the bit. A pouch keeps its border's places,
@@ -66,21 +71,21 @@ struct SetIn {
 /// of their stars. A pouch that still comes out with a triangle that rounding to the lattice might
 /// turn over, as a thread does whose every cross-section is a narrow neck, is cut along two rings
 /// instead; the outer one becomes a triangle with round corners, in which drawOnGrid draws the
-/// rest. Triangles with two sides on its border then stay out. One that has too many vertices for
-/// that (some hundreds to thousands, as its hole is wide) is rolled up by rollAsPolygon, which
-/// folds nothing however many they are. It is set in with up to a tenth of its triangles thin, for
+/// rest, on places of the lattice itself. Triangles with two sides on its border then stay out. One
+/// that is too large for that (Grids) is rolled up by rollAsPolygon, which folds nothing unless it
+/// is rounded, however many they are. It is set in with up to a tenth of its triangles thin, for
 /// mendFolds, or left as it was. O(n) while there is work left, beside the systems of those of up
 /// to 8,000 triangles. `depth` counts the pouches on which these lie: the third's own fingers stay.
 SetIn setIn(const TriMesh& tube, const PeriodicMap& map, const std::vector<Pouch>& pouches,
-            PouchWork& work, int depth = 0);
+            PouchWork& work, int depth = 0, Grids grids = Grids::small);
 
 /// Unfolds single places. Vertices around a cluster of at most 30 of `folded` (triangles of `tube`)
 /// move to the middles of their stars, up to six rings of them, and stay there where all of their
 /// triangles come to stand. Other clusters are mapped apart likewise, in the least round hole in
-/// the map that has room for its triangles and leaves half as many folds or fewer. `pouches` of
-/// what is returned counts both. A cluster for which there is no work left stays. Holes are tried
-/// with radii that grow by `radiusFactor`, over 1.
+/// the map that has room for its triangles and leaves half as many folds or fewer. A cluster for
+/// which there is no work left stays. Holes are tried with radii that grow by `radiusFactor`, over
+/// 1, and have some thousand triangles at most but for Grids::any.
 SetIn mendFolds(const TriMesh& tube, const PeriodicMap& map, const std::vector<int>& folded,
-                double radiusFactor, PouchWork& work);
+                double radiusFactor, Grids grids, PouchWork& work);
 
 }  // namespace haustra::flatten
