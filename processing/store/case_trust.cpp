@@ -2,16 +2,43 @@
 
 #include "store/products.h"
 
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace haustra::store {
+namespace {
+
+std::vector<std::string> warningsIn(const Attributes& attributes) {
+    constexpr std::string_view mark = "warning: ";
+    std::vector<std::string> warnings;
+    const auto notes = attributes.find("notes");
+    if (notes == attributes.end()) return warnings;
+    std::istringstream lines(notes->second);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with(mark)) warnings.push_back(line.substr(mark.size()));
+    }
+    return warnings;
+}
+
+}  // namespace
 
 Result<ColonTrust> readTrust(const Case& source) {
     const auto quality = TRY(source.readText(product::quality));
     auto trust = trustOfQuality(quality);
-    if (!trust || !source.find(product::centerline)) return trust;
-    const auto pieces = TRY(piecesOfQuality(quality));
-    const auto path = TRY(source.readCenterline());
-    const std::vector<std::string> missed = piecesPassedBy(path, pieces);
-    trust->warnings.insert(trust->warnings.begin(), missed.begin(), missed.end());
+    if (!trust) return trust;
+    std::vector<std::string> first;
+    if (source.find(product::centerline)) {
+        const auto pieces = TRY(piecesOfQuality(quality));
+        const auto path = TRY(source.readCenterline());
+        first = piecesPassedBy(path, pieces);
+    }
+    if (source.find(product::flatMap)) {
+        for (std::string& warning : warningsIn(TRY(source.attributes(product::flatMap))))
+            first.push_back(std::move(warning));
+    }
+    trust->warnings.insert(trust->warnings.begin(), first.begin(), first.end());
     return trust;
 }
 

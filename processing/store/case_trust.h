@@ -8,7 +8,8 @@
 namespace haustra::store {
 
 /// What the case's `quality` says, and, as the first warnings, the pieces of the colon that its
-/// centerline passes by, where it has one. Fails where the case has no quality or a product cannot
+/// centerline passes by, where it has one, and what its flat map warns of: of its attribute `notes`
+/// the lines "warning: …". Fails where the case has no quality or a product cannot
 /// be read.
 Result<ColonTrust> readTrust(const Case& source);
 

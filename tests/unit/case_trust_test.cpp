@@ -59,6 +59,24 @@ TEST_F(CaseTrust, SaysFirstWhatThePathPassesBy) {
     EXPECT_EQ(trust->warnings[1], straightColon().warnings[0]);
 }
 
+TEST_F(CaseTrust, HasWhatTheFlatMapWarnsOf) {
+    Case stored = made();
+    ASSERT_TRUE(stored.publishText("quality", key(), qualityJson(straightColon())));
+    const FlatMap map{{{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}, {{0, 1, 2}}},
+                      {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}},
+                      {0, 0, 0},
+                      {0},
+                      {{}},
+                      1.0};
+    ASSERT_TRUE(stored.publishFlatMap(
+        "flatmap", key(), map,
+        {{"notes", "modulus 1\nwarning: 9 % of the wall are dots\na warning: none"}}));
+    const auto trust = readTrust(stored);
+    ASSERT_TRUE(trust) << describe(trust.error());
+    EXPECT_EQ(trust->warnings,
+              (std::vector<std::string>{"9 % of the wall are dots", straightColon().warnings[0]}));
+}
+
 TEST_F(CaseTrust, FailsWhereNothingWasSearchedFor) {
     EXPECT_FALSE(readTrust(made()));
 }
