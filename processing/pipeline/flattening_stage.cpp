@@ -95,7 +95,7 @@ Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedT
             printed("%zu blind pouches of %.0f mm² in all are mapped apart; outside them ",
                     flat.pouches, flat.pouchAreaMm2) +
             distortionNote(flat.outside));
-        if (flat.pouchAreaMm2 > largePouchShare * flat.wallAreaMm2) {
+        if (flat.largestPouchMm2 > largePouchShare * flat.wallAreaMm2) {
             notes.push_back(printed(
                 "warning: %.0f %% of the wall lies in blind pouches, which the strip shows as "
                 "dots: the largest, of %.0f mm², begins at %.0f mm of the centerline. Look at it "
@@ -109,8 +109,8 @@ Attributes attributesOf(const flatten::Flattening& flat, const flatten::PunchedT
         notes.push_back("before areas were weighted: " + distortionNote(flat.conformal));
     } else if (askedWeight > 0.0) {
         notes.push_back(
-            "warning: areas are not weighted, as that would fold the strip: it is the conformal "
-            "one");
+            "warning: areas are not weighted, as the strip would fold, or has a large blind pouch: "
+            "it is the conformal one");
     }
     setNotes(attributes, notes);
     return attributes;

@@ -115,8 +115,9 @@ void tell(const TriMesh& mesh, const flatten::SurfaceFlattening& flat, double ar
         tell("conformal: ", flat.strip->conformal);
     } else if (flat.strip && areaWeight > 0.0) {
         fmt::print(
-            "warning: areas are not weighted, as that would fold the strip: it is the conformal "
-            "one\n");
+            "warning: areas are not weighted, as the strip would fold, or has a large blind "
+            "finger: "
+            "it is the conformal one\n");
     }
     tell("", flat.distortion);
     if (flat.strip && flat.strip->pouches > 0) {

@@ -238,7 +238,7 @@ TriMesh passedByColon(int rows, unsigned seed) {
 /// What a course passes by lies on the strip without a fold all the same, fingers and all, and the
 /// pouch is told for what it is.
 TEST(Pouches, MayHaveFingersHoweverLarge) {
-    for (const int rows : {20, 120, 250}) {
+    for (const int rows : {5, 8, 20, 120}) {
         const TriMesh tube = passedByColon(rows, unsigned(rows));
         const auto made = flattenTube(tube, 0);
         ASSERT_TRUE(made) << rows << " rows: " << describe(made.error());
@@ -258,7 +258,9 @@ TEST(Pouches, MayHaveFingersHoweverLarge) {
         EXPECT_TRUE(mesh::HalfedgeMesh::of(made->map.surface));
         EXPECT_GE(made->largestPouchMm2, areaMm2(beyond));
         EXPECT_LE(made->largestPouchMm2, made->pouchAreaMm2);
-        EXPECT_LT(made->largestPouchY, made->map.height);
+        EXPECT_GT(made->pouches, 0u);
+        // It begins near the hole, which is the strip's end.
+        EXPECT_NEAR(made->largestPouchY, made->map.height, 0.35);
     }
 }
 

@@ -170,7 +170,8 @@ public:
                     return share * clear * (1.0 - round) *
                            (w.x * corners->at[0] + w.y * corners->at[1] + w.z * corners->at[2]);
                 };
-                const Grid grid = gridFor(*centre_, inWeights(weights * glm::dvec3(-1.0, 1.0, 0.0)),
+                const Grid grid = gridFor(*centre_ + inWeights(glm::dvec3(1.0 / 3.0)),
+                                          inWeights(weights * glm::dvec3(-1.0, 1.0, 0.0)),
                                           inWeights(weights * glm::dvec3(-1.0, 0.0, 1.0)),
                                           double(count - 1), units);
                 places_.clear();
@@ -218,25 +219,27 @@ private:
             return origin + double(place.y) * second + double(place.z) * third;
         }
 
-        /// A place for one of the vertices that corner `c`, which is `corner`, stands for:
+        /// A place for one of the vertices that corner `c` of the grid, at `drawn`, stands for:
         /// corner − p (a cos φ + b sin φ), where a and b are the steps from it along its sides,
-        /// 0 < φ < π / 2, and p so that the longer one is `away`. That lies beyond both sides, and
-        /// a triangle of the corner and two of the grid's places has more area with it in the
-        /// corner's place; two such vertices, φ ascending, make upright triangles with any of them.
-        glm::dvec2 beyondCorner(int c, glm::ivec3 corner, double phi, double away) const {
+        /// 0 < φ < π / 2, and p so that the longer one is `away`. That lies beyond both sides. Of
+        /// two neighbours of the corner that follow each other around it, the second is never
+        /// farther along a and never less far along b (Schnyder), so that their triangle with it
+        /// has no less area than with the corner; two such vertices, φ ascending, make upright
+        /// triangles with any place within the grid.
+        glm::dvec2 beyondCorner(int c, glm::ivec3 drawn, double phi, double away) const {
             const glm::dvec2 steps[3] = {{0.0, 0.0}, second, third};
             const glm::dvec2 a = steps[(c + 1) % 3] - steps[c], b = steps[(c + 2) % 3] - steps[c];
             const double p = away / std::max(glm::length(a), glm::length(b));
-            return at(corner) - p * (std::cos(phi) * a + std::sin(phi) * b);
+            return at(drawn) - p * (std::cos(phi) * a + std::sin(phi) * b);
         }
     };
 
-    /// With about these steps, and three coordinates of `sum` / 3 at about `centre`.
-    static Grid gridFor(glm::dvec2 centre, glm::dvec2 second, glm::dvec2 third, double sum,
+    /// With about these steps, and three coordinates of `sum` / 3 at about `middle`.
+    static Grid gridFor(glm::dvec2 middle, glm::dvec2 second, glm::dvec2 third, double sum,
                         double units) {
         const auto onLattice = [&](glm::dvec2 at) { return glm::round(at * units) / units; };
         Grid grid{{}, onLattice(second), onLattice(third)};
-        grid.origin = onLattice(centre - sum / 3.0 * (grid.second + grid.third));
+        grid.origin = onLattice(middle - sum / 3.0 * (grid.second + grid.third));
         return grid;
     }
 
@@ -788,12 +791,13 @@ std::optional<PlacedPouch> placed(const TriMesh& tube, const HalfedgeMesh& halfe
     std::vector<char> within = inside;
     trim(tube, halfedges, map, within, trimmed);
     std::optional<CutPouch> drawn(std::in_place, tube, halfedges, within, trimmed, depth, &work);
-    const std::size_t mostDrawn = grids == Grids::any ? trimmed.triangles.size() : usuallyDrawn;
-    if (trimmed.triangles.size() <= mostDrawn && drawn->roundness(map) > 0.0 &&
-        drawn->placeOnGrid(units)) {
+    const bool isLarge = trimmed.triangles.size() > usuallyDrawn,
+               seen = drawn->roundness(map) > 0.0;
+    if (!isLarge && seen && drawn->placeOnGrid(units)) return std::move(*drawn).result();
+    if (shaped->placeRolled(units)) return std::move(*shaped).result();
+    if (isLarge && grids == Grids::any && seen && drawn->placeOnGrid(units))
         return std::move(*drawn).result();
-    }
-    if (shaped->placeRolled(units) || shaped->thin() <= most) return std::move(*shaped).result();
+    if (shaped->thin() <= most) return std::move(*shaped).result();
     std::optional<CutPouch> apart(std::in_place, tube, halfedges, within, trimmed, depth, &work);
     if (apart->roundness(map) > 0.0) apart->placeApart(units);
     if (apart->thin() <= most) return std::move(*apart).result();

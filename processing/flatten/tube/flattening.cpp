@@ -46,10 +46,9 @@ struct Mapped {
     PeriodicMap map;
     std::vector<int> source;  ///< per triangle: of the tube that was given
     std::vector<char> apart;  ///< per triangle: of a pouch
-    std::size_t pouches = 0;
     PouchWork work{};
 
-    /// What has had discs set in. Small ones around folds (`pouch` false) are no pouches.
+    /// What has had discs set in; those of `pouch` false around folds are no pouches.
     void take(SetIn made, bool pouch) {
         std::vector<char> now(made.apart.size());
         for (std::size_t t = 0; t < now.size(); ++t) {
@@ -61,7 +60,6 @@ struct Mapped {
         map = std::move(made.map);
         source = std::move(made.sourceTriangle);
         apart = std::move(now);
-        if (pouch) pouches += made.pouches;
     }
     double areaMm2(std::size_t t) const {
         const glm::dvec3 a = tube.vertices[std::size_t(tube.triangles[t].x)];
@@ -85,13 +83,12 @@ struct Mapped {
     }
 };
 
-/// Sums up the pouches' wall, and finds the largest of them: triangles that hang together.
+/// Sums up the pouches' wall, and counts them and finds the largest: triangles that hang together.
 void measurePouches(const Mapped& mapped, Flattening& made) {
     for (std::size_t t = 0; t < mapped.apart.size(); ++t) {
         made.wallAreaMm2 += mapped.areaMm2(t);
         if (mapped.apart[t]) made.pouchAreaMm2 += mapped.areaMm2(t);
     }
-    made.pouches = mapped.pouches;
     const auto halfedges = mesh::HalfedgeMesh::of(mapped.tube);
     if (!(made.pouchAreaMm2 > 0.0) || !halfedges) return;
     std::vector<char> waiting = mapped.apart;
@@ -103,9 +100,9 @@ void measurePouches(const Mapped& mapped, Flattening& made) {
         const auto acrossEdges = [&](int t, const auto& visit) {
             areaMm2 += mapped.areaMm2(std::size_t(t));
             for (int h = 3 * t; h < 3 * t + 3; ++h) {
-                const int other = halfedges->opposite(h) / 3;  // pouches do not reach the rims
-                if (mapped.apart[std::size_t(other)]) {
-                    visit(other);
+                const int other = halfedges->opposite(h);
+                if (other >= 0 && mapped.apart[std::size_t(other / 3)]) {
+                    visit(other / 3);
                 } else {
                     border = h;
                 }
@@ -113,7 +110,8 @@ void measurePouches(const Mapped& mapped, Flattening& made) {
         };
         floodFill(pouch, acrossEdges,
                   [&](int t) { return std::exchange(waiting[std::size_t(t)], char(0)) != 0; });
-        if (areaMm2 <= made.largestPouchMm2) continue;
+        ++made.pouches;
+        if (areaMm2 <= made.largestPouchMm2 || border < 0) continue;
         made.largestPouchMm2 = areaMm2;
         made.largestPouchY = mapped.map.flat[std::size_t(halfedges->origin(border))].y;
     }
@@ -185,12 +183,14 @@ Cut cutOpen(Mapped& mapped, double radiusFactor, Grids grids, const SeamOptions&
 /// between may be round enough to be filled; each try has as much more work.
 Cut cutOpen(Mapped& mapped, Grids grids, const SeamOptions& options) {
     constexpr std::array<double, 3> radiusFactors{1.5, 1.25, 1.12};
+    // Of more, some have a pouch for themselves that no hole around them has room for.
+    constexpr std::size_t mostToMend = 1000;
     Mapped before = mapped;
     Cut cut;
     for (const double factor : radiusFactors) {
         mapped = before;
         cut = cutOpen(mapped, factor, grids, options);
-        if (cut.folded.empty()) break;
+        if (cut.folded.empty() || (grids == Grids::small && cut.folded.size() > mostToMend)) break;
         before.work.left += workPerTriangle * before.tube.triangles.size();
     }
     return cut;
@@ -267,12 +267,13 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
                   std::move(flat.map),
                   std::vector<int>(tube.triangles.size()),
                   std::vector<char>(tube.triangles.size(), 0),
-                  0,
                   {workPerTriangle * tube.triangles.size() + leastWork, 0}};
     std::iota(mapped.source.begin(), mapped.source.end(), 0);
     const Mapped bare = mapped;
     Cut cut;
-    for (const Grids grids : {Grids::small, Grids::any}) {
+    Grids grids = Grids::small;
+    for (const Grids tried : {Grids::small, Grids::any}) {
+        grids = tried;
         mapped = bare;
         made.repaired = makeRoom(mapped, grids);
         cut = cutOpen(mapped, grids, options.seam);
@@ -280,7 +281,8 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
     }
     if (!cut.folded.empty()) return foldsRemain(cut, options);
     made.conformal = made.distortion = mapped.measured();
-    if (options.areaWeight > 0.0) {
+    // A large grid scatters areas over many powers of ten, and each step would take minutes.
+    if (options.areaWeight > 0.0 && grids == Grids::small) {
         UnifiedOptions unified;
         unified.areaWeight = options.areaWeight;
         unified.threads = options.threads;
@@ -296,8 +298,8 @@ Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,
             }
         }
     }
-    made.outside = mapped.pouches > 0 ? mapped.measured(true) : made.distortion;
     measurePouches(mapped, made);
+    made.outside = made.pouches > 0 ? mapped.measured(true) : made.distortion;
     made.pouchWork = mapped.work.done;
     made.seam = cut.seam;
     made.map = std::move(cut.map);

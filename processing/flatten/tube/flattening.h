@@ -30,7 +30,7 @@ struct Flattening {
     Distortion distortion;      ///< of the tube's triangles, before the seam splits some; pouches'
                                 ///< triangles as they were cut
     Distortion conformal;       ///< before areaWeight took effect; the same where it did not
-    double areaWeight = 0.0;    ///< that took effect: 0 where it would have folded the map
+    double areaWeight = 0.0;    ///< that took effect: 0 where the conformal map had to do
     double seam = 0.0;          ///< the x of the uncut map that the seam lies at
     double seamMismatch = 0.0;  ///< seamMismatch(map)
     int repaired = 0;           ///< vertices
@@ -39,7 +39,7 @@ struct Flattening {
     double largestPouchMm2 = 0.0;
     double largestPouchY = 0.0;  ///< where its border lies on the strip
     /// How many triangles were mapped apart, as often as they were, in the try that succeeded: at
-    /// most six for each of the tube's, and 20,000, in the first; so much more in each later one.
+    /// most six for each of the tube's, and 20,000, in the first.
     std::size_t pouchWork = 0;
     std::vector<char> isPouch;  ///< per triangle of `map`; empty where there are none
     /// `distortion` of all but the pouches, whose angles are not kept; the same where there are
@@ -53,7 +53,8 @@ struct Flattening {
 /// upright on the lattice that it is drawn on (foldedTriangles): discs around those that are not
 /// are mapped apart too, and the seam moves by a hair where it leaves splinters; where that is not
 /// enough, all over again with grids of any size. Where weighting
-/// areas fails or folds, the conformal map is given, with an areaWeight of 0. Fails (noResult)
+/// areas fails or folds, or a large pouch is on a grid, the conformal map is given, with an
+/// areaWeight of 0. Fails (noResult)
 /// where folds remain, telling how many and the place of one, and as the functions named do. A tube
 /// without pouches has the very map of conformalTube.
 Result<Flattening> flattenTube(const TriMesh& tube, int firstLoop,

@@ -22,7 +22,8 @@ using mesh::HalfedgeMesh;
 constexpr std::size_t mostSpread = 30;
 /// A pouch may be set in with so many of its triangles too thin, to be mended where they lie.
 constexpr double mostThin = 0.1;
-/// Beyond a disc of so many triangles, and a hundred for each folded one, none is tried.
+/// Of Grids::small, beyond a disc of so many triangles, and a hundred for each folded one, none is
+/// tried.
 constexpr std::size_t mostAround = 5000;
 /// A disc is worth trying where its triangles, spread evenly, would have sides of so many units.
 constexpr double roomUnits = 64.0;
@@ -115,11 +116,13 @@ std::optional<PlacedPouch> leastDisc(const TriMesh& tube, const HalfedgeMesh& ha
                                      double radiusFactor, Grids grids, PouchWork& work) {
     const double units = flatUnitsPerCircumference(map.height);
     const double most = largestRadiusAround(map, spot.middle);
+    if (spot.triangles.size() > work.left) return std::nullopt;
     std::vector<char> inside(tube.triangles.size(), 0);
     for (double radius = std::max(1.5 * spot.reach, crowdedUnits / units); radius < most;
          radius *= radiusFactor) {
         const auto disc = discs.within(map, spot.triangles, spot.middle, radius, taken);
         if (!disc) continue;
+        if (disc->triangles.size() > work.left) break;
         if (grids == Grids::small &&
             disc->triangles.size() > mostAround + 100 * spot.triangles.size())
             break;

@@ -47,7 +47,8 @@ struct PouchWork {
 };
 
 /// How many triangles may be drawn on one grid, which tells nothing of their shape: some thousand,
-/// or, where all else has failed, as many as the lattice has room for.
+/// or, where all else has failed, as many as the lattice has room for. (Fingers on pouches: some
+/// thousand.)
 enum class Grids { small, any };
 
 /// A map in which pouches have been set in. Their triangles are cut along a ring in them.
