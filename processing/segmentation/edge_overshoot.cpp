@@ -13,18 +13,19 @@ namespace haustra::segmentation {
 namespace {
 
 constexpr double besideMm = 2.0, rimMm = 2.5;
+constexpr int leastVoxels = 2;
 constexpr int lowestHu = -1024, highestHu = 3071;
 
 bool isGas(std::uint8_t content) {
     return Content(content) == Content::gas;
 }
 
-/// Peaks of HU in the two millimetres beyond gas on one side, sorted.
+/// Peaks of HU in the two millimetres beyond gas on one side, or two voxels, sorted.
 std::vector<std::int16_t> peaksBeside(const Volume<std::int16_t>& hu,
                                       const Volume<std::uint8_t>& content, int axis, int sign,
                                       const std::vector<std::uint32_t>& border) {
     const Grid& grid = hu.grid();
-    const int reach = std::max(1, int(std::lround(besideMm / grid.spacingMm()[axis])));
+    const int reach = std::max(leastVoxels, int(std::lround(besideMm / grid.spacingMm()[axis])));
     std::vector<std::int16_t> peaks;
     for (const std::uint32_t n : border) {
         glm::ivec3 v = grid.voxelAt(n);
@@ -70,7 +71,8 @@ double overshootBesideGasHu(const Volume<std::int16_t>& hu, const Volume<std::ui
         if (quantile(1.0 - mostBrighter) <= tissue.taggedAboveHu) return 0.0;
         least = std::min(least, quantile(0.5) + sds * (quantile(oneSd) - quantile(0.5)));
     }
-    return least;
+    const double softHu = tissue.meanHu[int(Tissue::soft)];
+    return softHu + 2.0 * (least - softHu);
 }
 
 void takeOffOvershoot(const Volume<std::int16_t>& hu, const TissueModel& tissue,

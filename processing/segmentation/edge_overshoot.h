@@ -7,8 +7,10 @@
 namespace haustra::segmentation {
 
 /// The HU that the wall's overshoot beside gas stays below: the median of the wall's peaks and two
-/// and a half standard deviations; 0 where no more than a twentieth of the wall is brighter than
-/// what counts as tagged.
+/// and a half standard deviations, and as much over soft tissue once more, since in a fold, which
+/// has gas on both sides, two rims add up. 0 where no more than a twentieth of the wall is brighter
+/// than what counts as tagged. Peaks are sought within 2 mm of gas, but in two voxels at least, as
+/// the first of wide ones has the edge's own blur.
 ///
 /// A kernel that lifts high frequencies (lung, bone) makes a bright rim of one or two millimetres
 /// all around gas. Fluid does not hang from ceilings, and films coat a hundredth of them: of four

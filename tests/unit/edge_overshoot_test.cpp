@@ -56,6 +56,28 @@ TEST(EdgeOvershoot, IsWhatLiesAllAroundGas) {
     EXPECT_GE(overshoot(ball(true, true)), rimHu - 1);
 }
 
+/// A voxel of 1.6 mm beside gas is half gas; the rim is in the next one.
+TEST(EdgeOvershoot, IsSeenBehindAWideVoxelsBlur) {
+    constexpr double wideMm = 1.6;
+    Scene scene;
+    const Grid grid = axisAlignedGrid({40, 40, 40}, glm::dvec3(wideMm));
+    scene.hu = Volume<std::int16_t>(grid, std::int16_t(40));
+    scene.contents.content = Volume<std::uint8_t>(grid, std::uint8_t(Content::tissue));
+    scene.tissue.meanHu = {-1000, -100, 40, 500};
+    scene.tissue.airBelowHu = -480, scene.tissue.taggedAboveHu = 200;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        // A cube: each side's voxels beside gas are alike.
+        const glm::dvec3 away = glm::abs(glm::dvec3(grid.voxelAt(n)) - 19.5);
+        const int layer = int(std::ceil(std::max({away.x, away.y, away.z}))) - 12;
+        if (layer > 2) continue;
+        scene.hu.writable()[n] = std::int16_t(layer <= 0 ? -1000 : layer == 1 ? -300 : rimHu);
+        scene.contents.content.writable()[n] = std::uint8_t(layer <= 0   ? Content::gas
+                                                            : layer == 1 ? Content::tissue
+                                                                         : Content::tagged);
+    }
+    EXPECT_GE(overshoot(scene), rimHu - 1);
+}
+
 TEST(EdgeOvershoot, FluidUnderGasIsNone) {
     for (const bool fluid : {true, false}) {
         Scene scene = ball(false, fluid);
