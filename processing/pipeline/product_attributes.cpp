@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <sstream>
 
 namespace haustra::pipeline {
 namespace {
@@ -51,23 +50,6 @@ std::string exactText(const char* name, const std::vector<glm::dvec3>& points) {
     for (const glm::dvec3& point : points)
         text += std::string(name) + "=" + exactText(point) + ";";
     return text;
-}
-
-void setNotes(Attributes& attributes, const std::vector<std::string>& notes) {
-    std::string text;
-    for (const std::string& note : notes)
-        text += text.empty() ? note : "\n" + note;
-    if (!text.empty()) attributes["notes"] = text;
-}
-
-std::vector<std::string> notesOf(const Attributes& attributes) {
-    std::vector<std::string> notes;
-    if (const auto found = attributes.find("notes"); found != attributes.end()) {
-        std::istringstream lines(found->second);
-        for (std::string line; std::getline(lines, line);)
-            notes.push_back(line);
-    }
-    return notes;
 }
 
 void setTissueModel(Attributes& attributes, const TissueModel& tissue) {

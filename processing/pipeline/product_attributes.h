@@ -4,6 +4,7 @@
 #include "core/result.h"
 #include "core/tissue.h"
 #include "store/case_store.h"
+#include "store/notes.h"
 
 #include <string>
 #include <vector>
@@ -17,9 +18,8 @@ std::string exactText(glm::dvec3 v);
 /// "name=x,y,z;" for each point.
 std::string exactText(const char* name, const std::vector<glm::dvec3>& points);
 
-/// Attribute "notes", a line each; none where there is nothing to note.
-void setNotes(store::Attributes& attributes, const std::vector<std::string>& notes);
-std::vector<std::string> notesOf(const store::Attributes& attributes);
+using store::notesOf;
+using store::setNotes;
 
 /// Attributes "mean-hu", "sd-hu" and "weight" (four numbers, ordered as Tissue), "air-below-hu"
 /// and "tagged-above-hu".

@@ -1,8 +1,8 @@
 #include "store/case_trust.h"
 
+#include "store/notes.h"
 #include "store/products.h"
 
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +13,8 @@ namespace {
 std::vector<std::string> warningsIn(const Attributes& attributes) {
     constexpr std::string_view mark = "warning: ";
     std::vector<std::string> warnings;
-    const auto notes = attributes.find("notes");
-    if (notes == attributes.end()) return warnings;
-    std::istringstream lines(notes->second);
-    for (std::string line; std::getline(lines, line);) {
-        if (line.starts_with(mark)) warnings.push_back(line.substr(mark.size()));
+    for (const std::string& note : notesOf(attributes)) {
+        if (note.starts_with(mark)) warnings.push_back(note.substr(mark.size()));
     }
     return warnings;
 }

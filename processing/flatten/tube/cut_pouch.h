@@ -33,9 +33,9 @@ double roundness(const TriMesh& tube, const mesh::HalfedgeMesh& halfedges, const
                  const std::vector<char>& inside, const Pouch& pouch);
 
 /// The pouch, whose triangles `inside` marks, in its place: in its own shape, or else, trimmed, on
-/// a grid if `grids` allow that, or else rolled up with at most `most` of its
-/// triangles too thin for the lattice. Nothing where its border is not rounder than `roundness`, or
-/// none of this is possible.
+/// a grid (a large one only for Grids::any, and where rolling it up leaves something thin), or else
+/// rolled up with at most `most` of its triangles too thin for the lattice. Nothing where its
+/// border is not rounder than `roundness`, or none of this is possible.
 std::optional<PlacedPouch> placed(const TriMesh& tube, const mesh::HalfedgeMesh& halfedges,
                                   const PeriodicMap& map, const std::vector<char>& inside,
                                   const Pouch& pouch, int depth, double roundness, std::size_t most,
