@@ -8,6 +8,7 @@
 #include "script/script_player.h"
 #include "window/run.h"
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -211,6 +212,9 @@ int main(int argc, char** argv) {
     declare(app, a);
     try {
         app.parse(argc, argv);
+        // CLI::Range lets NaN through.
+        if (std::isnan(a.timeoutSeconds)) throw CLI::ValidationError("--timeout", "nan is no time");
+        if (std::isnan(a.scale)) throw CLI::ValidationError("--scale", "nan is no size");
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? exitDone : exitUsage;
     }

@@ -141,6 +141,8 @@ int runProgram(int argc, char** argv) {
             if (!kind) throw CLI::ValidationError("--raycaster", kind.error().message);
             arguments.server.drawing.raycaster = *kind;
         }
+        if (std::isnan(arguments.gpuBudgetMb))  // CLI::Range lets it through
+            throw CLI::ValidationError("--gpu-budget", "nan is no number of MiB");
         arguments.server.drawing.gpuBudgetBytes =
             std::size_t(std::ceil(arguments.gpuBudgetMb * double(1 << 20)));
         if (!arguments.certificate.empty())

@@ -68,7 +68,8 @@ TEST_F(ClientProgram, HelpSaysWhatItIsAndWrongUsageExitsWithTwo) {
         EXPECT_NE(help.text.find(part), std::string::npos) << part;
     for (const char* wrong :
          {"", " a:99999", " a --size 3by4", " a --fingerprint xyz", " a --nonsense",
-          " a --headless", " a --script x", " a --headless --script x --out y --size 9000x9"}) {
+          " a --headless", " a --script x", " a --headless --script x --out y --size 9000x9",
+          " a --list --timeout nan", " a --scale nan"}) {
         const Outcome outcome = run(program_ + wrong);
         EXPECT_EQ(outcome.exitCode, 2) << wrong << ": " << outcome.text;
         EXPECT_FALSE(outcome.text.empty());

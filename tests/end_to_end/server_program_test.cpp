@@ -44,6 +44,11 @@ TEST(Server, WrongUsageAndFailureHaveTheirExitCodes) {
               2);
     EXPECT_EQ(runProgram("haustra-server", {"--store", folder.path(), "--key", "k.pem"}).exitCode,
               2);
+    for (const char* budget : {"nan", "-1", "1e9", "much"})
+        EXPECT_EQ(runProgram("haustra-server", {"--store", folder.path(), "--gpu-budget", budget})
+                      .exitCode,
+                  2)
+            << budget;
     const Outcome missing = runProgram("haustra-server", {"--store", folder.path() / "none"});
     EXPECT_EQ(missing.exitCode, 1);
     EXPECT_FALSE(missing.err.empty());
