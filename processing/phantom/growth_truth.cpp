@@ -42,10 +42,10 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
         truth.kind = kindOf(growth);
         truth.neoplastic = growth.polyp();
         truth.positionMm = growth.centre;
-        truth.wallMm = growth.root;
+        truth.wallMm = growth.root + growth.rootDepthMm * growth.inward;
         const glm::dvec3 axes = growth.semiAxes;
         truth.diameterMm = 2.0 * std::max({axes.x, axes.y, axes.z});
-        truth.heightMm = glm::dot(growth.centre - growth.root, growth.inward) + axes.z;
+        truth.heightMm = glm::dot(growth.centre - truth.wallMm, growth.inward) + axes.z;
         truth.coreHu = growth.kind == Growth::Kind::hyperplastic     ? bumpHu
                        : growth.polyp() && !isPlain(growth, options) ? denseCoreHu
                                                                      : 0.0;

@@ -27,7 +27,8 @@ Growth polypAt(const WallPlace& place, Growth::Kind kind, double diameterMm, Ran
         growth.semiAxes = {r, r * random.uniform(0.85, 1.0), r * random.uniform(0.8, 0.95)};
         growth.stalkRadiusMm = std::clamp(0.18 * diameterMm, 1.2, 2.4);
         growth.centre = place.at + place.inward * (growth.semiAxes.z + random.uniform(2.5, 5.0));
-        growth.root = place.at - 1.0 * place.inward;
+        growth.rootDepthMm = 1.0;
+        growth.root = place.at - growth.rootDepthMm * place.inward;
     } else {
         growth.semiAxes = {r, r * random.uniform(0.85, 1.0), r * random.uniform(0.85, 1.0)};
         growth.centre = place.at + place.inward * (growth.semiAxes.z * random.uniform(0.25, 0.5));

@@ -19,7 +19,7 @@
 namespace haustra::phantom {
 
 /// Counts up when equal options make another phantom than before.
-inline constexpr int phantomVersion = 2;
+inline constexpr int phantomVersion = 3;
 
 /// easy: little, even fluid; nothing opacified but the colon; other bowel keeps its distance.
 /// standard: more fluid, unevenly tagged, stool balls, opacified and gas-filled small bowel against

@@ -56,6 +56,12 @@ TEST(PhantomGrowths, TheTruthTellsPolypsAndWhatResemblesThem) {
         bumps += growth.kind == "hyperplastic";
         EXPECT_GT(growth.diameterMm, 1.0);
         EXPECT_LT(glm::distance(growth.positionMm, growth.wallMm), 25.0);
+        // A head nearly as high as wide, 2.5 to 5 mm over the wall; its stalk's root in the wall is
+        // none of its height.
+        if (growth.kind == "pedunculated") {
+            EXPECT_GE(growth.heightMm, 0.8 * growth.diameterMm + 2.5);
+            EXPECT_LE(growth.heightMm, 0.95 * growth.diameterMm + 5.0);
+        }
         EXPECT_GE(growth.submergedShare, 0.0);
         EXPECT_LE(growth.submergedShare, 1.0);
         // Its foot is on the wall: lumen is as near as the growth is wide, and tissue too.
