@@ -1,5 +1,6 @@
 #include "cad/detect.h"
 #include "core/printed_text.h"
+#include "core/scan_coarseness.h"
 #include "pipeline/colon_inputs.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/stages.h"
@@ -59,6 +60,13 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surf
         detection.progress = progress;
         Findings findings = cad::detectPolyps(inputs.colon(), model, detection);
         findings.model.sha256 = hash;
+        std::optional<SourceSeries> series;
+        if (TRY(stage.holds(product::source)))
+            series = TRY(stage.readText(product::source).and_then([](const std::string& text) {
+                return sourceSeriesOfJson(text);
+            }));
+        if (auto coarse = coarsenessOf(inputs.ct.grid(), series ? &*series : nullptr))
+            findings.warnings.insert(findings.warnings.begin(), *std::move(coarse));
         store::Attributes attributes{{"model", model.name},
                                      {"model-sha256", hash},
                                      {"findings", std::to_string(findings.findings.size())},

@@ -1,3 +1,4 @@
+#include "core/scan_coarseness.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/read_inputs.h"
 #include "pipeline/scan_identity.h"
@@ -31,7 +32,13 @@ Result<ProductKey> importScan(Preparation& preparation) {
             TRY(readScan(options.series, options.seriesUid, options.threads, progress));
         Attributes attributes{{"position", toString(input.scan.position)},
                               {"images", std::to_string(input.images)}};
-        setNotes(attributes, input.notes);
+        auto notes = input.notes;
+        if (preparation.organ().detectPolyps) {
+            if (const auto coarse =
+                    coarsenessOf(input.scan.hu.grid(), input.source ? &*input.source : nullptr))
+                notes.push_back("warning: " + *coarse);
+        }
+        setNotes(attributes, notes);
         TRY(stage.publish(store::product::ct, input.scan.hu, attributes));
         if (!input.source) return {};
         return stage.publish(store::product::source, sourceSeriesJson(*input.source));

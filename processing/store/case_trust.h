@@ -7,7 +7,8 @@
 
 namespace haustra::store {
 
-/// What the case's `quality` says, and, as the first warnings, the pieces of the colon that its
+/// What the case's `quality` says, and, as the first warnings, that its scan is coarse
+/// (core/scan_coarseness.h), the pieces of the colon that its
 /// centerline passes by, where it has one, and what its flat map warns of: of its attribute `notes`
 /// the lines "warning: …". Fails where the case has no quality or a product cannot
 /// be read.

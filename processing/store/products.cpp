@@ -105,7 +105,8 @@ const Catalogue& catalogue() {
         {.name = findings,
          .stage = "cad",
          .content = Content::text,
-         .parents = {ct, segmentation, quality, cleansed, lumen, centerline, surface, flatMap},
+         .parents = {ct, source, segmentation, quality, cleansed, lumen, centerline, surface,
+                     flatMap},
          .endings = {".json", ".dcm"},
          .help = "of a colon: places that may be polyps, for a physician to judge, each with its "
                  "size, probability and voxels; .dcm: a Colon CAD SR (of a DICOM series)",

@@ -1,6 +1,7 @@
 // What a reader is told of a case before anything of it is seen.
 #include "store/case_trust.h"
 
+#include "core/source_series.h"
 #include "end_to_end/run_program.h"
 
 #include <gtest/gtest.h>
@@ -75,6 +76,40 @@ TEST_F(CaseTrust, HasWhatTheFlatMapWarnsOf) {
     ASSERT_TRUE(trust) << describe(trust.error());
     EXPECT_EQ(trust->warnings,
               (std::vector<std::string>{"9 % of the wall are dots", straightColon().warnings[0]}));
+}
+
+TEST_F(CaseTrust, BeginsWithHowCoarseTheScanIs) {
+    Case stored = made();
+    ASSERT_TRUE(stored.publishText("quality", key(), qualityJson(straightColon())));
+    const auto first = [&] {
+        const auto trust = readTrust(stored);
+        EXPECT_TRUE(trust) << describe(trust.error());
+        return trust && trust->warnings.size() == 2u ? trust->warnings[0] : std::string();
+    };
+    const auto scanned = [&](double stepMm) {
+        const Grid grid = axisAlignedGrid({4, 4, 4}, {1.0, 1.0, stepMm});
+        ASSERT_TRUE(stored.publishVolume("ct", key(), Volume<std::int16_t>(grid, 0)));
+    };
+    scanned(2.0);
+    EXPECT_NE(first().find("samples up to 2 mm apart"), std::string::npos) << first();
+    // Of the series it is told how thick slices are that lie close together.
+    scanned(1.0);
+    EXPECT_EQ(first(), "");
+    SourceSeries series;
+    series.studyUid = "1.2", series.seriesUid = "1.3";
+    series.images.resize(4);
+    for (std::size_t n = 0; n < 4; ++n) {
+        series.images[n] = {"1.2.840.10008.5.1.4.1.1.2",
+                            "1.4." + std::to_string(n + 1),
+                            0,
+                            {0.0, 0.0, double(n)},
+                            5.0};
+    }
+    ASSERT_TRUE(stored.publishText("source", key(), sourceSeriesJson(series)));
+    EXPECT_NE(first().find("slices 5 mm thick"), std::string::npos) << first();
+    // Nobody is kept from the case where that is damaged, and all are told.
+    ASSERT_TRUE(stored.publishText("source", key(), "{"));
+    EXPECT_NE(first().find("damaged"), std::string::npos) << first();
 }
 
 TEST_F(CaseTrust, FailsWhereNothingWasSearchedFor) {
