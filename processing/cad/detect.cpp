@@ -3,6 +3,7 @@
 #include "cad/along_colon.h"
 #include "cad/biopsy_transfer.h"
 #include "cad/places.h"
+#include "cad/standing_height.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
@@ -28,19 +29,14 @@ constexpr double leastUnseenMm2 = 20.0;
 // Of the smoothed scan; the noisiest training phantoms have 15.
 constexpr double noisyHu = 25.0;
 
-// Above its film, or, where that lies close to what is low and wide, above the wall continued.
-double heightOf(const Candidate& candidate) {
-    const double film = candidate.lesion.heightMm;
-    if (film >= leastHeightMm) return film;
-    return std::max({0.0, film, double(candidate.features[featureNumber("lift_top")])});
+bool hasStalk(const Candidate& candidate) {
+    return candidate.features[featureNumber("neck_ratio")] < stalkNeck;
 }
 
-const char* kindOf(const Candidate& candidate) {
-    const double height = heightOf(candidate);
-    const double ratio = height / std::max(0.1, candidate.lesion.diameter.mm);
-    if (candidate.features[featureNumber("neck_ratio")] < stalkNeck && ratio > stalkHeightRatio)
-        return "pedunculated";
-    return height < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
+const char* kindOf(const Candidate& candidate, double heightMm) {
+    const double ratio = heightMm / std::max(0.1, candidate.lesion.diameter.mm);
+    if (hasStalk(candidate) && ratio > stalkHeightRatio) return "pedunculated";
+    return heightMm < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
 }
 
 /// Of the piece whose ball is nearest.
@@ -55,17 +51,18 @@ std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 pla
 }
 
 Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
-                  const AlongColon& alongColon, const Candidate& candidate) {
+                  const AlongColon& alongColon, const Candidate& candidate,
+                  SampleNumbers& numbers) {
     const Lesion& lesion = candidate.lesion;
     Finding finding;
     finding.positionMm = lesion.centreMm;
     finding.diameterMm = lesion.diameter.mm;
     finding.score = candidate.probability;
-    finding.kind = kindOf(candidate);
     finding.wallMm = lesion.topMm;
     finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
-    finding.heightMm = heightOf(candidate);
+    finding.heightMm = standingHeightMm(evidence, lesion, hasStalk(candidate), numbers);
+    finding.kind = kindOf(candidate, finding.heightMm);
     const WallPlace along = alongColon.at(lesion.topMm);
     finding.arcMm = along.arcMm;
     finding.segment = segmentAt(colon, along.cameraMm);
@@ -230,6 +227,7 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     findings.biopsy = {statistics.wallHu, statistics.fatHu, statistics.noiseHu,
                        evidence.transferFunction};
     const AlongColon alongColon(colon.flat, colon.centerline);
+    SampleNumbers numbers(evidence.samples.mesh.vertices.size());
     for (const Candidate& candidate : candidates) {
         if (candidate.probability < std::min(leastProbability, model.operatingPoint)) continue;
         if (findings.findings.size() + findings.candidates.size() == std::size_t(maxFindings)) {
@@ -238,7 +236,7 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
             break;
         }
         (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)
-            .push_back(findingOf(colon, evidence, alongColon, candidate));
+            .push_back(findingOf(colon, evidence, alongColon, candidate, numbers));
     }
     for (auto* list : {&findings.findings, &findings.candidates})
         std::stable_sort(list->begin(), list->end(),

@@ -6,11 +6,11 @@
 
 namespace haustra::cad {
 
-/// Above the quadric z = c₀ + c₁x + c₂y + c₃x² + c₄xy + c₅y² that fits the wall around the patch
-/// best (z along the patch's mean normal), so with the wall's own curvature. A lesion's base, a
-/// soap film, has no mean curvature: across a tube of radius r a film d wide lies up to d²/16r
-/// above the wall, which is half of a flat lesion's height; and beneath a patch that is only the
-/// middle of a lesion it lies close to the patch.
+/// Above the quadric that fits the wall around the patch best (wall_quadric.h; z along the patch's
+/// mean normal), so with the wall's own curvature. A lesion's base, a soap film, has no mean
+/// curvature: across a tube of radius r a film d wide lies up to d²/16r above the wall, which is
+/// half of a flat lesion's height; and beneath a patch that is only the middle of a lesion it lies
+/// close to the patch.
 struct WallLift {
     double meanMm = 0.0;  ///< of the patch, by area; lumenward
     double topMm = 0.0;   ///< a tenth of its samples is higher

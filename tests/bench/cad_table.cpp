@@ -1,7 +1,7 @@
 // What polyp detection costs on a prepared case, stage by stage, beside the dissertation's shape
-// features over the whole mucosa (its §6.3 compares the two), the biopsy image, and how many
-// samples and pixels of the strip a polyp has where the truth is given. usage: cad_table STORE CASE
-// [TRUTH.json | - [CLUSTERS.png]]
+// features over the whole mucosa (its §6.3 compares the two), and the biopsy image. Where the truth
+// is given, how far off the heights of what was found are, and how many samples and pixels of the
+// strip a polyp has. usage: cad_table STORE CASE [TRUTH.json | - [CLUSTERS.png]]
 #include "cad/biopsy_image.h"
 #include "cad/detect.h"
 #include "cad/lesion_features.h"
@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <set>
@@ -81,12 +82,34 @@ void tint(Image& image, const cad::StripRaster& raster, const FlatMap& flat,
     }
 }
 
-Result<void> countOnPolyps(const cad::PreparedColon& colon, const cad::WallSamples& samples,
-                           const std::string& file) {
-    std::ifstream in(file);
-    std::ostringstream text;
-    text << in.rdbuf();
-    const auto truth = TRY(cad::truthOfJson(text.str(), file));
+/// Of the findings that mean a polyp, by its kind.
+void compareHeights(const std::vector<Finding>& findings,
+                    const std::vector<cad::TrueLesion>& truth) {
+    std::vector<glm::dvec3> places;
+    for (const Finding& finding : findings)
+        places.push_back(finding.positionMm);
+    const std::vector<int> meant = cad::matched(places, truth);
+    for (const char* kind : {"flat", "sessile", "pedunculated"}) {
+        double error = 0.0, sum = 0.0;
+        int count = 0, alike = 0;
+        for (std::size_t n = 0; n < findings.size(); ++n) {
+            if (meant[n] < 0) continue;
+            const cad::TrueLesion& lesion = truth[std::size_t(meant[n])];
+            if (!lesion.neoplastic || lesion.kind != kind) continue;
+            const double off = findings[n].heightMm - lesion.heightMm;
+            error += std::abs(off), sum += off, ++count;
+            alike += findings[n].kind == kind;
+        }
+        if (count > 0)
+            std::printf(
+                "%d found %s: heights off by %.2f mm in the mean (bias %+.2f), %d told as "
+                "such\n",
+                count, kind, error / count, sum / count, alike);
+    }
+}
+
+void countOnPolyps(const cad::PreparedColon& colon, const cad::WallSamples& samples,
+                   const std::vector<cad::TrueLesion>& truth) {
     const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200});
     std::vector<double> onWall, onStrip;
     for (const cad::TrueLesion& lesion : truth) {
@@ -108,10 +131,9 @@ Result<void> countOnPolyps(const cad::PreparedColon& colon, const cad::WallSampl
         "4000 x 200 strip: least %.0f, median %.0f\n",
         onWall.size(), bench::quantile(onWall, 0), bench::median(onWall),
         bench::quantile(onStrip, 0), bench::median(onStrip));
-    return {};
 }
 
-Result<void> run(const std::string& root, const std::string& name, const std::string& truth,
+Result<void> run(const std::string& root, const std::string& name, const std::string& truthFile,
                  const char* clusters) {
     const auto store = TRY(store::CaseStore::open(root, false));
     const auto source = TRY(store.openCase(name));
@@ -160,8 +182,14 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
         }
     }
     timeWholeMucosa(evidence);
-    if (truth.empty() || truth == "-") return {};
-    return countOnPolyps(colon, evidence.samples, truth);
+    if (truthFile.empty() || truthFile == "-") return {};
+    std::ifstream in(truthFile);
+    std::ostringstream text;
+    text << in.rdbuf();
+    const auto truth = TRY(cad::truthOfJson(text.str(), truthFile));
+    compareHeights(findings.findings, truth);
+    countOnPolyps(colon, evidence.samples, truth);
+    return {};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Samples of the wall, derivatives of the scan, and shapes whose curvatures are known.
 #include "cad/candidates.h"
 #include "cad/lesion.h"
+#include "cad/standing_height.h"
 #include "cad/wall_lift.h"
 #include "cad/wall_shape.h"
 
@@ -263,6 +264,7 @@ struct Plateau {
     static constexpr double radiusMm = 15.0;
     double widthMm = 14.0, heightMm = 2.0;
     double besideMm = 0.0;   // how far from the first's middle the other's is; 0: there is none
+    double foldMm = 0.0;     // of a fold around the tube, beneath the first
     double meshOffMm = 0.0;  // every other vertex of the mesh lies so far inside the lumen
     cad::WallEvidence evidence = {};
 
@@ -273,6 +275,7 @@ struct Plateau {
         };
         double height = rises(glm::length(place));
         if (besideMm > 0.0) height += rises(glm::distance(place, {0.0, besideMm}));
+        height += foldMm * std::exp(-0.5 * std::pow(place.y / 3.0, 2.0));
         return radiusMm - height;
     }
     void make() {
@@ -387,6 +390,122 @@ TEST(WallLift, LeavesOutWallThatNobodyHasSeen) {
         marked.assign(vertices.size(), 0);
         EXPECT_GT(std::abs(plateau.liftWithin(7.5).topMm - plateau.heightMm), 0.5);
     }
+}
+
+std::optional<cad::Lesion> lesionOf(const cad::WallEvidence& evidence, cad::Patch patch) {
+    cad::SampleNumbers numbers(evidence.samples.mesh.vertices.size());
+    const cad::SampleTriangles triangles(evidence.samples);
+    return cad::standUp(evidence, triangles, std::move(patch), evidence.smooth->grid(), numbers);
+}
+
+double standingOf(const cad::WallEvidence& evidence, const cad::Lesion& lesion, bool hasStalk) {
+    cad::SampleNumbers numbers(evidence.samples.mesh.vertices.size());
+    return cad::standingHeightMm(evidence, lesion, hasStalk, numbers);
+}
+
+TEST(StandingHeight, OfAFlatLesionIsAboveTheTubeThoughThePatchIsItsMiddle) {
+    for (const double height : {1.5, 2.5}) {
+        Plateau plateau{.heightMm = height};
+        plateau.make();
+        for (const double patch : {7.5, 5.0}) {
+            const auto lesion = lesionOf(plateau.evidence, plateau.patchWithin(patch));
+            ASSERT_TRUE(lesion);
+            EXPECT_LT(lesion->heightMm, 0.7 * height);
+            EXPECT_NEAR(standingOf(plateau.evidence, *lesion, false), height, 0.3) << patch;
+        }
+    }
+}
+
+// A ball on a stalk, upright on a flat wall.
+struct Mushroom {
+    static constexpr double headMm = 4.0, stalkMm = 1.5, discMm = 22.0;
+    double centreMm = 9.0;  // of the ball, over the wall
+    cad::WallEvidence evidence = {};
+
+    // Of the tissue's surface, inwards.
+    double depth(glm::dvec3 p) const {
+        const double r = std::hypot(p.x, p.y);
+        return std::max({-p.z, headMm - glm::distance(p, {0.0, 0.0, centreMm}),
+                         p.z < centreMm ? stalkMm - r : -1e9});
+    }
+    void make() {
+        const Grid grid = axisAlignedGrid({80, 80, 40}, {0.6, 0.6, 0.6}, {-23.7, -23.7, -4.0});
+        evidence.smooth = std::make_unique<const cad::SmoothScan>(
+            wholeScan(sampled(grid, [&](glm::dvec3 p) { return edge(depth(p)); }), 0.6));
+        // Circles along the outline, from the wall's edge to the ball's pole.
+        std::vector<glm::dvec2> outline;  // radius, z
+        for (double r = discMm; r > stalkMm; r -= 0.4)
+            outline.push_back({r, 0.0});
+        const double neck = centreMm - std::sqrt(headMm * headMm - stalkMm * stalkMm);
+        for (double z = 0.0; z < neck; z += 0.4)
+            outline.push_back({stalkMm, z});
+        const double from = std::asin(stalkMm / headMm);
+        for (int n = 0; n <= 28; ++n) {
+            const double t = from + (std::numbers::pi - 0.02 - from) * n / 28.0;
+            outline.push_back({headMm * std::sin(t), centreMm - headMm * std::cos(t)});
+        }
+        constexpr int around = 72;
+        TriMesh mesh;
+        for (const glm::dvec2 ring : outline)
+            for (int n = 0; n < around; ++n) {
+                const double turn = 2.0 * std::numbers::pi * n / around;
+                mesh.vertices.push_back({ring.x * std::cos(turn), ring.x * std::sin(turn), ring.y});
+            }
+        for (int k = 0; k + 1 < int(outline.size()); ++k)
+            for (int n = 0; n < around; ++n) {
+                const int next = (n + 1) % around, a = k * around, b = a + around;
+                mesh.triangles.push_back({a + n, b + n, a + next});
+                mesh.triangles.push_back({a + next, b + n, b + next});
+            }
+        evidence.samples = cad::sampleWall(mesh, 0.5);
+        evidence.shapes = cad::shapesOf(evidence.samples, *evidence.smooth, 2);
+        evidence.statistics = {20.0, -100.0, 10.0};
+        evidence.unseen.assign(evidence.samples.mesh.vertices.size(), 0);
+        evidence.untagged = evidence.unseen;
+    }
+    cad::Patch head() const {
+        cad::Patch patch;
+        for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); ++v)
+            if (evidence.samples.mesh.vertices[v].z > centreMm - 0.8 * headMm)
+                patch.samples.push_back(v);
+        return patch;
+    }
+};
+
+TEST(StandingHeight, OfAHeadOnAStalkHoldsTheStalk) {
+    for (const double centre : {7.0, 9.0, 12.0}) {
+        Mushroom mushroom{.centreMm = centre};
+        mushroom.make();
+        const auto lesion = lesionOf(mushroom.evidence, mushroom.head());
+        ASSERT_TRUE(lesion);
+        const double height = centre + Mushroom::headMm;
+        EXPECT_NEAR(standingOf(mushroom.evidence, *lesion, true), height, 0.5) << centre;
+        // Its base, a film across the stalk, is no wall.
+        EXPECT_LT(lesion->heightMm, 2.0 * Mushroom::headMm + 2.5) << centre;
+    }
+}
+
+// Its flanks are beneath whatever stands on a fold's crest: they are not told as its height.
+TEST(StandingHeight, OnAFoldIsNotTheFolds) {
+    Plateau onFold{.widthMm = 8.0, .foldMm = 6.0};
+    onFold.make();
+    const auto lesion = lesionOf(onFold.evidence, onFold.patchWithin(4.5));
+    ASSERT_TRUE(lesion);
+    for (const bool hasStalk : {false, true}) {
+        const double height = standingOf(onFold.evidence, *lesion, hasStalk);
+        EXPECT_LE(height, lesion->heightMm);
+        EXPECT_GT(height, 0.9 * onFold.heightMm);
+        EXPECT_LT(height, onFold.heightMm + 0.4 * onFold.foldMm);
+    }
+}
+
+TEST(StandingHeight, IsTheFilmsWhereNobodyHasSeenTheWallAround) {
+    Plateau plateau;
+    plateau.make();
+    const auto lesion = lesionOf(plateau.evidence, plateau.patchWithin(7.5));
+    ASSERT_TRUE(lesion);
+    plateau.evidence.unseen.assign(plateau.evidence.unseen.size(), 1);
+    EXPECT_EQ(standingOf(plateau.evidence, *lesion, false), lesion->heightMm);
 }
 
 TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {
