@@ -13,8 +13,8 @@ namespace {
 
 // Around a foot at distance s from the patch the wall's circles grow by 2π a millimetre, while a
 // stalk, and the side of what has none, keep theirs: where they are twice the least one c, the
-// foot is c/2π behind (a millimetre more, as rings are this wide and wall is never a plane). Looked
-// for so far.
+// foot is c/2π behind. By rings of this width it is found up to a millimetre too far out, even on a
+// plane. Looked for so far.
 constexpr double longestStalkMm = 18.0, ringMm = 0.5;
 // The wall around begins beyond the fillet at the foot, and ends where it bends anew.
 constexpr double wallFromMm = 1.5, wallToMm = 10.0, footWidthMm = 1.0;

@@ -26,7 +26,7 @@ struct Growth {
     glm::dvec3 centre{0.0};       ///< of the head
     glm::dvec3 inward{0, 0, 1};   ///< unit, from the wall into the lumen
     glm::dvec3 root{0.0};         ///< its foot on the wall; of a stalk, a little beneath
-    double rootDepthMm = 0.0;     ///< how far
+    double rootDepthMm = 0.0;     ///< how far the root lies beneath the wall
     glm::dvec3 semiAxes{3.0};     ///< along two tangents of the wall, and along `inward`
     glm::dvec3 tangent{1, 0, 0};  ///< direction of the first semi-axis
     double stalkRadiusMm = 0.0;
