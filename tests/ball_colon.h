@@ -41,10 +41,12 @@ struct BallColon {
 
     // `turn`: a turn of the body about z; `shift`: of the grid and body by whole voxels.
     explicit BallColon(glm::dmat3 turn = glm::dmat3(1.0), glm::ivec3 shift = glm::ivec3(0),
-                       double offsetHu = 0.0, const std::vector<Bump>& onIt = bumps) {
-        const Grid grid = axisAlignedGrid({80, 80, 80}, {0.75, 0.75, 0.75}, {-29.5, -29.5, -29.5});
+                       double offsetHu = 0.0, const std::vector<Bump>& onIt = bumps,
+                       glm::dvec3 spacingMm = glm::dvec3(0.75)) {
+        const Grid grid =
+            axisAlignedGrid(glm::ivec3(60.0 / spacingMm), spacingMm, {-29.5, -29.5, -29.5});
         hu = Volume<std::int16_t>(grid), lumen = Volume<std::uint8_t>(grid);
-        const glm::dvec3 movedMm = 0.75 * glm::dvec3(shift);
+        const glm::dvec3 movedMm = spacingMm * glm::dvec3(shift);
         const glm::dmat3 back = glm::transpose(turn);
         for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
             const double d = wallMm(

@@ -68,7 +68,7 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.segment = segmentAt(colon, along.cameraMm);
     for (std::size_t n = 0; n < featureNames.size(); ++n)
         finding.features.emplace_back(std::string(featureNames[n]), candidate.features[n]);
-    finding.voxels = lesion.voxels;
+    finding.voxels = segmentationOf(colon, evidence, lesion);
     return finding;
 }
 

@@ -106,19 +106,12 @@ private:
     std::vector<float> degrees_;
 };
 
-// The voxels right beneath a patch: of a body thinner than voxels are.
-std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& patch,
-                                    const Grid& grid) {
+double halfVoxelMm(const Grid& grid) {
     const glm::dvec3 spacing = grid.spacingMm();
-    const double depth = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
-    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
-    std::set<std::size_t> voxels;
-    for (const std::uint32_t v : patch.samples) {
-        const glm::dvec3 p =
-            evidence.samples.mesh.vertices[v] + depth * glm::dvec3(evidence.shapes[v].intoWall);
-        const glm::ivec3 voxel(glm::floor(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)) + 0.5));
-        if (grid.contains(voxel)) voxels.insert(grid.index(voxel));
-    }
+    return 0.5 * std::min({spacing.x, spacing.y, spacing.z});
+}
+
+std::vector<VoxelRun> runsOf(const std::set<std::size_t>& voxels, const Grid& grid) {
     std::vector<VoxelRun> runs;
     for (const std::size_t index : voxels) {
         const glm::ivec3 voxel = grid.voxelAt(index);
@@ -128,6 +121,22 @@ std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& p
             runs.push_back({voxel, 1});
     }
     return runs;
+}
+
+// The voxels that hold what is half a voxel beneath a patch: of a body that holds no voxel's
+// centre.
+std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& patch,
+                                    const Grid& grid) {
+    const double depth = halfVoxelMm(grid);
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
+    std::set<std::size_t> voxels;
+    for (const std::uint32_t v : patch.samples) {
+        const glm::dvec3 p =
+            evidence.samples.mesh.vertices[v] + depth * glm::dvec3(evidence.shapes[v].intoWall);
+        const glm::ivec3 voxel(glm::floor(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)) + 0.5));
+        if (grid.contains(voxel)) voxels.insert(grid.index(voxel));
+    }
+    return runsOf(voxels, grid);
 }
 
 }  // namespace
@@ -328,6 +337,38 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangle
     if (lesion.voxels.empty()) lesion.voxels = voxelsBeneath(evidence, patch, grid);
     lesion.patch = std::move(patch);
     return lesion;
+}
+
+std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvidence& evidence,
+                                     const Lesion& lesion) {
+    const Grid& grid = colon.cleansed.grid();
+    const double depth = halfVoxelMm(grid);
+    std::set<std::size_t> voxels;
+    for (const std::uint32_t v : lesion.patch.samples) {
+        const glm::dvec3 wall = evidence.samples.mesh.vertices[v],
+                         intoWall(evidence.shapes[v].intoWall), beneath = wall + depth * intoWall;
+        const glm::dvec3 at = grid.voxelFromPatientPoint(beneath);
+        const glm::ivec3 low(glm::floor(at));
+        double greatest = 0.0;
+        std::size_t most = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::ivec3 voxel = low + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+            if (!grid.contains(voxel)) continue;
+            const glm::dvec3 apart = 1.0 - glm::abs(at - glm::dvec3(voxel));
+            const double share = apart.x * apart.y * apart.z;
+            const glm::dvec3 centre = grid.patientFromVoxelPoint(glm::dvec3(voxel));
+            if (glm::dot(centre - wall, intoWall) < 0.0 || share <= greatest) continue;
+            greatest = share, most = grid.index(voxel);
+        }
+        if (greatest > 0.0) voxels.insert(most);
+    }
+    for (const VoxelRun& run : lesion.voxels)
+        for (int i = 0; i < run.count; ++i) {
+            const glm::ivec3 voxel = run.first + glm::ivec3(i, 0, 0);
+            if (colon.cleansed.at(voxel) >= colon.tissue.airBelowHu)
+                voxels.insert(grid.index(voxel));
+        }
+    return runsOf(voxels, grid);
 }
 
 }  // namespace haustra::cad

@@ -24,14 +24,16 @@ struct Lesion {
     glm::dvec3 axis{0, 0, 1};        ///< unit, from the base into the lumen
     /// Of the patch and of what rises around it up to the foot; of a head on a stalk, the patch.
     Diameter diameter;
-    double widthMm = 0.0;          ///< the greatest extent square to diameter and axis
-    double heightMm = 0.0;         ///< of the top above the base, along the axis
-    double volumeMm3 = 0.0;        ///< between patch and base
-    double areaMm2 = 0.0;          ///< of the patch
-    double rimMm = 0.0;            ///< length around: √(4π · the base's area)
-    double baseMm2 = 0.0;          ///< of the base
-    TriMesh body;                  ///< closed: patch and base, counter-clockwise seen from outside
-    std::vector<VoxelRun> voxels;  ///< of the scan's grid whose centres the body holds
+    double widthMm = 0.0;    ///< the greatest extent square to diameter and axis
+    double heightMm = 0.0;   ///< of the top above the base, along the axis
+    double volumeMm3 = 0.0;  ///< between patch and base
+    double areaMm2 = 0.0;    ///< of the patch
+    double rimMm = 0.0;      ///< length around: √(4π · the base's area)
+    double baseMm2 = 0.0;    ///< of the base
+    TriMesh body;            ///< closed: patch and base, counter-clockwise seen from outside
+    /// Of the scan's grid, whose centres the body holds; of one that holds none, those right
+    /// beneath the patch.
+    std::vector<VoxelRun> voxels;
 };
 
 /// Finds the triangles of samples. Immutable.
@@ -81,6 +83,14 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
 /// use. O(samples of the patch · their width).
 std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
                               Patch patch, const Grid& grid, SampleNumbers& numbers);
+
+/// What a finding tells as its tissue: of the body's voxels those that are no gas (across a lumen a
+/// film lies in it), and of each sample of the patch the voxel that has the greatest share, by
+/// linear interpolation, in the point half a voxel beneath it, of those whose centres lie behind
+/// the wall there. A body thinner than voxels are holds some centres here and there. In memory
+/// order.
+std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvidence& evidence,
+                                     const Lesion& lesion);
 
 /// Runs of the voxels whose centres lie within a closed mesh (even–odd along i).
 std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid);

@@ -39,7 +39,9 @@ struct Finding {
     double arcMm = 0.0;
     std::optional<ColonSegment> segment = {};  ///< where the colon's parts are known
     std::vector<std::pair<std::string, double>> features = {};
-    std::vector<VoxelRun> voxels = {};  ///< its tissue, of Findings::grid, in memory order
+    /// Its tissue, of Findings::grid, in memory order; of what detection found also what lies right
+    /// behind the wall that it takes up.
+    std::vector<VoxelRun> voxels = {};
 };
 
 /// What made findings: a program and what it had learnt.

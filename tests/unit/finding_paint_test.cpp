@@ -1,6 +1,8 @@
 // Which places of the wall belong to a finding, and which pixels of the strip are coloured.
 #include "render/wall/finding_paint.h"
 
+#include "ball_colon.h"
+#include "cad/detect.h"
 #include "flat_tube.h"
 
 #include <cmath>
@@ -89,6 +91,63 @@ TEST(FindingPaint, APlaceBelongsWhereTissueIsBeneathIt) {
     }
     EXPECT_GT(within, 300);
     EXPECT_GT(without, 1500);
+}
+
+TEST(FindingPaint, AFlatBodyIsTissueAndColouredWithoutHoles) {
+    // Of balls that are mostly outside, so that what stands in the lumen is thinner than two
+    // voxels.
+    const glm::dvec3 way = glm::normalize(glm::dvec3(1, 2, 3));
+    for (const glm::dvec3 spacingMm : {glm::dvec3(0.75), glm::dvec3(0.6, 0.6, 1.2)}) {
+        for (const double radiusMm : {6.0, 8.0, 11.0}) {
+            for (const double standsMm : {0.8, 1.2, 1.8}) {
+                SCOPED_TRACE(testing::Message()
+                             << spacingMm.z << ' ' << radiusMm << ' ' << standsMm);
+                const BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0,
+                                     {{(lumenMm + radiusMm - standsMm) * way, radiusMm}},
+                                     spacingMm);
+                const auto colon = ball.colon();
+                const auto evidence = cad::gatherEvidence(colon, {});
+                cad::DetectOptions shapeAlone;
+                shapeAlone.method.texture = false;
+                auto candidates = cad::findCandidates(colon, evidence, nullptr, shapeAlone);
+                std::erase_if(candidates, [&](const cad::Candidate& c) {
+                    return glm::dot(c.lesion.topMm, way) < 0.85 * lumenMm;
+                });
+                ASSERT_FALSE(candidates.empty());
+                candidates.resize(1);
+                const cad::Lesion& lesion = candidates[0].lesion;
+                candidates[0].probability = 1.0;
+                const auto told = cad::findingsOf(colon, evidence, candidates, {}).findings;
+                ASSERT_EQ(told.size(), 1u);
+                const FindingTissue paint(ball.hu.grid(), told);
+                const auto colouredAt = [&](std::uint32_t v) {
+                    return paint.at(evidence.samples.mesh.vertices[v],
+                                    -glm::dvec3(evidence.shapes[v].intoWall)) == 0;
+                };
+                const std::set<std::uint32_t> rim(lesion.rim.begin(), lesion.rim.end());
+                for (const std::uint32_t v : lesion.patch.samples)
+                    EXPECT_TRUE(colouredAt(v) || rim.contains(v));
+                for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); v += 7) {
+                    const double mm =
+                        glm::distance(evidence.samples.mesh.vertices[v], lesion.topMm);
+                    if (mm > 0.5 * lesion.diameter.mm + 3.0) {
+                        EXPECT_FALSE(colouredAt(v));
+                    }
+                }
+                int tissue = 0, all = 0;
+                std::size_t last = 0;
+                for (const VoxelRun& run : told[0].voxels) {
+                    EXPECT_TRUE(all == 0 || ball.hu.grid().index(run.first) > last)
+                        << "in memory order";
+                    last = ball.hu.grid().index(run.first);
+                    for (int i = 0; i < run.count; ++i, ++all)
+                        tissue +=
+                            ball.hu.at(run.first + glm::ivec3(i, 0, 0)) > ball.tissue.airBelowHu;
+                }
+                EXPECT_GT(tissue, 0.9 * all);
+            }
+        }
+    }
 }
 
 TEST(FindingPaint, WithoutVoxelsItIsTheBallOfTheDiameter) {
