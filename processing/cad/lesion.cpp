@@ -124,7 +124,8 @@ std::vector<VoxelRun> runsOf(const std::set<std::size_t>& voxels, const Grid& gr
 }
 
 // The voxels that hold what is half a voxel beneath a patch: of a body that holds no voxel's
-// centre.
+// centre. Features are measured in them, of the phantoms that the built-in model has learnt from
+// too, so that a change here asks for another model.
 std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& patch,
                                     const Grid& grid) {
     const double depth = halfVoxelMm(grid);

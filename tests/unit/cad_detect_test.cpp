@@ -94,6 +94,30 @@ TEST(Detect, AFlatLesionIsAsWideAsItsFoot) {
     }
 }
 
+TEST(Detect, GasBetweenAWidePatchAndItsFilmIsNoTissue) {
+    // A soap film over a wide piece of a ball lies inside the ball.
+    const BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, {});
+    const auto colon = ball.colon();
+    const auto evidence = cad::gatherEvidence(colon, {});
+    const auto& places = evidence.samples.mesh.vertices;
+    cad::Patch patch;
+    for (std::uint32_t v = 0; v < places.size(); ++v)
+        if (glm::distance(places[v], glm::dvec3(0, 0, lumenMm)) < 10.0) patch.samples.push_back(v);
+    cad::SampleNumbers numbers(places.size());
+    const auto lesion = cad::standUp(evidence, cad::SampleTriangles(evidence.samples), patch,
+                                     ball.hu.grid(), numbers);
+    ASSERT_TRUE(lesion);
+    const auto gasShare = [&](const std::vector<VoxelRun>& runs) {
+        double gas = 0.0, all = 0.0;
+        for (const VoxelRun& run : runs)
+            for (int i = 0; i < run.count; ++i, ++all)
+                gas += ball.hu.at(run.first + glm::ivec3(i, 0, 0)) < ball.tissue.airBelowHu;
+        return gas / all;
+    };
+    EXPECT_GT(gasShare(lesion->voxels), 0.9);
+    EXPECT_LT(gasShare(cad::segmentationOf(colon, evidence, *lesion)), 0.1);
+}
+
 TEST(Detect, TurnsShiftsAndThreadsChangeNothing) {
     const auto plain = bodies(BallColon());
     const glm::dmat3 quarter(0, 1, 0, -1, 0, 0, 0, 0, 1);
