@@ -33,7 +33,7 @@ glm::u8vec3 displayed(glm::vec3 linear) {
 
 Image biopsyImage(const BiopsyScan& scan, const FlatMap& flat, const BiopsyTable& table,
                   glm::ivec2 size, int finer, int threads) {
-    const StripRaster raster = rasterStrip(flat, size * finer);
+    const StripRaster raster = rasterStrip(flat, size * finer, threads);
     Image image = blankImage(size);
     // Ring after ring of the colon, whose rays pass through the same voxels.
     constexpr std::size_t ring = 16;

@@ -24,7 +24,8 @@ struct StripRaster {
     glm::dvec3 placeOf(const Pixel& pixel, const FlatMap& flat) const;
 };
 
-/// A pixel has the triangle that holds its middle. O(triangles + pixels).
-StripRaster rasterStrip(const FlatMap& flat, glm::ivec2 size);
+/// A pixel has the triangle that holds its middle. The same for any number of threads, each of
+/// which looks at all triangles: O(triangles · threads + pixels).
+StripRaster rasterStrip(const FlatMap& flat, glm::ivec2 size, int threads);
 
 }  // namespace haustra::cad

@@ -110,7 +110,7 @@ void compareHeights(const std::vector<Finding>& findings,
 
 void countOnPolyps(const cad::PreparedColon& colon, const cad::WallSamples& samples,
                    const std::vector<cad::TrueLesion>& truth) {
-    const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200});
+    const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200}, 0);
     std::vector<double> onWall, onStrip;
     for (const cad::TrueLesion& lesion : truth) {
         if (!lesion.neoplastic || lesion.diameterMm < 5.0) continue;
@@ -166,7 +166,7 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
             return cad::biopsyImage(scan, colon.flat, table, {4000, 200}, 2, 0);
         });
         if (clusters) {
-            const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200});
+            const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200}, 0);
             for (const cad::Candidate& c : all)
                 tint(image, raster, colon.flat, evidence, c,
                      c.lesion.patch.byTexture ? glm::u8vec3(255, 0, 255)

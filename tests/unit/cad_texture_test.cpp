@@ -28,7 +28,7 @@ TEST(StripRaster, APixelHasThePlaceThatTheMapHasUnderItsMiddle) {
     const FlatTube tube;
     const FlatMap map = tube.map();
     const glm::ivec2 size(240, 80);
-    const cad::StripRaster raster = cad::rasterStrip(map, size);
+    const cad::StripRaster raster = cad::rasterStrip(map, size, 0);
     ASSERT_EQ(raster.pixels.size(), std::size_t(size.x * size.y));
     double farthest = 0.0;
     for (int row = 0; row < size.y; ++row) {
@@ -68,7 +68,7 @@ TEST(BiopsyImage, ShowsBeneathEachPlaceWhatARayFromItMeets) {
         const std::uint8_t* p = &image.rgb[std::size_t(3 * (row * size.x + column))];
         return glm::ivec3(p[0], p[1], p[2]);
     };
-    const cad::StripRaster raster = cad::rasterStrip(map, size);
+    const cad::StripRaster raster = cad::rasterStrip(map, size, 0);
     for (int row = 0; row < size.y; row += 3) {
         for (int column = 0; column < size.x; column += 7) {
             const glm::dvec3 place =
