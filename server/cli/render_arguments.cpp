@@ -178,7 +178,13 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
                     "A picture of the whole strip, as flat-image is without a seam margin, that "
                     "colours the endoscopic view's wall; or findings: the case's own, in all views "
                     "of the wall")
-        ->type_name("FILE.png|.tif|findings");
+        ->type_name("FILE.png|.tif|findings")
+        ->check([](const std::string& text) {
+            std::error_code ignored;
+            return text == "findings" || fs::exists(text, ignored)
+                       ? std::string()
+                       : "\"" + text + "\" is neither a file nor the word findings";
+        });
     command
         .add_option("--least-probability", my.leastProbability,
                     "Of --paint findings: the candidates below the operating point, too, that are "

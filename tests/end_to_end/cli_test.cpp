@@ -61,6 +61,8 @@ TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
              {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--size", "7"},
              {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--view", "top"},
              {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--window", "40"},
+             {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--paint",
+              "finding"},
              {"cad", "evaluate", "c", "--store", "s", "--truth", "t", "--froc", "x.gif"},
              {"cad", "train", "c", "--store", "s", "--truth", "t", "--model", "m", "--without",
               "feature:"},
