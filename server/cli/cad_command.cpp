@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 namespace product = store::product;
 
 struct CadArguments {
-    fs::path store, truth, model, report, froc, kept;
+    fs::path store, truth, model, texture, report, froc, kept;
     std::vector<std::string> cases, without;
     std::string name = "cases";
     std::string description = "cases that somebody chose";
@@ -226,10 +226,13 @@ void leaveOut(std::vector<cad::Candidate>& candidates, const CadArguments& argum
     }
 }
 
-Result<cad::CadModel> readModel(const CadArguments& arguments) {
-    if (arguments.model.empty()) return cad::modelOfText(cad::builtInModelText(), "built-in model");
-    const auto text = TRY(readText(arguments.model));
-    return cad::modelOfText(text, arguments.model.string());
+constexpr const char* builtIn = "built-in";
+
+Result<cad::CadModel> readModel(const fs::path& file) {
+    if (file.empty() || file == builtIn)
+        return cad::modelOfText(cad::builtInModelText(), "built-in model");
+    const auto text = TRY(readText(file));
+    return cad::modelOfText(text, file.string());
 }
 
 // What the cases' polyps look like in the electronic biopsy, which is kept as candidates are.
@@ -284,7 +287,17 @@ Result<void> runTrain(const CadArguments& arguments) {
         options.trainingScans.push_back(scanMark(loaded.back()));
     }
     // Colours first: what candidates texture gives depends on what all cases look like.
-    const auto texture = TRY(learnTexture(loaded, arguments, bar));
+    cad::TextureModel texture;
+    if (arguments.texture.empty()) {
+        texture = TRY(learnTexture(loaded, arguments, bar));
+    } else {
+        // Its scans are as little unseen as the cases.
+        const cad::CadModel from = TRY(readModel(arguments.texture));
+        texture = from.texture;
+        for (const std::string& scan : from.trainingScans)
+            if (std::ranges::find(options.trainingScans, scan) == options.trainingScans.end())
+                options.trainingScans.push_back(scan);
+    }
     bar.say(fmt::format("texture: {} components hold {:.1f} % of the variance; T {:.3f}",
                         texture.count(), 100.0 * texture.varianceShare, texture.threshold));
     std::vector<cad::TrainingCase> cases;
@@ -377,7 +390,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     }
     TRY(checkArguments(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
-    const auto model = TRY(readModel(arguments));
+    const auto model = TRY(readModel(arguments.model));
     cad::Method method;
     method.classifier = usesClassifier(arguments);
     ProgressBar bar;
@@ -498,6 +511,12 @@ Command addCad(CLI::App& program) {
                      "How many a scan the operating point allows, in cross-validation")
         ->capture_default_str()
         ->check(numberRange(0.1, 50.0));
+    train
+        ->add_option("--texture", arguments->texture,
+                     "Take what polyps look like in the electronic biopsy from this model, or from "
+                     "the built-in one, in place of learning it: candidates that were kept hold "
+                     "while cases are added. What that model has seen counts as seen")
+        ->type_name("FILE.json|built-in");
     CLI::App* evaluate = command->add_subcommand(
         "evaluate",
         "Sensitivity, false positives and errors of size on prepared cases whose polyps are known, "

@@ -158,6 +158,35 @@ TEST_F(CadCommand, LearnsWhatAPolypIsAndFindsThoseOfOtherCases) {
     EXPECT_GT(files(), before);
 }
 
+TEST_F(CadCommand, TextureThatIsTakenLeavesKeptCandidatesValid) {
+    const TemporaryFolder out;
+    const std::string first = out.path() / "first.json", second = out.path() / "second.json",
+                      kept = out.path() / "kept";
+    fs::create_directories(kept);
+    ASSERT_EQ(haustra(with(training(), {"--candidates", kept, "--model", first})).exitCode, 0);
+    const auto files = [&] {
+        return std::distance(fs::directory_iterator(kept), fs::directory_iterator());
+    };
+    const auto before = files();
+    // One case less, one more: only that one is looked at.
+    Arguments others{"cad", "train"};
+    for (int n = 1; n < 7; ++n)
+        others.push_back(name(n));
+    const auto learnt =
+        haustra(with(others, {"--store", store(), "--truth", truth(), "--candidates", kept,
+                              "--texture", first, "--model", second}));
+    ASSERT_EQ(learnt.exitCode, 0) << learnt.err;
+    EXPECT_EQ(files(), before + 1);
+    const auto from = cad::modelOfText(fileContent(first)),
+               read = cad::modelOfText(fileContent(second));
+    ASSERT_TRUE(from && read);
+    EXPECT_EQ(cad::textureText(read->texture), cad::textureText(from->texture));
+    // The case that texture alone was learnt from has been seen, too.
+    EXPECT_EQ(read->trainingScans.size(), 7u);
+    EXPECT_EQ(haustra(with(judging({name(0)}), {"--model", second})).exitCode, 1);
+    EXPECT_EQ(haustra(with(judging({name(7)}), {"--model", second})).exitCode, 0);
+}
+
 TEST_F(CadCommand, DrawsItsCurve) {
     const TemporaryFolder out;
     const fs::path picture = out.path() / "curve.png";
