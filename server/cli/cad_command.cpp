@@ -154,6 +154,12 @@ Result<void> checkArguments(const CadArguments& arguments) {
     if (isWithout(arguments, "texture") &&
         (isWithout(arguments, "shape") || isWithout(arguments, "past")))
         return fail(ErrorKind::badInput, "without texture and shape there are no candidates");
+    // Both change how texture is learnt, which that model has done already.
+    if (!arguments.texture.empty() &&
+        (isWithout(arguments, "pca") || isWithout(arguments, "automatic-transfer")))
+        return fail(ErrorKind::badInput,
+                    "a model's texture cannot be taken without pca or automatic-transfer",
+                    arguments.texture.string());
     // A case that is given twice would count twice, and its copies teach and judge each other.
     std::set<std::string> seen;
     for (const std::string& name : arguments.cases)

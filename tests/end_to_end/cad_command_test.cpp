@@ -185,6 +185,11 @@ TEST_F(CadCommand, TextureThatIsTakenLeavesKeptCandidatesValid) {
     EXPECT_EQ(read->trainingScans.size(), 7u);
     EXPECT_EQ(haustra(with(judging({name(0)}), {"--model", second})).exitCode, 1);
     EXPECT_EQ(haustra(with(judging({name(7)}), {"--model", second})).exitCode, 0);
+    const auto refused = haustra(
+        with(training(), {"--texture", first, "--without", "pca", "--model", second + ".other"}));
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_NE(refused.err.find("pca"), std::string::npos) << refused.err;
+    EXPECT_FALSE(fs::exists(second + ".other"));
 }
 
 TEST_F(CadCommand, DrawsItsCurve) {
