@@ -38,6 +38,14 @@ void addBiopsyImageOptions(CLI::App& command, BiopsyImageOptions& options) {
 
 Result<void> exportBiopsyImage(const store::Case& source, const std::filesystem::path& file,
                                const BiopsyImageOptions& options) {
+    // Each keeps its place of the wall, twelve bytes.
+    constexpr double mostRays = 300e6;
+    const double rays = double(options.length) * options.around * options.finer * options.finer;
+    if (rays > mostRays)
+        throw CLI::ValidationError(
+            "--length", fmt::format("{:.0f} million rays are more than {:.0f} million; ask for "
+                                    "fewer pixels or less of --finer",
+                                    rays / 1e6, mostRays / 1e6));
     const auto inputs =
         TRY(pipeline::readColon(source, {source.find(product::quality).has_value(),
                                          source.find(product::cleansed).has_value()}));

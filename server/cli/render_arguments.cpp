@@ -181,7 +181,7 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         ->type_name("FILE.png|.tif|findings")
         ->check([](const std::string& text) {
             std::error_code ignored;
-            return text == "findings" || fs::exists(text, ignored)
+            return text == "findings" || fs::is_regular_file(text, ignored)
                        ? std::string()
                        : "\"" + text + "\" is neither a file nor the word findings";
         });
