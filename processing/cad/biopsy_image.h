@@ -9,9 +9,9 @@
 
 namespace haustra::cad {
 
-/// For each pixel of a StripRaster `finer` times as fine a ray from its place of the wall along the
-/// gradient into the tissue; each pixel is the mean of finer² rays, in linear light. Sides of 1 and
-/// more. The same for any number of threads.
+/// For each pixel of a StripRaster `finer` times as fine, a ray from its place of the wall along
+/// the gradient into the tissue; each pixel is the mean of finer² rays, in linear light. Sides of 1
+/// and more. The same for any number of threads.
 Image biopsyImage(const BiopsyScan& scan, const FlatMap& flat, const BiopsyTable& table,
                   glm::ivec2 size, int finer, int threads);
 

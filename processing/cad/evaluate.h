@@ -25,7 +25,7 @@ struct EvaluatedCase {
     std::vector<ToldPlace> places;  ///< whatever its score
 };
 
-/// What detection made of a case. `candidates` are weighed.
+/// What detection made of a case, whose candidates are `weighed` (detect.h).
 EvaluatedCase evaluateCase(std::string name, std::string group,
                            const std::vector<Candidate>& weighed,
                            const std::vector<TrueLesion>& truth);

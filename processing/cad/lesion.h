@@ -31,7 +31,7 @@ struct Lesion {
     double rimMm = 0.0;      ///< length around: √(4π · the base's area)
     double baseMm2 = 0.0;    ///< of the base
     TriMesh body;            ///< closed: patch and base, counter-clockwise seen from outside
-    /// Of the scan's grid, whose centres the body holds; of one that holds none, those right
+    /// Voxels of the scan's grid whose centres the body holds; where it holds none, those right
     /// beneath the patch.
     std::vector<VoxelRun> voxels;
 };
@@ -84,11 +84,11 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
 std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
                               Patch patch, const Grid& grid, SampleNumbers& numbers);
 
-/// What a finding tells as its tissue: of the body's voxels those that are no gas (across a lumen a
-/// film lies in it), and of each sample of the patch the voxel that has the greatest share, by
-/// linear interpolation, in the point half a voxel beneath it, of those whose centres lie behind
-/// the wall there. A body thinner than voxels are holds some centres here and there. In memory
-/// order.
+/// What a finding tells as its tissue, in memory order. These are the body's voxels that are no gas
+/// (a wide body's film lies in the lumen). And since a body thinner than voxels holds a centre only
+/// here and there, they are beneath each sample of the patch one voxel more: of those whose centres
+/// lie behind the wall there, the one that has the greatest share, by linear interpolation, in the
+/// point half a voxel beneath the sample.
 std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvidence& evidence,
                                      const Lesion& lesion);
 

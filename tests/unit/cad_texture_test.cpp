@@ -41,6 +41,13 @@ TEST(StripRaster, APixelHasThePlaceThatTheMapHasUnderItsMiddle) {
         }
     }
     EXPECT_LT(farthest, 0.1) << "triangles are chords of the tube: no farther than their sagitta";
+    for (const int threads : {1, 3, 7}) {
+        const cad::StripRaster other = cad::rasterStrip(map, size, threads);
+        for (std::size_t n = 0; n < raster.pixels.size(); ++n) {
+            ASSERT_EQ(other.pixels[n].triangle, raster.pixels[n].triangle) << threads;
+            ASSERT_EQ(other.pixels[n].weights, raster.pixels[n].weights) << threads;
+        }
+    }
 }
 
 TEST(BiopsyImage, ShowsBeneathEachPlaceWhatARayFromItMeets) {

@@ -114,37 +114,38 @@ TEST(FindingPaint, AFlatBodyIsTissueAndColouredWithoutHoles) {
                     return glm::dot(c.lesion.topMm, way) < 0.85 * lumenMm;
                 });
                 ASSERT_FALSE(candidates.empty());
-                candidates.resize(1);
-                const cad::Lesion& lesion = candidates[0].lesion;
-                candidates[0].probability = 1.0;
-                const auto told = cad::findingsOf(colon, evidence, candidates, {}).findings;
-                ASSERT_EQ(told.size(), 1u);
-                const FindingTissue paint(ball.hu.grid(), told);
-                const auto colouredAt = [&](std::uint32_t v) {
-                    return paint.at(evidence.samples.mesh.vertices[v],
-                                    -glm::dvec3(evidence.shapes[v].intoWall)) == 0;
-                };
-                const std::set<std::uint32_t> rim(lesion.rim.begin(), lesion.rim.end());
-                for (const std::uint32_t v : lesion.patch.samples)
-                    EXPECT_TRUE(colouredAt(v) || rim.contains(v));
-                for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); v += 7) {
-                    const double mm =
-                        glm::distance(evidence.samples.mesh.vertices[v], lesion.topMm);
-                    if (mm > 0.5 * lesion.diameter.mm + 3.0) {
-                        EXPECT_FALSE(colouredAt(v));
+                for (cad::Candidate& candidate : candidates) {
+                    const cad::Lesion& lesion = candidate.lesion;
+                    candidate.probability = 1.0;
+                    const auto told = cad::findingsOf(colon, evidence, {candidate}, {}).findings;
+                    ASSERT_EQ(told.size(), 1u);
+                    const FindingTissue paint(ball.hu.grid(), told);
+                    const auto colouredAt = [&](std::uint32_t v) {
+                        return paint.at(evidence.samples.mesh.vertices[v],
+                                        -glm::dvec3(evidence.shapes[v].intoWall)) == 0;
+                    };
+                    const std::set<std::uint32_t> rim(lesion.rim.begin(), lesion.rim.end());
+                    for (const std::uint32_t v : lesion.patch.samples)
+                        EXPECT_TRUE(colouredAt(v) || rim.contains(v));
+                    for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); v += 7) {
+                        const double mm =
+                            glm::distance(evidence.samples.mesh.vertices[v], lesion.topMm);
+                        if (mm > 0.5 * lesion.diameter.mm + 3.0) {
+                            EXPECT_FALSE(colouredAt(v));
+                        }
                     }
+                    int tissue = 0, all = 0;
+                    std::size_t last = 0;
+                    for (const VoxelRun& run : told[0].voxels) {
+                        EXPECT_TRUE(all == 0 || ball.hu.grid().index(run.first) > last)
+                            << "in memory order";
+                        last = ball.hu.grid().index(run.first);
+                        for (int i = 0; i < run.count; ++i, ++all)
+                            tissue += ball.hu.at(run.first + glm::ivec3(i, 0, 0)) >
+                                      ball.tissue.airBelowHu;
+                    }
+                    EXPECT_GT(tissue, 0.9 * all);
                 }
-                int tissue = 0, all = 0;
-                std::size_t last = 0;
-                for (const VoxelRun& run : told[0].voxels) {
-                    EXPECT_TRUE(all == 0 || ball.hu.grid().index(run.first) > last)
-                        << "in memory order";
-                    last = ball.hu.grid().index(run.first);
-                    for (int i = 0; i < run.count; ++i, ++all)
-                        tissue +=
-                            ball.hu.at(run.first + glm::ivec3(i, 0, 0)) > ball.tissue.airBelowHu;
-                }
-                EXPECT_GT(tissue, 0.9 * all);
             }
         }
     }

@@ -25,8 +25,8 @@ public:
     /// greater share where two do at once. A finding without voxels has the places within the ball
     /// of diameterMm around its centre. A tenth of a microsecond where no finding is near.
     int at(glm::dvec3 placeMm, glm::dvec3 inward) const;
-    /// Half a voxel's diagonal: no farther from a body's surface is the centre of the voxel that
-    /// holds a place of it.
+    /// Half a voxel's diagonal: the centre of the voxel that holds a place of the surface is no
+    /// farther from it than this.
     double reachMm() const { return reachMm_; }
     /// Under a half, so that a body one voxel thick has no holes where its voxels meet.
     static constexpr double leastShare = 0.25;
