@@ -73,6 +73,8 @@ TextureModel textureIn(const ModelJson& json) {
     texture.polyp = numbersIn(json.at("polyp"), count);
     texture.mean = numbersIn(json.at("mean"), textureSize);
     texture.components = numbersIn(json.at("components"), count * textureSize);
+    // No distance would tell a polyp's colours from the wall's.
+    if (count == 0) throw std::invalid_argument("the texture has no component");
     return texture;
 }
 
@@ -170,6 +172,7 @@ std::string modelText(const CadModel& model) {
     add("trained_on", model.trainedOn);
     add("training_sha256", model.trainingSha256);
     add("training_scans", model.trainingScans);
+    if (!model.textureFrom.empty()) add("texture_from", model.textureFrom);
     add("operating_point", model.operatingPoint);
     add("calibration", {model.calibrationA, model.calibrationB});
     add("place_calibration", {model.placeA, model.placeB});
@@ -216,6 +219,7 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         model.name = json.at("name"), model.trainedOn = json.at("trained_on");
         model.trainingSha256 = json.at("training_sha256");
         model.trainingScans = json.at("training_scans").get<std::vector<std::string>>();
+        model.textureFrom = json.value("texture_from", std::string());
         model.operatingPoint = json.at("operating_point");
         model.calibrationA = json.at("calibration").at(0).get<double>();
         model.calibrationB = json.at("calibration").at(1).get<double>();
@@ -254,7 +258,6 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         if (!isRising(model.calibrationA, model.calibrationB) ||
             !isRising(model.placeA, model.placeB))
             throw std::invalid_argument("the calibration does not rise with the score");
-        if (model.texture.count() == 0) throw std::invalid_argument("the texture has no component");
         if (const auto sound = checkTrees(model.boosted, featureCount); !sound)
             throw std::invalid_argument(sound.error().message);
         if (const auto sound = checkNetworks(model.networks, featureCount); !sound)

@@ -30,8 +30,10 @@ struct CadModel {
     std::string name;            ///< "phantoms-1"
     std::string trainedOn;       ///< for a reader: of what, and what that means
     std::string trainingSha256;  ///< of the training cases' scans, in order
-    /// Of each training case the beginning of its scan's key: what the model must not be judged by.
+    /// What the model must not be judged by: beginnings of the keys of the training cases' scans
+    /// and of digests of their studies' UIDs, and those of the model that texture is from.
     std::vector<std::string> trainingScans;
+    std::string textureFrom;  ///< the model whose texture this is; empty: learnt from these cases
     TextureModel texture;
     ShapeThresholds thresholds;
     BoostedTrees boosted;

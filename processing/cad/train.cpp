@@ -66,6 +66,24 @@ std::optional<bool> truthOf(const TrainingCase& each, int lesion) {
     return is.neoplastic;
 }
 
+// Of each case the number of its study, from 0 on.
+std::vector<std::size_t> studiesOf(const std::vector<TrainingCase>& cases) {
+    std::map<std::string, std::size_t> known;
+    std::vector<std::size_t> studies;
+    std::size_t count = 0;
+    for (const TrainingCase& each : cases) {
+        const auto found = each.study.empty() ? known.end() : known.find(each.study);
+        studies.push_back(found == known.end() ? count++ : found->second);
+        if (!each.study.empty()) known.emplace(each.study, studies.back());
+    }
+    return studies;
+}
+
+// Of what rises, whether polyps and others are among it, so that they can be told apart.
+bool hasBoth(const std::vector<int>& truths) {
+    return std::ranges::count(truths, 1) > 0 && std::ranges::count(truths, 0) > 0;
+}
+
 }  // namespace
 
 TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOptions& options,
@@ -148,12 +166,16 @@ std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
 
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
                                 const TrainOptions& options) {
-    if (int(cases.size()) < options.folds)
-        return fail(ErrorKind::badInput, "there are fewer training cases than parts of them");
+    const std::vector<std::size_t> studies = studiesOf(cases);
+    if (studies.empty() || int(*std::ranges::max_element(studies)) + 1 < options.folds)
+        return fail(ErrorKind::badInput,
+                    "there are fewer studies among the training cases than parts of them");
+    const auto foldOf = [&](std::size_t n) { return studies[n] % std::size_t(options.folds); };
     CadModel model;
     model.name = options.name, model.trainedOn = options.trainedOn;
     model.trainingSha256 = options.trainingSha256;
     model.trainingScans = options.trainingScans;
+    model.textureFrom = options.textureFrom;
     model.texture = texture;
     std::vector<double> indices, curvedness, concentration;
     std::vector<const TrainingCase*> all;
@@ -176,17 +198,14 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
         for (std::size_t fold = begin; fold < end; ++fold) {
             std::vector<const TrainingCase*> seen;
             for (std::size_t n = 0; n < cases.size(); ++n)
-                if (n % std::size_t(options.folds) != fold || fold + 1 == judges.size())
-                    seen.push_back(all[n]);
+                if (foldOf(n) != fold || fold + 1 == judges.size()) seen.push_back(all[n]);
             judges[fold] = judgesOn(seen);
         }
     });
     // The trees by themselves first, the best of each place; then what places make of both.
     std::vector<double> sums, scores;
     std::vector<int> truths, placeTruths;
-    const auto ofFold = [&](std::size_t n) -> const Judges& {
-        return judges[n % std::size_t(options.folds)];
-    };
+    const auto ofFold = [&](std::size_t n) -> const Judges& { return judges[foldOf(n)]; };
     for (std::size_t n = 0; n < cases.size(); ++n) {
         const auto witnesses = witnessesOf(
             cases[n], [&](const FeatureVector& features) { return ofFold(n).boosted.at(features); },
@@ -199,6 +218,10 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
             truths.push_back(*polyp);
         }
     }
+    if (!hasBoth(truths))
+        return fail(
+            ErrorKind::badInput,
+            "nothing was learnt: what rises above the wall holds no polyp, or nothing else");
     std::tie(model.calibrationA, model.calibrationB) = fitLogistic(sums, truths);
     if (!(model.calibrationB > 0.0))
         return fail(ErrorKind::badInput,
@@ -228,7 +251,10 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
     model.boosted = std::move(judges.back().boosted);
     model.networks = std::move(judges.back().networks);
     std::tie(model.placeA, model.placeB) = fitLogistic(scores, placeTruths);
-    if (!(model.placeB > 0.0)) return fail(ErrorKind::badInput, "nothing was learnt of places");
+    if (!(model.placeB > 0.0))
+        return fail(ErrorKind::badInput,
+                    "nothing was learnt: polyps that neither trees nor networks had seen score no "
+                    "higher than other places");
     std::vector<double> blamedScores;
     for (std::size_t n = 0; n < cases.size(); ++n) {
         for (ToldPlace& place : trained.crossValidated[n].places) {

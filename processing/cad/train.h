@@ -36,11 +36,13 @@ struct TrainingCase {
     std::string name;
     std::vector<TrueLesion> truth;
     std::vector<Example> examples;
+    std::string study = {};  ///< cases of one study are of one patient; empty: of its own
 };
 
 struct TrainOptions {
     std::string name, trainedOn, trainingSha256;
-    std::vector<std::string> trainingScans = {};  ///< as CadModel has them
+    std::vector<std::string> trainingScans = {};  ///< as CadModel has them, like the next
+    std::string textureFrom = {};
     /// Findings a scan that are no lesion, in cross-validation, at the operating point.
     double falsePositives = 2.0;
     int folds = 5;
@@ -55,8 +57,9 @@ struct TrainedModel {
 
 /// Trees, networks, thresholds, calibration and operating point. Trees and networks have learnt
 /// from all cases; calibration and operating point are those of others that had not seen the case
-/// (folds by case). Fails (badInput) where there are fewer cases than folds, or no polyp was found
-/// in any.
+/// nor another one of its study (folds by study). Fails (badInput) where there are fewer studies
+/// than folds, no polyp was a candidate, or polyps that the trees or networks had not seen score no
+/// higher than what is none.
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
                                 const TrainOptions& options);
 

@@ -35,6 +35,8 @@ namespace {
 namespace fs = std::filesystem;
 namespace product = store::product;
 
+constexpr const char* builtIn = "built-in";
+
 struct CadArguments {
     fs::path store, truth, model, texture, report, froc, kept;
     std::vector<std::string> cases, without;
@@ -110,13 +112,21 @@ struct LoadedCase {
     store::Case source;
     std::vector<cad::TrueLesion> truth;
     std::string truthMark;  // digest of the truth's text
-    std::string scan;       // key of its scan
-    std::string prepared;   // key of its last product before detection
+    std::string ct;         // key of its scan's volume
+    std::string prepared;   // keys of all that detection is made of but the scan's volume
+    // As a model remembers it: the scan under whatever case it lies, and its study, so that
+    // another scan of the patient's visit counts as seen, too (empty where there is no UID).
+    std::string scanMark, studyMark;
 };
+
+// The beginning of a key: enough to know it again by.
+std::string markOf(const std::string& hex) {
+    return hex.substr(0, 16);
+}
 
 Result<LoadedCase> load(const store::CaseStore& store, const CadArguments& arguments,
                         const std::string& name) {
-    LoadedCase loaded{TRY(store.openCase(name)), {}, {}, {}, {}};
+    LoadedCase loaded{TRY(store.openCase(name)), {}, {}, {}, {}, {}, {}};
     const auto key = [&](const char* wanted) -> Result<std::string> {
         const auto entry = loaded.source.find(wanted);
         if (!entry)
@@ -127,7 +137,11 @@ Result<LoadedCase> load(const store::CaseStore& store, const CadArguments& argum
     loaded.truth = truth.lesions;
     loaded.truth.insert(loaded.truth.end(), truth.mimics.begin(), truth.mimics.end());
     loaded.truthMark = store::toHex(store::textDigest(truth.text));
-    loaded.scan = TRY(key(product::ct));
+    loaded.ct = TRY(key(product::ct));
+    const auto identity = TRY(loaded.source.scan());
+    loaded.scanMark = markOf(identity ? identity->key.hex : loaded.ct);
+    if (identity && !identity->studyUid.empty())
+        loaded.studyMark = markOf(store::toHex(store::textDigest("study " + identity->studyUid)));
     const Volume<std::int16_t> scan = TRY(loaded.source.readVolume<std::int16_t>(product::ct));
     for (const cad::TrueLesion& lesion : truth.lesions) {
         if (scan.grid().contains(
@@ -140,31 +154,67 @@ Result<LoadedCase> load(const store::CaseStore& store, const CadArguments& argum
                                 at.x, at.y, at.z, name),
                     truth.file);
     }
-    loaded.prepared =
-        TRY(key(loaded.source.find(product::flatMap) ? product::flatMap : product::surface));
+    loaded.prepared = loaded.source.find(product::flatMap)
+                          ? TRY(key(product::flatMap))
+                          : TRY(key(product::surface)) + ' ' + TRY(key(product::centerline));
     return loaded;
 }
 
-// As a model remembers what it has learnt from.
-std::string scanMark(const LoadedCase& loaded) {
-    return loaded.scan.substr(0, 16);
+// What a model remembers of a case that it has learnt from.
+std::vector<std::string> remembered(const LoadedCase& loaded) {
+    std::vector<std::string> marks{loaded.scanMark};
+    if (!loaded.studyMark.empty()) marks.push_back(loaded.studyMark);
+    return marks;
 }
 
-Result<void> checkArguments(const CadArguments& arguments) {
+// Whether the model has learnt from this scan or from another one of its study. Models up to
+// phantoms-11 remember the volumes' keys.
+bool hasSeen(const cad::CadModel& model, const LoadedCase& loaded) {
+    const auto has = [&](const std::string& mark) {
+        return !mark.empty() &&
+               std::ranges::find(model.trainingScans, mark) != model.trainingScans.end();
+    };
+    return has(loaded.scanMark) || has(loaded.studyMark) || has(markOf(loaded.ct));
+}
+
+void checkArguments(const CadArguments& arguments) {
     if (isWithout(arguments, "texture") &&
         (isWithout(arguments, "shape") || isWithout(arguments, "past")))
-        return fail(ErrorKind::badInput, "without texture and shape there are no candidates");
-    // Both change how texture is learnt, which that model has done already.
-    if (!arguments.texture.empty() &&
-        (isWithout(arguments, "pca") || isWithout(arguments, "automatic-transfer")))
-        return fail(ErrorKind::badInput,
-                    "a model's texture cannot be taken without pca or automatic-transfer",
-                    arguments.texture.string());
-    // A case that is given twice would count twice, and its copies teach and judge each other.
+        throw CLI::ValidationError("--without",
+                                   "without texture and shape there are no candidates");
+    // They change how texture is learnt, which that model has done already.
+    for (const char* part : {"pca", "automatic-transfer", "cleansing"})
+        if (!arguments.texture.empty() && isWithout(arguments, part))
+            throw CLI::ValidationError(
+                "--texture", fmt::format("a model's texture cannot be taken without {}", part));
     std::set<std::string> seen;
     for (const std::string& name : arguments.cases)
         if (!seen.insert(name).second)
-            return fail(ErrorKind::badInput, "the case is given twice", name);
+            throw CLI::ValidationError("CASES", "the case is given twice: " + name);
+}
+
+// The cases, each with a scan of its own: one that is given twice would count twice, and its
+// copies teach and judge each other.
+Result<std::vector<LoadedCase>> loadCases(const store::CaseStore& store,
+                                          const CadArguments& arguments) {
+    std::vector<LoadedCase> loaded;
+    std::map<std::string, std::string> caseOfScan;
+    for (const std::string& name : arguments.cases) {
+        loaded.push_back(TRY(load(store, arguments, name)));
+        const LoadedCase& last = loaded.back();
+        const auto [first, isNew] = caseOfScan.emplace(last.scanMark, name);
+        if (!isNew)
+            return fail(ErrorKind::badInput, "the case has the same scan as case " + first->second,
+                        name);
+    }
+    return loaded;
+}
+
+Result<void> makeFolderOfCandidates(const CadArguments& arguments) {
+    if (arguments.kept.empty()) return {};
+    std::error_code error;
+    fs::create_directories(arguments.kept, error);
+    if (error) return fail(ErrorKind::io, error.message(), arguments.kept.string());
     return {};
 }
 
@@ -232,11 +282,11 @@ void leaveOut(std::vector<cad::Candidate>& candidates, const CadArguments& argum
     }
 }
 
-constexpr const char* builtIn = "built-in";
+Result<cad::CadModel> builtInModel() {
+    return cad::modelOfText(cad::builtInModelText(), "built-in model");
+}
 
 Result<cad::CadModel> readModel(const fs::path& file) {
-    if (file.empty() || file == builtIn)
-        return cad::modelOfText(cad::builtInModelText(), "built-in model");
     const auto text = TRY(readText(file));
     return cad::modelOfText(text, file.string());
 }
@@ -275,8 +325,8 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
 }
 
 Result<void> runTrain(const CadArguments& arguments) {
+    checkArguments(arguments);
     TRY(checkOutputFile(arguments.model));
-    TRY(checkArguments(arguments));
     cad::TrainOptions options;
     if (int(arguments.cases.size()) < options.folds)
         return fail(ErrorKind::badInput,
@@ -284,25 +334,34 @@ Result<void> runTrain(const CadArguments& arguments) {
                                 "out in turns, to see what learning from the others is worth",
                                 options.folds));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
+    std::optional<cad::CadModel> textureFrom;
+    if (!arguments.texture.empty())
+        textureFrom =
+            TRY(arguments.texture == builtIn ? builtInModel() : readModel(arguments.texture));
     ProgressBar bar;
     store::Sha256 hash;
-    std::vector<LoadedCase> loaded;
-    for (const std::string& name : arguments.cases) {
-        loaded.push_back(TRY(load(store, arguments, name)));
-        hash.addWithLength(loaded.back().scan);
-        options.trainingScans.push_back(scanMark(loaded.back()));
+    const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
+    const auto remember = [&](const std::string& mark) {
+        if (std::ranges::find(options.trainingScans, mark) == options.trainingScans.end())
+            options.trainingScans.push_back(mark);
+    };
+    for (const LoadedCase& each : loaded) {
+        hash.addWithLength(each.ct);
+        for (const std::string& mark : remembered(each))
+            remember(mark);
     }
+    TRY(makeFolderOfCandidates(arguments));
     // Colours first: what candidates texture gives depends on what all cases look like.
     cad::TextureModel texture;
-    if (arguments.texture.empty()) {
-        texture = TRY(learnTexture(loaded, arguments, bar));
+    if (textureFrom) {
+        // What it has seen is as little unseen as the cases.
+        texture = textureFrom->texture;
+        options.textureFrom =
+            textureFrom->textureFrom.empty() ? textureFrom->name : textureFrom->textureFrom;
+        for (const std::string& mark : textureFrom->trainingScans)
+            remember(mark);
     } else {
-        // Its scans are as little unseen as the cases.
-        const cad::CadModel from = TRY(readModel(arguments.texture));
-        texture = from.texture;
-        for (const std::string& scan : from.trainingScans)
-            if (std::ranges::find(options.trainingScans, scan) == options.trainingScans.end())
-                options.trainingScans.push_back(scan);
+        texture = TRY(learnTexture(loaded, arguments, bar));
     }
     bar.say(fmt::format("texture: {} components hold {:.1f} % of the variance; T {:.3f}",
                         texture.count(), 100.0 * texture.varianceShare, texture.threshold));
@@ -311,8 +370,8 @@ Result<void> runTrain(const CadArguments& arguments) {
         bar.show("candidates", double(n) / double(loaded.size()));
         auto candidates = TRY(candidatesOf(loaded[n], arguments, texture));
         leaveOut(candidates, arguments);
-        cases.push_back(
-            {arguments.cases[n], loaded[n].truth, cad::examplesOf(candidates, loaded[n].truth)});
+        cases.push_back({arguments.cases[n], loaded[n].truth,
+                         cad::examplesOf(candidates, loaded[n].truth), loaded[n].studyMark});
     }
     options.name = arguments.name, options.trainedOn = arguments.description;
     options.trainingSha256 = store::toHex(hash.finish());
@@ -390,30 +449,30 @@ void print(const std::string& group, const cad::Evaluation& sum) {
 }
 
 Result<void> runEvaluate(const CadArguments& arguments) {
+    checkArguments(arguments);
     for (const fs::path& file : {arguments.report, arguments.froc}) {
         if (file.empty()) continue;
         TRY(checkOutputFile(file));
     }
-    TRY(checkArguments(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
-    const auto model = TRY(readModel(arguments.model));
+    const auto model = TRY(arguments.model.empty() ? builtInModel() : readModel(arguments.model));
     cad::Method method;
     method.classifier = usesClassifier(arguments);
     ProgressBar bar;
     // A case that is not there is told of before the first is measured.
-    std::vector<LoadedCase> loaded;
-    for (const std::string& name : arguments.cases) {
-        loaded.push_back(TRY(load(store, arguments, name)));
-        if (std::ranges::find(model.trainingScans, scanMark(loaded.back())) !=
-            model.trainingScans.end())
+    const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
+    for (const LoadedCase& each : loaded)
+        if (hasSeen(model, each))
             return fail(ErrorKind::badInput,
-                        "the model has learnt from this case, so it cannot be judged by it", name);
-    }
+                        "the model has learnt from this case's scan, or from another one of its "
+                        "study, so it cannot be judged by it",
+                        each.source.name());
     if (!arguments.froc.empty() && std::ranges::none_of(loaded, [](const LoadedCase& each) {
             return std::ranges::any_of(each.truth, cad::countsInCurve);
         }))
         return fail(ErrorKind::badInput, "no polyp from 6 mm is in these cases: there is no curve",
                     arguments.truth.string());
+    TRY(makeFolderOfCandidates(arguments));
     std::vector<cad::EvaluatedCase> cases;
     for (std::size_t n = 0; n < loaded.size(); ++n) {
         bar.show("detect", double(n) / double(loaded.size()));
@@ -433,11 +492,12 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6}\n",
         "group", "scans", ">=6 mm", "5-6 mm", ">=10 mm", "plain", "dense", "submerged", "coated",
         "FP", "before", "reduced", "|d|", "95 %");
+    // Without the classifier a candidate passes (1) or does not (0).
+    const double point = method.classifier ? model.operatingPoint : 0.5;
     nlohmann::ordered_json report{{"model", model.name},
                                   {"trained_on", model.trainedOn},
                                   {"notes", frocNotes},
-                                  {"operating_point", model.operatingPoint}};
-    const double point = method.classifier ? model.operatingPoint : 0.5;
+                                  {"operating_point", point}};
     for (const auto& [group, members] : groups) {
         const cad::Evaluation sum = cad::evaluate(members, point);
         print(group, sum);
@@ -482,8 +542,7 @@ void addCases(CLI::App& command, CadArguments& arguments) {
         .add_option("--candidates", arguments.kept,
                     "Keep what was found in each case in this folder, and take it from there where "
                     "it is: to learn or judge again without measuring again")
-        ->type_name("DIR")
-        ->check(CLI::ExistingDirectory);
+        ->type_name("DIR");
     command
         .add_option(
             "--without", arguments.without,
@@ -522,7 +581,13 @@ Command addCad(CLI::App& program) {
                      "Take what polyps look like in the electronic biopsy from this model, or from "
                      "the built-in one, in place of learning it: candidates that were kept hold "
                      "while cases are added. What that model has seen counts as seen")
-        ->type_name("FILE.json|built-in");
+        ->type_name("FILE.json|built-in")
+        ->check([](const std::string& text) {
+            std::error_code ignored;
+            return text == builtIn || fs::is_regular_file(text, ignored)
+                       ? std::string()
+                       : fmt::format("\"{}\" is neither a file nor the word {}", text, builtIn);
+        });
     CLI::App* evaluate = command->add_subcommand(
         "evaluate",
         "Sensitivity, false positives and errors of size on prepared cases whose polyps are known, "

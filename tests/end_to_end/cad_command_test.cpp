@@ -6,6 +6,7 @@
 #include "store/case_store.h"
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -41,7 +42,7 @@ protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<TemporaryFolder>();
         for (int n = 0; n < 8; ++n)
-            makeCase(n);
+            makeCase(n, name(n));
     }
     static void TearDownTestSuite() { folder_.reset(); }
 
@@ -66,8 +67,9 @@ protected:
         return arguments;
     }
 
-private:
-    static void makeCase(int number) {
+    // A case that is like number's, of the scan that is told.
+    static void makeCase(int number, const std::string& name,
+                         const std::optional<store::ScanIdentity>& scan = std::nullopt) {
         // Places all around, far enough from each other, turned otherwise in each case.
         std::mt19937 random{unsigned(number)};
         const double turn = double(random() % 1000) / 1000.0;
@@ -89,7 +91,8 @@ private:
                                {"diameter_mm", 2.0 * radius}});
         }
         const BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, onIt);
-        auto made = store::CaseStore::open(store(), true).value().createCase(name(number)).value();
+        auto made = store::CaseStore::open(store(), true).value().createCase(name).value();
+        if (scan) ASSERT_TRUE(made.bind(*scan));
         const auto key = [&](const char* product) {
             return store::makeKey(product, number, "", {});
         };
@@ -100,17 +103,17 @@ private:
         ASSERT_TRUE(made.publishVolume("lumen", key("lumen"), ball.lumen));
         ASSERT_TRUE(made.publishCenterline("centerline", key("centerline"), ball.centerline));
         ASSERT_TRUE(made.publishMesh("surface", key("surface"), ball.surface));
-        writeText(fs::path(truth()) / name(number) / "truth" / "growths.json",
+        writeText(fs::path(truth()) / name / "truth" / "growths.json",
                   json{{"growths", growths}}.dump());
     }
 
+private:
     static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
 TEST_F(CadCommand, LearnsWhatAPolypIsAndFindsThoseOfOtherCases) {
     const TemporaryFolder out;
     const std::string model = out.path() / "model.json", kept = out.path() / "kept";
-    fs::create_directories(kept);
     const Arguments learn = with(training(), {"--candidates", kept, "--name", "balls"});
     const auto learnt = haustra(with(learn, {"--model", model}));
     ASSERT_EQ(learnt.exitCode, 0) << learnt.err;
@@ -162,7 +165,6 @@ TEST_F(CadCommand, TextureThatIsTakenLeavesKeptCandidatesValid) {
     const TemporaryFolder out;
     const std::string first = out.path() / "first.json", second = out.path() / "second.json",
                       kept = out.path() / "kept";
-    fs::create_directories(kept);
     ASSERT_EQ(haustra(with(training(), {"--candidates", kept, "--model", first})).exitCode, 0);
     const auto files = [&] {
         return std::distance(fs::directory_iterator(kept), fs::directory_iterator());
@@ -181,15 +183,72 @@ TEST_F(CadCommand, TextureThatIsTakenLeavesKeptCandidatesValid) {
                read = cad::modelOfText(fileContent(second));
     ASSERT_TRUE(from && read);
     EXPECT_EQ(cad::textureText(read->texture), cad::textureText(from->texture));
+    EXPECT_EQ(read->textureFrom, from->name);
+    EXPECT_EQ(from->textureFrom, "");
     // The case that texture alone was learnt from has been seen, too.
     EXPECT_EQ(read->trainingScans.size(), 7u);
     EXPECT_EQ(haustra(with(judging({name(0)}), {"--model", second})).exitCode, 1);
     EXPECT_EQ(haustra(with(judging({name(7)}), {"--model", second})).exitCode, 0);
-    const auto refused = haustra(
-        with(training(), {"--texture", first, "--without", "pca", "--model", second + ".other"}));
-    EXPECT_EQ(refused.exitCode, 1);
-    EXPECT_NE(refused.err.find("pca"), std::string::npos) << refused.err;
-    EXPECT_FALSE(fs::exists(second + ".other"));
+    const std::string other = out.path() / "other.json";
+    const auto refused = [&](const Arguments& more, int exitCode) {
+        const auto outcome = haustra(with(training(), with({"--model", other}, more)));
+        EXPECT_EQ(outcome.exitCode, exitCode) << outcome.err;
+        EXPECT_FALSE(fs::exists(other));
+        return outcome.err;
+    };
+    for (const char* part : {"pca", "automatic-transfer", "cleansing"})
+        EXPECT_NE(refused({"--texture", first, "--without", part}, 2).find(part),
+                  std::string::npos);
+    EXPECT_NE(refused({"--texture", out.path() / "none.json"}, 2).find("none.json"),
+              std::string::npos);
+    const std::string broken = out.path() / "broken.json";
+    writeText(broken, fileContent(first).substr(0, 100));
+    EXPECT_NE(refused({"--texture", broken}, 1).find(broken), std::string::npos);
+    const auto shipped = cad::modelOfText(cad::builtInModelText());
+    ASSERT_EQ(haustra(with(training(), {"--texture", "built-in", "--model", other})).exitCode, 0);
+    EXPECT_EQ(cad::textureText(cad::modelOfText(fileContent(other))->texture),
+              cad::textureText(shipped->texture));
+}
+
+TEST_F(CadCommand, AScanOrStudyThatWasLearntFromIsKnownUnderAnyName) {
+    const auto key = [](const char* of) { return store::makeKey("scan", 1, of, {}); };
+    makeCase(0, "visit-supine", {{key("supine"), "2.25.7", "2.25.71"}});
+    makeCase(1, "visit-prone", {{key("prone"), "2.25.7", "2.25.72"}});
+    makeCase(7, "visit-copy", {{key("supine"), "2.25.7", "2.25.71"}});
+    makeCase(6, "other-supine", {{key("other"), "2.25.8", "2.25.81"}});
+    const TemporaryFolder out;
+    const std::string model = out.path() / "model.json";
+    const auto learn = [&](const Arguments& cases) {
+        return haustra(with(with({"cad", "train"}, cases),
+                            {"--store", store(), "--truth", truth(), "--model", model}));
+    };
+    const auto copied = learn({name(2), name(3), name(4), name(5), "visit-supine", "visit-copy"});
+    EXPECT_EQ(copied.exitCode, 1);
+    EXPECT_NE(copied.err.find("visit-copy"), std::string::npos) << copied.err;
+    // A study is left out as one: two scans of it are one of the five parts.
+    const auto few = learn({name(3), name(4), name(5), "visit-supine", "visit-prone"});
+    EXPECT_EQ(few.exitCode, 1);
+    EXPECT_NE(few.err.find("studies"), std::string::npos) << few.err;
+    EXPECT_FALSE(fs::exists(model));
+    const auto learnt = learn({name(2), name(3), name(4), name(5), "visit-supine"});
+    ASSERT_EQ(learnt.exitCode, 0) << learnt.err;
+    for (const char* seen : {"visit-supine", "visit-prone", "visit-copy"}) {
+        const auto judged = haustra(with(judging({seen}), {"--model", model}));
+        EXPECT_EQ(judged.exitCode, 1) << seen;
+        EXPECT_NE(judged.err.find(seen), std::string::npos) << judged.err;
+    }
+    EXPECT_EQ(haustra(with(judging({"other-supine"}), {"--model", model})).exitCode, 0);
+}
+
+TEST_F(CadCommand, WhatTellsNothingApartIsNoModel) {
+    const TemporaryFolder out;
+    const std::string model = out.path() / "model.json";
+    // Without both measures of height nothing is known to rise.
+    const auto learnt = haustra(with(training(), {"--without", "feature:height", "--without",
+                                                  "feature:lift", "--model", model}));
+    EXPECT_EQ(learnt.exitCode, 1);
+    EXPECT_NE(learnt.err.find("nothing was learnt"), std::string::npos) << learnt.err;
+    EXPECT_FALSE(fs::exists(model));
 }
 
 TEST_F(CadCommand, DrawsItsCurve) {

@@ -247,6 +247,10 @@ TEST(Model, WhatIsNoneIsRefused) {
         return text.replace(at, from.size(), to);
     };
     ASSERT_TRUE(cad::modelOfText(sound));
+    cad::TextureModel none = smallModel().texture;
+    ASSERT_TRUE(cad::textureOfText(cad::textureText(none), "t.json"));
+    none.polyp.clear(), none.components.clear();
+    EXPECT_FALSE(cad::textureOfText(cad::textureText(none), "t.json"));
     for (const std::string& text :
          {std::string(), std::string("[]"), sound.substr(0, sound.size() - 40),
           with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
