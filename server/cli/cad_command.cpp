@@ -329,10 +329,10 @@ Result<void> runTrain(const CadArguments& arguments) {
     TRY(checkOutputFile(arguments.model));
     cad::TrainOptions options;
     if (int(arguments.cases.size()) < options.folds)
-        return fail(ErrorKind::badInput,
-                    fmt::format("training takes at least {} cases: as many parts of them are left "
-                                "out in turns, to see what learning from the others is worth",
-                                options.folds));
+        throw CLI::ValidationError(
+            "CASES", fmt::format("training takes at least {} cases: as many parts of them are left "
+                                 "out in turns, to see what learning from the others is worth",
+                                 options.folds));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     std::optional<cad::CadModel> textureFrom;
     if (!arguments.texture.empty())
