@@ -113,7 +113,7 @@ struct LoadedCase {
     std::vector<cad::TrueLesion> truth;
     std::string truthMark;  // digest of the truth's text
     std::string ct;         // key of its scan's volume
-    std::string prepared;   // keys of all that detection is made of but the scan's volume
+    std::string prepared;   // keys of its last products before detection
     // As a model remembers it: the scan under whatever case it lies, and its study, so that
     // another scan of the patient's visit counts as seen, too (empty where there is no UID).
     std::string scanMark, studyMark;
@@ -386,7 +386,7 @@ Result<void> runTrain(const CadArguments& arguments) {
         bar.say(std::string(note));
     for (const cad::FrocPoint& point : cad::frocCurve(every))
         bar.say(
-            fmt::format("cross-validation by case: {:.2f} false positives a scan, {:.1f} % of "
+            fmt::format("cross-validation by study: {:.2f} false positives a scan, {:.1f} % of "
                         "polyps from 6 mm ({:.1f} to {:.1f})",
                         point.falsePositives, 100.0 * point.sensitivity, 100.0 * point.low,
                         100.0 * point.high));
@@ -539,9 +539,10 @@ void addCases(CLI::App& command, CadArguments& arguments) {
         ->required();
     addThreadsOption(command, arguments.threads);
     command
-        .add_option("--candidates", arguments.kept,
-                    "Keep what was found in each case in this folder, and take it from there where "
-                    "it is: to learn or judge again without measuring again")
+        .add_option(
+            "--candidates", arguments.kept,
+            "Keep what was found in each case in this folder, made where it is missing, and "
+            "take it from there: to learn or judge again without measuring again")
         ->type_name("DIR");
     command
         .add_option(
