@@ -128,14 +128,16 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
                 const double error = best[l]->diameterMm - lesion.diameterMm;
                 errors.push_back(std::abs(error));
                 bias += error;
-                if (lesion.submergedShare > 0.5) submerged.push_back(std::abs(error));
+                if (lesion.submerged()) submerged.push_back(std::abs(error));
                 if (lesion.kind == "pedunculated") pedunculated.push_back(std::abs(error));
             }
             if (lesion.diameterMm < 6.0) continue;
             count(sum.from6Mm, hit);
             if (lesion.diameterMm >= 10.0) count(sum.from10Mm, hit);
             count(lesion.coreHu < 5.0 ? sum.plain : sum.dense, hit);
-            if (lesion.submergedShare > 0.5)
+            if (lesion.hidden())
+                count(sum.hidden, hit);
+            else if (lesion.submerged())
                 count(sum.submerged, hit);
             else if (lesion.filmMm > 0.0)
                 count(sum.coated, hit);

@@ -40,6 +40,7 @@ struct Evaluation {
     Share from6Mm, from5To6Mm, from10Mm;  ///< neoplastic, by diameter
     Share plain, dense;                   ///< of those from 6 mm: no denser than the wall, denser
     Share submerged, coated;              ///< likewise: under fluid; dry, under a film of residue
+    Share hidden;                         ///< likewise: under fluid without tagging
     std::map<std::string, Share> byKind;  ///< likewise
     double falsePositives = 0.0;          ///< a scan; benign growths are none
     double falseBefore = 0.0;             ///< a scan: the same with no candidate rejected

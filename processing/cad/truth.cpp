@@ -55,6 +55,7 @@ Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::
             lesion.coreHu = read.value("core_hu", 0.0);
             lesion.onFold = read.value("on_fold", false);
             lesion.submergedShare = read.value("submerged_share", 0.0);
+            lesion.untaggedShare = read.value("untagged_share", 0.0);
             lesion.filmMm = read.value("film_mm", 0.0);
             lesions.push_back(lesion);
         }

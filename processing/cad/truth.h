@@ -20,8 +20,9 @@ struct TrueLesion {
     bool neoplastic = true;  ///< else what detection must not be praised nor blamed for, or a mimic
     double coreHu = 0.0;     ///< how much denser than the wall its inside is
     bool onFold = false;
-    double submergedShare = 0.0;
-    double filmMm = 0.0;  ///< thickness of the residue that coats it
+    double submergedShare = 0.0;  ///< of its height, under fluid
+    double untaggedShare = 0.0;   ///< of its height, under fluid without tagging, which hides it
+    double filmMm = 0.0;          ///< thickness of the residue that coats it
 
     /// From how far a finding is taken to mean it: half its diameter and 3 mm, at least 5 mm.
     double reachMm() const;
@@ -29,12 +30,18 @@ struct TrueLesion {
     double distanceMm(glm::dvec3 placeMm) const;
     /// A small benign growth of mucosa, which looks like a polyp and is one to a reader.
     bool hyperplastic() const { return kind == "hyperplastic"; }
+    /// Mostly under fluid without tagging, some 40 HU from its own tissue: most scans do not show
+    /// it.
+    bool hidden() const { return untaggedShare > 0.5; }
+    /// Mostly under fluid, and not hidden by it.
+    bool submerged() const { return submergedShare > 0.5 && !hidden(); }
 };
 
 /// A list of lesions: {"growths": [{"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm",
-/// "height_mm", "core_hu", "on_fold", "submerged_share", "film_mm"}, …]}; or {"findings":
-/// [{"position_mm", "diameter_mm", "kind"}, …]}, which are all polyps. Fails (badInput) where it is
-/// neither, or a lesion lies outside any body (±100 m) or is wider than 300 mm.
+/// "height_mm", "core_hu", "on_fold", "submerged_share", "untagged_share", "film_mm"}, …]}; or
+/// {"findings": [{"position_mm", "diameter_mm", "kind"}, …]}, which are all polyps. Fails
+/// (badInput) where it is neither, or a lesion lies outside any body (±100 m) or is wider than 300
+/// mm.
 Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place);
 
 /// Of a phantom's structure.json what may be taken for polyps and is no lesion: the ileocecal valve

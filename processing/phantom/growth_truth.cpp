@@ -29,6 +29,17 @@ const char* kindOf(const Growth& growth) {
     return "";
 }
 
+// How much of what stands from `low` to `high` mm is in a pool's fluid that took no tagging, 0…1.
+double untaggedShareOf(const Pool& pool, double low, double high) {
+    constexpr int steps = 64;
+    double sum = 0.0;
+    for (int n = 0; n < steps; ++n) {
+        const double height = low + (n + 0.5) / steps * (high - low);
+        if (height < pool.levelMm) sum += 1.0 - pool.taggedShareAt(height);
+    }
+    return sum / steps;
+}
+
 }  // namespace
 
 bool isPlain(const Growth& polyp, const GrowthOptions& options) {
@@ -53,10 +64,11 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
         const PathSample axis = colon.shape.path().at(at.arcMm);
         truth.onFold = glm::distance(growth.root, axis.position) < 0.8 * axis.radiusMm;
         // How much of the head's height is below the level.
+        const Pool& pool = colon.fluid.poolAt(at.arcMm);
         const double height = colon.fluid.heightMm(growth.centre),
-                     level = colon.fluid.poolAt(at.arcMm).levelMm,
                      half = std::max(0.5, std::min({axes.x, axes.y, axes.z}));
-        truth.submergedShare = std::clamp(0.5 + 0.5 * (level - height) / half, 0.0, 1.0);
+        truth.submergedShare = std::clamp(0.5 + 0.5 * (pool.levelMm - height) / half, 0.0, 1.0);
+        truth.untaggedShare = untaggedShareOf(pool, height - half, height + half);
         // Whosever film it is: one may reach over a neighbour.
         for (const Film& film : colon.films) {
             if (!growth.stool())

@@ -418,6 +418,7 @@ nlohmann::ordered_json jsonOf(const cad::Evaluation& sum) {
             {"dense", jsonOf(sum.dense)},
             {"submerged", jsonOf(sum.submerged)},
             {"coated", jsonOf(sum.coated)},
+            {"hidden", jsonOf(sum.hidden)},
             {"by_kind", byKind},
             {"false_positives_per_scan", sum.falsePositives},
             {"before_reduction_per_scan", sum.falseBefore},
@@ -433,10 +434,11 @@ nlohmann::ordered_json jsonOf(const cad::Evaluation& sum) {
 void print(const std::string& group, const cad::Evaluation& sum) {
     const auto of = [](const cad::Share& s) { return fmt::format("{}/{}", s.hit, s.of); };
     fmt::print(
-        "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7.2f} {:>7.1f} {:>6.1f}% "
-        "{:>6.2f} {:>6.2f}\n",
+        "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>6} {:>7.2f} {:>7.1f} "
+        "{:>6.1f}% {:>6.2f} {:>6.2f}\n",
         group, sum.cases, of(sum.from6Mm), of(sum.from5To6Mm), of(sum.from10Mm), of(sum.plain),
-        of(sum.dense), of(sum.submerged), of(sum.coated), sum.falsePositives, sum.falseBefore,
+        of(sum.dense), of(sum.submerged), of(sum.coated), of(sum.hidden), sum.falsePositives,
+        sum.falseBefore,
         sum.falseBefore > 0.0 ? 100.0 * (1.0 - sum.falsePositives / sum.falseBefore) : 0.0,
         sum.diameterMean, sum.diameter95);
     std::string kinds;
@@ -489,9 +491,10 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     for (const std::string_view note : frocNotes)
         fmt::print("{}\n", note);
     fmt::print(
-        "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7} {:>7} {:>7} {:>6} {:>6}\n",
+        "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>6} {:>7} {:>7} {:>7} {:>6} "
+        "{:>6}\n",
         "group", "scans", ">=6 mm", "5-6 mm", ">=10 mm", "plain", "dense", "submerged", "coated",
-        "FP", "before", "reduced", "|d|", "95 %");
+        "hidden", "FP", "before", "reduced", "|d|", "95 %");
     // Without the classifier a candidate passes (1) or does not (0).
     const double point = method.classifier ? model.operatingPoint : 0.5;
     nlohmann::ordered_json report{{"model", model.name},

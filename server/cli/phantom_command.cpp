@@ -124,7 +124,8 @@ nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
 }
 
 // A line each: {"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm", "height_mm",
-// "core_hu", "on_fold", "submerged_share"}, and "film_mm" where a film of residue lies over it.
+// "core_hu", "on_fold", "submerged_share"}, "untagged_share" where it stands in fluid without
+// tagging, and "film_mm" where a film of residue lies over it.
 std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
     const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
     std::string text = "{\"growths\": [";
@@ -139,6 +140,7 @@ std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
                                     {"core_hu", g.coreHu},
                                     {"on_fold", g.onFold},
                                     {"submerged_share", rounded(g.submergedShare)}};
+        if (g.untaggedShare > 0.0) json["untagged_share"] = rounded(g.untaggedShare);
         if (g.filmMm > 0.0) json["film_mm"] = rounded(g.filmMm);
         text += (n ? ",\n" : "\n") + json.dump();
     }

@@ -444,16 +444,20 @@ TEST(Evaluation, CountsWhatItSays) {
 }
 
 TEST(Evaluation, CountsWhatResidueCoatsApartFromWhatIsUnderFluid) {
-    cad::TrueLesion dry, under, bare;
-    dry.diameterMm = under.diameterMm = bare.diameterMm = 9.0;
-    dry.filmMm = under.filmMm = 1.5;
-    under.submergedShare = 1.0;
-    const cad::EvaluatedCase a{"a", "", {dry, dry, under, bare}, {{0.9, 9.0, 1, ""}}};
+    cad::TrueLesion dry, under, hidden, bare;
+    for (cad::TrueLesion* each : {&dry, &under, &hidden, &bare})
+        each->diameterMm = 9.0, each->filmMm = 1.5;
+    bare.filmMm = 0.0;
+    under.submergedShare = hidden.submergedShare = hidden.untaggedShare = 1.0;
+    const cad::EvaluatedCase a{
+        "a", "", {dry, dry, under, hidden, hidden, bare}, {{0.9, 9.0, 1, ""}, {0.8, 9.0, 3, ""}}};
     const cad::Evaluation sum = cad::evaluate({&a}, 0.5);
     EXPECT_EQ(sum.coated.of, 2);
     EXPECT_EQ(sum.coated.hit, 1);
     EXPECT_EQ(sum.submerged.of, 1);
     EXPECT_EQ(sum.submerged.hit, 0);
+    EXPECT_EQ(sum.hidden.of, 2) << "under water, which shows nothing, and apart";
+    EXPECT_EQ(sum.hidden.hit, 1);
 }
 
 TEST(Evaluation, TheFrocCurveRisesAndItsBandsHoldIt) {

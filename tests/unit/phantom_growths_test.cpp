@@ -81,6 +81,39 @@ TEST(PhantomGrowths, TheTruthTellsPolypsAndWhatResemblesThem) {
         EXPECT_EQ(neoplastic[n], made.polyps.findings[n].positionMm);
 }
 
+TEST(PhantomGrowths, TheTruthTellsWhatFluidWithoutTaggingHides) {
+    phantom::PhantomOptions options = grown();
+    options.growths.morePolyps = 30;
+    options.bowel.untagged = 0.5, options.bowel.full = 0.8, options.bowel.layered = 0.3;
+    const phantom::Phantom made = phantom::makePhantom(options).value();
+    const Grid& grid = made.lumen.grid();
+    int hidden = 0, submerged = 0;
+    for (const phantom::GrowthTruth& growth : made.growths) {
+        EXPECT_GE(growth.untaggedShare, 0.0);
+        EXPECT_LE(growth.untaggedShare, growth.submergedShare + 1.0 / 64.0);
+        if (!growth.neoplastic) continue;
+        // By what the voxels of the lumen around it hold, the truth of both scans.
+        const double reachMm = 0.5 * growth.diameterMm + 2.0;
+        const glm::ivec3 centre(glm::round(grid.voxelFromPatientPoint(growth.positionMm))),
+            reach(glm::ceil(reachMm / grid.spacingMm()));
+        int untagged = 0, other = 0;
+        visitBox(glm::max(centre - reach, glm::ivec3(0)), glm::min(centre + reach, grid.size - 1),
+                 [&](glm::ivec3 v) {
+                     const glm::dvec3 at = grid.patientFromVoxelPoint(glm::dvec3(v));
+                     if (!made.lumen.at(v) || glm::distance(at, growth.positionMm) > reachMm)
+                         return;
+                     (made.sites.at(v) == std::uint8_t(phantom::Site::untaggedFluid) ? untagged
+                                                                                     : other)++;
+                 });
+        if (growth.untaggedShare == 1.0) EXPECT_GT(untagged, other);
+        if (growth.untaggedShare == 0.0) EXPECT_LT(untagged, other);
+        hidden += growth.untaggedShare == 1.0;
+        submerged += growth.submergedShare == 1.0 && growth.untaggedShare == 0.0;
+    }
+    EXPECT_GE(hidden, 2);
+    EXPECT_GE(submerged, 2);
+}
+
 TEST(PhantomGrowths, MoreFlatLesionsAddTissueAndLeaveTheRest) {
     phantom::PhantomOptions options = grown();
     options.growths.moreFlat = 6;
