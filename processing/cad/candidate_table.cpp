@@ -11,6 +11,29 @@ namespace {
 
 constexpr std::size_t ownNumbers = 7;  // before a candidate's features
 
+std::int64_t integer(const nlohmann::json& number) {
+    if (!number.is_number_integer()) throw std::invalid_argument("a number is not whole");
+    return number.get<std::int64_t>();
+}
+
+Generator generatorOf(const nlohmann::json& number) {
+    const std::int64_t by = integer(number);
+    if (by < 0 || by > std::int64_t(Generator::broadShape))
+        throw std::invalid_argument("a candidate is of no generator");
+    return Generator(by);
+}
+
+// Of the candidate that comes after these: other levels come after all that they may be of.
+std::int32_t levelOf(const nlohmann::json& number, const std::vector<Candidate>& before,
+                     Generator by) {
+    const std::int64_t of = integer(number);
+    if (of == -1 && (before.empty() || before.back().levelOf < 0)) return -1;
+    if (of < 0 || of >= std::int64_t(before.size()) || before[std::size_t(of)].levelOf >= 0 ||
+        before[std::size_t(of)].lesion.patch.by != by || by == Generator::texture)
+        throw std::invalid_argument("a candidate is another level of none");
+    return std::int32_t(of);
+}
+
 }  // namespace
 
 std::string candidateTable(const std::vector<Candidate>& candidates) {
@@ -33,7 +56,7 @@ std::string candidateTable(const std::vector<Candidate>& candidates) {
         first = false;
         for (const double value :
              {lesion.centreMm.x, lesion.centreMm.y, lesion.centreMm.z, lesion.diameter.mm,
-              lesion.areaMm2, double(lesion.patch.byShape), double(lesion.patch.byTexture)})
+              lesion.areaMm2, double(lesion.patch.by), double(candidate.levelOf)})
             text += exact(value) + ',';
         for (const float value : candidate.features)
             text += exact(value) + ',';
@@ -56,8 +79,8 @@ Result<std::vector<Candidate>> candidatesOfTable(std::string_view text, const st
             Lesion& lesion = candidate.lesion;
             lesion.centreMm = {row[0].get<double>(), row[1].get<double>(), row[2].get<double>()};
             lesion.diameter.mm = row[3], lesion.areaMm2 = row[4];
-            lesion.patch.byShape = row[5].get<int>() != 0;
-            lesion.patch.byTexture = row[6].get<int>() != 0;
+            lesion.patch.by = generatorOf(row[5]);
+            candidate.levelOf = levelOf(row[6], candidates, lesion.patch.by);
             for (std::size_t n = 0; n < featureNames.size(); ++n)
                 candidate.features[n] = row[ownNumbers + n];
             candidates.push_back(std::move(candidate));

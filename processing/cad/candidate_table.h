@@ -9,8 +9,9 @@
 
 namespace haustra::cad {
 
-/// What weighing, learning and judging use of candidates: centre, diameter, area, which generators
-/// found it, and features; JSON, a line each, numbers so that they read back the same.
+/// What weighing, learning and judging use of candidates: centre, diameter, area, which generator
+/// found it, of which it is another level, and features; JSON, a line each, numbers so that they
+/// read back the same.
 std::string candidateTable(const std::vector<Candidate>& candidates);
 /// Reads it back; bodies, rims, voxels and probabilities are empty. Fails (badInput) where the text
 /// is none, (unsupported) where it has other features than this program.

@@ -1,5 +1,6 @@
 #include "cad/candidates.h"
 
+#include "cad/lesion.h"
 #include "core/disjoint_sets.h"
 #include "core/parallel.h"
 
@@ -11,26 +12,32 @@
 namespace haustra::cad {
 namespace {
 
+// Those samples and all that hold and hang together with them, but for those `taken` before.
+template <class Holds>
+std::vector<std::uint32_t> connected(const WallSamples& wall, std::vector<std::uint32_t> samples,
+                                     SampleNumbers& taken, const Holds& holds) {
+    for (std::size_t head = 0; head < samples.size(); ++head) {
+        const std::uint32_t v = samples[head];
+        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
+            const std::uint32_t next = wall.neighbours[e];
+            if (taken.has(next) || !holds(next)) continue;
+            taken.add(next);
+            samples.push_back(next);
+        }
+    }
+    return samples;
+}
+
 // Connected sets of samples that hold.
 template <class Holds>
 std::vector<std::vector<std::uint32_t>> componentsWhere(const WallSamples& wall,
                                                         const Holds& holds) {
     std::vector<std::vector<std::uint32_t>> components;
-    std::vector<std::uint8_t> taken(wall.mesh.vertices.size(), 0);
-    for (std::uint32_t seed = 0; seed < taken.size(); ++seed) {
-        if (taken[seed] || !holds(seed)) continue;
-        std::vector<std::uint32_t> component{seed};
-        taken[seed] = 1;
-        for (std::size_t head = 0; head < component.size(); ++head) {
-            const std::uint32_t v = component[head];
-            for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-                const std::uint32_t next = wall.neighbours[e];
-                if (taken[next] || !holds(next)) continue;
-                taken[next] = 1;
-                component.push_back(next);
-            }
-        }
-        components.push_back(std::move(component));
+    SampleNumbers taken(wall.mesh.vertices.size());
+    for (std::uint32_t seed = 0; seed < wall.mesh.vertices.size(); ++seed) {
+        if (taken.has(seed) || !holds(seed)) continue;
+        taken.add(seed);
+        components.push_back(connected(wall, {seed}, taken, holds));
     }
     return components;
 }
@@ -40,6 +47,23 @@ double areaOf(const WallSamples& wall, std::span<const std::uint32_t> samples) {
     for (const std::uint32_t v : samples)
         area += wall.areaMm2[v];
     return area;
+}
+
+std::span<const WallShape> shapesOf(const WallEvidence& evidence, Generator scale) {
+    return scale == Generator::broadShape ? evidence.broadShapes : evidence.shapes;
+}
+ShapeLimits limitsOf(Generator scale) {
+    return scale == Generator::broadShape ? broadLimits : ShapeLimits();
+}
+
+bool mayBePatch(const WallSamples& wall, std::span<const WallShape> shapes,
+                const ShapeLimits& limits, std::span<const std::uint32_t> samples) {
+    const double area = areaOf(wall, samples);
+    return area >= limits.leastMm2 && area <= limits.mostMm2 &&
+           std::any_of(samples.begin(), samples.end(), [&](std::uint32_t v) {
+               return shapes[v].k2 >= float(limits.seedCurvature) &&
+                      shapes[v].shapeIndex() >= float(limits.seedShapeIndex);
+           });
 }
 
 // What the patch encloses is part of it. From each of its rims a flood goes out over the wall, all
@@ -226,9 +250,10 @@ Diameter diameterOf(const WallSamples& wall, std::span<const std::uint32_t> samp
     return best;
 }
 
-std::vector<Patch> patchesByShape(const WallEvidence& evidence, std::span<const WallShape> shapes,
-                                  const ShapeLimits& limits, int threads) {
+std::vector<Patch> patchesByShape(const WallEvidence& evidence, Generator scale, int threads) {
     const WallSamples& wall = evidence.samples;
+    const auto shapes = shapesOf(evidence, scale);
+    const ShapeLimits limits = limitsOf(scale);
     auto patches =
         patchesOf(wall,
                   componentsWhere(wall,
@@ -237,35 +262,73 @@ std::vector<Patch> patchesByShape(const WallEvidence& evidence, std::span<const 
                                              !evidence.unseen[v];
                                   }),
                   threads, [&](const std::vector<std::uint32_t>& component) {
-                      const double area = areaOf(wall, component);
-                      return area >= limits.leastMm2 && area <= limits.mostMm2 &&
-                             std::any_of(component.begin(), component.end(), [&](std::uint32_t v) {
-                                 return shapes[v].k2 >= float(limits.seedCurvature) &&
-                                        shapes[v].shapeIndex() >= float(limits.seedShapeIndex);
-                             });
+                      return mayBePatch(wall, shapes, limits, component);
                   });
     for (Patch& patch : patches)
-        patch.byShape = true;
+        patch.by = scale;
     return patches;
+}
+
+std::vector<std::vector<Patch>> otherLevels(const WallEvidence& evidence,
+                                            std::span<const Patch* const> patches, int threads) {
+    const WallSamples& wall = evidence.samples;
+    std::vector<std::vector<Patch>> made(patches.size());
+    if (patches.empty()) return made;
+    std::atomic<std::size_t> next = 0;
+    parallelFor(std::size_t(threadCount(threads)), 1, threads, [&](std::size_t, std::size_t) {
+        HoleFiller holes(wall);
+        SampleNumbers taken(wall.mesh.vertices.size()), inPatch(wall.mesh.vertices.size());
+        for (std::size_t n; (n = next++) < patches.size();) {
+            const Patch& patch = *patches[n];
+            const auto shapes = shapesOf(evidence, patch.by);
+            const ShapeLimits limits = limitsOf(patch.by);
+            const auto reaches = [&](std::uint32_t v, double curvature) {
+                return shapes[v].k2 >= float(curvature) && !evidence.unseen[v];
+            };
+            const auto keep = [&](std::vector<std::uint32_t> samples) {
+                if (!mayBePatch(wall, shapes, limits, samples)) return;
+                holes.fill(samples);
+                std::sort(samples.begin(), samples.end());
+                made[n].push_back({std::move(samples), patch.by});
+            };
+            taken.clear();
+            for (const std::uint32_t v : patch.samples)
+                taken.add(v);
+            double area = areaOf(wall, patch.samples);
+            keep(connected(wall, patch.samples, taken, [&](std::uint32_t v) {
+                if (area > limits.mostMm2 || !reaches(v, limits.wideCurvature)) return false;
+                area += wall.areaMm2[v];
+                return true;
+            }));
+            inPatch.clear(), taken.clear();
+            for (const std::uint32_t v : patch.samples)
+                inPatch.add(v);
+            for (const std::uint32_t v : patch.samples) {
+                if (taken.has(v) || !reaches(v, limits.narrowCurvature)) continue;
+                taken.add(v);
+                keep(connected(wall, {v}, taken, [&](std::uint32_t w) {
+                    return inPatch.has(w) && reaches(w, limits.narrowCurvature);
+                }));
+            }
+        }
+    });
+    return made;
 }
 
 std::vector<Patch> patchesByTexture(const WallEvidence& evidence,
                                     std::span<const float> textureDistance, int threads,
                                     double leastMm) {
     const WallSamples& wall = evidence.samples;
-    auto patches = patchesOf(
-        wall,
-        componentsWhere(
-            wall,
-            [&](std::uint32_t v) { return textureDistance[v] < 1.0f && !evidence.unseen[v]; }),
-        threads, [&](const std::vector<std::uint32_t>& component) {
-            return boxMm(wall, component) >= leastMm &&
-                   areaOf(wall, component) <= ShapeLimits().mostMm2 &&
-                   diameterOf(wall, component).mm >= leastMm;
-        });
-    for (Patch& patch : patches)
-        patch.byTexture = true;
-    return patches;
+    return patchesOf(wall,
+                     componentsWhere(wall,
+                                     [&](std::uint32_t v) {
+                                         return textureDistance[v] < 1.0f && !evidence.unseen[v];
+                                     }),
+                     threads, [&](const std::vector<std::uint32_t>& component) {
+                         return boxMm(wall, component) >= leastMm &&
+                                areaOf(wall, component) <= ShapeLimits().mostMm2 &&
+                                diameterOf(wall, component).mm >= leastMm;
+                     });
 }
 
 }  // namespace haustra::cad

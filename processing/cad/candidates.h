@@ -10,10 +10,13 @@
 
 namespace haustra::cad {
 
+/// What finds candidates: colours of the biopsy, or curvatures at either scale.
+enum class Generator : std::uint8_t { texture, shape, broadShape };
+
 /// A connected patch of samples without holes, ascending.
 struct Patch {
     std::vector<std::uint32_t> samples;
-    bool byShape = false, byTexture = false;  ///< which of the generators found it
+    Generator by = Generator::texture;
 };
 
 /// Hysteresis on the wall's shape. A polyp bulges along both principal directions (k2 > 0) up to
@@ -25,13 +28,23 @@ struct ShapeLimits {
     double seedShapeIndex = 0.8;   ///< between ridge and cap
     double leastMm2 = 6.0;         ///< smaller patches are noise; a polyp of 4 mm has 15 mm²
     double mostMm2 = 4000.0;       ///< larger ones are no polyps
+    /// 1/mm: the lower and the higher limit of a patch's other levels (otherLevels).
+    double wideCurvature = 0.006, narrowCurvature = 0.024;
 };
 /// Of the broad scale: the wall of a distended colon is concave there (k2 about −0.07/mm, one over
 /// two thirds of its radius), and what is low and wide only lifts it.
-inline constexpr ShapeLimits broadLimits{0.0, -0.02, 0.0, 15.0, 4000.0};
-/// `shapes`: the evidence's, at one of its scales.
-std::vector<Patch> patchesByShape(const WallEvidence& evidence, std::span<const WallShape> shapes,
-                                  const ShapeLimits& limits, int threads);
+inline constexpr ShapeLimits broadLimits{0.0, -0.02, 0.0, 15.0, 4000.0, -0.03, -0.01};
+/// By the limits of either scale.
+std::vector<Patch> patchesByShape(const WallEvidence& evidence, Generator scale, int threads);
+
+/// Of each patch by shape, the patches that would stand in its place if its limit were lower or
+/// higher: the wide one that holds it, where that is not too large, and the narrow ones that it
+/// holds, none or several. A level at which it is the same patch is one, too, and so is for each of
+/// several patches the wide one that they are together. Where a patch ends hangs on a hair, and
+/// with it most of its features; a polyp is one at each level (compare Matas et al., maximally
+/// stable extremal regions, BMVC 2002).
+std::vector<std::vector<Patch>> otherLevels(const WallEvidence& evidence,
+                                            std::span<const Patch* const> patches, int threads);
 
 /// Connected samples whose texture distance is below 1, at least as wide as `leastMm`: the greatest
 /// distance between two of them (§6.2.5 drops those under 5 mm).

@@ -115,10 +115,67 @@ bool liesBehindUntagged(const WallEvidence& evidence, const Patch& patch) {
     return untagged > 0.5 * all;
 }
 
+// What patches are measured by.
+struct Measures {
+    const PreparedColon& colon;
+    const WallEvidence& evidence;
+    const SampleTriangles& triangles;
+    const AlongColon& alongColon;
+    std::span<const float> textureDistances;
+    int threads;
+};
+
+// Adds those of the patches that are bodies; `levelOf` of each, or of none.
+void measure(const Measures& with, std::vector<Patch> patches,
+             std::span<const std::int32_t> levelOf, std::vector<Candidate>& candidates) {
+    if (patches.empty()) return;
+    std::vector<std::optional<Candidate>> measured(patches.size());
+    // Each thread takes patch after patch, as they differ in size by a thousand times.
+    std::atomic<std::size_t> next = 0;
+    const auto threads = std::size_t(threadCount(with.threads));
+    parallelFor(threads, 1, with.threads, [&](std::size_t, std::size_t) {
+        SampleNumbers numbers(with.evidence.samples.mesh.vertices.size());
+        for (std::size_t n; (n = next++) < patches.size();) {
+            auto lesion = standUp(with.evidence, with.triangles, std::move(patches[n]),
+                                  with.colon.cleansed.grid(), numbers);
+            if (!lesion || liesBehindUntagged(with.evidence, lesion->patch)) continue;
+            const FeatureVector features = featuresOf(with.colon, with.evidence, with.alongColon,
+                                                      with.textureDistances, *lesion, numbers);
+            measured[n] = Candidate{*std::move(lesion), features};
+            if (!levelOf.empty()) measured[n]->levelOf = levelOf[n];
+        }
+    });
+    for (auto& candidate : measured)
+        if (candidate) candidates.push_back(*std::move(candidate));
+}
+
+// Adds other levels of the candidates that are worth it; without a model, of all.
+void measureOtherLevels(const Measures& with, const CadModel* model,
+                        std::vector<Candidate>& candidates) {
+    std::vector<const Patch*> patches;
+    std::vector<std::int32_t> numbers;
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        const Candidate& candidate = candidates[n];
+        if (candidate.lesion.patch.by == Generator::texture) continue;
+        if (model && model->probability(candidate.features) < worthAnotherLook) continue;
+        patches.push_back(&candidate.lesion.patch);
+        numbers.push_back(std::int32_t(n));
+    }
+    std::vector<Patch> levels;
+    std::vector<std::int32_t> levelOf;
+    auto others = otherLevels(with.evidence, patches, with.threads);
+    for (std::size_t n = 0; n < others.size(); ++n) {
+        std::ranges::move(others[n], std::back_inserter(levels));
+        levelOf.resize(levels.size(), numbers[n]);
+    }
+    measure(with, std::move(levels), levelOf, candidates);
+}
+
 }  // namespace
 
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
-                                      const TextureModel* texture, const DetectOptions& options) {
+                                      const TextureModel* texture, const DetectOptions& options,
+                                      const CadModel* model) {
     std::vector<float> distances;
     if (texture) {
         const auto along = stripDirections(evidence.samples, colon.flat);
@@ -141,52 +198,41 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
                 made[0] = patchesByTexture(evidence, distances, some);
         },
         [&] {
-            if (options.method.shape) made[1] = patchesByShape(evidence, evidence.shapes, {}, some);
+            if (options.method.shape) made[1] = patchesByShape(evidence, Generator::shape, some);
         },
         [&] {
             if (options.method.shape)
-                made[2] = patchesByShape(evidence, evidence.broadShapes, broadLimits, some);
+                made[2] = patchesByShape(evidence, Generator::broadShape, some);
         }};
     parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t part = begin; part < end; ++part)
             parts[part]();
     });
+    const Measures with{colon, evidence, *triangles, *alongColon, distances, options.threads};
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));
-    std::vector<std::optional<Candidate>> measured(patches.size());
-    // Each thread takes patch after patch, as they differ in size by a thousand times.
-    std::atomic<std::size_t> next = 0;
-    const auto threads = std::size_t(threadCount(options.threads));
-    parallelFor(threads, 1, options.threads, [&](std::size_t, std::size_t) {
-        SampleNumbers numbers(evidence.samples.mesh.vertices.size());
-        for (std::size_t n; (n = next++) < patches.size();) {
-            auto lesion = standUp(evidence, *triangles, std::move(patches[n]),
-                                  colon.cleansed.grid(), numbers);
-            if (!lesion || liesBehindUntagged(evidence, lesion->patch)) continue;
-            const FeatureVector features =
-                featuresOf(colon, evidence, *alongColon, distances, *lesion, numbers);
-            measured[n] = Candidate{*std::move(lesion), features};
-        }
-    });
     std::vector<Candidate> candidates;
-    for (auto& candidate : measured)
-        if (candidate) candidates.push_back(*std::move(candidate));
+    measure(with, std::move(patches), {}, candidates);
+    if (options.method.classifier) measureOtherLevels(with, model, candidates);
     return candidates;
 }
 
 void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Method& method) {
+    if (!method.classifier)
+        std::erase_if(candidates, [](const Candidate& each) { return each.levelOf >= 0; });
     std::vector<PlaceWitness> witnesses;
     for (const Candidate& candidate : candidates) {
         const double probability = method.classifier ? model.probability(candidate.features)
                                    : model.thresholds.pass(candidate.features) ? 1.0
                                                                                : 0.0;
         witnesses.push_back({candidate.lesion.centreMm, candidate.lesion.diameter.mm,
-                             candidate.lesion.areaMm2, probability});
+                             candidate.lesion.areaMm2, probability, candidate.levelOf});
     }
     std::vector<Candidate> kept;
     for (const WitnessedPlace& place : placesOf(witnesses)) {
         kept.push_back(std::move(candidates[place.best]));
+        kept.back().levelOf = -1;  // what it is another level of need not be kept
         kept.back().probability = method.classifier ? model.placeProbability(place.score)
                                                     : witnesses[place.best].probability;
     }
@@ -255,7 +301,7 @@ Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
     gathering.threads = options.threads;
     gathering.progress = part(0.0, 0.7);
     const WallEvidence evidence = gatherEvidence(colon, gathering);
-    auto candidates = findCandidates(colon, evidence, &model.texture, options);
+    auto candidates = findCandidates(colon, evidence, &model.texture, options, &model);
     weigh(candidates, model, options.method);
     if (options.progress) options.progress(1.0);
     return findingsOf(colon, evidence, candidates, model);

@@ -12,7 +12,7 @@ namespace haustra::cad {
 
 /// Raised whenever detection makes something else of the same input and model: neither findings nor
 /// kept candidates of another version are taken for this one's.
-inline constexpr int detectionVersion = 13;
+inline constexpr int detectionVersion = 14;
 
 /// What of the whole is used; all by default. For comparisons, which leave out one after the other.
 struct Method {
@@ -34,14 +34,21 @@ struct Candidate {
     Lesion lesion;
     FeatureVector features{};
     double probability = 0.0;
+    /// Of a patch at another level (otherLevels): the number of the candidate whose patch that is,
+    /// one earlier in the list, which has all that generators found first; −1: one of these.
+    std::int32_t levelOf = -1;
 };
 
-/// Everything that the generators found, each with its features; several may be of one place. The
+/// Everything that the generators found, each with its features; several may be of one place. Then
+/// the same at other levels: of all that are found by shape, or of those alone that `model` finds
+/// worth another look (places.h), which for weighing is the same; none without the classifier. The
 /// same for any number of threads.
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
-                                      const TextureModel* texture, const DetectOptions& options);
+                                      const TextureModel* texture, const DetectOptions& options,
+                                      const CadModel* model = nullptr);
 
-/// Of those of one place keeps the most probable, with the place's probability (places.h).
+/// Of those of one place keeps the most probable, with the place's probability (places.h). Without
+/// the classifier other levels count nothing.
 void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Method& method);
 
 /// Those whose probability reaches the model's operating point, from the rectum to the cecum; the

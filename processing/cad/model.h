@@ -16,7 +16,7 @@
 namespace haustra::cad {
 
 /// Raised whenever features or candidates change so that older models no longer fit them.
-inline constexpr int modelVersion = 7;
+inline constexpr int modelVersion = 8;
 
 /// The reduction of false positives of the source (§6.2.6): each of its features within what
 /// training polyps had.
@@ -27,11 +27,13 @@ struct ShapeThresholds {
 };
 
 struct CadModel {
-    std::string name;            ///< "phantoms-1"
-    std::string trainedOn;       ///< for a reader: of what, and what that means
-    std::string trainingSha256;  ///< of the training cases' scans, in order
-    /// What the model must not be judged by: beginnings of the keys of the training cases' scans
-    /// and of digests of their studies' UIDs, and those of the model that texture is from.
+    std::string name;       ///< "phantoms-1"
+    std::string trainedOn;  ///< for a reader: of what, and what that means
+    /// Of the training cases' scans, in order; once calibrated, of that and of these cases' scans.
+    std::string trainingSha256;
+    /// What the model must not be judged by: beginnings of the keys of the scans of the cases that
+    /// it has learnt from or been calibrated on, and of digests of their studies' UIDs; and those
+    /// of the model that texture is from.
     std::vector<std::string> trainingScans;
     std::string textureFrom;  ///< the model whose texture this is; empty: learnt from these cases
     TextureModel texture;

@@ -2,35 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace haustra::cad {
 
 std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses) {
-    std::vector<std::size_t> order(witnesses.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
+    constexpr int asked = 3;
+    std::vector<std::size_t> order;
+    for (std::size_t n = 0; n < witnesses.size(); ++n) {
+        const std::int32_t of = witnesses[n].levelOf;
+        if (of < 0 || witnesses[std::size_t(of)].probability >= worthAnotherLook)
+            order.push_back(n);
+    }
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         const PlaceWitness &x = witnesses[a], &y = witnesses[b];
         return x.probability != y.probability ? x.probability > y.probability
                                               : x.areaMm2 > y.areaMm2;
     });
     std::vector<WitnessedPlace> places;
-    std::vector<bool> seconded;
+    std::vector<int> heard;  // witnesses of each
     for (const std::size_t n : order) {
         const PlaceWitness& witness = witnesses[n];
-        const auto told =
-            std::find_if(places.begin(), places.end(), [&](const WitnessedPlace& place) {
-                const PlaceWitness& best = witnesses[place.best];
-                return glm::distance(best.centreMm, witness.centreMm) <
-                       0.5 * std::max(best.diameterMm, witness.diameterMm);
-            });
+        auto told = std::find_if(places.begin(), places.end(), [&](const WitnessedPlace& place) {
+            const PlaceWitness& best = witnesses[place.best];
+            return glm::distance(best.centreMm, witness.centreMm) <
+                   0.5 * std::max(best.diameterMm, witness.diameterMm);
+        });
         if (told == places.end()) {
-            places.push_back({n, 0.5 * witness.probability});
-            seconded.push_back(false);
-        } else if (const auto at = std::size_t(told - places.begin()); !seconded[at]) {
-            told->score += 0.5 * witness.probability;
-            seconded[at] = true;
+            told = places.insert(places.end(), {n, 0.0});
+            heard.push_back(0);
         }
+        if (heard[std::size_t(told - places.begin())]++ < asked)
+            told->score += witness.probability / asked;
     }
     return places;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,18 +15,23 @@ namespace haustra::cad {
 struct PlaceWitness {
     glm::dvec3 centreMm{0.0};
     double diameterMm = 0.0, areaMm2 = 0.0, probability = 0.0;
+    std::int32_t levelOf = -1;  ///< of another level (otherLevels): whose, a witness before it
 };
 
+/// Candidates that are so probable by themselves are looked at at other levels, too.
+inline constexpr double worthAnotherLook = 0.1;
+
 /// A place, its most probable witness (of equal ones the larger), and its score: the mean of its
-/// two most probable witnesses, where a missing one counts nothing. A polyp is seen at both scales
-/// and often by its texture too; noise is seen once.
+/// three most probable witnesses, where a missing one counts nothing. A polyp is seen at both
+/// scales and at each level; noise is seen once.
 struct WitnessedPlace {
     std::size_t best = 0;
     double score = 0.0;
 };
 
 /// The most probable witness first; one whose centre is nearer to an earlier place's than half the
-/// larger of the two diameters is of that place. O(witnesses · places).
+/// larger of the two diameters is of that place. Other levels of what is not worth another look are
+/// no witnesses. O(witnesses · places).
 std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses);
 
 /// ln(p / (1 − p)), of probabilities from 1e-6 to 1 − 1e-6.

@@ -54,7 +54,8 @@ std::vector<PlaceWitness> witnessesOf(const TrainingCase& each, const Probabilit
     std::vector<PlaceWitness> witnesses;
     for (const Example& example : each.examples)
         witnesses.push_back({example.placeMm, example.diameterMm, example.areaMm2,
-                             rises(example.features) ? probability(example.features) : nothing});
+                             rises(example.features) ? probability(example.features) : nothing,
+                             example.levelOf});
     return witnesses;
 }
 
@@ -82,6 +83,52 @@ std::vector<std::size_t> studiesOf(const std::vector<TrainingCase>& cases) {
 // Of what rises, whether polyps and others are among it, so that they can be told apart.
 bool hasBoth(const std::vector<int>& truths) {
     return std::ranges::count(truths, 1) > 0 && std::ranges::count(truths, 0) > 0;
+}
+
+// How probable a place of a score is, and the operating point, of candidates of case n that are
+// polyps with `probability(n, features)`; each case as it is then told.
+template <class Probability>
+Result<std::vector<EvaluatedCase>> calibratePlaces(CadModel& model,
+                                                   const std::vector<TrainingCase>& cases,
+                                                   const Probability& probability,
+                                                   double falsePositives) {
+    std::vector<double> scores;
+    std::vector<int> truths;
+    std::vector<EvaluatedCase> told;
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        const auto witnesses = witnessesOf(
+            cases[n], [&](const FeatureVector& features) { return probability(n, features); }, 0.0);
+        told.push_back({cases[n].name, cases[n].name, cases[n].truth, {}});
+        for (const WitnessedPlace& place : placesOf(witnesses)) {
+            const Example& best = cases[n].examples[place.best];
+            told.back().places.push_back({place.score, best.diameterMm, best.lesion, ""});
+            const auto polyp = truthOf(cases[n], best.lesion);
+            if (!polyp || !rises(best.features)) continue;
+            scores.push_back(logit(place.score));
+            truths.push_back(*polyp);
+        }
+    }
+    if (!hasBoth(truths))
+        return fail(ErrorKind::badInput,
+                    "among the candidates that rise above the wall is no polyp, or nothing else: "
+                    "there is nothing to calibrate by");
+    std::tie(model.placeA, model.placeB) = fitLogistic(scores, truths);
+    if (!(model.placeB > 0.0))
+        return fail(ErrorKind::badInput,
+                    "polyps that neither trees nor networks had seen score no higher than other "
+                    "places: there is nothing to calibrate by");
+    std::vector<double> blamed;
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        for (ToldPlace& place : told[n].places) {
+            place.score = model.placeProbability(place.score);
+            if (truthOf(cases[n], place.lesion) == false) blamed.push_back(place.score);
+        }
+    }
+    std::sort(blamed.rbegin(), blamed.rend());
+    const std::size_t allowed = std::size_t(falsePositives * double(cases.size()));
+    // What scores more than the first wrong one too many is told.
+    model.operatingPoint = allowed < blamed.size() ? std::nextafter(blamed[allowed], 1.0) : 0.0;
+    return told;
 }
 
 }  // namespace
@@ -141,17 +188,19 @@ std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
         places.push_back(candidate.lesion.centreMm);
         examples.push_back({candidate.features, candidate.lesion.centreMm,
                             candidate.lesion.diameter.mm, candidate.lesion.areaMm2});
+        examples.back().levelOf = candidate.levelOf;
     }
     const std::vector<int> meant = matched(places, truth);
     std::vector<double> largest(truth.size(), 0.0);
     for (std::size_t n = 0; n < examples.size(); ++n)
-        if (meant[n] >= 0)
+        if (meant[n] >= 0 && examples[n].levelOf < 0)
             largest[std::size_t(meant[n])] =
                 std::max(largest[std::size_t(meant[n])], examples[n].areaMm2);
     for (std::size_t n = 0; n < examples.size(); ++n) {
         Example& example = examples[n];
         example.lesion = meant[n];
-        if (meant[n] < 0) continue;
+        if (example.levelOf >= 0) example.weighed = false;
+        if (meant[n] < 0 || example.levelOf >= 0) continue;
         const TrueLesion& lesion = truth[std::size_t(meant[n])];
         if (lesion.neoplastic) {
             example.polyp = example.diameterMm >= 0.5 * lesion.diameterMm ||
@@ -203,13 +252,15 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
         }
     });
     // The trees by themselves first, the best of each place; then what places make of both.
-    std::vector<double> sums, scores;
-    std::vector<int> truths, placeTruths;
+    std::vector<double> sums;
+    std::vector<int> truths;
     const auto ofFold = [&](std::size_t n) -> const Judges& { return judges[foldOf(n)]; };
     for (std::size_t n = 0; n < cases.size(); ++n) {
-        const auto witnesses = witnessesOf(
+        auto witnesses = witnessesOf(
             cases[n], [&](const FeatureVector& features) { return ofFold(n).boosted.at(features); },
             std::numeric_limits<double>::lowest());
+        // They come after all others.
+        std::erase_if(witnesses, [](const PlaceWitness& each) { return each.levelOf >= 0; });
         for (const WitnessedPlace& place : placesOf(witnesses)) {
             const Example& best = cases[n].examples[place.best];
             const auto polyp = truthOf(cases[n], best.lesion);
@@ -228,47 +279,27 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
                     "nothing was learnt: polyps that the trees had not seen score no higher than "
                     "other places; more training cases, or ones with more polyps, are needed");
     TrainedModel trained;
-    for (std::size_t n = 0; n < cases.size(); ++n) {
-        const auto witnesses = witnessesOf(
-            cases[n],
-            [&](const FeatureVector& features) {
-                const double trees =
-                    model.calibrationA + model.calibrationB * ofFold(n).boosted.at(features);
-                return logistic(0.5 * (trees + ofFold(n).networks.at(features)));
-            },
-            0.0);
-        EvaluatedCase told{cases[n].name, cases[n].name, cases[n].truth, {}};
-        for (const WitnessedPlace& place : placesOf(witnesses)) {
-            const Example& best = cases[n].examples[place.best];
-            told.places.push_back({place.score, best.diameterMm, best.lesion, ""});
-            const auto polyp = truthOf(cases[n], best.lesion);
-            if (!polyp || !rises(best.features)) continue;
-            scores.push_back(logit(place.score));
-            placeTruths.push_back(*polyp);
-        }
-        trained.crossValidated.push_back(std::move(told));
-    }
+    trained.crossValidated = TRY(calibratePlaces(
+        model, cases,
+        [&](std::size_t n, const FeatureVector& features) {
+            const double trees =
+                model.calibrationA + model.calibrationB * ofFold(n).boosted.at(features);
+            return logistic(0.5 * (trees + ofFold(n).networks.at(features)));
+        },
+        options.falsePositives));
     model.boosted = std::move(judges.back().boosted);
     model.networks = std::move(judges.back().networks);
-    std::tie(model.placeA, model.placeB) = fitLogistic(scores, placeTruths);
-    if (!(model.placeB > 0.0))
-        return fail(ErrorKind::badInput,
-                    "nothing was learnt: polyps that neither trees nor networks had seen score no "
-                    "higher than other places");
-    std::vector<double> blamedScores;
-    for (std::size_t n = 0; n < cases.size(); ++n) {
-        for (ToldPlace& place : trained.crossValidated[n].places) {
-            place.score = model.placeProbability(place.score);
-            if (truthOf(cases[n], place.lesion) == false) blamedScores.push_back(place.score);
-        }
-    }
-    std::sort(blamedScores.rbegin(), blamedScores.rend());
-    const std::size_t allowed = std::size_t(options.falsePositives * double(cases.size()));
-    // What scores more than the first wrong one too many is told.
-    model.operatingPoint =
-        allowed < blamedScores.size() ? std::nextafter(blamedScores[allowed], 1.0) : 0.0;
     trained.model = std::move(model);
     return trained;
+}
+
+Result<std::vector<EvaluatedCase>> calibrate(CadModel& model,
+                                             const std::vector<TrainingCase>& cases,
+                                             double falsePositives) {
+    return calibratePlaces(
+        model, cases,
+        [&](std::size_t, const FeatureVector& features) { return model.probability(features); },
+        falsePositives);
 }
 
 }  // namespace haustra::cad

@@ -23,12 +23,13 @@ struct Example {
     FeatureVector features{};
     glm::dvec3 placeMm{0.0};
     double diameterMm = 0.0, areaMm2 = 0.0;
-    int lesion = -1;      ///< of the case's truth; −1: nothing
-    bool polyp = false;   ///< stands for that neoplastic lesion
-    bool weighed = true;  ///< else neither: a fragment of a polyp, or a benign growth
+    int lesion = -1;            ///< of the case's truth; −1: nothing
+    bool polyp = false;         ///< stands for that neoplastic lesion
+    bool weighed = true;        ///< else neither: a fragment of a polyp, or a benign growth
+    std::int32_t levelOf = -1;  ///< as Candidate has it; of another level: a witness alone
 };
 /// One case's candidates. A polyp is stood for by those that it is reached from and that are at
-/// least half as wide, or else by the largest.
+/// least half as wide, or else by the largest; by none of another level.
 std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
                                 const std::vector<TrueLesion>& truth);
 
@@ -62,5 +63,14 @@ struct TrainedModel {
 /// higher than what is none.
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
                                 const TrainOptions& options);
+
+/// Fits how probable a place is, and the operating point at so many false positives a scan, to
+/// cases that the model has not learnt from; trees, networks and thresholds stay. Each case as it
+/// is then told, scores being probabilities. Fails (badInput), and the model is then of no use,
+/// where the cases hold no polyp that rises above the wall, or nothing else, or where polyps score
+/// no higher than what is none.
+Result<std::vector<EvaluatedCase>> calibrate(CadModel& model,
+                                             const std::vector<TrainingCase>& cases,
+                                             double falsePositives);
 
 }  // namespace haustra::cad

@@ -21,7 +21,7 @@ struct TrueLesion {
     double coreHu = 0.0;     ///< how much denser than the wall its inside is
     bool onFold = false;
     double submergedShare = 0.0;  ///< of its height, under fluid
-    double untaggedShare = 0.0;   ///< of its height, under fluid without tagging, which hides it
+    double untaggedShare = 0.0;   ///< of its height, in fluid or stool without tagging
     double filmMm = 0.0;          ///< thickness of the residue that coats it
 
     /// From how far a finding is taken to mean it: half its diameter and 3 mm, at least 5 mm.
@@ -30,7 +30,7 @@ struct TrueLesion {
     double distanceMm(glm::dvec3 placeMm) const;
     /// A small benign growth of mucosa, which looks like a polyp and is one to a reader.
     bool hyperplastic() const { return kind == "hyperplastic"; }
-    /// Mostly under fluid without tagging, some 40 HU from its own tissue: most scans do not show
+    /// Mostly in fluid or stool without tagging, whose HU are near its own: most scans do not show
     /// it.
     bool hidden() const { return untaggedShare > 0.5; }
     /// Mostly under fluid, and not hidden by it.

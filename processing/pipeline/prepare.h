@@ -39,7 +39,8 @@ struct PrepareOptions {
     /// Of the flat map, from 0 (angles are kept) to 1 (areas nearly are):
     /// flatten/tube/flattening.h.
     double areaWeight = 0.0;
-    /// What detection has learnt, a file of `haustra cad train`; empty: the built-in model.
+    /// What detection has learnt, a file of `haustra cad train` or `calibrate`; empty: the built-in
+    /// model.
     std::filesystem::path cadModel;
     int threads = 0;  ///< ≤ 0: all cores
     /// How far a stage is, 0…1. Called from the thread that called prepare.

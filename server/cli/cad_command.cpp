@@ -1,5 +1,5 @@
-// haustra cad train, haustra cad evaluate: detection is learnt from cases whose truth is known, and
-// judged on others.
+// haustra cad train, calibrate, evaluate: detection is learnt from cases whose truth is known,
+// calibrated on others, and judged on others again.
 #include "cad/biopsy_transfer.h"
 #include "cad/candidate_table.h"
 #include "cad/evaluate.h"
@@ -38,10 +38,9 @@ namespace product = store::product;
 constexpr const char* builtIn = "built-in";
 
 struct CadArguments {
-    fs::path store, truth, model, texture, report, froc, kept;
+    fs::path store, truth, model, texture, from = builtIn, report, froc, kept;
     std::vector<std::string> cases, without;
-    std::string name = "cases";
-    std::string description = "cases that somebody chose";
+    std::string name, description;
     double falsePositives = 2.0;
     int threads = 0;
 };
@@ -168,7 +167,7 @@ std::vector<std::string> remembered(const LoadedCase& loaded) {
 }
 
 // Whether the model has learnt from this scan or from another one of its study. Models up to
-// phantoms-11 remember the volumes' keys.
+// phantoms-11 remember the volumes' keys, and so do those that are calibrated from them.
 bool hasSeen(const cad::CadModel& model, const LoadedCase& loaded) {
     const auto has = [&](const std::string& mark) {
         return !mark.empty() &&
@@ -234,10 +233,13 @@ cad::EvidenceOptions evidenceOptions(const CadArguments& arguments) {
     return options;
 }
 
-// All candidates of a case, which are kept for the next time where --candidates says.
+// All candidates of a case, which are kept for the next time where --candidates says. Where they
+// are not, and are weighed by their own features, only what `model` finds worth it is looked at
+// again at other levels.
 Result<std::vector<cad::Candidate>> candidatesOf(const LoadedCase& loaded,
                                                  const CadArguments& arguments,
-                                                 const cad::TextureModel& texture) {
+                                                 const cad::TextureModel& texture,
+                                                 const cad::CadModel* model) {
     fs::path file;
     if (!arguments.kept.empty()) {
         const std::string key = store::toHex(
@@ -255,7 +257,10 @@ Result<std::vector<cad::Candidate>> candidatesOf(const LoadedCase& loaded,
     const auto evidence = cad::gatherEvidence(colon, evidenceOptions(arguments));
     cad::DetectOptions options;
     options.threads = arguments.threads;
-    auto candidates = cad::findCandidates(colon, evidence, &texture, options);
+    const bool own = std::ranges::none_of(
+        arguments.without, [](const std::string& part) { return part.starts_with(featurePart); });
+    auto candidates = cad::findCandidates(colon, evidence, &texture, options,
+                                          file.empty() && own ? model : nullptr);
     if (!file.empty()) TRY(writeTextFile(file, cad::candidateTable(candidates)));
     return candidates;
 }
@@ -268,10 +273,17 @@ bool usesClassifier(const CadArguments& arguments) {
 void leaveOut(std::vector<cad::Candidate>& candidates, const CadArguments& arguments) {
     const bool texture = !isWithout(arguments, "texture"),
                shape = !isWithout(arguments, "shape") && usesClassifier(arguments);
-    std::erase_if(candidates, [&](const cad::Candidate& candidate) {
-        const cad::Patch& patch = candidate.lesion.patch;
-        return !(patch.byShape && shape) && !(patch.byTexture && texture);
-    });
+    // Those of other levels go with the candidates that they stand beside.
+    std::vector<std::int32_t> numberOf(candidates.size(), -1);
+    std::vector<cad::Candidate> left;
+    for (std::size_t n = 0; n < candidates.size(); ++n) {
+        cad::Candidate& candidate = candidates[n];
+        if (!(candidate.lesion.patch.by == cad::Generator::texture ? texture : shape)) continue;
+        if (candidate.levelOf >= 0) candidate.levelOf = numberOf[std::size_t(candidate.levelOf)];
+        numberOf[n] = std::int32_t(left.size());
+        left.push_back(std::move(candidate));
+    }
+    candidates = std::move(left);
     for (const std::string& part : arguments.without) {
         if (!part.starts_with(featurePart)) continue;
         const std::string prefix = part.substr(featurePart.size());
@@ -287,6 +299,7 @@ Result<cad::CadModel> builtInModel() {
 }
 
 Result<cad::CadModel> readModel(const fs::path& file) {
+    if (file == builtIn) return builtInModel();
     const auto text = TRY(readText(file));
     return cad::modelOfText(text, file.string());
 }
@@ -324,6 +337,60 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
     return cad::textureOfText(text, "texture");  // as it is when it is kept
 }
 
+void remember(const std::string& mark, std::vector<std::string>& marks) {
+    if (std::ranges::find(marks, mark) == marks.end()) marks.push_back(mark);
+}
+
+void rememberAll(const std::vector<LoadedCase>& cases, std::vector<std::string>& marks) {
+    for (const LoadedCase& each : cases)
+        for (const std::string& mark : remembered(each))
+            remember(mark, marks);
+}
+
+Result<void> checkUnseen(const cad::CadModel& model, const std::vector<LoadedCase>& cases,
+                         const char* what) {
+    for (const LoadedCase& each : cases)
+        if (hasSeen(model, each))
+            return fail(ErrorKind::badInput,
+                        fmt::format("the model has learnt from this case's scan, or from another "
+                                    "one of its study, or was calibrated on it, so it cannot be "
+                                    "{} it",
+                                    what),
+                        each.source.name());
+    return {};
+}
+
+Result<std::vector<cad::TrainingCase>> examplesOf(const std::vector<LoadedCase>& loaded,
+                                                  const CadArguments& arguments,
+                                                  const cad::TextureModel& texture,
+                                                  const cad::CadModel* model, ProgressBar& bar) {
+    std::vector<cad::TrainingCase> cases;
+    for (std::size_t n = 0; n < loaded.size(); ++n) {
+        bar.show("candidates", double(n) / double(loaded.size()));
+        auto candidates = TRY(candidatesOf(loaded[n], arguments, texture, model));
+        leaveOut(candidates, arguments);
+        cases.push_back({arguments.cases[n], loaded[n].truth,
+                         cad::examplesOf(candidates, loaded[n].truth), loaded[n].studyMark});
+    }
+    return cases;
+}
+
+void sayCurve(const char* what, const std::vector<cad::EvaluatedCase>& cases,
+              const cad::CadModel& model, ProgressBar& bar) {
+    std::vector<const cad::EvaluatedCase*> every;
+    for (const cad::EvaluatedCase& each : cases)
+        every.push_back(&each);
+    for (const std::string_view note : frocNotes)
+        bar.say(std::string(note));
+    for (const cad::FrocPoint& point : cad::frocCurve(every))
+        bar.say(
+            fmt::format("{}: {:.2f} false positives a scan, {:.1f} % of polyps from 6 mm "
+                        "({:.1f} to {:.1f})",
+                        what, point.falsePositives, 100.0 * point.sensitivity, 100.0 * point.low,
+                        100.0 * point.high));
+    bar.say(fmt::format("operating point {:.3f}", model.operatingPoint));
+}
+
 Result<void> runTrain(const CadArguments& arguments) {
     checkArguments(arguments);
     TRY(checkOutputFile(arguments.model));
@@ -335,21 +402,13 @@ Result<void> runTrain(const CadArguments& arguments) {
                                  options.folds));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     std::optional<cad::CadModel> textureFrom;
-    if (!arguments.texture.empty())
-        textureFrom =
-            TRY(arguments.texture == builtIn ? builtInModel() : readModel(arguments.texture));
+    if (!arguments.texture.empty()) textureFrom = TRY(readModel(arguments.texture));
     ProgressBar bar;
     store::Sha256 hash;
     const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
-    const auto remember = [&](const std::string& mark) {
-        if (std::ranges::find(options.trainingScans, mark) == options.trainingScans.end())
-            options.trainingScans.push_back(mark);
-    };
-    for (const LoadedCase& each : loaded) {
+    for (const LoadedCase& each : loaded)
         hash.addWithLength(each.ct);
-        for (const std::string& mark : remembered(each))
-            remember(mark);
-    }
+    rememberAll(loaded, options.trainingScans);
     TRY(makeFolderOfCandidates(arguments));
     // Colours first: what candidates texture gives depends on what all cases look like.
     cad::TextureModel texture;
@@ -359,39 +418,58 @@ Result<void> runTrain(const CadArguments& arguments) {
         options.textureFrom =
             textureFrom->textureFrom.empty() ? textureFrom->name : textureFrom->textureFrom;
         for (const std::string& mark : textureFrom->trainingScans)
-            remember(mark);
+            remember(mark, options.trainingScans);
     } else {
         texture = TRY(learnTexture(loaded, arguments, bar));
     }
     bar.say(fmt::format("texture: {} components hold {:.1f} % of the variance; T {:.3f}",
                         texture.count(), 100.0 * texture.varianceShare, texture.threshold));
-    std::vector<cad::TrainingCase> cases;
-    for (std::size_t n = 0; n < loaded.size(); ++n) {
-        bar.show("candidates", double(n) / double(loaded.size()));
-        auto candidates = TRY(candidatesOf(loaded[n], arguments, texture));
-        leaveOut(candidates, arguments);
-        cases.push_back({arguments.cases[n], loaded[n].truth,
-                         cad::examplesOf(candidates, loaded[n].truth), loaded[n].studyMark});
-    }
-    options.name = arguments.name, options.trainedOn = arguments.description;
+    const auto cases = TRY(examplesOf(loaded, arguments, texture, nullptr, bar));
+    options.name = arguments.name.empty() ? "cases" : arguments.name;
+    options.trainedOn =
+        arguments.description.empty() ? "cases that somebody chose" : arguments.description;
     options.trainingSha256 = store::toHex(hash.finish());
     options.falsePositives = arguments.falsePositives;
     options.threads = arguments.threads;
     bar.show("trees and networks", 0.0);
     const auto trained = TRY(cad::trainModel(texture, cases, options));
-    std::vector<const cad::EvaluatedCase*> every;
-    for (const cad::EvaluatedCase& each : trained.crossValidated)
-        every.push_back(&each);
-    for (const std::string_view note : frocNotes)
-        bar.say(std::string(note));
-    for (const cad::FrocPoint& point : cad::frocCurve(every))
-        bar.say(
-            fmt::format("cross-validation by study: {:.2f} false positives a scan, {:.1f} % of "
-                        "polyps from 6 mm ({:.1f} to {:.1f})",
-                        point.falsePositives, 100.0 * point.sensitivity, 100.0 * point.low,
-                        100.0 * point.high));
-    bar.say(fmt::format("operating point {:.3f}", trained.model.operatingPoint));
+    sayCurve("cross-validation by study", trained.crossValidated, trained.model, bar);
     return writeTextFile(arguments.model, cad::modelText(trained.model));
+}
+
+Result<void> runCalibrate(const CadArguments& arguments) {
+    checkArguments(arguments);
+    if (!usesClassifier(arguments))
+        throw CLI::ValidationError("--without",
+                                   "past leaves out the classifier, which is what is calibrated");
+    TRY(checkOutputFile(arguments.model));
+    const auto store = TRY(store::CaseStore::open(arguments.store, false));
+    cad::CadModel model = TRY(readModel(arguments.from));
+    const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
+    TRY(checkUnseen(model, loaded, "calibrated on"));
+    if (std::ranges::none_of(loaded, [](const LoadedCase& each) {
+            return std::ranges::any_of(each.truth,
+                                       [](const auto& lesion) { return lesion.neoplastic; });
+        }))
+        return fail(ErrorKind::badInput, "the cases hold no polyp", arguments.truth.string());
+    TRY(makeFolderOfCandidates(arguments));
+    ProgressBar bar;
+    const auto cases = TRY(examplesOf(loaded, arguments, model.texture, &model, bar));
+    const auto told = TRY(cad::calibrate(model, cases, arguments.falsePositives));
+    model.name = arguments.name.empty() ? model.name + "-calibrated" : arguments.name;
+    model.trainedOn = arguments.description.empty()
+                          ? fmt::format("{}; calibrated on {} other case{}", model.trainedOn,
+                                        loaded.size(), loaded.size() == 1 ? "" : "s")
+                          : arguments.description;
+    // What it must not be judged by now.
+    store::Sha256 hash;
+    hash.addWithLength(model.trainingSha256);
+    for (const LoadedCase& each : loaded)
+        hash.addWithLength(each.ct);
+    model.trainingSha256 = store::toHex(hash.finish());
+    rememberAll(loaded, model.trainingScans);
+    sayCurve("calibration", told, model, bar);
+    return writeTextFile(arguments.model, cad::modelText(model));
 }
 
 // What a group of phantoms is called: a case's name up to its first hyphen.
@@ -463,12 +541,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     ProgressBar bar;
     // A case that is not there is told of before the first is measured.
     const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
-    for (const LoadedCase& each : loaded)
-        if (hasSeen(model, each))
-            return fail(ErrorKind::badInput,
-                        "the model has learnt from this case's scan, or from another one of its "
-                        "study, so it cannot be judged by it",
-                        each.source.name());
+    TRY(checkUnseen(model, loaded, "judged by"));
     if (!arguments.froc.empty() && std::ranges::none_of(loaded, [](const LoadedCase& each) {
             return std::ranges::any_of(each.truth, cad::countsInCurve);
         }))
@@ -479,7 +552,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     for (std::size_t n = 0; n < loaded.size(); ++n) {
         bar.show("detect", double(n) / double(loaded.size()));
         const std::string& name = arguments.cases[n];
-        auto all = TRY(candidatesOf(loaded[n], arguments, model.texture));
+        auto all = TRY(candidatesOf(loaded[n], arguments, model.texture, &model));
         leaveOut(all, arguments);
         cad::weigh(all, model, method);
         cases.push_back(cad::evaluateCase(name, groupOf(name), all, loaded[n].truth));
@@ -552,17 +625,24 @@ void addCases(CLI::App& command, CadArguments& arguments) {
             "--without", arguments.without,
             "For comparisons leave out: automatic-transfer, pca, cleansing, texture, shape, "
             "past (all that is not the dissertation's), or feature:NAME, those whose names "
-            "begin so; give it to train and evaluate alike; may be repeated")
+            "begin so; give it to train, calibrate and evaluate alike; may be repeated")
         ->type_name("PART")
         ->check(checkPart);
+}
+
+std::string checkModelFile(const std::string& text) {
+    std::error_code ignored;
+    return text == builtIn || fs::is_regular_file(text, ignored)
+               ? std::string()
+               : fmt::format("\"{}\" is neither a file nor the word {}", text, builtIn);
 }
 
 }  // namespace
 
 Command addCad(CLI::App& program) {
     auto arguments = std::make_shared<CadArguments>();
-    CLI::App* command =
-        program.add_subcommand("cad", "Train polyp detection, or see how well it does.");
+    CLI::App* command = program.add_subcommand(
+        "cad", "Train or calibrate polyp detection, or see how well it does.");
     command->require_subcommand(1);
     CLI::App* train = command->add_subcommand(
         "train", "Learn a model from prepared cases whose polyps are known.");
@@ -570,11 +650,10 @@ Command addCad(CLI::App& program) {
     train->add_option("--model", arguments->model, "The model to write")
         ->type_name("FILE.json")
         ->required();
-    train->add_option("--name", arguments->name, "What the model is called")->capture_default_str();
-    train
-        ->add_option("--description", arguments->description,
-                     "What it was trained on and what that means, for a reader")
-        ->capture_default_str();
+    train->add_option("--name", arguments->name, "What the model is called (default: cases)");
+    train->add_option("--description", arguments->description,
+                      "What it was trained on and what that means, for a reader (default: cases "
+                      "that somebody chose)");
     train
         ->add_option("--false-positives", arguments->falsePositives,
                      "How many a scan the operating point allows, in cross-validation")
@@ -586,12 +665,32 @@ Command addCad(CLI::App& program) {
                      "the built-in one, in place of learning it: candidates that were kept hold "
                      "while cases are added. What that model has seen counts as seen")
         ->type_name("FILE.json|built-in")
-        ->check([](const std::string& text) {
-            std::error_code ignored;
-            return text == builtIn || fs::is_regular_file(text, ignored)
-                       ? std::string()
-                       : fmt::format("\"{}\" is neither a file nor the word {}", text, builtIn);
-        });
+        ->check(checkModelFile);
+    CLI::App* calibrate = command->add_subcommand(
+        "calibrate",
+        "Fit how probable a place is, and the operating point, to a hospital's own cases, some "
+        "dozens of them: prepared ones whose polyps are known and that the model has not learnt "
+        "from. Trees and networks stay, and with them which place is more probable than which.");
+    addCases(*calibrate, *arguments);
+    calibrate->add_option("--model", arguments->model, "The model to write")
+        ->type_name("FILE.json")
+        ->required();
+    calibrate->add_option(
+        "--name", arguments->name,
+        "What the new model is called (default: as the old one, and -calibrated)");
+    calibrate->add_option("--description", arguments->description,
+                          "What it was trained on and what that means, for a reader (default: as "
+                          "the old one's, and on how many cases it was calibrated)");
+    calibrate
+        ->add_option("--false-positives", arguments->falsePositives,
+                     "How many a scan the operating point allows in these cases; the built-in "
+                     "model's allows 4 in phantoms")
+        ->capture_default_str()
+        ->check(numberRange(0.1, 50.0));
+    calibrate->add_option("--from", arguments->from, "The model that is calibrated")
+        ->type_name("FILE.json|built-in")
+        ->capture_default_str()
+        ->check(checkModelFile);
     CLI::App* evaluate = command->add_subcommand(
         "evaluate",
         "Sensitivity, false positives and errors of size on prepared cases whose polyps are known, "
@@ -611,8 +710,10 @@ Command addCad(CLI::App& program) {
                        ? std::string()
                        : "\"" + file + "\": a curve is written as .png or .csv";
         });
-    return {command, [arguments, train] {
-                return train->parsed() ? runTrain(*arguments) : runEvaluate(*arguments);
+    return {command, [arguments, train, calibrate] {
+                return train->parsed()       ? runTrain(*arguments)
+                       : calibrate->parsed() ? runCalibrate(*arguments)
+                                             : runEvaluate(*arguments);
             }};
 }
 

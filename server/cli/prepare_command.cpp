@@ -187,8 +187,8 @@ void addSurface(CLI::App& command, pipeline::PrepareOptions& options) {
     addAreaWeightOption(command, options.areaWeight);
     command
         .add_option("--cad-model", options.cadModel,
-                    "What polyp detection has learnt, as haustra cad train writes it (default: the "
-                    "built-in model, of phantoms)")
+                    "What polyp detection has learnt, as haustra cad train and calibrate write it "
+                    "(default: the built-in model, of phantoms)")
         ->type_name("FILE.json")
         ->check(CLI::ExistingFile);
 }

@@ -148,14 +148,17 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
     const auto evidence =
         timed("samples, shapes and rays", [&] { return cad::gatherEvidence(colon, {}); });
     auto candidates = timed("candidates and their features", [&] {
-        return cad::findCandidates(colon, evidence, &model.texture, {});
+        return cad::findCandidates(colon, evidence, &model.texture, {}, &model);
     });
-    const std::size_t before = candidates.size();
+    const auto before =
+        std::ranges::count_if(candidates, [](const auto& c) { return c.levelOf < 0; });
+    const auto levels = std::ptrdiff_t(candidates.size()) - before;
     const auto all = clusters ? candidates : std::vector<cad::Candidate>();
     cad::weigh(candidates, model, {});
     const auto findings = cad::findingsOf(colon, evidence, candidates, model);
-    std::printf("%zu samples, %zu candidates, %zu findings: %.2f s in all\n", evidence.rays.size(),
-                before, findings.findings.size(), (milliseconds() - start) / 1e3);
+    std::printf("%zu samples, %zd candidates, %zd at other levels, %zu findings: %.2f s in all\n",
+                evidence.rays.size(), before, levels, findings.findings.size(),
+                (milliseconds() - start) / 1e3);
     const cad::BiopsyTable table(evidence.transferFunction);
     const cad::BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
     if (inputs.flat.height > 0.0) {
@@ -168,16 +171,18 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
         if (clusters) {
             const cad::StripRaster raster = cad::rasterStrip(colon.flat, {4000, 200}, 0);
             for (const cad::Candidate& c : all)
-                tint(image, raster, colon.flat, evidence, c,
-                     c.lesion.patch.byTexture ? glm::u8vec3(255, 0, 255)
-                                              : glm::u8vec3(255, 255, 255));
+                if (c.levelOf < 0)
+                    tint(image, raster, colon.flat, evidence, c,
+                         c.lesion.patch.by == cad::Generator::texture ? glm::u8vec3(255, 0, 255)
+                                                                      : glm::u8vec3(255, 255, 255));
             for (const cad::Candidate& c : candidates)
                 if (c.probability >= model.operatingPoint)
                     tint(image, raster, colon.flat, evidence, c, {255, 255, 0});
-            const auto texture = std::count_if(
-                all.begin(), all.end(), [](const auto& c) { return c.lesion.patch.byTexture; });
+            const auto texture = std::count_if(all.begin(), all.end(), [](const auto& c) {
+                return c.lesion.patch.by == cad::Generator::texture;
+            });
             std::printf("%zd candidates by texture, %zd by shape\n", std::ptrdiff_t(texture),
-                        std::ptrdiff_t(all.size()) - std::ptrdiff_t(texture));
+                        std::ptrdiff_t(before) - std::ptrdiff_t(texture));
             TRY(pictures::writePicture(clusters, image, {}));
         }
     }

@@ -92,7 +92,9 @@ protected:
         }
         const BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, onIt);
         auto made = store::CaseStore::open(store(), true).value().createCase(name).value();
-        if (scan) ASSERT_TRUE(made.bind(*scan));
+        if (scan) {
+            ASSERT_TRUE(made.bind(*scan));
+        }
         const auto key = [&](const char* product) {
             return store::makeKey(product, number, "", {});
         };
@@ -208,6 +210,72 @@ TEST_F(CadCommand, TextureThatIsTakenLeavesKeptCandidatesValid) {
     ASSERT_EQ(haustra(with(training(), {"--texture", "built-in", "--model", other})).exitCode, 0);
     EXPECT_EQ(cad::textureText(cad::modelOfText(fileContent(other))->texture),
               cad::textureText(shipped->texture));
+}
+
+TEST_F(CadCommand, AModelIsCalibratedOnCasesThatItHasNotSeen) {
+    const TemporaryFolder out;
+    const std::string model = out.path() / "model.json", other = out.path() / "other.json";
+    ASSERT_EQ(haustra(with(training(), {"--name", "balls", "--model", model})).exitCode, 0);
+    const auto calibrate = [&](const Arguments& cases, const Arguments& more,
+                               std::string from = {}) {
+        if (from.empty()) from = model;
+        return haustra(with(with({"cad", "calibrate", "--store", store(), "--truth", truth(),
+                                  "--from", from, "--model", other},
+                                 cases),
+                            more));
+    };
+    const auto seen = calibrate({name(0)}, {});
+    EXPECT_EQ(seen.exitCode, 1);
+    EXPECT_NE(seen.err.find(name(0)), std::string::npos) << seen.err;
+    EXPECT_EQ(calibrate({name(6)}, {"--without", "past"}).exitCode, 2);
+    EXPECT_FALSE(fs::exists(other));
+    EXPECT_EQ(calibrate({name(6)}, {}, out.path() / "none.json").exitCode, 2);
+    const std::string broken = out.path() / "broken.json";
+    writeText(broken, fileContent(model).substr(0, 100));
+    const auto unread = calibrate({name(6)}, {}, broken);
+    EXPECT_EQ(unread.exitCode, 1);
+    EXPECT_NE(unread.err.find(broken), std::string::npos) << unread.err;
+    // A case without polyps.
+    makeCase(7, "bare");
+    const fs::path truths = fs::path(truth()) / "bare" / "truth" / "growths.json";
+    writeText(truths, R"({"growths": []})");
+    const auto bare = calibrate({"bare"}, {});
+    EXPECT_EQ(bare.exitCode, 1);
+    EXPECT_NE(bare.err.find("no polyp"), std::string::npos) << bare.err;
+    EXPECT_FALSE(fs::exists(other));
+    const auto made = calibrate({name(6)}, {"--false-positives", "1"});
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    EXPECT_NE(made.err.find("3,046"), std::string::npos) << "no figure without the field's";
+    const auto was = cad::modelOfText(fileContent(model)),
+               is = cad::modelOfText(fileContent(other));
+    ASSERT_TRUE(was && is);
+    EXPECT_EQ(is->name, "balls-calibrated");
+    EXPECT_EQ(is->trainingScans.size(), was->trainingScans.size() + 1);
+    EXPECT_NE(is->trainingSha256, was->trainingSha256);
+    EXPECT_NE(is->trainedOn.find("calibrated on 1 other case"), std::string::npos);
+    EXPECT_TRUE(is->placeA != was->placeA && is->placeB != was->placeB);
+    // But for that it is the same.
+    cad::CadModel back = *is;
+    back.name = was->name, back.trainingSha256 = was->trainingSha256;
+    back.trainingScans = was->trainingScans, back.operatingPoint = was->operatingPoint;
+    back.trainedOn = was->trainedOn, back.placeA = was->placeA, back.placeB = was->placeB;
+    EXPECT_EQ(cad::modelText(back), cad::modelText(*was));
+    EXPECT_EQ(haustra(with(judging({name(6)}), {"--model", other})).exitCode, 1);
+    EXPECT_EQ(haustra(with(judging({name(7)}), {"--model", other})).exitCode, 0);
+    // One fewer false finding a scan asks for more, and a description is taken as it is.
+    ASSERT_EQ(
+        calibrate({name(6)}, {"--false-positives", "0.1", "--description", "balls alone"}).exitCode,
+        0);
+    const auto strict = cad::modelOfText(fileContent(other));
+    EXPECT_GE(strict->operatingPoint, is->operatingPoint);
+    EXPECT_EQ(strict->trainedOn, "balls alone");
+    // What one generator found can be left out: candidates that were kept are numbered anew.
+    const std::string kept = out.path() / "kept";
+    for (int round = 0; round < 2; ++round)
+        EXPECT_EQ(haustra(with(judging({name(7)}),
+                               {"--model", model, "--candidates", kept, "--without", "texture"}))
+                      .exitCode,
+                  0);
 }
 
 TEST_F(CadCommand, AScanOrStudyThatWasLearntFromIsKnownUnderAnyName) {

@@ -1,7 +1,9 @@
 // Detection on a lumen whose wall has polyps and nothing else, all by formula.
 #include "ball_colon.h"
 #include "cad/biopsy_transfer.h"
+#include "cad/candidate_table.h"
 #include "cad/detect.h"
+#include "cad/places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +32,8 @@ std::vector<cad::Candidate> bodies(const BallColon& ball, int threads = 2) {
     gathering.threads = threads;
     const auto evidence = cad::gatherEvidence(ball.colon(), gathering);
     auto all = cad::findCandidates(ball.colon(), evidence, nullptr, shapeAlone(threads));
-    std::erase_if(all, [](const cad::Candidate& c) { return c.lesion.heightMm < 1.5; });
+    std::erase_if(
+        all, [](const cad::Candidate& c) { return c.lesion.heightMm < 1.5 || c.levelOf >= 0; });
     std::sort(all.begin(), all.end(), [](const cad::Candidate& a, const cad::Candidate& b) {
         return a.lesion.volumeMm3 > b.lesion.volumeMm3;
     });
@@ -144,6 +147,35 @@ TEST(Detect, TurnsShiftsAndThreadsChangeNothing) {
         EXPECT_EQ(alone[n].features, plain[n].features);
         EXPECT_EQ(alone[n].lesion.centreMm, plain[n].lesion.centreMm);
         EXPECT_EQ(alone[n].lesion.voxels, plain[n].lesion.voxels);
+    }
+}
+
+TEST(Detect, OtherLevelsOfWhatIsNotWorthTheLookNeedNotBeMeasured) {
+    const BallColon ball;
+    const auto evidence = cad::gatherEvidence(ball.colon(), {});
+    auto model = cad::modelOfText(cad::builtInModelText()).value();
+    auto all = cad::findCandidates(ball.colon(), evidence, nullptr, shapeAlone());
+    const auto inTurn = cad::findCandidates(ball.colon(), evidence, nullptr, shapeAlone(1));
+    EXPECT_EQ(cad::candidateTable(inTurn), cad::candidateTable(all)) << "for any number of threads";
+    // A model for which about half of them are worth the look.
+    std::vector<double> odds;
+    for (const cad::Candidate& c : all)
+        if (c.levelOf < 0) odds.push_back(cad::logit(model.probability(c.features)));
+    std::ranges::sort(odds);
+    model.calibrationA += 2.0 * (cad::logit(cad::worthAnotherLook) - odds[odds.size() / 2] + 1e-6);
+    auto some = cad::findCandidates(ball.colon(), evidence, nullptr, shapeAlone(), &model);
+    const auto levels = [](const auto& candidates) {
+        return std::ranges::count_if(candidates, [](const auto& c) { return c.levelOf >= 0; });
+    };
+    EXPECT_GT(levels(some), 0);
+    EXPECT_LT(levels(some), levels(all)) << "else nothing is saved";
+    EXPECT_EQ(all.size() - std::size_t(levels(all)), some.size() - std::size_t(levels(some)));
+    cad::weigh(all, model, {});
+    cad::weigh(some, model, {});
+    ASSERT_EQ(all.size(), some.size());
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        EXPECT_EQ(all[n].probability, some[n].probability);
+        EXPECT_EQ(all[n].lesion.centreMm, some[n].lesion.centreMm);
     }
 }
 

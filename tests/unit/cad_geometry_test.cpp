@@ -234,7 +234,7 @@ TEST(Candidates, WhatAPatchEnclosesIsPartOfIt) {
     const auto fromSide = [](glm::dvec3 p) { return glm::length(glm::dvec2(p.y, p.z)); };
     // A ring on one side has its middle, and not the other side; so has one with two holes.
     const Cigar ring([&](glm::dvec3 p) { return p.x > 0 && fromSide(p) > 2 && fromSide(p) < 5; });
-    const auto filled = cad::patchesByShape(ring.evidence, ring.evidence.shapes, {}, 2);
+    const auto filled = cad::patchesByShape(ring.evidence, cad::Generator::shape, 2);
     EXPECT_TRUE(ring.holds(filled, {10, 0, 0}));
     EXPECT_FALSE(ring.holds(filled, {-10, 0, 0}));
     EXPECT_FALSE(ring.holds(filled, {0, 0, 60}));
@@ -242,20 +242,77 @@ TEST(Candidates, WhatAPatchEnclosesIsPartOfIt) {
         return p.x > 0 && fromSide(p) < 6 && glm::length(glm::dvec2(p.y, p.z - 3)) > 1.5 &&
                glm::length(glm::dvec2(p.y, p.z + 3)) > 1.5;
     });
-    const auto both = cad::patchesByShape(eight.evidence, eight.evidence.shapes, {}, 2);
+    const auto both = cad::patchesByShape(eight.evidence, cad::Generator::shape, 2);
     EXPECT_TRUE(eight.holds(both, {9.5, 0, 3}));
     EXPECT_TRUE(eight.holds(both, {9.5, 0, -3}));
     EXPECT_FALSE(eight.holds(both, {-10, 0, 0}));
     // A belt encloses nothing: the wall goes on at both its sides.
     const Cigar belt([](glm::dvec3 p) { return std::abs(p.z) < 3; });
-    const auto round = cad::patchesByShape(belt.evidence, belt.evidence.shapes, {}, 2);
+    const auto round = cad::patchesByShape(belt.evidence, cad::Generator::shape, 2);
     EXPECT_FALSE(belt.holds(round, {0, 0, 60}));
     EXPECT_FALSE(belt.holds(round, {0, 0, -60}));
     // One around the tip does.
     const Cigar cap([](glm::dvec3 p) { return p.z > 50 && p.z < 58; });
-    const auto tip = cad::patchesByShape(cap.evidence, cap.evidence.shapes, {}, 2);
+    const auto tip = cad::patchesByShape(cap.evidence, cad::Generator::shape, 2);
     EXPECT_TRUE(cap.holds(tip, {0, 0, 60}));
     EXPECT_FALSE(cap.holds(tip, {0, 0, -60}));
+}
+
+TEST(Candidates, OtherLevelsAreTheSamePatchByAnotherLimit) {
+    // Two bumps on one side with a saddle between, whose k2 lies between the limits.
+    const auto k2At = [](glm::dvec3 p) {
+        const auto bump = [&](double z) {
+            return 0.1 * std::exp(-0.5 * (p.y * p.y + (p.z - z) * (p.z - z)) / 4.0);
+        };
+        return p.x > 0 ? std::max(bump(-4.0), bump(4.0)) - 0.0035 : -0.1;
+    };
+    Cigar two([](glm::dvec3) { return false; });
+    const auto& places = two.evidence.samples.mesh.vertices;
+    for (std::size_t v = 0; v < places.size(); ++v)
+        two.evidence.shapes[v].k1 = two.evidence.shapes[v].k2 = float(k2At(places[v]));
+    // The saddle has 0.1 exp(−2) − 0.0035 = 0.010: less than the limit of 0.012, more than half.
+    const auto patches = cad::patchesByShape(two.evidence, cad::Generator::shape, 2);
+    ASSERT_EQ(patches.size(), 2u);
+    const std::vector<const cad::Patch*> asked{&patches[0], &patches[1]};
+    const auto levels = cad::otherLevels(two.evidence, asked, 2);
+    const auto above = [&](double k2, double side) {
+        std::vector<std::uint32_t> samples;
+        for (std::uint32_t v = 0; v < places.size(); ++v)
+            if (two.evidence.shapes[v].k2 >= float(k2) && side * places[v].z >= 0.0)
+                samples.push_back(v);
+        return samples;
+    };
+    for (std::size_t n = 0; n < 2; ++n) {
+        const double side = places[patches[n].samples[0]].z > 0.0 ? 1.0 : -1.0;
+        EXPECT_EQ(patches[n].samples, above(0.012, side));
+        ASSERT_EQ(levels[n].size(), 2u);
+        EXPECT_EQ(levels[n][0].samples, above(0.006, 0.0)) << "both bumps are one";
+        EXPECT_EQ(levels[n][1].samples, above(0.024, side));
+        for (const cad::Patch& level : levels[n])
+            EXPECT_EQ(level.by, cad::Generator::shape);
+    }
+    // At the broad scale likewise, by its own limits.
+    two.evidence.broadShapes = two.evidence.shapes;
+    for (cad::WallShape& shape : two.evidence.broadShapes)
+        shape.k2 -= 0.0325f;  // the saddle has −0.0225, less than −0.02 and more than −0.03
+    const auto broad = cad::patchesByShape(two.evidence, cad::Generator::broadShape, 2);
+    ASSERT_EQ(broad.size(), 2u);
+    const std::vector<const cad::Patch*> first{&broad[0]};
+    const auto broadLevels = cad::otherLevels(two.evidence, first, 2);
+    const double side = places[broad[0].samples[0]].z > 0.0 ? 1.0 : -1.0;
+    ASSERT_EQ(broadLevels[0].size(), 2u);
+    EXPECT_EQ(broadLevels[0][0].samples, above(-0.03 + 0.0325, 0.0));
+    EXPECT_EQ(broadLevels[0][1].samples, above(-0.01 + 0.0325, side));
+    EXPECT_EQ(broadLevels[0][0].by, cad::Generator::broadShape);
+    // By narrower limits one patch may be two; a wide one that is too large is none.
+    for (std::size_t v = 0; v < places.size(); ++v)
+        two.evidence.shapes[v].k2 += places[v].x > 0 ? 0.010f : 0.107f;
+    const auto one = cad::patchesByShape(two.evidence, cad::Generator::shape, 2);
+    ASSERT_EQ(one.size(), 1u);
+    const std::vector<const cad::Patch*> only{&one[0]};
+    const auto parts = cad::otherLevels(two.evidence, only, 1);
+    ASSERT_EQ(parts[0].size(), 2u) << "all the wall reaches 0.006: 7,000 mm²";
+    EXPECT_EQ(parts[0][0].samples.size() + parts[0][1].samples.size(), above(0.024, 0.0).size());
 }
 
 // A stretch of a tube's wall with a plateau on it, and perhaps another beside: lumen inside, scan

@@ -359,7 +359,32 @@ TEST(Examples, AreLearntFromWhereTheyShowAPolypWhole) {
     EXPECT_EQ(told(&cad::Example::weighed), (std::vector<bool>{true, false, false, true}));
 }
 
-TEST(Places, ArePairedByTheirTwoMostProbableWitnesses) {
+TEST(Examples, OfOtherLevelsAreNotLearntFrom) {
+    std::vector<cad::TrueLesion> truth(1);
+    truth[0].diameterMm = 12.0;
+    const auto candidate = [](double x, double diameterMm, int levelOf) {
+        cad::Candidate made;
+        made.lesion.centreMm = {x, 0, 0}, made.levelOf = levelOf;
+        made.lesion.diameter.mm = diameterMm, made.lesion.areaMm2 = diameterMm * diameterMm;
+        return made;
+    };
+    // Of the two at the polyp neither is half as wide, so the larger stands for it, whatever its
+    // wide level is.
+    const auto examples =
+        cad::examplesOf({candidate(1, 4, -1), candidate(2, 5, -1), candidate(90, 6, -1),
+                         candidate(1, 11, 0), candidate(90, 7, 2)},
+                        truth);
+    ASSERT_EQ(examples.size(), 5u);
+    for (std::size_t n = 0; n < 5; ++n) {
+        EXPECT_EQ(examples[n].polyp, n == 1) << n;
+        EXPECT_EQ(examples[n].weighed, n == 1 || n == 2) << n;
+    }
+    EXPECT_EQ(examples[3].lesion, 0) << "but tells what its place is";
+    EXPECT_EQ(examples[3].levelOf, 0);
+    EXPECT_EQ(examples[4].lesion, -1);
+}
+
+TEST(Places, AreScoredByTheirThreeMostProbableWitnesses) {
     // Two of one place, one of another, one so far that only its own width joins it to the first.
     const std::vector<cad::PlaceWitness> witnesses{{{0, 0, 0}, 6.0, 20.0, 0.8},
                                                    {{2.9, 0, 0}, 4.0, 10.0, 0.6},
@@ -369,15 +394,82 @@ TEST(Places, ArePairedByTheirTwoMostProbableWitnesses) {
     ASSERT_EQ(places.size(), 2u);
     EXPECT_EQ(places[0].best, 0u);
     // The wide one is the first that seconds it; the third is no part of it, and alone.
-    EXPECT_DOUBLE_EQ(places[0].score, 0.5 * (0.8 + 0.7));
+    EXPECT_DOUBLE_EQ(places[0].score, (0.8 + 0.7 + 0.6) / 3.0);
     EXPECT_EQ(places[1].best, 2u);
-    EXPECT_DOUBLE_EQ(places[1].score, 0.5 * 0.4);
+    EXPECT_DOUBLE_EQ(places[1].score, 0.4 / 3.0);
     // Of equal ones the larger; the order in which they come is nothing.
     std::vector<cad::PlaceWitness> equal{{{0, 0, 0}, 6.0, 10.0, 0.5}, {{1, 0, 0}, 6.0, 30.0, 0.5}};
     EXPECT_EQ(cad::placesOf(equal)[0].best, 1u);
     std::swap(equal[0], equal[1]);
     EXPECT_EQ(cad::placesOf(equal)[0].best, 0u);
     EXPECT_NEAR(cad::logistic(cad::logit(0.3)), 0.3, 1e-12);
+}
+
+TEST(Places, HearAnotherLevelOnlyOfWhatIsWorthTheLook) {
+    std::vector<cad::PlaceWitness> witnesses{{{0, 0, 0}, 6.0, 20.0, 0.3},
+                                             {{9, 0, 0}, 6.0, 20.0, 0.5 * cad::worthAnotherLook},
+                                             {{0, 0, 0}, 5.0, 15.0, 0.6, 0},
+                                             {{9, 0, 0}, 7.0, 25.0, 0.9, 1}};
+    const auto places = cad::placesOf(witnesses);
+    ASSERT_EQ(places.size(), 2u);
+    EXPECT_EQ(places[0].best, 2u) << "the other level may be the most probable";
+    EXPECT_DOUBLE_EQ(places[0].score, (0.6 + 0.3) / 3.0);
+    EXPECT_EQ(places[1].best, 1u);
+    EXPECT_DOUBLE_EQ(places[1].score, 0.5 * cad::worthAnotherLook / 3.0);
+}
+
+TEST(Calibration, AModelIsCalibratedOnOtherCases) {
+    // Trees that ask for one feature; of what scores high three in four are polyps, of what scores
+    // low one in ten.
+    cad::CadModel model = smallModel();
+    model.networks = {};
+    model.networks.scores.assign(std::size_t(cad::featureCount), {{0.0f}, {0.0f}});
+    model.networks.networks = {
+        {{cad::featureCount, std::vector<float>(std::size_t(cad::featureCount), 0.0f), {0.0f}}}};
+    model.boosted.trees = {{{0, 0.5f, 1, 2}, {-1, -4.0f, 0, 0}, {-1, 4.0f, 0, 0}}};
+    model.boosted.widths.assign(std::size_t(cad::featureCount), 0.0f);
+    model.calibrationA = 0.0, model.calibrationB = 1.0;
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> share;
+    std::vector<cad::TrainingCase> cases(20);
+    double polyps = 0.0, others = 0.0;
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+        cases[n].name = "case " + std::to_string(n);
+        for (int p = 0; p < 40; ++p) {
+            const bool high = p % 2 == 0, polyp = share(random) < (high ? 0.75 : 0.1);
+            cad::Example example;
+            example.features[0] = high ? 1.0f : 0.0f;
+            example.features[cad::featureNumber("height_mm")] = 2.0f;
+            example.placeMm = {20.0 * p, 0, 0}, example.diameterMm = 8.0;
+            example.lesion = polyp ? int(cases[n].truth.size()) : -1, example.polyp = polyp;
+            if (polyp) cases[n].truth.push_back(polypAt(example.placeMm, 8.0));
+            (polyp ? polyps : others) += 1.0;
+            cases[n].examples.push_back(example);
+        }
+    }
+    const auto before = model.probability(cases[0].examples[0].features);
+    const double allowed = 10.0;  // of some 5 high ones and 18 low ones
+    const auto told = cad::calibrate(model, cases, allowed);
+    ASSERT_TRUE(told) << describe(told.error());
+    EXPECT_EQ(model.probability(cases[0].examples[0].features), before) << "places' alone";
+    // As probable as there are polyps, in the mean and of either kind.
+    double sum = 0.0, wrong = 0.0;
+    for (const cad::EvaluatedCase& each : *told) {
+        for (const cad::ToldPlace& place : each.places) {
+            EXPECT_NEAR(place.score, place.score > 0.4 ? 0.75 : 0.1, 0.05);
+            sum += place.score;
+            wrong += place.lesion < 0 && place.score >= model.operatingPoint;
+        }
+    }
+    EXPECT_NEAR(sum, polyps, 0.01 * (polyps + others));
+    EXPECT_LE(wrong, allowed * double(cases.size()));
+    EXPECT_GT(wrong, 0.0);
+    for (cad::TrainingCase& each : cases)
+        each.truth.clear();
+    for (cad::TrainingCase& each : cases)
+        for (cad::Example& example : each.examples)
+            example.lesion = -1;
+    EXPECT_FALSE(cad::calibrate(model, cases, allowed)) << "nothing to calibrate by";
 }
 
 TEST(Truth, APhantomsValveAndTubeAreNoLesions) {
@@ -513,7 +605,8 @@ TEST(CandidateTable, ReadsBackWhatLearningAndJudgingUse) {
         candidate.lesion.centreMm = {-12.5 - double(n), 3.25, -640.0};
         candidate.lesion.diameter.mm = 6.125 + double(n);
         candidate.lesion.areaMm2 = 33.5;
-        candidate.lesion.patch.byShape = n != 1, candidate.lesion.patch.byTexture = n != 0;
+        candidate.lesion.patch.by = n == 0 ? cad::Generator::texture : cad::Generator::broadShape;
+        candidate.levelOf = n == 2 ? 1 : -1;
         for (std::size_t f = 0; f < candidate.features.size(); ++f)
             candidate.features[f] = 0.1f * float(f) - float(n);
     }
@@ -526,8 +619,8 @@ TEST(CandidateTable, ReadsBackWhatLearningAndJudgingUse) {
         EXPECT_EQ(is.centreMm, was.centreMm);
         EXPECT_EQ(is.diameter.mm, was.diameter.mm);
         EXPECT_EQ(is.areaMm2, was.areaMm2);
-        EXPECT_EQ(is.patch.byShape, was.patch.byShape);
-        EXPECT_EQ(is.patch.byTexture, was.patch.byTexture);
+        EXPECT_EQ(is.patch.by, was.patch.by);
+        EXPECT_EQ((*read)[n].levelOf, candidates[n].levelOf);
         for (std::size_t f = 0; f < candidates[n].features.size(); ++f)
             EXPECT_EQ((*read)[n].features[f], candidates[n].features[f]);
     }
@@ -548,6 +641,24 @@ TEST(CandidateTable, RefusesWhatIsNone) {
     std::string shorter = text;
     shorter.replace(shorter.rfind(",0]"), 3, "]");
     EXPECT_TRUE(refused(shorter));
+    // Another level of itself, or of another level.
+    const auto with = [](std::array<std::pair<cad::Generator, int>, 3> rows) {
+        std::vector<cad::Candidate> several(3);
+        for (std::size_t n = 0; n < 3; ++n)
+            several[n].lesion.patch.by = rows[n].first, several[n].levelOf = rows[n].second;
+        return cad::candidateTable(several);
+    };
+    constexpr auto shape = cad::Generator::shape, broad = cad::Generator::broadShape,
+                   texture = cad::Generator::texture;
+    EXPECT_FALSE(refused(with({{{shape, -1}, {broad, -1}, {broad, 1}}})));
+    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 1}, {shape, -1}}}))) << "of itself";
+    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 2}, {shape, -1}}}))) << "of a later one";
+    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 0}, {shape, 1}}}))) << "of another level";
+    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 0}, {shape, -1}}}))) << "not behind all";
+    EXPECT_TRUE(refused(with({{{shape, -1}, {broad, -1}, {broad, 0}}}))) << "of another scale";
+    EXPECT_TRUE(refused(with({{{texture, -1}, {texture, 0}, {texture, 0}}}))) << "of a texture";
+    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, -2}, {shape, 0}}})));
+    EXPECT_TRUE(refused(with({{{cad::Generator(3), -1}, {shape, -1}, {shape, 1}}})));
 }
 
 }  // namespace

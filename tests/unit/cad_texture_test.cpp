@@ -164,7 +164,7 @@ TEST(Detect, TextureFindsADenseCoreThatShapeAloneDoesNotTellFromOthers) {
     const auto candidates = cad::findCandidates(colon, evidence, &texture, options);
     ASSERT_FALSE(candidates.empty());
     for (const cad::Candidate& candidate : candidates) {
-        EXPECT_TRUE(candidate.lesion.patch.byTexture);
+        EXPECT_EQ(candidate.lesion.patch.by, cad::Generator::texture);
         EXPECT_LT(glm::distance(candidate.lesion.centreMm, dense), 4.0);
     }
 }

@@ -105,8 +105,11 @@ TEST(PhantomGrowths, TheTruthTellsWhatFluidWithoutTaggingHides) {
                      (made.sites.at(v) == std::uint8_t(phantom::Site::untaggedFluid) ? untagged
                                                                                      : other)++;
                  });
-        if (growth.untaggedShare == 1.0) EXPECT_GT(untagged, other);
-        if (growth.untaggedShare == 0.0) EXPECT_LT(untagged, other);
+        if (growth.untaggedShare == 1.0) {
+            EXPECT_GT(untagged, other);
+        } else if (growth.untaggedShare == 0.0) {
+            EXPECT_LT(untagged, other);
+        }
         hidden += growth.untaggedShare == 1.0;
         submerged += growth.submergedShare == 1.0 && growth.untaggedShare == 0.0;
     }
