@@ -33,7 +33,12 @@ struct ShapeLimits {
 };
 /// Of the broad scale: the wall of a distended colon is concave there (k2 about −0.07/mm, one over
 /// two thirds of its radius), and what is low and wide only lifts it.
-inline constexpr ShapeLimits broadLimits{0.0, -0.02, 0.0, 15.0, 4000.0, -0.03, -0.01};
+inline constexpr ShapeLimits broadLimits{.seedCurvature = 0.0,
+                                         .growCurvature = -0.02,
+                                         .seedShapeIndex = 0.0,
+                                         .leastMm2 = 15.0,
+                                         .wideCurvature = -0.03,
+                                         .narrowCurvature = -0.01};
 /// By the limits of either scale.
 std::vector<Patch> patchesByShape(const WallEvidence& evidence, Generator scale, int threads);
 

@@ -15,7 +15,8 @@ namespace haustra::cad {
 struct PlaceWitness {
     glm::dvec3 centreMm{0.0};
     double diameterMm = 0.0, areaMm2 = 0.0, probability = 0.0;
-    std::int32_t levelOf = -1;  ///< of another level (otherLevels): whose, a witness before it
+    /// Of a patch at another level (otherLevels): the number of the witness whose patch that is.
+    std::int32_t levelOf = -1;
 };
 
 /// Candidates that are so probable by themselves are looked at at other levels, too.
@@ -23,7 +24,7 @@ inline constexpr double worthAnotherLook = 0.1;
 
 /// A place, its most probable witness (of equal ones the larger), and its score: the mean of its
 /// three most probable witnesses, where a missing one counts nothing. A polyp is seen at both
-/// scales and at each level; noise is seen once.
+/// scales and at each level, noise mostly at one.
 struct WitnessedPlace {
     std::size_t best = 0;
     double score = 0.0;

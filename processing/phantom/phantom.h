@@ -101,7 +101,7 @@ struct GrowthTruth {
     double coreHu = 0.0;         ///< how much denser than the wall its middle is, about
     bool onFold = false;
     double submergedShare = 0.0;  ///< of the head's height, under the fluid's level, 0…1
-    double untaggedShare = 0.0;   ///< of it, in fluid that took no tagging, 0…submergedShare
+    double untaggedShare = 0.0;   ///< of the same height, in fluid that took no tagging
     double filmMm = 0.0;          ///< thickness of the tagged film over its top
 };
 

@@ -262,7 +262,7 @@ TEST_F(CadCommand, AModelIsCalibratedOnCasesThatItHasNotSeen) {
     EXPECT_EQ(cad::modelText(back), cad::modelText(*was));
     EXPECT_EQ(haustra(with(judging({name(6)}), {"--model", other})).exitCode, 1);
     EXPECT_EQ(haustra(with(judging({name(7)}), {"--model", other})).exitCode, 0);
-    // One fewer false finding a scan asks for more, and a description is taken as it is.
+    // Fewer false findings ask for a higher operating point; a description is taken as it is.
     ASSERT_EQ(
         calibrate({name(6)}, {"--false-positives", "0.1", "--description", "balls alone"}).exitCode,
         0);
