@@ -61,6 +61,11 @@ inline Ball blurBall(const Grid& grid) {
     return {grid, blurReachMm + 0.5 * grid.spacingMm()};
 }
 
+/// That, and `mm` more.
+inline Ball widerBall(const Grid& grid, double mm) {
+    return {grid, blurReachMm + mm + 0.5 * grid.spacingMm()};
+}
+
 /// Of a row each `every`th voxel is looked at, voxel `one` (0 and more) among them: the first of
 /// these.
 inline int firstSample(int one, int every) {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <vector>
 
 namespace haustra::cleansing {
@@ -18,6 +20,9 @@ constexpr double excessCellMm = 3.0;          // in the slice
 constexpr double enhancementSampleMm3 = 4.0;  // one voxel of so much is looked at
 constexpr double leastEdgeHu = 4.0;
 constexpr double fewestSamples = 500.0;
+constexpr double wallMm = 1.5;  // so deep beyond the blur what is around the lumen is looked at
+constexpr double wallSlabMm = 20.0;  // what surrounds the colon is alike so far
+constexpr double belowSoftHu = 250.0, aboveSoftHu = 200.0;  // fat is, gas and bone are not
 
 glm::ivec3 excessCell(const Grid& grid) {
     glm::ivec3 perCell = voxelsIn(grid, excessCellMm);
@@ -80,6 +85,47 @@ struct Line {
     double slope() const { return spread() > 0.0 ? joint() / spread() : 0.0; }
 };
 
+using LinesBySpread = std::array<Line, widthsMm.size()>;
+struct SliceLines {
+    LinesBySpread gas, wall;
+};
+
+/// A slope with its standard error, by leaving out one part after the other (jackknife); without
+/// two parts that have a slope it may be anything.
+struct Slope {
+    double value = 0.0, error = std::numeric_limits<double>::infinity();
+};
+
+Slope slopeOf(const std::vector<Line>& parts) {
+    std::vector<double> without;
+    Line all;
+    for (const Line& part : parts)
+        all.add(part);
+    for (const Line& part : parts) {
+        if (part.count == 0.0) continue;
+        Line rest = all;
+        rest.add({-part.count, -part.p, -part.y, -part.pp, -part.py});
+        without.push_back(rest.slope());
+    }
+    if (all.count < fewestSamples || without.size() < 2) return {};
+    const double count = double(without.size()),
+                 mean = std::accumulate(without.begin(), without.end(), 0.0) / count;
+    double squares = 0.0;
+    for (const double slope : without)
+        squares += (slope - mean) * (slope - mean);
+    return {all.slope(), std::sqrt((count - 1.0) / count * squares)};
+}
+
+/// What the wall has gained at spread `at`.
+Slope wallSlope(const std::vector<SliceLines>& slices, std::size_t at, double slicesPerSlab) {
+    std::vector<Line> slabs;
+    for (std::size_t k = 0; k < slices.size(); ++k) {
+        slabs.resize(std::size_t(double(k) / slicesPerSlab) + 1);
+        slabs.back().add(slices[k].wall[at]);
+    }
+    return slopeOf(slabs);
+}
+
 }  // namespace
 
 void PseudoEnhancement::takeOff(glm::ivec3 first, std::span<std::int16_t> row) const {
@@ -112,13 +158,21 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
                          unitGaussian(width / 2.3548 / cell), threads);
         }
     }
-    const Ball ball = blurBall(grid);
+    const Ball ball = blurBall(grid), beyond = widerBall(grid, wallMm);
     const int every = std::max(1, int(std::lround(enhancementSampleMm3 / grid.voxelVolumeMm3())));
     const auto isGas = [&](std::size_t n) {
         return LumenLabel(segmentation[n]) == LumenLabel::air;
     };
-    using Lines = std::array<Line, widthsMm.size()>;  // by spread
-    std::vector<Lines> slices(std::size_t(grid.size.z));
+    const auto isOutside = [&](std::size_t n) {
+        return LumenLabel(segmentation[n]) == LumenLabel::outside;
+    };
+    const double softHu = tissue.meanHu[int(Tissue::soft)];
+    const auto isWall = [&](glm::ivec3 v, std::size_t n) {
+        const double hu = scan.hu[n];
+        return hu > softHu - belowSoftHu && hu < softHu + aboveSoftHu && isOutside(n) &&
+               ball.everywhere(v, isOutside) && !beyond.everywhere(v, isOutside);
+    };
+    std::vector<SliceLines> slices(std::size_t(grid.size.z));
     parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             for (int j = 0; j < grid.size.y; ++j) {
@@ -126,18 +180,20 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
                 for (int i = first; i < grid.size.x; i += every) {
                     const glm::ivec3 v(i, j, int(k));
                     const std::size_t n = grid.index(v);
-                    if (!isGas(n) || !ball.everywhere(v, isGas)) continue;
+                    const bool gas = isGas(n) && ball.everywhere(v, isGas);
+                    if (!gas && !isWall(v, n)) continue;
+                    LinesBySpread& lines = gas ? slices[k].gas : slices[k].wall;
                     for (std::size_t w = 0; w < fields.size(); ++w)
-                        slices[k][w].add(fields[w].at(i + from.x, j + from.y, int(k) + from.z),
-                                         scan.hu[n]);
+                        lines[w].add(fields[w].at(i + from.x, j + from.y, int(k) + from.z),
+                                     scan.hu[n]);
                 }
             }
         }
     });
-    Lines lines;
-    for (const Lines& slice : slices) {
+    LinesBySpread lines;
+    for (const SliceLines& slice : slices) {
         for (std::size_t w = 0; w < lines.size(); ++w)
-            lines[w].add(slice[w]);
+            lines[w].add(slice.gas[w]);
     }
     const double sd = measureNoise(scan, tissue, segmentation, threads).soft;
     const double seen = normalCdf((airHu + 1024.0) / sd);
@@ -152,6 +208,8 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         most = explained, at = w;
         best.widthMm = widthsMm[w], best.gain = line.slope() / std::max(seen, 0.5);
     }
+    const Slope wall = wallSlope(slices, at, std::max(1.0, wallSlabMm / grid.spacingMm().z));
+    best.gain = std::min(best.gain, std::max(0.0, wall.value + 2.0 * wall.error));
     if (best.edgeHu() < leastEdgeHu) return {};
     best.excessHu = std::move(fields[at]), best.begin = begin;
     return best;

@@ -13,8 +13,8 @@ using namespace haustra::test;
 namespace {
 
 /// Two tubes side by side, one half full.
-Scene twoTubes() {
-    return makeScene({112, 56, 20}, 650.0, 14.0, [](glm::dvec3 p) {
+Scene twoTubes(int slices = 20) {
+    return makeScene({112, 56, slices}, 650.0, 14.0, [](glm::dvec3 p) {
         const auto inside = [&](double x) {
             return blurredStep(12.0 - glm::length(glm::dvec2(p) - glm::dvec2(x, 20.6)));
         };
@@ -23,8 +23,9 @@ Scene twoTubes() {
     });
 }
 
-/// Adds to the scan what its tagging spreads over `widthMm` within each slice.
-void enhance(Scene& scene, double edgeHu, double widthMm) {
+/// Adds to the scan what its tagging spreads over `widthMm` within each slice, to tissue outside
+/// the lumen `tissueShare` of it.
+void enhance(Scene& scene, double edgeHu, double widthMm, double tissueShare = 1.0) {
     const Grid& grid = scene.scan.hu.grid();
     const double sigma = widthMm / 2.3548 / grid.spacingMm().x;
     const int reach = int(3.0 * sigma), nx = grid.size.x, ny = grid.size.y;
@@ -52,8 +53,10 @@ void enhance(Scene& scene, double edgeHu, double widthMm) {
                 if (n / nx + r >= 0 && n / nx + r < ny)
                     spread += w[std::size_t(r + reach)] / sum * rows[std::size_t(n + r * nx)];
             }
-            out[grid.index(n % nx, n / nx, k)] +=
-                std::int16_t(std::lround(edgeHu / 750.0 * spread));
+            const std::size_t at = grid.index(n % nx, n / nx, k);
+            const bool outside = LumenLabel(scene.labels[at]) == LumenLabel::outside;
+            out[at] +=
+                std::int16_t(std::lround((outside ? tissueShare : 1.0) * edgeHu / 750.0 * spread));
         }
     }
 }
@@ -87,6 +90,22 @@ TEST(PseudoEnhancement, FluidAndWallComeBackAsWithoutIt) {
         return s.soft() > 0.999 && std::abs(p.x - 20.7) < 5.0 && p.y > 32.6 && p.y < 38.0;
     });
     EXPECT_NEAR(wall.bias, 0.0, 4.0);
+}
+
+// The gas of a real scan gained three times what the wall beside its pools did.
+TEST(PseudoEnhancement, NoMoreIsTakenOffThanTheWallHasGained) {
+    for (const double share : {0.0, 0.4, 1.0}) {
+        Scene scene = twoTubes(84);
+        enhance(scene, 90.0, 16.0, share);
+        const auto found =
+            cleansing::measurePseudoEnhancement(scene.scan, scene.tissue, scene.labels, 2);
+        EXPECT_NEAR(found.edgeHu(), 90.0 * share, 8.0) << share;
+        const CleansedScene result = cleanseScene(scene);
+        const auto wall = errorWhere(scene, result.cleansed, [](Shares s, glm::dvec3 p) {
+            return s.soft() > 0.999 && std::abs(p.x - 20.7) < 5.0 && p.y > 32.6 && p.y < 38.0;
+        });
+        EXPECT_NEAR(wall.bias, 0.0, 6.0) << share;
+    }
 }
 
 }  // namespace
