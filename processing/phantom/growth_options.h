@@ -28,6 +28,10 @@ struct GrowthOptions {
     double coated = 0.0;
     /// Films of tagged residue on the bare wall, 8…22 mm wide, 0…40; fewer where there is no room.
     int films = 0;
+    /// How much denser or, below 0, less dense than the wall polyps are, HU, −60…60: its mean, and
+    /// its deviation from polyp to polyp, 0…30. Benign ones have 32 HU in the mean without contrast
+    /// medium and 79 with it (Oto et al., Eur Radiol 2003; 13: 1657).
+    double polypHu = 0.0, polypSdHu = 0.0;
 };
 
 }  // namespace haustra::phantom

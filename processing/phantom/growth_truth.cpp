@@ -46,6 +46,11 @@ bool isPlain(const Growth& polyp, const GrowthOptions& options) {
     return options.plainCores > 0.0 && Random(polyp.seed, 60).chance(options.plainCores);
 }
 
+double densityOf(const Growth& polyp, const GrowthOptions& options) {
+    if (options.polypHu == 0.0 && options.polypSdHu == 0.0) return 0.0;
+    return options.polypHu + options.polypSdHu * Random(polyp.seed, 61).normal();
+}
+
 std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOptions& options) {
     std::vector<GrowthTruth> truths;
     for (const Growth& growth : colon.shape.growths()) {
@@ -60,6 +65,7 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
         truth.coreHu = growth.kind == Growth::Kind::hyperplastic     ? bumpHu
                        : growth.polyp() && !isPlain(growth, options) ? denseCoreHu
                                                                      : 0.0;
+        if (growth.polyp()) truth.densityHu = densityOf(growth, options);
         const auto at = colon.shape.evaluate(growth.centre);
         const PathSample axis = colon.shape.path().at(at.arcMm);
         truth.onFold = glm::distance(growth.root, axis.position) < 0.8 * axis.radiusMm;

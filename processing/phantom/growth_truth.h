@@ -16,4 +16,7 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
 /// Whether a polyp is one of those that GrowthOptions::plainCores wants without a dense core.
 bool isPlain(const Growth& polyp, const GrowthOptions& options);
 
+/// How much denser than the wall a polyp is throughout, as GrowthOptions::polypHu wants it, HU.
+double densityOf(const Growth& polyp, const GrowthOptions& options);
+
 }  // namespace haustra::phantom

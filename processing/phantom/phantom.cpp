@@ -147,9 +147,10 @@ private:
         }
         if (growth.kind == Growth::Kind::hyperplastic) return wallHu + 3.0;
         // Adenomas are a little denser inside, unevenly.
-        if (isPlain(growth, growths_)) return wallHu + 6.0 * valueNoise(seed_, p, 6.0);
+        const double hu = wallHu + densityOf(growth, growths_);
+        if (isPlain(growth, growths_)) return hu + 6.0 * valueNoise(seed_, p, 6.0);
         const double core = 1.0 - smoothstep(-2.0, -0.5, growth.distance(p));
-        return wallHu + core * (22.0 + 18.0 * valueNoise(growth.seed + 9, p, 3.5));
+        return hu + core * (22.0 + 18.0 * valueNoise(growth.seed + 9, p, 3.5));
     }
 
     Contents contents(const ColonField::Sample& s, glm::dvec3 p,
@@ -285,6 +286,9 @@ Result<void> check(const PhantomOptions& options) {
     const GrowthOptions& growths = options.growths;
     if (!share(growths.plainCores) || !share(growths.coated))
         return bad("a share of polyps is 0 to 1");
+    if (!(std::abs(growths.polypHu) <= 60.0 && growths.polypSdHu >= 0.0 &&
+          growths.polypSdHu <= 30.0))
+        return bad("polyps are denser than the wall by −60 to 60 HU, with a deviation of 0 to 30");
     if (growths.morePolyps < 0 || growths.morePolyps > 40 || growths.moreUntaggedStool < 0 ||
         growths.moreUntaggedStool > 40 || growths.moreFlat < 0 || growths.moreFlat > 40 ||
         growths.films < 0 || growths.films > 40)

@@ -98,7 +98,8 @@ struct GrowthTruth {
     glm::dvec3 wallMm{0.0};      ///< its foot
     double diameterMm = 0.0;     ///< largest; a stalk does not count
     double heightMm = 0.0;       ///< above the wall, stalk included
-    double coreHu = 0.0;         ///< how much denser than the wall its middle is, about
+    double coreHu = 0.0;         ///< how much denser than its outside its middle is, about
+    double densityHu = 0.0;      ///< how much denser than the wall its outside is
     bool onFold = false;
     double submergedShare = 0.0;  ///< of the head's height, under the fluid's level, 0…1
     double untaggedShare = 0.0;   ///< of the same height, in fluid that took no tagging

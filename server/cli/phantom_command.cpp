@@ -124,7 +124,8 @@ nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
 }
 
 // A line each: {"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm", "height_mm",
-// "core_hu", "on_fold", "submerged_share"}, "untagged_share" where it stands in fluid without
+// "core_hu", "on_fold", "submerged_share"}, "density_hu" where that differs from the wall's,
+// "untagged_share" where it stands in fluid without
 // tagging, and "film_mm" where a film of residue lies over it.
 std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
     const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
@@ -140,6 +141,7 @@ std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
                                     {"core_hu", g.coreHu},
                                     {"on_fold", g.onFold},
                                     {"submerged_share", rounded(g.submergedShare)}};
+        if (g.densityHu != 0.0) json["density_hu"] = rounded(g.densityHu);
         if (g.untaggedShare > 0.0) json["untagged_share"] = rounded(g.untaggedShare);
         if (g.filmMm > 0.0) json["film_mm"] = rounded(g.filmMm);
         text += (n ? ",\n" : "\n") + json.dump();
@@ -153,6 +155,8 @@ nlohmann::ordered_json growthOptionsJson(const phantom::GrowthOptions& growths) 
                                 {"more_untagged_stool", growths.moreUntaggedStool}};
     // Only where there are any, so that phantoms from before these options stay the same files.
     if (growths.moreFlat > 0) json["more_flat"] = growths.moreFlat;
+    if (growths.polypHu != 0.0) json["polyp_hu"] = growths.polypHu;
+    if (growths.polypSdHu > 0.0) json["polyp_sd_hu"] = growths.polypSdHu;
     if (growths.coated > 0.0) json["coated"] = growths.coated;
     if (growths.films > 0) json["films"] = growths.films;
     return json;
@@ -444,6 +448,8 @@ void addScanOptions(CLI::App& command, PhantomArguments& arguments) {
         ->group(group);
 }
 
+constexpr const char* growthGroup = "Growths (each adds to the preset; wild draws none of these)";
+
 /// What grows on the wall beyond the preset's; phantom/growth_options.h tells more.
 void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
     phantom::GrowthOptions& growths = arguments.growths;
@@ -452,10 +458,20 @@ void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
         command.add_option(name, value, help)
             ->check(isCount ? CLI::Validator(CLI::Range(0, int(most))) : numberRange(0.0, most))
             ->type_name(isCount ? "N" : "SHARE")
-            ->group("Growths (each adds to the preset; wild draws none of these)");
+            ->group(growthGroup);
     };
     add("--plain-cores", growths.plainCores, 1.0,
         "Share of the polyps that are no denser inside than the wall, 0 to 1");
+    const auto addHu = [&](const char* name, double& hu, double least, double most,
+                           const char* help) {
+        command.add_option(name, hu, help)
+            ->check(numberRange(least, most))
+            ->type_name("HU")
+            ->group(growthGroup);
+    };
+    addHu("--polyp-hu", growths.polypHu, -60.0, 60.0,
+          "How much denser than the wall polyps are in the mean, −60 to 60");
+    addHu("--polyp-sd", growths.polypSdHu, 0.0, 30.0, "Its deviation from polyp to polyp, 0 to 30");
     add("--more-polyps", growths.morePolyps, 40,
         "More polyps of 4 to 15 mm, 0 to 40, of more shapes than the preset's");
     add("--more-flat", growths.moreFlat, 40,

@@ -240,13 +240,50 @@ TEST(PhantomGrowths, PlainPolypsHaveTheWallsDensityAndOthersMore) {
     EXPECT_GT(sum[0] / count[0], sum[1] / count[1] + 10.0);
 }
 
+TEST(PhantomGrowths, PolypsAreAsDenseAsTheyAreTold) {
+    phantom::PhantomOptions options = grown();
+    options.growths.polypHu = -20.0, options.growths.polypSdHu = 8.0;
+    const phantom::Phantom made = phantom::makePhantom(options).value();
+    const phantom::Phantom& bare = grownPhantom();
+    const Grid& grid = made.lumen.grid();
+    ASSERT_EQ(made.growths.size(), bare.growths.size());
+    int looked = 0;
+    double least = 1e9, most = -1e9;
+    for (const phantom::GrowthTruth& growth : made.growths) {
+        if (!growth.neoplastic) EXPECT_EQ(growth.densityHu, 0.0);
+        // The blur reaches the middle of smaller ones.
+        if (!growth.neoplastic || std::min(growth.diameterMm, growth.heightMm) < 9.0) continue;
+        const glm::ivec3 v(glm::round(grid.voxelFromPatientPoint(growth.positionMm)));
+        EXPECT_NEAR(made.untaggedHu.at(v) - bare.untaggedHu.at(v), growth.densityHu, 3.0);
+        least = std::min(least, growth.densityHu), most = std::max(most, growth.densityHu);
+        ++looked;
+    }
+    EXPECT_GE(looked, 3);
+    EXPECT_GT(most - least, 4.0) << "each has its own";
+    // And nothing else changes.
+    const double blurMm = 3.0 * glm::length(grid.spacingMm());
+    std::size_t elsewhere = 0;
+    visitBox(glm::ivec3(0), grid.size - 1, [&](glm::ivec3 v) {
+        if (made.scan.hu.at(v) == bare.scan.hu.at(v)) return;
+        const glm::dvec3 at = grid.patientFromVoxelPoint(glm::dvec3(v));
+        elsewhere += std::ranges::none_of(made.growths, [&](const auto& growth) {
+            return growth.neoplastic &&
+                   glm::distance(at, growth.wallMm) < growth.diameterMm + growth.heightMm + blurMm;
+        });
+    });
+    EXPECT_EQ(elsewhere, 0u);
+}
+
 TEST(PhantomGrowths, WhatCannotBeIsRefused) {
     for (const phantom::GrowthOptions& growths :
          {phantom::GrowthOptions{1.5, 0, 0}, phantom::GrowthOptions{0.0, 41, 0},
           phantom::GrowthOptions{0.0, 0, -1}, phantom::GrowthOptions{NAN, 0, 0},
           phantom::GrowthOptions{0.0, 0, 0, 41}, phantom::GrowthOptions{0.0, 0, 0, 0, 1.1},
           phantom::GrowthOptions{0.0, 0, 0, 0, NAN}, phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, -1},
-          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 41}}) {
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 41},
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, -61.0, 0.0},
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, 0.0, 31.0},
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, NAN, 0.0}}) {
         phantom::PhantomOptions options = grown();
         options.growths = growths;
         EXPECT_FALSE(phantom::makePhantom(options));
