@@ -4,6 +4,9 @@
 #include "phantom/random.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
 
 namespace haustra::phantom {
 namespace {
@@ -95,6 +98,29 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
         truths.push_back(truth);
     }
     return truths;
+}
+
+std::string growthsJson(const std::vector<GrowthTruth>& growths) {
+    const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
+    const auto place = [](glm::dvec3 p) { return nlohmann::ordered_json{p.x, p.y, p.z}; };
+    std::string text = "{\"growths\": [";
+    for (std::size_t n = 0; n < growths.size(); ++n) {
+        const GrowthTruth& g = growths[n];
+        nlohmann::ordered_json json{{"kind", g.kind},
+                                    {"neoplastic", g.neoplastic},
+                                    {"position_mm", place(g.positionMm)},
+                                    {"wall_mm", place(g.wallMm)},
+                                    {"diameter_mm", rounded(g.diameterMm)},
+                                    {"height_mm", rounded(g.heightMm)},
+                                    {"core_hu", g.coreHu},
+                                    {"on_fold", g.onFold},
+                                    {"submerged_share", rounded(g.submergedShare)}};
+        if (g.densityHu != 0.0) json["density_hu"] = rounded(g.densityHu);
+        if (g.untaggedShare > 0.0) json["untagged_share"] = rounded(g.untaggedShare);
+        if (g.filmMm > 0.0) json["film_mm"] = rounded(g.filmMm);
+        text += (n ? ",\n" : "\n") + json.dump();
+    }
+    return text + "]}\n";
 }
 
 }  // namespace haustra::phantom

@@ -7,6 +7,7 @@
 #include "core/version.h"
 #include "dicom/write_series.h"
 #include "nifti/nifti_file.h"
+#include "phantom/growth_truth.h"
 #include "phantom/phantom.h"
 
 #include <map>
@@ -121,32 +122,6 @@ nlohmann::ordered_json bowelJson(const phantom::BowelOptions& bowel) {
             {"diverticula", bowel.diverticula},
             {"insufflated", bowel.insufflated},
             {"rectal_tube", bowel.rectalTube}};
-}
-
-// A line each: {"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm", "height_mm",
-// "core_hu", "on_fold", "submerged_share"}, "density_hu" where that differs from the wall's,
-// "untagged_share" where it stands in fluid without
-// tagging, and "film_mm" where a film of residue lies over it.
-std::string growthsJson(const std::vector<phantom::GrowthTruth>& growths) {
-    const auto rounded = [](double value) { return std::round(value * 1e3) / 1e3; };
-    std::string text = "{\"growths\": [";
-    for (std::size_t n = 0; n < growths.size(); ++n) {
-        const phantom::GrowthTruth& g = growths[n];
-        nlohmann::ordered_json json{{"kind", g.kind},
-                                    {"neoplastic", g.neoplastic},
-                                    {"position_mm", pointJson(g.positionMm)},
-                                    {"wall_mm", pointJson(g.wallMm)},
-                                    {"diameter_mm", rounded(g.diameterMm)},
-                                    {"height_mm", rounded(g.heightMm)},
-                                    {"core_hu", g.coreHu},
-                                    {"on_fold", g.onFold},
-                                    {"submerged_share", rounded(g.submergedShare)}};
-        if (g.densityHu != 0.0) json["density_hu"] = rounded(g.densityHu);
-        if (g.untaggedShare > 0.0) json["untagged_share"] = rounded(g.untaggedShare);
-        if (g.filmMm > 0.0) json["film_mm"] = rounded(g.filmMm);
-        text += (n ? ",\n" : "\n") + json.dump();
-    }
-    return text + "]}\n";
 }
 
 nlohmann::ordered_json growthOptionsJson(const phantom::GrowthOptions& growths) {
@@ -272,7 +247,9 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
         .and_then(
             [&] { return writeTextFile(truth / "centerline.csv", centerlineCsv(made.centerline)); })
         .and_then([&] { return writeTextFile(truth / "polyps.json", findingsJson(made.polyps)); })
-        .and_then([&] { return writeTextFile(truth / "growths.json", growthsJson(made.growths)); })
+        .and_then([&] {
+            return writeTextFile(truth / "growths.json", phantom::growthsJson(made.growths));
+        })
         .and_then(
             [&] { return writeTextFile(truth / "structure.json", structureJson(made.structure)); })
         .and_then([&] { return writeTextFile(truth / "phantom.json", facts.dump(2) + "\n"); });
