@@ -325,6 +325,16 @@ double gradientConcentration(const SmoothScan& scan, glm::dvec3 placeMm, double 
     return sum / directions;
 }
 
+FeatureVector asDenseAsTheWall(const FeatureVector& features) {
+    constexpr float mostDifference = 0.15f;
+    const float added = std::clamp(-features[featureNumber("peak_median")], 0.0f, mostDifference);
+    FeatureVector weighed = features;
+    for (const std::string_view name : {"density_median", "density_p90", "density_core",
+                                        "peak_median", "peak_p90", "peak_over_ring"})
+        weighed[featureNumber(name)] += added;
+    return weighed;
+}
+
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
                          const AlongColon& alongColon, std::span<const float> textureDistance,
                          const Lesion& lesion, SampleNumbers& numbers) {

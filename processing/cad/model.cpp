@@ -103,8 +103,9 @@ bool ShapeThresholds::pass(const FeatureVector& features) const {
 
 double CadModel::probability(const FeatureVector& features) const {
     if (!rises(features)) return 0.0;
-    const double trees = calibrationA + calibrationB * boosted.at(features);
-    return logistic(0.5 * (trees + networks.at(features)));
+    const FeatureVector weighed = asDenseAsTheWall(features);
+    const double trees = calibrationA + calibrationB * boosted.at(weighed);
+    return logistic(0.5 * (trees + networks.at(weighed)));
 }
 
 double CadModel::placeProbability(double score) const {

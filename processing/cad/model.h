@@ -16,7 +16,7 @@
 namespace haustra::cad {
 
 /// Raised whenever features or candidates change so that older models no longer fit them.
-inline constexpr int modelVersion = 8;
+inline constexpr int modelVersion = 9;
 
 /// The reduction of false positives of the source (§6.2.6): each of its features within what
 /// training polyps had.

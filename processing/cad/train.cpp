@@ -36,7 +36,8 @@ Judges judgesOn(const std::vector<const TrainingCase*>& cases) {
     for (const TrainingCase* each : cases) {
         for (const Example& example : each->examples) {
             if (!example.weighed) continue;
-            rows.insert(rows.end(), example.features.begin(), example.features.end());
+            const FeatureVector weighed = asDenseAsTheWall(example.features);
+            rows.insert(rows.end(), weighed.begin(), weighed.end());
             responses.push_back(example.polyp ? 1.0f : 0.0f);
         }
     }
@@ -257,7 +258,10 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
     const auto ofFold = [&](std::size_t n) -> const Judges& { return judges[foldOf(n)]; };
     for (std::size_t n = 0; n < cases.size(); ++n) {
         auto witnesses = witnessesOf(
-            cases[n], [&](const FeatureVector& features) { return ofFold(n).boosted.at(features); },
+            cases[n],
+            [&](const FeatureVector& features) {
+                return ofFold(n).boosted.at(asDenseAsTheWall(features));
+            },
             std::numeric_limits<double>::lowest());
         // They come after all others.
         std::erase_if(witnesses, [](const PlaceWitness& each) { return each.levelOf >= 0; });
@@ -282,9 +286,10 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
     trained.crossValidated = TRY(calibratePlaces(
         model, cases,
         [&](std::size_t n, const FeatureVector& features) {
+            const FeatureVector weighed = asDenseAsTheWall(features);
             const double trees =
-                model.calibrationA + model.calibrationB * ofFold(n).boosted.at(features);
-            return logistic(0.5 * (trees + ofFold(n).networks.at(features)));
+                model.calibrationA + model.calibrationB * ofFold(n).boosted.at(weighed);
+            return logistic(0.5 * (trees + ofFold(n).networks.at(weighed)));
         },
         options.falsePositives));
     model.boosted = std::move(judges.back().boosted);

@@ -297,6 +297,51 @@ TEST(Model, WhatDoesNotRiseIsNothing) {
     }
 }
 
+// Its probability by a tree and a network that look at density alone.
+cad::CadModel densityModel() {
+    const auto count = std::size_t(cad::featureCount), peak = cad::featureNumber("peak_median");
+    cad::CadModel model;
+    model.boosted.trees = {
+        {{std::int32_t(peak), -0.12f, 1, 2}, {-1, -2.0f, 0, 0}, {-1, 2.0f, 0, 0}}};
+    model.boosted.widths.assign(count, 0.0f);
+    model.networks.scores.assign(count, {{-3.0f, 3.0f}, {-3.0f, 3.0f}});
+    std::vector<float> weights(count, 0.0f);
+    weights[cad::featureNumber("density_core")] = 1.0f;
+    model.networks.networks = {{{cad::featureCount, weights, {0.0f}}}};
+    return model;
+}
+
+TEST(Model, ALittleLessDenseThanTheWallTellsNothing) {
+    const cad::CadModel model = densityModel();
+    ASSERT_TRUE(cad::checkTrees(model.boosted, cad::featureCount));
+    ASSERT_TRUE(cad::checkNetworks(model.networks, cad::featureCount));
+    // A polyp's features, all of it `darker` than the wall.
+    const auto probability = [&](float darker) {
+        cad::FeatureVector features{};
+        features[cad::featureNumber("height_mm")] = 4.0f;
+        features[cad::featureNumber("peak_median")] = -darker;
+        features[cad::featureNumber("density_core")] = 0.1f - darker;
+        return model.probability(features);
+    };
+    const double asDense = probability(0.0f);
+    for (const float darker : {0.05f, 0.1f, 0.149f})
+        EXPECT_NEAR(probability(darker), asDense, 1e-6) << darker;
+    // Fat is a wall's density less than 1; denser ones stay as they are.
+    EXPECT_LT(probability(0.7f), asDense - 0.2);
+    EXPECT_GT(probability(-0.3f), asDense);
+    cad::FeatureVector features{};
+    features.fill(-0.1f);
+    const cad::FeatureVector weighed = cad::asDenseAsTheWall(features);
+    const auto gained = [&](std::string_view name) {
+        return weighed[cad::featureNumber(name)] - features[cad::featureNumber(name)];
+    };
+    for (const std::string_view name : {"density_median", "density_p90", "density_core",
+                                        "peak_median", "peak_p90", "peak_over_ring"})
+        EXPECT_NEAR(gained(name), 0.1f, 1e-6f) << name;
+    for (const std::string_view name : {"height_mm", "density_spread", "peak_spread", "dip_mean"})
+        EXPECT_EQ(gained(name), 0.0f) << name;
+}
+
 TEST(Calibration, FindsTheLogisticThatDrewTheTruths) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> share;
