@@ -56,9 +56,10 @@ inline bool rises(const FeatureVector& features) {
 
 /// The features as a classifier weighs them. Polyps' own density varies: benign ones have 32 HU in
 /// the mean without contrast medium, carcinomas 43 (Oto et al., Eur Radiol 2003; 13: 1657), where
-/// muscle has 50 to 60; phantoms' that trees and networks learn from have the wall's, or more. So
-/// what is less dense than the scan's soft tissue by up to 0.15, some 20 HU, is weighed as dense as
-/// that: so small a difference tells nothing. What is darker still gains 0.15.
+/// muscle has 50 to 60; phantoms' polyps, from which trees and networks learn, have the wall's
+/// density or more. How much less dense than the scan's soft tissue a place is `peak_median` tells;
+/// up to 0.15, some 20 HU, that tells nothing of polyps. So all features of density are raised by
+/// as much, and by 0.15 where it is more. The built-in trees and networks have learnt without this.
 FeatureVector asDenseAsTheWall(const FeatureVector& features);
 
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.

@@ -38,7 +38,8 @@ struct TrueLesion {
 };
 
 /// A list of lesions: {"growths": [{"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm",
-/// "height_mm", "core_hu", "on_fold", "submerged_share", "untagged_share", "film_mm"}, …]}; or
+/// "height_mm", "core_hu", "on_fold", "submerged_share", "untagged_share", "film_mm"}, …]}, other
+/// members not being read; or
 /// {"findings": [{"position_mm", "diameter_mm", "kind"}, …]}, which are all polyps. Fails
 /// (badInput) where it is neither, or a lesion lies outside any body (±100 m) or is wider than 300
 /// mm.

@@ -4,6 +4,7 @@
 #include "cleansing/noise.h"
 #include "cleansing/normal_distribution.h"
 #include "core/parallel.h"
+#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
@@ -21,8 +22,9 @@ constexpr double enhancementSampleMm3 = 4.0;  // one voxel of so much is looked 
 constexpr double leastEdgeHu = 4.0;
 constexpr double fewestSamples = 500.0;
 constexpr double wallMm = 1.5;  // so deep beyond the blur what is around the lumen is looked at
-constexpr double wallSlabMm = 20.0;  // what surrounds the colon is alike so far
-constexpr double belowSoftHu = 250.0, aboveSoftHu = 200.0;  // fat is, gas and bone are not
+constexpr double wallSlabMm = 20.0;  // what surrounds the colon there is taken as independent
+// Of the HU that count as wall: fat's do, gas' and cortical bone's do not.
+constexpr double belowSoftHu = 250.0, aboveSoftHu = 200.0;
 
 glm::ivec3 excessCell(const Grid& grid) {
     glm::ivec3 perCell = voxelsIn(grid, excessCellMm);
@@ -90,8 +92,8 @@ struct SliceLines {
     LinesBySpread gas, wall;
 };
 
-/// A slope with its standard error, by leaving out one part after the other (jackknife); without
-/// two parts that have a slope it may be anything.
+/// A slope with its standard error, by leaving out one part after the other (jackknife). Without
+/// two parts that hold any, or with too few in all, the error has no bound.
 struct Slope {
     double value = 0.0, error = std::numeric_limits<double>::infinity();
 };
@@ -116,15 +118,51 @@ Slope slopeOf(const std::vector<Line>& parts) {
     return {all.slope(), std::sqrt((count - 1.0) / count * squares)};
 }
 
-/// What the wall has gained at spread `at`.
+/// What the wall has gained at spread `at`. Slabs are counted from the first slice that has wall.
 Slope wallSlope(const std::vector<SliceLines>& slices, std::size_t at, double slicesPerSlab) {
     std::vector<Line> slabs;
-    for (std::size_t k = 0; k < slices.size(); ++k) {
-        slabs.resize(std::size_t(double(k) / slicesPerSlab) + 1);
-        slabs.back().add(slices[k].wall[at]);
+    const auto hasWall = [&](const SliceLines& slice) { return slice.wall[at].count > 0.0; };
+    const auto first = std::ranges::find_if(slices, hasWall);
+    for (auto slice = first; slice != slices.end(); ++slice) {
+        slabs.resize(std::size_t(double(slice - first) / slicesPerSlab) + 1);
+        slabs.back().add(slice->wall[at]);
     }
     return slopeOf(slabs);
 }
+
+/// The cells, as wide as `reachMm` at least, that hold labels, and those beside them: nothing
+/// farther off is within that reach of the lumen.
+class NearLumen {
+public:
+    NearLumen(const Volume<std::uint8_t>& segmentation, glm::dvec3 reachMm)
+        : perCell_(glm::ceil(reachMm / segmentation.grid().spacingMm())),
+          cells_((segmentation.grid().size + perCell_ - 1) / perCell_),
+          near_(std::size_t(cells_.x) * std::size_t(cells_.y) * std::size_t(cells_.z), 0) {
+        const Grid& grid = segmentation.grid();
+        std::vector<std::uint8_t> holds(near_.size(), 0);
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+            if (segmentation[n]) holds[cellOf(grid.voxelAt(n) / perCell_)] = 1;
+        for (int k = 0; k < cells_.z; ++k)
+            for (int j = 0; j < cells_.y; ++j)
+                for (int i = 0; i < cells_.x; ++i)
+                    if (holds[cellOf({i, j, k})]) mark({i, j, k});
+    }
+    bool holds(glm::ivec3 voxel) const { return near_[cellOf(voxel / perCell_)] != 0; }
+
+private:
+    std::size_t cellOf(glm::ivec3 c) const {
+        return (std::size_t(c.z) * std::size_t(cells_.y) + std::size_t(c.y)) *
+                   std::size_t(cells_.x) +
+               std::size_t(c.x);
+    }
+    void mark(glm::ivec3 c) {
+        visitBox(glm::max(c - 1, glm::ivec3(0)), glm::min(c + 1, cells_ - 1),
+                 [&](glm::ivec3 near) { near_[cellOf(near)] = 1; });
+    }
+
+    glm::ivec3 perCell_, cells_;
+    std::vector<std::uint8_t> near_;
+};
 
 }  // namespace
 
@@ -159,6 +197,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         }
     }
     const Ball ball = blurBall(grid), beyond = widerBall(grid, wallMm);
+    const NearLumen near(segmentation, blurReachMm + wallMm + 0.5 * grid.spacingMm());
     const int every = std::max(1, int(std::lround(enhancementSampleMm3 / grid.voxelVolumeMm3())));
     const auto isGas = [&](std::size_t n) {
         return LumenLabel(segmentation[n]) == LumenLabel::air;
@@ -169,8 +208,8 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     const auto isWall = [&](glm::ivec3 v, std::size_t n) {
         const double hu = scan.hu[n];
-        return hu > softHu - belowSoftHu && hu < softHu + aboveSoftHu && isOutside(n) &&
-               ball.everywhere(v, isOutside) && !beyond.everywhere(v, isOutside);
+        return hu > softHu - belowSoftHu && hu < softHu + aboveSoftHu && near.holds(v) &&
+               isOutside(n) && ball.everywhere(v, isOutside) && !beyond.everywhere(v, isOutside);
     };
     std::vector<SliceLines> slices(std::size_t(grid.size.z));
     parallelFor(slices.size(), 4, threads, [&](std::size_t begin, std::size_t end) {

@@ -31,13 +31,13 @@ struct PseudoEnhancement {
 /// colon's gas, deeper inside it than the blur reaches. Gas alone is the same material near tagging
 /// and far from it: soft tissue beside a pool is wall, and farther off another tissue. HU end at
 /// −1024, which cuts off part of the gas' noise and so lessens what enhancement adds to its mean;
-/// the fitted scale is corrected for that. The wall, from where the blur ends to 1.5 mm farther,
-/// must have gained as much: where its own scale and two standard errors of it (by leaving out one
-/// slab of 20 mm after the other) are less, they are the scale, as what is taken off the wall too
-/// much makes fat of it. None where the flat edge of a pool would gain less than 4 HU. `scan` and
-/// `segmentation` may be the part of a larger scan, on grid `whole`, that begins at its voxel
-/// `from` and holds what is within 20 mm of the labels; cells, slabs and samples are counted from
-/// there. O(voxels); the same for any number of threads.
+/// the fitted scale is corrected for that. It is at most the wall's own scale, from where the blur
+/// ends to 1.5 mm farther, and two standard errors of that (by leaving out one slab of 20 mm after
+/// the other): what is taken off the wall too much makes fat of it. Where too little wall is seen,
+/// or in one slab alone, the gas' scale stands. None where the flat edge of a pool would gain less
+/// than 4 HU. `scan` and `segmentation` may be the part of a larger scan, on grid `whole`, that
+/// begins at its voxel `from` and holds what is within 20 mm of the labels; cells and samples are
+/// counted from there. O(voxels); the same for any number of threads.
 PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
                                            const Volume<std::uint8_t>& segmentation,
                                            const Grid& whole, glm::ivec3 from, int threads);

@@ -10,11 +10,11 @@ namespace haustra::phantom {
 /// Where the ranges come from: sessile lesions are as high as a half to nearly all of their width,
 /// flat ones (Paris 0-IIa) at most 2.5 mm, the closed cups of a biopsy forceps, or less than half
 /// their width, those that spread sideways often wider than 10 mm, with sides that slope
-/// (Endoscopic Classification Review Group, Endoscopy 2005; 37: 570); most adenomas have the wall's
-/// own density without contrast medium in the blood; stool without tagging is mottled with gas
+/// (Endoscopic Classification Review Group, Endoscopy 2005; 37: 570); most adenomas have about the
+/// wall's density without contrast medium in the blood; stool without tagging is mottled with gas
 /// (Pickhardt & Kim, Radiographics 2009); film.h tells where films come from.
 struct GrowthOptions {
-    /// Of all polyps the share that is no denser inside than the wall, 0…1.
+    /// Of all polyps the share that is no denser inside than outside, 0…1.
     double plainCores = 0.0;
     /// More polyps of 4…15 mm, of all kinds and more shapes than the presets', 0…40; fewer where
     /// there is no room.
@@ -29,8 +29,8 @@ struct GrowthOptions {
     /// Films of tagged residue on the bare wall, 8…22 mm wide, 0…40; fewer where there is no room.
     int films = 0;
     /// How much denser or, below 0, less dense than the wall polyps are, HU, −60…60: its mean, and
-    /// its deviation from polyp to polyp, 0…30. Benign ones have 32 HU in the mean without contrast
-    /// medium and 79 with it (Oto et al., Eur Radiol 2003; 13: 1657).
+    /// its deviation from polyp to polyp, 0…30 (normal). Benign ones have 32 HU in the mean without
+    /// contrast medium and 79 with it (Oto et al., Eur Radiol 2003; 13: 1657).
     double polypHu = 0.0, polypSdHu = 0.0;
 };
 

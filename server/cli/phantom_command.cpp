@@ -438,7 +438,7 @@ void addGrowthOptions(CLI::App& command, PhantomArguments& arguments) {
             ->group(growthGroup);
     };
     add("--plain-cores", growths.plainCores, 1.0,
-        "Share of the polyps that are no denser inside than the wall, 0 to 1");
+        "Share of the polyps that are no denser inside than outside, 0 to 1");
     const auto addHu = [&](const char* name, double& hu, double least, double most,
                            const char* help) {
         command.add_option(name, hu, help)

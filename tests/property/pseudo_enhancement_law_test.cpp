@@ -108,4 +108,20 @@ TEST(PseudoEnhancement, NoMoreIsTakenOffThanTheWallHasGained) {
     }
 }
 
+// Around a part of the pool lies other tissue, which makes the wall's slope less than it is.
+TEST(PseudoEnhancement, OtherTissueBesideAPartOfThePoolIsNoSign) {
+    Scene scene = twoTubes(84);
+    enhance(scene, 50.0, 16.0);
+    const Grid& grid = scene.scan.hu.grid();
+    const auto hu = scene.scan.hu.writable();
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        const bool outside = LumenLabel(scene.labels[n]) == LumenLabel::outside;
+        if (outside && v.z < 20 && grid.patientFromVoxelPoint(v).x < 41.0) hu[n] -= 60;
+    }
+    const auto found =
+        cleansing::measurePseudoEnhancement(scene.scan, scene.tissue, scene.labels, 2);
+    EXPECT_NEAR(found.edgeHu(), 50.0, 6.0);
+}
+
 }  // namespace

@@ -1,6 +1,7 @@
 // What grows on a phantom's wall: polyps dense and plain, what resembles them, and their truth.
 #include "core/voxel_sweep.h"
 #include "phantom/film.h"
+#include "phantom/growth_truth.h"
 #include "phantom/phantom.h"
 
 #include <algorithm>
@@ -260,6 +261,8 @@ TEST(PhantomGrowths, PolypsAreAsDenseAsTheyAreTold) {
     }
     EXPECT_GE(looked, 3);
     EXPECT_GT(most - least, 4.0) << "each has its own";
+    EXPECT_NE(phantom::growthsJson(made.growths).find("density_hu"), std::string::npos);
+    EXPECT_EQ(phantom::growthsJson(bare.growths).find("density_hu"), std::string::npos);
     // And nothing else changes.
     const double blurMm = 3.0 * glm::length(grid.spacingMm());
     std::size_t elsewhere = 0;
@@ -283,7 +286,8 @@ TEST(PhantomGrowths, WhatCannotBeIsRefused) {
           phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 41},
           phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, -61.0, 0.0},
           phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, 0.0, 31.0},
-          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, NAN, 0.0}}) {
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, NAN, 0.0},
+          phantom::GrowthOptions{0.0, 0, 0, 0, 0.0, 0, 0.0, NAN}}) {
         phantom::PhantomOptions options = grown();
         options.growths = growths;
         EXPECT_FALSE(phantom::makePhantom(options));
