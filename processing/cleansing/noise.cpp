@@ -1,7 +1,7 @@
 #include "cleansing/noise.h"
 
 #include "cleansing/ball.h"
-#include "core/voxel_sweep.h"
+#include "cleansing/near_blocks.h"
 
 #include <algorithm>
 #include <array>
@@ -35,52 +35,6 @@ double standardDeviation(const Counts& counts) {
     }
     return sd / std::sqrt(6.0);
 }
-
-/// Blocks of 6 mm: those that hold tagging, and those beside them.
-class BlocksNearTagging {
-public:
-    explicit BlocksNearTagging(const Volume<std::uint8_t>& segmentation)
-        : voxels_(voxelsIn(segmentation.grid(), apartFromTaggingMm)),
-          count_((segmentation.grid().size + voxels_ - 1) / voxels_),
-          near_(std::size_t(count_.x) * std::size_t(count_.y) * std::size_t(count_.z)) {
-        const Grid& grid = segmentation.grid();
-        for (int k = 0; k < grid.size.z; ++k) {
-            for (int j = 0; j < grid.size.y; ++j) {
-                for (int i = 0; i < grid.size.x; ++i) {
-                    if (LumenLabel(segmentation.at(i, j, k)) != LumenLabel::tagged) continue;
-                    const glm::ivec3 block = blockOf({i, j, k});
-                    mark(block);
-                    // The rest of the block adds nothing.
-                    i = (block.x + 1) * voxels_.x - 1;
-                }
-            }
-        }
-    }
-
-    bool hold(glm::ivec3 voxel) const { return near_[index(blockOf(voxel))] != 0; }
-
-    std::size_t voxelCount() const {
-        return std::size_t(std::count(near_.begin(), near_.end(), 1)) * std::size_t(voxels_.x) *
-               std::size_t(voxels_.y) * std::size_t(voxels_.z);
-    }
-
-private:
-    glm::ivec3 blockOf(glm::ivec3 voxel) const { return voxel / voxels_; }
-
-    std::size_t index(glm::ivec3 block) const {
-        return (std::size_t(block.z) * std::size_t(count_.y) + std::size_t(block.y)) *
-                   std::size_t(count_.x) +
-               std::size_t(block.x);
-    }
-
-    void mark(glm::ivec3 block) {
-        visitBox(glm::max(block - 1, glm::ivec3(0)), glm::min(block + 1, count_ - 1),
-                 [&](glm::ivec3 b) { near_[index(b)] = 1; });
-    }
-
-    const glm::ivec3 voxels_, count_;
-    std::vector<char> near_;
-};
 
 /// Second differences.
 class Differences {
@@ -185,7 +139,9 @@ NoiseSd measureNoise(const CtScan& scan, const TissueModel& tissue,
     // Wide enough that the window cuts off none of the noise.
     const double softHu = tissue.meanHu[int(Tissue::soft)],
                  window = std::max(70.0, 4.5 * std::max(sd.gas, sd.tagged));
-    const BlocksNearTagging near(segmentation);
+    const NearBlocks near(
+        segmentation, voxelsIn(segmentation.grid(), apartFromTaggingMm),
+        [](std::uint8_t label) { return LumenLabel(label) == LumenLabel::tagged; });
     sd.soft = differences.sd(
         near.voxelCount() / 4, [&](glm::ivec3 v) { return near.hold(v); },
         [&](std::size_t n) {

@@ -1,10 +1,10 @@
 #include "cleansing/pseudo_enhancement.h"
 
 #include "cleansing/ball.h"
+#include "cleansing/near_blocks.h"
 #include "cleansing/noise.h"
 #include "cleansing/normal_distribution.h"
 #include "core/parallel.h"
-#include "core/voxel_sweep.h"
 
 #include <algorithm>
 #include <array>
@@ -130,40 +130,6 @@ Slope wallSlope(const std::vector<SliceLines>& slices, std::size_t at, double sl
     return slopeOf(slabs);
 }
 
-/// The cells, as wide as `reachMm` at least, that hold labels, and those beside them: nothing
-/// farther off is within that reach of the lumen.
-class NearLumen {
-public:
-    NearLumen(const Volume<std::uint8_t>& segmentation, glm::dvec3 reachMm)
-        : perCell_(glm::ceil(reachMm / segmentation.grid().spacingMm())),
-          cells_((segmentation.grid().size + perCell_ - 1) / perCell_),
-          near_(std::size_t(cells_.x) * std::size_t(cells_.y) * std::size_t(cells_.z), 0) {
-        const Grid& grid = segmentation.grid();
-        std::vector<std::uint8_t> holds(near_.size(), 0);
-        for (std::size_t n = 0; n < grid.voxelCount(); ++n)
-            if (segmentation[n]) holds[cellOf(grid.voxelAt(n) / perCell_)] = 1;
-        for (int k = 0; k < cells_.z; ++k)
-            for (int j = 0; j < cells_.y; ++j)
-                for (int i = 0; i < cells_.x; ++i)
-                    if (holds[cellOf({i, j, k})]) mark({i, j, k});
-    }
-    bool holds(glm::ivec3 voxel) const { return near_[cellOf(voxel / perCell_)] != 0; }
-
-private:
-    std::size_t cellOf(glm::ivec3 c) const {
-        return (std::size_t(c.z) * std::size_t(cells_.y) + std::size_t(c.y)) *
-                   std::size_t(cells_.x) +
-               std::size_t(c.x);
-    }
-    void mark(glm::ivec3 c) {
-        visitBox(glm::max(c - 1, glm::ivec3(0)), glm::min(c + 1, cells_ - 1),
-                 [&](glm::ivec3 near) { near_[cellOf(near)] = 1; });
-    }
-
-    glm::ivec3 perCell_, cells_;
-    std::vector<std::uint8_t> near_;
-};
-
 }  // namespace
 
 void PseudoEnhancement::takeOff(glm::ivec3 first, std::span<std::int16_t> row) const {
@@ -197,7 +163,10 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
         }
     }
     const Ball ball = blurBall(grid), beyond = widerBall(grid, wallMm);
-    const NearLumen near(segmentation, blurReachMm + wallMm + 0.5 * grid.spacingMm());
+    // Blocks as wide as `beyond` reaches.
+    const NearBlocks near(
+        segmentation, glm::ceil((blurReachMm + wallMm + 0.5 * grid.spacingMm()) / grid.spacingMm()),
+        [](std::uint8_t label) { return LumenLabel(label) != LumenLabel::outside; });
     const int every = std::max(1, int(std::lround(enhancementSampleMm3 / grid.voxelVolumeMm3())));
     const auto isGas = [&](std::size_t n) {
         return LumenLabel(segmentation[n]) == LumenLabel::air;
@@ -208,7 +177,7 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     const auto isWall = [&](glm::ivec3 v, std::size_t n) {
         const double hu = scan.hu[n];
-        return hu > softHu - belowSoftHu && hu < softHu + aboveSoftHu && near.holds(v) &&
+        return hu > softHu - belowSoftHu && hu < softHu + aboveSoftHu && near.hold(v) &&
                isOutside(n) && ball.everywhere(v, isOutside) && !beyond.everywhere(v, isOutside);
     };
     std::vector<SliceLines> slices(std::size_t(grid.size.z));
