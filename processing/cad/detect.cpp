@@ -2,6 +2,7 @@
 
 #include "cad/along_colon.h"
 #include "cad/biopsy_transfer.h"
+#include "cad/masses.h"
 #include "cad/places.h"
 #include "cad/standing_height.h"
 #include "cad/wall_frames.h"
@@ -287,6 +288,13 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     for (auto* list : {&findings.findings, &findings.candidates})
         std::stable_sort(list->begin(), list->end(),
                          [](const Finding& a, const Finding& b) { return a.arcMm < b.arcMm; });
+    for (const MassOfFindings& mass : massesOf(findings.findings)) {
+        const Finding& first = findings.findings[mass.findings.front()];
+        findings.warnings.push_back(
+            printed("%zu findings from %.0f mm on lie rim to rim, %.0f mm wide in all: they may be "
+                    "lobes of one mass",
+                    mass.findings.size(), first.arcMm, mass.widthMm));
+    }
     return findings;
 }
 

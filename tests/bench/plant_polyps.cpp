@@ -40,7 +40,8 @@ namespace fs = std::filesystem;
 using phantom::GrowthTruth, phantom::Random;
 
 constexpr double twoPi = 6.283185307179586, fwhmPerSigma = 2.354820045;
-constexpr double apartMm = 32.0;              // from other polyps, and from what was found before
+// From other polyps, and from what was found before; masses, whose radius is more, by more.
+constexpr double apartMm = 32.0, apartRadiusMm = 8.0;
 constexpr double deepestMm = 1.0;             // that a polyp's tissue reaches into the wall
 constexpr double scannerSigmaMm = 0.65;       // of the point spread
 constexpr double textureHu = 12.0;            // standard deviation within a polyp
@@ -53,7 +54,7 @@ struct PlantOptions {
     std::string store, name;
     fs::path out;
     std::uint64_t seed = 1;
-    int count = 20;
+    int count = 20, masses = 0;
     std::vector<double> tissueHu = {20.0, 60.0};  ///< least, most
     double noiseSdHu = 0.0;
 };
@@ -99,8 +100,14 @@ Result<Patient> readPatient(const std::string& root, const std::string& name) {
     return patient;
 }
 
-enum class Kind { sessile, flat, pedunculated };
-constexpr std::array<const char*, 3> kindNames = {"sessile", "flat", "pedunculated"};
+enum class Kind { sessile, flat, pedunculated, mass };
+constexpr std::array<const char*, 4> kindNames = {"sessile", "flat", "pedunculated", "mass"};
+
+/// One of the domes that a mass is grown together from.
+struct Dome {
+    glm::dvec2 at{0.0};  ///< on the wall, from the mass' foot
+    double radiusMm = 0.0, heightMm = 0.0;
+};
 
 /// Lengths in mm, angles in radians. Places are in the frame of its foot: z into the lumen.
 struct Polyp {
@@ -112,7 +119,8 @@ struct Polyp {
     glm::dvec3 stalk{0.0, 0.0, 1.0};  ///< direction of a pedunculated one's
     double stalkMm = 0.0;             ///< from the foot to the middle of the head
     double stalkRadiusMm = 0.0;
-    double headShare = 1.0;  ///< the head's length along the stalk, of its diameter
+    double headShare = 1.0;   ///< the head's length along the stalk, of its diameter
+    std::vector<Dome> domes;  ///< of a mass
     double tissueHu = 0.0;
     std::uint64_t textureSeed = 0;
 
@@ -152,6 +160,31 @@ Polyp drawPolyp(Random& random, const std::vector<double>& tissueHu) {
     return polyp;
 }
 
+/// As carcinomas and large adenomas are: one dome, or lobed, domes around one in the middle.
+Polyp drawMass(Random& random, const std::vector<double>& tissueHu) {
+    Polyp mass;
+    mass.kind = Kind::mass;
+    mass.diameterMm = random.uniform(20.0, 40.0);
+    mass.heightMm = random.uniform(6.0, 14.0);
+    const bool lobed = random.uniform() < 0.7;
+    mass.domes.push_back({glm::dvec2(0.0), (lobed ? 0.6 : 1.0) * mass.radiusMm(), mass.heightMm});
+    const int around = lobed ? 4 + int(random.uniform(0.0, 3.0)) : 0;
+    const double first = random.uniform(0.0, twoPi);
+    for (int n = 0; n < around; ++n) {
+        const double angle = first + twoPi * (n + random.uniform(-0.2, 0.2)) / around;
+        Dome dome{{},
+                  mass.radiusMm() * random.uniform(0.35, 0.5),
+                  mass.heightMm * random.uniform(0.5, 0.9)};
+        // The first reaches its widest, as far as the next to opposite does.
+        const double outMm = mass.radiusMm() * (n == 0 ? 1.0 : random.uniform(0.85, 1.0));
+        dome.at = (outMm - dome.radiusMm) * glm::dvec2(std::cos(angle), std::sin(angle));
+        mass.domes.push_back(dome);
+    }
+    mass.tissueHu = random.uniform(tissueHu[0], tissueHu[1]);
+    mass.textureSeed = random.bits();
+    return mass;
+}
+
 double smoothMin(double a, double b, double k) {
     return -phantom::smoothMax(-a, -b, k);
 }
@@ -172,14 +205,31 @@ bool flatHolds(const Polyp& polyp, glm::dvec3 p, double lumenMm) {
     return rise > 0.0 && lumenMm < rise;
 }
 
+/// About the distance to a dome on the wall, negative inside; `out`: from its foot, where its
+/// outline is `outlineMm` off, of `radiusMm` at most.
+double domeMm(double out, double outlineMm, double radiusMm, double heightMm, double lumenMm) {
+    const double half = std::min(radiusMm, 0.75 * heightMm);
+    return half * (std::hypot(out / outlineMm, (lumenMm - (heightMm - half)) / half) - 1.0);
+}
+
 bool sessileHolds(const Polyp& polyp, glm::dvec3 p, double lumenMm) {
     const double out = std::hypot(p.x, p.y);
     if (out > polyp.radiusMm() + 2.5 || std::abs(p.z) > polyp.heightMm + 3.0) return false;
-    const double half = std::min(polyp.radiusMm(), 0.75 * polyp.heightMm);
-    const double dome =
-        half *
-        (std::hypot(out / outlineMm(polyp, p), (lumenMm - (polyp.heightMm - half)) / half) - 1.0);
+    const double dome = domeMm(out, outlineMm(polyp, p), polyp.radiusMm(), polyp.heightMm, lumenMm);
     return smoothMin(dome, lumenMm, 0.8) < 0.0;
+}
+
+bool massHolds(const Polyp& mass, glm::dvec3 p, double lumenMm) {
+    if (std::hypot(p.x, p.y) > mass.radiusMm() + 2.5 || std::abs(p.z) > mass.heightMm + 4.0)
+        return false;
+    double grown = lumenMm;
+    for (const Dome& dome : mass.domes) {
+        const double out = glm::distance(glm::dvec2(p), dome.at);
+        if (out < dome.radiusMm + 2.5)
+            grown = smoothMin(
+                grown, domeMm(out, dome.radiusMm, dome.radiusMm, dome.heightMm, lumenMm), 1.5);
+    }
+    return grown < 0.0;
 }
 
 bool pedunculatedHolds(const Polyp& polyp, glm::dvec3 p, double lumenMm) {
@@ -199,6 +249,7 @@ bool pedunculatedHolds(const Polyp& polyp, glm::dvec3 p, double lumenMm) {
 bool holds(const Polyp& polyp, glm::dvec3 p, double lumenMm) {
     if (lumenMm <= -deepestMm) return false;
     if (polyp.kind == Kind::flat) return flatHolds(polyp, p, lumenMm);
+    if (polyp.kind == Kind::mass) return massHolds(polyp, p, lumenMm);
     if (polyp.kind == Kind::sessile) return sessileHolds(polyp, p, lumenMm);
     return pedunculatedHolds(polyp, p, lumenMm);
 }
@@ -318,7 +369,9 @@ Foot footAt(glm::dvec3 atMm, glm::dvec3 inward) {
 /// Whether the lumen is open from the foot to past the polyp's top, and its foot's wall is the one
 /// that is nearest there: else what is measured from the wall would reach across the lumen.
 bool hasRoom(const Polyp& polyp, const Foot& foot, const Surroundings& around) {
-    for (double mm = 1.5; mm < polyp.heightMm + 4.0; mm += 0.5)
+    // A mass is wide enough to have the wall across from it within its outline.
+    const double openMm = (polyp.kind == Kind::mass ? 2.0 : 1.0) * polyp.heightMm + 4.0;
+    for (double mm = 1.5; mm < openMm; mm += 0.5)
         if (around.at(foot.patientOf({0, 0, mm})) < 0.4) return false;
     if (polyp.kind == Kind::pedunculated)
         return around.at(foot.patientOf(polyp.centre())) > polyp.radiusMm() + 1.0;
@@ -361,9 +414,10 @@ public:
     explicit Planter(const Patient& patient)
         : patient_(patient),
           hu_(patient.scan.hu.clone()),
-          takenMm_(patient.findingsMm),
           enhancement_(cleansing::measurePseudoEnhancement(patient.scan, patient.tissue,
                                                            patient.segmentation, 0)) {
+        for (const glm::dvec3 at : patient.findingsMm)
+            taken_.push_back({at, 0.0});
         double sum = 0.0;
         for (const glm::ivec3& t : patient.surface.triangles) {
             const auto& v = patient.surface.vertices;
@@ -379,7 +433,7 @@ public:
     std::optional<GrowthTruth> plant(const Polyp& polyp, Random& random) {
         for (int n = 0, free = 0; n < placesPerPolyp && free < freePlacesPerPolyp; ++n) {
             const glm::dvec3 atMm = placeOnWall(random);
-            if (isTaken(atMm)) continue;
+            if (isTaken(atMm, polyp.radiusMm())) continue;
             if (const auto truth = plantAt(polyp, atMm)) return truth;
             ++free;
         }
@@ -387,6 +441,11 @@ public:
     }
 
 private:
+    struct Taken {
+        glm::dvec3 atMm;
+        double radiusMm;
+    };
+
     /// By area.
     glm::dvec3 placeOnWall(Random& random) const {
         const auto& mesh = patient_.surface;
@@ -395,14 +454,17 @@ private:
         const glm::ivec3 t = mesh.triangles[std::size_t(at - areaUpTo_.begin())];
         return (mesh.vertices[t.x] + mesh.vertices[t.y] + mesh.vertices[t.z]) / 3.0;
     }
-    bool isTaken(glm::dvec3 atMm) const {
-        return std::ranges::any_of(
-            takenMm_, [&](glm::dvec3 other) { return glm::distance(atMm, other) < apartMm; });
+    bool isTaken(glm::dvec3 atMm, double radiusMm) const {
+        const auto more = [](double mm) { return std::max(0.0, mm - apartRadiusMm); };
+        return std::ranges::any_of(taken_, [&](const Taken& other) {
+            return glm::distance(atMm, other.atMm) <
+                   apartMm + more(radiusMm) + more(other.radiusMm);
+        });
     }
 
     std::optional<GrowthTruth> plantAt(const Polyp& polyp, glm::dvec3 atMm) {
-        const auto around =
-            surroundingsOf(patient_.lumen, atMm, polyp.heightMm + polyp.diameterMm + 8.0);
+        const double acrossMm = polyp.kind == Kind::mass ? polyp.radiusMm() : polyp.diameterMm;
+        const auto around = surroundingsOf(patient_.lumen, atMm, polyp.heightMm + acrossMm + 8.0);
         if (!around) return {};
         const auto inward = inwardAt(*around, atMm, polyp.diameterMm);
         if (!inward) return {};
@@ -413,7 +475,7 @@ private:
         GrowthTruth truth = truthOf(polyp, foot, *around, body);
         phantom::blur(body, glm::dvec3(fwhmPerSigma * scannerSigmaMm), 0);
         fill(polyp, around->box, body);
-        takenMm_.push_back(atMm);
+        taken_.push_back({atMm, polyp.radiusMm()});
         return truth;
     }
 
@@ -461,7 +523,7 @@ private:
 
     const Patient& patient_;
     Volume<std::int16_t> hu_;
-    std::vector<glm::dvec3> takenMm_;
+    std::vector<Taken> taken_;
     cleansing::PseudoEnhancement enhancement_;
     std::vector<double> areaUpTo_;  // of the surface's triangles, mm²
 };
@@ -481,7 +543,9 @@ std::vector<GrowthTruth> plantAll(Planter& planter, const PlantOptions& options)
     Random random(options.seed, 80);
     std::vector<GrowthTruth> truths;
     for (int drawn = 0; drawn < 2 * options.count && int(truths.size()) < options.count; ++drawn) {
-        const Polyp polyp = drawPolyp(random, options.tissueHu);
+        const Polyp polyp = int(truths.size()) < options.masses
+                                ? drawMass(random, options.tissueHu)
+                                : drawPolyp(random, options.tissueHu);
         const auto truth = planter.plant(polyp, random);
         if (!truth) continue;
         fmt::print("{:<12} {:4.1f} mm wide, {:4.1f} mm high, {:3.0f} HU, {:3.0f} % submerged\n",
@@ -524,8 +588,8 @@ Result<void> run(const PlantOptions& options) {
     writing.patientName = "HAUSTRA^PLANTED", writing.patientId = "PLANTED";
     writing.seriesDescription = fmt::format("Planted polyps {}", options.seed);
     writing.uidSeed =
-        fmt::format("planted {} {} {} {} {} {}", patient.scanKey, options.seed, options.count,
-                    options.tissueHu[0], options.tissueHu[1], options.noiseSdHu);
+        fmt::format("planted {} {} {} {} {} {} {}", patient.scanKey, options.seed, options.count,
+                    options.masses, options.tissueHu[0], options.tissueHu[1], options.noiseSdHu);
     const CtScan scan{withNoise(planter.hu(), {options.seed, options.noiseSdHu, grainMm}),
                       patient.scan.position};
     return dicom::writeSeries(series, scan, writing).and_then([&] {
@@ -546,6 +610,11 @@ int main(int count, char** arguments) {
     program.add_option("--seed", options.seed)->capture_default_str();
     program.add_option("--count", options.count, "How many")
         ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    program
+        .add_option("--masses", options.masses,
+                    "How many of these are masses of 20 to 40 mm; they come first")
+        ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     program.add_option("--hu", options.tissueHu, "Least and most of a polyp's tissue: LO,HI")
         ->delimiter(',')
