@@ -203,7 +203,10 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
                 my.window = {(*numbers)[0], (*numbers)[1]};
                 return true;
             });
-    command.add_option("--zoom", my.zoom, "Enlargement of a slice")
+    command
+        .add_option(
+            "--zoom", my.zoom,
+            "Enlargement of a slice around its point, which stays where it is in the picture")
         ->type_name("Z")
         ->check(numberRange(1.0, 64.0))
         ->capture_default_str();
