@@ -265,6 +265,28 @@ TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
         EXPECT_GT(glm::distance(c.lesion.centreMm, bumps[1].centreMm), 2.0);
 }
 
+TEST(Detect, LobesSideBySideAreToldToBePerhapsOneMass) {
+    // Three of 8 mm, their middles 10 mm apart, and two.
+    std::vector<Bump> lobes;
+    for (const double angle : {-0.547, 0.0, 0.547})
+        lobes.push_back({18.5 * glm::dvec3(std::sin(angle), 0, std::cos(angle)), 4.0});
+    const auto told = [&] {
+        const BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, lobes);
+        auto found = bodies(ball);
+        EXPECT_EQ(found.size(), lobes.size());
+        for (cad::Candidate& candidate : found)
+            candidate.probability = 0.9;
+        return cad::findingsOf(ball.colon(), cad::gatherEvidence(ball.colon(), {}), found, {})
+            .warnings;
+    };
+    const auto warnings = told();
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_TRUE(warnings[0].starts_with("3 findings")) << warnings[0];
+    EXPECT_NE(warnings[0].find("one mass"), std::string::npos) << warnings[0];
+    lobes.pop_back();
+    EXPECT_TRUE(told().empty());
+}
+
 TEST(Biopsy, ARayEndsWhereTheLumenBeginsAgain) {
     // A plate of tissue 4 mm thick between gas and gas.
     const Grid grid = axisAlignedGrid({32, 32, 64}, {0.75, 0.75, 0.5}, {-12, -12, 0});
