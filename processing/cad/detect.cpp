@@ -4,6 +4,7 @@
 #include "cad/biopsy_transfer.h"
 #include "cad/masses.h"
 #include "cad/places.h"
+#include "cad/residue_film.h"
 #include "cad/standing_height.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
@@ -116,12 +117,23 @@ bool liesBehindUntagged(const WallEvidence& evidence, const Patch& patch) {
     return untagged > 0.5 * all;
 }
 
+// Whether nothing would rise without the tagged residue on it.
+bool isResidue(const Lesion& lesion, const FeatureVector& features, double residueMm) {
+    if (residueMm <= 0.0) return false;
+    const double mean = std::max<double>(features[featureNumber("lift_mean")],
+                                         lesion.volumeMm3 / std::max(0.1, lesion.baseMm2));
+    const double top =
+        std::max(features[featureNumber("height_mm")], features[featureNumber("lift_top")]);
+    return heightWithoutResidue(top, mean, residueMm) < leastHeightMm;
+}
+
 // What patches are measured by.
 struct Measures {
     const PreparedColon& colon;
     const WallEvidence& evidence;
     const SampleTriangles& triangles;
     const AlongColon& alongColon;
+    const ResidueFilms& residue;
     std::span<const float> textureDistances;
     int threads;
 };
@@ -142,6 +154,8 @@ void measure(const Measures& with, std::vector<Patch> patches,
             if (!lesion || liesBehindUntagged(with.evidence, lesion->patch)) continue;
             const FeatureVector features = featuresOf(with.colon, with.evidence, with.alongColon,
                                                       with.textureDistances, *lesion, numbers);
+            const double residueMm = with.residue.liftMm(with.colon, with.evidence, lesion->patch);
+            if (isResidue(*lesion, features, residueMm)) continue;
             measured[n] = Candidate{*std::move(lesion), features};
             if (!levelOf.empty()) measured[n]->levelOf = levelOf[n];
         }
@@ -209,7 +223,9 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
         for (std::size_t part = begin; part < end; ++part)
             parts[part]();
     });
-    const Measures with{colon, evidence, *triangles, *alongColon, distances, options.threads};
+    const ResidueFilms residue(colon, evidence);
+    const Measures with{colon,   evidence,  *triangles,     *alongColon,
+                        residue, distances, options.threads};
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));

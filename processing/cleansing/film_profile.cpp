@@ -1,6 +1,6 @@
 #include "cleansing/film_profile.h"
 
-#include "cleansing/normal_distribution.h"
+#include "core/normal_distribution.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "cleansing/interface_layer.h"
 
 #include "cleansing/ball.h"
-#include "cleansing/normal_distribution.h"
+#include "core/normal_distribution.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "cleansing/point_spread.h"
 
-#include "cleansing/normal_distribution.h"
+#include "core/normal_distribution.h"
 #include "core/voxel_sweep.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "cleansing/ball.h"
 #include "cleansing/near_blocks.h"
 #include "cleansing/noise.h"
-#include "cleansing/normal_distribution.h"
+#include "core/normal_distribution.h"
 #include "core/parallel.h"
 
 #include <algorithm>

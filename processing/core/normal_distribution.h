@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace haustra::cleansing {
+namespace haustra {
 
 inline double normalCdf(double x) {
     return 0.5 * std::erfc(-x * M_SQRT1_2);
@@ -23,4 +23,4 @@ inline double normalQuantile(double p) {
     return upper ? x : -x;
 }
 
-}  // namespace haustra::cleansing
+}  // namespace haustra

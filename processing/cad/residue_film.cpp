@@ -1,0 +1,156 @@
+#include "cad/residue_film.h"
+
+#include "core/ct_scan.h"
+#include "core/normal_distribution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace haustra::cad {
+namespace {
+
+constexpr double brighterThanTissueHu = 60.0;
+// From where tagging shows its own HU, and of how many voxels these are taken.
+constexpr int deepVoxels = 3;
+constexpr std::size_t fewestDeep = 100;
+constexpr double thicknessStepMm = 0.1;
+constexpr int thicknesses = 40;
+constexpr double profileStepMm = 0.25, profileMm = 6.0;
+
+double gasHu(const PreparedColon& colon) {
+    return colon.tissue.meanHu[std::size_t(Tissue::air)];
+}
+
+double medianOf(std::vector<double>& values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// In the middle of fluid: of every other voxel along each axis, those that have tagging that far
+// off to all six sides.
+std::optional<double> deepTaggedHu(const PreparedColon& colon) {
+    const Grid& grid = colon.lumen.grid();
+    const auto tagged = [&](glm::ivec3 v) {
+        return LumenLabel(colon.lumen.at(v)) == LumenLabel::tagged;
+    };
+    std::vector<double> hu;
+    glm::ivec3 v;
+    for (v.z = deepVoxels; v.z < grid.size.z - deepVoxels; v.z += 2) {
+        for (v.y = deepVoxels; v.y < grid.size.y - deepVoxels; v.y += 2) {
+            for (v.x = deepVoxels; v.x < grid.size.x - deepVoxels; v.x += 2) {
+                if (!tagged(v)) continue;
+                bool deep = true;
+                for (int axis = 0; axis < 3 && deep; ++axis) {
+                    glm::ivec3 step(0);
+                    step[axis] = deepVoxels;
+                    deep = tagged(v - step) && tagged(v + step);
+                }
+                if (deep) hu.push_back(colon.ct.at(v));
+            }
+        }
+    }
+    if (hu.size() < fewestDeep) return std::nullopt;
+    return medianOf(hu);
+}
+
+// Standard deviation of the blur across the wall's edge: in the median of its places, by how fast
+// the HU rise through the surface.
+std::optional<double> edgeBlurMm(const PreparedColon& colon, const WallEvidence& evidence,
+                                 double softHu) {
+    constexpr double offMm = 0.5;
+    constexpr std::size_t places = 20000;
+    const glm::dmat4 voxelFromPatient = colon.cleansed.grid().voxelFromPatient();
+    const std::size_t count = evidence.samples.mesh.vertices.size();
+    const std::size_t step = std::max<std::size_t>(1, count / places);
+    const double gas = gasHu(colon);
+    std::vector<double> blurs;
+    for (std::size_t v = 0; v < count; v += step) {
+        if (evidence.wet[v] || evidence.unseen[v] || evidence.untagged[v]) continue;
+        const glm::dvec3 at = evidence.samples.mesh.vertices[v],
+                         off = offMm * glm::dvec3(evidence.shapes[v].intoWall);
+        const auto share = [&](glm::dvec3 p) {
+            const double hu =
+                trilinear(colon.cleansed, glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)));
+            return (hu - gas) / (softHu - gas);
+        };
+        const double before = share(at - off), behind = share(at + off);
+        if (before < 0.02 || behind > 0.98 || behind <= before) continue;
+        blurs.push_back(2.0 * offMm / (normalQuantile(behind) - normalQuantile(before)));
+    }
+    if (blurs.size() < fewestDeep) return std::nullopt;
+    return medianOf(blurs);
+}
+
+}  // namespace
+
+ResidueFilms::ResidueFilms(const PreparedColon& colon, const WallEvidence& evidence)
+    : softHu_(evidence.statistics.wallHu) {
+    const auto tagged = deepTaggedHu(colon);
+    if (!tagged || *tagged < softHu_ + 2.0 * brighterThanTissueHu) return;
+    const auto blur = edgeBlurMm(colon, evidence, softHu_);
+    if (!blur) return;
+    taggedHu_ = *tagged;
+    const double gas = gasHu(colon);
+    for (int n = 0; n <= thicknesses; ++n) {
+        const double e = n * thicknessStepMm;
+        const auto hu = [&](double mm) {
+            return gas + (taggedHu_ - gas) * normalCdf(mm / *blur) -
+                   (taggedHu_ - softHu_) * normalCdf((mm - e) / *blur);
+        };
+        constexpr double stepMm = 0.01;
+        double crossesMm = -3.0 * *blur, peak = softHu_;
+        while (hu(crossesMm) < colon.tissue.airBelowHu)
+            crossesMm += stepMm;
+        for (double mm = crossesMm; mm < e + 3.0 * *blur; mm += 5.0 * stepMm)
+            peak = std::max(peak, hu(mm));
+        peakHu_.push_back(peak);
+        liftsMm_.push_back(e - crossesMm);
+    }
+}
+
+double ResidueFilms::liftMm(const PreparedColon& colon, const WallEvidence& evidence,
+                            const Patch& patch) const {
+    if (taggedHu_ == 0.0) return 0.0;
+    constexpr std::size_t mostRays = 250;
+    const auto steps = std::size_t(profileMm / profileStepMm) + 1;
+    const glm::dmat4 voxelFromPatient = colon.cleansed.grid().voxelFromPatient();
+    const std::size_t stride = (patch.samples.size() + mostRays - 1) / mostRays;
+    std::vector<double> hu(steps, 0.0);
+    double area = 0.0;
+    for (std::size_t n = 0; n < patch.samples.size(); n += stride) {
+        const std::uint32_t v = patch.samples[n];
+        const glm::dvec3 at(voxelFromPatient * glm::dvec4(evidence.samples.mesh.vertices[v], 1.0)),
+            step(voxelFromPatient *
+                 glm::dvec4(profileStepMm * glm::dvec3(evidence.shapes[v].intoWall), 0.0));
+        const double mm2 = evidence.samples.areaMm2[v];
+        area += mm2;
+        for (std::size_t s = 0; s < steps; ++s)
+            hu[s] += mm2 * trilinear(colon.cleansed, at + double(s) * step);
+    }
+    for (double& value : hu)
+        value /= area;
+    const auto peak = std::max_element(hu.begin(), hu.end());
+    if (*peak < softHu_ + brighterThanTissueHu) return 0.0;
+    const auto thicker = std::lower_bound(peakHu_.begin(), peakHu_.end(), *peak);
+    if (thicker == peakHu_.begin()) return 0.0;
+    const std::size_t n = std::min(std::size_t(thicker - peakHu_.begin()), peakHu_.size() - 1);
+    const double share =
+        std::clamp((*peak - peakHu_[n - 1]) / (peakHu_[n] - peakHu_[n - 1]), 0.0, 1.0);
+    double lift = std::lerp(liftsMm_[n - 1], liftsMm_[n], share);
+    const double half = 0.5 * (softHu_ + taggedHu_);
+    if (*peak > half) {
+        const auto end = std::find_if(peak, hu.end(), [&](double value) { return value < half; });
+        const double past = end == hu.end() ? 0.0 : (half - *end) / (*(end - 1) - *end);
+        lift = std::max(lift, profileStepMm * (double(end - hu.begin()) - past));
+    }
+    return lift;
+}
+
+double heightWithoutResidue(double topMm, double meanMm, double residueMm) {
+    if (residueMm <= 0.0) return topMm;
+    return meanMm > 0.0 ? topMm * std::max(0.0, 1.0 - residueMm / meanMm) : 0.0;
+}
+
+}  // namespace haustra::cad
