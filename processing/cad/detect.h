@@ -12,7 +12,7 @@ namespace haustra::cad {
 
 /// Raised whenever detection makes something else of the same input and model: neither findings nor
 /// kept candidates of another version are taken for this one's.
-inline constexpr int detectionVersion = 17;
+inline constexpr int detectionVersion = 18;
 
 /// What of the whole is used; all by default. For comparisons, which leave out one after the other.
 struct Method {
@@ -39,10 +39,11 @@ struct Candidate {
     std::int32_t levelOf = -1;
 };
 
-/// Everything that the generators found, each with its features; several may be of one place. Then
-/// the same at other levels: of all that are found by shape, or of those alone that `model` finds
-/// worth another look (places.h), which for weighing is the same; none without the classifier. The
-/// same for any number of threads.
+/// Everything that the generators found, each with its features; several may be of one place. Left
+/// out is what lies behind fluid without tagging by half, and what is nothing but tagged residue
+/// (residue_film.h). Then the same at other levels: of all that are found by shape, or of those
+/// alone that `model` finds worth another look (places.h), which for weighing is the same; none
+/// without the classifier. The same for any number of threads.
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
                                       const TextureModel* texture, const DetectOptions& options,
                                       const CadModel* model = nullptr);

@@ -11,12 +11,16 @@ namespace haustra::cad {
 namespace {
 
 constexpr double brighterThanTissueHu = 60.0;
-// From where tagging shows its own HU, and of how many voxels these are taken.
+// From where tagging shows its own HU.
 constexpr int deepVoxels = 3;
-constexpr std::size_t fewestDeep = 100;
+// A median of fewer says nothing.
+constexpr std::size_t fewest = 100;
 constexpr double thicknessStepMm = 0.1;
 constexpr int thicknesses = 40;
 constexpr double profileStepMm = 0.25, profileMm = 6.0;
+// Where a film is as bright at the latest: at twice the blur behind the surface the faintest are at
+// their brightest.
+constexpr double latestBlurs = 2.5;
 
 double gasHu(const PreparedColon& colon) {
     return colon.tissue.meanHu[std::size_t(Tissue::air)];
@@ -51,7 +55,7 @@ std::optional<double> deepTaggedHu(const PreparedColon& colon) {
             }
         }
     }
-    if (hu.size() < fewestDeep) return std::nullopt;
+    if (hu.size() < fewest) return std::nullopt;
     return medianOf(hu);
 }
 
@@ -79,7 +83,7 @@ std::optional<double> edgeBlurMm(const PreparedColon& colon, const WallEvidence&
         if (before < 0.02 || behind > 0.98 || behind <= before) continue;
         blurs.push_back(2.0 * offMm / (normalQuantile(behind) - normalQuantile(before)));
     }
-    if (blurs.size() < fewestDeep) return std::nullopt;
+    if (blurs.size() < fewest) return std::nullopt;
     return medianOf(blurs);
 }
 
@@ -91,19 +95,19 @@ ResidueFilms::ResidueFilms(const PreparedColon& colon, const WallEvidence& evide
     if (!tagged || *tagged < softHu_ + 2.0 * brighterThanTissueHu) return;
     const auto blur = edgeBlurMm(colon, evidence, softHu_);
     if (!blur) return;
-    taggedHu_ = *tagged;
+    taggedHu_ = *tagged, blurMm_ = *blur;
     const double gas = gasHu(colon);
     for (int n = 0; n <= thicknesses; ++n) {
         const double e = n * thicknessStepMm;
         const auto hu = [&](double mm) {
-            return gas + (taggedHu_ - gas) * normalCdf(mm / *blur) -
-                   (taggedHu_ - softHu_) * normalCdf((mm - e) / *blur);
+            return gas + (taggedHu_ - gas) * normalCdf(mm / blurMm_) -
+                   (taggedHu_ - softHu_) * normalCdf((mm - e) / blurMm_);
         };
         constexpr double stepMm = 0.01;
-        double crossesMm = -3.0 * *blur, peak = softHu_;
+        double crossesMm = -3.0 * blurMm_, peak = softHu_;
         while (hu(crossesMm) < colon.tissue.airBelowHu)
             crossesMm += stepMm;
-        for (double mm = crossesMm; mm < e + 3.0 * *blur; mm += 5.0 * stepMm)
+        for (double mm = crossesMm; mm < e + 3.0 * blurMm_; mm += 5.0 * stepMm)
             peak = std::max(peak, hu(mm));
         peakHu_.push_back(peak);
         liftsMm_.push_back(e - crossesMm);
@@ -131,8 +135,14 @@ double ResidueFilms::liftMm(const PreparedColon& colon, const WallEvidence& evid
     }
     for (double& value : hu)
         value /= area;
-    const auto peak = std::max_element(hu.begin(), hu.end());
-    if (*peak < softHu_ + brighterThanTissueHu) return 0.0;
+    // Bright right behind the surface, and not for long.
+    const double brightHu = softHu_ + brighterThanTissueHu;
+    const auto bright = [&](double value) { return value >= brightHu; };
+    const auto begin = std::find_if(hu.begin(), hu.end(), bright);
+    const auto end = std::find_if_not(begin, hu.end(), bright);
+    if (end == hu.end() || profileStepMm * double(begin - hu.begin()) > latestBlurs * blurMm_)
+        return 0.0;
+    const auto peak = std::max_element(begin, end);
     const auto thicker = std::lower_bound(peakHu_.begin(), peakHu_.end(), *peak);
     if (thicker == peakHu_.begin()) return 0.0;
     const std::size_t n = std::min(std::size_t(thicker - peakHu_.begin()), peakHu_.size() - 1);
@@ -141,9 +151,9 @@ double ResidueFilms::liftMm(const PreparedColon& colon, const WallEvidence& evid
     double lift = std::lerp(liftsMm_[n - 1], liftsMm_[n], share);
     const double half = 0.5 * (softHu_ + taggedHu_);
     if (*peak > half) {
-        const auto end = std::find_if(peak, hu.end(), [&](double value) { return value < half; });
-        const double past = end == hu.end() ? 0.0 : (half - *end) / (*(end - 1) - *end);
-        lift = std::max(lift, profileStepMm * (double(end - hu.begin()) - past));
+        const auto last = std::find_if(peak, hu.end(), [&](double value) { return value < half; });
+        const double past = (half - *last) / (*(last - 1) - *last);
+        lift = std::max(lift, profileStepMm * (double(last - hu.begin()) - past));
     }
     return lift;
 }

@@ -25,16 +25,17 @@ public:
     /// (G) and tissue (S), blurred by σ, has at x behind its face
     /// G + (T − G) Φ(x/σ) − (T − S) Φ((x − e)/σ): its greatest value tells e, and where it crosses
     /// the surface's HU tells how far that is from the tissue's edge. What is thick enough to come
-    /// near T ends where the HU fall below (S + T)/2. 0 where the HU are nowhere more than 60 HU
-    /// above soft tissue's: enhanced carcinomas are denser than muscle by 30 to 40 (Oto et al., Eur
-    /// Radiol 2003; 13: 1657).
+    /// near T ends where the HU fall below (S + T)/2. 0 where the HU behind the surface are not
+    /// more than 60 HU above soft tissue's: enhanced carcinomas are denser than muscle by 30 to 40
+    /// (Oto et al., Eur Radiol 2003; 13: 1657). And 0 where they are so only from 2.5 σ on, or as
+    /// far as 6 mm: bone or an opacified loop behind the wall.
     double liftMm(const PreparedColon& colon, const WallEvidence& evidence,
                   const Patch& patch) const;
 
 private:
-    double softHu_ = 0.0, taggedHu_ = 0.0;  ///< taggedHu_ 0: no tagging
-    std::vector<double> peakHu_;            ///< the greatest HU of films of 0, 0.1, 0.2 mm …
-    std::vector<double> liftsMm_;           ///< and how far they lift the surface
+    double softHu_ = 0.0, blurMm_ = 0.0, taggedHu_ = 0.0;  ///< taggedHu_ 0: no tagging
+    std::vector<double> peakHu_;   ///< the greatest HU of films of 0, 0.1, 0.2 mm …
+    std::vector<double> liftsMm_;  ///< and how far they lift the surface
 };
 
 /// What would be left of an elevation `topMm` high, `meanMm` in the mean, without residue that

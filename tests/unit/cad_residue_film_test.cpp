@@ -38,9 +38,15 @@ struct CoatedColon {
     double blurMm;
     Layer layer;
     std::vector<Bump> bumps;
+    double behindMm;  // how deep in the tissue what is as bright as tagging begins
 
-    CoatedColon(Layer with, std::vector<Bump> on, double blur, bool pool = true)
-        : ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, on), blurMm(blur), layer(with), bumps(on) {
+    CoatedColon(Layer with, std::vector<Bump> on, double blur, bool pool = true,
+                double behind = 1e3)
+        : ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, on),
+          blurMm(blur),
+          layer(with),
+          bumps(on),
+          behindMm(behind) {
         const Grid& grid = ball.hu.grid();
         for (std::size_t n = 0; n < grid.voxelCount(); ++n)
             ball.hu.writable()[n] = std::int16_t(std::lround(hu(at(grid, n))));
@@ -67,7 +73,8 @@ struct CoatedColon {
     double hu(glm::dvec3 p) const {
         const double d = tests::wallMm(p, bumps), e = thickness(p, layer);
         return gasHu + (layer.hu - gasHu) * normalCdf((d + e) / blurMm) -
-               (layer.hu - softHu) * normalCdf(d / blurMm);
+               (layer.hu - softHu) * normalCdf(d / blurMm) +
+               (taggedHu - softHu) * normalCdf((d - behindMm) / blurMm);
     }
     cad::PreparedColon colon() const {
         const cad::PreparedColon plain = ball.colon();
@@ -123,6 +130,15 @@ TEST(ResidueFilm, NoTissueIsOne) {
             const auto evidence = cad::gatherEvidence(coated.colon(), {});
             EXPECT_EQ(residueMm(coated, evidence, aroundTheTop(evidence, 4.0)), 0.0);
         }
+    }
+}
+
+TEST(ResidueFilm, NeitherIsBoneNorALoopBehindTheWall) {
+    for (const double behindMm : {1.0, 2.0, 3.0}) {
+        // A flat lesion on the wall before it.
+        const CoatedColon coated({2.5, softHu}, {}, 0.8, true, behindMm);
+        const auto evidence = cad::gatherEvidence(coated.colon(), {});
+        EXPECT_EQ(residueMm(coated, evidence, aroundTheTop(evidence, 4.0)), 0.0) << behindMm;
     }
 }
 
