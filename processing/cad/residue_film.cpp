@@ -105,7 +105,7 @@ ResidueFilms::ResidueFilms(const PreparedColon& colon, const WallEvidence& evide
         };
         constexpr double stepMm = 0.01;
         double crossesMm = -3.0 * blurMm_, peak = softHu_;
-        while (hu(crossesMm) < colon.tissue.airBelowHu)
+        while (crossesMm < e + 3.0 * blurMm_ && hu(crossesMm) < colon.tissue.airBelowHu)
             crossesMm += stepMm;
         for (double mm = crossesMm; mm < e + 3.0 * blurMm_; mm += 5.0 * stepMm)
             peak = std::max(peak, hu(mm));
