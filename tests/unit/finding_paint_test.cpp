@@ -208,5 +208,29 @@ TEST(FindingPaint, APixelIsColouredIfItsPlaceBelongsToAFindingThatIsShown) {
         ASSERT_EQ(paint->pixels[std::size_t(n)].a > 0, coloured.contains(n));
 }
 
+TEST(FindingPaint, WhatIsSmallerThanAPixelHasThoseAroundIt) {
+    // As a head on a long stalk is, which a conformal map shrinks.
+    const auto& facets = painter()->sight().facets();
+    for (const std::size_t t : {facets.size() / 3, facets.size() / 2}) {
+        Findings all;
+        all.grid = grid();
+        Finding head;
+        head.positionMm = painter()->sight().originMm() + glm::dvec3(facets[t].middleMm);
+        head.diameterMm = 0.01;
+        all.findings = {head};
+        const auto pixels = findingPixels(*painter(), all);
+        ASSERT_EQ(pixels.size(), 4u);
+        const glm::dvec2 size(painter()->size());
+        for (const FindingPixel& pixel : pixels) {
+            EXPECT_EQ(pixel.finding, 0);
+            const glm::dvec2 centre(pixel.pixel % int(size.x) + 0.5,
+                                    pixel.pixel / int(size.x) + 0.5);
+            glm::dvec2 off = centre - (size - glm::dvec2(facets[t].flat) * size.x);
+            off.x -= size.x * std::round(off.x / size.x);
+            EXPECT_LE(std::max(std::abs(off.x), std::abs(off.y)), 1.001);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace haustra::tests

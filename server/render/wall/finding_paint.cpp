@@ -112,6 +112,25 @@ std::vector<FindingPixel> findingPixels(const StripPainter& painter, const Findi
                                        glm::dvec3(facets[std::size_t(place->triangle)].inward));
         }
     });
+    // A conformal map shrinks a head on a long stalk to less than a pixel: then the pixels beside
+    // its triangles, which a smooth paint's colour is made of, are its.
+    std::vector<bool> painted(ordered.size(), false);
+    for (const std::int32_t finding : ofPixel)
+        if (finding >= 0) painted[std::size_t(finding)] = true;
+    for (std::size_t t = 0; t < facets.size(); ++t) {
+        if (painter.sight().isBridge(int(t))) continue;
+        const int finding = tissue.at(painter.sight().originMm() + glm::dvec3(facets[t].middleMm),
+                                      glm::dvec3(facets[t].inward));
+        if (finding < 0 || painted[std::size_t(finding)]) continue;
+        const glm::dvec2 at = glm::dvec2(size) - glm::dvec2(facets[t].flat) * double(size.x) - 0.5;
+        for (const glm::ivec2 step : {glm::ivec2(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
+            const glm::ivec2 pixel = glm::ivec2(glm::floor(at)) + step;
+            if (pixel.y < 0 || pixel.y >= size.y) continue;
+            const int x = (pixel.x % size.x + size.x) % size.x;
+            std::int32_t& of = ofPixel[std::size_t(pixel.y) * std::size_t(size.x) + std::size_t(x)];
+            if (of < 0) of = finding;
+        }
+    }
     std::vector<FindingPixel> pixels;
     for (std::size_t n = 0; n < count; ++n)
         if (ofPixel[n] >= 0)

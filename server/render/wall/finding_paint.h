@@ -55,6 +55,7 @@ struct FindingPixel {
 };
 /// All of a strip, in the order of pixels; `finding` counts findings, and then candidates, as they
 /// come. What two of them hold is the more probable one's, which is shown wherever the other is.
+/// One that is smaller there than a pixel has those beside its triangles.
 /// Some tenths of a second for a colon.
 std::vector<FindingPixel> findingPixels(const StripPainter& painter, const Findings& findings);
 
