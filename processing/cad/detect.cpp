@@ -133,16 +133,18 @@ struct Measures {
     const WallEvidence& evidence;
     const SampleTriangles& triangles;
     const AlongColon& alongColon;
-    const ResidueFilms& residue;
+    const ResidueFilms& films;
     std::span<const float> textureDistances;
     int threads;
 };
 
-// Adds those of the patches that are bodies; `levelOf` of each, or of none.
+// Adds those of the patches that are bodies, residue apart; `levelOf` of each, or of none.
 void measure(const Measures& with, std::vector<Patch> patches,
-             std::span<const std::int32_t> levelOf, std::vector<Candidate>& candidates) {
+             std::span<const std::int32_t> levelOf, std::vector<Candidate>& candidates,
+             std::vector<Candidate>* residue) {
     if (patches.empty()) return;
     std::vector<std::optional<Candidate>> measured(patches.size());
+    std::vector<std::uint8_t> nothingElse(patches.size(), 0);
     // Each thread takes patch after patch, as they differ in size by a thousand times.
     std::atomic<std::size_t> next = 0;
     const auto threads = std::size_t(threadCount(with.threads));
@@ -154,14 +156,16 @@ void measure(const Measures& with, std::vector<Patch> patches,
             if (!lesion || liesBehindUntagged(with.evidence, lesion->patch)) continue;
             const FeatureVector features = featuresOf(with.colon, with.evidence, with.alongColon,
                                                       with.textureDistances, *lesion, numbers);
-            const double residueMm = with.residue.liftMm(with.colon, with.evidence, lesion->patch);
-            if (isResidue(*lesion, features, residueMm)) continue;
+            const double residueMm = with.films.liftMm(with.colon, with.evidence, lesion->patch);
+            nothingElse[n] = isResidue(*lesion, features, residueMm);
             measured[n] = Candidate{*std::move(lesion), features};
             if (!levelOf.empty()) measured[n]->levelOf = levelOf[n];
         }
     });
-    for (auto& candidate : measured)
-        if (candidate) candidates.push_back(*std::move(candidate));
+    for (std::size_t n = 0; n < measured.size(); ++n) {
+        std::vector<Candidate>* to = nothingElse[n] ? residue : &candidates;
+        if (measured[n] && to) to->push_back(*std::move(measured[n]));
+    }
 }
 
 // Adds other levels of the candidates that are worth it; without a model, of all.
@@ -183,14 +187,37 @@ void measureOtherLevels(const Measures& with, const CadModel* model,
         std::ranges::move(others[n], std::back_inserter(levels));
         levelOf.resize(levels.size(), numbers[n]);
     }
-    measure(with, std::move(levels), levelOf, candidates);
+    measure(with, std::move(levels), levelOf, candidates, nullptr);
+}
+
+// Where a candidate that was taken for residue looks like a polyp by itself, and no finding is:
+// each place once, along the colon, mm from the rectum.
+std::vector<double> residueLikePolyps(const std::vector<Candidate>& residue,
+                                      std::span<const Finding> findings, const CadModel& model,
+                                      const AlongColon& alongColon) {
+    std::vector<PlaceWitness> witnesses;
+    for (const Candidate& each : residue)
+        witnesses.push_back({each.lesion.centreMm, each.lesion.diameter.mm, each.lesion.areaMm2,
+                             model.probability(each.features)});
+    std::vector<double> arcs;
+    for (const WitnessedPlace& place : placesOf(witnesses)) {
+        const PlaceWitness& best = witnesses[place.best];
+        const bool found = std::ranges::any_of(findings, [&](const Finding& finding) {
+            return glm::distance(finding.positionMm, best.centreMm) <
+                   0.5 * std::max(finding.diameterMm, best.diameterMm);
+        });
+        if (best.probability >= model.operatingPoint && !found)
+            arcs.push_back(alongColon.at(residue[place.best].lesion.topMm).arcMm);
+    }
+    std::sort(arcs.begin(), arcs.end());
+    return arcs;
 }
 
 }  // namespace
 
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
                                       const TextureModel* texture, const DetectOptions& options,
-                                      const CadModel* model) {
+                                      const CadModel* model, std::vector<Candidate>* residue) {
     std::vector<float> distances;
     if (texture) {
         const auto along = stripDirections(evidence.samples, colon.flat);
@@ -223,14 +250,14 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
         for (std::size_t part = begin; part < end; ++part)
             parts[part]();
     });
-    const ResidueFilms residue(colon, evidence);
-    const Measures with{colon,   evidence,  *triangles,     *alongColon,
-                        residue, distances, options.threads};
+    const ResidueFilms films(colon, evidence);
+    const Measures with{colon, evidence,  *triangles,     *alongColon,
+                        films, distances, options.threads};
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));
     std::vector<Candidate> candidates;
-    measure(with, std::move(patches), {}, candidates);
+    measure(with, std::move(patches), {}, candidates, residue);
     if (options.method.classifier) measureOtherLevels(with, model, candidates);
     return candidates;
 }
@@ -260,7 +287,8 @@ void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Meth
 }
 
 Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
-                    const std::vector<Candidate>& candidates, const CadModel& model) {
+                    const std::vector<Candidate>& candidates, const CadModel& model,
+                    const std::vector<Candidate>& residue) {
     Findings findings;
     findings.operatingPoint = model.operatingPoint;
     findings.model.software = std::string("haustra ") + softwareVersion;
@@ -271,6 +299,8 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     for (std::size_t v = 0; v < evidence.unseen.size(); ++v)
         if (evidence.unseen[v] || evidence.untagged[v])
             (evidence.unseen[v] ? inventedMm2 : untaggedMm2) += evidence.samples.areaMm2[v];
+    for (const double mm2 : {inventedMm2, untaggedMm2})
+        if (mm2 >= leastUnseenMm2) findings.unexaminedMm2 += mm2;
     if (inventedMm2 >= leastUnseenMm2)
         findings.warnings.push_back(printed(
             "%.0f mm2 of the wall were not examined: they enclose a bridge over a collapse, or "
@@ -306,10 +336,26 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
                          [](const Finding& a, const Finding& b) { return a.arcMm < b.arcMm; });
     for (const MassOfFindings& mass : massesOf(findings.findings)) {
         const Finding& first = findings.findings[mass.findings.front()];
-        findings.warnings.push_back(
-            printed("%zu findings from %.0f mm on lie rim to rim, %.0f mm wide in all: they may be "
-                    "lobes of one mass",
-                    mass.findings.size(), first.arcMm, mass.widthMm));
+        std::string numbers;
+        for (std::size_t n = 0; n < mass.findings.size(); ++n)
+            numbers += (n == 0                          ? ""
+                        : n + 1 == mass.findings.size() ? " and "
+                                                        : ", ") +
+                       std::to_string(mass.findings[n] + 1);
+        findings.warnings.push_back(printed(
+            "findings %s, from %.0f mm on, lie rim to rim, %.0f mm wide in all: they may be "
+            "lobes of one mass",
+            numbers.c_str(), first.arcMm, mass.widthMm));
+    }
+    if (const auto arcs = residueLikePolyps(residue, findings.findings, model, alongColon);
+        !arcs.empty()) {
+        std::string places;
+        for (const double arcMm : arcs)
+            places += printed(places.empty() ? "%.0f" : ", %.0f", arcMm);
+        findings.warnings.push_back(printed(
+            "%zu places that look like polyps were taken for tagged residue on the wall: %s mm "
+            "from the rectum",
+            arcs.size(), places.c_str()));
     }
     return findings;
 }
@@ -325,10 +371,11 @@ Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
     gathering.threads = options.threads;
     gathering.progress = part(0.0, 0.7);
     const WallEvidence evidence = gatherEvidence(colon, gathering);
-    auto candidates = findCandidates(colon, evidence, &model.texture, options, &model);
+    std::vector<Candidate> residue;
+    auto candidates = findCandidates(colon, evidence, &model.texture, options, &model, &residue);
     weigh(candidates, model, options.method);
     if (options.progress) options.progress(1.0);
-    return findingsOf(colon, evidence, candidates, model);
+    return findingsOf(colon, evidence, candidates, model, residue);
 }
 
 }  // namespace haustra::cad

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -138,6 +139,26 @@ std::vector<VoxelRun> voxelsBeneath(const WallEvidence& evidence, const Patch& p
         if (grid.contains(voxel)) voxels.insert(grid.index(voxel));
     }
     return runsOf(voxels, grid);
+}
+
+// Whether a place lies in the box around some others.
+bool isAmong(std::span<const glm::dvec3> others, glm::dvec3 place) {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const glm::dvec3& each : others)
+        low = glm::min(low, each), high = glm::max(high, each);
+    return glm::all(glm::lessThanEqual(low, place)) && glm::all(glm::lessThanEqual(place, high));
+}
+
+// The mean of a patch's places, by area.
+glm::dvec3 middleOf(const WallSamples& wall, std::span<const std::uint32_t> samples) {
+    const glm::dvec3 origin = wall.mesh.vertices[samples.front()];
+    glm::dvec3 sum(0.0);
+    double area = 0.0;
+    for (const std::uint32_t v : samples) {
+        sum += double(wall.areaMm2[v]) * (wall.mesh.vertices[v] - origin);
+        area += wall.areaMm2[v];
+    }
+    return area > 0.0 ? origin + sum / area : origin;
 }
 
 }  // namespace
@@ -281,7 +302,9 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangle
     const double length = glm::length(normal);
     if (!(length > 0.0)) return {};
     lesion.axis = normal / length;
-    lesion.centreMm = lesion.volumeMm3 > 0.0 ? origin + moment / lesion.volumeMm3 : origin;
+    lesion.centreMm = origin + moment / lesion.volumeMm3;
+    if (!isAmong(lesion.body.vertices, lesion.centreMm))
+        lesion.centreMm = middleOf(wall, patch.samples);
 
     const auto heightAt = [&](std::uint32_t number) {
         return glm::dot(wall.mesh.vertices[numbers.sample(number)] - membrane.at(number),

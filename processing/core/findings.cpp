@@ -172,6 +172,7 @@ std::string findingsJson(const Findings& findings) {
                       {"trained_on", findings.model.trainedOn}});
         add("operating_point", std::round(findings.operatingPoint * 1e6) / 1e6);
         add("warnings", findings.warnings);
+        add("unexamined_mm2", std::round(findings.unexaminedMm2 * 10.0) / 10.0);
         OrderedJson affine = OrderedJson::array();
         for (int n = 0; n < 16; ++n)
             affine.push_back(findings.grid.patientFromVoxel[n % 4][n / 4]);
@@ -198,6 +199,8 @@ Result<Findings> findingsOfJson(const std::string& text, const std::string& wher
         if (json.contains("operating_point"))
             findings.operatingPoint = numberIn(json.at("operating_point"));
         findings.warnings = json.value("warnings", std::vector<std::string>());
+        if (json.contains("unexamined_mm2"))
+            findings.unexaminedMm2 = numberIn(json.at("unexamined_mm2"));
         if (json.contains("grid")) findings.grid = gridOf(json.at("grid"));
         if (json.contains("biopsy")) findings.biopsy = biopsyOf(json.at("biopsy"));
         const OrderedJson &list = json.at("findings"),

@@ -281,7 +281,7 @@ TEST(Detect, LobesSideBySideAreToldToBePerhapsOneMass) {
     };
     const auto warnings = told();
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_TRUE(warnings[0].starts_with("3 findings")) << warnings[0];
+    EXPECT_TRUE(warnings[0].starts_with("findings 1, 2 and 3, from ")) << warnings[0];
     EXPECT_NE(warnings[0].find("one mass"), std::string::npos) << warnings[0];
     lobes.pop_back();
     EXPECT_TRUE(told().empty());

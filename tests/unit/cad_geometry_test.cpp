@@ -449,6 +449,29 @@ TEST(WallLift, LeavesOutWallThatNobodyHasSeen) {
     }
 }
 
+TEST(Lesion, HasItsCentreInItsBodyEvenWhereThatCancels) {
+    // Over a low plateau the film is a hill of its own: with some height in between, as much of the
+    // body lies beneath its base as above.
+    const auto lesionOf = [](double heightMm) {
+        Plateau plateau{.heightMm = heightMm};
+        plateau.make();
+        cad::SampleNumbers numbers(plateau.evidence.samples.mesh.vertices.size());
+        return cad::standUp(plateau.evidence, cad::SampleTriangles(plateau.evidence.samples),
+                            plateau.patchWithin(9.0), plateau.evidence.smooth->grid(), numbers);
+    };
+    double low = -1.0, high = 6.0;
+    ASSERT_LT(lesionOf(low)->volumeMm3, 0.0);
+    ASSERT_GT(lesionOf(high)->volumeMm3, 0.0);
+    for (int n = 0; n < 16; ++n) {
+        const double middle = 0.5 * (low + high);
+        const auto lesion = lesionOf(middle);
+        (lesion->volumeMm3 > 0.0 ? high : low) = middle;
+        const glm::dvec3 wall(Plateau::radiusMm - std::max(0.0, middle), 0.0, 0.0);
+        EXPECT_LT(glm::distance(lesion->centreMm, wall), 2.0)
+            << middle << " mm high: " << lesion->volumeMm3 << " mm³";
+    }
+}
+
 std::optional<cad::Lesion> lesionOf(const cad::WallEvidence& evidence, cad::Patch patch) {
     cad::SampleNumbers numbers(evidence.samples.mesh.vertices.size());
     const cad::SampleTriangles triangles(evidence.samples);

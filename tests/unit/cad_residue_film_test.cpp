@@ -153,10 +153,14 @@ TEST(ResidueFilm, OnTheBareWallIsNoCandidateAndOnAPolypTakesNothingAway) {
     options.method.texture = false;
     const auto candidatesAtTheTop = [&](const CoatedColon& coated) {
         const auto evidence = cad::gatherEvidence(coated.colon(), {});
-        auto found = cad::findCandidates(coated.colon(), evidence, nullptr, options);
-        std::erase_if(found, [](const cad::Candidate& c) {
-            return c.lesion.topMm.z < 8.0 || !cad::rises(c.features);
-        });
+        std::vector<cad::Candidate> residue;
+        auto found =
+            cad::findCandidates(coated.colon(), evidence, nullptr, options, nullptr, &residue);
+        for (auto* some : {&found, &residue})
+            std::erase_if(*some, [](const cad::Candidate& c) {
+                return c.lesion.topMm.z < 8.0 || !cad::rises(c.features);
+            });
+        EXPECT_EQ(residue.empty(), !found.empty()) << "told as one or the other";
         return found.size();
     };
     const Layer film{2.4, taggedHu}, tissue{2.4, softHu};

@@ -12,6 +12,7 @@ Findings twoFindings() {
     all.model = {"haustra 1.2.3", "phantoms-1", std::string(64, 'a'), "phantoms; not patients"};
     all.operatingPoint = 0.25;
     all.warnings = {"the sigmoid is collapsed"};
+    all.unexaminedMm2 = 1234.5;
     all.grid = axisAlignedGrid({64, 48, 32}, {0.75, 0.75, 1.0}, {-20.0, 11.5, -300.25});
     Finding finding{{1.25, -3.5, 10.0}, 8.125, 0.75, "sessile"};
     finding.wallMm = {1.0, -3.0, 9.0};
@@ -43,6 +44,7 @@ TEST(Findings, JsonReadsBackAsItWas) {
     EXPECT_TRUE(sameGrid(read->grid, all.grid));
     EXPECT_EQ(read->model.sha256, all.model.sha256);
     EXPECT_EQ(read->warnings, all.warnings);
+    EXPECT_EQ(read->unexaminedMm2, all.unexaminedMm2);
     EXPECT_EQ(read->biopsy, all.biopsy);
 }
 
