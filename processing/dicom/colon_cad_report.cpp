@@ -208,7 +208,8 @@ public:
     }
 
 private:
-    bool partial() const { return !findings_.warnings.empty(); }
+    // Detection has looked at a part of the wall alone.
+    bool partial() const { return findings_.unexaminedMm2 > 0.0; }
 
     /// TID 4122.
     void imageSetProperties(const SliceRun& run) {
@@ -240,16 +241,18 @@ private:
                                  : CODE_DCM_NotAllAlgorithmsSucceeded_withFindings;
         out_.code(Type::RT_contains, CODE_DCM_CADProcessingAndFindingsSummary,
                   partial() ? notAll : succeeded, [&] {
-                      all(findings_.findings, "finding ",
+                      all(findings_.findings, "finding ", 1,
                           CODE_DCM_PresentationRequired_RenderingDeviceIsExpectedToPresent);
-                      all(findings_.candidates, "candidate ",
+                      all(findings_.candidates, "candidate ", findings_.findings.size() + 1,
                           CODE_DCM_PresentationOptional_RenderingDeviceMayPresent);
                   });
     }
 
-    void all(const std::vector<Finding>& list, const std::string& name, const Code& intent) {
+    // Numbered as a reading station does, the one list after the other.
+    void all(const std::vector<Finding>& list, const std::string& name, std::size_t first,
+             const Code& intent) {
         for (std::size_t n = 0; n < list.size(); ++n)
-            feature(list[n], name + std::to_string(n + 1), intent);
+            feature(list[n], name + std::to_string(first + n), intent);
     }
 
     /// TID 4125.
@@ -324,12 +327,13 @@ private:
                                                    decimal(findings_.operatingPoint)};
                       if (!findings_.model.trainedOn.empty())
                           how.push_back("trained on: " + findings_.model.trainedOn);
+                      for (const std::string& warning : findings_.warnings)
+                          how.push_back("warning: " + warning);
                       detections(CODE_DCM_SuccessfulDetections, {how});
                       if (!partial()) return;
-                      std::vector<std::vector<std::string>> failed;
-                      for (const std::string& warning : findings_.warnings)
-                          failed.push_back({"warning: " + warning});
-                      detections(CODE_DCM_FailedDetections, failed);
+                      const std::vector<std::string> why{"wall that was not examined: " +
+                                                         decimal(findings_.unexaminedMm2) + " mm2"};
+                      detections(CODE_DCM_FailedDetections, {why});
                   });
     }
 
@@ -459,6 +463,7 @@ OFCondition fillHeader(DSRDocument& document, const Findings& findings,
     keep(document.createNewSeriesInStudy(source.studyUid.c_str()));
     keep(document.setStudyDate(source.studyDate.c_str()));
     keep(document.setStudyTime(source.studyTime.c_str()));
+    // Of the study, so that the same findings give the same file.
     keep(document.setContentDate(source.studyDate.empty() ? "19000101" : source.studyDate.c_str()));
     keep(document.setContentTime(source.studyTime.empty() ? "000000" : source.studyTime.c_str()));
     keep(document.setSeriesDescription("Haustra colon CAD"));

@@ -26,7 +26,8 @@ struct ColonCadReportOptions {
 ///     4121 CAD Processing and Findings Summary
 ///       4125 Composite Feature "Polyp of colon" of each finding (Presentation Required) and of
 ///            each candidate (Presentation Optional), in their order
-///         4108 Tracking Identifier: "finding 1" …, "candidate 1" …, counted as in the JSON
+///         4108 Tracking Identifier: "finding 1" …; "candidate 8" after 7 findings, as reading
+///              stations count them
 ///         4019 algorithm: the model's name; the program's, and the model's SHA-256
 ///         4126 related spatially, on multiple images; Certainty of Feature, 100 · score, in %
 ///         4129 Center: SCOORD3D POINT; Outline: SCOORD3D ELLIPSOID of the same moments as the

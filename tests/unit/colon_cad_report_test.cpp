@@ -233,7 +233,7 @@ TEST_F(ColonCadReport, HasEveryFindingAtItsVeryPlace) {
                   n < 3 ? "Presentation Required: Rendering device is expected to present"
                         : "Presentation Optional: Rendering device may present");
         EXPECT_EQ(named(feature, "Tracking Identifier")->value,
-                  n < 3 ? "finding " + std::to_string(n + 1) : "candidate 1");
+                  n < 3 ? "finding " + std::to_string(n + 1) : "candidate 4");
         EXPECT_EQ(named(feature, "Algorithm Name")->value, "phantoms-1");
         EXPECT_EQ(named(feature, "Algorithm Version")->value,
                   "haustra 1.2.3; model's SHA-256 " + std::string(64, 'a'));
@@ -320,16 +320,25 @@ TEST_F(ColonCadReport, NamesWhatAReaderMustKnow) {
     warned.findings.clear();
     warned.candidates.clear();
     warned.warnings = {"the sigmoid is collapsed", "Größe \\ 5 × 6"};
+    // What a reader must know is no failure; wall that was not looked at is.
+    EXPECT_EQ(named(written(warned), "CAD Processing and Findings Summary")->value,
+              "All algorithms succeeded; without findings");
+    warned.unexaminedMm2 = 250.0;
     const auto items = written(warned);
     EXPECT_EQ(named(items, "CAD Processing and Findings Summary")->value,
               "Not all algorithms succeeded; without findings");
     EXPECT_EQ(named(items, "Summary of Detections")->value, "Partially Succeeded");
-    const auto failed = below(items, "Failed Detections", 0);
-    std::vector<std::string> texts;
-    for (const Item& item : failed)
-        if (item.name == "Algorithm Parameters") texts.push_back(item.value);
-    EXPECT_EQ(texts, (std::vector<std::string>{"warning: the sigmoid is collapsed",
-                                               "warning: Größe \\ 5 × 6"}));
+    const auto parametersOf = [&](const char* detections) {
+        std::vector<std::string> texts;
+        for (const Item& item : below(items, detections, 0))
+            if (item.name == "Algorithm Parameters") texts.push_back(item.value);
+        return texts;
+    };
+    for (const std::string& warning : warned.warnings)
+        EXPECT_EQ(std::ranges::count(parametersOf("Successful Detections"), "warning: " + warning),
+                  1);
+    EXPECT_EQ(parametersOf("Failed Detections"),
+              std::vector<std::string>{"wall that was not examined: 250 mm2"});
     expectSound();
 }
 
