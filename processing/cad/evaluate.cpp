@@ -134,7 +134,7 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
             if (lesion.diameterMm < 6.0) continue;
             count(sum.from6Mm, hit);
             if (lesion.diameterMm >= 10.0) count(sum.from10Mm, hit);
-            count(lesion.coreHu < 5.0 ? sum.plain : sum.dense, hit);
+            if (lesion.coreHu) count(*lesion.coreHu < 5.0 ? sum.plain : sum.dense, hit);
             if (lesion.hidden())
                 count(sum.hidden, hit);
             else if (lesion.submerged())
@@ -156,7 +156,8 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
     if (!errors.empty()) {
         sum.diameterBias = bias / double(errors.size());
         std::sort(errors.begin(), errors.end());
-        sum.diameter95 = errors[std::size_t(0.95 * double(errors.size() - 1))];
+        // The least that 95 % of them do not exceed.
+        sum.diameter95 = errors[std::size_t(std::ceil(0.95 * double(errors.size()))) - 1];
     }
     return sum;
 }

@@ -2,9 +2,11 @@
 
 #include "cad/built_in_models.h"
 #include "cad/places.h"
+#include "core/printed_text.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -29,7 +31,10 @@ ModelJson numbers(const std::vector<float>& values, int digits = 7) {
 }
 
 constexpr int weightDigits = 5;  // thousands of weights: none matters so much
-constexpr int exactDigits = 9;   // neighbours stay apart, which a score's values must
+// Colours are 0 to 1, components unit vectors: what is greater comes from no training.
+constexpr float greatestTexture = 1e6f;
+constexpr std::size_t longestName = 200, longestDescription = 4000;
+constexpr int exactDigits = 9;  // neighbours stay apart, which a score's values must
 
 ModelJson jsonOf(const DenseLayer& layer) {
     return {{"inputs", layer.inputs},
@@ -37,10 +42,30 @@ ModelJson jsonOf(const DenseLayer& layer) {
             {"biases", numbers(layer.biases, weightDigits)}};
 }
 
+// A whole number, written as one.
+std::int64_t countIn(const ModelJson& json) {
+    if (!json.is_number_integer()) throw std::invalid_argument("a count is no whole number");
+    const auto count = json.get<std::int64_t>();
+    if (count < std::numeric_limits<std::int32_t>::min() ||
+        count > std::numeric_limits<std::int32_t>::max())
+        throw std::invalid_argument("a count is out of range");
+    return count;
+}
+
+// What is shown to people: one line, and not endless.
+std::string lineIn(const ModelJson& json, std::size_t longest) {
+    const auto line = json.get<std::string>();
+    if (line.size() > longest) throw std::invalid_argument("a text is too long");
+    if (std::ranges::any_of(line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+        throw std::invalid_argument("a text has control characters");
+    return line;
+}
+
 NeuralNetwork networkIn(const ModelJson& json) {
     NeuralNetwork network;
     for (const ModelJson& layer : json)
-        network.push_back({layer.at("inputs"), layer.at("weights").get<std::vector<float>>(),
+        network.push_back({std::int32_t(countIn(layer.at("inputs"))),
+                           layer.at("weights").get<std::vector<float>>(),
                            layer.at("biases").get<std::vector<float>>()});
     return network;
 }
@@ -75,6 +100,11 @@ TextureModel textureIn(const ModelJson& json) {
     texture.components = numbersIn(json.at("components"), count * textureSize);
     // No distance would tell a polyp's colours from the wall's.
     if (count == 0) throw std::invalid_argument("the texture has no component");
+    if (!(texture.threshold > 0.0 && texture.threshold < greatestTexture))
+        throw std::invalid_argument("the texture's threshold is no distance");
+    for (const auto* list : {&texture.polyp, &texture.mean, &texture.components})
+        if (!std::ranges::all_of(*list, [](float v) { return std::abs(v) < greatestTexture; }))
+            throw std::invalid_argument("a number of the texture is not finite, or too great");
     return texture;
 }
 
@@ -208,7 +238,11 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
     try {
         const ModelJson json = ModelJson::parse(text);
         if (json.at("haustra_cad_model").get<int>() != modelVersion)
-            return fail(ErrorKind::unsupported, "the model is of another version", place);
+            return fail(ErrorKind::unsupported,
+                        printed("the model is of version %d, and this program reads %d: it must be "
+                                "trained anew",
+                                json.at("haustra_cad_model").get<int>(), modelVersion),
+                        place);
         const ModelJson& names = json.at("features");
         bool same = names.size() == featureNames.size();
         for (std::size_t n = 0; same && n < featureNames.size(); ++n)
@@ -217,10 +251,12 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
             return fail(ErrorKind::unsupported, "the model weighs other features than this program",
                         place);
         CadModel model;
-        model.name = json.at("name"), model.trainedOn = json.at("trained_on");
+        model.name = lineIn(json.at("name"), longestName);
+        model.trainedOn = lineIn(json.at("trained_on"), longestDescription);
         model.trainingSha256 = json.at("training_sha256");
         model.trainingScans = json.at("training_scans").get<std::vector<std::string>>();
-        model.textureFrom = json.value("texture_from", std::string());
+        if (json.contains("texture_from"))
+            model.textureFrom = lineIn(json.at("texture_from"), longestName);
         model.operatingPoint = json.at("operating_point");
         model.calibrationA = json.at("calibration").at(0).get<double>();
         model.calibrationB = json.at("calibration").at(1).get<double>();
@@ -244,8 +280,8 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
                 if (node.is_number())
                     tree.push_back({-1, node.get<float>(), 0, 0});
                 else
-                    tree.push_back({node.at(0).get<std::int32_t>(), node.at(1).get<float>(), next,
-                                    node.at(2).get<std::int32_t>()});
+                    tree.push_back({std::int32_t(countIn(node.at(0))), node.at(1).get<float>(),
+                                    next, std::int32_t(countIn(node.at(2)))});
                 if (!node.is_number() && tree.back().feature < 0)
                     throw std::invalid_argument("a branch has no feature");
             }

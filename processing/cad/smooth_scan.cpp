@@ -134,10 +134,10 @@ SmoothScan::SmoothScan(const Volume<std::int16_t>& hu, glm::dvec3 lowMm, glm::dv
     VoxelBox box;
     box.lo = glm::ivec3(glm::clamp(glm::floor(lo) - 2.0, glm::dvec3(0.0), last));
     box.size = glm::ivec3(glm::clamp(glm::ceil(hi) + 2.0, glm::dvec3(0.0), last)) - box.lo + 1;
-    // A spline needs four coefficients along each axis.
     for (int axis = 0; axis < 3; ++axis) {
-        box.lo[axis] = std::max(0, std::min(box.lo[axis], grid.size[axis] - 4));
-        box.size[axis] = std::min(std::max(box.size[axis], 4), grid.size[axis] - box.lo[axis]);
+        box.lo[axis] = std::max(0, std::min(box.lo[axis], grid.size[axis] - leastVoxels));
+        box.size[axis] =
+            std::min(std::max(box.size[axis], leastVoxels), grid.size[axis] - box.lo[axis]);
     }
     std::array<std::vector<float>, 3> kernels;
     for (int axis = 0; axis < 3; ++axis) {

@@ -21,7 +21,11 @@ struct Derivatives {
 /// Immutable; any number of threads.
 class SmoothScan {
 public:
-    /// Of the part of the scan within `box` (with a margin of two voxels where the scan goes on).
+    /// A cubic spline has four coefficients around a place.
+    static constexpr int leastVoxels = 4;
+
+    /// Of the part of the scan between two corners, patient coordinates (with a margin of two
+    /// voxels where the scan goes on). The scan has `leastVoxels` along each axis at least.
     /// `sigmaMm` ≥ 0: of the Gaussian, along each axis. O(voxels · width).
     SmoothScan(const Volume<std::int16_t>& hu, glm::dvec3 lowMm, glm::dvec3 highMm, double sigmaMm,
                int threads);

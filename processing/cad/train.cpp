@@ -86,6 +86,16 @@ bool hasBoth(const std::vector<int>& truths) {
     return std::ranges::count(truths, 1) > 0 && std::ranges::count(truths, 0) > 0;
 }
 
+// What a part of the cases teaches: of the places that are weighed, whether there are polyps and
+// others among them.
+bool teaches(const std::vector<const TrainingCase*>& cases) {
+    std::vector<int> truths;
+    for (const TrainingCase* each : cases)
+        for (const Example& example : each->examples)
+            if (example.weighed) truths.push_back(example.polyp);
+    return hasBoth(truths);
+}
+
 // How probable a place of a score is, and the operating point, of candidates of case n that are
 // polyps with `probability(n, features)`; each case as it is then told.
 template <class Probability>
@@ -244,13 +254,19 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
 
     // The last have seen all cases, each others all but those of a fold.
     std::vector<Judges> judges(std::size_t(options.folds) + 1);
+    std::vector<std::vector<const TrainingCase*>> seen(judges.size());
+    for (std::size_t fold = 0; fold < judges.size(); ++fold) {
+        for (std::size_t n = 0; n < cases.size(); ++n)
+            if (foldOf(n) != fold || fold + 1 == judges.size()) seen[fold].push_back(all[n]);
+        if (!teaches(seen[fold]))
+            return fail(ErrorKind::badInput,
+                        "nothing can be learnt: all polyps, or all other places, are of the same "
+                        "few studies, and those without them have none to tell apart; more cases "
+                        "with polyps are needed");
+    }
     parallelFor(judges.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t fold = begin; fold < end; ++fold) {
-            std::vector<const TrainingCase*> seen;
-            for (std::size_t n = 0; n < cases.size(); ++n)
-                if (foldOf(n) != fold || fold + 1 == judges.size()) seen.push_back(all[n]);
-            judges[fold] = judgesOn(seen);
-        }
+        for (std::size_t fold = begin; fold < end; ++fold)
+            judges[fold] = judgesOn(seen[fold]);
     });
     // The trees by themselves first, the best of each place; then what places make of both.
     std::vector<double> sums;

@@ -52,7 +52,7 @@ Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::
             lesion.heightMm = read.value("height_mm", 0.0);
             lesion.kind = read.value("kind", "");
             lesion.neoplastic = read.value("neoplastic", true);
-            lesion.coreHu = read.value("core_hu", 0.0);
+            if (read.contains("core_hu")) lesion.coreHu = read.at("core_hu").get<double>();
             lesion.onFold = read.value("on_fold", false);
             lesion.submergedShare = read.value("submerged_share", 0.0);
             lesion.untaggedShare = read.value("untagged_share", 0.0);

@@ -18,7 +18,8 @@ struct TrueLesion {
     double heightMm = 0.0;
     std::string kind;        ///< "sessile", "pedunculated", "flat"; or "untagged_stool", "film" …
     bool neoplastic = true;  ///< else what detection must not be praised nor blamed for, or a mimic
-    double coreHu = 0.0;     ///< how much denser than the wall its inside is
+    /// How much denser than the wall its inside is, HU; empty: nobody has told.
+    std::optional<double> coreHu = {};
     bool onFold = false;
     double submergedShare = 0.0;  ///< of its height, under fluid
     double untaggedShare = 0.0;   ///< of its height, in fluid or stool without tagging

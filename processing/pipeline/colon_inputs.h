@@ -1,10 +1,14 @@
 // A prepared colon as detection reads it from a case.
 #pragma once
 
+#include "cad/smooth_scan.h"
 #include "cad/wall_evidence.h"
 #include "core/colon_record.h"
+#include "core/printed_text.h"
 #include "pipeline/product_attributes.h"
 #include "store/products.h"
+
+#include <algorithm>
 
 namespace haustra::pipeline {
 
@@ -31,12 +35,20 @@ struct ColonProducts {
     bool flatMap = true;    ///< else it is empty
 };
 
-/// From a StageCase or a store::Case. Fails where a product is missing or damaged.
+/// From a StageCase or a store::Case. Fails where a product is missing or damaged, or the scan has
+/// fewer voxels along an axis than derivatives ask for.
 template <class Source>
 Result<ColonInputs> readColon(Source& source, const ColonProducts& products) {
     namespace product = store::product;
     ColonInputs inputs;
     inputs.ct = TRY(source.template readVolume<std::int16_t>(product::ct));
+    const glm::ivec3 size = inputs.ct.grid().size;
+    if (std::min({size.x, size.y, size.z}) < cad::SmoothScan::leastVoxels)
+        return fail(ErrorKind::unsupported,
+                    printed("has %dx%dx%d voxels: what lies beneath the wall can be told from %d "
+                            "along each axis on",
+                            size.x, size.y, size.z, cad::SmoothScan::leastVoxels),
+                    product::ct);
     inputs.cleansed = TRY(source.template readVolume<std::int16_t>(
         products.cleansed ? product::cleansed : product::ct));
     inputs.lumen = TRY(source.template readVolume<std::uint8_t>(product::lumen));

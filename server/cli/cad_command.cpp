@@ -469,6 +469,11 @@ Result<void> runCalibrate(const CadArguments& arguments) {
     model.trainingSha256 = store::toHex(hash.finish());
     rememberAll(loaded, model.trainingScans);
     sayCurve("calibration", told, model, bar);
+    if (constexpr std::size_t some = 24; loaded.size() < some)
+        bar.say(
+            fmt::format("warning: {} case{} can tell little of how probable a place is, or how "
+                        "many false findings a scan has: calibrate on some dozens",
+                        loaded.size(), loaded.size() == 1 ? "" : "s"));
     return writeTextFile(arguments.model, cad::modelText(model));
 }
 

@@ -180,6 +180,8 @@ Command addExport(CLI::App& program) {
             belongs(option, {product::flatImage});
         for (const char* option : {"--length", "--around", "--finer", "--fixed-transfer"})
             belongs(option, {product::biopsy});
+        for (const char* option : {"--findings", "--least-probability"})
+            belongs(option, {product::flatImage});
         belongs("--threads", {product::biopsy, product::flatImage});
         if (!isReport(*arguments) && command->count("--series") > 0)
             throw CLI::ValidationError("--series", "is an option of findings as .dcm");

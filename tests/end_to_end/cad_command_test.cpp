@@ -2,6 +2,7 @@
 #include "ball_colon.h"
 #include "cad/model.h"
 #include "end_to_end/run_program.h"
+#include "nifti/nifti_file.h"
 #include "pipeline/product_attributes.h"
 #include "store/case_store.h"
 
@@ -317,6 +318,49 @@ TEST_F(CadCommand, WhatTellsNothingApartIsNoModel) {
     EXPECT_EQ(learnt.exitCode, 1);
     EXPECT_NE(learnt.err.find("nothing was learnt"), std::string::npos) << learnt.err;
     EXPECT_FALSE(fs::exists(model));
+}
+
+TEST_F(CadCommand, PolypsOfOneStudyAloneTeachNothing) {
+    const TemporaryFolder out;
+    for (int n = 0; n < 6; ++n)
+        writeText(out.path() / name(n) / "growths.json",
+                  n == 0 ? fileContent(fs::path(truth()) / name(n) / "truth" / "growths.json")
+                         : R"({"growths": []})");
+    Arguments arguments = training();
+    arguments.back() = out.path();
+    const auto learnt = haustra(with(arguments, {"--model", out.path() / "model.json"}));
+    EXPECT_EQ(learnt.exitCode, 1);
+    EXPECT_NE(learnt.err.find("of the same few studies"), std::string::npos) << learnt.err;
+    EXPECT_FALSE(fs::exists(out.path() / "model.json"));
+}
+
+TEST(ThinScan, IsRefusedInOneSentenceAndKeepsWhatWasMade) {
+    const TemporaryFolder folder;
+    const Grid grid = axisAlignedGrid({80, 40, 3}, glm::dvec3(1.0), {-40, -20, 0});
+    Volume<std::int16_t> hu(grid);
+    Volume<std::uint8_t> mask(grid);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        const bool bump = glm::distance(glm::dvec2(v), glm::dvec2(40, 15)) < 4.0;
+        const bool inside = v.x >= 8 && v.x < 72 && std::abs(v.y - 20) <= 5 && v.z == 1 && !bump;
+        mask.writable()[n] = inside;
+        hu.writable()[n] = inside ? -1000 : std::int16_t(30 + n % 20);
+    }
+    ASSERT_TRUE(nifti::writeNifti(folder.path() / "scan.nii", hu));
+    ASSERT_TRUE(nifti::writeNifti(folder.path() / "mask.nii", mask));
+    const std::string store = folder.path() / "store";
+    const auto prepared = haustra({"prepare", folder.path() / "scan.nii", "--lumen",
+                                   folder.path() / "mask.nii", "--store", store, "--case", "thin"});
+    EXPECT_EQ(prepared.exitCode, 1);
+    EXPECT_NE(prepared.err.find("80x40x3 voxels"), std::string::npos) << prepared.err;
+    EXPECT_EQ(
+        haustra({"export", "thin", "surface", folder.path() / "s.ply", "--store", store}).exitCode,
+        0);
+    const auto biopsy =
+        haustra({"export", "thin", "biopsy", folder.path() / "b.png", "--store", store});
+    EXPECT_EQ(biopsy.exitCode, 1);
+    EXPECT_NE(biopsy.err.find("80x40x3 voxels"), std::string::npos) << biopsy.err;
+    EXPECT_FALSE(fs::exists(folder.path() / "b.png"));
 }
 
 TEST_F(CadCommand, DrawsItsCurve) {

@@ -54,6 +54,8 @@ TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
              {"prepare", "--store", "s", "--lumen", "m.nii", "--until", "import"},
              {"export", "c", "ct", "file.csv", "--store", "s"},
              {"export", "c", "centerline", "file.nii.gz", "--store", "s"},
+             {"export", "c", "biopsy", "file.png", "--store", "s", "--findings"},
+             {"export", "c", "findings", "f.json", "--store", "s", "--least-probability", "0.3"},
              {"export", "c", "lungs", "file.nii.gz", "--store", "s"},
              {"export", "c", "flatmap", "file.off", "--store", "s"},
              {"render", "c", "--store", "s", "--out", "x.png"},

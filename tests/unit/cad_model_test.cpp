@@ -252,15 +252,24 @@ TEST(Model, WhatIsNoneIsRefused) {
     none.polyp.clear(), none.components.clear();
     EXPECT_FALSE(cad::textureOfText(cad::textureText(none), "t.json"));
     for (const std::string& text :
-         {std::string(), std::string("[]"), sound.substr(0, sound.size() - 40),
+         {std::string(),
+          std::string("[]"),
+          sound.substr(0, sound.size() - 40),
           with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
-          with("diameter_mm", "weight_kg"), with("\"trees\": [\n[[", "\"trees\": [\n[[99,0.5,1],["),
+          with("diameter_mm", "weight_kg"),
+          with("\"trees\": [\n[[", "\"trees\": [\n[[99,0.5,1],["),
           with("\"trees\": [\n[[", "\"trees\": [\n[[1,0.5,0],["),
           with("\"polyp\":[", "\"polyp\":[0,"),
           with("\"operating_point\": ", "\"operating_point\": 2"),
           with("\"calibration\": [", "\"calibration\": [0.5,-"),
           with("\"place_calibration\": [", "\"place_calibration\": [0.5,-"),
           with("\"networks\": [", "\"networks\": [[],"),
+          with("\"threshold\":", "\"threshold\":-1,\"x\":"),
+          with("\"mean\":[", "\"mean\":[1e300,"),
+          with("\"inputs\":", "\"inputs\":0.5,\"x\":"),
+          with("\"name\": \"", "\"name\": \"a\\nwarning: b"),
+          with("\"name\": \"", "\"name\": \"" + std::string(300, 'a')),
+          with("\"trees\": [\n[[", "\"trees\": [\n[[0.9,0.5,2],["),
           with("\"scores\": [", "\"scores\": [[[1.0],[1.0]],"),
           with("\"training_scans\": ", "\"training_scans\": 7, \"x\": ")})
         EXPECT_FALSE(cad::modelOfText(text, "m.json")) << text.substr(0, 60);
@@ -577,6 +586,9 @@ TEST(Evaluation, CountsWhatItSays) {
     EXPECT_EQ(sum.falseKinds.at("fold"), 1);
     EXPECT_EQ(sum.falseKinds.at("lump"), 1);
     EXPECT_DOUBLE_EQ(sum.diameterMean, 0.5);
+    EXPECT_DOUBLE_EQ(sum.diameter95, 0.5);
+    const cad::Evaluation both = cad::evaluate({&a}, 0.2);
+    EXPECT_GE(both.diameter95, both.diameterMean);
     EXPECT_EQ(cad::evaluate({&a}, 0.2).from6Mm.hit, 2);
 }
 
@@ -595,6 +607,18 @@ TEST(Evaluation, CountsWhatResidueCoatsApartFromWhatIsUnderFluid) {
     EXPECT_EQ(sum.submerged.hit, 0);
     EXPECT_EQ(sum.hidden.of, 2) << "under water, which shows nothing, and apart";
     EXPECT_EQ(sum.hidden.hit, 1);
+}
+
+TEST(Evaluation, CountsADensityOnlyWhereTheTruthTellsIt) {
+    cad::TrueLesion plain, dense, unknown;
+    for (cad::TrueLesion* each : {&plain, &dense, &unknown})
+        each->diameterMm = 8.0;
+    plain.coreHu = 0.0, dense.coreHu = 22.0;
+    const cad::EvaluatedCase a{"a", "", {plain, dense, unknown}, {}};
+    const cad::Evaluation sum = cad::evaluate({&a}, 0.5);
+    EXPECT_EQ(sum.from6Mm.of, 3);
+    EXPECT_EQ(sum.plain.of, 1);
+    EXPECT_EQ(sum.dense.of, 1);
 }
 
 TEST(Evaluation, TheFrocCurveRisesAndItsBandsHoldIt) {
