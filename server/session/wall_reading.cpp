@@ -125,21 +125,24 @@ void WallReading::startPainting() {
             if (gazes) work->mark(*gazes);
             return work->paint(choice, detection, *seen);
         });
-        postTo(io, weak, [number, paint = std::move(paint)](WallReading& self) mutable {
-            self.painted(number, std::move(paint));
+        postTo(io, weak, [number, detection, paint = std::move(paint)](WallReading& self) mutable {
+            self.painted(number, detection, std::move(paint));
         });
     });
 }
 
-void WallReading::painted(std::uint64_t number, Result<Paint> paint) {
+void WallReading::painted(std::uint64_t number, const DetectionChoice& detection,
+                          Result<Paint> paint) {
     isPainting_ = false;
     if (!paint) {
         spdlog::error("a wall cannot be painted: {}", paint.error().message);
         gazesAreNew_ = true;
-        paint = paint_;  // so that its views are drawn
+        // So that its views are drawn; but never findings that the reader now is not to see.
+        paint = paintedBy_ == detection ? paint_ : nullptr;
     }
     if (number >= chosen_ && paints()) {
         paint_ = std::move(*paint);
+        paintedBy_ = detection;
         ready_ = true;
         outlet_.painted();
     }

@@ -80,7 +80,7 @@ private:
     void keep(const records::Bookmark& bookmark);
     void repaint();
     void startPainting();
-    void painted(std::uint64_t number, Result<Paint> paint);
+    void painted(std::uint64_t number, const DetectionChoice& detection, Result<Paint> paint);
     void heard(const SeenLedger& of, const SeenLedger::Told& told);
 
     asio::any_io_executor io_;
@@ -95,8 +95,9 @@ private:
     bool gazesAreNew_ = false;  // to work_
     bool ready_ = true;
     Paint paint_;
-    std::uint64_t wanted_ = 0;  // counts what changed the paint; the newest is to be shown
-    std::uint64_t chosen_ = 0;  // its number when the newest choice was made
+    DetectionChoice paintedBy_;  ///< what paint_ shows of findings
+    std::uint64_t wanted_ = 0;   // counts what changed the paint; the newest is to be shown
+    std::uint64_t chosen_ = 0;   // its number when the newest choice was made
     bool isPainting_ = false, paintAgain_ = false;
 
     std::shared_ptr<SeenLedger> ledger_;
