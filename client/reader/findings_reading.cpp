@@ -63,8 +63,10 @@ const ListedFinding* FindingsReading::next(int step, double arcMm) const {
     const ListedFinding* found = nullptr;
     double nearest = INFINITY;
     for (const ListedFinding& one : all) {
+        // One right here has not been gone to: it comes first, of several the first on the way.
         const double ahead = step * (one.wall.arcMm - arcMm);
-        if (ahead > sameArcMm && ahead < nearest) nearest = ahead, found = &one;
+        const bool nearer = step > 0 ? ahead < nearest : ahead <= nearest;
+        if (ahead > -sameArcMm && nearer) nearest = ahead, found = &one;
     }
     return found;
 }

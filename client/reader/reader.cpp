@@ -179,6 +179,14 @@ void Reader::goTo(glm::dvec3 placeMm, std::optional<View> plane) {
     slices_.show(placeMm, flight_.camera().positionMm, plane);
 }
 
+std::vector<PlaceRuler> Reader::shownRulers() const {
+    std::vector<PlaceRuler> shown = rulers_.rulers();
+    std::erase_if(shown, [&](const PlaceRuler& ruler) {
+        return ruler.finding > 0 && !findings_.find(ruler.finding);
+    });
+    return shown;
+}
+
 void Reader::goTo(const ListedFinding& finding) {
     if (!case_) return;
     findings_.setCurrent(finding.number);

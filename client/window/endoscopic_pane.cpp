@@ -66,7 +66,7 @@ void EndoscopicPane::paintMarks(QPainter& painter) {
 
 // Of what is far away the wall hides most, and a length says little.
 void EndoscopicPane::paintRulers(QPainter& painter) {
-    constexpr double farMm = 80.0;
+    constexpr double farMm = 40.0;
     const Camera camera = shownCamera();
     const auto positionOf = [&](glm::dvec3 placeMm) -> std::optional<QPointF> {
         if (glm::distance(camera.positionMm, placeMm) > farMm) return std::nullopt;
@@ -75,7 +75,7 @@ void EndoscopicPane::paintRulers(QPainter& painter) {
         return pictureArea().center() + pictureArea().height() * point(*seen);
     };
     painter.setFont(font());
-    for (const reader::PlaceRuler& ruler : reader().rulers().rulers()) {
+    for (const reader::PlaceRuler& ruler : reader().shownRulers()) {
         const auto from = positionOf(ruler.from.positionMm), to = positionOf(ruler.to.positionMm);
         if (from && to && (rect().contains(from->toPoint()) || rect().contains(to->toPoint())))
             paintRuler(painter, rect(), *from, *to, false, textOf(ruler));

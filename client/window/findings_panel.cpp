@@ -9,6 +9,7 @@
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QLabel>
+#include <QPlainTextEdit>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSettings>
@@ -128,35 +129,42 @@ FindingsPanel::FindingsPanel(Reading& reading)
       mode_(new QComboBox),
       firstPass_(new QPushButton(tr("First reading done: show findings"))),
       measure_(new QPushButton(tr("Measure"))),
-      candidates_(new QCheckBox(tr("less probable ones, from"))),
+      candidates_(new QCheckBox(tr("also those from"))),
       least_(new QSpinBox),
       list_(new QTreeWidget),
       state_(new QLabel),
-      origin_(new QLabel) {
+      notes_(new QPlainTextEdit) {
     for (const DetectionMode mode : modes)
         mode_->addItem(nameOf(mode));
     mode_->setAccessibleName(tr("When findings are shown"));
     mode_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     candidates_->setToolTip(tr("Places that scored below the operating point, in another colour"));
     measure_->setToolTip(tr("The finding's largest diameter, as a ruler in all views"));
-    origin_->setFont(smallFont(font()));
     least_->setRange(0, 100);
     least_->setValue(30);
     least_->setSuffix(tr(" %"));
     least_->setAccessibleName(tr("Least probability of less probable findings"));
     list_->setAccessibleName(tr("Findings along the colon"));
     list_->setColumnCount(5);
-    list_->setHeaderLabels({tr("No."), tr("mm"), tr("Segment"), tr("Size"), tr("Probability")});
+    list_->setHeaderLabels({tr("No."), tr("mm"), tr("Segment"), tr("Size"), tr("Prob.")});
+    list_->headerItem()->setToolTip(1, toolTipOf(tr("From the rectum")));
+    list_->headerItem()->setToolTip(4, toolTipOf(tr("Probability")));
     list_->setRootIsDecorated(false);
     list_->setAllColumnsShowFocus(true);
     for (int column = 0; column < 5; ++column)
         list_->header()->setSectionResizeMode(
             column, column == 2 ? QHeaderView::Stretch : QHeaderView::ResizeToContents);
     list_->header()->setStretchLastSection(false);
-    for (QLabel* label : {state_, origin_}) {
-        label->setWordWrap(true);
-        label->setTextFormat(Qt::PlainText);
-    }
+    state_->setWordWrap(true);
+    state_->setTextFormat(Qt::PlainText);
+    // However much there is to say of them, the list stays in sight.
+    constexpr int noteLines = 3;
+    notes_->setReadOnly(true);
+    notes_->setTabChangesFocus(true);
+    notes_->setFont(smallFont(font()));
+    notes_->setAccessibleName(tr("What must be known of the findings"));
+    notes_->setFixedHeight(noteLines * QFontMetrics(notes_->font()).lineSpacing() +
+                           2 * int(notes_->document()->documentMargin() + notes_->frameWidth()));
     // Some of them are in sight, however low the panel is.
     constexpr int leastRows = 5;
     list_->setMinimumHeight(leastRows * (QFontMetrics(list_->font()).height() + 6));
@@ -184,7 +192,7 @@ FindingsPanel::FindingsPanel(Reading& reading)
     column->addLayout(row);
     column->addLayout(said);
     column->addWidget(list_, 1);
-    column->addWidget(origin_);
+    column->addWidget(notes_);
     connect(mode_, &QComboBox::activated, this,
             [this](int n) { chooseDetection(reading_, modes[n]); });
     connect(firstPass_, &QPushButton::clicked, this, [this] { finishFirstPass(reading_); });
@@ -272,8 +280,9 @@ void FindingsPanel::fill() {
     }
     shownCurrent_ = 0;
     state_->setText(stateText());
-    origin_->setText(originText());
-    origin_->setVisible(!origin_->text().isEmpty());
+    const QString notes = notesText();
+    if (notes_->toPlainText() != notes) notes_->setPlainText(notes);
+    notes_->setVisible(!notes.isEmpty());
 }
 
 void FindingsPanel::markCurrent() {
@@ -300,18 +309,18 @@ QString FindingsPanel::stateText() const {
     if (!choice.shows()) return tr("Findings are shown once the first reading is done.");
     const auto& list = session.findings();
     if (!list || list->state != reader::FindingList::State::shown) return tr("asking…");
-    QStringList lines{tr("%n place(s) to judge", nullptr, int(list->findings.size()))};
-    for (const std::string& warning : list->warnings)
-        lines += text(warning);
-    return lines.join('\n');
+    return tr("%n place(s) to judge", nullptr, int(list->findings.size()));
 }
 
-QString FindingsPanel::originText() const {
+QString FindingsPanel::notesText() const {
     const auto& list = reading_.reader().session().findings();
     if (!list || list->model.empty()) return {};
-    return tr("For a physician to judge. Found by %1, which has learnt from: %2. Operating point "
-              "%3.")
-        .arg(text(list->model), text(list->trainedOn), percent(list->operatingPoint));
+    QStringList lines{tr("For a physician to judge.")};
+    for (const std::string& warning : list->warnings)
+        lines += text(warning);
+    lines += tr("Found by %1, which has learnt from: %2. Operating point %3.")
+                 .arg(text(list->model), text(list->trainedOn), percent(list->operatingPoint));
+    return lines.join('\n');
 }
 
 }  // namespace haustra::window

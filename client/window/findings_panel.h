@@ -8,6 +8,7 @@
 class QCheckBox;
 class QComboBox;
 class QLabel;
+class QPlainTextEdit;
 class QPushButton;
 class QSpinBox;
 class QTreeWidget;
@@ -31,7 +32,7 @@ private:
     void markCurrent();
     void goTo(int number);
     QString stateText() const;
-    QString originText() const;
+    QString notesText() const;
 
     Reading& reading_;
     QComboBox* mode_;
@@ -39,7 +40,8 @@ private:
     QCheckBox* candidates_;
     QSpinBox* least_;
     QTreeWidget* list_;
-    QLabel *state_, *origin_;
+    QLabel* state_;
+    QPlainTextEdit* notes_;
     std::uint64_t shownRevision_ = 0;  // of the session's findings
     DetectionChoice shownChoice_;
     int shownCurrent_ = 0;

@@ -75,23 +75,20 @@ void paintPlaces(QPainter& painter, const reader::Reader& reader, const FlatArea
         flat.forEachCopy(*picked->wall->flat, [&](QPointF p) { paintPlaceMark(painter, p); });
 }
 
-// Findings by their numbers, and rulers whose ends lie on the wall, by the shorter way round.
+// Where findings are. A conformal map has no scale of its own to draw their sizes by: how far one
+// reaches its colour shows.
 void paintFindings(QPainter& painter, const reader::Reader& reader, const FlatArea& flat) {
-    const double mm =
-        flat.pixels() * flat.window.pixelsPerUnit / reader.flat().tour().strip().circumferenceMm;
-    constexpr double leastPixels = 5.0;
+    constexpr double ringPixels = 7.0;
+    FindingRings rings(painter, flat.area);
     for (const reader::ListedFinding& one : reader.findings().shown())
         if (one.wall.flat)
-            flat.forEachCopy(*one.wall.flat, [&](QPointF p) {
-                paintFindingRing(painter, p,
-                                 std::max(leastPixels, 0.5 * one.finding.diameterMm * mm + 4.0),
-                                 one);
-            });
+            flat.forEachCopy(*one.wall.flat, [&](QPointF p) { rings.paint(p, ringPixels, one); });
 }
 
+// Rulers whose ends lie on the wall, by the shorter way round.
 void paintRulers(QPainter& painter, const reader::Reader& reader, const FlatArea& flat,
                  bool withText) {
-    for (const reader::PlaceRuler& ruler : reader.rulers().rulers()) {
+    for (const reader::PlaceRuler& ruler : reader.shownRulers()) {
         if (!ruler.from.flat || !ruler.to.flat) continue;
         glm::dvec2 way = *ruler.to.flat - *ruler.from.flat;
         way.x -= std::round(way.x);

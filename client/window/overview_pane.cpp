@@ -24,6 +24,7 @@ void OverviewPane::addShown(Shown& shown) const {
         shown.add(pictured->camera);
     shown.add(double(reader().session().bookmarksRevision()));
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
+    addRulersAndFindings(shown);
 }
 
 QPointF OverviewPane::positionOf(const Camera& from, glm::dvec3 mm) const {
@@ -69,6 +70,11 @@ void OverviewPane::paintMarks(QPainter& painter) {
             const double radius = under_ == n ? 6.0 : 4.5;
             painter.drawEllipse(p, radius, radius);
         }
+        painter.setFont(smallFont(font()));
+        constexpr double ringPixels = 5.0;
+        FindingRings rings(painter, rect());
+        for (const reader::ListedFinding& one : reader().findings().shown())
+            rings.paint(positionOf(from, one.finding.positionMm), ringPixels, one);
         paintReader(painter, from);
         if (const auto& picked = reader().flat().picked())
             paintPlaceMark(painter, positionOf(from, picked->positionMm));

@@ -162,7 +162,7 @@ void Pane::paintEvent(QPaintEvent*) {
 }
 
 void Pane::addRulersAndFindings(Shown& shown) const {
-    for (const reader::PlaceRuler& ruler : reader().rulers().rulers()) {
+    for (const reader::PlaceRuler& ruler : reader().shownRulers()) {
         for (const reader::PlaceRuler::End* end : {&ruler.from, &ruler.to}) {
             shown.add(end->positionMm);
             shown.add(end->flat ? end->flat->x : -1.0);
@@ -174,7 +174,7 @@ void Pane::addRulersAndFindings(Shown& shown) const {
 }
 
 QString Pane::rulerInWords() const {
-    const auto& rulers = reader().rulers().rulers();
+    const auto rulers = reader().shownRulers();
     return rulers.empty() ? QString() : QStringLiteral(", ") + textOf(rulers.back());
 }
 
@@ -570,8 +570,8 @@ QString textOf(const reader::PlaceRuler& ruler) {
     return ruler.finding > 0 ? Pane::tr("finding %1: %2").arg(ruler.finding).arg(length) : length;
 }
 
-void paintFindingRing(QPainter& painter, QPointF middle, double radius,
-                      const reader::ListedFinding& finding) {
+void FindingRings::paint(QPointF middle, double radius, const reader::ListedFinding& finding) {
+    QPainter& painter = painter_;
     const QColor color = finding.candidate ? theme().dimOnPicture : theme().accentOnPicture;
     painter.setBrush(Qt::NoBrush);
     painter.setPen(QPen(theme().outline, 3.0));
@@ -579,8 +579,21 @@ void paintFindingRing(QPainter& painter, QPointF middle, double radius,
     painter.setPen(
         QPen(color, 1.3 * theme().lineWidth, finding.candidate ? Qt::DashLine : Qt::SolidLine));
     painter.drawEllipse(middle, radius, radius);
-    outlinedText(painter, middle + QPointF(0.75 * radius + 3, -0.75 * radius),
-                 Qt::AlignLeft | Qt::AlignBottom, color, QString::number(finding.number));
+    const QString number = QString::number(finding.number);
+    const QFontMetricsF metrics(painter.font());
+    const QSizeF size(metrics.horizontalAdvance(number), metrics.height());
+    for (const QPointF way : {QPointF(1, -1), QPointF(1, 1), QPointF(-1, 1), QPointF(-1, -1)}) {
+        const QPointF corner = middle + 0.75 * radius * way + QPointF(3 * way.x(), 0);
+        const QRectF box(
+            corner - QPointF(way.x() < 0 ? size.width() : 0.0, way.y() < 0 ? size.height() : 0.0),
+            size);
+        const bool lies = std::ranges::any_of(
+            numbers_, [&](const QRectF& other) { return other.intersects(box); });
+        if (lies || !area_.contains(box)) continue;
+        numbers_.push_back(box);
+        outlinedText(painter, box.topLeft(), Qt::AlignLeft | Qt::AlignTop, color, number);
+        return;
+    }
 }
 
 void paintBookmarkFlag(QPainter& painter, QPointF foot) {

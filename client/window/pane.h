@@ -193,9 +193,19 @@ void paintRuler(QPainter& painter, const QRectF& area, QPointF from, QPointF to,
                 const QString& text);
 /// "8.2 mm", of a finding's diameter with its number.
 QString textOf(const reader::PlaceRuler& ruler);
-/// A finding's ring, with its number beside it.
-void paintFindingRing(QPainter& painter, QPointF middle, double radius,
-                      const reader::ListedFinding& finding);
+/// Rings of a picture's findings, each with its number beside it: at the first corner where it lies
+/// on no other number, and nowhere where there is none.
+class FindingRings {
+public:
+    /// Numbers stay within `area`.
+    FindingRings(QPainter& painter, const QRectF& area) : painter_(painter), area_(area) {}
+    void paint(QPointF middle, double radius, const reader::ListedFinding& finding);
+
+private:
+    QPainter& painter_;
+    QRectF area_;
+    std::vector<QRectF> numbers_;
+};
 /// The letters of the patient's sides at the picture's edges, for its directions right and up.
 void paintSides(QPainter& painter, const QRectF& area, glm::dvec3 right, glm::dvec3 up);
 /// A bar of a round length, at the picture's lower right; returns its top.

@@ -69,8 +69,7 @@ QString GreyPane::inWords() const {
 
 void GreyPane::fillMenu(QMenu& menu) {
     menu.addAction(tr("Clear rulers and ellipses"), this, [this] { reading().clearMeasures(); })
-        ->setEnabled(!reader().measures().measures().empty() ||
-                     !reader().rulers().rulers().empty());
+        ->setEnabled(!reader().measures().measures().empty() || !reader().shownRulers().empty());
 }
 
 void GreyPane::addShown(Shown& shown) const {
@@ -221,7 +220,7 @@ void GreyPane::paintRulers(QPainter& painter, const SlicePlacement& placement) {
     constexpr double nearMm = 5.0;
     const glm::dvec3 normal = placement.normal();
     const auto above = [&](glm::dvec3 mm) { return glm::dot(mm - placement.topLeftMm, normal); };
-    for (const reader::PlaceRuler& ruler : reader().rulers().rulers()) {
+    for (const reader::PlaceRuler& ruler : reader().shownRulers()) {
         const double from = above(ruler.from.positionMm), to = above(ruler.to.positionMm);
         if (std::min(from, to) > nearMm || std::max(from, to) < -nearMm) continue;
         const bool lies =
@@ -236,6 +235,7 @@ void GreyPane::paintRulers(QPainter& painter, const SlicePlacement& placement) {
 
 // Where the plane passes through a finding, a ring around its section as of a ball.
 void GreyPane::paintFindings(QPainter& painter, const SlicePlacement& placement) {
+    FindingRings rings(painter, rect());
     for (const reader::ListedFinding& one : reader().findings().shown()) {
         const double aside =
             std::abs(glm::dot(one.finding.positionMm - placement.topLeftMm, placement.normal()));
@@ -243,8 +243,8 @@ void GreyPane::paintFindings(QPainter& painter, const SlicePlacement& placement)
         const double radiusMm = 0.5 * one.finding.diameterMm + aroundMm;
         if (aside >= radiusMm) continue;
         const double sectionMm = std::sqrt(radiusMm * radiusMm - aside * aside);
-        paintFindingRing(painter, positionOf(placement, one.finding.positionMm),
-                         sectionMm / placement.pixelMm() * widgetPerPixel(), one);
+        rings.paint(positionOf(placement, one.finding.positionMm),
+                    sectionMm / placement.pixelMm() * widgetPerPixel(), one);
     }
 }
 

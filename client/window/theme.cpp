@@ -148,10 +148,13 @@ void applyTheme(QApplication& application, const QString& name) {
             "}"
             "QToolButton#qt_toolbar_ext_button { background: %2; border-color: %6; }"
             "QToolButton:focus { border: 2px solid %6; padding: 2px 4px; }"
-            "QPushButton:focus { border: 2px solid %6; border-radius: 3px; padding: 3px 8px; }")
+            "QPushButton:focus { border: 2px solid %6; border-radius: 3px; padding: 3px 8px; }"
+            "QCheckBox::indicator { width: 11px; height: 11px; border: 1px solid %9; "
+            "background: %4; }"
+            "QCheckBox::indicator:checked { background: %5; border: 1px solid %1; }")
             .arg(t.text.name(), t.raised.name(), t.border.name(), t.window.name(), t.accent.name(),
                  t.name == QStringLiteral("dark") ? t.accentOnPicture.name() : t.accent.name(),
-                 t.accentText.name(), t.muted.darker(130).name()));
+                 t.accentText.name(), t.muted.darker(130).name(), t.muted.name()));
 }
 
 }  // namespace haustra::window

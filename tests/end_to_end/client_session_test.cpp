@@ -258,6 +258,10 @@ TEST_F(ClientSession, FindingsComeWhenTheModeShowsThemAndAgainAfterALostLink) {
     // From one to the next, also of those at one arc.
     EXPECT_EQ(findings.next(1, 0.0)->number, 1);
     EXPECT_EQ(findings.next(-1, 0.0), nullptr);
+    // Whoever flew there has not been led there.
+    const double firstArcMm = findings.shown()[0].wall.arcMm;
+    EXPECT_EQ(findings.next(1, firstArcMm)->number, 1);
+    EXPECT_EQ(findings.next(-1, firstArcMm)->number, 1);
     findings.setCurrent(3);
     EXPECT_EQ(findings.next(1, findings.current()->wall.arcMm)->number, 2);
     EXPECT_EQ(findings.next(-1, findings.current()->wall.arcMm)->number, 1);

@@ -29,6 +29,7 @@
 #include <QLineEdit>
 #include <QMenuBar>
 #include <QMimeData>
+#include <QPlainTextEdit>
 #include <QPointer>
 #include <QPushButton>
 #include <QSettings>
@@ -299,6 +300,8 @@ protected:
     bool notices(const QString& part) {
         for (QLabel* label : window_->findChildren<QLabel*>())
             if (label->isVisible() && label->text().contains(part)) return true;
+        for (QPlainTextEdit* notes : window_->findChildren<QPlainTextEdit*>())
+            if (notes->isVisible() && notes->toPlainText().contains(part)) return true;
         return false;
     }
 
@@ -1588,7 +1591,7 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     auto& least =
         *named<QAbstractSpinBox>(QStringLiteral("Least probability of less probable findings"));
     for (auto* box : window_->findChildren<QCheckBox*>())
-        if (box->text().startsWith(QStringLiteral("less probable"))) box->click();
+        if (box->text().startsWith(QStringLiteral("also those"))) box->click();
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 3; }));
     EXPECT_EQ(list.topLevelItem(1)->text(0), QStringLiteral("3"));
     EXPECT_TRUE(least.isEnabled());

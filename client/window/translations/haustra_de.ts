@@ -1050,8 +1050,8 @@
         <translation>Eigene Befundung beendet: Befunde zeigen</translation>
     </message>
     <message>
-        <source>less probable ones, from</source>
-        <translation>weniger wahrscheinliche, ab</translation>
+        <source>also those from</source>
+        <translation>auch solche ab</translation>
     </message>
     <message>
         <source>When findings are shown</source>
@@ -1090,8 +1090,20 @@
         <translation>Größe</translation>
     </message>
     <message>
+        <source>Prob.</source>
+        <translation>Wahrsch.</translation>
+    </message>
+    <message>
+        <source>From the rectum</source>
+        <translation>Vom Rektum an</translation>
+    </message>
+    <message>
         <source>Probability</source>
         <translation>Wahrscheinlichkeit</translation>
+    </message>
+    <message>
+        <source>What must be known of the findings</source>
+        <translation>Was man von den Befunden wissen muss</translation>
     </message>
     <message>
         <source>%1 mm</source>
@@ -1125,8 +1137,12 @@
         </translation>
     </message>
     <message>
-        <source>For a physician to judge. Found by %1, which has learnt from: %2. Operating point %3.</source>
-        <translation>Vom Arzt zu beurteilen. Gefunden von %1, das gelernt hat aus: %2. Arbeitspunkt %3.</translation>
+        <source>For a physician to judge.</source>
+        <translation>Vom Arzt zu beurteilen.</translation>
+    </message>
+    <message>
+        <source>Found by %1, which has learnt from: %2. Operating point %3.</source>
+        <translation>Gefunden von %1, das gelernt hat aus: %2. Arbeitspunkt %3.</translation>
     </message>
     <message>
         <source>This server cannot show findings.</source>
