@@ -165,7 +165,8 @@ FindingsPanel::FindingsPanel(Reading& reading)
     notes_->setAccessibleName(tr("What must be known of the findings"));
     notes_->setFixedHeight(noteLines * QFontMetrics(notes_->font()).lineSpacing() +
                            2 * int(notes_->document()->documentMargin() + notes_->frameWidth()));
-    // Some of them are in sight, however low the panel is.
+    // It takes what is left; some findings are in sight, however low the panel is.
+    list_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
     constexpr int leastRows = 5;
     list_->setMinimumHeight(leastRows * (QFontMetrics(list_->font()).height() + 6));
     auto* row = new QHBoxLayout;
