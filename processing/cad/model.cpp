@@ -33,7 +33,6 @@ ModelJson numbers(const std::vector<float>& values, int digits = 7) {
 constexpr int weightDigits = 5;  // thousands of weights: none matters so much
 // Colours are 0 to 1, components unit vectors: what is greater comes from no training.
 constexpr float greatestTexture = 1e6f;
-constexpr std::size_t longestName = 200, longestDescription = 4000;
 constexpr int exactDigits = 9;  // neighbours stay apart, which a score's values must
 
 ModelJson jsonOf(const DenseLayer& layer) {
@@ -52,12 +51,10 @@ std::int64_t countIn(const ModelJson& json) {
     return count;
 }
 
-// What is shown to people: one line, and not endless.
 std::string lineIn(const ModelJson& json, std::size_t longest) {
     const auto line = json.get<std::string>();
-    if (line.size() > longest) throw std::invalid_argument("a text is too long");
-    if (std::ranges::any_of(line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
-        throw std::invalid_argument("a text has control characters");
+    if (!isModelLine(line, longest))
+        throw std::invalid_argument("a text is too long, or has control characters");
     return line;
 }
 
@@ -109,6 +106,11 @@ TextureModel textureIn(const ModelJson& json) {
 }
 
 }  // namespace
+
+bool isModelLine(std::string_view text, std::size_t longest) {
+    return text.size() <= longest &&
+           std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+}
 
 std::string textureText(const TextureModel& texture) {
     return jsonOf(texture).dump() + "\n";
@@ -251,12 +253,12 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
             return fail(ErrorKind::unsupported, "the model weighs other features than this program",
                         place);
         CadModel model;
-        model.name = lineIn(json.at("name"), longestName);
-        model.trainedOn = lineIn(json.at("trained_on"), longestDescription);
+        model.name = lineIn(json.at("name"), longestModelName);
+        model.trainedOn = lineIn(json.at("trained_on"), longestModelDescription);
         model.trainingSha256 = json.at("training_sha256");
         model.trainingScans = json.at("training_scans").get<std::vector<std::string>>();
         if (json.contains("texture_from"))
-            model.textureFrom = lineIn(json.at("texture_from"), longestName);
+            model.textureFrom = lineIn(json.at("texture_from"), longestModelName);
         model.operatingPoint = json.at("operating_point");
         model.calibrationA = json.at("calibration").at(0).get<double>();
         model.calibrationB = json.at("calibration").at(1).get<double>();

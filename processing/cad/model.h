@@ -26,9 +26,14 @@ struct ShapeThresholds {
     bool pass(const FeatureVector& features) const;
 };
 
+/// What is shown of a model to people: one line without control characters, of at most so many
+/// bytes.
+inline constexpr std::size_t longestModelName = 200, longestModelDescription = 4000;
+bool isModelLine(std::string_view text, std::size_t longest);
+
 struct CadModel {
-    std::string name;       ///< "phantoms-1"
-    std::string trainedOn;  ///< for a reader: of what, and what that means
+    std::string name;       ///< "phantoms-1"; a model's line
+    std::string trainedOn;  ///< for a reader: of what, and what that means; a model's line
     /// Of the training cases' scans, in order; once calibrated, of that and of these cases' scans.
     std::string trainingSha256;
     /// What the model must not be judged by: beginnings of the keys of the scans of the cases that

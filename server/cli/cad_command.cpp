@@ -635,6 +635,16 @@ void addCases(CLI::App& command, CadArguments& arguments) {
         ->check(checkPart);
 }
 
+CLI::Validator modelLine(std::size_t longest) {
+    return CLI::Validator(
+        [longest](const std::string& text) {
+            return cad::isModelLine(text, longest)
+                       ? std::string()
+                       : fmt::format("it must be one line of at most {} bytes", longest);
+        },
+        "");
+}
+
 std::string checkModelFile(const std::string& text) {
     std::error_code ignored;
     return text == builtIn || fs::is_regular_file(text, ignored)
@@ -655,10 +665,13 @@ Command addCad(CLI::App& program) {
     train->add_option("--model", arguments->model, "The model to write")
         ->type_name("FILE.json")
         ->required();
-    train->add_option("--name", arguments->name, "What the model is called (default: cases)");
-    train->add_option("--description", arguments->description,
-                      "What it was trained on and what that means, for a reader (default: cases "
-                      "that somebody chose)");
+    train->add_option("--name", arguments->name, "What the model is called (default: cases)")
+        ->check(modelLine(cad::longestModelName));
+    train
+        ->add_option("--description", arguments->description,
+                     "What it was trained on and what that means, for a reader (default: cases "
+                     "that somebody chose)")
+        ->check(modelLine(cad::longestModelDescription));
     train
         ->add_option("--false-positives", arguments->falsePositives,
                      "How many a scan the operating point allows, in cross-validation")
@@ -680,12 +693,15 @@ Command addCad(CLI::App& program) {
     calibrate->add_option("--model", arguments->model, "The model to write")
         ->type_name("FILE.json")
         ->required();
-    calibrate->add_option(
-        "--name", arguments->name,
-        "What the new model is called (default: as the old one, and -calibrated)");
-    calibrate->add_option("--description", arguments->description,
-                          "What it was trained on and what that means, for a reader (default: as "
-                          "the old one's, and on how many cases it was calibrated)");
+    calibrate
+        ->add_option("--name", arguments->name,
+                     "What the new model is called (default: as the old one, and -calibrated)")
+        ->check(modelLine(cad::longestModelName));
+    calibrate
+        ->add_option("--description", arguments->description,
+                     "What it was trained on and what that means, for a reader (default: as the "
+                     "old one's, and on how many cases it was calibrated)")
+        ->check(modelLine(cad::longestModelDescription));
     calibrate
         ->add_option("--false-positives", arguments->falsePositives,
                      "How many a scan the operating point allows in these cases; the built-in "

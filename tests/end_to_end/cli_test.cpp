@@ -66,6 +66,8 @@ TEST(CommandLine, WrongUsageEndsWithTwoAndSaysWhy) {
              {"render", "c", "--store", "s", "--out", "x.png", "--arc-mm", "1", "--paint",
               "finding"},
              {"cad", "evaluate", "c", "--store", "s", "--truth", "t", "--froc", "x.gif"},
+             {"cad", "train", "c", "--store", "s", "--truth", "t", "--model", "m", "--name",
+              "two\nlines"},
              {"cad", "train", "c", "--store", "s", "--truth", "t", "--model", "m", "--without",
               "feature:"},
              {"cad", "train", "c", "--store", "s", "--truth", "t", "--model", "m",
