@@ -65,9 +65,9 @@ public:
     const MissedReading& missed() const { return missed_; }
     /// Lengths between two clicked places, and findings' diameters.
     PlaceRulers& rulers() { return rulers_; }
-    /// Without those of findings that the mode of detection hides.
-    std::vector<PlaceRuler> shownRulers() const;
     const PlaceRulers& rulers() const { return rulers_; }
+    /// Rulers without those of findings that the mode of detection hides.
+    std::vector<PlaceRuler> shownRulers() const;
     /// How the wall is drawn: what is made of it is shown in the endoscopic view while it changes,
     /// and in the flattened ones when it rests.
     OpticsEditor& optics() { return optics_; }

@@ -80,8 +80,9 @@ inline constexpr int maxFindings = 4096, maxFindingRuns = 1 << 16;
 
 /// The `findings` product, JSON:
 ///   {"software", "model": {"name", "sha256", "trained_on"}, "operating_point", "warnings",
-///    "unexamined_mm2", "grid": {"size", "patient_from_voxel"},            16 numbers, rows of the
-///    affine "biopsy": {"wall_hu", "fat_hu", "noise_hu",
+///    "unexamined_mm2",
+///    "grid": {"size", "patient_from_voxel"},            16 numbers, rows of the affine
+///    "biopsy": {"wall_hu", "fat_hu", "noise_hu",
 ///               "transfer_function": [{"hu", "color": [r,g,b], "opacity"}, …]},  as of a preset
 ///    "findings": [{"position_mm": [x,y,z], "diameter_mm", "score", "kind", "wall_mm",
 ///                  "diameter_ends_mm": [[x,y,z], [x,y,z]], "height_mm", "arc_mm", "segment",

@@ -645,6 +645,17 @@ CLI::Validator modelLine(std::size_t longest) {
         "");
 }
 
+// What is written, and what it tells of itself.
+void addModel(CLI::App& command, CadArguments& arguments, const char* name,
+              const char* description) {
+    command.add_option("--model", arguments.model, "The model to write")
+        ->type_name("FILE.json")
+        ->required();
+    command.add_option("--name", arguments.name, name)->check(modelLine(cad::longestModelName));
+    command.add_option("--description", arguments.description, description)
+        ->check(modelLine(cad::longestModelDescription));
+}
+
 std::string checkModelFile(const std::string& text) {
     std::error_code ignored;
     return text == builtIn || fs::is_regular_file(text, ignored)
@@ -662,16 +673,9 @@ Command addCad(CLI::App& program) {
     CLI::App* train = command->add_subcommand(
         "train", "Learn a model from prepared cases whose polyps are known.");
     addCases(*train, *arguments);
-    train->add_option("--model", arguments->model, "The model to write")
-        ->type_name("FILE.json")
-        ->required();
-    train->add_option("--name", arguments->name, "What the model is called (default: cases)")
-        ->check(modelLine(cad::longestModelName));
-    train
-        ->add_option("--description", arguments->description,
-                     "What it was trained on and what that means, for a reader (default: cases "
-                     "that somebody chose)")
-        ->check(modelLine(cad::longestModelDescription));
+    addModel(*train, *arguments, "What the model is called (default: cases)",
+             "What it was trained on and what that means, for a reader (default: cases that "
+             "somebody chose)");
     train
         ->add_option("--false-positives", arguments->falsePositives,
                      "How many a scan the operating point allows, in cross-validation")
@@ -690,18 +694,10 @@ Command addCad(CLI::App& program) {
         "dozens of them: prepared ones whose polyps are known and that the model has not learnt "
         "from. Trees and networks stay, and with them which place is more probable than which.");
     addCases(*calibrate, *arguments);
-    calibrate->add_option("--model", arguments->model, "The model to write")
-        ->type_name("FILE.json")
-        ->required();
-    calibrate
-        ->add_option("--name", arguments->name,
-                     "What the new model is called (default: as the old one, and -calibrated)")
-        ->check(modelLine(cad::longestModelName));
-    calibrate
-        ->add_option("--description", arguments->description,
-                     "What it was trained on and what that means, for a reader (default: as the "
-                     "old one's, and on how many cases it was calibrated)")
-        ->check(modelLine(cad::longestModelDescription));
+    addModel(*calibrate, *arguments,
+             "What the new model is called (default: as the old one, and -calibrated)",
+             "What it was trained on and what that means, for a reader (default: as the old one's, "
+             "and on how many cases it was calibrated)");
     calibrate
         ->add_option("--false-positives", arguments->falsePositives,
                      "How many a scan the operating point allows in these cases; the built-in "

@@ -1604,9 +1604,12 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor([&] { return std::abs(flight().arcMm() - third->wall.arcMm) < 1e-6; }));
     EXPECT_LT(glm::distance(slices().slice(View::axial).positionMm, third->wall.positionMm), 1.0);
     EXPECT_LT(glm::distance(reader().flat().tour().window().center, *third->wall.flat), 1e-6);
-    // Off again, nothing is left of them.
+    press(Qt::Key_K, Qt::ShiftModifier);
+    ASSERT_TRUE(waitFor([&] { return reader().shownRulers().size() == 1; }));
+    // Off again, nothing is left of them, nor of what was measured on them.
     EXPECT_TRUE(reader().findings().choose(DetectionMode::off));
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 0; }));
+    EXPECT_TRUE(reader().shownRulers().empty());
     EXPECT_FALSE(reader().findings().current());
 }
 
