@@ -1,4 +1,4 @@
-// sRGB's transfer curve (IEC 61966-2-1), and its inverse; server/render/optics/srgb.h in GLSL.
+// sRGB's transfer curve (IEC 61966-2-1), and its inverse; processing/core/srgb.h in GLSL.
 vec3 displayed(vec3 linear) {
     vec3 c = clamp(linear, 0.0, 1.0);
     return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));

@@ -1,30 +1,12 @@
 #include "cad/biopsy.h"
 
 #include "core/ct_scan.h"
+#include "core/srgb.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace haustra::cad {
-namespace {
-
-double linearLight(double srgb) {
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
-
-// Between the points around a value; the ends go on.
-TransferFunctionPoint pointAt(const std::vector<TransferFunctionPoint>& points, double hu) {
-    if (hu <= points.front().hu) return points.front();
-    if (hu >= points.back().hu) return points.back();
-    const auto above = std::upper_bound(
-        points.begin(), points.end(), hu,
-        [](double value, const TransferFunctionPoint& point) { return value < point.hu; });
-    const TransferFunctionPoint &a = *(above - 1), &b = *above;
-    const double share = b.hu > a.hu ? (hu - a.hu) / (b.hu - a.hu) : 0.0;
-    return {hu, glm::mix(a.color, b.color, share), glm::mix(a.opacity, b.opacity, share)};
-}
-
-}  // namespace
 
 BiopsyTable::BiopsyTable(const TransferFunction& transferFunction) : entries_(4096) {
     for (std::size_t n = 0; n < entries_.size(); ++n) {

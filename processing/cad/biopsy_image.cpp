@@ -3,6 +3,7 @@
 #include "cad/strip_raster.h"
 #include "cad/wall_shape.h"
 #include "core/parallel.h"
+#include "core/srgb.h"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +16,7 @@ std::array<std::uint8_t, 4096> displayTable() {
     std::array<std::uint8_t, 4096> table{};
     for (std::size_t n = 0; n < table.size(); ++n) {
         const double c = (double(n) + 0.5) / double(table.size());
-        const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
-        table[n] = std::uint8_t(std::lround(255.0 * std::clamp(srgb, 0.0, 1.0)));
+        table[n] = std::uint8_t(std::lround(255.0 * displayedLight(c)));
     }
     return table;
 }

@@ -1,5 +1,6 @@
 #include "core/optics.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace haustra {
@@ -56,6 +57,17 @@ Result<void> checkLight(const Headlight& light) {
 }
 
 }  // namespace
+
+TransferFunctionPoint pointAt(const Points& points, double hu) {
+    const auto above = std::upper_bound(
+        points.begin(), points.end(), hu,
+        [](double value, const TransferFunctionPoint& point) { return value < point.hu; });
+    if (above == points.begin()) return points.front();
+    if (above == points.end()) return points.back();
+    const TransferFunctionPoint &a = above[-1], &b = above[0];
+    const double share = (hu - a.hu) / (b.hu - a.hu);
+    return {hu, glm::mix(a.color, b.color, share), glm::mix(a.opacity, b.opacity, share)};
+}
 
 Result<void> checkTransferFunction(const TransferFunction& transferFunction) {
     TRY(checkPoints(transferFunction.points, ""));

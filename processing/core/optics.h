@@ -41,6 +41,10 @@ struct TransferFunction {
     bool operator==(const TransferFunction&) const = default;
 };
 
+/// Of points as a TransferFunction has them: what holds at `hu`. Where two make a step it is the
+/// second, and beyond the outermost two these themselves are returned.
+TransferFunctionPoint pointAt(const std::vector<TransferFunctionPoint>& points, double hu);
+
 /// How a ray's samples make its pixel. Samples lie at whole steps n ≥ 0 from the eye (orthographic:
 /// from the camera's plane) between the volume's outer faces, half a voxel outside the outermost
 /// voxels' centres; values are interpolated trilinearly, and clamped at the outermost centres. A

@@ -2,6 +2,7 @@
 
 #include "core/orbit.h"
 #include "core/parallel.h"
+#include "core/srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,7 @@ constexpr glm::vec3 seenColor(0.10f, 0.55f, 0.12f), unseenColor(0.80f, 0.38f, 0.
 constexpr int samplesAside = 2;  // per pixel, in each direction
 
 std::uint8_t display(float linear) {
-    const float c = std::clamp(linear, 0.0f, 1.0f);
-    const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
-    return std::uint8_t(std::lround(255.0f * s));
+    return std::uint8_t(std::lround(255.0 * displayedLight(std::clamp(linear, 0.0f, 1.0f))));
 }
 
 /// Outward, by area, of each vertex.

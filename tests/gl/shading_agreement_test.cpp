@@ -1,12 +1,12 @@
 // What is said twice, in GLSL and in C++, is the same: lenses, light, the display's curve, and the
 // way from a place of the flattened wall to its ray. Shaders compute it for random inputs.
+#include "core/srgb.h"
 #include "gpu/buffer.h"
 #include "gpu/program.h"
 #include "gpu/texture.h"
 #include "render/flat/flat_coverage.h"
 #include "render/gl/flat_surface.h"
 #include "render/native/native_scene.h"
-#include "render/optics/srgb.h"
 #include "render/scene/lens.h"
 #include "render/scene/ray_setup.h"
 #include "shaders/shader_source.h"

@@ -1,7 +1,9 @@
 // Laws of the core nouns: grids, volumes, meshes, loops over threads.
 #include "core/flood_fill.h"
 #include "core/grid.h"
+#include "core/optics.h"
 #include "core/parallel.h"
+#include "core/srgb.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
 
@@ -179,6 +181,43 @@ TEST(TriMesh, AFlippedTriangleIsNotManifold) {
     TriMesh mesh = torus(7, 11);
     std::swap(mesh.triangles[0].x, mesh.triangles[0].y);
     EXPECT_EQ(meshTopology(mesh).nonManifoldEdges, 3);
+}
+
+TEST(TransferFunction, IsLinearBetweenItsPointsAndGoesOnBeyondThem) {
+    const std::vector<TransferFunctionPoint> points{{-100.0, {0.0, 0.5, 1.0}, 0.0},
+                                                    {0.0, {1.0, 0.5, 0.0}, 0.2},
+                                                    {0.0, {0.1, 0.1, 0.1}, 0.6},
+                                                    {50.0, {0.3, 0.1, 0.5}, 1.0}};
+    EXPECT_EQ(pointAt(points, -2000.0), points[0]);
+    EXPECT_EQ(pointAt(points, -100.0), points[0]);
+    EXPECT_EQ(pointAt(points, 50.0), points[3]);
+    EXPECT_EQ(pointAt(points, 3000.0), points[3]);
+    for (const double share : {0.25, 0.5, 0.9}) {
+        const TransferFunctionPoint below = pointAt(points, -100.0 + 100.0 * share),
+                                    above = pointAt(points, 50.0 * share);
+        EXPECT_NEAR(glm::distance(below.color, glm::dvec3(share, 0.5, 1.0 - share)), 0.0, 1e-12);
+        EXPECT_NEAR(below.opacity, 0.2 * share, 1e-12);
+        EXPECT_NEAR(glm::distance(above.color, {0.1 + 0.2 * share, 0.1, 0.1 + 0.4 * share}), 0.0,
+                    1e-12);
+        EXPECT_NEAR(above.opacity, 0.6 + 0.4 * share, 1e-12);
+    }
+    // A step: before it the first holds, at it the second.
+    EXPECT_NEAR(pointAt(points, -1e-9).opacity, 0.2, 1e-9);
+    EXPECT_EQ(pointAt(points, 0.0), points[2]);
+}
+
+// Where the curve's two parts meet the standard's own constants leave a step of 4e-8.
+TEST(Srgb, IsItsInversesInverseAndAnchoredWhereTheStandardSaysSo) {
+    double before = -1.0;
+    for (int n = 0; n <= 1000; ++n) {
+        const double displayed = n / 1000.0, linear = linearLight(displayed);
+        EXPECT_GT(linear, before);
+        EXPECT_NEAR(displayedLight(linear), displayed, 1e-6);
+        before = linear;
+    }
+    EXPECT_EQ(linearLight(0.0), 0.0);
+    EXPECT_NEAR(linearLight(1.0), 1.0, 1e-12);
+    EXPECT_NEAR(linearLight(0.5), 0.2140, 5e-5);  // the well-known middle grey
 }
 
 TEST(Parallel, CoversEachIndexOnce) {

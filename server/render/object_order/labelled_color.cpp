@@ -1,9 +1,9 @@
 #include "render/object_order/labelled_color.h"
 
 #include "core/parallel.h"
+#include "core/srgb.h"
 #include "core/voxel_sweep.h"
 #include "render/object_order/cell_grid.h"
-#include "render/optics/srgb.h"
 
 #include <algorithm>
 #include <array>

@@ -15,14 +15,8 @@ constexpr double leastDiffuse = 0.1, leastBrightness = 0.1, leastHalfDepthMm = 1
 
 /// Colour, and opacity for 1 mm.
 glm::dvec4 lookUp(const std::vector<TransferFunctionPoint>& points, double hu) {
-    const auto above = std::upper_bound(
-        points.begin(), points.end(), hu,
-        [](double value, const TransferFunctionPoint& point) { return value < point.hu; });
-    if (above == points.begin()) return {points.front().color, points.front().opacity};
-    if (above == points.end()) return {points.back().color, points.back().opacity};
-    const TransferFunctionPoint &a = above[-1], &b = above[0];
-    const double share = (hu - a.hu) / (b.hu - a.hu);
-    return {glm::mix(a.color, b.color, share), glm::mix(a.opacity, b.opacity, share)};
+    const TransferFunctionPoint point = pointAt(points, hu);
+    return {point.color, point.opacity};
 }
 
 glm::dvec4 lookUp(const Optics& optics, double hu, double gradientHuPerMm) {

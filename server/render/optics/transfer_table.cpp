@@ -1,6 +1,6 @@
 #include "render/optics/transfer_table.h"
 
-#include "render/optics/srgb.h"
+#include "core/srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ private:
 
 /// Colours are named as displayed.
 glm::dvec3 linearLight(glm::dvec3 color) {
-    using render::linearLight;
+    using haustra::linearLight;
     return {linearLight(color.r), linearLight(color.g), linearLight(color.b)};
 }
 

@@ -1,6 +1,6 @@
 #include "render/overview/overview_painter.h"
 
-#include "render/optics/srgb.h"
+#include "core/srgb.h"
 #include "render/overview/overview_marks.h"
 #include "render/scene/lens.h"
 #include "shaders/shader_source.h"

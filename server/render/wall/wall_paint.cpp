@@ -2,7 +2,7 @@
 
 #include "core/flat_map.h"
 #include "core/parallel.h"
-#include "render/optics/srgb.h"
+#include "core/srgb.h"
 
 #include <algorithm>
 #include <array>

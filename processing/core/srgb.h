@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace haustra::render {
+namespace haustra {
 
 /// 0…1 as displayed to 0…1 of linear light, and back.
 inline double linearLight(double displayed) {
@@ -13,4 +13,4 @@ inline double displayedLight(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-}  // namespace haustra::render
+}  // namespace haustra
