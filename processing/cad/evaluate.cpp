@@ -15,6 +15,11 @@ bool blamed(const EvaluatedCase& each, const ToldPlace& place) {
     return !lesion.neoplastic && !lesion.hyperplastic();
 }
 
+// What a blamed place is.
+const std::string& falseKind(const EvaluatedCase& each, const ToldPlace& place) {
+    return place.lesion >= 0 ? each.truth[std::size_t(place.lesion)].kind : place.looksLike;
+}
+
 // The best score that each lesion was told with; below 0: not told.
 std::vector<double> bestScores(const EvaluatedCase& each) {
     std::vector<double> best(each.truth.size(), -1.0);
@@ -94,7 +99,7 @@ EvaluatedCase evaluateCase(std::string name, std::string group,
                                 ? "fold"
                                 : "wall";
         result.places.push_back({candidate.probability, candidate.lesion.diameter.mm, meant[n],
-                                 meant[n] < 0 ? looks : ""});
+                                 meant[n] < 0 ? looks : "", candidate.lesion.centreMm});
     }
     return result;
 }
@@ -111,8 +116,7 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
             if (place.score < operatingPoint) continue;
             if (blamed(*each, place)) {
                 ++sum.falsePositives;
-                ++sum.falseKinds[place.lesion >= 0 ? each->truth[std::size_t(place.lesion)].kind
-                                                   : place.looksLike];
+                ++sum.falseKinds[falseKind(*each, place)];
                 continue;
             }
             const ToldPlace*& told = best[std::size_t(place.lesion)];
@@ -160,6 +164,47 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
         sum.diameter95 = errors[std::size_t(std::ceil(0.95 * double(errors.size()))) - 1];
     }
     return sum;
+}
+
+namespace {
+
+void sortFrom(std::vector<Mistake>& mistakes, std::size_t first) {
+    std::stable_sort(mistakes.begin() + std::ptrdiff_t(first), mistakes.end(),
+                     [](const Mistake& a, const Mistake& b) { return a.score > b.score; });
+}
+
+}  // namespace
+
+std::vector<Mistake> missedLesions(const std::vector<const EvaluatedCase*>& cases,
+                                   double operatingPoint) {
+    std::vector<Mistake> missed;
+    for (const EvaluatedCase* each : cases) {
+        const std::size_t first = missed.size();
+        const std::vector<double> best = bestScores(*each);
+        for (std::size_t l = 0; l < best.size(); ++l) {
+            const TrueLesion& lesion = each->truth[l];
+            if (!lesion.neoplastic || lesion.diameterMm < 5.0 || best[l] >= operatingPoint)
+                continue;
+            missed.push_back({each->name, lesion.positionMm, lesion.diameterMm, lesion.kind,
+                              std::max(0.0, best[l])});
+        }
+        sortFrom(missed, first);
+    }
+    return missed;
+}
+
+std::vector<Mistake> falseFindings(const std::vector<const EvaluatedCase*>& cases,
+                                   double operatingPoint) {
+    std::vector<Mistake> wrong;
+    for (const EvaluatedCase* each : cases) {
+        const std::size_t first = wrong.size();
+        for (const ToldPlace& place : each->places)
+            if (place.score >= operatingPoint && blamed(*each, place))
+                wrong.push_back({each->name, place.centreMm, place.diameterMm,
+                                 falseKind(*each, place), place.score});
+        sortFrom(wrong, first);
+    }
+    return wrong;
 }
 
 std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases, int resamples) {

@@ -17,6 +17,7 @@ struct ToldPlace {
     double diameterMm = 0.0;
     int lesion = -1;        ///< of the case's truth; −1: none
     std::string looksLike;  ///< where it is no lesion: "fold", "wall", "under fluid"
+    glm::dvec3 centreMm{0.0};
 };
 
 struct EvaluatedCase {
@@ -51,6 +52,22 @@ struct Evaluation {
     double submergedDiameterMean = 0.0, pedunculatedDiameterMean = 0.0;
 };
 Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double operatingPoint);
+
+/// What an operating point gets wrong, to be looked at; by case, and of each the most probable
+/// first.
+struct Mistake {
+    std::string caseName;
+    glm::dvec3 positionMm{0.0};
+    double diameterMm = 0.0;
+    std::string kind;    ///< of the lesion; of a false finding as in Evaluation::falseKinds
+    double score = 0.0;  ///< the best that means the lesion; 0 too where no candidate does
+};
+/// Neoplastic lesions from 5 mm that are not told.
+std::vector<Mistake> missedLesions(const std::vector<const EvaluatedCase*>& cases,
+                                   double operatingPoint);
+/// What is told and counts as false.
+std::vector<Mistake> falseFindings(const std::vector<const EvaluatedCase*>& cases,
+                                   double operatingPoint);
 
 /// Whether the free-response ROC curve asks for it: neoplastic, from 6 mm.
 bool countsInCurve(const TrueLesion& lesion);

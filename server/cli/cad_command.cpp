@@ -514,6 +514,17 @@ nlohmann::ordered_json jsonOf(const cad::Evaluation& sum) {
             {"diameter_error_pedunculated_mm", sum.pedunculatedDiameterMean}};
 }
 
+nlohmann::ordered_json jsonOf(const std::vector<cad::Mistake>& mistakes) {
+    auto list = nlohmann::ordered_json::array();
+    for (const cad::Mistake& each : mistakes)
+        list.push_back({{"case", each.caseName},
+                        {"position_mm", {each.positionMm.x, each.positionMm.y, each.positionMm.z}},
+                        {"diameter_mm", each.diameterMm},
+                        {"kind", each.kind},
+                        {"probability", each.score}});
+    return list;
+}
+
 void print(const std::string& group, const cad::Evaluation& sum) {
     const auto of = [](const cad::Share& s) { return fmt::format("{}/{}", s.hit, s.of); };
     fmt::print(
@@ -587,6 +598,8 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     const cad::Evaluation sum = cad::evaluate(every, point);
     if (groups.size() > 1) print("all", sum);
     report["all"] = jsonOf(sum);
+    report["missed"] = jsonOf(cad::missedLesions(every, point));
+    report["false_findings"] = jsonOf(cad::falseFindings(every, point));
     const auto curve = cad::frocCurve(every);
     if (curve.empty())
         fmt::print("No polyp from 6 mm is in these cases: nothing was found or missed.\n");
@@ -715,7 +728,10 @@ Command addCad(CLI::App& program) {
     addCases(*evaluate, *arguments);
     evaluate->add_option("--model", arguments->model, "In place of the built-in model")
         ->type_name("FILE.json");
-    evaluate->add_option("--report", arguments->report, "Write all figures")
+    evaluate
+        ->add_option(
+            "--report", arguments->report,
+            "Write all figures, and where each polyp that is missed and each false finding lies")
         ->type_name("FILE.json");
     evaluate
         ->add_option("--froc", arguments->froc,

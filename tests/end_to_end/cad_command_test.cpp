@@ -131,7 +131,9 @@ TEST_F(CadCommand, LearnsWhatAPolypIsAndFindsThoseOfOtherCases) {
         with(judging({name(6), name(7)}), {"--model", model, "--report", report, "--froc", curve}));
     ASSERT_EQ(judged.exitCode, 0) << judged.err;
     EXPECT_NE(judged.out.find("3,046"), std::string::npos);
-    const json all = json::parse(fileContent(report)).at("all");
+    const json figures = json::parse(fileContent(report)), all = figures.at("all");
+    EXPECT_TRUE(figures.at("missed").empty());
+    EXPECT_TRUE(figures.at("false_findings").empty());
     EXPECT_EQ(all.at("from_6_mm").at("of"), 2 * bumpsOfAKind);
     EXPECT_EQ(all.at("from_6_mm").at("hit"), 2 * bumpsOfAKind);
     EXPECT_EQ(all.at("false_positives_per_scan"), 0.0);

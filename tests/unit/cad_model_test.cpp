@@ -592,6 +592,34 @@ TEST(Evaluation, CountsWhatItSays) {
     EXPECT_EQ(cad::evaluate({&a}, 0.2).from6Mm.hit, 2);
 }
 
+TEST(Evaluation, SaysWhereItsMistakesLie) {
+    const cad::EvaluatedCase a = judged({{0.6, 7.0, 3, "", {4, 0, 0}},
+                                         {0.9, 8.5, 0, "", {1, 0, 0}},
+                                         {0.8, 6.0, -1, "fold", {2, 0, 0}},
+                                         {0.7, 3.0, 2, "", {3, 0, 0}},
+                                         {0.3, 11.0, 1, "", {5, 0, 0}}}),
+                             b{"b", "", a.truth, {}};
+    for (const double point : {0.2, 0.5, 0.65, 0.95}) {
+        const cad::Evaluation sum = cad::evaluate({&a, &b}, point);
+        const auto missed = cad::missedLesions({&a, &b}, point),
+                   wrong = cad::falseFindings({&a, &b}, point);
+        EXPECT_EQ(int(missed.size()), sum.from6Mm.of - sum.from6Mm.hit) << "none is smaller";
+        EXPECT_DOUBLE_EQ(double(wrong.size()) / 2.0, sum.falsePositives);
+    }
+    const auto missed = cad::missedLesions({&a, &b}, 0.5);
+    ASSERT_EQ(missed.size(), 3u);
+    EXPECT_EQ(missed[0].caseName, a.name);
+    EXPECT_EQ(missed[0].positionMm, a.truth[1].positionMm);
+    EXPECT_DOUBLE_EQ(missed[0].score, 0.3) << "told, but not probable enough";
+    EXPECT_EQ(missed[1].caseName, "b");
+    EXPECT_DOUBLE_EQ(missed[1].score, 0.0) << "nothing means it";
+    const auto wrong = cad::falseFindings({&a, &b}, 0.5);
+    ASSERT_EQ(wrong.size(), 2u);
+    EXPECT_EQ(wrong[0].kind, "fold") << "the most probable first";
+    EXPECT_EQ(wrong[0].positionMm, glm::dvec3(2, 0, 0));
+    EXPECT_EQ(wrong[1].kind, "lump");
+}
+
 TEST(Evaluation, CountsWhatResidueCoatsApartFromWhatIsUnderFluid) {
     cad::TrueLesion dry, under, hidden, bare;
     for (cad::TrueLesion* each : {&dry, &under, &hidden, &bare})
