@@ -769,7 +769,9 @@ TEST_F(ClientWindowCommands, EachDoesByItsKeysWhatItSays) {
             const auto found = expectations.find(command.id);
             ASSERT_NE(found, expectations.end()) << "say here how its effect is seen";
             pane(View::endoscopic).setFocus();
-            if (command.menu == Menu::file) ASSERT_TRUE(settle());
+            if (command.menu == Menu::file) {
+                ASSERT_TRUE(settle());
+            }
             const Check seen = found->second();
             QTest::qWait(1);
             EXPECT_FALSE(seen());

@@ -235,8 +235,9 @@ TEST_F(ServerFindingsTest, PaintsThatVeryTissueAndNothingBefore) {
                 EXPECT_LT(away(x, y, made().candidates[0].positionMm), ballMm + slackMm);
             }
             // Its top is seen.
-            if (away(x, y, made().findings[1].wallMm) < 0.2)
+            if (away(x, y, made().findings[1].wallMm) < 0.2) {
                 EXPECT_TRUE(differs(second, plain)) << x << ' ' << y;
+            }
         }
     }
     EXPECT_GT(changed, 60);
