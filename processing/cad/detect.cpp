@@ -1,6 +1,5 @@
 #include "cad/detect.h"
 
-#include "cad/along_colon.h"
 #include "cad/biopsy_transfer.h"
 #include "cad/masses.h"
 #include "cad/places.h"
@@ -53,8 +52,7 @@ std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 pla
 }
 
 Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
-                  const AlongColon& alongColon, const Candidate& candidate,
-                  SampleNumbers& numbers) {
+                  const Candidate& candidate, SampleNumbers& numbers) {
     const Lesion& lesion = candidate.lesion;
     Finding finding;
     finding.positionMm = lesion.centreMm;
@@ -65,7 +63,7 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
     finding.heightMm = standingHeightMm(evidence, lesion, hasStalk(candidate), numbers);
     finding.kind = kindOf(candidate, finding.heightMm);
-    const WallPlace along = alongColon.at(lesion.topMm);
+    const WallPlace along = evidence.alongColon->at(lesion.topMm);
     finding.arcMm = along.arcMm;
     finding.segment = segmentAt(colon, along.cameraMm);
     for (std::size_t n = 0; n < featureNames.size(); ++n)
@@ -132,7 +130,6 @@ struct Measures {
     const PreparedColon& colon;
     const WallEvidence& evidence;
     const SampleTriangles& triangles;
-    const AlongColon& alongColon;
     const ResidueFilms& films;
     std::span<const float> textureDistances;
     int threads;
@@ -154,8 +151,8 @@ void measure(const Measures& with, std::vector<Patch> patches,
             auto lesion = standUp(with.evidence, with.triangles, std::move(patches[n]),
                                   with.colon.cleansed.grid(), numbers);
             if (!lesion || liesBehindUntagged(with.evidence, lesion->patch)) continue;
-            const FeatureVector features = featuresOf(with.colon, with.evidence, with.alongColon,
-                                                      with.textureDistances, *lesion, numbers);
+            const FeatureVector features =
+                featuresOf(with.colon, with.evidence, with.textureDistances, *lesion, numbers);
             const double residueMm = with.films.liftMm(with.colon, with.evidence, lesion->patch);
             nothingElse[n] = isResidue(*lesion, features, residueMm);
             measured[n] = Candidate{*std::move(lesion), features};
@@ -231,10 +228,8 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
     const int some = std::max(1, threadCount(options.threads) / 2);
     std::array<std::vector<Patch>, 3> made;
     std::optional<SampleTriangles> triangles;
-    std::optional<AlongColon> alongColon;
-    const std::array<std::function<void()>, 5> parts{
+    const std::array<std::function<void()>, 4> parts{
         [&] { triangles.emplace(evidence.samples); },
-        [&] { alongColon.emplace(colon.flat, colon.centerline); },
         [&] {
             if (texture && options.method.texture)
                 made[0] = patchesByTexture(evidence, distances, some);
@@ -251,8 +246,7 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
             parts[part]();
     });
     const ResidueFilms films(colon, evidence);
-    const Measures with{colon, evidence,  *triangles,     *alongColon,
-                        films, distances, options.threads};
+    const Measures with{colon, evidence, *triangles, films, distances, options.threads};
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));
@@ -319,7 +313,6 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     const WallStatistics& statistics = evidence.statistics;
     findings.biopsy = {statistics.wallHu, statistics.fatHu, statistics.noiseHu,
                        evidence.transferFunction};
-    const AlongColon alongColon(colon.flat, colon.centerline);
     SampleNumbers numbers(evidence.samples.mesh.vertices.size());
     for (const Candidate& candidate : candidates) {
         if (candidate.probability < std::min(leastProbability, model.operatingPoint)) continue;
@@ -329,7 +322,7 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
             break;
         }
         (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)
-            .push_back(findingOf(colon, evidence, alongColon, candidate, numbers));
+            .push_back(findingOf(colon, evidence, candidate, numbers));
     }
     for (auto* list : {&findings.findings, &findings.candidates})
         std::stable_sort(list->begin(), list->end(),
@@ -347,7 +340,8 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
             "lobes of one mass",
             numbers.c_str(), first.arcMm, mass.widthMm));
     }
-    if (const auto arcs = residueLikePolyps(residue, findings.findings, model, alongColon);
+    if (const auto arcs =
+            residueLikePolyps(residue, findings.findings, model, *evidence.alongColon);
         !arcs.empty()) {
         std::string places;
         for (const double arcMm : arcs)

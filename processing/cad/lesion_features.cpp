@@ -270,7 +270,7 @@ void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
 }
 
 void describeSurroundings(const PreparedColon& colon, const WallEvidence& evidence,
-                          const AlongColon& alongColon, const Lesion& lesion, Named& put) {
+                          const Lesion& lesion, Named& put) {
     double wet = 0.0, reenters = 0.0, area = 0.0;
     std::vector<float> behind;
     for (const std::uint32_t v : lesion.patch.samples) {
@@ -285,7 +285,7 @@ void describeSurroundings(const PreparedColon& colon, const WallEvidence& eviden
     put("reentry_share", area > 0.0 ? reenters / area : 0.0);
     put("tissue_behind_mm", quantile(behind, 0.5));
     if (!colon.centerline.points.empty()) {
-        const WallPlace along = alongColon.at(lesion.topMm);
+        const WallPlace along = evidence.alongColon->at(lesion.topMm);
         describeRegion(colon, along.arcMm, put);
         const glm::dvec3 way = along.cameraMm - lesion.centreMm;
         const double length = glm::length(way);
@@ -336,8 +336,8 @@ FeatureVector asDenseAsTheWall(const FeatureVector& features) {
 }
 
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
-                         const AlongColon& alongColon, std::span<const float> textureDistance,
-                         const Lesion& lesion, SampleNumbers& numbers) {
+                         std::span<const float> textureDistance, const Lesion& lesion,
+                         SampleNumbers& numbers) {
     Named put;
     describeForm(lesion, put);
     describeShape(evidence, lesion, put);
@@ -349,7 +349,7 @@ FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidenc
     put("lift_rough", lift.roughMm);
     describeGradients(evidence, lesion, put);
     describeContents(colon, evidence, textureDistance, lesion, ring, put);
-    describeSurroundings(colon, evidence, alongColon, lesion, put);
+    describeSurroundings(colon, evidence, lesion, put);
     return put.values();
 }
 

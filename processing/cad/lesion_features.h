@@ -1,7 +1,6 @@
 // What a candidate is like, in numbers that a classifier weighs.
 #pragma once
 
-#include "cad/along_colon.h"
 #include "cad/lesion.h"
 
 #include <algorithm>
@@ -63,11 +62,11 @@ inline bool rises(const FeatureVector& features) {
 FeatureVector asDenseAsTheWall(const FeatureVector& features);
 
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.
-/// `alongColon`: of the same colon. `numbers`: of all samples, for its own use. O(samples of the
+/// `numbers`: of all samples, for its own use. O(samples of the
 /// patch and its voxels).
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
-                         const AlongColon& alongColon, std::span<const float> textureDistance,
-                         const Lesion& lesion, SampleNumbers& numbers);
+                         std::span<const float> textureDistance, const Lesion& lesion,
+                         SampleNumbers& numbers);
 
 /// How well the gradients around a place point to it: over evenly spread directions, the greatest
 /// mean cosine between the scan's gradient and the way to the place, along stretches that begin 1

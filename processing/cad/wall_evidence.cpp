@@ -5,7 +5,9 @@
 #include "core/ct_scan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 namespace haustra::cad {
 namespace {
@@ -119,19 +121,21 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
     };
     const int threads = threadCount(options.threads);
     WallEvidence evidence;
-    // Sampling takes mostly one thread, so the scan is smoothed beside it.
+    // Sampling takes mostly one thread, so the rest is made beside it.
     std::unique_ptr<const SmoothScan> broad;
     const auto smoothed = [&](double sigmaMm) {
         return std::make_unique<const SmoothScan>(
             smoothedAround(colon, sigmaMm, std::max(1, threads - 1)));
     };
-    parallelFor(2, 1, options.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t part = begin; part < end; ++part) {
-            if (part == 0)
-                evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
-            else
-                evidence.smooth = smoothed(shapeSigmaMm), broad = smoothed(broadSigmaMm);
-        }
+    const std::array<std::function<void()>, 3> parts{
+        [&] { evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads); },
+        [&] { evidence.smooth = smoothed(shapeSigmaMm), broad = smoothed(broadSigmaMm); },
+        [&] {
+            evidence.alongColon = std::make_unique<const AlongColon>(colon.flat, colon.centerline);
+        }};
+    parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part)
+            parts[part]();
     });
     tell(0.4);
     evidence.shapes = shapesOf(evidence.samples, *evidence.smooth, options.threads);

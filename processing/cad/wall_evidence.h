@@ -1,6 +1,7 @@
 // What is known of the wall at each of its samples, before anything is made of it.
 #pragma once
 
+#include "cad/along_colon.h"
 #include "cad/biopsy.h"
 #include "cad/former_fluid.h"
 #include "cad/texture.h"
@@ -70,8 +71,9 @@ struct WallEvidence {
     /// contrast to tissue is less than most scans' noise, so that the wall's place is known to
     /// millimetres only, and its shape not at all.
     std::vector<std::uint8_t> untagged;
-    std::vector<std::uint8_t> wet;  ///< tagging stood before it, which was taken out
-    FormerFluid formerFluid;        ///< where that was
+    std::vector<std::uint8_t> wet;                 ///< tagging stood before it, which was taken out
+    FormerFluid formerFluid;                       ///< where that was
+    std::unique_ptr<const AlongColon> alongColon;  ///< of the same colon
     WallStatistics statistics;
     TransferFunction transferFunction;  ///< that the rays were cast by
 };

@@ -154,8 +154,10 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
         std::ranges::count_if(candidates, [](const auto& c) { return c.levelOf < 0; });
     const auto levels = std::ptrdiff_t(candidates.size()) - before;
     const auto all = clusters ? candidates : std::vector<cad::Candidate>();
-    cad::weigh(candidates, model, {});
-    const auto findings = cad::findingsOf(colon, evidence, candidates, model);
+    const auto findings = timed("places weighed, and findings", [&] {
+        cad::weigh(candidates, model, {});
+        return cad::findingsOf(colon, evidence, candidates, model);
+    });
     std::printf("%zu samples, %zd candidates, %zd at other levels, %zu findings: %.2f s in all\n",
                 evidence.rays.size(), before, levels, findings.findings.size(),
                 (milliseconds() - start) / 1e3);

@@ -1,5 +1,6 @@
 // Detection on a lumen whose wall has polyps and nothing else, all by formula.
 #include "ball_colon.h"
+#include "cad/along_colon.h"
 #include "cad/biopsy_transfer.h"
 #include "cad/candidate_table.h"
 #include "cad/detect.h"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -331,12 +333,14 @@ TEST(Detect, APlaceAlongTheColonIsWhereItsWallBelongsThoughAnotherLoopIsNearer) 
     candidate.probability = 1.0;
     auto colon = ball.colon();
     colon.pieces = {{ColonPart::rectum, {0, 0, 0}, 15.0}, {ColonPart::cecum, {32, 0, 0}, 5.0}};
+    evidence.alongColon = std::make_unique<const cad::AlongColon>(colon.flat, colon.centerline);
     const Findings findings = cad::findingsOf(colon, evidence, {candidate}, {});
     ASSERT_EQ(findings.findings.size(), 1u);
     EXPECT_NEAR(findings.findings.front().arcMm, 15.0, 1e-9);
     EXPECT_EQ(findings.findings.front().segment, ColonSegment::rectum);
     // Without a map there is nothing better than the nearest.
     ball.flat = {};
+    evidence.alongColon = std::make_unique<const cad::AlongColon>(colon.flat, colon.centerline);
     const Findings unmapped = cad::findingsOf(colon, evidence, {candidate}, {});
     ASSERT_EQ(unmapped.findings.size(), 1u);
     EXPECT_GT(unmapped.findings.front().arcMm, 50.0);
