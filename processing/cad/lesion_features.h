@@ -62,8 +62,7 @@ inline bool rises(const FeatureVector& features) {
 FeatureVector asDenseAsTheWall(const FeatureVector& features);
 
 /// `textureDistance`: of every sample, in T; empty: unknown, and the texture features are 0.
-/// `numbers`: of all samples, for its own use. O(samples of the
-/// patch and its voxels).
+/// `numbers`: of all samples, for its own use. O(samples of the patch and its voxels).
 FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidence,
                          std::span<const float> textureDistance, const Lesion& lesion,
                          SampleNumbers& numbers);
