@@ -1,6 +1,7 @@
 #include "script/script.h"
 
 #include "core/flat_map.h"
+#include "core/printed_text.h"
 #include "protocol/limits.h"
 #include "reader/biopsy_lens.h"
 #include "reader/flight.h"
@@ -399,7 +400,7 @@ Result<std::vector<Action>> parseScript(std::istream& in, const std::string& nam
         } catch (const ScriptRefusal& refusal) {
             return fail(ErrorKind::badInput, refusal.message, name + ":" + std::to_string(number));
         } catch (const json::exception& error) {
-            return fail(ErrorKind::badInput, error.what(), name + ":" + std::to_string(number));
+            return fail(ErrorKind::badInput, reasonOf(error), name + ":" + std::to_string(number));
         }
     }
     return actions;

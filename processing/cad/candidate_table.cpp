@@ -1,5 +1,7 @@
 #include "cad/candidate_table.h"
 
+#include "core/printed_text.h"
+
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
@@ -87,8 +89,7 @@ Result<std::vector<Candidate>> candidatesOfTable(std::string_view text, const st
         }
         return candidates;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("these are no candidates: ") + error.what(),
-                    place);
+        return fail(ErrorKind::badInput, "these are no candidates: " + reasonOf(error), place);
     }
 }
 

@@ -120,7 +120,7 @@ Result<TextureModel> textureOfText(std::string_view text, const std::string& pla
     try {
         return textureIn(ModelJson::parse(text));
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this is no texture: ") + error.what(), place);
+        return fail(ErrorKind::badInput, "this is no texture: " + reasonOf(error), place);
     }
 }
 
@@ -239,6 +239,8 @@ std::string modelText(const CadModel& model) {
 Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
     try {
         const ModelJson json = ModelJson::parse(text);
+        if (!json.contains("haustra_cad_model"))
+            throw std::invalid_argument("it has no haustra_cad_model, a model's version");
         if (json.at("haustra_cad_model").get<int>() != modelVersion)
             return fail(ErrorKind::unsupported,
                         printed("the model is of version %d, and this program reads %d: it must be "
@@ -303,7 +305,7 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
             throw std::invalid_argument(sound.error().message);
         return model;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this is no model: ") + error.what(), place);
+        return fail(ErrorKind::badInput, "this is no model: " + reasonOf(error), place);
     }
 }
 

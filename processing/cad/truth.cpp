@@ -1,5 +1,7 @@
 #include "cad/truth.h"
 
+#include "core/printed_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -26,6 +28,23 @@ double diameterOfTruth(double mm) {
     return mm;
 }
 
+TrueLesion lesionOfTruth(const nlohmann::json& read) {
+    if (!read.is_object()) throw std::invalid_argument("it is no object");
+    TrueLesion lesion;
+    lesion.positionMm = placeOfTruth(read.at("position_mm"));
+    lesion.wallMm = read.contains("wall_mm") ? placeOfTruth(read.at("wall_mm")) : lesion.positionMm;
+    lesion.diameterMm = diameterOfTruth(read.at("diameter_mm"));
+    lesion.heightMm = read.value("height_mm", 0.0);
+    lesion.kind = read.value("kind", "");
+    lesion.neoplastic = read.value("neoplastic", true);
+    if (read.contains("core_hu")) lesion.coreHu = read.at("core_hu").get<double>();
+    lesion.onFold = read.value("on_fold", false);
+    lesion.submergedShare = read.value("submerged_share", 0.0);
+    lesion.untaggedShare = read.value("untagged_share", 0.0);
+    lesion.filmMm = read.value("film_mm", 0.0);
+    return lesion;
+}
+
 }  // namespace
 
 double TrueLesion::reachMm() const {
@@ -41,27 +60,21 @@ Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::
     try {
         const auto json = nlohmann::json::parse(text);
         std::vector<TrueLesion> lesions;
+        if (!json.contains("growths") && !json.contains("findings"))
+            throw std::invalid_argument("it has neither growths nor findings");
         const auto& list = json.contains("growths") ? json.at("growths") : json.at("findings");
         if (!list.is_array()) throw std::invalid_argument("its lesions are no list");
         for (const auto& read : list) {
-            TrueLesion lesion;
-            lesion.positionMm = placeOfTruth(read.at("position_mm"));
-            lesion.wallMm =
-                read.contains("wall_mm") ? placeOfTruth(read.at("wall_mm")) : lesion.positionMm;
-            lesion.diameterMm = diameterOfTruth(read.at("diameter_mm"));
-            lesion.heightMm = read.value("height_mm", 0.0);
-            lesion.kind = read.value("kind", "");
-            lesion.neoplastic = read.value("neoplastic", true);
-            if (read.contains("core_hu")) lesion.coreHu = read.at("core_hu").get<double>();
-            lesion.onFold = read.value("on_fold", false);
-            lesion.submergedShare = read.value("submerged_share", 0.0);
-            lesion.untaggedShare = read.value("untagged_share", 0.0);
-            lesion.filmMm = read.value("film_mm", 0.0);
-            lesions.push_back(lesion);
+            try {
+                lesions.push_back(lesionOfTruth(read));
+            } catch (const std::exception& error) {
+                throw std::invalid_argument("lesion " + std::to_string(lesions.size() + 1) + ": " +
+                                            reasonOf(error));
+            }
         }
         return lesions;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this is no truth: ") + error.what(), place);
+        return fail(ErrorKind::badInput, "this is no truth: " + reasonOf(error), place);
     }
 }
 
@@ -90,8 +103,7 @@ Result<std::vector<TrueLesion>> mimicsOfJson(const std::string& text, const std:
         }
         return mimics;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this is no structure: ") + error.what(),
-                    place);
+        return fail(ErrorKind::badInput, "this is no structure: " + reasonOf(error), place);
     }
 }
 

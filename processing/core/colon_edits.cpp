@@ -1,5 +1,7 @@
 #include "core/colon_edits.h"
 
+#include "core/printed_text.h"
+
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -57,8 +59,7 @@ Result<ColonEdits> editsFromJson(const std::string& text) {
             edits.joins.emplace_back(pointFrom(join.at(0)), pointFrom(join.at(1)));
         return edits;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("these are no edits: ") + error.what(),
-                    "edits");
+        return fail(ErrorKind::badInput, "these are no edits: " + reasonOf(error), "edits");
     }
 }
 

@@ -223,8 +223,7 @@ Result<ColonTrust> trustOfQuality(const std::string& text) {
         }
         return trust;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this tells no quality: ") + error.what(),
-                    "quality");
+        return fail(ErrorKind::badInput, "this tells no quality: " + reasonOf(error), "quality");
     }
 }
 
@@ -247,8 +246,7 @@ Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text) {
         }
         return pieces;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this tells no quality: ") + error.what(),
-                    "quality");
+        return fail(ErrorKind::badInput, "this tells no quality: " + reasonOf(error), "quality");
     }
 }
 
@@ -265,8 +263,7 @@ Result<std::vector<RebuiltWallRecord>> rebuiltWallsOfQuality(const std::string& 
         }
         return walls;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this tells no quality: ") + error.what(),
-                    "quality");
+        return fail(ErrorKind::badInput, "this tells no quality: " + reasonOf(error), "quality");
     }
 }
 

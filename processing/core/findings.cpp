@@ -1,5 +1,7 @@
 #include "core/findings.h"
 
+#include "core/printed_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -213,8 +215,7 @@ Result<Findings> findingsOfJson(const std::string& text, const std::string& wher
             findings.candidates.push_back(findingOf(finding, findings.grid));
         return findings;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("these are no findings: ") + error.what(),
-                    where);
+        return fail(ErrorKind::badInput, "these are no findings: " + reasonOf(error), where);
     }
 }
 

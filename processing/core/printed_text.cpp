@@ -21,4 +21,10 @@ std::string placeText(glm::dvec3 placeMm) {
     return printed("(%.0f, %.0f, %.0f) mm", placeMm.x, placeMm.y, placeMm.z);
 }
 
+std::string reasonOf(const std::exception& error) {
+    const std::string what = error.what();
+    const std::size_t end = what.starts_with("[json.") ? what.find("] ") : std::string::npos;
+    return end == std::string::npos ? what : what.substr(end + 2);
+}
+
 }  // namespace haustra

@@ -1,5 +1,7 @@
 #include "core/source_series.h"
 
+#include "core/printed_text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -144,8 +146,7 @@ Result<SourceSeries> sourceSeriesOfJson(const std::string& text, const std::stri
             series.images.push_back(imageOf(image));
         return series;
     } catch (const std::exception& error) {
-        return fail(ErrorKind::badInput, std::string("this is no source series: ") + error.what(),
-                    place);
+        return fail(ErrorKind::badInput, "this is no source series: " + reasonOf(error), place);
     }
 }
 

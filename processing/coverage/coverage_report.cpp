@@ -1,6 +1,7 @@
 #include "coverage/coverage_report.h"
 
 #include "core/parallel.h"
+#include "core/printed_text.h"
 #include "core/version.h"
 #include "coverage/fine_wall.h"
 
@@ -174,7 +175,7 @@ Result<std::vector<std::uint8_t>> triangleFlagsOf(const std::string& text, std::
         }
         return each;
     } catch (const std::exception& error) {
-        return wrong(error.what());
+        return wrong(reasonOf(error));
     }
 }
 

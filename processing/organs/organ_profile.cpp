@@ -1,5 +1,6 @@
 #include "organs/organ_profile.h"
 
+#include "core/printed_text.h"
 #include "organs/built_in_profiles.h"
 
 #include <algorithm>
@@ -169,12 +170,10 @@ Result<void> readLumen(const json& object, const std::string& place, OrganProfil
     return fields.finish();
 }
 
-// "parse error at line 3, column 7", without the library's numbers and the file's own words.
+// "parse error at line 3, column 7", without the file's own words.
 std::string briefly(const json::exception& error) {
-    const std::string what = error.what();
-    const std::size_t bracket = what.find("] ");
-    const std::size_t begin = bracket == std::string::npos ? 0 : bracket + 2;
-    return what.substr(begin, what.find(':', begin) - begin);
+    const std::string reason = reasonOf(error);
+    return reason.substr(0, reason.find(':'));
 }
 
 // The shortest text that reads back as the same double.

@@ -397,6 +397,13 @@ TEST_F(CadCommand, SaysWhatIsWrongWithATruth) {
     EXPECT_NE(refused(lesion({1e9, 0, 0}, 8)).find("outside any body"), std::string::npos);
     EXPECT_NE(refused(lesion({0, 0, 0}, 1e9)).find("diameter"), std::string::npos);
     refused("{\"growths\": {}}");
+    EXPECT_NE(refused("[1]").find("neither growths nor findings"), std::string::npos);
+    EXPECT_NE(refused(R"({"growths": [{"position_mm": [0, 0, 0], "diameter_mm": 8},
+                                      {"position_mm": [0, 0, 0]}]})")
+                  .find("lesion 2: key 'diameter_mm' not found"),
+              std::string::npos);
+    EXPECT_NE(refused("{\"growths\": [").find("no truth: parse error at line 1"),
+              std::string::npos);
     // Nothing to be found: there are false findings to count, but no curve.
     const auto none = told("{\"growths\": []}");
     EXPECT_EQ(none.exitCode, 0) << none.err;
