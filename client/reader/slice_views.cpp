@@ -35,6 +35,7 @@ void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm,
     if (!canPan) slab_ = {};
     planes_.fill({cameraMm, 1.0, glm::dvec2(0.0)});
     followedMm_ = cameraMm;
+    shownMm_.reset();
     aheadMm_ = 0.0;
     obliquePanMm_ = glm::dvec2(0.0);
     heightMm_ = ObliqueView{}.heightMm;
@@ -44,6 +45,7 @@ void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm,
 void SliceViews::follow(glm::dvec3 cameraMm) {
     if (cameraMm == followedMm_) return;
     followedMm_ = cameraMm;
+    shownMm_.reset();
     if (!linked_) return;
     for (Plane& plane : planes_)
         plane.focusMm = cameraMm;
@@ -51,6 +53,7 @@ void SliceViews::follow(glm::dvec3 cameraMm) {
 
 void SliceViews::show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane) {
     followedMm_ = cameraMm;
+    if (linked_) shownMm_ = placeMm, aheadMm_ = 0.0;
     for (const View each : {View::axial, View::coronal, View::sagittal}) {
         if (!linked_ && each != plane) continue;
         if (each == plane)
@@ -76,11 +79,13 @@ void SliceViews::showAs(const SliceViews& other) {
     for (std::size_t n = 0; n < planes_.size(); ++n)
         planes_[n].focusMm = other.planes_[n].focusMm, planes_[n].panMm = other.planes_[n].panMm;
     followedMm_ = other.followedMm_;
+    shownMm_ = other.shownMm_;
 }
 
 void SliceViews::reopenAs(const SliceViews& other) {
     planes_ = other.planes_;
     followedMm_ = other.followedMm_;
+    shownMm_ = other.shownMm_;
     obliquePanMm_ = other.obliquePanMm_;
     aheadMm_ = other.aheadMm_;
     heightMm_ = other.heightMm_;
@@ -152,7 +157,8 @@ void SliceViews::setLinked(bool linked) {
 
 ObliqueView SliceViews::oblique(const Camera& gaze) const {
     const glm::dvec3 right = glm::cross(gaze.forward, gaze.up);
-    return {gaze.positionMm + aheadMm_ * gaze.forward - obliquePanMm_.x * right +
+    const double shown = shownMm_ ? glm::dot(*shownMm_ - gaze.positionMm, gaze.forward) : 0.0;
+    return {gaze.positionMm + (shown + aheadMm_) * gaze.forward - obliquePanMm_.x * right +
                 obliquePanMm_.y * gaze.up,
             gaze.forward,
             gaze.up,

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 namespace haustra::reader {
 
@@ -25,7 +26,8 @@ public:
     void follow(glm::dvec3 cameraMm);
     /// Shows a place until the camera leaves `cameraMm`. The picture of `plane`, where the place
     /// was clicked, stays where it is; the others are moved to it. Of slices that are not linked,
-    /// only `plane` shows it, if any is given.
+    /// only `plane` shows it, if any is given; of linked ones the slice across the gaze shows it,
+    /// too.
     void show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane = {});
 
     /// The places that `other` shows; how large, and by which window, slab and scan, stays.
@@ -47,7 +49,8 @@ public:
     /// Slices that are linked again show the camera's place.
     void setLinked(bool linked);
 
-    /// Across the gaze, so far ahead of the camera as it was scrolled to.
+    /// Across the gaze, through the camera or the place that is shown, and so far ahead of it as it
+    /// was scrolled to.
     ObliqueView oblique(const Camera& gaze) const;
     void scrollOblique(double mm);
     /// As pan(), right and down of the gaze.
@@ -78,6 +81,7 @@ private:
     std::shared_ptr<const CaseInfo> case_;
     std::array<Plane, 3> planes_;
     glm::dvec3 followedMm_{0.0};
+    std::optional<glm::dvec3> shownMm_;  // until the camera leaves followedMm_
     glm::dvec2 obliquePanMm_{0.0};
     double aheadMm_ = 0.0, heightMm_ = ObliqueView{}.heightMm;
     bool cleansed_ = false, linked_ = true, canPan_ = true;

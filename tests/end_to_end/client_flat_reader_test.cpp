@@ -89,11 +89,23 @@ TEST_F(ClientFlatReader, AClickOnTheStripLeadsAllViewsThere) {
               1e-9);
     EXPECT_EQ(tiles::rgbOf(reader_->panes().picture(View::endoscopic)),
               tests::syntheticPicture(100, 90, camera.positionMm, 0.0));
+    // The slice across the gaze goes through it, as far ahead as it was scrolled to from there.
+    const auto acrossAheadOf = [&](glm::dvec3 place) {
+        const Camera gaze = reader_->flight().camera();
+        const ObliqueView across = reader_->slices().oblique(gaze);
+        EXPECT_EQ(across.forward, gaze.forward);
+        return glm::dot(across.positionMm - place, gaze.forward);
+    };
+    EXPECT_NEAR(acrossAheadOf(wall), 0.0, 1e-9);
+    reader_->slices().scrollOblique(3.0);
+    EXPECT_NEAR(acrossAheadOf(wall), 3.0, 1e-9);
+    reader_->slices().scrollOblique(-3.0);
     expectZoomPictureOf(flat, 200.0);
     // The mark goes when the camera goes on, and slices follow the camera again.
     reader_->flight().goTo(10.0);
     reader_->update(0.0);
     EXPECT_FALSE(reader_->flat().picked());
+    EXPECT_NEAR(acrossAheadOf(reader_->flight().camera().positionMm), 0.0, 1e-9);
     EXPECT_EQ(reader_->slices().slice(View::axial).positionMm,
               reader_->flight().camera().positionMm);
 }
