@@ -42,11 +42,15 @@ public:
                 else
                     pull += placeOf(next);
             }
+            // Rows of whole fours, so that loops over them are as long from sample to sample.
+            while (links_.size() % 4 != 0)
+                links_.push_back(count);
             begin_.push_back(std::uint32_t(links_.size()));
             places_.push_back(placeOf(v));
             pull_.push_back(pull);
             degrees_.push_back(float(wall.begin[v + 1] - wall.begin[v]));
         }
+        places_.push_back(glm::vec4(0.0f));
         span();
     }
     glm::dvec3 at(std::uint32_t number) const { return origin_ + glm::dvec3(places_[number]); }
@@ -54,22 +58,28 @@ public:
 private:
     using Field = std::vector<glm::vec4>;  // the fourth of each is 0
 
-    // y = A x; returns x · y of each coordinate.
-    glm::vec4 times(const Field& x, Field& y) const {
-        glm::dvec4 product(0.0);
-        for (std::size_t n = 0; n < x.size(); ++n) {
+    // y = A x; returns x · y of each coordinate. x has a 0 more, for links that fill rows up.
+    glm::vec4 times(const Field& field, Field& product) const {
+        const glm::vec4* const x = field.data();
+        const std::uint32_t* const links = links_.data();
+        glm::dvec4 dot(0.0);
+        for (std::size_t n = 0; n < product.size(); ++n) {
             glm::vec4 sum = degrees_[n] * x[n];
-            for (std::uint32_t l = begin_[n]; l < begin_[n + 1]; ++l)
-                sum -= x[links_[l]];
-            y[n] = sum;
-            product += glm::dvec4(x[n] * sum);
+            for (std::uint32_t l = begin_[n]; l < begin_[n + 1]; l += 4) {
+                sum -= x[links[l]];
+                sum -= x[links[l + 1]];
+                sum -= x[links[l + 2]];
+                sum -= x[links[l + 3]];
+            }
+            product[n] = sum;
+            dot += glm::dvec4(x[n] * sum);
         }
-        return glm::vec4(product);
+        return glm::vec4(dot);
     }
 
     void span() {
         // The three coordinates are three systems with one matrix.
-        Field r(places_.size()), ap(places_.size());
+        Field r(pull_.size()), ap(pull_.size());
         times(places_, r);
         glm::dvec4 sum(0.0);
         for (std::size_t n = 0; n < r.size(); ++n) {
@@ -77,6 +87,7 @@ private:
             sum += glm::dvec4(r[n] * r[n]);
         }
         Field p = r;
+        p.push_back(glm::vec4(0.0f));
         glm::vec4 squares(sum);
         const glm::vec4 enough = 1e-6f * squares + glm::vec4(1e-12f);
         for (int step = 0; step < 500; ++step) {
@@ -86,7 +97,7 @@ private:
             for (int c = 0; c < 3; ++c)
                 if (curvature[c] > 0.0f) alpha[c] = squares[c] / curvature[c];
             sum = glm::dvec4(0.0);
-            for (std::size_t n = 0; n < p.size(); ++n) {
+            for (std::size_t n = 0; n < r.size(); ++n) {
                 places_[n] += alpha * p[n];
                 r[n] -= alpha * ap[n];
                 sum += glm::dvec4(r[n] * r[n]);
@@ -95,7 +106,7 @@ private:
             glm::vec4 beta(0.0f);
             for (int c = 0; c < 3; ++c)
                 if (squares[c] > 0.0f) beta[c] = next[c] / squares[c];
-            for (std::size_t n = 0; n < p.size(); ++n)
+            for (std::size_t n = 0; n < r.size(); ++n)
                 p[n] = r[n] + beta * p[n];
             squares = next;
         }
