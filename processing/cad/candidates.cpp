@@ -18,8 +18,7 @@ std::vector<std::uint32_t> connected(const WallSamples& wall, std::vector<std::u
                                      SampleNumbers& taken, const Holds& holds) {
     for (std::size_t head = 0; head < samples.size(); ++head) {
         const std::uint32_t v = samples[head];
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            const std::uint32_t next = wall.neighbours[e];
+        for (const std::uint32_t next : wall.around(v)) {
             if (taken.has(next) || !holds(next)) continue;
             taken.add(next);
             samples.push_back(next);
@@ -105,8 +104,7 @@ private:
     void findRims(const std::vector<std::uint32_t>& patch) {
         std::vector<std::uint32_t> beside;
         for (const std::uint32_t v : patch) {
-            for (std::uint32_t e = wall_.begin[v]; e < wall_.begin[v + 1]; ++e) {
-                const std::uint32_t next = wall_.neighbours[e];
+            for (const std::uint32_t next : wall_.around(v)) {
                 if (mark_[next] == inPatch_ || mark_[next] == beside_) continue;
                 mark_[next] = beside_;
                 beside.push_back(next);
@@ -121,8 +119,7 @@ private:
             mark_[first] = own;
             for (std::size_t head = 0; head < flood.samples.size(); ++head) {
                 const std::uint32_t v = flood.samples[head];
-                for (std::uint32_t e = wall_.begin[v]; e < wall_.begin[v + 1]; ++e) {
-                    const std::uint32_t next = wall_.neighbours[e];
+                for (const std::uint32_t next : wall_.around(v)) {
                     if (mark_[next] != beside_) continue;
                     mark_[next] = own;
                     flood.samples.push_back(next);
@@ -165,8 +162,7 @@ private:
             floods_[rootOf(met_, f)].open = true;
             return;
         }
-        for (std::uint32_t e = wall_.begin[v]; e < wall_.begin[v + 1]; ++e) {
-            const std::uint32_t next = wall_.neighbours[e];
+        for (const std::uint32_t next : wall_.around(v)) {
             if (mark_[next] == inPatch_) continue;
             if (mark_[next] < firstFlood_) {
                 mark_[next] = firstFlood_ + std::uint32_t(f);

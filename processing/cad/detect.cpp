@@ -82,9 +82,8 @@ std::vector<float> textureDistances(const WallEvidence& evidence, const TextureS
     std::vector<std::uint32_t> measuredAt(colors.size()), measured;
     std::iota(measuredAt.begin(), measuredAt.end(), 0u);
     for (std::uint32_t v = 0; v < measuredAt.size(); ++v) {
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1] && wall.neighbours[e] < v;
-             ++e) {
-            const std::uint32_t next = wall.neighbours[e];
+        for (const std::uint32_t next : wall.around(v)) {
+            if (next > v) break;
             if (measuredAt[next] != next) continue;
             measuredAt[v] = next;
             break;

@@ -35,8 +35,7 @@ public:
         for (std::uint32_t n = 0; n < count; ++n) {
             const std::uint32_t v = inside.sample(n);
             glm::vec4 pull(0.0f);
-            for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-                const std::uint32_t next = wall.neighbours[e];
+            for (const std::uint32_t next : wall.around(v)) {
                 if (inside.has(next))
                     links_.push_back(inside.number(next));
                 else
@@ -48,7 +47,7 @@ public:
             begin_.push_back(std::uint32_t(links_.size()));
             places_.push_back(placeOf(v));
             pull_.push_back(pull);
-            degrees_.push_back(float(wall.begin[v + 1] - wall.begin[v]));
+            degrees_.push_back(float(wall.around(v).size()));
         }
         places_.push_back(glm::vec4(0.0f));
         span();
@@ -172,6 +171,141 @@ glm::dvec3 middleOf(const WallSamples& wall, std::span<const std::uint32_t> samp
     return area > 0.0 ? origin + sum / area : origin;
 }
 
+// A widened patch and the film across it: what the parts of a body are measured by. The patch's
+// samples have the first numbers, then come the others up to `inside`, which the film spans.
+struct SpannedPatch {
+    const WallSamples& wall;
+    const Membrane& film;
+    SampleNumbers& numbers;
+    std::uint32_t inside;
+
+    // Of a sample above the film, along the axis.
+    double heightMm(std::uint32_t number, glm::dvec3 axis) const {
+        return glm::dot(wall.mesh.vertices[numbers.sample(number)] - film.at(number), axis);
+    }
+};
+
+// Triangles at the widened patch, each once, ascending.
+std::vector<std::uint32_t> facesOf(const SpannedPatch& spanned, const SampleTriangles& triangles) {
+    std::vector<std::uint32_t> faces;
+    for (std::uint32_t n = 0; n < spanned.inside; ++n) {
+        const auto around = triangles.around(spanned.numbers.sample(n));
+        faces.insert(faces.end(), around.begin(), around.end());
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+}
+
+// The body between wall and film, its volume, centre, base and axis; false where it has none.
+bool closeBody(const SpannedPatch& spanned, const SampleTriangles& triangles, Lesion& lesion) {
+    const TriMesh& wall = spanned.wall.mesh;
+    SampleNumbers& numbers = spanned.numbers;
+    const std::vector<std::uint32_t> faces = facesOf(spanned, triangles);
+    if (faces.empty()) return false;
+    // Wall and base have the same triangles; where both have the same place they cancel. Samples
+    // beyond the inside anchor the base and are one place of both.
+    for (const std::uint32_t t : faces)
+        for (int n = 0; n < 3; ++n)
+            numbers.add(std::uint32_t(wall.triangles[t][n]));
+    lesion.body.vertices.reserve(numbers.count() + spanned.inside);
+    for (std::uint32_t n = 0; n < numbers.count(); ++n)
+        lesion.body.vertices.push_back(wall.vertices[numbers.sample(n)]);
+    for (std::uint32_t n = 0; n < spanned.inside; ++n)
+        lesion.body.vertices.push_back(spanned.film.at(n));
+    glm::dvec3 normal(0.0), moment(0.0);
+    const glm::dvec3 origin = wall.vertices[numbers.sample(0)];
+    const auto add = [&](glm::ivec3 corners) {
+        const glm::dvec3 a = lesion.body.vertices[std::size_t(corners.x)] - origin,
+                         b = lesion.body.vertices[std::size_t(corners.y)] - origin,
+                         c = lesion.body.vertices[std::size_t(corners.z)] - origin;
+        const double volume = glm::dot(a, glm::cross(b, c)) / 6.0;
+        lesion.volumeMm3 += volume;
+        moment += volume * 0.25 * (a + b + c);
+        lesion.body.triangles.push_back(corners);
+    };
+    for (const std::uint32_t t : faces) {
+        const glm::ivec3 corners = wall.triangles[t];
+        glm::ivec3 top, base;
+        for (int n = 0; n < 3; ++n) {
+            const std::uint32_t number = numbers.number(std::uint32_t(corners[n]));
+            top[n] = int(number);
+            base[n] = int(number < spanned.inside ? numbers.count() + number : number);
+        }
+        // The wall's outside is the tissue: seen from the lumen the patch turns the other way.
+        add({top.x, top.z, top.y});
+        add(base);
+        const glm::dvec3 a = lesion.body.vertices[std::size_t(base.x)],
+                         side = glm::cross(lesion.body.vertices[std::size_t(base.y)] - a,
+                                           lesion.body.vertices[std::size_t(base.z)] - a);
+        normal -= side;
+        lesion.baseMm2 += 0.5 * glm::length(side);
+    }
+    const double length = glm::length(normal);
+    if (!(length > 0.0)) return false;
+    lesion.axis = normal / length;
+    lesion.centreMm = origin + moment / lesion.volumeMm3;
+    lesion.rimMm = std::sqrt(4.0 * std::numbers::pi * lesion.baseMm2);
+    return true;
+}
+
+// The patch's area, and its top above the film.
+void measureAbove(const SpannedPatch& spanned, std::span<const std::uint32_t> patch,
+                  Lesion& lesion) {
+    lesion.heightMm = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t n = 0; n < patch.size(); ++n) {
+        lesion.areaMm2 += spanned.wall.areaMm2[patch[n]];
+        const double height = spanned.heightMm(n, lesion.axis);
+        if (height <= lesion.heightMm) continue;
+        lesion.heightMm = height, lesion.topMm = spanned.wall.mesh.vertices[patch[n]];
+    }
+}
+
+std::vector<std::uint32_t> rimOf(const WallSamples& wall, std::span<const std::uint32_t> patch,
+                                 const SampleNumbers& numbers) {
+    std::vector<std::uint32_t> rim;
+    for (const std::uint32_t v : patch) {
+        const auto isBeyond = [&](std::uint32_t next) {
+            return numbers.number(next) >= patch.size();
+        };
+        if (std::ranges::any_of(wall.around(v), isBeyond)) rim.push_back(v);
+    }
+    return rim;
+}
+
+// A patch ends where the body's side turns from convex to concave; its foot is farther out.
+std::vector<std::uint32_t> downToFoot(const SpannedPatch& spanned,
+                                      std::span<const std::uint32_t> patch, const Lesion& lesion) {
+    std::vector<std::uint32_t> samples(patch.begin(), patch.end());
+    std::vector<std::uint8_t> taken(spanned.inside, 0);
+    for (std::size_t head = 0; head < samples.size(); ++head) {
+        for (const std::uint32_t next : spanned.wall.around(samples[head])) {
+            const std::uint32_t number = spanned.numbers.number(next);
+            if (number < patch.size() || number >= spanned.inside || taken[number]) continue;
+            if (spanned.heightMm(number, lesion.axis) < footShare * lesion.heightMm) continue;
+            taken[number] = 1;
+            samples.push_back(next);
+        }
+    }
+    return samples;
+}
+
+// The greatest extent square to diameter and axis.
+double widthAcross(const WallSamples& wall, std::span<const std::uint32_t> patch,
+                   const Lesion& lesion) {
+    const glm::dvec3 along =
+        wall.mesh.vertices[lesion.diameter.to] - wall.mesh.vertices[lesion.diameter.from];
+    const glm::dvec3 across = glm::cross(along, lesion.axis);
+    if (!(glm::length(across) > 1e-9)) return 0.0;
+    const glm::dvec3 unit = glm::normalize(across);
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const std::uint32_t v : patch) {
+        const double at = glm::dot(unit, wall.mesh.vertices[v]);
+        least = std::min(least, at), most = std::max(most, at);
+    }
+    return most - least;
+}
+
 }  // namespace
 
 std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t> patch,
@@ -185,8 +319,7 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
     // Steps are short beside the width, so a breadth-first order is near enough.
     for (std::uint32_t head = 0; head < numbers.count(); ++head) {
         const std::uint32_t v = numbers.sample(head);
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            const std::uint32_t next = wall.neighbours[e];
+        for (const std::uint32_t next : wall.around(v)) {
             if (numbers.has(next)) continue;
             const double mm =
                 distances[head] + glm::distance(wall.mesh.vertices[v], wall.mesh.vertices[next]);
@@ -258,116 +391,20 @@ std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid) {
 std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
                               Patch patch, const Grid& grid, SampleNumbers& numbers) {
     const WallSamples& wall = evidence.samples;
-    Lesion lesion;
     widen(wall, patch.samples, anchorMm, numbers);
-    const std::uint32_t inside = numbers.count();
-    const Membrane membrane(wall, numbers);
-    std::vector<std::uint32_t> faces;
-    for (std::uint32_t n = 0; n < inside; ++n) {
-        const auto around = triangles.around(numbers.sample(n));
-        faces.insert(faces.end(), around.begin(), around.end());
-    }
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    if (faces.empty()) return {};
-
-    // Patch and base have the same triangles; where both have the same place they cancel. Samples
-    // beyond the inside anchor the base and are one place of both.
-    for (const std::uint32_t t : faces)
-        for (int n = 0; n < 3; ++n)
-            numbers.add(std::uint32_t(wall.mesh.triangles[t][n]));
-    lesion.body.vertices.reserve(numbers.count() + inside);
-    for (std::uint32_t n = 0; n < numbers.count(); ++n)
-        lesion.body.vertices.push_back(wall.mesh.vertices[numbers.sample(n)]);
-    for (std::uint32_t n = 0; n < inside; ++n)
-        lesion.body.vertices.push_back(membrane.at(n));
-    glm::dvec3 normal(0.0);
-    const glm::dvec3 origin = wall.mesh.vertices[patch.samples.front()];
-    glm::dvec3 moment(0.0);
-    const auto add = [&](glm::ivec3 corners) {
-        const glm::dvec3 a = lesion.body.vertices[std::size_t(corners.x)] - origin,
-                         b = lesion.body.vertices[std::size_t(corners.y)] - origin,
-                         c = lesion.body.vertices[std::size_t(corners.z)] - origin;
-        const double volume = glm::dot(a, glm::cross(b, c)) / 6.0;
-        lesion.volumeMm3 += volume;
-        moment += volume * 0.25 * (a + b + c);
-        lesion.body.triangles.push_back(corners);
-    };
-    for (const std::uint32_t t : faces) {
-        const glm::ivec3 corners = wall.mesh.triangles[t];
-        glm::ivec3 top, base;
-        for (int n = 0; n < 3; ++n) {
-            const std::uint32_t number = numbers.number(std::uint32_t(corners[n]));
-            top[n] = int(number);
-            base[n] = int(number < inside ? numbers.count() + number : number);
-        }
-        // The wall's outside is the tissue: seen from the lumen the patch turns the other way.
-        add({top.x, top.z, top.y});
-        add(base);
-        const glm::dvec3 a = lesion.body.vertices[std::size_t(base.x)],
-                         side = glm::cross(lesion.body.vertices[std::size_t(base.y)] - a,
-                                           lesion.body.vertices[std::size_t(base.z)] - a);
-        normal -= side;
-        lesion.baseMm2 += 0.5 * glm::length(side);
-    }
-    const double length = glm::length(normal);
-    if (!(length > 0.0)) return {};
-    lesion.axis = normal / length;
-    lesion.centreMm = origin + moment / lesion.volumeMm3;
+    const Membrane film(wall, numbers);
+    const SpannedPatch spanned{wall, film, numbers, numbers.count()};
+    Lesion lesion;
+    if (!closeBody(spanned, triangles, lesion)) return {};
     if (!isAmong(lesion.body.vertices, lesion.centreMm))
         lesion.centreMm = middleOf(wall, patch.samples);
-
-    const auto heightAt = [&](std::uint32_t number) {
-        return glm::dot(wall.mesh.vertices[numbers.sample(number)] - membrane.at(number),
-                        lesion.axis);
-    };
-    double highest = -1e30;
-    const auto patchSize = std::uint32_t(patch.samples.size());
-    for (std::uint32_t n = 0; n < patchSize; ++n) {
-        const std::uint32_t v = patch.samples[n];
-        lesion.areaMm2 += wall.areaMm2[v];
-        const double height = heightAt(n);
-        if (height > highest) highest = height, lesion.topMm = wall.mesh.vertices[v];
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            // The patch's samples have the first numbers.
-            if (numbers.number(wall.neighbours[e]) < patchSize) continue;
-            lesion.rim.push_back(v);
-            break;
-        }
-    }
-    lesion.heightMm = highest;
-    lesion.rimMm = std::sqrt(4.0 * std::numbers::pi * lesion.baseMm2);
-    // A patch ends where the body's side turns from convex to concave; its foot is farther out.
-    std::vector<std::uint32_t> footprint = patch.samples;
-    std::vector<std::uint8_t> taken(inside, 0);
-    std::vector<std::uint32_t> reached(patchSize);
-    std::iota(reached.begin(), reached.end(), 0u);
-    for (std::size_t head = 0; head < reached.size(); ++head) {
-        const std::uint32_t v = numbers.sample(reached[head]);
-        for (std::uint32_t e = wall.begin[v]; e < wall.begin[v + 1]; ++e) {
-            const std::uint32_t next = numbers.number(wall.neighbours[e]);
-            if (next < patchSize || next >= inside || taken[next]) continue;
-            if (heightAt(next) < footShare * highest) continue;
-            taken[next] = 1;
-            reached.push_back(next);
-            footprint.push_back(wall.neighbours[e]);
-        }
-    }
+    measureAbove(spanned, patch.samples, lesion);
+    lesion.rim = rimOf(wall, patch.samples, numbers);
     lesion.diameter = diameterOf(wall, patch.samples);
     const double base = std::sqrt(4.0 * lesion.baseMm2 / std::numbers::pi);
-    if (base >= stalkNeck * lesion.diameter.mm) lesion.diameter = diameterOf(wall, footprint);
-    const glm::dvec3 along =
-        wall.mesh.vertices[lesion.diameter.to] - wall.mesh.vertices[lesion.diameter.from];
-    const glm::dvec3 across = glm::cross(along, lesion.axis);
-    if (glm::length(across) > 1e-9) {
-        const glm::dvec3 unit = glm::normalize(across);
-        double least = 1e30, most = -1e30;
-        for (const std::uint32_t v : patch.samples) {
-            const double at = glm::dot(unit, wall.mesh.vertices[v]);
-            least = std::min(least, at), most = std::max(most, at);
-        }
-        lesion.widthMm = most - least;
-    }
+    if (base >= stalkNeck * lesion.diameter.mm)
+        lesion.diameter = diameterOf(wall, downToFoot(spanned, patch.samples, lesion));
+    lesion.widthMm = widthAcross(wall, patch.samples, lesion);
     lesion.voxels = voxelsWithin(lesion.body, grid);
     if (lesion.voxels.empty()) lesion.voxels = voxelsBeneath(evidence, patch, grid);
     lesion.patch = std::move(patch);

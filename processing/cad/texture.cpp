@@ -53,10 +53,9 @@ TextureStencil::Neighbours TextureStencil::around(std::uint32_t sample, glm::vec
         float least = squaredTo(best);
         for (bool nearer = true; nearer;) {
             nearer = false;
-            const std::uint32_t from = best;
-            for (std::uint32_t e = samples_.begin[from]; e < samples_.begin[from + 1]; ++e) {
-                const float squared = squaredTo(samples_.neighbours[e]);
-                if (squared < least) least = squared, best = samples_.neighbours[e], nearer = true;
+            for (const std::uint32_t next : samples_.around(best)) {
+                const float squared = squaredTo(next);
+                if (squared < least) least = squared, best = next, nearer = true;
             }
         }
         neighbours[s] = best;

@@ -4,6 +4,7 @@
 #include "core/tri_mesh.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace haustra::cad {
@@ -16,8 +17,13 @@ struct WallSamples {
     TriMesh mesh;
     std::vector<std::int32_t> sourceTriangle;  ///< per triangle, of the surface
     std::vector<float> areaMm2;                ///< per vertex: a third of its triangles'
-    /// Vertices next to vertex v: neighbours[begin[v]] … neighbours[begin[v + 1] − 1], ascending.
+    /// Of all vertices, those next to vertex v from begin[v] to before begin[v + 1].
     std::vector<std::uint32_t> begin, neighbours;
+
+    /// Vertices next to a vertex, ascending.
+    std::span<const std::uint32_t> around(std::uint32_t v) const {
+        return {neighbours.data() + begin[v], neighbours.data() + begin[v + 1]};
+    }
 };
 
 /// Divides the surface. Each edge that is too long is cut in its middle, or beside it where it

@@ -192,9 +192,14 @@ TEST(WallSamples, LieCloseOnTheSurfaceItself) {
             EXPECT_NEAR(glm::dot(normal, p - a), 0.0, 1e-9);
         }
     }
-    for (std::uint32_t v = 0; v < samples.mesh.vertices.size(); ++v)
-        for (std::uint32_t e = samples.begin[v]; e < samples.begin[v + 1]; ++e)
-            EXPECT_NE(samples.neighbours[e], v);
+    for (std::uint32_t v = 0; v < samples.mesh.vertices.size(); ++v) {
+        const auto around = samples.around(v);
+        EXPECT_TRUE(std::ranges::is_sorted(around));
+        for (const std::uint32_t next : around) {
+            EXPECT_NE(next, v);
+            EXPECT_TRUE(std::ranges::binary_search(samples.around(next), v));
+        }
+    }
 }
 
 // A closed wall 120 mm long and 20 mm wide, a cigar, each sample of which bulges where asked.
