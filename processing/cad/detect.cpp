@@ -72,6 +72,19 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     return finding;
 }
 
+// What each tells as a finding; in their order.
+std::vector<Finding> describe(const PreparedColon& colon, const WallEvidence& evidence,
+                              std::span<const Candidate* const> candidates, int threads) {
+    std::vector<Finding> findings(candidates.size());
+    std::atomic<std::size_t> next = 0;
+    parallelFor(std::size_t(threadCount(threads)), 1, threads, [&](std::size_t, std::size_t) {
+        SampleNumbers numbers(evidence.samples.mesh.vertices.size());
+        for (std::size_t n; (n = next++) < candidates.size();)
+            findings[n] = findingOf(colon, evidence, *candidates[n], numbers);
+    });
+    return findings;
+}
+
 // Of every sample, in T. Samples lie denser than the stencil's steps, so texture is measured at a
 // maximal independent set of them, and each of the others has the distance of its lowest-numbered
 // neighbour in the set.
@@ -209,6 +222,54 @@ std::vector<double> residueLikePolyps(const std::vector<Candidate>& residue,
     return arcs;
 }
 
+void warnOfUnexaminedWall(const WallEvidence& evidence, Findings& findings) {
+    double inventedMm2 = 0.0, untaggedMm2 = 0.0;
+    for (std::size_t v = 0; v < evidence.unseen.size(); ++v)
+        if (evidence.unseen[v] || evidence.untagged[v])
+            (evidence.unseen[v] ? inventedMm2 : untaggedMm2) += evidence.samples.areaMm2[v];
+    for (const double mm2 : {inventedMm2, untaggedMm2})
+        if (mm2 >= leastUnseenMm2) findings.unexaminedMm2 += mm2;
+    if (inventedMm2 >= leastUnseenMm2)
+        findings.warnings.push_back(printed(
+            "%.0f mm2 of the wall were not examined: they enclose a bridge over a collapse, or "
+            "were rebuilt after a leak",
+            inventedMm2));
+    if (untaggedMm2 >= leastUnseenMm2)
+        findings.warnings.push_back(printed(
+            "%.0f mm2 of the wall were not examined: they lie behind fluid without tagging or "
+            "beside what stands in the lumen, where the wall's place is known to millimetres only",
+            untaggedMm2));
+}
+
+void warnOfMasses(Findings& findings) {
+    for (const MassOfFindings& mass : massesOf(findings.findings)) {
+        const Finding& first = findings.findings[mass.findings.front()];
+        std::string numbers;
+        for (std::size_t n = 0; n < mass.findings.size(); ++n)
+            numbers += (n == 0                          ? ""
+                        : n + 1 == mass.findings.size() ? " and "
+                                                        : ", ") +
+                       std::to_string(mass.findings[n] + 1);
+        findings.warnings.push_back(printed(
+            "findings %s, from %.0f mm on, lie rim to rim, %.0f mm wide in all: they may be "
+            "lobes of one mass",
+            numbers.c_str(), first.arcMm, mass.widthMm));
+    }
+}
+
+void warnOfResidue(const std::vector<Candidate>& residue, const CadModel& model,
+                   const AlongColon& alongColon, Findings& findings) {
+    const auto arcs = residueLikePolyps(residue, findings.findings, model, alongColon);
+    if (arcs.empty()) return;
+    std::string places;
+    for (const double arcMm : arcs)
+        places += printed(places.empty() ? "%.0f" : ", %.0f", arcMm);
+    findings.warnings.push_back(
+        printed("%zu places that look like polyps were taken for tagged residue on the wall: %s mm "
+                "from the rectum",
+                arcs.size(), places.c_str()));
+}
+
 }  // namespace
 
 std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvidence& evidence,
@@ -281,75 +342,40 @@ void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Meth
 
 Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
                     const std::vector<Candidate>& candidates, const CadModel& model,
-                    const std::vector<Candidate>& residue) {
+                    const std::vector<Candidate>& residue, int threads) {
     Findings findings;
     findings.operatingPoint = model.operatingPoint;
     findings.model.software = std::string("haustra ") + softwareVersion;
     findings.model.name = model.name;
     findings.model.trainedOn = model.trainedOn;
     findings.grid = colon.ct.grid();
-    double inventedMm2 = 0.0, untaggedMm2 = 0.0;
-    for (std::size_t v = 0; v < evidence.unseen.size(); ++v)
-        if (evidence.unseen[v] || evidence.untagged[v])
-            (evidence.unseen[v] ? inventedMm2 : untaggedMm2) += evidence.samples.areaMm2[v];
-    for (const double mm2 : {inventedMm2, untaggedMm2})
-        if (mm2 >= leastUnseenMm2) findings.unexaminedMm2 += mm2;
-    if (inventedMm2 >= leastUnseenMm2)
-        findings.warnings.push_back(printed(
-            "%.0f mm2 of the wall were not examined: they enclose a bridge over a collapse, or "
-            "were rebuilt after a leak",
-            inventedMm2));
-    if (untaggedMm2 >= leastUnseenMm2)
-        findings.warnings.push_back(printed(
-            "%.0f mm2 of the wall were not examined: they lie behind fluid without tagging or "
-            "beside what stands in the lumen, where the wall's place is known to millimetres only",
-            untaggedMm2));
-    if (evidence.statistics.noiseHu > noisyHu)
-        findings.warnings.push_back(
-            printed("the scan is noisier than what detection has learnt from: %.0f HU after "
-                    "smoothing to 1 mm",
-                    evidence.statistics.noiseHu));
     const WallStatistics& statistics = evidence.statistics;
     findings.biopsy = {statistics.wallHu, statistics.fatHu, statistics.noiseHu,
                        evidence.transferFunction};
-    SampleNumbers numbers(evidence.samples.mesh.vertices.size());
-    for (const Candidate& candidate : candidates) {
-        if (candidate.probability < std::min(leastProbability, model.operatingPoint)) continue;
-        if (findings.findings.size() + findings.candidates.size() == std::size_t(maxFindings)) {
-            findings.warnings.push_back(printed(
-                "more than %d places may be polyps; the least probable are left out", maxFindings));
-            break;
-        }
-        (candidate.probability >= model.operatingPoint ? findings.findings : findings.candidates)
-            .push_back(findingOf(colon, evidence, candidate, numbers));
+    warnOfUnexaminedWall(evidence, findings);
+    if (statistics.noiseHu > noisyHu)
+        findings.warnings.push_back(
+            printed("the scan is noisier than what detection has learnt from: %.0f HU after "
+                    "smoothing to 1 mm",
+                    statistics.noiseHu));
+    std::vector<const Candidate*> told;
+    for (const Candidate& candidate : candidates)
+        if (candidate.probability >= std::min(leastProbability, model.operatingPoint))
+            told.push_back(&candidate);
+    if (told.size() > std::size_t(maxFindings)) {
+        told.resize(std::size_t(maxFindings));
+        findings.warnings.push_back(printed(
+            "more than %d places may be polyps; the least probable are left out", maxFindings));
     }
+    std::vector<Finding> made = describe(colon, evidence, told, threads);
+    for (Finding& finding : made)
+        (finding.score >= model.operatingPoint ? findings.findings : findings.candidates)
+            .push_back(std::move(finding));
     for (auto* list : {&findings.findings, &findings.candidates})
         std::stable_sort(list->begin(), list->end(),
                          [](const Finding& a, const Finding& b) { return a.arcMm < b.arcMm; });
-    for (const MassOfFindings& mass : massesOf(findings.findings)) {
-        const Finding& first = findings.findings[mass.findings.front()];
-        std::string numbers;
-        for (std::size_t n = 0; n < mass.findings.size(); ++n)
-            numbers += (n == 0                          ? ""
-                        : n + 1 == mass.findings.size() ? " and "
-                                                        : ", ") +
-                       std::to_string(mass.findings[n] + 1);
-        findings.warnings.push_back(printed(
-            "findings %s, from %.0f mm on, lie rim to rim, %.0f mm wide in all: they may be "
-            "lobes of one mass",
-            numbers.c_str(), first.arcMm, mass.widthMm));
-    }
-    if (const auto arcs =
-            residueLikePolyps(residue, findings.findings, model, *evidence.alongColon);
-        !arcs.empty()) {
-        std::string places;
-        for (const double arcMm : arcs)
-            places += printed(places.empty() ? "%.0f" : ", %.0f", arcMm);
-        findings.warnings.push_back(printed(
-            "%zu places that look like polyps were taken for tagged residue on the wall: %s mm "
-            "from the rectum",
-            arcs.size(), places.c_str()));
-    }
+    warnOfMasses(findings);
+    warnOfResidue(residue, model, *evidence.alongColon, findings);
     return findings;
 }
 
@@ -368,7 +394,7 @@ Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
     auto candidates = findCandidates(colon, evidence, &model.texture, options, &model, &residue);
     weigh(candidates, model, options.method);
     if (options.progress) options.progress(1.0);
-    return findingsOf(colon, evidence, candidates, model, residue);
+    return findingsOf(colon, evidence, candidates, model, residue, options.threads);
 }
 
 }  // namespace haustra::cad

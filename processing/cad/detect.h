@@ -59,7 +59,7 @@ void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Meth
 inline constexpr double leastProbability = 0.02;
 Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
                     const std::vector<Candidate>& candidates, const CadModel& model,
-                    const std::vector<Candidate>& residue = {});
+                    const std::vector<Candidate>& residue = {}, int threads = 0);
 
 /// All of it.
 Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
