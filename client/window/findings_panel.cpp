@@ -138,6 +138,7 @@ FindingsPanel::FindingsPanel(Reading& reading)
         mode_->addItem(nameOf(mode));
     mode_->setAccessibleName(tr("When findings are shown"));
     mode_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    candidates_->setAccessibleName(tr("Also show less probable findings"));
     candidates_->setToolTip(tr("Places that scored below the operating point, in another colour"));
     measure_->setToolTip(tr("The finding's largest diameter, as a ruler in all views"));
     least_->setRange(0, 100);

@@ -1066,6 +1066,10 @@
         <translation> %</translation>
     </message>
     <message>
+        <source>Also show less probable findings</source>
+        <translation>Auch weniger wahrscheinliche Befunde zeigen</translation>
+    </message>
+    <message>
         <source>Least probability of less probable findings</source>
         <translation>Kleinste Wahrscheinlichkeit weniger wahrscheinlicher Befunde</translation>
     </message>
