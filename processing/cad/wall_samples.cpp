@@ -4,38 +4,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace haustra::cad {
 namespace {
 
-// One division of every triangle with a long edge into two, three or four.
+// Divides triangles with a long edge into two, three or four, until there are none.
 class Division {
 public:
     Division(WallSamples& samples, double mostMm)
-        : samples_(samples),
-          mostMm2_(mostMm * mostMm),
-          firstOf_(samples.mesh.vertices.size(), -1) {}
+        : samples_(samples), mostMm2_(mostMm * mostMm), open_(samples.mesh.triangles.size()) {
+        std::iota(open_.begin(), open_.end(), 0u);
+    }
 
-    // False where no edge was too long.
-    bool run() {
-        std::vector<glm::ivec3> triangles;
-        std::vector<std::int32_t> sources;
-        triangles.reserve(samples_.mesh.triangles.size() * 4);
-        sources.reserve(triangles.capacity());
-        const std::size_t edges = samples_.mesh.triangles.size() * 3 / 2;
-        middles_.reserve(edges);
-        samples_.mesh.vertices.reserve(samples_.mesh.vertices.size() + edges);
-        for (std::size_t t = 0; t < samples_.mesh.triangles.size(); ++t) {
-            divide(samples_.mesh.triangles[t], triangles);
-            sources.resize(triangles.size(), samples_.sourceTriangle[t]);
-        }
-        samples_.mesh.triangles = std::move(triangles);
-        samples_.sourceTriangle = std::move(sources);
-        return !middles_.empty();
+    void run() {
+        while (findCuts())
+            divideAll();
     }
 
 private:
+    // A triangle and where its edges are cut, as middleOf() says.
+    struct Cut {
+        std::uint32_t triangle;
+        glm::ivec3 middles;
+    };
+
+    // False where no edge is too long.
+    bool findCuts() {
+        firstOf_.assign(samples_.mesh.vertices.size(), -1);
+        middles_.clear(), cuts_.clear();
+        for (const std::uint32_t number : open_) {
+            const glm::ivec3 t = samples_.mesh.triangles[number];
+            const int ab = middleOf(t.x, t.y), bc = middleOf(t.y, t.z), ca = middleOf(t.z, t.x);
+            if (ab >= 0 || bc >= 0 || ca >= 0) cuts_.push_back({number, {ab, bc, ca}});
+        }
+        return !cuts_.empty();
+    }
+
+    void divideAll() {
+        std::vector<glm::ivec3>& triangles = samples_.mesh.triangles;
+        std::vector<glm::ivec3> divided;
+        std::vector<std::int32_t> sources;
+        divided.reserve(triangles.size() + 3 * cuts_.size());
+        sources.reserve(divided.capacity());
+        open_.clear();
+        std::size_t next = 0;  // triangles before it are in `divided`
+        const auto keepUntil = [&](std::size_t end) {
+            divided.insert(divided.end(), triangles.begin() + std::ptrdiff_t(next),
+                           triangles.begin() + std::ptrdiff_t(end));
+            sources.insert(sources.end(), samples_.sourceTriangle.begin() + std::ptrdiff_t(next),
+                           samples_.sourceTriangle.begin() + std::ptrdiff_t(end));
+            next = end;
+        };
+        for (const Cut& cut : cuts_) {
+            keepUntil(cut.triangle);
+            divide(triangles[cut.triangle], cut.middles, divided);
+            for (std::size_t t = sources.size(); t < divided.size(); ++t)
+                open_.push_back(std::uint32_t(t));
+            sources.resize(divided.size(), samples_.sourceTriangle[cut.triangle]);
+            next = cut.triangle + 1;
+        }
+        keepUntil(triangles.size());
+        triangles = std::move(divided);
+        samples_.sourceTriangle = std::move(sources);
+    }
+
     double squaredMm2(int a, int b) const {
         const glm::dvec3 edge =
             samples_.mesh.vertices[std::size_t(a)] - samples_.mesh.vertices[std::size_t(b)];
@@ -60,16 +94,9 @@ private:
         return vertex;
     }
 
-    void divide(glm::ivec3 t, std::vector<glm::ivec3>& out) {
-        int m[3];
-        int cut = 0;
-        for (int n = 0; n < 3; ++n) {
-            m[n] = middleOf(t[n], t[(n + 1) % 3]);
-            cut += m[n] >= 0;
-        }
-        if (cut == 0) {
-            out.push_back(t);
-        } else if (cut == 3) {
+    void divide(glm::ivec3 t, glm::ivec3 m, std::vector<glm::ivec3>& out) const {
+        const int cut = (m.x >= 0) + (m.y >= 0) + (m.z >= 0);
+        if (cut == 3) {
             out.insert(out.end(), {glm::ivec3(t[0], m[0], m[2]), glm::ivec3(m[0], t[1], m[1]),
                                    glm::ivec3(m[2], m[1], t[2]), glm::ivec3(m[0], m[1], m[2])});
         } else if (cut == 1) {
@@ -91,6 +118,9 @@ private:
 
     WallSamples& samples_;
     double mostMm2_;
+    // Those that may have a long edge, ascending: all at first, then what others were divided into.
+    std::vector<std::uint32_t> open_;
+    std::vector<Cut> cuts_;
     // Of each vertex the edges to later ones that have been cut, as a list: a vertex has few.
     struct Middle {
         int otherEnd = 0, vertex = 0, next = -1;
@@ -203,8 +233,7 @@ WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm, int threads
     samples.mesh.triangles.reserve(surface.triangles.size());
     for (const std::int32_t t : samples.sourceTriangle)
         samples.mesh.triangles.push_back(surface.triangles[std::size_t(t)]);
-    while (Division(samples, mostSpacingMm).run()) {
-    }
+    Division(samples, mostSpacingMm).run();
     renumber(samples.mesh);
     measureAreas(samples);
     joinNeighbours(samples, threads);
