@@ -35,9 +35,8 @@ void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm,
     if (!canPan) slab_ = {};
     planes_.fill({cameraMm, 1.0, glm::dvec2(0.0)});
     followedMm_ = cameraMm;
-    shownMm_.reset();
-    aheadMm_ = 0.0;
-    obliquePanMm_ = glm::dvec2(0.0);
+    shown_.reset();
+    across_ = {};
     heightMm_ = ObliqueView{}.heightMm;
     cleansed_ = false;
 }
@@ -45,15 +44,18 @@ void SliceViews::open(std::shared_ptr<const CaseInfo> info, glm::dvec3 cameraMm,
 void SliceViews::follow(glm::dvec3 cameraMm) {
     if (cameraMm == followedMm_) return;
     followedMm_ = cameraMm;
-    shownMm_.reset();
+    shown_.reset();
     if (!linked_) return;
     for (Plane& plane : planes_)
         plane.focusMm = cameraMm;
 }
 
 void SliceViews::show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane) {
+    if (linked_)
+        shown_ = {placeMm, {}};
+    else if (cameraMm != followedMm_)
+        shown_.reset();
     followedMm_ = cameraMm;
-    if (linked_) shownMm_ = placeMm, aheadMm_ = 0.0;
     for (const View each : {View::axial, View::coronal, View::sagittal}) {
         if (!linked_ && each != plane) continue;
         if (each == plane)
@@ -79,15 +81,14 @@ void SliceViews::showAs(const SliceViews& other) {
     for (std::size_t n = 0; n < planes_.size(); ++n)
         planes_[n].focusMm = other.planes_[n].focusMm, planes_[n].panMm = other.planes_[n].panMm;
     followedMm_ = other.followedMm_;
-    shownMm_ = other.shownMm_;
+    shown_ = other.shown_;
 }
 
 void SliceViews::reopenAs(const SliceViews& other) {
     planes_ = other.planes_;
     followedMm_ = other.followedMm_;
-    shownMm_ = other.shownMm_;
-    obliquePanMm_ = other.obliquePanMm_;
-    aheadMm_ = other.aheadMm_;
+    shown_ = other.shown_;
+    across_ = other.across_;
     heightMm_ = other.heightMm_;
     linked_ = other.linked_;
     window_ = other.window_;
@@ -151,15 +152,17 @@ void SliceViews::setLinked(bool linked) {
         const double zoom = planes_[0].zoom;
         for (Plane& plane : planes_)
             plane.focusMm = followedMm_, plane.zoom = zoom;
+        shown_.reset();
     }
     linked_ = linked;
 }
 
 ObliqueView SliceViews::oblique(const Camera& gaze) const {
     const glm::dvec3 right = glm::cross(gaze.forward, gaze.up);
-    const double shown = shownMm_ ? glm::dot(*shownMm_ - gaze.positionMm, gaze.forward) : 0.0;
-    return {gaze.positionMm + (shown + aheadMm_) * gaze.forward - obliquePanMm_.x * right +
-                obliquePanMm_.y * gaze.up,
+    const double placeMm = shown_ ? glm::dot(shown_->placeMm - gaze.positionMm, gaze.forward) : 0.0;
+    const Across& across = shown_ ? shown_->across : across_;
+    return {gaze.positionMm + (placeMm + across.aheadMm) * gaze.forward - across.panMm.x * right +
+                across.panMm.y * gaze.up,
             gaze.forward,
             gaze.up,
             heightMm_,
@@ -169,11 +172,12 @@ ObliqueView SliceViews::oblique(const Camera& gaze) const {
 }
 
 void SliceViews::scrollOblique(double mm) {
-    aheadMm_ = std::clamp(aheadMm_ + mm, -50.0, 200.0);
+    double& aheadMm = across().aheadMm;
+    aheadMm = std::clamp(aheadMm + mm, -50.0, 200.0);
 }
 
 void SliceViews::panOblique(glm::dvec2 mm) {
-    obliquePanMm_ = withinReach(obliquePanMm_ + mm);
+    across().panMm = withinReach(across().panMm + mm);
 }
 
 void SliceViews::zoomOblique(double factor) {

@@ -26,8 +26,8 @@ public:
     void follow(glm::dvec3 cameraMm);
     /// Shows a place until the camera leaves `cameraMm`. The picture of `plane`, where the place
     /// was clicked, stays where it is; the others are moved to it. Of slices that are not linked,
-    /// only `plane` shows it, if any is given; of linked ones the slice across the gaze shows it,
-    /// too.
+    /// only `plane` shows it, if any is given. Where they are linked, the slice across the gaze
+    /// goes through it, too.
     void show(glm::dvec3 placeMm, glm::dvec3 cameraMm, std::optional<View> plane = {});
 
     /// The places that `other` shows; how large, and by which window, slab and scan, stays.
@@ -49,13 +49,14 @@ public:
     /// Slices that are linked again show the camera's place.
     void setLinked(bool linked);
 
-    /// Across the gaze, through the camera or the place that is shown, and so far ahead of it as it
-    /// was scrolled to.
+    /// Across the gaze, through the place that is shown, or else the camera, and so far ahead of
+    /// that as it was scrolled to. How it was scrolled and moved at the one is forgotten once the
+    /// camera leaves; how at the other is not.
     ObliqueView oblique(const Camera& gaze) const;
     void scrollOblique(double mm);
     /// As pan(), right and down of the gaze.
     void panOblique(glm::dvec2 mm);
-    void centerOblique() { obliquePanMm_ = glm::dvec2(0.0); }
+    void centerOblique() { across().panMm = glm::dvec2(0.0); }
     void zoomOblique(double factor);
 
     /// Whether all four show the cleansed scan; stays false where the case has none.
@@ -73,6 +74,16 @@ private:
         double zoom = 1.0;
         glm::dvec2 panMm{0.0};
     };
+    // How the slice across the gaze has been scrolled and moved, right and down of the gaze.
+    struct Across {
+        double aheadMm = 0.0;
+        glm::dvec2 panMm{0.0};
+    };
+    struct Shown {
+        glm::dvec3 placeMm;
+        Across across;
+    };
+    Across& across() { return shown_ ? shown_->across : across_; }
     Plane& of(View plane);
     const Plane& of(View plane) const { return const_cast<SliceViews*>(this)->of(plane); }
     glm::dvec3 withinScan(glm::dvec3 mm) const;
@@ -81,9 +92,9 @@ private:
     std::shared_ptr<const CaseInfo> case_;
     std::array<Plane, 3> planes_;
     glm::dvec3 followedMm_{0.0};
-    std::optional<glm::dvec3> shownMm_;  // until the camera leaves followedMm_
-    glm::dvec2 obliquePanMm_{0.0};
-    double aheadMm_ = 0.0, heightMm_ = ObliqueView{}.heightMm;
+    std::optional<Shown> shown_;  // until the camera leaves followedMm_
+    Across across_;               // where nothing else is shown
+    double heightMm_ = ObliqueView{}.heightMm;
     bool cleansed_ = false, linked_ = true, canPan_ = true;
     WindowLevel window_;
     Slab slab_;

@@ -89,25 +89,53 @@ TEST_F(ClientFlatReader, AClickOnTheStripLeadsAllViewsThere) {
               1e-9);
     EXPECT_EQ(tiles::rgbOf(reader_->panes().picture(View::endoscopic)),
               tests::syntheticPicture(100, 90, camera.positionMm, 0.0));
-    // The slice across the gaze goes through it, as far ahead as it was scrolled to from there.
-    const auto acrossAheadOf = [&](glm::dvec3 place) {
-        const Camera gaze = reader_->flight().camera();
-        const ObliqueView across = reader_->slices().oblique(gaze);
-        EXPECT_EQ(across.forward, gaze.forward);
-        return glm::dot(across.positionMm - place, gaze.forward);
-    };
-    EXPECT_NEAR(acrossAheadOf(wall), 0.0, 1e-9);
-    reader_->slices().scrollOblique(3.0);
-    EXPECT_NEAR(acrossAheadOf(wall), 3.0, 1e-9);
-    reader_->slices().scrollOblique(-3.0);
     expectZoomPictureOf(flat, 200.0);
     // The mark goes when the camera goes on, and slices follow the camera again.
     reader_->flight().goTo(10.0);
     reader_->update(0.0);
     EXPECT_FALSE(reader_->flat().picked());
-    EXPECT_NEAR(acrossAheadOf(reader_->flight().camera().positionMm), 0.0, 1e-9);
     EXPECT_EQ(reader_->slices().slice(View::axial).positionMm,
               reader_->flight().camera().positionMm);
+}
+
+TEST_F(ClientFlatReader, TheSliceAcrossTheGazeGoesThroughThePlaceThatIsShown) {
+    const auto cameraMm = [&] { return reader_->flight().camera().positionMm; };
+    const auto aheadOf = [&](glm::dvec3 place) {
+        const Camera gaze = reader_->flight().camera();
+        return glm::dot(reader_->slices().oblique(gaze).positionMm - place, gaze.forward);
+    };
+    const auto goTo = [&](glm::dvec2 flat) {
+        reader_->flat().goTo(flat, true);
+        const glm::dvec3 wall = vector(tests::fakePlace(flat).position_mm());
+        ASSERT_TRUE(runUntil([&] {
+            const auto& picked = reader_->flat().picked();
+            return picked && glm::distance(picked->positionMm, wall) < 1e-9;
+        }));
+    };
+    const glm::dvec2 flat(0.3, 2.4);
+    const glm::dvec3 wall = vector(tests::fakePlace(flat).position_mm());
+    reader_->slices().scrollOblique(5.0);
+    goTo(flat);
+    EXPECT_NEAR(aheadOf(wall), 0.0, 1e-9);
+    EXPECT_GT(aheadOf(cameraMm()), 1.0);
+    reader_->slices().scrollOblique(3.0);
+    EXPECT_NEAR(aheadOf(wall), 3.0, 1e-9);
+    // Where the camera goes on it is as it was before.
+    reader_->flight().goTo(10.0);
+    reader_->update(0.0);
+    EXPECT_NEAR(aheadOf(cameraMm()), 5.0, 1e-9);
+    // Nor does it stay where others leave: not where slices are linked again, ...
+    goTo(flat);
+    reader_->slices().setLinked(false);
+    EXPECT_NEAR(aheadOf(wall), 0.0, 1e-9);
+    reader_->slices().setLinked(true);
+    EXPECT_NEAR(aheadOf(cameraMm()), 5.0, 1e-9);
+    // ... and of slices that are not, not where the reader goes to another place.
+    goTo({0.6, 3.0});
+    reader_->slices().setLinked(false);
+    goTo({0.3, 4.0});
+    reader_->update(0.0);
+    EXPECT_NEAR(aheadOf(cameraMm()), 5.0, 1e-9);
 }
 
 TEST_F(ClientFlatReader, AClickOnTheWallBeforeTheCameraLeavesItWhereItIs) {

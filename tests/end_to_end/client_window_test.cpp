@@ -1777,6 +1777,7 @@ TEST_F(ClientWindow, EachThingThatIsUndoneAndRedoneLeavesNoTrace) {
     ASSERT_TRUE(waitFor([&] { return bookmarkList().topLevelItemCount() == 1; }));
     flight().goTo(200.0);
     wheel(pane(View::axial), {60, 60}, 2);
+    wheel(pane(View::oblique), {60, 60}, 2);
     expectUndone("window", [&] { drag(pane(View::axial), {{60, 60}, {90, 70}, {100, 90}}); });
     expectUndone("ruler", [&] {
         drag(pane(View::axial), {{60, 60}, {90, 90}}, Qt::LeftButton, Qt::ShiftModifier);
