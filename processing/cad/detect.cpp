@@ -72,12 +72,13 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     return finding;
 }
 
-// What each tells as a finding; in their order.
+// Each as a finding, in their order.
 std::vector<Finding> describe(const PreparedColon& colon, const WallEvidence& evidence,
                               std::span<const Candidate* const> candidates, int threads) {
     std::vector<Finding> findings(candidates.size());
     std::atomic<std::size_t> next = 0;
-    parallelFor(std::size_t(threadCount(threads)), 1, threads, [&](std::size_t, std::size_t) {
+    const auto workers = std::min(std::size_t(threadCount(threads)), candidates.size());
+    parallelFor(workers, 1, threads, [&](std::size_t, std::size_t) {
         SampleNumbers numbers(evidence.samples.mesh.vertices.size());
         for (std::size_t n; (n = next++) < candidates.size();)
             findings[n] = findingOf(colon, evidence, *candidates[n], numbers);

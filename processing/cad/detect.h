@@ -55,7 +55,7 @@ void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Meth
 
 /// Those whose probability reaches the model's operating point, from the rectum to the cecum; the
 /// others as candidates, down to `leastProbability`. Warnings tell how much wall was not examined,
-/// and where `residue` looks like a polyp by itself.
+/// and where `residue` looks like a polyp by itself. The same for any number of threads.
 inline constexpr double leastProbability = 0.02;
 Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
                     const std::vector<Candidate>& candidates, const CadModel& model,

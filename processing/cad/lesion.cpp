@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <set>
 
 namespace haustra::cad {
@@ -41,7 +40,8 @@ public:
                 else
                     pull += placeOf(next);
             }
-            // Rows of whole fours, so that loops over them are as long from sample to sample.
+            // Rows are filled up to whole fours with links to a zero: most are as long, and where a
+            // loop over one ends is predicted.
             while (links_.size() % 4 != 0)
                 links_.push_back(count);
             begin_.push_back(std::uint32_t(links_.size()));
@@ -57,7 +57,8 @@ public:
 private:
     using Field = std::vector<glm::vec4>;  // the fourth of each is 0
 
-    // y = A x; returns x · y of each coordinate. x has a 0 more, for links that fill rows up.
+    // product = A · field; returns field · product of each coordinate. The field has a zero more,
+    // to which the links that fill rows up lead.
     glm::vec4 times(const Field& field, Field& product) const {
         const glm::vec4* const x = field.data();
         const std::uint32_t* const links = links_.data();
@@ -172,7 +173,8 @@ glm::dvec3 middleOf(const WallSamples& wall, std::span<const std::uint32_t> samp
 }
 
 // A widened patch and the film across it: what the parts of a body are measured by. The patch's
-// samples have the first numbers, then come the others up to `inside`, which the film spans.
+// samples have the first numbers, then come the others up to `inside`, which the film spans, and
+// then, once the body is closed, all others around them.
 struct SpannedPatch {
     const WallSamples& wall;
     const Membrane& film;

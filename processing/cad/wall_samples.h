@@ -17,7 +17,8 @@ struct WallSamples {
     TriMesh mesh;
     std::vector<std::int32_t> sourceTriangle;  ///< per triangle, of the surface
     std::vector<float> areaMm2;                ///< per vertex: a third of its triangles'
-    /// Of all vertices, those next to vertex v from begin[v] to before begin[v + 1].
+    /// The neighbours of all vertices in one list: those of vertex v are at begin[v] and on, before
+    /// begin[v + 1].
     std::vector<std::uint32_t> begin, neighbours;
 
     /// Vertices next to a vertex, ascending.
