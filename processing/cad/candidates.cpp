@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 namespace haustra::cad {
@@ -195,17 +194,15 @@ std::vector<Patch> patchesOf(const WallSamples& wall,
                              std::vector<std::vector<std::uint32_t>> components, int threads,
                              const Keeps& keeps) {
     std::vector<Patch> made(components.size());
-    // Each thread takes one after the other, as they differ in size by a thousand times.
-    std::atomic<std::size_t> next = 0;
-    parallelFor(std::size_t(threadCount(threads)), 1, threads, [&](std::size_t, std::size_t) {
-        HoleFiller holes(wall);
-        for (std::size_t n; (n = next++) < components.size();) {
-            if (!keeps(components[n])) continue;
+    // Components differ in size by a thousand times.
+    parallelForEach(
+        components.size(), threads, [&] { return HoleFiller(wall); },
+        [&](std::size_t n, HoleFiller& holes) {
+            if (!keeps(components[n])) return;
             holes.fill(components[n]);
             std::sort(components[n].begin(), components[n].end());
             made[n].samples = std::move(components[n]);
-        }
-    });
+        });
     std::erase_if(made, [](const Patch& patch) { return patch.samples.empty(); });
     return made;
 }
@@ -269,12 +266,16 @@ std::vector<std::vector<Patch>> otherLevels(const WallEvidence& evidence,
                                             std::span<const Patch* const> patches, int threads) {
     const WallSamples& wall = evidence.samples;
     std::vector<std::vector<Patch>> made(patches.size());
-    if (patches.empty()) return made;
-    std::atomic<std::size_t> next = 0;
-    parallelFor(std::size_t(threadCount(threads)), 1, threads, [&](std::size_t, std::size_t) {
-        HoleFiller holes(wall);
-        SampleNumbers taken(wall.mesh.vertices.size()), inPatch(wall.mesh.vertices.size());
-        for (std::size_t n; (n = next++) < patches.size();) {
+    struct Scratch {
+        explicit Scratch(const WallSamples& wall)
+            : holes(wall), taken(wall.mesh.vertices.size()), inPatch(wall.mesh.vertices.size()) {}
+        HoleFiller holes;
+        SampleNumbers taken, inPatch;
+    };
+    parallelForEach(
+        patches.size(), threads, [&] { return Scratch(wall); },
+        [&](std::size_t n, Scratch& scratch) {
+            auto& [holes, taken, inPatch] = scratch;
             const Patch& patch = *patches[n];
             const auto shapes = shapesOf(evidence, patch.by);
             const ShapeLimits limits = limitsOf(patch.by);
@@ -306,8 +307,7 @@ std::vector<std::vector<Patch>> otherLevels(const WallEvidence& evidence,
                     return inPatch.has(w) && reaches(w, limits.narrowCurvature);
                 }));
             }
-        }
-    });
+        });
     return made;
 }
 

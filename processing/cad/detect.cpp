@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -76,13 +75,12 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
 std::vector<Finding> describe(const PreparedColon& colon, const WallEvidence& evidence,
                               std::span<const Candidate* const> candidates, int threads) {
     std::vector<Finding> findings(candidates.size());
-    std::atomic<std::size_t> next = 0;
-    const auto workers = std::min(std::size_t(threadCount(threads)), candidates.size());
-    parallelFor(workers, 1, threads, [&](std::size_t, std::size_t) {
-        SampleNumbers numbers(evidence.samples.mesh.vertices.size());
-        for (std::size_t n; (n = next++) < candidates.size();)
+    parallelForEach(
+        candidates.size(), threads,
+        [&] { return SampleNumbers(evidence.samples.mesh.vertices.size()); },
+        [&](std::size_t n, SampleNumbers& numbers) {
             findings[n] = findingOf(colon, evidence, *candidates[n], numbers);
-    });
+        });
     return findings;
 }
 
@@ -152,26 +150,23 @@ struct Measures {
 void measure(const Measures& with, std::vector<Patch> patches,
              std::span<const std::int32_t> levelOf, std::vector<Candidate>& candidates,
              std::vector<Candidate>* residue) {
-    if (patches.empty()) return;
     std::vector<std::optional<Candidate>> measured(patches.size());
     std::vector<std::uint8_t> nothingElse(patches.size(), 0);
-    // Each thread takes patch after patch, as they differ in size by a thousand times.
-    std::atomic<std::size_t> next = 0;
-    const auto threads = std::size_t(threadCount(with.threads));
-    parallelFor(threads, 1, with.threads, [&](std::size_t, std::size_t) {
-        SampleNumbers numbers(with.evidence.samples.mesh.vertices.size());
-        for (std::size_t n; (n = next++) < patches.size();) {
+    // Patches differ in size by a thousand times.
+    parallelForEach(
+        patches.size(), with.threads,
+        [&] { return SampleNumbers(with.evidence.samples.mesh.vertices.size()); },
+        [&](std::size_t n, SampleNumbers& numbers) {
             auto lesion = standUp(with.evidence, with.triangles, std::move(patches[n]),
                                   with.colon.cleansed.grid(), numbers);
-            if (!lesion || liesBehindUntagged(with.evidence, lesion->patch)) continue;
+            if (!lesion || liesBehindUntagged(with.evidence, lesion->patch)) return;
             const FeatureVector features =
                 featuresOf(with.colon, with.evidence, with.textureDistances, *lesion, numbers);
             const double residueMm = with.films.liftMm(with.colon, with.evidence, lesion->patch);
             nothingElse[n] = isResidue(*lesion, features, residueMm);
             measured[n] = Candidate{*std::move(lesion), features};
             if (!levelOf.empty()) measured[n]->levelOf = levelOf[n];
-        }
-    });
+        });
     for (std::size_t n = 0; n < measured.size(); ++n) {
         std::vector<Candidate>* to = nothingElse[n] ? residue : &candidates;
         if (measured[n] && to) to->push_back(*std::move(measured[n]));

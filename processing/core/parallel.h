@@ -1,6 +1,8 @@
 // Splitting loops over a fixed number of threads.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <functional>
 
@@ -14,6 +16,21 @@ int threadCount(int threads);
 /// must give the same result however the range is split. An exception in a body is rethrown here.
 void parallelFor(std::size_t count, std::size_t grain, int threads,
                  const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Calls body(n, scratch) for each n in [0, count), one after the other as threads become free: for
+/// pieces that differ much in size. Each thread has a scratch of its own, makeScratch(), and the
+/// body must give the same result with whichever. Else as parallelFor.
+template <class MakeScratch, class Body>
+void parallelForEach(std::size_t count, int threads, const MakeScratch& makeScratch,
+                     const Body& body) {
+    std::atomic<std::size_t> next = 0;
+    const std::size_t workers = std::min(std::size_t(threadCount(threads)), count);
+    parallelFor(workers, 1, threads, [&](std::size_t, std::size_t) {
+        auto scratch = makeScratch();
+        for (std::size_t n; (n = next++) < count;)
+            body(n, scratch);
+    });
+}
 
 /// How far a long piece of work is, 0…1; called from the thread that started the work.
 using Progress = std::function<void(double fraction)>;

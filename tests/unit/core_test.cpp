@@ -14,6 +14,8 @@
 #include <fstream>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -230,6 +232,33 @@ TEST(Parallel, CoversEachIndexOnce) {
         for (const auto& hit : hits)
             EXPECT_EQ(hit, 1);
     }
+}
+
+TEST(Parallel, EachIsDoneOnceByAThreadWithItsOwnScratch) {
+    for (const int threads : {1, 3, 40}) {
+        std::vector<std::atomic<int>> hits(101);
+        std::atomic<int> scratches = 0;
+        parallelForEach(
+            hits.size(), threads,
+            [&] { return std::pair(++scratches, std::this_thread::get_id()); },
+            [&](std::size_t n, auto& scratch) {
+                EXPECT_EQ(scratch.second, std::this_thread::get_id());
+                ++hits[n];
+            });
+        for (const auto& hit : hits)
+            EXPECT_EQ(hit, 1);
+        EXPECT_GE(scratches, 1);
+        EXPECT_LE(scratches, threads);
+    }
+    EXPECT_THROW(parallelForEach(
+                     9, 3, [] { return 0; },
+                     [](std::size_t n, int) {
+                         if (n == 5) throw std::runtime_error("five");
+                     }),
+                 std::runtime_error);
+    parallelForEach(
+        0, 3, []() -> int { throw std::logic_error("no scratch for nothing"); },
+        [](std::size_t, int) {});
 }
 
 TEST(Parallel, AnExceptionReachesTheCaller) {
