@@ -1613,6 +1613,16 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 0; }));
     EXPECT_TRUE(reader().shownRulers().empty());
     EXPECT_FALSE(reader().findings().current());
+    // Nor does any step that is taken back and done again lead to one.
+    QUndoStack& steps = reading_->undoStack();
+    while (steps.canUndo())
+        steps.undo();
+    EXPECT_LT(std::abs(flight().arcMm()), 1e-6);
+    while (steps.canRedo())
+        steps.redo();
+    EXPECT_LT(std::abs(flight().arcMm()), 1e-6);
+    EXPECT_TRUE(reader().shownRulers().empty());
+    EXPECT_FALSE(reader().findings().current());
 }
 
 TEST_F(ClientWindow, TheKeysPointGoAndMeasure) {
