@@ -73,7 +73,7 @@ void tellRefusal(Reading& reading, const Result<void>& done) {
 
 void jumpTo(Reading& reading, const reader::ListedFinding& finding) {
     reading.jump(FindingsPanel::tr("go to a finding"),
-                 // Done again when findings are hidden it leads nowhere.
+                 // Redone while findings are hidden, it leads nowhere.
                  [&reading, finding] {
                      if (reading.reader().findings().find(finding.number))
                          reading.reader().goTo(finding);

@@ -284,15 +284,12 @@ TEST_F(PreparedPhantom, EachProductIsExportedInEachOfItsFormatsAndInNoOther) {
             arguments.insert(arguments.end(), {"--width", "100"});
         return haustra(arguments);
     };
+    std::set<std::string> allEndings{".txt", ".hvol", ".nii.gz.txt", "nii", ""};
+    for (const store::Product& product : store::catalogue().products())
+        allEndings.insert(product.endings.begin(), product.endings.end());
     const std::string help = haustra({"export", "--help"}).out;
-    const auto& products = store::catalogue().products();
-    for (std::size_t n = 0; n < products.size(); ++n) {
-        const store::Product& product = products[n];
-        // Its own, the next product's, and what is no product's.
-        std::set<std::string> endings{".txt", ".hvol", ".nii.gz.txt", "nii", ""};
-        for (const std::size_t which : {n, (n + 1) % products.size()})
-            endings.insert(products[which].endings.begin(), products[which].endings.end());
-        for (const std::string& ending : endings) {
+    for (const store::Product& product : store::catalogue().products()) {
+        for (const std::string& ending : allEndings) {
             const std::string name = "exported-" + product.name + ending;
             const auto outcome = exported(product.name, name);
             const bool may = std::ranges::find(product.endings, ending) != product.endings.end();
