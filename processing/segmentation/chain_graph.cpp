@@ -13,16 +13,46 @@ bool isGasBowel(const TubePiece& piece) {
            piece.excludedAirMm2 < mostAir * piece.surfaceMm2;
 }
 
-// Fluid is even, and no brighter than the fluid under levels; bone is neither.
-bool isTaggedBowel(const TubePiece& piece, double softHu, double brightestHu, double noiseSdHu) {
-    constexpr double leastMl = 0.5, leastRadiusMm = 3.5, mostUneven = 0.22;
-    if (piece.mostlyGas() || piece.volumeMl < leastMl || piece.radiusMm < leastRadiusMm)
-        return false;
-    const double contrast = piece.coreHu - softHu;
-    if (!(contrast > 60.0) || piece.coreHu > brightestHu) return false;
+/// How bright fluid can be: as under the levels, or somewhat brighter; twice as far over soft
+/// tissue where nothing else can be so wide and even.
+struct BrightestFluid {
+    double hu = 3000.0, wideAndEvenHu = 3000.0;
+};
+
+/// How uneven a piece's core is but for noise, in parts of its height over soft tissue.
+double unevenness(const TubePiece& piece, double softHu, double noiseSdHu) {
     const double sd =
         std::sqrt(std::max(0.0, piece.coreSdHu * piece.coreSdHu - noiseSdHu * noiseSdHu));
-    return sd < mostUneven * contrast;
+    return sd / (piece.coreHu - softHu);
+}
+
+// What no bone is: no compact bone is 10 mm thick, and what is spongy is uneven.
+bool isWideAndEven(const TubePiece& piece, double softHu, double noiseSdHu) {
+    constexpr double leastRadiusMm = 5.0, mostUneven = 0.1;
+    return piece.radiusMm >= leastRadiusMm && unevenness(piece, softHu, noiseSdHu) < mostUneven;
+}
+
+bool isDense(const TubePiece& piece, double softHu) {
+    constexpr double leastMl = 0.5, leastRadiusMm = 3.5, leastContrastHu = 60.0;
+    return !piece.mostlyGas() && piece.volumeMl >= leastMl && piece.radiusMm >= leastRadiusMm &&
+           piece.coreHu - softHu > leastContrastHu;
+}
+
+// Fluid is even, and no brighter than the fluid under levels; bone is neither.
+bool isTaggedBowel(const TubePiece& piece, double softHu, const BrightestFluid& brightest,
+                   double noiseSdHu) {
+    constexpr double mostUneven = 0.22;
+    if (!isDense(piece, softHu) || piece.coreHu > brightest.wideAndEvenHu) return false;
+    if (piece.coreHu > brightest.hu) return isWideAndEven(piece, softHu, noiseSdHu);
+    return unevenness(piece, softHu, noiseSdHu) < mostUneven;
+}
+
+// Nothing but its HU speaks against fluid, and metal is brighter.
+bool isTooBright(const TubePiece& piece, double softHu, const BrightestFluid& brightest,
+                 double noiseSdHu) {
+    constexpr double metalHu = 2500.0;
+    return isDense(piece, softHu) && piece.coreHu > brightest.wideAndEvenHu &&
+           piece.coreHu < metalHu && isWideAndEven(piece, softHu, noiseSdHu);
 }
 
 bool isUntaggedBowel(const TubePiece& piece) {
@@ -110,9 +140,8 @@ double orificeLogOdds(const Orifice& orifice, const TubePieces& cut, double soft
 
 constexpr double certain = 60.0;  ///< log odds of what a person said
 
-/// No fluid is brighter: from the fluids under the levels, by area; 3000 HU where there is no
-/// level.
-double brightestFluidHu(const std::vector<Level>& levels, double softHu) {
+/// From the fluids under the levels, by area.
+BrightestFluid brightestFluid(const std::vector<Level>& levels, double softHu) {
     std::vector<std::pair<double, double>> fluids;  // HU, area
     double area = 0.0;
     for (const Level& level : levels)
@@ -121,9 +150,11 @@ double brightestFluidHu(const std::vector<Level>& levels, double softHu) {
     double sum = 0.0;
     for (const auto& [fluidHu, mm2] : fluids) {
         sum += mm2;
-        if (sum >= 0.95 * area) return softHu + 1.5 * (fluidHu - softHu) + 100.0;
+        if (sum < 0.95 * area) continue;
+        const double hu = softHu + 1.5 * (fluidHu - softHu) + 100.0;
+        return {hu, std::max(hu, softHu + 2.0 * (fluidHu - softHu))};
     }
-    return 3000.0;
+    return {};
 }
 
 /// What was said of each piece.
@@ -302,7 +333,7 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
                           const GivenPieces& given, int threads) {
     constexpr std::size_t mostNodes = 400;
     const double softHu = tissue.meanHu[int(Tissue::soft)];
-    const double brightestHu = brightestFluidHu(contents.levels, softHu);
+    const BrightestFluid brightest = brightestFluid(contents.levels, softHu);
     const std::vector<Said> said = saidOf(given, cut.pieces.size());
     PieceGraph made;
     made.nodeOf.assign(cut.pieces.size(), -1);
@@ -310,8 +341,12 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
         const TubePiece& piece = cut.pieces[p];
         const bool bowel = said[p] != Said::nothing || isGasBowel(piece) ||
                            isUntaggedBowel(piece) ||
-                           isTaggedBowel(piece, softHu, brightestHu, contents.gasSdHu);
-        if (!bowel) continue;
+                           isTaggedBowel(piece, softHu, brightest, contents.gasSdHu);
+        if (!bowel) {
+            if (isTooBright(piece, softHu, brightest, contents.gasSdHu))
+                made.tooBright.push_back(std::int32_t(p));
+            continue;
+        }
         made.nodeOf[p] = std::int32_t(made.pieceOf.size());
         made.pieceOf.push_back(std::int32_t(p));
     }

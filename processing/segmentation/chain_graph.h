@@ -13,7 +13,10 @@ struct PieceGraph {
     ChainGraph graph;
     std::vector<std::int32_t> pieceOf;  ///< of each node
     std::vector<std::int32_t> nodeOf;   ///< of each piece, or −1
-    std::vector<glm::dvec3> lowestMm;   ///< place of each node
+    /// Pieces that are as wide and even as fluid, and no nodes for being brighter than that under
+    /// the levels: a bladder full of contrast medium, or a part of the colon that is tagged more.
+    std::vector<std::int32_t> tooBright;
+    std::vector<glm::dvec3> lowestMm;  ///< place of each node
     BodyFrame frame;
     std::vector<CollapsePath>
         collapses;  ///< of each junction of that kind: its index is the junction's `path`

@@ -163,6 +163,27 @@ private:
         return most > likely;
     }
 
+    // Gas of a balloon, or a ball of stool; a bridge may cross what was left out.
+    bool isTakenIn(const TubePiece& piece) const {
+        const auto label = LumenLabel(labels_.labels.at(piece.centre));
+        return label != LumenLabel::outside && label != LumenLabel::bridge;
+    }
+
+    LeftOutBody leftOut(const TubePiece& piece, bool opens) const {
+        LeftOutBody body{
+            piece.centreMm, piece.volumeMl,        piece.mostlyGas(), ColonPart::rectum, 1e9,
+            opens,          piece.mostlyUntagged()};
+        for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
+            const ChainNode& kept = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
+            const double mm =
+                glm::distance(kept.centreMm, piece.centreMm) - kept.radiusMm - piece.radiusMm;
+            if (mm < body.distanceMm)
+                body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
+        }
+        body.distanceMm = std::max(0.0, body.distanceMm);
+        return body;
+    }
+
     void findLeftOut() {
         constexpr double leastMl = 2.0, nearMm = 20.0;
         const std::set<int> taken = nodesOf(chain_);
@@ -174,26 +195,16 @@ private:
         for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
             const ChainNode& node = graph_.graph.nodes[n];
             if (taken.count(int(n)) || node.volumeMl < leastMl) continue;
-            // Gas of a balloon, or a ball of stool; a bridge may cross what was left out.
-            const auto label = LumenLabel(labels_.labels.at(pieceOf(int(n)).centre));
-            if (label != LumenLabel::outside && label != LumenLabel::bridge) continue;
-            LeftOutBody body{node.centreMm,
-                             node.volumeMl,
-                             pieceOf(int(n)).mostlyGas(),
-                             ColonPart::rectum,
-                             1e9,
-                             opened.count(int(n)) > 0,
-                             pieceOf(int(n)).mostlyUntagged()};
-            for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
-                const ChainNode& kept = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
-                const double mm =
-                    glm::distance(kept.centreMm, node.centreMm) - kept.radiusMm - node.radiusMm;
-                if (mm < body.distanceMm)
-                    body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
-            }
-            body.distanceMm = std::max(0.0, body.distanceMm);
+            if (isTakenIn(pieceOf(int(n)))) continue;
+            const LeftOutBody body = leftOut(pieceOf(int(n)), opened.count(int(n)) > 0);
             if (body.opens || body.distanceMm < nearMm || looksLikeColon(node))
                 made_.leftOut.push_back(body);
+        }
+        // Whatever it is, it may be the way on.
+        for (const std::int32_t p : graph_.tooBright) {
+            const TubePiece& piece = cut_.pieces[std::size_t(p)];
+            if (piece.volumeMl >= leastMl && !isTakenIn(piece))
+                made_.leftOut.push_back(leftOut(piece, false));
         }
         std::stable_sort(
             made_.leftOut.begin(), made_.leftOut.end(),

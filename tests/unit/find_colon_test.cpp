@@ -655,6 +655,38 @@ TEST(FindColon, DenseMaterialThatTouchesTheWallIsNotStool) {
     EXPECT_GT(diceWithDrawing(*found), 0.985);
 }
 
+// The cecum and the ascending colon are full, and their fluid is tagged more than what stands under
+// the gas: `times` as far over soft tissue.
+Drawing tagsTheRightMore(double times) {
+    Drawing drawing;
+    drawing.paintColon([](glm::dvec3 p) { return p.y >= levelMm || p.x < 100.0; });
+    drawing.paint(45.0 + times * (620.0 - 45.0),
+                  [](glm::dvec3 p) { return inColon(p) && p.x < 100.0; });
+    return drawing;
+}
+
+TEST(FindColon, APartThatIsTaggedMoreIsStillColon) {
+    const auto found = find(tagsTheRightMore(1.75).scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_GT(diceWithDrawing(*found), 0.985);
+    EXPECT_LT(found->record.pieces.back().centreMm.z, 150.0) << "the course ends at the cecum";
+}
+
+TEST(FindColon, APartThatIsTooBrightForFluidIsTold) {
+    const auto found = find(tagsTheRightMore(2.3).scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    const auto onTheRight = [](glm::dvec3 p) { return inColon(p) && p.x < 100.0; };
+    if (labelledMl(*found, [&](glm::dvec3 p) { return onTheRight(p) && p.z < 250.0; }) > 1.0)
+        GTEST_FAIL() << "no longer left out: this test needs another scene";
+    double toldMl = 0.0;
+    for (const auto& body : found->record.leftOut)
+        toldMl += onTheRight(body.centreMm) ? body.volumeMl : 0.0;
+    EXPECT_GT(toldMl, 100.0);
+    EXPECT_TRUE(std::ranges::any_of(found->record.warnings, [](const std::string& warning) {
+        return warning.find("tagged material") != std::string::npos;
+    }));
+}
+
 // A lump of tagged stool, as wide as bowel, stands on the wall in the gas; its rim is partial
 // volume.
 TEST(FindColon, ALargeBallOfTaggedStoolIsOfTheLumen) {
