@@ -232,17 +232,17 @@ void describeContents(const PreparedColon& colon, const WallEvidence& evidence,
     put("fat_share", fat / voxels);
     put("gas_share", gas / voxels);
     if (density.empty()) density.push_back(-3.0f), raw.push_back(-3.0f), removed.push_back(0.0f);
+    // Of what is surely tissue, beside the scan's own noise; quantiles change the voxels' order.
+    std::vector<float> core;
+    for (std::size_t n = 0; n < density.size(); ++n)
+        if (density[n] > -0.6f) core.push_back(raw[n]);
+    put("density_spread", deviation(core));
     put("removed_density", mean(removed));
     put("removed_p90", quantile(removed, 0.9));
     put("scan_noise", s.noiseHu / unit);
     put("density_median", quantile(density, 0.5));
     put("density_p90", quantile(density, 0.9));
     put("density_core", quantile(density, 0.98));
-    // Of what is surely tissue, beside the scan's own noise.
-    std::vector<float> core;
-    for (std::size_t n = 0; n < density.size(); ++n)
-        if (density[n] > -0.6f) core.push_back(raw[n]);
-    put("density_spread", deviation(core));
     put("outside_density", (outsideHu(colon, evidence, lesion) - s.wallHu) / unit);
     std::vector<float> peaks, ringPeaks, broad;
     for (const std::uint32_t v : lesion.patch.samples) {
