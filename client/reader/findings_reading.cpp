@@ -42,7 +42,7 @@ Result<void> FindingsReading::finishFirstPass() {
 
 std::span<const ListedFinding> FindingsReading::shown() const {
     const auto& list = session_.findings();
-    if (!list || !choice().shows()) return {};
+    if (!list || !has() || !choice().shows()) return {};
     return list->findings;
 }
 

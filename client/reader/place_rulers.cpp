@@ -82,7 +82,7 @@ void PlaceRulers::add(const PlaceRuler::End& end) {
 }
 
 void PlaceRulers::add(const PlaceRuler& ruler) {
-    before_ = rulers_;
+    if (!before_) before_ = rulers_;  // of several that are told at once, all are one step
     rulers_.push_back(ruler);
 }
 

@@ -304,6 +304,10 @@ void Session::opened(const protocol::CaseOpened& message) {
         caseInfo_->cleansed == info->cleansed && caseInfo_->detection == info->detection &&
         sameStrip(caseInfo_->flat, info->flat) && sameGrid(caseInfo_->grid, info->grid);
     if (!same) {
+        // What was chosen for a scan, and that its first reading is done, is not another's.
+        if (!caseInfo_ || caseInfo_->scan != info->scan) detection_ = {};
+        findings_.reset();
+        ++findingsRevision_;
         caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
         ++bookmarksRevision_;
         takeFromJournal();

@@ -115,8 +115,13 @@ void goToNextFinding(Reading& reading, int step) {
     const reader::Reader& reader = reading.reader();
     if (const auto* finding = reader.findings().next(step, reader.flight().placeArcMm()))
         return jumpTo(reading, *finding);
-    reading.tell(!reader.findings().choice().shows()
+    const auto& list = reader.session().findings();
+    const QString why = whyNone(reader.session());
+    reading.tell(!why.isEmpty() ? why
+                 : !reader.findings().choice().shows()
                      ? FindingsPanel::tr("Findings are not shown in this mode.")
+                 : !list || list->state != reader::FindingList::State::shown
+                     ? FindingsPanel::tr("asking…")
                  : step > 0 ? FindingsPanel::tr("No finding further along the colon.")
                             : FindingsPanel::tr("No finding before this place."));
 }

@@ -215,9 +215,12 @@ void Reading::did(const QString& text, std::function<void()> undo, std::function
 
 std::function<void()> Reading::wayBack() {
     reader::Reader& reader = *reader_;
-    return [&reader, flight = reader.flight(), slices = reader.slices()] {
+    const reader::ListedFinding* at = reader.findings().current();
+    return [&reader, flight = reader.flight(), slices = reader.slices(),
+            finding = at ? at->number : 0] {
         reader.setMotion(reader::Motion::paused);
         reader.restore(flight, slices);
+        reader.findings().setCurrent(finding);
     };
 }
 

@@ -366,6 +366,22 @@ TEST_F(ClientReaderWithALossyLink, WhileTheLinkIsDownTheFlightStandsAndItsPictur
     EXPECT_EQ(reader_->freshness(View::endoscopic), Freshness::exact);
 }
 
+TEST_F(ClientReaderOfAReplacedScan, TheFirstReadingOfTheOneIsNotTheOthers) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    FindingsReading& findings = reader_->findings();
+    ASSERT_TRUE(findings.choose(DetectionMode::secondReader));
+    ASSERT_TRUE(findings.finishFirstPass());
+    ASSERT_TRUE(runUntil([&] { return !findings.shown().empty(); }));
+    reader_->addBookmark("first");
+    reader_->addBookmark("second: the link breaks");
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::lost; }));
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::open && allAtRest(); }));
+    ASSERT_EQ(reader_->session().caseInfo()->scan, "B");
+    EXPECT_EQ(findings.choice().mode, DetectionMode::off);
+    EXPECT_FALSE(findings.choice().firstPassDone);
+    EXPECT_TRUE(findings.shown().empty());
+}
+
 TEST_F(ClientReaderOfAReplacedScan, WhatWasMarkedOnTheOneIsNotSentToTheOther) {
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
     reader_->addBookmark("first");

@@ -1606,8 +1606,18 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor([&] { return std::abs(flight().arcMm() - third->wall.arcMm) < 1e-6; }));
     EXPECT_LT(glm::distance(slices().slice(View::axial).positionMm, third->wall.positionMm), 1.0);
     EXPECT_LT(glm::distance(reader().flat().tour().window().center, *third->wall.flat), 1e-6);
+    // Who goes on and takes it back is at the former one again, and measures that.
+    press(Qt::Key_M, Qt::ShiftModifier);
+    const auto isAt = [&](int number) {
+        const auto* current = reader().findings().current();
+        return current && current->number == number;
+    };
+    ASSERT_TRUE(waitFor([&] { return isAt(2); }));
+    reading_->undoStack().undo();
+    EXPECT_TRUE(isAt(3));
     press(Qt::Key_K, Qt::ShiftModifier);
     ASSERT_TRUE(waitFor([&] { return reader().shownRulers().size() == 1; }));
+    EXPECT_EQ(reader().shownRulers().front().finding, 3);
     // Off again, nothing is left of them, nor of what was measured on them.
     EXPECT_TRUE(reader().findings().choose(DetectionMode::off));
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 0; }));
