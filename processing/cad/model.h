@@ -27,8 +27,8 @@ struct ShapeThresholds {
 };
 
 /// What is shown of a model to people: one line without control characters, of at most so many
-/// bytes.
-inline constexpr std::size_t longestModelName = 200, longestModelDescription = 4000;
+/// bytes; a description as long as the protocol carries it (protocol/limits.h).
+inline constexpr std::size_t longestModelName = 200, longestModelDescription = 2000;
 bool isModelLine(std::string_view text, std::size_t longest);
 
 struct CadModel {

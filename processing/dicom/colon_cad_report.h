@@ -34,9 +34,9 @@ struct ColonCadReportOptions {
 ///              finding's voxels (core/voxel_ellipsoid.h)
 ///         4128 Finding Site: the colon's segment; Diameter with its ends as a path (1406);
 ///              Height; Distance from anus: the arc along the centerline
-///     Summary of Detections: Succeeded, or where there are warnings Partially Succeeded, each
-///       warning with a failed detection (4015, 4017), the operating point and what the model was
-///       trained on with the successful one; the series by its UID
+///     Summary of Detections: Succeeded, or where some of the wall was not examined Partially
+///       Succeeded, its area with a failed detection (4015, 4017); the operating point, what the
+///       model was trained on and the warnings with the successful one; the series by its UID
 ///     Summary of Analyses: Not Attempted
 ///
 /// Places are LPS mm in the series' frame of reference, as in the JSON, to single precision: at

@@ -452,15 +452,24 @@ Result<void> runCalibrate(const CadArguments& arguments) {
                                        [](const auto& lesion) { return lesion.neoplastic; });
         }))
         return fail(ErrorKind::badInput, "the cases hold no polyp", arguments.truth.string());
-    TRY(makeFolderOfCandidates(arguments));
-    ProgressBar bar;
-    const auto cases = TRY(examplesOf(loaded, arguments, model.texture, &model, bar));
-    const auto told = TRY(cad::calibrate(model, cases, arguments.falsePositives));
     model.name = arguments.name.empty() ? model.name + "-calibrated" : arguments.name;
     model.trainedOn = arguments.description.empty()
                           ? fmt::format("{}; calibrated on {} other case{}", model.trainedOn,
                                         loaded.size(), loaded.size() == 1 ? "" : "s")
                           : arguments.description;
+    const auto tooLong = [&](const char* what, const char* option) {
+        return fail(ErrorKind::badInput,
+                    fmt::format("the calibrated model's {} would be too long; give one by {}", what,
+                                option),
+                    arguments.from.string());
+    };
+    if (!cad::isModelLine(model.name, cad::longestModelName)) return tooLong("name", "--name");
+    if (!cad::isModelLine(model.trainedOn, cad::longestModelDescription))
+        return tooLong("description", "--description");
+    TRY(makeFolderOfCandidates(arguments));
+    ProgressBar bar;
+    const auto cases = TRY(examplesOf(loaded, arguments, model.texture, &model, bar));
+    const auto told = TRY(cad::calibrate(model, cases, arguments.falsePositives));
     // What it must not be judged by now.
     store::Sha256 hash;
     hash.addWithLength(model.trainingSha256);
@@ -679,23 +688,27 @@ std::string checkModelFile(const std::string& text) {
 }  // namespace
 
 Command addCad(CLI::App& program) {
-    auto arguments = std::make_shared<CadArguments>();
+    // Each of its own: an option's environment variable is read for the subcommands that are not
+    // given, too.
+    const auto forTrain = std::make_shared<CadArguments>(),
+               forCalibrate = std::make_shared<CadArguments>(),
+               forEvaluate = std::make_shared<CadArguments>();
     CLI::App* command = program.add_subcommand(
         "cad", "Train or calibrate polyp detection, or see how well it does.");
     command->require_subcommand(1);
     CLI::App* train = command->add_subcommand(
-        "train", "Learn a model from prepared cases whose polyps are known.");
-    addCases(*train, *arguments);
-    addModel(*train, *arguments, "What the model is called (default: cases)",
+        "train", "Learn a model from five or more prepared cases whose polyps are known.");
+    addCases(*train, *forTrain);
+    addModel(*train, *forTrain, "What the model is called (default: cases)",
              "What it was trained on and what that means, for a reader (default: cases that "
              "somebody chose)");
     train
-        ->add_option("--false-positives", arguments->falsePositives,
+        ->add_option("--false-positives", forTrain->falsePositives,
                      "How many a scan the operating point allows, in cross-validation")
         ->capture_default_str()
         ->check(numberRange(0.1, 50.0));
     train
-        ->add_option("--texture", arguments->texture,
+        ->add_option("--texture", forTrain->texture,
                      "Take what polyps look like in the electronic biopsy from this model, or from "
                      "the built-in one, in place of learning it: candidates that were kept hold "
                      "while cases are added. What that model has seen counts as seen")
@@ -706,18 +719,18 @@ Command addCad(CLI::App& program) {
         "Fit how probable a place is, and the operating point, to a hospital's own cases, some "
         "dozens of them: prepared ones whose polyps are known and that the model has not learnt "
         "from. Trees and networks stay, and with them which place is more probable than which.");
-    addCases(*calibrate, *arguments);
-    addModel(*calibrate, *arguments,
+    addCases(*calibrate, *forCalibrate);
+    addModel(*calibrate, *forCalibrate,
              "What the new model is called (default: as the old one, and -calibrated)",
              "What it was trained on and what that means, for a reader (default: as the old one's, "
              "and on how many cases it was calibrated)");
     calibrate
-        ->add_option("--false-positives", arguments->falsePositives,
+        ->add_option("--false-positives", forCalibrate->falsePositives,
                      "How many a scan the operating point allows in these cases; the built-in "
                      "model's allows 4 in phantoms")
         ->capture_default_str()
         ->check(numberRange(0.1, 50.0));
-    calibrate->add_option("--from", arguments->from, "The model that is calibrated")
+    calibrate->add_option("--from", forCalibrate->from, "The model that is calibrated")
         ->type_name("FILE.json|built-in")
         ->capture_default_str()
         ->check(checkModelFile);
@@ -725,16 +738,16 @@ Command addCad(CLI::App& program) {
         "evaluate",
         "Sensitivity, false positives and errors of size on prepared cases whose polyps are known, "
         "by group: a case's name up to its first hyphen.");
-    addCases(*evaluate, *arguments);
-    evaluate->add_option("--model", arguments->model, "In place of the built-in model")
+    addCases(*evaluate, *forEvaluate);
+    evaluate->add_option("--model", forEvaluate->model, "In place of the built-in model")
         ->type_name("FILE.json");
     evaluate
         ->add_option(
-            "--report", arguments->report,
+            "--report", forEvaluate->report,
             "Write all figures, and where each polyp that is missed and each false finding lies")
         ->type_name("FILE.json");
     evaluate
-        ->add_option("--froc", arguments->froc,
+        ->add_option("--froc", forEvaluate->froc,
                      "Write the free-response ROC curve with 95 % bands by bootstrap over cases")
         ->type_name("FILE.csv|FILE.png")
         ->check([](const std::string& file) {
@@ -743,10 +756,10 @@ Command addCad(CLI::App& program) {
                        ? std::string()
                        : "\"" + file + "\": a curve is written as .png or .csv";
         });
-    return {command, [arguments, train, calibrate] {
-                return train->parsed()       ? runTrain(*arguments)
-                       : calibrate->parsed() ? runCalibrate(*arguments)
-                                             : runEvaluate(*arguments);
+    return {command, [forTrain, forCalibrate, forEvaluate, train, calibrate] {
+                return train->parsed()       ? runTrain(*forTrain)
+                       : calibrate->parsed() ? runCalibrate(*forCalibrate)
+                                             : runEvaluate(*forEvaluate);
             }};
 }
 

@@ -114,6 +114,24 @@ private:
     static inline std::unique_ptr<TemporaryFolder> folder_;
 };
 
+// Else a model would be learnt from other cases than were named, without a word.
+TEST_F(CadCommand, AStoreThatIsGivenGoesBeforeTheEnvironments) {
+    const std::string nowhere = store() + "-nowhere", model = truth() + "-model.json";
+    setenv("HAUSTRA_STORE", store().c_str(), 1);
+    for (const char* command : {"train", "calibrate", "evaluate"}) {
+        Arguments arguments{"cad", command, "--store", nowhere, "--truth", truth()};
+        if (command != std::string("evaluate"))
+            arguments.insert(arguments.end(), {"--model", model});
+        for (int n = 0; n < 6; ++n)
+            arguments.push_back(name(n));
+        const Outcome outcome = haustra(arguments);
+        EXPECT_NE(outcome.exitCode, 0) << command;
+        EXPECT_NE(outcome.err.find(nowhere), std::string::npos) << command << ": " << outcome.err;
+        EXPECT_FALSE(fs::exists(model));
+    }
+    unsetenv("HAUSTRA_STORE");
+}
+
 TEST_F(CadCommand, LearnsWhatAPolypIsAndFindsThoseOfOtherCases) {
     const TemporaryFolder out;
     const std::string model = out.path() / "model.json", kept = out.path() / "kept";
