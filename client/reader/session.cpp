@@ -297,15 +297,16 @@ void Session::opened(const protocol::CaseOpened& message) {
         return;
     }
     // After a reconnection the same case keeps its address, and the reader's flight with it.
+    const bool chosenAnew = std::exchange(choseAnew_, false);
     const bool same =
-        !std::exchange(choseAnew_, false) && caseInfo_ && caseInfo_->name == info->name &&
+        !chosenAnew && caseInfo_ && caseInfo_->name == info->name &&
         caseInfo_->scan == info->scan &&
         caseInfo_->centerline.points.size() == info->centerline.points.size() &&
         caseInfo_->cleansed == info->cleansed && caseInfo_->detection == info->detection &&
         sameStrip(caseInfo_->flat, info->flat) && sameGrid(caseInfo_->grid, info->grid);
     if (!same) {
         // What was chosen for a scan, and that its first reading is done, is not another's.
-        if (!caseInfo_ || caseInfo_->scan != info->scan) detection_ = {};
+        if (!chosenAnew && caseInfo_ && caseInfo_->scan != info->scan) detection_ = {};
         findings_.reset();
         ++findingsRevision_;
         caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));
