@@ -154,6 +154,12 @@ Json jsonOf(const UntaggedPool& pool) {
             {"fluid_hu", rounded(pool.fluidHu)}};
 }
 
+Json jsonOf(const CutEnd& end) {
+    return {{"part", toString(end.part)},
+            {"place_mm", place(end.placeMm)},
+            {"area_mm2", rounded(end.areaMm2)}};
+}
+
 Json jsonOf(const Doubt& doubt) {
     return {{"about", doubt.about}, {"probability", rounded(doubt.probability)}};
 }
@@ -206,6 +212,7 @@ std::string qualityJson(const ColonRecord& record) {
                 {"ends_at", end ? Json{end->x, end->y, end->z} : Json()},
                 {"rebuilt_walls", listOf(record.walls)},
                 {"untagged_fluid", listOf(record.untaggedPools)},
+                {"cut_ends", listOf(record.cutEnds)},
                 {"noise_sd_hu", rounded(record.noiseSdHu)}}
                .dump(2) +
            "\n";

@@ -81,6 +81,13 @@ struct UntaggedPool {
     double fluidHu = 0.0;
 };
 
+/// Where the colon goes on beyond the scan: the edge of the scan cuts its lumen open.
+struct CutEnd {
+    ColonPart part = ColonPart::rectum;
+    glm::dvec3 placeMm{0.0};  ///< the middle of the opening
+    double areaMm2 = 0.0;     ///< of the opening
+};
+
 /// Another chain that explains the scan nearly as well.
 struct RunnerUp {
     double probability = 0.0;  ///< beside the one that was taken
@@ -108,6 +115,7 @@ struct ColonRecord {
     std::optional<glm::dvec3> endsAt;
     std::vector<RebuiltWallRecord> walls;
     std::vector<UntaggedPool> untaggedPools;  ///< not in the lumen; the largest surface first
+    std::vector<CutEnd> cutEnds;              ///< the largest first
     double noiseSdHu = 0.0;                   ///< in gas
     std::vector<std::string> warnings;        ///< where a reader must look
     double lengthMm() const;                  ///< of the pieces and of what is crossed between them

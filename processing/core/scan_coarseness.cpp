@@ -44,7 +44,12 @@ std::optional<std::string> coarsenessOf(const Grid& grid, const SourceSeries* se
         found += printed("%sslices %.3g mm thick (%.3g at most)", found.empty() ? "" : " and ",
                          thick, thickestReadableSliceMm);
     if (found.empty()) return std::nullopt;
-    return "the scan has " + found + ": small and flat polyps may not show in it";
+    constexpr double much = 1.5;
+    const bool large =
+        apart > much * widestReadableStepMm || thick > much * thickestReadableSliceMm;
+    return "the scan has " + found +
+           (large ? ": polyps may not show in it, large ones among them"
+                  : ": small and flat polyps may not show in it");
 }
 
 }  // namespace haustra

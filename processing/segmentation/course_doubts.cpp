@@ -64,6 +64,8 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         doubt(0.7, "the cecum was not found");
     else if (record.endsAt && (record.endsAt->x > farLeft || record.endsAt->z > high))
         doubt(0.4, "the course may end before the cecum");
+    for (const CutEnd& end : record.cutEnds)
+        doubt(0.5, printed("the %s goes on beyond the edge of the scan", toString(end.part)));
     for (const LeftOutBody& body : record.leftOut) {
         constexpr double tellMl = 5.0, muchMl = 25.0;
         if (!body.gas || body.volumeMl < tellMl) continue;

@@ -45,8 +45,9 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
 /// another program made of `scan`, or of a scan that is not known (null; `tissue` then says how
 /// gas, tagged material and soft tissue are drawn). What of the mask is tagged, and where down is,
 /// is the scan's to say. The mask ends where it ends: nothing but bridges is added to it; what is
-/// not on the chain is left out, and a note says how much. Fails as findColon does, and where the
-/// mask is not on the scan's grid (badInput).
+/// not on the chain is left out, and a note says how much. A mask that lies in the scan's soft
+/// tissue for more than a tenth is doubted, as another scan's. Fails as findColon does, and where
+/// the mask is not on the scan's grid (badInput).
 Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtScan* scan,
                                    const TissueModel& tissue, const ColonOptions& options = {});
 

@@ -68,14 +68,15 @@ class Recorder {
 public:
     Recorder(const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
              const std::vector<ColonChain>& chains, const ColonLabels& labels,
-             const std::vector<UntaggedLevel>& untagged)
+             const std::vector<UntaggedLevel>& untagged, const Grid& scanGrid)
         : contents_(contents),
           cut_(cut),
           graph_(graph),
           chains_(chains),
           chain_(chains.front()),
           labels_(labels),
-          untagged_(untagged) {}
+          untagged_(untagged),
+          scanGrid_(scanGrid) {}
 
     ColonRecord record() {
         const std::vector<double> weights = posterior(chains_);
@@ -112,6 +113,7 @@ public:
         for (const UntaggedLevel& level : untagged_)
             made_.untaggedPools.push_back(
                 {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
+        findCutEnds();
         made_.endsAt = graph_.frame.place(graph_.lowestMm[std::size_t(chain_.nodes.back())]);
         made_.doubts = doubtsOf(made_);
         made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
@@ -211,6 +213,63 @@ private:
             [](const LeftOutBody& a, const LeftOutBody& b) { return a.volumeMl > b.volumeMl; });
     }
 
+    // A face of the scan that the lumen reaches cuts it there, but for what is no wider than a
+    // rectal catheter, which leaves the scan with the patient.
+    void findCutEnds() {
+        constexpr double leastMm2 = 100.0;
+        const Grid& grid = labels_.labels.grid();
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const int step : {-1, 1}) {
+                const int at = step < 0 ? 0 : grid.size[axis] - 1;
+                glm::ivec3 beyond(0);
+                beyond[axis] = at + step;
+                const glm::dvec3 outside = grid.patientFromVoxelPoint(glm::dvec3(beyond));
+                if (scanGrid_.contains(
+                        glm::ivec3(glm::round(scanGrid_.voxelFromPatientPoint(outside)))))
+                    continue;
+                for (CutEnd& end : openingsOf(axis, at)) {
+                    if (end.areaMm2 < leastMm2) continue;
+                    end.part = partAt(end.placeMm);
+                    made_.cutEnds.push_back(end);
+                }
+            }
+        }
+        std::stable_sort(made_.cutEnds.begin(), made_.cutEnds.end(),
+                         [](const CutEnd& a, const CutEnd& b) { return a.areaMm2 > b.areaMm2; });
+    }
+
+    // The connected areas of lumen in the plane of voxels whose coordinate along `axis` is `at`.
+    std::vector<CutEnd> openingsOf(int axis, int at) const {
+        const Volume<std::uint8_t>& labels = labels_.labels;
+        const Grid& grid = labels.grid();
+        const glm::dvec3 spacing = grid.spacingMm();
+        const double voxelMm2 = spacing.x * spacing.y * spacing.z / spacing[axis];
+        const auto isLumen = [&](std::size_t n) {
+            return LumenLabel(labels[n]) != LumenLabel::outside &&
+                   LumenLabel(labels[n]) != LumenLabel::bridge;
+        };
+        glm::ivec3 lo(0), hi = grid.size - 1;
+        lo[axis] = hi[axis] = at;
+        std::vector<CutEnd> openings;
+        std::set<std::size_t> seen;
+        visitBox(lo, hi, [&](glm::ivec3 first) {
+            if (!isLumen(grid.index(first)) || !seen.insert(grid.index(first)).second) return;
+            std::vector<std::size_t> body{grid.index(first)};
+            glm::dvec3 sum(0.0);
+            for (std::size_t n = 0; n < body.size(); ++n) {
+                sum += glm::dvec3(grid.voxelAt(body[n]));
+                visitFaces(grid, body[n], [&](std::size_t next, int) {
+                    if (grid.voxelAt(next)[axis] == at && isLumen(next) && seen.insert(next).second)
+                        body.push_back(next);
+                });
+            }
+            openings.push_back({ColonPart::rectum,
+                                grid.patientFromVoxelPoint(sum / double(body.size())),
+                                double(body.size()) * voxelMm2});
+        });
+        return openings;
+    }
+
     // Bodies of one kind near one part in one line, the largest first.
     void sayLeftOut() {
         constexpr double tellMl = 5.0;
@@ -261,6 +320,11 @@ private:
     void warn() {
         constexpr double sure = 0.95, doubtful = 0.8;
         const auto say = [&](std::string line) { made_.warnings.push_back(std::move(line)); };
+        for (const CutEnd& end : made_.cutEnds)
+            say(
+                printed("the scan ends within the %s, which it cuts open over %.0f mm2; what lies "
+                        "beyond is not in it, at %s",
+                        toString(end.part), end.areaMm2, placeText(end.placeMm).c_str()));
         for (std::size_t n = 0; n < made_.junctions.size(); ++n) {
             const ColonJunction& junction = made_.junctions[n];
             const char* const part = toString(made_.pieces[n].part);
@@ -335,6 +399,7 @@ private:
     const ColonChain& chain_;
     const ColonLabels& labels_;
     const std::vector<UntaggedLevel>& untagged_;
+    const Grid& scanGrid_;
     ColonRecord made_;
 };
 
@@ -342,8 +407,9 @@ private:
 
 ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
                         const PieceGraph& graph, const std::vector<ColonChain>& chains,
-                        const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged) {
-    return Recorder(contents, cut, graph, chains, labels, untagged).record();
+                        const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged,
+                        const Grid& scanGrid) {
+    return Recorder(contents, cut, graph, chains, labels, untagged, scanGrid).record();
 }
 
 }  // namespace haustra::segmentation

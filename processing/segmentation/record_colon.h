@@ -14,9 +14,11 @@
 namespace haustra::segmentation {
 
 /// Of the first of `chains` (not empty), whose weights by their scores are the confidence among
-/// them. `untagged` are the levels whose fluid is not in the lumen.
+/// them. `untagged` are the levels whose fluid is not in the lumen. What was labelled may be a box
+/// of the scan: `scanGrid` is all of it, in voxels of the same size.
 ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
                         const PieceGraph& graph, const std::vector<ColonChain>& chains,
-                        const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged);
+                        const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged,
+                        const Grid& scanGrid);
 
 }  // namespace haustra::segmentation

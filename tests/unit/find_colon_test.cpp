@@ -4,9 +4,11 @@
 
 #include "cleansing/tissue_mixture.h"
 #include "core/connected_labels.h"
+#include "core/crop.h"
 #include "phantom/phantom.h"
 #include "phantom/score.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -156,6 +158,47 @@ TEST(FindColon, IsTheColonWithItsFluidAndNothingElse) {
     EXPECT_LT(found->record.pieces.back().centreMm.x, 110.0) << "the cecum lies on the right";
 }
 
+// The drawing between two heights, in a scan that ends there.
+CtScan between(double lowMm, double highMm) {
+    const Drawing drawing = Drawing::supine();
+    const Grid& grid = drawing.hu.grid();
+    VoxelBox box{glm::ivec3(0), grid.size};
+    box.lo.z = int(lowMm / grid.spacingMm().z);
+    box.size.z = int(highMm / grid.spacingMm().z) - box.lo.z;
+    return {cropped(drawing.hu, box, 1), PatientPosition::supine};
+}
+bool warns(const FoundColon& found, const std::string& of) {
+    return std::any_of(found.record.warnings.begin(), found.record.warnings.end(),
+                       [&](const std::string& line) { return line.find(of) != std::string::npos; });
+}
+
+TEST(FindColon, TellsWhereTheScanEndsWithinTheColon) {
+    const auto whole = find(between(0, 380));
+    ASSERT_TRUE(whole) << describe(whole.error());
+    EXPECT_TRUE(whole->record.cutEnds.empty());
+    EXPECT_FALSE(warns(*whole, "the scan ends within"));
+
+    // Below, through the rectum, of 19 mm radius; its axis is all but upright.
+    const auto below = find(between(50, 380));
+    ASSERT_TRUE(below) << describe(below.error());
+    ASSERT_EQ(below->record.cutEnds.size(), 1u);
+    EXPECT_EQ(below->record.cutEnds[0].part, ColonPart::rectum);
+    EXPECT_NEAR(below->record.cutEnds[0].areaMm2, M_PI * 19 * 19, 0.15 * M_PI * 19 * 19);
+    EXPECT_TRUE(inColon(below->record.cutEnds[0].placeMm));
+    EXPECT_TRUE(warns(*below, "the scan ends within the rectum"));
+    EXPECT_LT(below->record.confidence, 0.6 * whole->record.confidence);
+
+    // Above, through both flexures: four limbs, or two where limbs meet.
+    const auto above = find(between(0, 285));
+    ASSERT_TRUE(above) << describe(above.error());
+    EXPECT_GE(above->record.cutEnds.size(), 2u);
+    for (const CutEnd& end : above->record.cutEnds) {
+        EXPECT_NEAR(end.placeMm.z, 285, 5.0);
+        EXPECT_TRUE(inColon(end.placeMm)) << end.placeMm.x << " " << end.placeMm.y;
+    }
+    EXPECT_TRUE(warns(*above, "the scan ends within"));
+}
+
 Volume<std::uint8_t> maskOf(const Grid& grid, const std::function<bool(glm::dvec3)>& inside) {
     Volume<std::uint8_t> mask(grid);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n)
@@ -188,6 +231,23 @@ TEST(FindColonInMask, TheScanSaysWhatIsTaggedAndWhereDownIs) {
                       p.y > levelMm ? LumenLabel::tagged : LumenLabel::air);
         }
     }
+}
+
+TEST(FindColonInMask, DoubtsAMaskThatLiesInTheScansSoftTissue) {
+    const CtScan scan = Drawing::supine().scan();
+    const auto tissue = cleansing::fitTissueModel(scan);
+    ASSERT_TRUE(tissue);
+    const auto movedBy = [&](double mm) {
+        const auto mask =
+            maskOf(scan.hu.grid(), [&](glm::dvec3 p) { return inColon(p - glm::dvec3(mm, 0, 0)); });
+        return segmentation::findColonInMask(mask, &scan, *tissue);
+    };
+    const auto own = movedBy(0.0), another = movedBy(12.5);
+    ASSERT_TRUE(own) << describe(own.error());
+    ASSERT_TRUE(another) << describe(another.error());
+    EXPECT_FALSE(warns(*own, "it may be another scan's"));
+    EXPECT_TRUE(warns(*another, "it may be another scan's"));
+    EXPECT_LT(another->record.confidence, 0.9 * own->record.confidence);
 }
 
 TEST(FindColonInMask, NeedsNoScan) {

@@ -32,6 +32,7 @@ TEST(ScanCoarseness, AMillimetreAndAHalfIsFineAndMoreIsTold) {
          {glm::dvec3(0.7, 0.7, 2.0), glm::dvec3(0.7, 2.0, 0.7), glm::dvec3(2.0, 0.7, 0.7)}) {
         const auto told = coarsenessOf(spaced(mm), nullptr);
         EXPECT_TRUE(says(told, "samples up to 2 mm apart")) << told.value_or("nothing");
+        EXPECT_TRUE(says(told, "small and flat polyps may not show")) << told.value_or("nothing");
         EXPECT_FALSE(says(told, "thick"));
     }
 }
@@ -45,6 +46,16 @@ TEST(ScanCoarseness, ThickSlicesAreToldThoughTheyOverlap) {
     EXPECT_FALSE(says(told, "apart"));
     const auto both = coarsenessOf(spaced({0.7, 0.7, 5.0}), &thick);
     EXPECT_TRUE(says(both, "5 mm apart") && says(both, "5 mm thick")) << both.value_or("nothing");
+}
+
+TEST(ScanCoarseness, FarOverTheLimitsLargePolypsMayBeMissedToo) {
+    const Grid grid = spaced({0.7, 0.7, 1.0});
+    const SourceSeries thicker = seriesAt({0, 1, 2, 3}, 4.0),
+                       thickest = seriesAt({0, 1, 2, 3}, 5.0);
+    EXPECT_FALSE(says(coarsenessOf(grid, &thicker), "large"));
+    EXPECT_TRUE(says(coarsenessOf(grid, &thickest), "large ones among them"));
+    EXPECT_TRUE(says(coarsenessOf(spaced({0.7, 0.7, 2.5}), nullptr), "large ones among them"));
+    EXPECT_TRUE(says(coarsenessOf(spaced({0.7, 0.7, 2.5}), &thicker), "large ones among them"));
 }
 
 TEST(ScanCoarseness, OfResampledSlicesTheWidestGapCounts) {
