@@ -1,5 +1,6 @@
 #include "window/bookmark_panel.h"
 
+#include "window/chosen_items.h"
 #include "window/icons.h"
 #include "window/theme.h"
 
@@ -98,10 +99,7 @@ BookmarkPanel::BookmarkPanel(Reading& reading)
     column->addWidget(hint_);
     connect(note_, &QLineEdit::returnPressed, this, &BookmarkPanel::add);
     connect(addButton, &QToolButton::clicked, this, &BookmarkPanel::add);
-    connect(list_, &QTreeWidget::itemClicked, this,
-            [this](QTreeWidgetItem* item) { goTo(keyOf(*item)); });
-    connect(list_, &QTreeWidget::itemActivated, this,
-            [this](QTreeWidgetItem* item) { goTo(keyOf(*item)); });
+    onChosen(*list_, [this](QTreeWidgetItem& item) { goTo(keyOf(item)); });
     connect(list_, &QTreeWidget::customContextMenuRequested, this, &BookmarkPanel::showMenu);
     connect(&reading, &Reading::stepped, this, &BookmarkPanel::look);
     connect(note_, &QLineEdit::textEdited, this, [this](const QString& text) {

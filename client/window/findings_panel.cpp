@@ -1,6 +1,7 @@
 #include "window/findings_panel.h"
 
 #include "protocol/capabilities.h"
+#include "window/chosen_items.h"
 #include "window/pane.h"
 #include "window/theme.h"
 
@@ -217,9 +218,7 @@ FindingsPanel::FindingsPanel(Reading& reading)
     };
     connect(candidates_, &QCheckBox::toggled, this, threshold);
     connect(least_, &QSpinBox::valueChanged, this, threshold);
-    for (const auto signal : {&QTreeWidget::itemClicked, &QTreeWidget::itemActivated})
-        connect(list_, signal, this,
-                [this](QTreeWidgetItem* item) { goTo(item->data(0, numberRole).toInt()); });
+    onChosen(*list_, [this](QTreeWidgetItem& item) { goTo(item.data(0, numberRole).toInt()); });
     connect(&reading, &Reading::stepped, this, &FindingsPanel::look);
     connect(&reading, &Reading::readerReplaced, this, [this] { shownRevision_ = 0; });
     connect(&reading, &Reading::caseOpened, this, [this] {

@@ -1,6 +1,7 @@
 #include "window/missed_panel.h"
 
 #include "reader/seen_lists_json.h"
+#include "window/chosen_items.h"
 #include "window/pane.h"
 
 #include <QDoubleSpinBox>
@@ -106,14 +107,13 @@ MissedPanel::MissedPanel(Reading& reading)
     connect(report_, &QPushButton::clicked, this, &MissedPanel::saveReport);
     connect(pixels_, &QDoubleSpinBox::valueChanged, this, &MissedPanel::chooseLimits);
     connect(ms_, &QSpinBox::valueChanged, this, &MissedPanel::chooseLimits);
-    for (const auto signal : {&QTreeWidget::itemClicked, &QTreeWidget::itemActivated})
-        connect(list_, signal, this, [this](QTreeWidgetItem* item) {
-            const reader::MissedList* list = reading_.reader().missed().list();
-            const auto patch = std::size_t(item->data(0, patchRole).toInt());
-            if (!list || patch >= list->patches.size()) return;
-            reading_.reader().missed().setCurrent(patch);
-            jumpTo(reading_, list->patches[patch]);
-        });
+    onChosen(*list_, [this](QTreeWidgetItem& item) {
+        const reader::MissedList* list = reading_.reader().missed().list();
+        const auto patch = std::size_t(item.data(0, patchRole).toInt());
+        if (!list || patch >= list->patches.size()) return;
+        reading_.reader().missed().setCurrent(patch);
+        jumpTo(reading_, list->patches[patch]);
+    });
     connect(&reading, &Reading::stepped, this, &MissedPanel::look);
     connect(&reading, &Reading::readerReplaced, this, [this] {
         shownRevision_ = 0;

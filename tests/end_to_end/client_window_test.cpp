@@ -1606,6 +1606,19 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor([&] { return std::abs(flight().arcMm() - third->wall.arcMm) < 1e-6; }));
     EXPECT_LT(glm::distance(slices().slice(View::axial).positionMm, third->wall.positionMm), 1.0);
     EXPECT_LT(glm::distance(reader().flat().tour().window().center, *third->wall.flat), 1e-6);
+    // A double click is one step, and so is Enter.
+    const auto stepsBy = [&](const auto& choose) {
+        const int before = reading_->undoStack().index();
+        choose();
+        QTest::qWait(20);
+        return reading_->undoStack().index() - before;
+    };
+    EXPECT_EQ(stepsBy([&] {
+                  doubleClick(*list.viewport(), list.visualItemRect(list.topLevelItem(1)).center());
+              }),
+              1);
+    EXPECT_EQ(stepsBy([&] { QTest::keyClick(&list, Qt::Key_Return); }), 1);
+    EXPECT_EQ(reader().findings().current()->number, 3);
     // Who goes on and takes it back is at the former one again, and measures that.
     press(Qt::Key_M, Qt::ShiftModifier);
     const auto isAt = [&](int number) {
