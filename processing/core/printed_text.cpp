@@ -24,7 +24,12 @@ std::string placeText(glm::dvec3 placeMm) {
 std::string reasonOf(const std::exception& error) {
     const std::string what = error.what();
     const std::size_t end = what.starts_with("[json.") ? what.find("] ") : std::string::npos;
-    return end == std::string::npos ? what : what.substr(end + 2);
+    std::string reason;
+    for (const char c : end == std::string::npos ? what : what.substr(end + 2))
+        reason += c >= ' ' && c <= '~'
+                      ? std::string(1, c)
+                      : printed("\\x%02x", unsigned(static_cast<unsigned char>(c)));
+    return reason;
 }
 
 }  // namespace haustra

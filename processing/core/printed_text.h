@@ -15,7 +15,8 @@ std::string printed(const char* format, ...) __attribute__((format(printf, 1, 2)
 std::string placeText(glm::dvec3 placeMm);
 
 /// What an exception says, without the number by which nlohmann/json begins it
-/// ("[json.exception.out_of_range.403] ").
+/// ("[json.exception.out_of_range.403] "). It may quote a file, which may be no text: bytes that
+/// are no printable ASCII are told by their value, as \x89.
 std::string reasonOf(const std::exception& error);
 
 }  // namespace haustra

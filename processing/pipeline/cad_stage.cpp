@@ -1,13 +1,11 @@
 #include "cad/detect.h"
 #include "core/printed_text.h"
 #include "core/scan_coarseness.h"
+#include "core/text_file.h"
 #include "pipeline/colon_inputs.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/stages.h"
 #include "store/sha256.h"
-
-#include <fstream>
-#include <sstream>
 
 namespace haustra::pipeline {
 namespace {
@@ -16,11 +14,7 @@ namespace product = store::product;
 
 Result<std::string> modelText(const std::filesystem::path& file) {
     if (file.empty()) return std::string(cad::builtInModelText());
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return fail(ErrorKind::io, "cannot open the model", file.string());
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
+    return readTextFile(file);
 }
 
 Result<cad::CadModel> modelOf(const PrepareOptions& options, const std::string& text) {

@@ -11,6 +11,7 @@
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/text_files.h"
+#include "core/text_file.h"
 #include "pictures/picture_file.h"
 #include "pipeline/colon_inputs.h"
 #include "store/case_store.h"
@@ -19,11 +20,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
-#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -38,20 +38,13 @@ namespace product = store::product;
 constexpr const char* builtIn = "built-in";
 
 struct CadArguments {
-    fs::path store, truth, model, texture, from = builtIn, report, froc, kept;
+    fs::path store, truth, model, texture, from = builtIn, report, froc;
+    std::optional<fs::path> kept;  // the folder of candidates
     std::vector<std::string> cases, without;
     std::string name, description;
     double falsePositives = 2.0;
     int threads = 0;
 };
-
-Result<std::string> readText(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) return fail(ErrorKind::io, "cannot open", file.string());
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 struct Truth {
     std::string file, text;  // the lesions'; the text with that of the mimics
@@ -64,11 +57,11 @@ Result<Truth> readTruth(const fs::path& truths, const std::string& name) {
     for (const fs::path& folder : {truths / name / "truth", truths / name}) {
         for (const char* file : {"growths.json", "polyps.json"}) {
             if (!fs::exists(folder / file, ignored)) continue;
-            Truth truth{(folder / file).string(), TRY(readText(folder / file)), {}, {}};
+            Truth truth{(folder / file).string(), TRY(readTextFile(folder / file)), {}, {}};
             truth.lesions = TRY(cad::truthOfJson(truth.text, truth.file));
             // What else a false finding may be on.
             if (fs::exists(folder / "structure.json", ignored)) {
-                const auto structure = TRY(readText(folder / "structure.json"));
+                const auto structure = TRY(readTextFile(folder / "structure.json"));
                 truth.mimics =
                     TRY(cad::mimicsOfJson(structure, (folder / "structure.json").string()));
                 truth.text += structure;
@@ -209,11 +202,15 @@ Result<std::vector<LoadedCase>> loadCases(const store::CaseStore& store,
     return loaded;
 }
 
+Result<void> checkFolderOfCandidates(const CadArguments& arguments) {
+    return arguments.kept ? checkOutputFolder(*arguments.kept) : Result<void>();
+}
+
 Result<void> makeFolderOfCandidates(const CadArguments& arguments) {
-    if (arguments.kept.empty()) return {};
+    if (!arguments.kept) return {};
     std::error_code error;
-    fs::create_directories(arguments.kept, error);
-    if (error) return fail(ErrorKind::io, error.message(), arguments.kept.string());
+    fs::create_directories(*arguments.kept, error);
+    if (error) return fail(ErrorKind::io, error.message(), arguments.kept->string());
     return {};
 }
 
@@ -241,14 +238,14 @@ Result<std::vector<cad::Candidate>> candidatesOf(const LoadedCase& loaded,
                                                  const cad::TextureModel& texture,
                                                  const cad::CadModel* model) {
     fs::path file;
-    if (!arguments.kept.empty()) {
+    if (arguments.kept) {
         const std::string key = store::toHex(
             store::textDigest(fmt::format("{} {} {} {}", cad::detectionVersion, loaded.prepared,
                                           variantOf(arguments), cad::textureText(texture))));
-        file = arguments.kept / fmt::format("{}.{}.json", loaded.source.name(), key.substr(0, 16));
+        file = *arguments.kept / fmt::format("{}.{}.json", loaded.source.name(), key.substr(0, 16));
         std::error_code ignored;
         if (fs::exists(file, ignored)) {
-            const auto text = TRY(readText(file));
+            const auto text = TRY(readTextFile(file));
             return cad::candidatesOfTable(text, file.string());
         }
     }
@@ -300,7 +297,7 @@ Result<cad::CadModel> builtInModel() {
 
 Result<cad::CadModel> readModel(const fs::path& file) {
     if (file == builtIn) return builtInModel();
-    const auto text = TRY(readText(file));
+    const auto text = TRY(readTextFile(file));
     return cad::modelOfText(text, file.string());
 }
 
@@ -308,15 +305,15 @@ Result<cad::CadModel> readModel(const fs::path& file) {
 Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
                                        const CadArguments& arguments, ProgressBar& bar) {
     fs::path file;
-    if (!arguments.kept.empty()) {
+    if (arguments.kept) {
         std::string key = fmt::format("{} {}", cad::detectionVersion, variantOf(arguments));
         for (const LoadedCase& each : cases)
             key += each.prepared + ' ' + each.truthMark + ' ';
-        file = arguments.kept /
+        file = *arguments.kept /
                fmt::format("texture.{}.json", store::toHex(store::textDigest(key)).substr(0, 16));
         std::error_code ignored;
         if (fs::exists(file, ignored)) {
-            const auto text = TRY(readText(file));
+            const auto text = TRY(readTextFile(file));
             return cad::textureOfText(text, file.string());
         }
     }
@@ -394,6 +391,7 @@ void sayCurve(const char* what, const std::vector<cad::EvaluatedCase>& cases,
 Result<void> runTrain(const CadArguments& arguments) {
     checkArguments(arguments);
     TRY(checkOutputFile(arguments.model));
+    TRY(checkFolderOfCandidates(arguments));
     cad::TrainOptions options;
     if (int(arguments.cases.size()) < options.folds)
         throw CLI::ValidationError(
@@ -443,6 +441,7 @@ Result<void> runCalibrate(const CadArguments& arguments) {
         throw CLI::ValidationError("--without",
                                    "past leaves out the classifier, which is what is calibrated");
     TRY(checkOutputFile(arguments.model));
+    TRY(checkFolderOfCandidates(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     cad::CadModel model = TRY(readModel(arguments.from));
     const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
@@ -485,6 +484,15 @@ Result<void> runCalibrate(const CadArguments& arguments) {
                         loaded.size(), loaded.size() == 1 ? "" : "s"));
     return writeTextFile(arguments.model, cad::modelText(model));
 }
+
+constexpr const char* columnsHelp =
+    "Columns: polyps found of all, at the model's operating point, by largest diameter, and of "
+    "those from 6 mm: plain (the truth says of no denser core than the wall's), dense (of one), "
+    "submerged (under tagged fluid), coated (with tagged residue), hidden (in fluid or stool "
+    "without tagging). FP: false findings a scan, before: those before they were weighed, reduced: "
+    "the share that weighing took away. |d|: mean error of the diameter of what was found, in mm, "
+    "95 %: what 95 % of the errors do not exceed. Below each group: found of all by the truth's "
+    "kinds, and what the false ones lie on.";
 
 // What a group of phantoms is called: a case's name up to its first hyphen.
 std::string groupOf(const std::string& name) {
@@ -547,7 +555,7 @@ void print(const std::string& group, const cad::Evaluation& sum) {
     std::string kinds;
     for (const auto& [kind, share] : sum.byKind)
         kinds += fmt::format("  {} {}", kind, of(share));
-    kinds += "; false:";
+    if (!sum.falseKinds.empty()) kinds += "; false:";
     for (const auto& [kind, count] : sum.falseKinds)
         kinds += fmt::format(" {} {}", kind, count);
     fmt::print("          {}\n", kinds);
@@ -559,6 +567,12 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         if (file.empty()) continue;
         TRY(checkOutputFile(file));
     }
+    if (std::error_code ignored;
+        !arguments.report.empty() && fs::weakly_canonical(arguments.report, ignored) ==
+                                         fs::weakly_canonical(arguments.froc, ignored))
+        throw CLI::ValidationError("--froc",
+                                   "--report writes the same file: " + arguments.report.string());
+    TRY(checkFolderOfCandidates(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     const auto model = TRY(arguments.model.empty() ? builtInModel() : readModel(arguments.model));
     cad::Method method;
@@ -738,6 +752,7 @@ Command addCad(CLI::App& program) {
         "evaluate",
         "Sensitivity, false positives and errors of size on prepared cases whose polyps are known, "
         "by group: a case's name up to its first hyphen.");
+    evaluate->footer(columnsHelp);
     addCases(*evaluate, *forEvaluate);
     evaluate->add_option("--model", forEvaluate->model, "In place of the built-in model")
         ->type_name("FILE.json");

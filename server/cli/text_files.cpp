@@ -24,6 +24,20 @@ Result<void> checkOutputFile(const fs::path& file) {
     return {};
 }
 
+Result<void> checkOutputFolder(const fs::path& folder) {
+    if (folder.empty()) return fail(ErrorKind::badInput, "a folder's name is empty", "\"\"");
+    // What is not there yet is made in the nearest one above that is.
+    std::error_code ignored;
+    fs::path nearest = fs::absolute(folder, ignored);
+    while (!fs::exists(nearest, ignored) && nearest.has_relative_path())
+        nearest = nearest.parent_path();
+    if (!fs::is_directory(nearest, ignored))
+        return fail(ErrorKind::io, "this is a file, not a folder", nearest.string());
+    if (::access(nearest.c_str(), W_OK | X_OK) != 0)
+        return fail(ErrorKind::io, "nothing can be made in this folder", nearest.string());
+    return {};
+}
+
 Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text) {
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     return store::writeDurably(folder, file.filename().string(), {std::as_bytes(std::span(text))},

@@ -13,6 +13,10 @@ namespace haustra::cli {
 /// work that makes the content.
 Result<void> checkOutputFile(const std::filesystem::path& file);
 
+/// Fails where `folder` is no folder in which files can be made, nor one that can be made: known
+/// before the work whose files it takes.
+Result<void> checkOutputFolder(const std::filesystem::path& folder);
+
 /// Replaces `file` in one step: a reader sees the old content or the new.
 Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text);
 

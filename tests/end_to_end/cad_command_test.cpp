@@ -6,6 +6,7 @@
 #include "pipeline/product_attributes.h"
 #include "store/case_store.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -389,6 +390,39 @@ TEST_F(CadCommand, DrawsItsCurve) {
     const auto judged = haustra(with(judging({name(6)}), {"--froc", picture}));
     ASSERT_EQ(judged.exitCode, 0) << judged.err;
     EXPECT_EQ(fileContent(picture).substr(1, 3), "PNG");
+}
+
+// Before the first case is measured, and naming what is wrong.
+TEST_F(CadCommand, RefusesFilesThatItCannotReadOrWrite) {
+    const TemporaryFolder out;
+    const std::string folder = out.path().string(), picture = folder + "/model.png",
+                      file = folder + "/file", same = folder + "/curve.csv";
+    writeText(picture, "\x89PNG\r\n");
+    writeText(file, "no folder");
+    const auto refused = [&](const Arguments& more, int exitCode) {
+        const auto outcome = haustra(with(judging({name(6)}), more));
+        EXPECT_EQ(outcome.exitCode, exitCode) << outcome.err;
+        EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+        return outcome.err;
+    };
+    const auto holds = [](const std::string& text, const std::string& words) {
+        return text.find(words) != std::string::npos;
+    };
+    EXPECT_PRED2(holds, refused({"--model", folder}, 1), "this is a folder, not a file");
+    EXPECT_PRED2(holds, refused({"--model", folder + "/none"}, 1), "No such file");
+    const std::string noText = refused({"--model", picture}, 1);
+    EXPECT_PRED2(holds, noText, "\\x89");
+    EXPECT_TRUE(std::ranges::all_of(noText, [](char c) {
+        return c == '\n' || (c >= ' ' && c <= '~');
+    })) << noText;
+    EXPECT_PRED2(holds, refused({"--candidates", file}, 1),
+                 file + ": this is a file, not a folder");
+    EXPECT_PRED2(holds, refused({"--candidates", file + "/in/it"}, 1),
+                 file + ": this is a file, not a folder");
+    EXPECT_PRED2(holds, refused({"--candidates", ""}, 1), "a folder's name is empty");
+    EXPECT_PRED2(holds, refused({"--froc", same, "--report", folder + "/./curve.csv"}, 2),
+                 "--report writes the same file");
+    EXPECT_FALSE(fs::exists(same));
 }
 
 TEST_F(CadCommand, SaysWhatIsWrongWithATruth) {
