@@ -285,11 +285,16 @@ private:
                      e.centreMm + c});
     }
 
-    /// TID 4128. Of a truth there is no more than a diameter, without its ends.
+    /// TID 4128, whose order is significant: site, distance from the anus, height, diameter. Of a
+    /// truth there is no more than a diameter, without its ends.
     void descriptors(const Finding& finding) {
         const auto properties = Type::RT_hasProperties;
         const bool detected = !finding.voxels.empty();
         if (finding.segment) out_.code(properties, findingSite, siteOf(*finding.segment));
+        if (detected) {
+            length(properties, CODE_DCM_DistanceFromAnus, finding.arcMm);
+            length(properties, CODE_DCM_Height, finding.heightMm);
+        }
         const auto& ends = finding.diameterEndsMm;
         const bool haveEnds = detected && ends.first != ends.second;
         length(properties, diameter, finding.diameterMm, [&] {
@@ -297,9 +302,6 @@ private:
                 out_.places(Type::RT_inferredFrom, CODE_DCM_Path, Type::GT3_Polyline,
                             {ends.first, ends.second});
         });
-        if (!detected) return;
-        length(properties, CODE_DCM_Height, finding.heightMm);
-        length(properties, CODE_DCM_DistanceFromAnus, finding.arcMm);
     }
 
     void length(Type::E_RelationshipType relation, const Code& name, double mm,

@@ -253,6 +253,13 @@ TEST_F(ColonCadReport, HasEveryFindingAtItsVeryPlace) {
         EXPECT_EQ(toThousandths(path->places.at(1)), is.diameterEndsMm.second);
         EXPECT_EQ(named(feature, "Height")->value, "2.5 mm");
         EXPECT_EQ(named(feature, "Distance from anus")->value, "412.375 mm");
+        // TID 4128 says that their order is significant.
+        std::vector<std::string> order{"Distance from anus", "Height", "Diameter"};
+        if (is.segment) order.insert(order.begin(), "Finding Site");
+        std::vector<std::string> written;
+        for (const Item& item : feature)
+            if (std::ranges::find(order, item.name) != order.end()) written.push_back(item.name);
+        EXPECT_EQ(written, order);
         const Item* outline = named(feature, "Outline");
         EXPECT_EQ(outline->value, "ELLIPSOID");
         ASSERT_EQ(outline->places.size(), 6u);
