@@ -17,6 +17,13 @@ struct ListedFinding {
     WallPlace wall;  ///< at its top
 };
 
+/// Whether both are one finding of one search: a case that is searched anew may number another
+/// place alike.
+inline bool isSame(const ListedFinding& a, const ListedFinding& b) {
+    return a.number == b.number && a.wall.positionMm == b.wall.positionMm &&
+           a.finding.diameterEndsMm == b.finding.diameterEndsMm;
+}
+
 struct FindingList {
     enum class State {
         none,       ///< the case has none

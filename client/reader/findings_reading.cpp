@@ -7,14 +7,20 @@
 
 namespace haustra::reader {
 
+bool FindingsReading::isLeft() const {
+    const std::string& wanted = session_.wantedCase();
+    return session_.caseInfo() && !wanted.empty() && wanted != session_.caseInfo()->name;
+}
+
 bool FindingsReading::has() const {
-    return session_.caseInfo() && session_.caseInfo()->detection == Detection::there &&
+    return session_.caseInfo() && session_.caseInfo()->detection == Detection::there && !isLeft() &&
            session_.serverCan(protocol::capability::findings);
 }
 
 Result<void> FindingsReading::choose(const DetectionChoice& choice) {
     const auto refuse = [](const char* why) { return fail(ErrorKind::unsupported, why, ""); };
     if (!session_.caseInfo()) return refuse("no case is open");
+    if (isLeft()) return refuse("another case is being opened");
     if (!session_.serverCan(protocol::capability::findings))
         return refuse("this server cannot show findings");
     if (session_.caseInfo()->detection == Detection::damaged)

@@ -14,7 +14,8 @@ public:
     /// Another case is open.
     void open() { current_ = 0; }
 
-    /// Whether the open case has findings that the server can show.
+    /// Whether the open case has findings that the server can show. Not while another case is being
+    /// opened: what is chosen meanwhile would be chosen for that one.
     bool has() const;
     const DetectionChoice& choice() const { return session_.detection(); }
     /// Fails, with a sentence for the reader, where the case has none, or the server cannot show
@@ -36,6 +37,8 @@ public:
     const ListedFinding* next(int step, double arcMm) const;
 
 private:
+    bool isLeft() const;
+
     Session& session_;
     int current_ = 0;
 };

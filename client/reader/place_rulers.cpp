@@ -89,7 +89,7 @@ void PlaceRulers::add(const PlaceRuler& ruler) {
 void PlaceRulers::measure(const ListedFinding& finding) {
     const bool isMeasured =
         std::any_of(rulers_.begin(), rulers_.end(),
-                    [&](const PlaceRuler& ruler) { return ruler.finding == finding.number; });
+                    [&](const PlaceRuler& ruler) { return ruler.isOf(finding); });
     if (isMeasured) return;
     const auto& [from, to] = finding.finding.diameterEndsMm;
     add(PlaceRuler{{from}, {to}, finding.number});

@@ -19,6 +19,12 @@ struct PlaceRuler {
     End from, to;
     int finding = 0;  ///< the number of the finding whose diameter it is; 0: it was clicked
     double lengthMm() const { return glm::distance(from.positionMm, to.positionMm); }
+    /// Whether it is this finding's diameter, and not that of one which had its number before the
+    /// case was searched anew.
+    bool isOf(const ListedFinding& listed) const {
+        return finding == listed.number &&
+               listed.finding.diameterEndsMm == std::pair(from.positionMm, to.positionMm);
+    }
 };
 
 /// Two ends make a ruler, wherever each was clicked. Belongs to the session's thread; session and

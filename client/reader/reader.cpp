@@ -182,7 +182,9 @@ void Reader::goTo(glm::dvec3 placeMm, std::optional<View> plane) {
 std::vector<PlaceRuler> Reader::shownRulers() const {
     std::vector<PlaceRuler> shown = rulers_.rulers();
     std::erase_if(shown, [&](const PlaceRuler& ruler) {
-        return ruler.finding > 0 && !findings_.find(ruler.finding);
+        if (ruler.finding == 0) return false;
+        const ListedFinding* finding = findings_.find(ruler.finding);
+        return !finding || !ruler.isOf(*finding);
     });
     return shown;
 }

@@ -5,11 +5,14 @@
 #include "window/pane.h"
 #include "window/theme.h"
 
+#include <QApplication>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QKeyEvent>
 #include <QLabel>
+#include <QMessageBox>
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QScrollArea>
@@ -18,6 +21,7 @@
 #include <QSpinBox>
 #include <QTreeWidget>
 #include <QVBoxLayout>
+#include <QWheelEvent>
 #include <cmath>
 
 namespace haustra::window {
@@ -66,6 +70,29 @@ QString whyNone(const reader::Session& session) {
     }
 }
 
+QString nameOfKind(const std::string& kind) {
+    if (kind == "sessile") return FindingsPanel::tr("sessile");
+    if (kind == "pedunculated") return FindingsPanel::tr("pedunculated");
+    if (kind == "flat") return FindingsPanel::tr("flat");
+    return text(kind);
+}
+
+/// A mode is chosen from the list that opens: neither the wheel, which scrolls the panel, nor a key
+/// that is meant for the flight shows findings before the first reading is done.
+class ModeBox : public QComboBox {
+public:
+    ModeBox() { setFocusPolicy(Qt::TabFocus); }
+
+protected:
+    void wheelEvent(QWheelEvent* event) override { event->ignore(); }
+    void keyPressEvent(QKeyEvent* event) override {
+        const int key = event->key();
+        const bool opens = (key >= Qt::Key_Home && key <= Qt::Key_PageDown) || key == Qt::Key_F4 ||
+                           key == Qt::Key_Space || key == Qt::Key_Return || key == Qt::Key_Enter;
+        opens ? showPopup() : event->ignore();
+    }
+};
+
 void tellRefusal(Reading& reading, const Result<void>& done) {
     const QString why = whyNone(reading.reader().session());
     if (!done) reading.tell(why.isEmpty() ? text(done.error().message) : why);
@@ -74,10 +101,10 @@ void tellRefusal(Reading& reading, const Result<void>& done) {
 
 void jumpTo(Reading& reading, const reader::ListedFinding& finding) {
     reading.jump(FindingsPanel::tr("go to a finding"),
-                 // Redone while findings are hidden, it leads nowhere.
+                 // Redone while findings are hidden, or once others were found, it leads nowhere.
                  [&reading, finding] {
-                     if (reading.reader().findings().find(finding.number))
-                         reading.reader().goTo(finding);
+                     const auto* now = reading.reader().findings().find(finding.number);
+                     if (now && isSame(*now, finding)) reading.reader().goTo(finding);
                  });
 }
 
@@ -96,6 +123,14 @@ QString nameOf(DetectionMode mode) {
 }
 
 void chooseDetection(Reading& reading, DetectionMode mode) {
+    const DetectionChoice& choice = reading.reader().findings().choice();
+    if (mode == DetectionMode::concurrent && choice.mode == DetectionMode::secondReader &&
+        !choice.firstPassDone && reading.reader().findings().has() &&
+        QMessageBox::question(
+            QApplication::activeWindow(), FindingsPanel::tr("The first reading is not done"),
+            FindingsPanel::tr("Show the findings all the same, in this and the next cases?"),
+            QMessageBox::Yes | QMessageBox::No, QMessageBox::No) != QMessageBox::Yes)
+        return reading.changed();
     const auto done = reading.reader().findings().choose(mode);
     if (done) {
         QSettings().setValue(QLatin1String(modeSetting), int(mode));
@@ -136,7 +171,7 @@ void measureFinding(Reading& reading) {
 
 FindingsPanel::FindingsPanel(Reading& reading)
     : reading_(reading),
-      mode_(new QComboBox),
+      mode_(new ModeBox),
       firstPass_(new QPushButton(tr("First reading done: show findings"))),
       measure_(new QPushButton(tr("Measure"))),
       candidates_(new QCheckBox(tr("also those from"))),
@@ -222,9 +257,13 @@ FindingsPanel::FindingsPanel(Reading& reading)
     connect(&reading, &Reading::stepped, this, &FindingsPanel::look);
     connect(&reading, &Reading::readerReplaced, this, [this] { shownRevision_ = 0; });
     connect(&reading, &Reading::caseOpened, this, [this] {
+        // Of a case that is open again, as before a lost link, its own mode stays: the kept one may
+        // be that of another window.
+        reader::FindingsReading& findings = reading_.reader().findings();
         const int kept = QSettings().value(QLatin1String(modeSetting)).toInt();
-        if (reading_.reader().findings().has() && kept > 0 && kept < int(std::size(modes)))
-            (void)reading_.reader().findings().choose(modes[kept]);
+        if (findings.has() && findings.choice().mode == DetectionMode::off && kept > 0 &&
+            kept < int(std::size(modes)))
+            (void)findings.choose(modes[kept]);
         shownRevision_ = 0;
     });
     look();
@@ -279,7 +318,8 @@ void FindingsPanel::fill() {
         item->setData(0, numberRole, one.number);
         item->setToolTip(
             2,
-            toolTipOf(tr("%1, %2 mm high").arg(text(finding.kind)).arg(decimal(finding.heightMm))));
+            toolTipOf(
+                tr("%1, %2 mm high").arg(nameOfKind(finding.kind)).arg(decimal(finding.heightMm))));
         if (!one.candidate) continue;
         QFont slanted = list_->font();
         slanted.setItalic(true);

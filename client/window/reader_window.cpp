@@ -54,6 +54,22 @@ QString layoutSetting(bool flat) {
 }
 const auto geometrySetting = QStringLiteral("window/geometry");
 
+QString nameOfPosition(PatientPosition position) {
+    switch (position) {
+        case PatientPosition::supine:
+            return ReaderWindow::tr("supine");
+        case PatientPosition::prone:
+            return ReaderWindow::tr("prone");
+        case PatientPosition::leftDecubitus:
+            return ReaderWindow::tr("on the left side");
+        case PatientPosition::rightDecubitus:
+            return ReaderWindow::tr("on the right side");
+        case PatientPosition::unknown:
+            break;
+    }
+    return {};
+}
+
 // Keys that such a control needs for itself while it has the keyboard, though they are a command's.
 bool needsKey(const QWidget* widget, const QKeyEvent& key) {
     if (const auto* pane = qobject_cast<const Pane*>(widget)) return pane->needsKey(key);
@@ -650,10 +666,9 @@ void ReaderWindow::look() {
 
     const reader::CaseInfo& info = *session.caseInfo();
     say(caseName_, text(info.name));
-    const QString position =
-        info.position == PatientPosition::unknown
-            ? QString()
-            : QString::fromLatin1(toString(info.position)) + QStringLiteral("   ");
+    const QString position = info.position == PatientPosition::unknown
+                                 ? QString()
+                                 : nameOfPosition(info.position) + QStringLiteral("   ");
     say(about_, position + QStringLiteral("%1×%2×%3")
                                .arg(info.grid.size.x)
                                .arg(info.grid.size.y)

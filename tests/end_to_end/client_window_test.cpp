@@ -28,6 +28,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenuBar>
+#include <QMessageBox>
 #include <QMimeData>
 #include <QPlainTextEdit>
 #include <QPointer>
@@ -1577,8 +1578,41 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor([&] { return mode.currentIndex() == int(DetectionMode::secondReader); }));
     ASSERT_TRUE(waitFor([&] { return notices(QStringLiteral("once the first reading is done")); }));
     EXPECT_EQ(list.topLevelItemCount(), 0);
+    const double arcBefore = flight().arcMm();
+    const int stepsBefore = reading_->undoStack().index();
     press(Qt::Key_M, Qt::ShiftModifier);
-    EXPECT_FALSE(reader().findings().current());
+    EXPECT_EQ(flight().arcMm(), arcBefore);
+    EXPECT_EQ(reading_->undoStack().index(), stepsBefore);
+    // Nor by the wheel over the mode, nor by a key that is meant for the flight.
+    const auto waits = [&] {
+        QTest::qWait(20);
+        return mode.currentIndex() == int(DetectionMode::secondReader) &&
+               reader().findings().choice() == DetectionChoice{DetectionMode::secondReader} &&
+               list.topLevelItemCount() == 0;
+    };
+    wheel(mode, mode.rect().center(), -1);
+    EXPECT_TRUE(waits());
+    for (const auto key : {Qt::Key_Down, Qt::Key_End, Qt::Key_PageDown, Qt::Key_F}) {
+        QTest::keyClick(&mode, key);
+        EXPECT_TRUE(waits()) << key;
+        mode.hidePopup();
+    }
+    // Who asks for them now is asked.
+    const auto answers = [&](QMessageBox::StandardButton answer) {
+        const auto asked = whenOpens<QMessageBox>(
+            [=](QMessageBox& box) { QTest::mouseClick(box.button(answer), Qt::LeftButton); });
+        press(Qt::Key_F, Qt::ControlModifier);
+        window_->activateWindow();
+        return waitFor([&] { return *asked && QApplication::activeWindow() == window_.get(); });
+    };
+    EXPECT_TRUE(answers(QMessageBox::No));
+    EXPECT_TRUE(waits());
+    EXPECT_EQ(QSettings().value("reading/detection").toInt(), int(DetectionMode::secondReader));
+    EXPECT_TRUE(answers(QMessageBox::Yes));
+    ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 2; }));
+    press(Qt::Key_F, Qt::ControlModifier);
+    press(Qt::Key_F, Qt::ControlModifier);
+    ASSERT_TRUE(waitFor(waits));
     QPushButton* done = nullptr;
     for (auto* button : window_->findChildren<QPushButton*>())
         if (button->text() == QStringLiteral("First reading done: show findings")) done = button;

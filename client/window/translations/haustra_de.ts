@@ -1168,6 +1168,26 @@
         <source>The finding&apos;s largest diameter, as a ruler in all views</source>
         <translation>Der größte Durchmesser des Befunds, als Maß in allen Ansichten</translation>
     </message>
+    <message>
+        <source>sessile</source>
+        <translation>sessil</translation>
+    </message>
+    <message>
+        <source>pedunculated</source>
+        <translation>gestielt</translation>
+    </message>
+    <message>
+        <source>flat</source>
+        <translation>flach</translation>
+    </message>
+    <message>
+        <source>The first reading is not done</source>
+        <translation>Die eigene Befundung ist nicht beendet</translation>
+    </message>
+    <message>
+        <source>Show the findings all the same, in this and the next cases?</source>
+        <translation>Die Befunde trotzdem zeigen, in diesem und den nächsten Fällen?</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::FlatZoomPane</name>
@@ -2160,6 +2180,22 @@
     <message>
         <source>wall seen %1 %, not kept</source>
         <translation>Wand gesehen %1 %, nicht behalten</translation>
+    </message>
+    <message>
+        <source>supine</source>
+        <translation>Rückenlage</translation>
+    </message>
+    <message>
+        <source>prone</source>
+        <translation>Bauchlage</translation>
+    </message>
+    <message>
+        <source>on the left side</source>
+        <translation>Linksseitenlage</translation>
+    </message>
+    <message>
+        <source>on the right side</source>
+        <translation>Rechtsseitenlage</translation>
     </message>
 </context>
 <context>
