@@ -213,6 +213,7 @@ std::string qualityJson(const ColonRecord& record) {
                 {"rebuilt_walls", listOf(record.walls)},
                 {"untagged_fluid", listOf(record.untaggedPools)},
                 {"cut_ends", listOf(record.cutEnds)},
+                {"mask_in_soft_tissue", rounded(record.maskInSoftTissue)},
                 {"noise_sd_hu", rounded(record.noiseSdHu)}}
                .dump(2) +
            "\n";

@@ -116,6 +116,7 @@ struct ColonRecord {
     std::vector<RebuiltWallRecord> walls;
     std::vector<UntaggedPool> untaggedPools;  ///< not in the lumen; the largest surface first
     std::vector<CutEnd> cutEnds;              ///< the largest first
+    double maskInSoftTissue = 0.0;            ///< share of a given mask's inside; 0 of none
     double noiseSdHu = 0.0;                   ///< in gas
     std::vector<std::string> warnings;        ///< where a reader must look
     double lengthMm() const;                  ///< of the pieces and of what is crossed between them

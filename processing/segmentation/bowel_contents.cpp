@@ -94,14 +94,48 @@ std::vector<std::uint8_t> flood(const Cells& cells, std::vector<std::size_t> fro
     return reached;
 }
 
-std::vector<std::uint8_t> outsideCells(const Cells& cells) {
-    std::vector<std::size_t> front;
+/// Air at the scan's sides, x and y.
+struct SideAir {
+    std::vector<std::size_t> room;    ///< cells of the room's air
+    std::vector<std::uint8_t> byCut;  ///< of each cell: at most one off gas that a side cuts
+};
+
+// The room's air goes by the patient: along a side it reaches a corner of the slices, or it lies
+// there from the first slice to the last. Gas of a colon that a narrow field cuts does neither.
+SideAir sideAir(const Cells& cells) {
+    const glm::ivec3 last = cells.grid.size - 1;
+    const auto isSide = [&](glm::ivec3 c) {
+        return c.x == 0 || c.y == 0 || c.x == last.x || c.y == last.y;
+    };
+    SideAir air;
+    air.byCut.assign(cells.count(), 0);
+    std::vector<std::uint8_t> seen(cells.count(), 0);
     for (std::size_t n = 0; n < cells.count(); ++n) {
-        const glm::ivec3 c = cells.grid.voxelAt(n), last = cells.grid.size - 1;
-        const bool side = c.x == 0 || c.y == 0 || c.x == last.x || c.y == last.y;
-        if (side && cells.allAir[n]) front.push_back(n);
+        if (seen[n] || !cells.allAir[n] || !isSide(cells.grid.voxelAt(n))) continue;
+        std::vector<std::size_t> body{n};
+        seen[n] = 1;
+        bool corner = false, first = false, end = false;
+        for (std::size_t m = 0; m < body.size(); ++m) {
+            const glm::ivec3 c = cells.grid.voxelAt(body[m]);
+            corner |= (c.x == 0 || c.x == last.x) && (c.y == 0 || c.y == last.y);
+            first |= c.z == 0, end |= c.z == last.z;
+            visitFaces(cells.grid, body[m], [&](std::size_t next, int) {
+                if (seen[next] || !cells.allAir[next] || !isSide(cells.grid.voxelAt(next))) return;
+                seen[next] = 1;
+                body.push_back(next);
+            });
+        }
+        if (corner || (first && end)) {
+            air.room.insert(air.room.end(), body.begin(), body.end());
+            continue;
+        }
+        for (const std::size_t m : body) {
+            const glm::ivec3 c = cells.grid.voxelAt(m);
+            visitBox(glm::max(c - 1, glm::ivec3(0)), glm::min(c + 1, last),
+                     [&](glm::ivec3 by) { air.byCut[cells.grid.index(by)] = 1; });
+        }
     }
-    return flood(cells, std::move(front), [&](std::size_t n) { return cells.allAir[n] != 0; });
+    return air;
 }
 
 // Cells of a mean HU well above gas, in bodies thicker than the partial volume at a wall.
@@ -141,9 +175,11 @@ std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::u
     return grown;
 }
 
-/// Gas from the outside cells on, as far as the outside reaches into narrower places.
+/// Gas from the outside cells and the scan's sides on, as far as the outside reaches into narrower
+/// places; not from where a side cuts gas.
 void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
-             const std::vector<std::uint8_t>& outside, int threads) {
+             const std::vector<std::uint8_t>& outside, const std::vector<std::uint8_t>& byCut,
+             int threads) {
     const Grid& grid = content.grid();
     const auto voxels = content.writable();
     std::vector<std::vector<std::uint32_t>> slices(std::size_t(grid.size.z));
@@ -155,6 +191,8 @@ void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
                     return &outside[cells.grid.index(glm::ivec3(0, y, z) / cells.block)];
                 };
                 const std::uint8_t* const own = cellsAt(j, int(k));
+                const std::uint8_t* const cut =
+                    &byCut[cells.grid.index(glm::ivec3(0, j, int(k)) / cells.block)];
                 const std::array<const std::uint8_t*, 4> beside{
                     cellsAt(std::max(j - 1, 0), int(k)),
                     cellsAt(std::min(j + 1, grid.size.y - 1), int(k)),
@@ -164,10 +202,11 @@ void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
                 for (int i = 0; i < grid.size.x; ++i) {
                     if (Content(voxels[row + std::size_t(i)]) != Content::gas) continue;
                     const int x = i / cells.block.x;
-                    const bool near = atSide || i == 0 || i == grid.size.x - 1 ||
-                                      own[(i - 1) / cells.block.x] ||
-                                      own[(i + 1) / cells.block.x] || beside[0][x] ||
-                                      beside[1][x] || beside[2][x] || beside[3][x];
+                    const bool side = atSide || i == 0 || i == grid.size.x - 1;
+                    const bool near = (side && !cut[x]) ||
+                                      own[std::max(i - 1, 0) / cells.block.x] ||
+                                      own[std::min(i + 1, grid.size.x - 1) / cells.block.x] ||
+                                      beside[0][x] || beside[1][x] || beside[2][x] || beside[3][x];
                     if (near) slices[k].push_back(std::uint32_t(row + std::size_t(i)));
                 }
             }
@@ -230,7 +269,7 @@ void findGravity(const Volume<std::int16_t>& hu, PatientPosition position,
     }
     if (known && best != toldIndex) {
         if (areaMm2[best] > clearMm2 && areaMm2[best] > clearRatio * areaMm2[toldIndex]) {
-            contents.notes.push_back(
+            contents.warnings.push_back(
                 std::string("the air-fluid levels show that the patient lay ") +
                 lyingName(directions[best]) + ", not " + toString(position) +
                 " as the series says; the levels are believed");
@@ -239,7 +278,7 @@ void findGravity(const Volume<std::int16_t>& hu, PatientPosition position,
         }
     }
     if (!known && areaMm2[best] == 0.0) {
-        contents.notes.push_back(
+        contents.warnings.push_back(
             "patient position unknown, and no air-fluid level shows it: supine is assumed");
     }
     if (!known && areaMm2[best] > 0.0) {
@@ -301,7 +340,9 @@ BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition posit
                            const TissueModel& tissue, int threads) {
     const Grid& grid = hu.grid();
     const Cells cells = makeCells(hu, tissue.airBelowHu, threads);
-    const std::vector<std::uint8_t> outside = outsideCells(cells);
+    const SideAir atSides = sideAir(cells);
+    const std::vector<std::uint8_t> outside =
+        flood(cells, atSides.room, [&](std::size_t n) { return cells.allAir[n] != 0; });
     const std::vector<std::uint8_t> lung =
         lungCells(cells, outside, tissue.meanHu[int(Tissue::air)]);
     BowelContents contents;
@@ -315,7 +356,7 @@ BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition posit
         }
         voxels[n] = std::uint8_t(content);
     });
-    reachIn(contents.content, cells, outside, threads);
+    reachIn(contents.content, cells, outside, atSides.byCut, threads);
     measureGas(hu, contents, threads);
     findGravity(hu, position, tissue, threads, contents);
     markInterfaces(contents);

@@ -28,15 +28,17 @@ struct BowelContents {
     GravityAxis down;
     glm::dvec3 gravity{0.0};  ///< unit, LPS: as the levels show it
     double gasHu = -1000.0, gasSdHu = 0.0;
+    std::vector<std::string> warnings;  ///< where a reader must know of it
     std::vector<std::string> notes;
 };
 
 /// Sorts the voxels of a scan, taken in this position, by HU and place. The room's air is what can
 /// be reached from the scan's sides through places where a cube of 4 mm fits, and 6 mm more: so a
-/// tube in the rectum, open to the room, does not make the colon a part of it. Lung is air of a
-/// mean HU more than 60 above gas in cubes of 4 mm, where such cubes lie three deep. Levels as of
-/// findLevels, for the direction of gravity that shows most of them; a note says where that is not
-/// the told one.
+/// tube in the rectum, open to the room, does not make the colon a part of it. Of a side it is what
+/// lies in a corner of the slices, or from the first to the last: other air there is gas that a
+/// narrow field cuts. Lung is air of a mean HU more than 60 above gas in cubes of 4 mm, where such
+/// cubes lie three deep. Levels as of findLevels, for the direction of gravity that shows most of
+/// them; a warning says where that is not the told one.
 BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition position,
                            const TissueModel& tissue, int threads);
 

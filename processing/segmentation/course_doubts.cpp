@@ -66,6 +66,9 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         doubt(0.4, "the course may end before the cecum");
     for (const CutEnd& end : record.cutEnds)
         doubt(0.5, printed("the %s goes on beyond the edge of the scan", toString(end.part)));
+    if (isAnothersMask(record))
+        doubt(record.maskInSoftTissue,
+              printed("%.0f %% of the mask lie in soft tissue", 100.0 * record.maskInSoftTissue));
     for (const LeftOutBody& body : record.leftOut) {
         constexpr double tellMl = 5.0, muchMl = 25.0;
         if (!body.gas || body.volumeMl < tellMl) continue;
@@ -90,6 +93,11 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
     std::stable_sort(doubts.begin(), doubts.end(),
                      [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
     return doubts;
+}
+
+bool isAnothersMask(const ColonRecord& record) {
+    constexpr double leastShare = 0.1;
+    return record.maskInSoftTissue >= leastShare;
 }
 
 double courseConfidence(double chainConfidence, const std::vector<Doubt>& doubts) {

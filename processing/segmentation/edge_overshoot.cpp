@@ -102,9 +102,9 @@ void takeOffOvershoot(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                 voxels[m] = std::uint8_t(Content::tissue);
         });
     }
-    contents.notes.push_back(printed(
+    contents.warnings.push_back(printed(
         "the kernel is sharp: the wall beside gas is up to %.0f HU bright, as tagged material "
-        "is; thin residue on it is not seen",
+        "is; thin residue on it is not seen, and detection may miss polyps, the more the sharper",
         overshootHu));
 }
 

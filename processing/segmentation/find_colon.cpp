@@ -6,7 +6,6 @@
 #include "segmentation/bowel_contents.h"
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
-#include "segmentation/course_doubts.h"
 #include "segmentation/edge_overshoot.h"
 #include "segmentation/haustral_folds.h"
 #include "segmentation/record_colon.h"
@@ -214,22 +213,6 @@ double softShare(const Volume<std::int16_t>& hu, const Volume<std::uint8_t>& mas
     return inside > 0 ? double(soft) / double(inside) : 0.0;
 }
 
-// A mask of gas and tagged material is neither where it is another scan's. Levels, and stool that
-// a person drew in, are some of it.
-void doubtMask(double softShare, ColonRecord& record) {
-    constexpr double leastTold = 0.1;
-    if (softShare < leastTold) return;
-    const std::string about = printed(
-        "%.0f %% of the mask are as bright as soft tissue in the scan: it may be another "
-        "scan's, or hold stool or fluid without tagging",
-        100.0 * softShare);
-    record.warnings.insert(record.warnings.begin(), about);
-    record.doubts.push_back({about, softShare});
-    std::stable_sort(record.doubts.begin(), record.doubts.end(),
-                     [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
-    record.confidence = courseConfidence(record.chainConfidence, record.doubts);
-}
-
 // Half of the shortest adult colon, distended (Khashab et al., Endoscopy 2009: 120 to 250 cm at CT
 // colonography).
 constexpr double leastDistendedMm = 500.0, distendedRadiusMm = 8.0;
@@ -247,7 +230,7 @@ double distendedMm(const PieceGraph& graph, const ColonChain& chain) {
 struct Surroundings {
     Volume<std::int16_t> hu;
     BowelContents contents;
-    Grid scanGrid;  ///< of the whole scan, of which this may be a box
+    Source source;
     std::vector<glm::vec3> softTissueMm;
     bool given = false;  ///< the contents are a mask's, which ends where it ends
 };
@@ -343,7 +326,7 @@ Result<FoundColon> findAmong(Surroundings& among, const TissueModel& tissue,
     progress(0.9);
     FoundColon found;
     found.record = recordColon(among.contents, course.cut, course.graph, course.chains,
-                               course.labels, untagged, among.scanGrid);
+                               course.labels, untagged, among.source);
     found.labels = std::move(course.labels.labels);
     found.gravity = among.contents.gravity;
     found.notes = among.contents.notes;
@@ -366,7 +349,7 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     takeOffOvershoot(among.hu, tissue, among.contents, options.threads);
     among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
     const VoxelBox box = bowelBox(among.contents.content, placesOf(options.edits), options.threads);
-    among.scanGrid = among.hu.grid();
+    among.source.scanGrid = among.hu.grid();
     among.hu = cropped(among.hu, box, options.threads);
     among.contents = cropped(among.contents, box, options.threads);
     cutBalls(among.contents, options.edits.cuts);
@@ -390,6 +373,7 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
         among.hu = scan->hu.share();
         among.contents = findContents(among.hu, scan->position, tissue, options.threads);
         among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
+        among.source = {grid, softShare(scan->hu, mask, tissue)};
     } else {
         among.hu = drawnHu(mask, tissue);
         among.contents.content = Volume<std::uint8_t>(grid, std::uint8_t(Content::tissue));
@@ -398,16 +382,13 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
     }
     restrictToMask(among.contents, among.hu, mask, tissue);
     const VoxelBox box = bowelBox(among.contents.content, {}, options.threads);
-    among.scanGrid = among.hu.grid();
     among.hu = cropped(among.hu, box, options.threads);
     among.contents = cropped(among.contents, box, options.threads);
     auto found = TRY(findAmong(among, tissue, options));
     Volume<std::uint8_t> whole(grid, std::uint8_t(LumenLabel::outside));
     paste(found.labels, box, whole, options.threads);
     found.labels = std::move(whole);
-    if (scan) {
-        doubtMask(softShare(scan->hu, mask, tissue), found.record);
-    } else {
+    if (!scan) {
         found.gravity = glm::dvec3(0.0);
         const auto labels = found.labels.writable();
         for (std::size_t n = 0; n < labels.size(); ++n) {

@@ -23,7 +23,7 @@ struct FoundColon {
     Volume<std::uint8_t> labels;  ///< LumenLabel: one 6-connected piece
     glm::dvec3 gravity{0.0};      ///< unit, LPS: as the air–fluid levels show it
     ColonRecord record;
-    std::vector<std::string> notes;  ///< for the log: disagreement with the patient position …
+    std::vector<std::string> notes;  ///< for the log: how the patient lay …
 };
 
 /// The colon's gas and tagged material as one lumen from the rectum to the cecum.

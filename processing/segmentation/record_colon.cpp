@@ -68,7 +68,7 @@ class Recorder {
 public:
     Recorder(const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
              const std::vector<ColonChain>& chains, const ColonLabels& labels,
-             const std::vector<UntaggedLevel>& untagged, const Grid& scanGrid)
+             const std::vector<UntaggedLevel>& untagged, const Source& source)
         : contents_(contents),
           cut_(cut),
           graph_(graph),
@@ -76,11 +76,12 @@ public:
           chain_(chains.front()),
           labels_(labels),
           untagged_(untagged),
-          scanGrid_(scanGrid) {}
+          source_(source) {}
 
     ColonRecord record() {
         const std::vector<double> weights = posterior(chains_);
         made_.noiseSdHu = contents_.gasSdHu;
+        made_.maskInSoftTissue = source_.maskInSoftTissue;
         for (std::size_t n = 0; n < chain_.nodes.size(); ++n) {
             const ChainNode& node = graph_.graph.nodes[std::size_t(chain_.nodes[n])];
             const TubePiece& piece = pieceOf(chain_.nodes[n]);
@@ -217,15 +218,15 @@ private:
     // rectal catheter, which leaves the scan with the patient.
     void findCutEnds() {
         constexpr double leastMm2 = 100.0;
-        const Grid& grid = labels_.labels.grid();
+        if (!source_.scanGrid) return;
+        const Grid &grid = labels_.labels.grid(), &scan = *source_.scanGrid;
         for (int axis = 0; axis < 3; ++axis) {
             for (const int step : {-1, 1}) {
                 const int at = step < 0 ? 0 : grid.size[axis] - 1;
                 glm::ivec3 beyond(0);
                 beyond[axis] = at + step;
                 const glm::dvec3 outside = grid.patientFromVoxelPoint(glm::dvec3(beyond));
-                if (scanGrid_.contains(
-                        glm::ivec3(glm::round(scanGrid_.voxelFromPatientPoint(outside)))))
+                if (scan.contains(glm::ivec3(glm::round(scan.voxelFromPatientPoint(outside)))))
                     continue;
                 for (CutEnd& end : openingsOf(axis, at)) {
                     if (end.areaMm2 < leastMm2) continue;
@@ -320,6 +321,11 @@ private:
     void warn() {
         constexpr double sure = 0.95, doubtful = 0.8;
         const auto say = [&](std::string line) { made_.warnings.push_back(std::move(line)); };
+        if (isAnothersMask(made_))
+            say(
+                printed("%.0f %% of the mask are as bright as soft tissue in the scan: it may be "
+                        "another scan's, or hold stool or fluid without tagging",
+                        100.0 * made_.maskInSoftTissue));
         for (const CutEnd& end : made_.cutEnds)
             say(
                 printed("the scan ends within the %s, which it cuts open over %.0f mm2; what lies "
@@ -339,13 +345,22 @@ private:
                 say(printed("the way on from the %s is not sure (%.0f %%), at %s", part,
                             100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
         }
+        // Who lay otherwise than the series says, and how sharp the kernel is.
+        for (const std::string& warning : contents_.warnings)
+            say(warning);
         sayLeftOut();
         sayUnseenTagging();
         for (const RebuiltWallRecord& wall : made_.walls) {
             constexpr double tellMm2 = 20.0;
+            constexpr double wideMm2 = 400.0;  // as wide as a colon
             if (wall.betweenLoops && wall.areaMm2 > tellMm2)
                 say(printed("a wall of %.0f mm2 between two loops was rebuilt, at %s", wall.areaMm2,
                             placeText(wall.placeMm).c_str()));
+            else if (!wall.betweenLoops && wall.areaMm2 > wideMm2)
+                say(
+                    printed("a wall of %.0f mm2 was set up, beyond which gas and fluid were taken "
+                            "for other bowel; they may be the colon's, at %s",
+                            wall.areaMm2, placeText(wall.placeMm).c_str()));
         }
         std::map<ColonPart, double> untaggedMl;
         for (const ColonPiece& piece : made_.pieces)
@@ -399,7 +414,7 @@ private:
     const ColonChain& chain_;
     const ColonLabels& labels_;
     const std::vector<UntaggedLevel>& untagged_;
-    const Grid& scanGrid_;
+    const Source& source_;
     ColonRecord made_;
 };
 
@@ -408,8 +423,8 @@ private:
 ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
                         const PieceGraph& graph, const std::vector<ColonChain>& chains,
                         const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged,
-                        const Grid& scanGrid) {
-    return Recorder(contents, cut, graph, chains, labels, untagged, scanGrid).record();
+                        const Source& source) {
+    return Recorder(contents, cut, graph, chains, labels, untagged, source).record();
 }
 
 }  // namespace haustra::segmentation

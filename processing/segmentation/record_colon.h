@@ -9,16 +9,24 @@
 #include "segmentation/tube_pieces.h"
 #include "segmentation/untagged_levels.h"
 
+#include <optional>
 #include <vector>
 
 namespace haustra::segmentation {
 
+/// What the labels were found in.
+struct Source {
+    /// All of the scan, in the labels' voxels, which may be a box of it; none of a mask alone,
+    /// which may be cut off anywhere.
+    std::optional<Grid> scanGrid;
+    double maskInSoftTissue = 0.0;  ///< ColonRecord::maskInSoftTissue
+};
+
 /// Of the first of `chains` (not empty), whose weights by their scores are the confidence among
-/// them. `untagged` are the levels whose fluid is not in the lumen. What was labelled may be a box
-/// of the scan: `scanGrid` is all of it, in voxels of the same size.
+/// them. `untagged` are the levels whose fluid is not in the lumen.
 ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
                         const PieceGraph& graph, const std::vector<ColonChain>& chains,
                         const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged,
-                        const Grid& scanGrid);
+                        const Source& source);
 
 }  // namespace haustra::segmentation

@@ -118,7 +118,7 @@ BowelContents cropped(const BowelContents& contents, const VoxelBox& box, int th
     }
     part.down = contents.down, part.gravity = contents.gravity;
     part.gasHu = contents.gasHu, part.gasSdHu = contents.gasSdHu;
-    part.notes = contents.notes;
+    part.notes = contents.notes, part.warnings = contents.warnings;
     return part;
 }
 

@@ -90,12 +90,14 @@ TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, true}); }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.untaggedPools.push_back({{}, {}, 900.0, 10.0}); }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.cutEnds.push_back({{}, {}, 500.0}); }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) { r.maskInSoftTissue = 0.3; }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.chainConfidence = 0.8; }));
     // What is no news of the course.
     EXPECT_FALSE(lowers([](ColonRecord& r) {
         r.leftOut.push_back({{}, 3.0, true, {}, 3.0, false});
     }));
     EXPECT_FALSE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, false}); }));
+    EXPECT_FALSE(lowers([](ColonRecord& r) { r.maskInSoftTissue = 0.03; }));
 }
 
 TEST(CourseDoubts, AreInTheQuality) {

@@ -83,7 +83,7 @@ TEST(EdgeOvershoot, FluidUnderGasIsNone) {
         Scene scene = ball(false, fluid);
         EXPECT_EQ(overshoot(scene), 0.0);
         takeOffOvershoot(scene.hu, scene.tissue, scene.contents, 2);
-        EXPECT_TRUE(scene.contents.notes.empty());
+        EXPECT_TRUE(scene.contents.warnings.empty());
         const Scene before = ball(false, fluid);
         for (std::size_t n = 0; n < scene.contents.content.voxels().size(); ++n)
             ASSERT_EQ(scene.contents.content[n], before.contents.content[n]);
@@ -94,7 +94,7 @@ TEST(EdgeOvershoot, TheRimIsTakenOffAndTheFluidStaysEvenWhereItIsDarker) {
     for (const int fluidHu : {500, 260}) {
         Scene scene = ball(true, true, fluidHu);
         takeOffOvershoot(scene.hu, scene.tissue, scene.contents, 2);
-        EXPECT_EQ(scene.contents.notes.size(), 1u);
+        EXPECT_EQ(scene.contents.warnings.size(), 1u);
         const Grid& grid = scene.hu.grid();
         for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
             const glm::ivec3 v = grid.voxelAt(n);

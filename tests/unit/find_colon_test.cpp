@@ -7,6 +7,7 @@
 #include "core/crop.h"
 #include "phantom/phantom.h"
 #include "phantom/score.h"
+#include "segmentation/course_doubts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -167,16 +168,39 @@ CtScan between(double lowMm, double highMm) {
     box.size.z = int(highMm / grid.spacingMm().z) - box.lo.z;
     return {cropped(drawing.hu, box, 1), PatientPosition::supine};
 }
-bool warns(const FoundColon& found, const std::string& of) {
+bool tells(const FoundColon& found, const std::string& of) {
     return std::any_of(found.record.warnings.begin(), found.record.warnings.end(),
                        [&](const std::string& line) { return line.find(of) != std::string::npos; });
+}
+
+// A field so narrow that its side cuts the descending colon: what a side cuts is no room's air,
+// which goes by the patient from end to end, or around a corner of the slices.
+TEST(FindColon, IsFoundWhereTheFieldsSideCutsIt) {
+    const Drawing drawing = Drawing::supine();
+    const Grid& grid = drawing.hu.grid();
+    for (const bool left : {true, false}) {
+        VoxelBox box{glm::ivec3(0), grid.size};
+        if (left)
+            box.size.x = int(268.0 / grid.spacingMm().x);  // the descending colon's axis
+        else
+            box.lo.x = int(58.0 / grid.spacingMm().x), box.size.x -= box.lo.x;  // the ascending's
+        const CtScan scan{cropped(drawing.hu, box, 1), PatientPosition::supine};
+        const auto found = find(scan);
+        ASSERT_TRUE(found) << describe(found.error());
+        EXPECT_GT(diceWithDrawing(*found), 0.98);
+        ASSERT_FALSE(found->record.cutEnds.empty());
+        const glm::dvec3 at = found->record.cutEnds[0].placeMm;
+        EXPECT_NEAR(at.x, left ? 268.0 : 58.0, 5.0);
+        EXPECT_TRUE(inColon(at));
+        EXPECT_TRUE(tells(*found, "the scan ends within"));
+    }
 }
 
 TEST(FindColon, TellsWhereTheScanEndsWithinTheColon) {
     const auto whole = find(between(0, 380));
     ASSERT_TRUE(whole) << describe(whole.error());
     EXPECT_TRUE(whole->record.cutEnds.empty());
-    EXPECT_FALSE(warns(*whole, "the scan ends within"));
+    EXPECT_FALSE(tells(*whole, "the scan ends within"));
 
     // Below, through the rectum, of 19 mm radius; its axis is all but upright.
     const auto below = find(between(50, 380));
@@ -185,7 +209,7 @@ TEST(FindColon, TellsWhereTheScanEndsWithinTheColon) {
     EXPECT_EQ(below->record.cutEnds[0].part, ColonPart::rectum);
     EXPECT_NEAR(below->record.cutEnds[0].areaMm2, M_PI * 19 * 19, 0.15 * M_PI * 19 * 19);
     EXPECT_TRUE(inColon(below->record.cutEnds[0].placeMm));
-    EXPECT_TRUE(warns(*below, "the scan ends within the rectum"));
+    EXPECT_TRUE(tells(*below, "the scan ends within the rectum"));
     EXPECT_LT(below->record.confidence, 0.6 * whole->record.confidence);
 
     // Above, through both flexures: four limbs, or two where limbs meet.
@@ -196,7 +220,7 @@ TEST(FindColon, TellsWhereTheScanEndsWithinTheColon) {
         EXPECT_NEAR(end.placeMm.z, 285, 5.0);
         EXPECT_TRUE(inColon(end.placeMm)) << end.placeMm.x << " " << end.placeMm.y;
     }
-    EXPECT_TRUE(warns(*above, "the scan ends within"));
+    EXPECT_TRUE(tells(*above, "the scan ends within"));
 }
 
 Volume<std::uint8_t> maskOf(const Grid& grid, const std::function<bool(glm::dvec3)>& inside) {
@@ -245,9 +269,32 @@ TEST(FindColonInMask, DoubtsAMaskThatLiesInTheScansSoftTissue) {
     const auto own = movedBy(0.0), another = movedBy(12.5);
     ASSERT_TRUE(own) << describe(own.error());
     ASSERT_TRUE(another) << describe(another.error());
-    EXPECT_FALSE(warns(*own, "it may be another scan's"));
-    EXPECT_TRUE(warns(*another, "it may be another scan's"));
+    EXPECT_FALSE(tells(*own, "it may be another scan's"));
+    EXPECT_TRUE(tells(*another, "it may be another scan's"));
     EXPECT_LT(another->record.confidence, 0.9 * own->record.confidence);
+    // What is said of the course is said with that doubt.
+    if (another->record.confidence < 0.8)
+        EXPECT_TRUE(tells(*another, "the course is right with no more than"));
+    EXPECT_EQ(another->record.confidence,
+              segmentation::courseConfidence(another->record.chainConfidence,
+                                             segmentation::doubtsOf(another->record)));
+}
+
+// As other programs write masks, cropped to what they hold: where they end, no scan ends.
+TEST(FindColonInMask, WithoutAScanMayEndAnywhere) {
+    const Volume<std::uint8_t> whole = maskOf(Drawing().hu.grid(), inColon);
+    const CtScan scan = Drawing::supine().scan();
+    const auto tissue = cleansing::fitTissueModel(scan);
+    ASSERT_TRUE(tissue);
+    const VoxelBox box{{14, 0, 20}, {104, 100, 132}};  // through the cecum, and the rectum
+    const auto found = segmentation::findColonInMask(cropped(whole, box, 1), nullptr, *tissue);
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_TRUE(found->record.cutEnds.empty());
+    // On the scan's own grid it does.
+    const CtScan part{cropped(scan.hu, box, 1), scan.position};
+    const auto onScan = segmentation::findColonInMask(cropped(whole, box, 1), &part, *tissue);
+    ASSERT_TRUE(onScan) << describe(onScan.error());
+    EXPECT_FALSE(onScan->record.cutEnds.empty());
 }
 
 TEST(FindColonInMask, NeedsNoScan) {
@@ -301,11 +348,11 @@ TEST(FindColon, GravityIsAsTheLevelsShowIt) {
         PatientPosition told;
         std::function<bool(glm::dvec3)> fluid;
         glm::dvec3 down;
-        std::size_t notes;
+        std::size_t notes, warnings;
     };
-    const Case cases[] = {{PatientPosition::prone, upwards, {0, -1, 0}, 0},
-                          {PatientPosition::supine, upwards, {0, -1, 0}, 1},
-                          {PatientPosition::unknown, leftwards, {1, 0, 0}, 1}};
+    const Case cases[] = {{PatientPosition::prone, upwards, {0, -1, 0}, 0, 0},
+                          {PatientPosition::supine, upwards, {0, -1, 0}, 0, 1},
+                          {PatientPosition::unknown, leftwards, {1, 0, 0}, 1, 0}};
     for (const Case& one : cases) {
         Drawing drawing;
         drawing.paintColon(one.fluid);
@@ -313,13 +360,9 @@ TEST(FindColon, GravityIsAsTheLevelsShowIt) {
         ASSERT_TRUE(found) << describe(found.error());
         EXPECT_EQ(found->gravity, one.down);
         EXPECT_EQ(found->notes.size(), one.notes);
+        EXPECT_EQ(std::size_t(tells(*found, "the levels are believed")), one.warnings);
         EXPECT_GT(diceWithDrawing(*found), 0.985);
     }
-}
-
-bool tells(const segmentation::FoundColon& found, const char* words) {
-    return std::any_of(found.record.warnings.begin(), found.record.warnings.end(),
-                       [&](const std::string& line) { return line.find(words) != line.npos; });
 }
 
 double untaggedMl(const segmentation::FoundColon& found) {
