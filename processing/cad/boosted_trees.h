@@ -34,8 +34,9 @@ Result<void> checkTrees(const BoostedTrees& boosted, int features);
 
 /// `rows`: `features` numbers each, as many rows as responses (0 or 1, both kinds). Gentle AdaBoost
 /// (Friedman, Hastie and Tibshirani, Annals of Statistics 2000; 28: 337; cv::ml::Boost): `trees` of
-/// `depth` splits at most, whose leaves hold at least `leastRows` rows; rows that together have
-/// less than a twentieth of the weight sit a round out. Widths are `softness` standard deviations
+/// `depth` splits at most; what holds fewer than `leastRows` rows is not split further, but a split
+/// may leave fewer on one side. Rows that together have less than a twentieth of the weight sit a
+/// round out. Widths are `softness` standard deviations
 /// of the rows. The same for equal input.
 BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> responses, int features,
                         int trees = 200, int depth = 4, int leastRows = 10, double softness = 0.2);

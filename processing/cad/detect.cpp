@@ -5,6 +5,7 @@
 #include "cad/places.h"
 #include "cad/residue_film.h"
 #include "cad/standing_height.h"
+#include "cad/wall_edges.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
@@ -260,10 +261,10 @@ void warnOfResidue(const std::vector<Candidate>& residue, const CadModel& model,
     std::string places;
     for (const double arcMm : arcs)
         places += printed(places.empty() ? "%.0f" : ", %.0f", arcMm);
-    findings.warnings.push_back(
-        printed("%zu places that look like polyps were taken for tagged residue on the wall: %s mm "
-                "from the rectum",
-                arcs.size(), places.c_str()));
+    findings.warnings.push_back(printed(
+        "%zu place%s taken for tagged residue on the wall: %s mm from the rectum", arcs.size(),
+        arcs.size() == 1 ? " that looks like a polyp was" : "s that look like polyps were",
+        places.c_str()));
 }
 
 }  // namespace
@@ -351,8 +352,8 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     warnOfUnexaminedWall(evidence, findings);
     if (statistics.noiseHu > noisyHu)
         findings.warnings.push_back(
-            printed("the scan is noisier than what detection has learnt from: %.0f HU after "
-                    "smoothing to 1 mm",
+            printed("the scan is noisier than what detection has learnt from: %.0f HU or more "
+                    "after smoothing to 1 mm",
                     statistics.noiseHu));
     std::vector<const Candidate*> told;
     for (const Candidate& candidate : candidates)
@@ -390,7 +391,10 @@ Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
     auto candidates = findCandidates(colon, evidence, &model.texture, options, &model, &residue);
     weigh(candidates, model, options.method);
     if (options.progress) options.progress(1.0);
-    return findingsOf(colon, evidence, candidates, model, residue, options.threads);
+    Findings findings = findingsOf(colon, evidence, candidates, model, residue, options.threads);
+    if (const auto edges = wallEdges(colon, evidence))
+        if (auto warning = warningOfEdges(*edges)) findings.warnings.push_back(*std::move(warning));
+    return findings;
 }
 
 }  // namespace haustra::cad

@@ -43,7 +43,7 @@ struct Evaluation {
     Share submerged, coated;              ///< likewise: under fluid; dry, under a film of residue
     Share hidden;                         ///< likewise: under fluid without tagging
     std::map<std::string, Share> byKind;  ///< likewise
-    double falsePositives = 0.0;          ///< a scan; benign growths are none
+    double falsePositives = 0.0;          ///< a scan; hyperplastic growths are none
     double falseBefore = 0.0;             ///< a scan: the same with no candidate rejected
     std::map<std::string, int> falseKinds;
     int hyperplastic = 0;  ///< findings that are small benign growths
@@ -78,7 +78,7 @@ bool countsInCurve(const TrueLesion& lesion);
 struct FrocPoint {
     double falsePositives = 0.0;                      ///< a scan
     double sensitivity = 0.0, low = 0.0, high = 0.0;  ///< of neoplastic lesions from 6 mm
-    double threshold = 0.0;
+    double threshold = 0.0;                           ///< what scores more is told; −1: all is
 };
 /// At 1/8, 1/4 … 16 false positives a scan and every half between. Empty where no case has a
 /// neoplastic lesion from 6 mm. The same for equal input.

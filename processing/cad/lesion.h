@@ -26,7 +26,9 @@ struct Lesion {
     glm::dvec3 axis{0, 0, 1};  ///< unit, from the base into the lumen
     /// Of the patch and of what rises around it up to the foot; of a head on a stalk, the patch.
     Diameter diameter;
-    double widthMm = 0.0;    ///< the greatest extent square to diameter and axis
+    /// The patch's greatest extent square to diameter and axis. The diameter is taken down to the
+    /// foot, so that of a round body this is less, by what its foot stands out.
+    double widthMm = 0.0;
     double heightMm = 0.0;   ///< of the top above the base, along the axis
     double volumeMm3 = 0.0;  ///< between patch and base
     double areaMm2 = 0.0;    ///< of the patch

@@ -1,5 +1,6 @@
 #include "cad/residue_film.h"
 
+#include "cad/median.h"
 #include "core/ct_scan.h"
 #include "core/normal_distribution.h"
 
@@ -24,12 +25,6 @@ constexpr double latestBlurs = 2.5;
 
 double gasHu(const PreparedColon& colon) {
     return colon.tissue.meanHu[std::size_t(Tissue::air)];
-}
-
-double medianOf(std::vector<double>& values) {
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // In the middle of fluid: of every other voxel along each axis, those that have tagging that far

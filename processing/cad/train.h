@@ -58,7 +58,8 @@ struct TrainedModel {
 
 /// Trees, networks, thresholds, calibration and operating point. Trees and networks have learnt
 /// from all cases; calibration and operating point are those of others that had not seen the case
-/// nor another one of its study (folds by study). Fails (badInput) where there are fewer studies
+/// nor another one of its study (folds by study), but for texture, which is learnt from all cases
+/// before. Fails (badInput) where there are fewer studies
 /// than folds, no polyp was a candidate, or polyps that the trees or networks had not seen score no
 /// higher than what is none.
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,

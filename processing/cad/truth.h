@@ -17,7 +17,7 @@ struct TrueLesion {
     double diameterMm = 0.0;
     double heightMm = 0.0;
     std::string kind;        ///< "sessile", "pedunculated", "flat"; or "untagged_stool", "film" …
-    bool neoplastic = true;  ///< else what detection must not be praised nor blamed for, or a mimic
+    bool neoplastic = true;  ///< else hyperplastic, which is neither praised nor blamed, or a mimic
     /// How much denser than the wall its inside is, HU; empty: nobody has told.
     std::optional<double> coreHu = {};
     bool onFold = false;

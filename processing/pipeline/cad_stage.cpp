@@ -59,6 +59,10 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surf
             series = TRY(stage.readText(product::source).and_then([](const std::string& text) {
                 return sourceSeriesOfJson(text);
             }));
+        if (!flatMapKey)
+            findings.warnings.push_back(
+                "the colon was not flattened: the wall's texture was measured along other "
+                "directions than detection has learnt from");
         if (auto coarse = coarsenessOf(inputs.ct.grid(), series ? &*series : nullptr))
             findings.warnings.insert(findings.warnings.begin(), *std::move(coarse));
         store::Attributes attributes{{"model", model.name},

@@ -5,6 +5,7 @@
 #include "cad/candidate_table.h"
 #include "cad/detect.h"
 #include "cad/places.h"
+#include "cad/wall_edges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -279,6 +280,52 @@ TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
     }));
     for (const auto& c : others)
         EXPECT_GT(glm::distance(c.lesion.centreMm, bumps[1].centreMm), 2.0);
+}
+
+// The ball's wall, its edge as wide as asked, and brighter behind gas by some HU.
+TEST(Detect, EdgesUnlikeThoseThatItHasLearntFromAreTold) {
+    const auto warning = [](double widthMm, double overshootHu) -> std::string {
+        BallColon ball;
+        const Grid& grid = ball.hu.grid();
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            const double d =
+                tests::wallMm(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))), bumps);
+            const double hu = 40.0 - 1030.0 / (1.0 + std::exp(d / widthMm)) +
+                              overshootHu * std::exp(-(d - 2.0) * (d - 2.0));
+            ball.hu.writable()[n] = std::int16_t(std::lround(hu));
+        }
+        const auto edges = cad::wallEdges(ball.colon(), cad::gatherEvidence(ball.colon(), {}));
+        EXPECT_TRUE(edges);
+        return edges ? cad::warningOfEdges(*edges).value_or("") : "none";
+    };
+    EXPECT_EQ(warning(0.5, 0.0), "");
+    EXPECT_EQ(warning(0.7, 0.0), "");
+    EXPECT_NE(warning(0.5, 120.0).find("enhances edges"), std::string::npos);
+    EXPECT_NE(warning(1.6, 0.0).find("more blurred"), std::string::npos);
+}
+
+// Across slices, where a shallow pool is as deep as a few pixels, as along them.
+TEST(Detect, FluidWithoutTaggingIsSeenBeforeTheWallHoweverThickSlicesAre) {
+    for (const double thickMm : {0.75, 1.5, 3.0, 5.0}) {
+        BallColon ball(glm::dmat3(1.0), glm::ivec3(0), 0.0, {}, {0.75, 0.75, thickMm});
+        const Grid& grid = ball.lumen.grid();
+        constexpr double deepMm = 3.0;
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n)
+            if (ball.lumen[n] &&
+                grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))).y > lumenMm - deepMm)
+                ball.lumen.writable()[n] = std::uint8_t(LumenLabel::untagged);
+        const auto evidence = cad::gatherEvidence(ball.colon(), {});
+        std::size_t wet = 0, behind = 0, dry = 0, wrong = 0;
+        for (std::size_t v = 0; v < evidence.samples.mesh.vertices.size(); ++v) {
+            const glm::dvec3 p = evidence.samples.mesh.vertices[v];
+            if (p.y > lumenMm - 0.5) ++wet, behind += evidence.untagged[v];
+            if (p.y < lumenMm - deepMm - 3.0) ++dry, wrong += evidence.untagged[v];
+        }
+        ASSERT_GT(wet, 100u);
+        EXPECT_GT(double(behind), 0.98 * double(wet)) << thickMm;
+        EXPECT_EQ(wrong, 0u) << thickMm;
+        EXPECT_GT(dry, 1000u);
+    }
 }
 
 TEST(Detect, LobesSideBySideAreToldToBePerhapsOneMass) {

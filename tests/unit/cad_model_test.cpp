@@ -247,6 +247,15 @@ TEST(Model, WhatIsNoneIsRefused) {
         return text.replace(at, from.size(), to);
     };
     ASSERT_TRUE(cad::modelOfText(sound));
+    const auto withTree = [&](const std::string& tree) {
+        return with("\"trees\": [\n", "\"trees\": [\n" + tree + ",\n");
+    };
+    ASSERT_TRUE(cad::modelOfText(withTree("[[0,0.5,2],1.0,-1.0]"), "m.json"));
+    const std::string mean = "\"mean\":[",
+                      inputs = "\"inputs\":" + std::to_string(cad::featureCount);
+    const std::size_t firstMean = sound.find(mean) + mean.size();
+    const std::string meanOf = sound.substr(firstMean, sound.find(',', firstMean) - firstMean);
+    ASSERT_TRUE(cad::modelOfText(with(mean + meanOf, mean + "0.25"), "m.json"));
     cad::TextureModel none = smallModel().texture;
     ASSERT_TRUE(cad::textureOfText(cad::textureText(none), "t.json"));
     none.polyp.clear(), none.components.clear();
@@ -257,19 +266,20 @@ TEST(Model, WhatIsNoneIsRefused) {
           sound.substr(0, sound.size() - 40),
           with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
           with("diameter_mm", "weight_kg"),
-          with("\"trees\": [\n[[", "\"trees\": [\n[[99,0.5,1],["),
-          with("\"trees\": [\n[[", "\"trees\": [\n[[1,0.5,0],["),
+          withTree("[[99,0.5,2],1.0,-1.0]"),
+          withTree("[[0.9,0.5,2],1.0,-1.0]"),
+          withTree("[[0,0.5,1],1.0,-1.0]"),
+          withTree("[[0,0.5,0],1.0,-1.0]"),
           with("\"polyp\":[", "\"polyp\":[0,"),
           with("\"operating_point\": ", "\"operating_point\": 2"),
           with("\"calibration\": [", "\"calibration\": [0.5,-"),
           with("\"place_calibration\": [", "\"place_calibration\": [0.5,-"),
           with("\"networks\": [", "\"networks\": [[],"),
           with("\"threshold\":", "\"threshold\":-1,\"x\":"),
-          with("\"mean\":[", "\"mean\":[1e300,"),
-          with("\"inputs\":", "\"inputs\":0.5,\"x\":"),
+          with(mean + meanOf, mean + "1e30"),
+          with(inputs, inputs + ".5"),
           with("\"name\": \"", "\"name\": \"a\\nwarning: b"),
           with("\"name\": \"", "\"name\": \"" + std::string(300, 'a')),
-          with("\"trees\": [\n[[", "\"trees\": [\n[[0.9,0.5,2],["),
           with("\"scores\": [", "\"scores\": [[[1.0],[1.0]],"),
           with("\"training_scans\": ", "\"training_scans\": 7, \"x\": ")})
         EXPECT_FALSE(cad::modelOfText(text, "m.json")) << text.substr(0, 60);
@@ -689,7 +699,9 @@ TEST(Evaluation, WithoutAPolypThereIsNoCurve) {
     found.truth.resize(1);
     found.truth[0].diameterMm = 8.0;
     found.places.push_back({0.95, 8.0, 0, ""});
-    for (const cad::FrocPoint& point : cad::frocCurve({&none, &none, &found}, 50)) {
+    const auto curve = cad::frocCurve({&none, &none, &found}, 50);
+    ASSERT_FALSE(curve.empty());
+    for (const cad::FrocPoint& point : curve) {
         EXPECT_DOUBLE_EQ(point.sensitivity, 1.0);
         EXPECT_DOUBLE_EQ(point.low, 1.0);
     }
@@ -748,8 +760,9 @@ TEST(CandidateTable, RefusesWhatIsNone) {
     constexpr auto shape = cad::Generator::shape, broad = cad::Generator::broadShape,
                    texture = cad::Generator::texture;
     EXPECT_FALSE(refused(with({{{shape, -1}, {broad, -1}, {broad, 1}}})));
-    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 1}, {shape, -1}}}))) << "of itself";
-    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 2}, {shape, -1}}}))) << "of a later one";
+    EXPECT_FALSE(refused(with({{{shape, -1}, {shape, 0}, {shape, 0}}})));
+    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 1}, {shape, 0}}}))) << "of itself";
+    EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 2}, {shape, 0}}}))) << "of a later one";
     EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 0}, {shape, 1}}}))) << "of another level";
     EXPECT_TRUE(refused(with({{{shape, -1}, {shape, 0}, {shape, -1}}}))) << "not behind all";
     EXPECT_TRUE(refused(with({{{shape, -1}, {broad, -1}, {broad, 0}}}))) << "of another scale";
