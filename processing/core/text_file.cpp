@@ -1,8 +1,8 @@
 #include "core/text_file.h"
 
+#include <array>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 namespace haustra {
@@ -15,10 +15,15 @@ Result<std::string> readTextFile(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) {
         const int reason = errno;
-        return fail(reason == ENOENT ? ErrorKind::notFound : ErrorKind::io,
+        return fail(reason == ENOENT || reason == ENOTDIR ? ErrorKind::notFound : ErrorKind::io,
                     "cannot open: " + std::generic_category().message(reason), file.string());
     }
-    std::string text(std::istreambuf_iterator<char>(in), {});
+    std::string text;
+    std::array<char, 1 << 16> block;
+    do {
+        in.read(block.data(), block.size());
+        text.append(block.data(), std::size_t(in.gcount()));
+    } while (in);
     if (in.bad()) return fail(ErrorKind::io, "cannot be read to its end", file.string());
     return text;
 }

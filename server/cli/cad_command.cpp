@@ -53,18 +53,24 @@ struct Truth {
 
 // Of the case's own folder of the truths, which may be a phantom's: growths.json, or polyps.json.
 Result<Truth> readTruth(const fs::path& truths, const std::string& name) {
-    std::error_code ignored;
+    // None where there is none.
+    const auto read = [](const fs::path& file) -> Result<std::optional<std::string>> {
+        auto text = readTextFile(file);
+        if (text) return *std::move(text);
+        if (text.error().kind == ErrorKind::notFound) return std::nullopt;
+        return tl::make_unexpected(text.error());
+    };
     for (const fs::path& folder : {truths / name / "truth", truths / name}) {
         for (const char* file : {"growths.json", "polyps.json"}) {
-            if (!fs::exists(folder / file, ignored)) continue;
-            Truth truth{(folder / file).string(), TRY(readTextFile(folder / file)), {}, {}};
+            auto text = TRY(read(folder / file));
+            if (!text) continue;
+            Truth truth{(folder / file).string(), *std::move(text), {}, {}};
             truth.lesions = TRY(cad::truthOfJson(truth.text, truth.file));
             // What else a false finding may be on.
-            if (fs::exists(folder / "structure.json", ignored)) {
-                const auto structure = TRY(readTextFile(folder / "structure.json"));
+            if (const auto structure = TRY(read(folder / "structure.json"))) {
                 truth.mimics =
-                    TRY(cad::mimicsOfJson(structure, (folder / "structure.json").string()));
-                truth.text += structure;
+                    TRY(cad::mimicsOfJson(*structure, (folder / "structure.json").string()));
+                truth.text += *structure;
             }
             return truth;
         }
@@ -431,7 +437,8 @@ Result<void> runTrain(const CadArguments& arguments) {
     options.threads = arguments.threads;
     bar.show("trees and networks", 0.0);
     const auto trained = TRY(cad::trainModel(texture, cases, options));
-    sayCurve("cross-validation by study", trained.crossValidated, trained.model, bar);
+    sayCurve("cross-validation by study, of texture learnt from all", trained.crossValidated,
+             trained.model, bar);
     return writeTextFile(arguments.model, cad::modelText(trained.model));
 }
 

@@ -276,10 +276,8 @@ Result<void> moveInto(const fs::path& out, const fs::path& finished) {
 
 Result<void> runPhantom(const PhantomArguments& arguments) {
     std::error_code error;
+    TRY(checkOutputFolder(arguments.out));
     fs::path out = fs::weakly_canonical(arguments.out, error);
-    if (fs::exists(out, error) && !fs::is_directory(out, error)) {
-        return fail(ErrorKind::badInput, "this is not a folder", out.string());
-    }
     if (!arguments.force && fs::exists(out, error) && !fs::is_empty(out, error)) {
         return fail(ErrorKind::badInput,
                     "the folder is not empty (--force replaces series and truth)", out.string());

@@ -4,8 +4,10 @@
 #include "core/optics.h"
 #include "core/parallel.h"
 #include "core/srgb.h"
+#include "core/text_file.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
+#include "temporary_folder.h"
 
 #include <algorithm>
 #include <atomic>
@@ -220,6 +222,30 @@ TEST(Srgb, IsItsInversesInverseAndAnchoredWhereTheStandardSaysSo) {
     EXPECT_EQ(linearLight(0.0), 0.0);
     EXPECT_NEAR(linearLight(1.0), 1.0, 1e-12);
     EXPECT_NEAR(linearLight(0.5), 0.2140, 5e-5);  // the well-known middle grey
+}
+
+TEST(TextFile, IsReadWholeOrToldWhatIsWrong) {
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "file";
+    const std::string bytes("a\0\x89\r\n", 5);
+    std::string much;
+    while (much.size() < 200000)
+        much += bytes;
+    for (const std::string& content : {std::string(), bytes, much}) {
+        std::ofstream(file, std::ios::binary) << content;
+        EXPECT_EQ(readTextFile(file), content);
+    }
+    const auto refused = [](const std::filesystem::path& path) {
+        const auto read = readTextFile(path);
+        EXPECT_FALSE(read) << path;
+        return read ? Error{} : read.error();
+    };
+    EXPECT_EQ(refused(folder.path()).message, "this is a folder, not a file to read");
+    EXPECT_EQ(refused(folder.path() / "none").kind, ErrorKind::notFound);
+    EXPECT_EQ(refused(file / "within").kind, ErrorKind::notFound);
+    // It opens, and cannot be read.
+    EXPECT_EQ(refused("/proc/self/mem").kind, ErrorKind::io);
+    EXPECT_EQ(refused("/proc/self/mem").place, "/proc/self/mem");
 }
 
 TEST(Parallel, CoversEachIndexOnce) {
