@@ -2,6 +2,7 @@
 
 #include "core/flood_fill.h"
 #include "core/voxel_sweep.h"
+#include "segmentation/field_of_view.h"
 
 #include <algorithm>
 #include <array>
@@ -17,12 +18,13 @@ constexpr double outsideReachMm = 6.0;
 constexpr double lungAboveGasHu = 60.0, lungBelowHu = -550.0;
 constexpr double smallestLungMl = 50.0;
 
-/// The scan in cubes of about 4 mm.
+/// The scan in cubes of about 4 mm, by what of them lies in the field of view.
 struct Cells {
     glm::ivec3 block{1};
     Grid grid;  ///< of the cubes; its place is not set
     double cellMl = 0.0;
     std::vector<std::uint8_t> allAir;  ///< every voxel of the cube is below the wall's HU
+    std::vector<std::uint8_t> side;    ///< at the field's border
     std::vector<float> meanHu;
 
     std::size_t count() const { return allAir.size(); }
@@ -36,31 +38,34 @@ struct CellRow {
     explicit CellRow(std::size_t cells)
         : sumHu(cells, 0.0), voxels(cells, 0), highHu(cells, -32768) {}
 
-    /// A row of voxels, `along` of which are one cell.
-    void add(std::span<const std::int16_t> hu, int along) {
-        const std::int16_t* at = hu.data();
-        const std::int16_t* const end = at + hu.size();
-        for (std::size_t x = 0; x < sumHu.size(); ++x) {
-            const std::int16_t* const next = std::min(at + along, end);
-            voxels[x] += int(next - at);
+    /// A row of voxels, `along` of which are one cell; those of `beyond` do not count.
+    void add(std::span<const std::int16_t> hu, std::span<const std::uint8_t> beyond, int along) {
+        for (std::size_t x = 0, at = 0; x < sumHu.size(); ++x) {
+            const std::size_t next = std::min(at + std::size_t(along), hu.size());
             int sum = 0;
-            for (; at != next; ++at)
-                sum += *at, highHu[x] = std::max(highHu[x], int(*at));
+            for (; at != next; ++at) {
+                if (beyond[at]) continue;
+                ++voxels[x];
+                sum += hu[at], highHu[x] = std::max(highHu[x], int(hu[at]));
+            }
             sumHu[x] += sum;
         }
     }
 };
 
-Cells makeCells(const Volume<std::int16_t>& hu, double airBelowHu, int threads) {
+Cells makeCells(const Volume<std::int16_t>& hu, const FieldOfView& field, double airBelowHu,
+                int threads) {
     const Grid& grid = hu.grid();
     Cells cells;
     cells.block = glm::max(glm::ivec3(1), glm::ivec3(glm::round(cellMm / grid.spacingMm())));
     cells.grid.size = (grid.size + cells.block - 1) / cells.block;
     cells.cellMl = grid.voxelVolumeMm3() * cells.block.x * cells.block.y * cells.block.z / 1000.0;
     cells.allAir.assign(cells.grid.voxelCount(), 0);
+    cells.side.assign(cells.grid.voxelCount(), 0);
     cells.meanHu.assign(cells.grid.voxelCount(), 0.0f);
     const std::size_t length = std::size_t(cells.grid.size.x),
-                      rows = cells.grid.voxelCount() / length;
+                      rows = cells.grid.voxelCount() / length, across = std::size_t(grid.size.x);
+    const std::span<const std::uint8_t> beyond(field.beyond);
     parallelFor(rows, 16, threads, [&](std::size_t first, std::size_t last) {
         for (std::size_t r = first; r < last; ++r) {
             CellRow row(length);
@@ -68,15 +73,22 @@ Cells makeCells(const Volume<std::int16_t>& hu, double airBelowHu, int threads) 
                              hi = glm::min(lo + cells.block, grid.size);
             for (int k = lo.z; k < hi.z; ++k) {
                 for (int j = lo.y; j < hi.y; ++j)
-                    row.add(hu.voxels().subspan(grid.index(0, j, k), std::size_t(grid.size.x)),
-                            cells.block.x);
+                    row.add(hu.voxels().subspan(grid.index(0, j, k), across),
+                            beyond.subspan(std::size_t(j) * across, across), cells.block.x);
             }
             for (std::size_t x = 0; x < length; ++x) {
                 cells.meanHu[r * length + x] = float(row.sumHu[x] / std::max(1, row.voxels[x]));
-                cells.allAir[r * length + x] = row.highHu[x] < airBelowHu;
+                cells.allAir[r * length + x] = row.voxels[x] > 0 && row.highHu[x] < airBelowHu;
             }
         }
     });
+    for (glm::ivec3 v(0); v.y < grid.size.y; ++v.y) {
+        for (v.x = 0; v.x < grid.size.x; ++v.x) {
+            if (!field.rim[grid.index(v)]) continue;
+            for (glm::ivec3 c = v / cells.block; c.z < cells.grid.size.z; ++c.z)
+                cells.side[cells.grid.index(c)] = 1;
+        }
+    }
     return cells;
 }
 
@@ -94,24 +106,23 @@ std::vector<std::uint8_t> flood(const Cells& cells, std::vector<std::size_t> fro
     return reached;
 }
 
-/// Air at the scan's sides, x and y.
+/// Air at the field's sides, x and y.
 struct SideAir {
     std::vector<std::size_t> room;    ///< cells of the room's air
     std::vector<std::uint8_t> byCut;  ///< of each cell: at most one off gas that a side cuts
 };
 
 // The room's air goes by the patient: along a side it reaches a corner of the slices, or it lies
-// there from the first slice to the last. Gas of a colon that a narrow field cuts does neither.
-SideAir sideAir(const Cells& cells) {
+// there from the first slice to the last; around a circle it reaches one of these. Gas of a colon
+// that a narrow field cuts does not.
+SideAir sideAir(const Cells& cells, bool roundField) {
     const glm::ivec3 last = cells.grid.size - 1;
-    const auto isSide = [&](glm::ivec3 c) {
-        return c.x == 0 || c.y == 0 || c.x == last.x || c.y == last.y;
-    };
+    const auto isSideAir = [&](std::size_t n) { return cells.side[n] && cells.allAir[n]; };
     SideAir air;
     air.byCut.assign(cells.count(), 0);
     std::vector<std::uint8_t> seen(cells.count(), 0);
     for (std::size_t n = 0; n < cells.count(); ++n) {
-        if (seen[n] || !cells.allAir[n] || !isSide(cells.grid.voxelAt(n))) continue;
+        if (seen[n] || !isSideAir(n)) continue;
         std::vector<std::size_t> body{n};
         seen[n] = 1;
         bool corner = false, first = false, end = false;
@@ -120,12 +131,12 @@ SideAir sideAir(const Cells& cells) {
             corner |= (c.x == 0 || c.x == last.x) && (c.y == 0 || c.y == last.y);
             first |= c.z == 0, end |= c.z == last.z;
             visitFaces(cells.grid, body[m], [&](std::size_t next, int) {
-                if (seen[next] || !cells.allAir[next] || !isSide(cells.grid.voxelAt(next))) return;
+                if (seen[next] || !isSideAir(next)) return;
                 seen[next] = 1;
                 body.push_back(next);
             });
         }
-        if (corner || (first && end)) {
+        if (corner || (first && end) || (roundField && (first || end))) {
             air.room.insert(air.room.end(), body.begin(), body.end());
             continue;
         }
@@ -175,9 +186,9 @@ std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::u
     return grown;
 }
 
-/// Gas from the outside cells and the scan's sides on, as far as the outside reaches into narrower
+/// Gas from the outside cells and the field's sides on, as far as the outside reaches into narrower
 /// places; not from where a side cuts gas.
-void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
+void reachIn(Volume<std::uint8_t>& content, const FieldOfView& field, const Cells& cells,
              const std::vector<std::uint8_t>& outside, const std::vector<std::uint8_t>& byCut,
              int threads) {
     const Grid& grid = content.grid();
@@ -198,12 +209,12 @@ void reachIn(Volume<std::uint8_t>& content, const Cells& cells,
                     cellsAt(std::min(j + 1, grid.size.y - 1), int(k)),
                     cellsAt(j, std::max(int(k) - 1, 0)),
                     cellsAt(j, std::min(int(k) + 1, grid.size.z - 1))};
-                const bool atSide = j == 0 || j == grid.size.y - 1;
+                const std::uint8_t* const rim =
+                    &field.rim[std::size_t(j) * std::size_t(grid.size.x)];
                 for (int i = 0; i < grid.size.x; ++i) {
                     if (Content(voxels[row + std::size_t(i)]) != Content::gas) continue;
                     const int x = i / cells.block.x;
-                    const bool side = atSide || i == 0 || i == grid.size.x - 1;
-                    const bool near = (side && !cut[x]) ||
+                    const bool near = (rim[i] && !cut[x]) ||
                                       own[std::max(i - 1, 0) / cells.block.x] ||
                                       own[std::min(i + 1, grid.size.x - 1) / cells.block.x] ||
                                       beside[0][x] || beside[1][x] || beside[2][x] || beside[3][x];
@@ -339,8 +350,9 @@ void measureGas(const Volume<std::int16_t>& hu, BowelContents& contents, int thr
 BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition position,
                            const TissueModel& tissue, int threads) {
     const Grid& grid = hu.grid();
-    const Cells cells = makeCells(hu, tissue.airBelowHu, threads);
-    const SideAir atSides = sideAir(cells);
+    const FieldOfView field = fieldOfView(hu, threads);
+    const Cells cells = makeCells(hu, field, tissue.airBelowHu, threads);
+    const SideAir atSides = sideAir(cells, field.round);
     const std::vector<std::uint8_t> outside =
         flood(cells, atSides.room, [&](std::size_t n) { return cells.allAir[n] != 0; });
     const std::vector<std::uint8_t> lung =
@@ -354,9 +366,10 @@ BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition posit
             const std::size_t cell = cells.grid.index(v / cells.block);
             content = outside[cell] ? Content::outside : lung[cell] ? Content::lung : Content::gas;
         }
+        if (field.beyond[grid.index(v.x, v.y, 0)]) content = Content::beyond;
         voxels[n] = std::uint8_t(content);
     });
-    reachIn(contents.content, cells, outside, atSides.byCut, threads);
+    reachIn(contents.content, field, cells, outside, atSides.byCut, threads);
     measureGas(hu, contents, threads);
     findGravity(hu, position, tissue, threads, contents);
     markInterfaces(contents);

@@ -20,6 +20,7 @@ enum class Content : std::uint8_t {
     outside,    ///< the room's air
     lung,
     untagged,  ///< fluid that took no tagging, under a level (untagged_pools.h)
+    beyond,    ///< padding around a round field of view (field_of_view.h)
 };
 
 struct BowelContents {
@@ -35,8 +36,9 @@ struct BowelContents {
 /// Sorts the voxels of a scan, taken in this position, by HU and place. The room's air is what can
 /// be reached from the scan's sides through places where a cube of 4 mm fits, and 6 mm more: so a
 /// tube in the rectum, open to the room, does not make the colon a part of it. Of a side it is what
-/// lies in a corner of the slices, or from the first to the last: other air there is gas that a
-/// narrow field cuts. Lung is air of a mean HU more than 60 above gas in cubes of 4 mm, where such
+/// lies in a corner of the slices, or from the first to the last; of a round field's border, which
+/// has no corners, what reaches the first slice or the last. Other air there is gas that a narrow
+/// field cuts. Lung is air of a mean HU more than 60 above gas in cubes of 4 mm, where such
 /// cubes lie three deep. Levels as of findLevels, for the direction of gravity that shows most of
 /// them; a warning says where that is not the told one.
 BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition position,

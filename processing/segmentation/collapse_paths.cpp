@@ -69,7 +69,7 @@ struct PiecesOfScan {
         // Specks of gas or stool lie in collapsed bowel too.
         if (node >= 0)
             ++cell.content, cell.node = std::max(cell.node, node);
-        else if (what == Content::outside || what == Content::lung ||
+        else if (what == Content::outside || what == Content::lung || what == Content::beyond ||
                  (piece >= 0 && cut.pieces[std::size_t(piece)].volumeMl > 1.0))
             ++cell.barred;
         else

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace haustra::segmentation {
 namespace {
@@ -64,8 +65,11 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         doubt(0.7, "the cecum was not found");
     else if (record.endsAt && (record.endsAt->x > farLeft || record.endsAt->z > high))
         doubt(0.4, "the course may end before the cecum");
-    for (const CutEnd& end : record.cutEnds)
-        doubt(0.5, printed("the %s goes on beyond the edge of the scan", toString(end.part)));
+    std::set<ColonPart> cut;  // a part that is cut at two places is still one part
+    for (const CutEnd& end : record.cutEnds) {
+        if (cut.insert(end.part).second)
+            doubt(0.5, printed("the %s goes on beyond the edge of the scan", toString(end.part)));
+    }
     if (isAnothersMask(record))
         doubt(record.maskInSoftTissue,
               printed("%.0f %% of the mask lie in soft tissue", 100.0 * record.maskInSoftTissue));

@@ -173,7 +173,7 @@ void restrictToMask(BowelContents& contents, const Volume<std::int16_t>& hu,
             voxels[n] = std::uint8_t(hu[n] < tissue.airBelowHu      ? Content::gas
                                      : hu[n] > tissue.taggedAboveHu ? Content::tagged
                                                                     : Content::interface);
-        } else if (Content(voxels[n]) != Content::tissue) {
+        } else if (Content(voxels[n]) != Content::tissue && Content(voxels[n]) != Content::beyond) {
             bool atMask = false;
             visitFaces(grid, n, [&](std::size_t m, int) { atMask = atMask || mask[m] != 0; });
             voxels[n] = std::uint8_t(atMask ? Content::tissue : Content::outside);

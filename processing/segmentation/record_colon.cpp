@@ -214,60 +214,75 @@ private:
             [](const LeftOutBody& a, const LeftOutBody& b) { return a.volumeMl > b.volumeMl; });
     }
 
-    // A face of the scan that the lumen reaches cuts it there, but for what is no wider than a
-    // rectal catheter, which leaves the scan with the patient.
+    // The lumen is cut where it reaches a face of the scan or the padding around its field, but for
+    // what is no wider than a rectal catheter, which leaves the scan with the patient.
     void findCutEnds() {
         constexpr double leastMm2 = 100.0;
         if (!source_.scanGrid) return;
-        const Grid &grid = labels_.labels.grid(), &scan = *source_.scanGrid;
-        for (int axis = 0; axis < 3; ++axis) {
-            for (const int step : {-1, 1}) {
-                const int at = step < 0 ? 0 : grid.size[axis] - 1;
-                glm::ivec3 beyond(0);
-                beyond[axis] = at + step;
-                const glm::dvec3 outside = grid.patientFromVoxelPoint(glm::dvec3(beyond));
-                if (scan.contains(glm::ivec3(glm::round(scan.voxelFromPatientPoint(outside)))))
-                    continue;
-                for (CutEnd& end : openingsOf(axis, at)) {
-                    if (end.areaMm2 < leastMm2) continue;
-                    end.part = partAt(end.placeMm);
-                    made_.cutEnds.push_back(end);
-                }
-            }
+        for (CutEnd& end : openings()) {
+            if (end.areaMm2 < leastMm2) continue;
+            end.part = partAt(end.placeMm);
+            made_.cutEnds.push_back(end);
         }
         std::stable_sort(made_.cutEnds.begin(), made_.cutEnds.end(),
                          [](const CutEnd& a, const CutEnd& b) { return a.areaMm2 > b.areaMm2; });
     }
 
-    // The connected areas of lumen in the plane of voxels whose coordinate along `axis` is `at`.
-    std::vector<CutEnd> openingsOf(int axis, int at) const {
+    // The open faces of a voxel of lumen: those towards what is not in the scan, as a vector of
+    // their area along each of the grid's axes.
+    glm::dvec3 openFacesMm2(std::size_t n) const {
+        const Grid &grid = labels_.labels.grid(), &scan = *source_.scanGrid;
+        const glm::dvec3 faceMm2 = grid.voxelVolumeMm3() / grid.spacingMm();
+        const glm::ivec3 v = grid.voxelAt(n);
+        glm::dvec3 open(0.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const int step : {-1, 1}) {
+                glm::ivec3 next = v;
+                next[axis] += step;
+                const bool isOpen =
+                    grid.contains(next)
+                        ? Content(contents_.content.at(next)) == Content::beyond
+                        : !scan.contains(glm::ivec3(glm::round(scan.voxelFromPatientPoint(
+                              grid.patientFromVoxelPoint(glm::dvec3(next))))));
+                if (isOpen) open[axis] += step * faceMm2[axis];
+            }
+        }
+        return open;
+    }
+
+    // Where the lumen is open, in connected pieces. A piece's area is its flat one, along its mean
+    // direction, as voxels step along a circle.
+    std::vector<CutEnd> openings() const {
         const Volume<std::uint8_t>& labels = labels_.labels;
         const Grid& grid = labels.grid();
-        const glm::dvec3 spacing = grid.spacingMm();
-        const double voxelMm2 = spacing.x * spacing.y * spacing.z / spacing[axis];
-        const auto isLumen = [&](std::size_t n) {
-            return LumenLabel(labels[n]) != LumenLabel::outside &&
-                   LumenLabel(labels[n]) != LumenLabel::bridge;
-        };
-        glm::ivec3 lo(0), hi = grid.size - 1;
-        lo[axis] = hi[axis] = at;
+        std::map<std::size_t, glm::dvec3> open;
+        for (std::size_t n = 0; n < labels.voxels().size(); ++n) {
+            if (LumenLabel(labels[n]) == LumenLabel::outside ||
+                LumenLabel(labels[n]) == LumenLabel::bridge)
+                continue;
+            if (const glm::dvec3 mm2 = openFacesMm2(n); mm2 != glm::dvec3(0.0)) open[n] = mm2;
+        }
         std::vector<CutEnd> openings;
-        std::set<std::size_t> seen;
-        visitBox(lo, hi, [&](glm::ivec3 first) {
-            if (!isLumen(grid.index(first)) || !seen.insert(grid.index(first)).second) return;
-            std::vector<std::size_t> body{grid.index(first)};
-            glm::dvec3 sum(0.0);
-            for (std::size_t n = 0; n < body.size(); ++n) {
-                sum += glm::dvec3(grid.voxelAt(body[n]));
-                visitFaces(grid, body[n], [&](std::size_t next, int) {
-                    if (grid.voxelAt(next)[axis] == at && isLumen(next) && seen.insert(next).second)
-                        body.push_back(next);
-                });
+        while (!open.empty()) {
+            std::vector<std::size_t> body{open.begin()->first};
+            glm::dvec3 sum(0.0), areaMm2 = open.begin()->second;
+            open.erase(open.begin());
+            for (std::size_t m = 0; m < body.size(); ++m) {
+                const glm::ivec3 v = grid.voxelAt(body[m]);
+                sum += glm::dvec3(v);
+                visitBox(glm::max(v - 1, glm::ivec3(0)), glm::min(v + 1, grid.size - 1),
+                         [&](glm::ivec3 beside) {
+                             const auto found = open.find(grid.index(beside));
+                             if (found == open.end()) return;
+                             body.push_back(found->first);
+                             areaMm2 += found->second;
+                             open.erase(found);
+                         });
             }
             openings.push_back({ColonPart::rectum,
                                 grid.patientFromVoxelPoint(sum / double(body.size())),
-                                double(body.size()) * voxelMm2});
-        });
+                                glm::length(areaMm2)});
+        }
         return openings;
     }
 

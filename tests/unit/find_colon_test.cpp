@@ -23,6 +23,7 @@ using segmentation::FoundColon;
 namespace {
 
 constexpr double levelMm = 150.0;  // the fluid's surface
+constexpr glm::dvec2 fieldsMiddleMm{161.25, 123.75};
 
 struct Capsule {
     glm::dvec3 a, b;
@@ -194,6 +195,49 @@ TEST(FindColon, IsFoundWhereTheFieldsSideCutsIt) {
         EXPECT_TRUE(inColon(at));
         EXPECT_TRUE(tells(*found, "the scan ends within"));
     }
+}
+
+// The scan as one of a round field, with padding around it.
+CtScan withinCircle(const Drawing& drawing, double radiusMm, std::int16_t padding) {
+    CtScan scan = drawing.scan();
+    scan.hu = drawing.hu.clone();
+    drawing.eachVoxel([&](std::size_t n, glm::dvec3 p) {
+        if (glm::length(glm::dvec2(p) - fieldsMiddleMm) > radiusMm) scan.hu.writable()[n] = padding;
+    });
+    return scan;
+}
+
+// A circle that cuts the descending and the ascending colon lengthwise: padding is no room's air,
+// whatever its value.
+TEST(FindColon, IsFoundWhereTheFieldsCircleCutsIt) {
+    constexpr double radiusMm = 110.0;
+    const Drawing drawing = Drawing::supine();
+    for (const std::int16_t padding : {-1024, 0}) {
+        const auto found = find(withinCircle(drawing, radiusMm, padding));
+        ASSERT_TRUE(found) << describe(found.error());
+        EXPECT_GT(diceWithDrawing(*found,
+                                  [](glm::dvec3 p) {
+                                      return inColon(p) &&
+                                             glm::length(glm::dvec2(p) - fieldsMiddleMm) < radiusMm;
+                                  }),
+                  0.96);
+        bool left = false, right = false;
+        for (const CutEnd& end : found->record.cutEnds) {
+            left = left || end.placeMm.x > fieldsMiddleMm.x;
+            right = right || end.placeMm.x < fieldsMiddleMm.x;
+            EXPECT_NEAR(glm::length(glm::dvec2(end.placeMm) - fieldsMiddleMm), radiusMm, 6.0);
+        }
+        EXPECT_TRUE(left && right);
+        EXPECT_TRUE(tells(*found, "the scan ends within"));
+    }
+}
+
+// Before and behind the body this one leaves some of the room's air, and cuts off the flanks alone.
+TEST(FindColon, IsWholeWithinAWiderCircle) {
+    const auto found = find(withinCircle(Drawing::supine(), 136.0, -1024));
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_GT(diceWithDrawing(*found), 0.98);
+    EXPECT_TRUE(found->record.cutEnds.empty());
 }
 
 TEST(FindColon, TellsWhereTheScanEndsWithinTheColon) {
