@@ -1,11 +1,11 @@
 #include "cad/detect.h"
 
 #include "cad/biopsy_transfer.h"
+#include "cad/examined_colon.h"
 #include "cad/masses.h"
 #include "cad/places.h"
 #include "cad/residue_film.h"
 #include "cad/standing_height.h"
-#include "cad/wall_edges.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
@@ -352,8 +352,9 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     warnOfUnexaminedWall(evidence, findings);
     if (statistics.noiseHu > noisyHu)
         findings.warnings.push_back(
-            printed("the scan is noisier than what detection has learnt from: %.0f HU or more "
-                    "after smoothing to 1 mm",
+            printed("the tissue behind the wall is less even than where detection has learnt, %.0f "
+                    "HU or more after smoothing to 1 mm: by noise, by contrast in its vessels, or "
+                    "by residue of weak tagging",
                     statistics.noiseHu));
     std::vector<const Candidate*> told;
     for (const Candidate& candidate : candidates)
@@ -386,14 +387,16 @@ Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
     if (!options.method.automaticTransfer) gathering.transferFunction = fixedBiopsyTransfer();
     gathering.threads = options.threads;
     gathering.progress = part(0.0, 0.7);
-    const WallEvidence evidence = gatherEvidence(colon, gathering);
+    const ExaminedColon examined(colon, gathering);
+    const WallEvidence& evidence = examined.evidence();
     std::vector<Candidate> residue;
-    auto candidates = findCandidates(colon, evidence, &model.texture, options, &model, &residue);
+    auto candidates =
+        findCandidates(examined.colon(), evidence, &model.texture, options, &model, &residue);
     weigh(candidates, model, options.method);
     if (options.progress) options.progress(1.0);
-    Findings findings = findingsOf(colon, evidence, candidates, model, residue, options.threads);
-    if (const auto edges = wallEdges(colon, evidence))
-        if (auto warning = warningOfEdges(*edges)) findings.warnings.push_back(*std::move(warning));
+    Findings findings =
+        findingsOf(examined.colon(), evidence, candidates, model, residue, options.threads);
+    if (examined.edgeWarning()) findings.warnings.push_back(*examined.edgeWarning());
     return findings;
 }
 

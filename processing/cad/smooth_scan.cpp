@@ -1,5 +1,6 @@
 #include "cad/smooth_scan.h"
 
+#include "cad/gaussian_kernel.h"
 #include "core/crop.h"
 #include "core/parallel.h"
 
@@ -10,35 +11,6 @@
 
 namespace haustra::cad {
 namespace {
-
-// Symmetric, of an odd length.
-std::vector<float> gaussian(double sigmaVoxels) {
-    const int reach = int(std::ceil(3.0 * sigmaVoxels));
-    std::vector<float> kernel;
-    double sum = 0.0;
-    for (int n = -reach; n <= reach; ++n)
-        sum += kernel.emplace_back(
-            float(sigmaVoxels > 0.0 ? std::exp(-0.5 * n * n / (sigmaVoxels * sigmaVoxels)) : 1.0));
-    for (float& weight : kernel)
-        weight = float(weight / sum);
-    return kernel;
-}
-
-// out = Σ kernel[reach + n] · line(n), of lines of `count` numbers; line(n) and line(−n) are added
-// first, as they have one weight.
-template <class Line>
-void weightedSum(const std::vector<float>& kernel, const Line& line, int count, float* out) {
-    const int reach = int(kernel.size()) / 2;
-    const float* middle = line(0);
-    for (int i = 0; i < count; ++i)
-        out[i] = kernel[std::size_t(reach)] * middle[i];
-    for (int n = 1; n <= reach; ++n) {
-        const float *before = line(-n), *after = line(n);
-        const float weight = kernel[std::size_t(reach + n)];
-        for (int i = 0; i < count; ++i)
-            out[i] += weight * (before[i] + after[i]);
-    }
-}
 
 // Rows along i, then columns along j, slice by slice.
 void smoothSlices(const Volume<std::int16_t>& hu, const VoxelBox& box,
@@ -142,7 +114,8 @@ SmoothScan::SmoothScan(const Volume<std::int16_t>& hu, glm::dvec3 lowMm, glm::dv
     std::array<std::vector<float>, 3> kernels;
     for (int axis = 0; axis < 3; ++axis) {
         const double sigma = sigmaMm / grid.spacingMm()[axis];
-        kernels[std::size_t(axis)] = gaussian(std::sqrt(std::max(0.0, sigma * sigma - 1.0 / 3.0)));
+        kernels[std::size_t(axis)] =
+            gaussianKernel(std::sqrt(std::max(0.0, sigma * sigma - 1.0 / 3.0)));
     }
     origin_ = box.lo;
     smooth_ = Volume<float>(cropped(grid, box));

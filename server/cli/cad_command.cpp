@@ -3,6 +3,7 @@
 #include "cad/biopsy_transfer.h"
 #include "cad/candidate_table.h"
 #include "cad/evaluate.h"
+#include "cad/examined_colon.h"
 #include "cad/train.h"
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -256,13 +257,12 @@ Result<std::vector<cad::Candidate>> candidatesOf(const LoadedCase& loaded,
         }
     }
     const auto inputs = TRY(readInputs(loaded, arguments));
-    const cad::PreparedColon colon = inputs.colon();
-    const auto evidence = cad::gatherEvidence(colon, evidenceOptions(arguments));
+    const cad::ExaminedColon examined(inputs.colon(), evidenceOptions(arguments));
     cad::DetectOptions options;
     options.threads = arguments.threads;
     const bool own = std::ranges::none_of(
         arguments.without, [](const std::string& part) { return part.starts_with(featurePart); });
-    auto candidates = cad::findCandidates(colon, evidence, &texture, options,
+    auto candidates = cad::findCandidates(examined.colon(), examined.evidence(), &texture, options,
                                           file.empty() && own ? model : nullptr);
     if (!file.empty()) TRY(writeTextFile(file, cad::candidateTable(candidates)));
     return candidates;

@@ -4,6 +4,7 @@
 #include "cad/biopsy_transfer.h"
 #include "cad/candidate_table.h"
 #include "cad/detect.h"
+#include "cad/examined_colon.h"
 #include "cad/places.h"
 #include "cad/wall_edges.h"
 
@@ -296,12 +297,72 @@ TEST(Detect, EdgesUnlikeThoseThatItHasLearntFromAreTold) {
         }
         const auto edges = cad::wallEdges(ball.colon(), cad::gatherEvidence(ball.colon(), {}));
         EXPECT_TRUE(edges);
-        return edges ? cad::warningOfEdges(*edges).value_or("") : "none";
+        return edges ? cad::warningOfEdges(*edges, std::nullopt).value_or("") : "none";
     };
     EXPECT_EQ(warning(0.5, 0.0), "");
     EXPECT_EQ(warning(0.7, 0.0), "");
     EXPECT_NE(warning(0.5, 120.0).find("enhances edges"), std::string::npos);
     EXPECT_NE(warning(1.6, 0.0).find("more blurred"), std::string::npos);
+}
+
+/// v = u + a (u − G u) within the slices, by the definition.
+Volume<std::int16_t> sharpened(const Volume<std::int16_t>& u, double a) {
+    Volume<std::int16_t> v = u.clone();
+    const glm::ivec3 last = u.grid().size - 1;
+    for (std::size_t n = 0; n < u.grid().voxelCount(); ++n) {
+        const glm::ivec3 at = u.grid().voxelAt(n);
+        double sum = 0.0, weights = 0.0;
+        for (int j = -3; j <= 3; ++j) {
+            for (int i = -3; i <= 3; ++i) {
+                const double weight = std::exp(-0.5 * (i * i + j * j));
+                const glm::ivec3 beside = glm::clamp(at + glm::ivec3(i, j, 0), glm::ivec3(0), last);
+                sum += weight * u.at(beside), weights += weight;
+            }
+        }
+        v.writable()[n] = std::int16_t(std::lround(u[n] + a * (u[n] - sum / weights)));
+    }
+    return v;
+}
+
+// A wall of 3 mm with fat behind it, whose edges are as usual, and then enhanced.
+TEST(Detect, WhatAKernelAddsToEdgesIsTakenOffFirst) {
+    BallColon ball;
+    const Grid& grid = ball.hu.grid();
+    const auto wallOf = [&](std::size_t n) {
+        return tests::wallMm(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))), bumps);
+    };
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const auto step = [&](double mm) { return 1.0 / (1.0 + std::exp((mm - wallOf(n)) / 0.5)); };
+        ball.hu.writable()[n] =
+            std::int16_t(std::lround(-990.0 + 1030.0 * step(0.0) - 140.0 * step(3.0)));
+    }
+    const cad::ExaminedColon asItIs(ball.colon(), {});
+    EXPECT_FALSE(asItIs.edgeWarning());
+    EXPECT_EQ(&asItIs.colon().cleansed, &ball.hu) << "nothing is changed";
+
+    const Volume<std::int16_t> soft = ball.hu.clone();
+    for (const double a : {2.0, 3.0}) {
+        ball.hu = sharpened(soft, a);
+        Volume<std::int16_t> ct = ball.hu.clone();
+        for (std::size_t n = 0; n < grid.voxelCount(); n += 7)
+            ct.writable()[n] = std::int16_t(ct[n] + 500);  // what cleansing took out
+        const cad::PreparedColon colon{
+            ct, ball.hu, ball.lumen, ball.surface, ball.flat, ball.centerline, ball.tissue, {}, {}};
+        const cad::ExaminedColon examined(colon, {});
+        ASSERT_TRUE(examined.edgeWarning());
+        EXPECT_NE(examined.edgeWarning()->find("was taken off"), std::string::npos);
+        const auto edges = cad::wallEdges(examined.colon(), examined.evidence());
+        ASSERT_TRUE(edges);
+        EXPECT_NEAR(edges->peak, cad::usualPeak, 0.005) << "as it is looked at";
+        double off = 0.0, before = 0.0;
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            const int made = examined.colon().cleansed[n];
+            ASSERT_EQ(examined.colon().ct[n] - made, ct[n] - ball.hu[n]);
+            if (std::abs(wallOf(n)) > 3.0) continue;
+            off += std::pow(made - soft[n], 2.0), before += std::pow(ball.hu[n] - soft[n], 2.0);
+        }
+        EXPECT_LT(std::sqrt(off / before), 0.2) << a;
+    }
 }
 
 // Across slices, where a shallow pool is as deep as a few pixels, as along them.
