@@ -138,7 +138,8 @@ Json jsonOf(const LeftOutBody& body) {
                                         : "tagged"},
             {"nearest", toString(body.nearest)},
             {"distance_mm", rounded(body.distanceMm)},
-            {"opens", body.opens}};
+            {"opens", body.opens},
+            {"like_colon", body.likeColon}};
 }
 
 Json jsonOf(const RebuiltWallRecord& wall) {
@@ -214,7 +215,8 @@ std::string qualityJson(const ColonRecord& record) {
                 {"untagged_fluid", listOf(record.untaggedPools)},
                 {"cut_ends", listOf(record.cutEnds)},
                 {"mask_in_soft_tissue", rounded(record.maskInSoftTissue)},
-                {"noise_sd_hu", rounded(record.noiseSdHu)}}
+                {"noise_sd_hu", rounded(record.noiseSdHu)},
+                {"tagging_hu", record.taggingHu ? Json(rounded(*record.taggingHu)) : Json()}}
                .dump(2) +
            "\n";
 }

@@ -63,6 +63,7 @@ struct LeftOutBody {
     double distanceMm = 0.0;  ///< from its centre to the nearest piece's centre, less both radii
     bool opens = false;       ///< a door between it and the colon had to be closed
     bool untagged = false;    ///< mostly fluid without tagging
+    bool likeColon = false;   ///< as wide as colon, and likely to be by its place and folds
 };
 
 /// A wall too thin for the scan to show whole, set up again.
@@ -118,8 +119,11 @@ struct ColonRecord {
     std::vector<CutEnd> cutEnds;              ///< the largest first
     double maskInSoftTissue = 0.0;            ///< share of a given mask's inside; 0 of none
     double noiseSdHu = 0.0;                   ///< in gas
-    std::vector<std::string> warnings;        ///< where a reader must look
-    double lengthMm() const;                  ///< of the pieces and of what is crossed between them
+    /// Of what stands under the colon's gas and is denser than water, however little tagging it
+    /// took: the median HU, by area of the surface. None where nothing such stands.
+    std::optional<double> taggingHu;
+    std::vector<std::string> warnings;  ///< where a reader must look
+    double lengthMm() const;            ///< of the pieces and of what is crossed between them
 };
 
 /// Pieces of the colon that the path passes by: it went another way there, through a wall that was

@@ -1,6 +1,7 @@
 #include "cad/detect.h"
 #include "core/printed_text.h"
 #include "core/scan_coarseness.h"
+#include "core/slice_steps.h"
 #include "core/text_file.h"
 #include "pipeline/colon_inputs.h"
 #include "pipeline/product_attributes.h"
@@ -63,6 +64,8 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surf
             findings.warnings.push_back(
                 "the colon was not flattened: the wall's texture was measured along other "
                 "directions than detection has learnt from");
+        if (auto uneven = unevenStepsOf(inputs.ct, options.threads))
+            findings.warnings.insert(findings.warnings.begin(), *std::move(uneven));
         if (auto coarse = coarsenessOf(inputs.ct.grid(), series ? &*series : nullptr))
             findings.warnings.insert(findings.warnings.begin(), *std::move(coarse));
         store::Attributes attributes{{"model", model.name},

@@ -1,6 +1,7 @@
 #include "segmentation/find_colon.h"
 
 #include "core/printed_text.h"
+#include "core/slice_steps.h"
 #include "core/voxel_sweep.h"
 #include "segmentation/body_frame.h"
 #include "segmentation/bowel_contents.h"
@@ -8,6 +9,7 @@
 #include "segmentation/colon_labels.h"
 #include "segmentation/edge_overshoot.h"
 #include "segmentation/haustral_folds.h"
+#include "segmentation/metal.h"
 #include "segmentation/record_colon.h"
 #include "segmentation/thin_walls.h"
 #include "segmentation/tube_pieces.h"
@@ -244,6 +246,26 @@ struct Course {
     std::optional<Error> missing;  ///< of a person's points that has no piece
 };
 
+// What may be why nothing was found.
+std::string alsoTold(const BowelContents& contents) {
+    std::string told;
+    for (const std::string& warning : contents.warnings)
+        told += "; " + warning;
+    return told;
+}
+
+/// The contents of a scan, with what a reader must know of it: slices that do not follow each
+/// other, and metal. `hu` is the scan, or a binned one.
+BowelContents contentsOf(const CtScan& scan, const Volume<std::int16_t>& hu,
+                         const TissueModel& tissue, int threads) {
+    BowelContents contents = findContents(hu, scan.position, tissue, threads);
+    if (auto uneven = unevenStepsOf(scan.hu, threads))
+        contents.warnings.push_back(*std::move(uneven));
+    if (auto metal = metalIn(hu, contents.content, threads))
+        contents.warnings.push_back(*std::move(metal));
+    return contents;
+}
+
 Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>& thinWalls,
                           const TissueModel& tissue, const ColonOptions& options) {
     const double softHu = tissue.meanHu[int(Tissue::soft)];
@@ -257,16 +279,17 @@ Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>&
     course.chains = findChains(course.graph.graph, {.chains = 12});
     const bool asked = !options.edits.seedsMm.empty() || !options.edits.joins.empty();
     if (course.chains.empty())
-        return fail(ErrorKind::noResult, "no gas-filled bowel was found in the scan",
+        return fail(ErrorKind::noResult,
+                    "no gas-filled bowel was found in the scan" + alsoTold(among.contents),
                     "segmentation");
     if (const double mm = distendedMm(course.graph, course.chains.front());
         mm < leastDistendedMm && !asked) {
-        return fail(
-            ErrorKind::noResult,
-            printed("this is no CT colonography: no more than %.0f mm of distended colon were "
-                    "found; name a point in it (--seed) if it is one",
-                    mm),
-            "segmentation");
+        return fail(ErrorKind::noResult,
+                    printed("this is no CT colonography: no more than %.0f mm of distended colon "
+                            "were found; name a point in it (--seed) if it is one",
+                            mm) +
+                        alsoTold(among.contents),
+                    "segmentation");
     }
     course.labels =
         layLabels(among.hu, tissue, among.contents, course.cut, course.graph, course.chains.front(),
@@ -345,7 +368,7 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     const glm::ivec3 by = binningOf(scan.hu.grid());
     Surroundings among;
     among.hu = binned(scan.hu, by, options.threads);
-    among.contents = findContents(among.hu, scan.position, tissue, options.threads);
+    among.contents = contentsOf(scan, among.hu, tissue, options.threads);
     takeOffOvershoot(among.hu, tissue, among.contents, options.threads);
     among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
     const VoxelBox box = bowelBox(among.contents.content, placesOf(options.edits), options.threads);
@@ -371,7 +394,7 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
     among.given = true;
     if (scan) {
         among.hu = scan->hu.share();
-        among.contents = findContents(among.hu, scan->position, tissue, options.threads);
+        among.contents = contentsOf(*scan, among.hu, tissue, options.threads);
         among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
         among.source = {grid, softShare(scan->hu, mask, tissue)};
     } else {

@@ -115,6 +115,7 @@ public:
             made_.untaggedPools.push_back(
                 {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
         findCutEnds();
+        measureTagging();
         made_.endsAt = graph_.frame.place(graph_.lowestMm[std::size_t(chain_.nodes.back())]);
         made_.doubts = doubtsOf(made_);
         made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
@@ -199,8 +200,9 @@ private:
             const ChainNode& node = graph_.graph.nodes[n];
             if (taken.count(int(n)) || node.volumeMl < leastMl) continue;
             if (isTakenIn(pieceOf(int(n)))) continue;
-            const LeftOutBody body = leftOut(pieceOf(int(n)), opened.count(int(n)) > 0);
-            if (body.opens || body.distanceMm < nearMm || looksLikeColon(node))
+            LeftOutBody body = leftOut(pieceOf(int(n)), opened.count(int(n)) > 0);
+            body.likeColon = looksLikeColon(node);
+            if (body.opens || body.distanceMm < nearMm || body.likeColon)
                 made_.leftOut.push_back(body);
         }
         // Whatever it is, it may be the way on.
@@ -286,6 +288,35 @@ private:
         return openings;
     }
 
+    // Water has less than 30 HU, and soft tissue's own HU may be fluid of any kind.
+    static constexpr double denserThanWaterHu = 60.0;
+
+    void measureTagging() {
+        std::vector<std::pair<double, double>> huAndMm2;
+        double sumMm2 = 0.0;
+        const auto count = [&](double hu, double mm2) {
+            if (hu < denserThanWaterHu || mm2 <= 0.0) return;
+            huAndMm2.emplace_back(hu, mm2), sumMm2 += mm2;
+        };
+        for (const Level& level : contents_.levels) {
+            const auto inColon =
+                std::ranges::count_if(level.columns, [&](const LevelColumn& column) {
+                    return LumenLabel(labels_.labels.at(column.above)) != LumenLabel::outside;
+                });
+            count(level.fluidHu, level.areaMm2 * double(inColon) / double(level.columns.size()));
+        }
+        for (const UntaggedPool& pool : made_.untaggedPools)
+            count(pool.fluidHu, pool.areaMm2);
+        std::ranges::sort(huAndMm2);
+        double belowMm2 = 0.0;
+        for (const auto& [hu, mm2] : huAndMm2) {
+            belowMm2 += mm2;
+            if (belowMm2 < 0.5 * sumMm2) continue;
+            made_.taggingHu = hu;
+            break;
+        }
+    }
+
     // Bodies of one kind near one part in one line, the largest first.
     void sayLeftOut() {
         constexpr double tellMl = 5.0;
@@ -300,7 +331,7 @@ private:
                 const LeftOutBody& body = made_.leftOut[m];
                 if (said[m] || body.gas != first.gas || body.untagged != first.untagged ||
                     body.nearest != first.nearest || body.opens != first.opens ||
-                    (!body.opens && body.volumeMl < tellMl))
+                    body.likeColon != first.likeColon || (!body.opens && body.volumeMl < tellMl))
                     continue;
                 said[m] = true;
                 sumMl += body.volumeMl;
@@ -315,7 +346,10 @@ private:
                                          : "tagged material",
                         toString(first.nearest),
                         first.opens ? " lie open to the colon and were taken for small bowel"
-                                    : " were taken for other than colon") +
+                        : first.likeColon
+                            ? ", as wide as colon and where it may lie, were taken for "
+                              "other than colon"
+                            : " were taken for other than colon") +
                 places + (bodies > mostPlaces ? " and elsewhere" : ""));
         }
     }
@@ -335,6 +369,8 @@ private:
 
     void warn() {
         constexpr double sure = 0.95, doubtful = 0.8;
+        // 300 to 900 HU count as best (Bannas et al., Clin Radiol 2014; 69: 1171).
+        constexpr double weakTaggingHu = 200.0;
         const auto say = [&](std::string line) { made_.warnings.push_back(std::move(line)); };
         if (isAnothersMask(made_))
             say(
@@ -360,7 +396,8 @@ private:
                 say(printed("the way on from the %s is not sure (%.0f %%), at %s", part,
                             100.0 * junction.confidence, placeText(junction.placeMm).c_str()));
         }
-        // Who lay otherwise than the series says, and how sharp the kernel is.
+        // Who lay otherwise than the series says, how sharp the kernel is, slices that do not
+        // follow each other, and metal.
         for (const std::string& warning : contents_.warnings)
             say(warning);
         sayLeftOut();
@@ -395,9 +432,16 @@ private:
                 gas.volumeMl, toString(partAt(gas.placeMm)), placeText(gas.placeMm).c_str()));
         for (const UntaggedPool& pool : made_.untaggedPools)
             say(printed(
-                "fluid without tagging stands under the gas in the %s, its surface %.0f mm2; what "
-                "lies in it and beneath is not seen, at %s",
-                toString(pool.part), pool.areaMm2, placeText(pool.placeMm).c_str()));
+                "fluid %s (%.0f HU) stands under the gas in the %s, its surface %.0f mm2; what "
+                "lies "
+                "in it and beneath is not seen, at %s",
+                pool.fluidHu < denserThanWaterHu ? "without tagging" : "of too little tagging",
+                pool.fluidHu, toString(pool.part), pool.areaMm2, placeText(pool.placeMm).c_str()));
+        if (made_.taggingHu && *made_.taggingHu < weakTaggingHu)
+            say(
+                printed("the tagging is weak: what stands under the gas has %.0f HU in the median, "
+                        "where 300 to 900 are best; residue may hide polyps, and be taken for them",
+                        *made_.taggingHu));
         if (made_.chainConfidence < doubtful && !made_.runnersUp.empty()) {
             const RunnerUp& up = made_.runnersUp.front();
             say(printed(
@@ -410,10 +454,10 @@ private:
             say(printed("the course is right with no more than %.0f %%; gravest: %s",
                         100.0 * made_.confidence, made_.doubts.front().about.c_str()));
         }
-        // Places of neighbouring parts overlap: only what lies farther off is told.
-        if (made_.pieces.front().part > ColonPart::sigmoid)
+        if (made_.pieces.front().part != ColonPart::rectum)
             say(printed("the rectum was not found: the colon begins in the %s",
                         toString(made_.pieces.front().part)));
+        // The cecum's places and the ascending colon's overlap: only what ends farther off is told.
         if (made_.pieces.back().part < ColonPart::ascending)
             say(printed("the cecum was not found: the colon ends in the %s",
                         toString(made_.pieces.back().part)));

@@ -47,6 +47,13 @@ TEST(ColonRecord, ItsJsonSaysAllOfIt) {
     EXPECT_EQ(json.at("segments").size(), 6u);
     EXPECT_EQ(json.at("left_out_gas_ml"), 28.0);
     EXPECT_EQ(json.at("warnings").size(), 1u);
+    EXPECT_TRUE(json.at("tagging_hu").is_null());
+    EXPECT_EQ(json.at("left_out")[0].at("like_colon"), false);
+    ColonRecord record = collapsedColon();
+    record.taggingHu = 312.5, record.leftOut[0].likeColon = true;
+    const auto other = nlohmann::json::parse(qualityJson(record));
+    EXPECT_EQ(other.at("tagging_hu"), 312.5);
+    EXPECT_EQ(other.at("left_out")[0].at("like_colon"), true);
 }
 
 TEST(ColonRecord, PiecesReadBack) {

@@ -64,6 +64,44 @@ TEST(CourseDoubts, ACourseThatEndsWhereNoCecumLiesIsDoubted) {
     EXPECT_LT(endingAt({0.6, 0.0, 0.2}), 0.7) << "on the left";
 }
 
+TEST(CourseDoubts, WhatIsLikeColonAndWasLeftOutIsDoubtedMoreThanOtherGas) {
+    const auto body = [](bool gas, double ml, bool likeColon) {
+        return LeftOutBody{glm::dvec3(0.0), ml,    gas,      ColonPart::sigmoid, 12.0,
+                           false,           false, likeColon};
+    };
+    const auto leavingOut = [](std::vector<LeftOutBody> bodies) {
+        ColonRecord record = wholeColon();
+        record.leftOut = std::move(bodies);
+        return confidence(record);
+    };
+    EXPECT_LT(leavingOut({body(true, 120, false)}), 1.0);
+    EXPECT_LT(leavingOut({body(true, 120, true)}), 0.5);
+    EXPECT_LT(leavingOut({body(false, 120, true)}), 0.8);
+    // Whatever else was left out, and in whatever order.
+    EXPECT_LT(leavingOut({body(false, 200, true), body(true, 120, true)}),
+              leavingOut({body(true, 120, true)}));
+    EXPECT_LT(leavingOut({body(true, 200, false), body(true, 120, true)}),
+              leavingOut({body(true, 120, true)}));
+}
+
+TEST(CourseDoubts, WithoutARectumItIsDoubtful) {
+    ColonRecord record = wholeColon();
+    record.pieces.erase(record.pieces.begin());
+    record.junctions.pop_back();
+    EXPECT_LT(confidence(record), 0.4);
+}
+
+TEST(CourseDoubts, APartThatIsCutTwiceIsDoubtedOnce) {
+    const auto cutAt = [](std::vector<ColonPart> parts) {
+        ColonRecord record = wholeColon();
+        for (const ColonPart part : parts)
+            record.cutEnds.push_back({part, glm::dvec3(0.0), 500.0});
+        return confidence(record);
+    };
+    EXPECT_EQ(cutAt({ColonPart::cecum, ColonPart::cecum}), cutAt({ColonPart::cecum}));
+    EXPECT_LT(cutAt({ColonPart::cecum, ColonPart::rectum}), cutAt({ColonPart::cecum}));
+}
+
 TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
     const auto lowers = [](const auto& change) {
         ColonRecord record = collapsed(30.0);

@@ -267,6 +267,40 @@ TEST(FindColon, TellsWhereTheScanEndsWithinTheColon) {
     EXPECT_TRUE(tells(*above, "the scan ends within"));
 }
 
+// A hip of metal, cut at the scanner's highest value.
+TEST(FindColon, TellsMetal) {
+    const auto without = find(Drawing::supine().scan());
+    ASSERT_TRUE(without) << describe(without.error());
+    EXPECT_FALSE(tells(*without, "brighter than bone"));
+    Drawing drawing = Drawing::supine();
+    drawing.paint(3071,
+                  [](glm::dvec3 p) { return glm::distance(p, glm::dvec3(60, 180, 40)) < 15.0; });
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_TRUE(tells(*found, "14.0 ml are brighter than bone"));  // of a ball's 14.1
+    EXPECT_TRUE(tells(*found, "at (60, 180, 40) mm"));
+}
+
+// 300 to 900 HU are the best; little of it may not be told from tissue at all.
+TEST(FindColon, TellsHowWeakTheTaggingIs) {
+    for (const double hu : {620.0, 150.0}) {
+        Drawing drawing;
+        drawing.paint(-988, inColon);
+        drawing.paint(hu, [](glm::dvec3 p) { return inColon(p) && p.y >= levelMm; });
+        const auto found = find(drawing.scan());
+        ASSERT_TRUE(found) << describe(found.error());
+        ASSERT_TRUE(found->record.taggingHu);
+        EXPECT_NEAR(*found->record.taggingHu, hu, 10.0);
+        EXPECT_EQ(tells(*found, "the tagging is weak"), hu < 200.0);
+    }
+    Drawing dry;
+    dry.paint(-988, inColon);
+    const auto found = find(dry.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    EXPECT_FALSE(found->record.taggingHu);
+    EXPECT_FALSE(tells(*found, "the tagging is weak"));
+}
+
 Volume<std::uint8_t> maskOf(const Grid& grid, const std::function<bool(glm::dvec3)>& inside) {
     Volume<std::uint8_t> mask(grid);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n)
@@ -317,8 +351,9 @@ TEST(FindColonInMask, DoubtsAMaskThatLiesInTheScansSoftTissue) {
     EXPECT_TRUE(tells(*another, "it may be another scan's"));
     EXPECT_LT(another->record.confidence, 0.9 * own->record.confidence);
     // What is said of the course is said with that doubt.
-    if (another->record.confidence < 0.8)
+    if (another->record.confidence < 0.8) {
         EXPECT_TRUE(tells(*another, "the course is right with no more than"));
+    }
     EXPECT_EQ(another->record.confidence,
               segmentation::courseConfidence(another->record.chainConfidence,
                                              segmentation::doubtsOf(another->record)));
