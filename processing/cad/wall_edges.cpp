@@ -52,7 +52,7 @@ std::optional<std::string> warningOfEdges(const WallEdges& edges,
     if (edges.peak > sharpPeak) {
         told =
             "the scan's kernel enhances edges, or the wall's surface is enhanced, as it is "
-            "brighter behind gas than its tissue: detection has learnt from none like it, and "
+            "brighter behind gas than its tissue: detection has learnt from few like it, and "
             "may miss polyps of any size";
         if (softened)
             told += softened->peak > sharpPeak
