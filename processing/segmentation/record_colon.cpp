@@ -298,12 +298,14 @@ private:
             if (hu < denserThanWaterHu || mm2 <= 0.0) return;
             huAndMm2.emplace_back(hu, mm2), sumMm2 += mm2;
         };
+        const Grid& grid = contents_.content.grid();
+        const double columnMm2 = grid.voxelVolumeMm3() / grid.spacingMm()[contents_.down.axis];
         for (const Level& level : contents_.levels) {
             const auto inColon =
                 std::ranges::count_if(level.columns, [&](const LevelColumn& column) {
                     return LumenLabel(labels_.labels.at(column.above)) != LumenLabel::outside;
                 });
-            count(level.fluidHu, level.areaMm2 * double(inColon) / double(level.columns.size()));
+            count(level.fluidHu, columnMm2 * double(inColon));
         }
         for (const UntaggedPool& pool : made_.untaggedPools)
             count(pool.fluidHu, pool.areaMm2);
@@ -433,8 +435,7 @@ private:
         for (const UntaggedPool& pool : made_.untaggedPools)
             say(printed(
                 "fluid %s (%.0f HU) stands under the gas in the %s, its surface %.0f mm2; what "
-                "lies "
-                "in it and beneath is not seen, at %s",
+                "lies in it and beneath is not seen, at %s",
                 pool.fluidHu < denserThanWaterHu ? "without tagging" : "of too little tagging",
                 pool.fluidHu, toString(pool.part), pool.areaMm2, placeText(pool.placeMm).c_str()));
         if (made_.taggingHu && *made_.taggingHu < weakTaggingHu)

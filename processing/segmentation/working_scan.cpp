@@ -108,17 +108,14 @@ BowelContents cropped(const BowelContents& contents, const VoxelBox& box, int th
     for (Level& level : part.levels) {
         for (LevelColumn& column : level.columns)
             column.above -= box.lo, column.below -= box.lo;
-        const double all = double(level.columns.size());
         std::erase_if(level.columns, [&](const LevelColumn& column) {
             return !part.content.grid().contains(column.above) ||
                    !part.content.grid().contains(column.below);
         });
-        level.areaMm2 *= double(level.columns.size()) / all;
         const int before = box.lo[contents.down.axis];
         level.height -= before;
         level.heightMm -= before * contents.content.grid().spacingMm()[contents.down.axis];
     }
-    std::erase_if(part.levels, [](const Level& level) { return level.columns.empty(); });
     part.down = contents.down, part.gravity = contents.gravity;
     part.gasHu = contents.gasHu, part.gasSdHu = contents.gasSdHu;
     part.notes = contents.notes, part.warnings = contents.warnings;

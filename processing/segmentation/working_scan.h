@@ -26,7 +26,8 @@ Volume<std::int16_t> binned(const Volume<std::int16_t>& hu, glm::ivec3 by, int t
 VoxelBox bowelBox(const Volume<std::uint8_t>& content, std::span<const glm::dvec3> alsoMm,
                   int threads);
 
-/// Contents of the box, on its grid.
+/// Contents of the box, on its grid. All levels of the scan stay, with their HU and area, which
+/// tell what its fluid is; of their columns those within the box.
 BowelContents cropped(const BowelContents& contents, const VoxelBox& box, int threads);
 
 /// The labels of a scan by those of its binned one: each block has its voxel's label, and then the

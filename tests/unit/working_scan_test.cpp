@@ -18,8 +18,8 @@ Level levelOf(int fromX, int toX, double fluidHu) {
     return level;
 }
 
-// What lies outside the box is in no level of it, nor in its area.
-TEST(CroppedContents, LevelsAreOfTheBoxAlone) {
+// Of the scan's levels all stay, as they tell what its fluid is; of their columns those within.
+TEST(CroppedContents, HaveAllLevelsAndTheBoxesColumns) {
     BowelContents contents;
     contents.content =
         Volume<std::uint8_t>(axisAlignedGrid({20, 10, 4}, {1, 2, 1}), std::uint8_t(Content::gas));
@@ -27,13 +27,14 @@ TEST(CroppedContents, LevelsAreOfTheBoxAlone) {
     contents.levels = {levelOf(2, 5, 300.0), levelOf(8, 11, 400.0), levelOf(14, 17, 500.0)};
     const VoxelBox box{{0, 2, 0}, {10, 8, 4}};
     const BowelContents part = cropped(contents, box, 1);
-    ASSERT_EQ(part.levels.size(), 2u);
-    EXPECT_EQ(part.levels[0].fluidHu, 300.0);
-    EXPECT_EQ(part.levels[0].areaMm2, contents.levels[0].areaMm2) << "whole within it";
-    EXPECT_EQ(part.levels[1].fluidHu, 400.0);
+    ASSERT_EQ(part.levels.size(), 3u);
+    EXPECT_EQ(part.levels[0].columns.size(), 4u) << "whole within it";
     EXPECT_EQ(part.levels[1].columns.size(), 2u);
-    EXPECT_EQ(part.levels[1].areaMm2, 0.5 * contents.levels[1].areaMm2);
-    for (const Level& level : part.levels) {
+    EXPECT_TRUE(part.levels[2].columns.empty());
+    for (std::size_t n = 0; n < part.levels.size(); ++n) {
+        const Level& level = part.levels[n];
+        EXPECT_EQ(level.fluidHu, contents.levels[n].fluidHu);
+        EXPECT_EQ(level.areaMm2, contents.levels[n].areaMm2);
         EXPECT_EQ(level.height, 4 - box.lo.y);
         EXPECT_EQ(level.heightMm, 8.0 - 2.0 * box.lo.y);
         for (const LevelColumn& column : level.columns)
